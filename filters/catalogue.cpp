@@ -1,0 +1,171 @@
+#include "filters/catalogue.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <system_error>
+#include <tuple>
+
+#include "filters/error.h"
+#include "filters/front_matter.h"
+#include "filters/nearest_name.h"
+
+namespace shadowbench::filters {
+namespace {
+
+[[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
+
+std::string suggest(const std::string& name, const std::vector<std::string>& known) {
+  const auto near = nearest_name(name, known);
+  if (near) return fmt::format("; did you mean '{}'?", *near);
+  return known.empty() ? "; it has none" : fmt::format("; known: {}", fmt::join(known, ", "));
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t end = 0; end != std::string::npos; begin = end + 1) {
+    end = text.find(separator, begin);
+    parts.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
+  }
+  return parts;
+}
+
+std::string list_choices(const ParamSpec& param) {
+  std::vector<std::string> names;
+  for (const ParamValue& choice : param.choices) names.push_back(to_string(choice));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+double parse_number(const FilterSpec& spec, const ParamSpec& param, const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+    fail(fmt::format("{}:{}='{}' is not a finite number", spec.id, param.name, text));
+  }
+  if (param.integer && value != std::floor(value)) {
+    fail(fmt::format("{}:{}={} must be a whole number", spec.id, param.name, text));
+  }
+  return value;
+}
+
+void check_range(const FilterSpec& spec, const ParamSpec& param, double value) {
+  if (value >= *param.min && value <= *param.max) return;
+  fail(fmt::format("{}:{}={} is out of range: choose {} .. {}{}", spec.id, param.name, value, *param.min, *param.max,
+                   param.unit.empty() ? "" : " " + param.unit));
+}
+
+void assign_value(FilterRequest& request, const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos) {
+    fail(fmt::format("'{}' after '{}:' must be PARAM=VALUE", assignment, request.spec.id));
+  }
+  const std::string name = assignment.substr(0, equals);
+  request.values[name] = parse_value(request.spec, name, assignment.substr(equals + 1));
+  if (std::find(request.set_by_user.begin(), request.set_by_user.end(), name) == request.set_by_user.end()) {
+    request.set_by_user.push_back(name);
+  }
+}
+
+}  // namespace
+
+std::string FilterRequest::label() const {
+  std::vector<std::string> shown;
+  for (const std::string& name : set_by_user) shown.push_back(fmt::format("{}={}", name, to_string(values.at(name))));
+  return shown.empty() ? spec.id : fmt::format("{} ({})", spec.id, fmt::join(shown, ", "));
+}
+
+ParamValues default_values(const FilterSpec& spec) {
+  ParamValues values;
+  for (const ParamSpec& param : spec.params) values[param.name] = param.default_value;
+  return values;
+}
+
+ParamValue parse_value(const FilterSpec& spec, const std::string& name, const std::string& text) {
+  const ParamSpec* param = spec.find_param(name);
+  if (!param) {
+    std::vector<std::string> known;
+    for (const ParamSpec& each : spec.params) known.push_back(each.name);
+    fail(fmt::format("filter '{}' has no parameter '{}'{}", spec.id, name, suggest(name, known)));
+  }
+  if (std::holds_alternative<bool>(param->default_value)) {
+    if (text != "true" && text != "false") fail(fmt::format("{}:{}='{}' must be true or false", spec.id, name, text));
+    return text == "true";
+  }
+  const bool numeric = std::holds_alternative<double>(param->default_value);
+  const ParamValue value = numeric ? ParamValue(parse_number(spec, *param, text)) : ParamValue(text);
+  if (!param->choices.empty()) {
+    if (std::find(param->choices.begin(), param->choices.end(), value) != param->choices.end()) return value;
+    fail(fmt::format("{}:{}={} is not among its choices: {}", spec.id, name, text, list_choices(*param)));
+  }
+  check_range(spec, *param, std::get<double>(value));
+  return value;
+}
+
+Catalogue::Catalogue(const std::filesystem::path& folder) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".glsl") filters_.push_back(load_filter(entry.path()));
+  }
+  if (filters_.empty()) {
+    throw Error(ErrorKind::kFilter, "no filters (*.glsl) in this folder: set SHADOWBENCH_ROOT to the project's folder", folder.string());
+  }
+  // Comparison filters first, narrow before wide: the order in which people learn them.
+  const auto order = [](const FilterSpec& spec) {
+    return std::tuple(spec.kind, radius_texels(spec, default_values(spec)), spec.id);
+  };
+  std::sort(filters_.begin(), filters_.end(),
+            [&](const FilterSpec& a, const FilterSpec& b) { return order(a) < order(b); });
+}
+
+const FilterSpec& Catalogue::find(const std::string& id) const {
+  std::vector<std::string> known;
+  for (const FilterSpec& spec : filters_) {
+    if (spec.id == id) return spec;
+    known.push_back(spec.id);
+  }
+  fail(fmt::format("unknown filter '{}'{}", id, suggest(id, known)));
+}
+
+void Catalogue::add_user_file(const std::filesystem::path& path) {
+  FilterSpec spec = load_filter(path);
+  for (const FilterSpec& known : filters_) {
+    if (known.id == spec.id) fail(fmt::format("filter id '{}' of {} is taken by {}: rename the file", spec.id, spec.path, known.path));
+  }
+  user_ids_.push_back(spec.id);
+  filters_.push_back(std::move(spec));
+}
+
+FilterRequest Catalogue::make_request(const std::string& id) const {
+  FilterRequest request;
+  request.spec = find(id);
+  request.values = default_values(request.spec);
+  request.user_file = std::find(user_ids_.begin(), user_ids_.end(), id) != user_ids_.end();
+  return request;
+}
+
+std::vector<FilterRequest> Catalogue::parse_requests(const std::string& text) const {
+  std::vector<FilterRequest> requests;
+  if (text.empty()) {
+    for (const FilterSpec& spec : filters_) requests.push_back(make_request(spec.id));
+    return requests;
+  }
+  for (const std::string& item : split(text, ',')) {
+    const std::size_t colon = item.find(':');
+    const bool continues = colon == std::string::npos && item.find('=') != std::string::npos;
+    if (continues) {
+      if (requests.empty()) fail(fmt::format("'{}' comes before any filter: write FILTER:PARAM=VALUE", item));
+      assign_value(requests.back(), item);
+      continue;
+    }
+    if (item.empty()) fail(fmt::format("empty filter name in '{}'", text));
+    requests.push_back(make_request(item.substr(0, colon)));
+    if (colon != std::string::npos) assign_value(requests.back(), item.substr(colon + 1));
+  }
+  return requests;
+}
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "filters/filter_spec.h"
+
+namespace shadowbench::filters {
+
+/// A filter and the parameter values it is to run with.
+struct FilterRequest {
+  FilterSpec spec;
+  ParamValues values;                    ///< complete: every parameter has a value
+  std::vector<std::string> set_by_user;  ///< names of the parameters that were asked for
+  bool user_file = false;                ///< came by path: runs in a process of its own
+
+  /// Gives the id, with the asked-for parameters in parentheses; what tables and grids print.
+  std::string label() const;
+};
+
+/// Knows the filters of one folder, one `<id>.glsl` each; comparison filters first, narrow before wide.
+class Catalogue {
+ public:
+  /// Loads every filter in `folder`.
+  /// Throws Error(kFilter) as load_filter, or when the folder holds none.
+  explicit Catalogue(const std::filesystem::path& folder);
+
+  const std::vector<FilterSpec>& filters() const { return filters_; }
+
+  /// Throws Error(kUsage), with the nearest id, when there is no such filter.
+  const FilterSpec& find(const std::string& id) const;
+
+  /// Adds a user's file.
+  /// Throws as load_filter, and Error(kUsage) when its id is taken.
+  void add_user_file(const std::filesystem::path& path);
+
+  /// Parses `a,b:param=value,param=value,c`; an empty text asks for every filter at its defaults.
+  /// Throws Error(kUsage) for an unknown filter or parameter (with the nearest name) and for a value out of range.
+  std::vector<FilterRequest> parse_requests(const std::string& text) const;
+
+ private:
+  std::vector<FilterSpec> filters_;
+  std::vector<std::string> user_ids_;
+
+  FilterRequest make_request(const std::string& id) const;
+};
+
+/// Gives every parameter its default.
+ParamValues default_values(const FilterSpec& spec);
+
+/// Parses and checks one value for one parameter.
+/// Throws Error(kUsage) when the parameter is unknown (with the nearest name) or the value is not allowed.
+ParamValue parse_value(const FilterSpec& spec, const std::string& name, const std::string& text);
+
+}  // namespace shadowbench::filters

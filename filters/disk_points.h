@@ -1,0 +1,22 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <string>
+#include <vector>
+
+#include "filters/filter_spec.h"
+
+namespace shadowbench::filters {
+
+/// Generates `count` well-spread points in the unit disk; the same for the same count and seed on every machine.
+///
+/// Mitchell's best-candidate method (Mitchell 1991, Spectrally Optimal Sampling for Distribution Ray Tracing), then
+/// moved so that their mean is the centre, since a mean elsewhere would shift the shadow, and scaled to fit the disk.
+std::vector<glm::vec2> generate_disk_points(int count, unsigned seed);
+
+/// Generates the points that `[disk.<name>]` of a filter's front matter asks for.
+/// Requires that the filter declares such a table.
+std::vector<glm::vec2> generate_disk_points(const FilterSpec& spec, const ParamValues& values, const std::string& name);
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "filters/gaussian.h"
+#include "filters/map_reader.h"
+#include "filters/model.h"
+
+namespace shadowbench::filters {
+
+/// A map that a filter's encode() wrote, prefiltered: what the `encode` and `blur` passes make, as a model.
+///
+/// `N` channels of type T; outside the map it holds the encoding of depth 1.
+template <class T, std::size_t N>
+class EncodedMap {
+ public:
+  using Texel = std::array<T, N>;
+
+  /// `encode` maps a depth of type T to a Texel. Reads `store`, `combine` and `sample` from the parameter values.
+  template <class Encode>
+  EncodedMap(const ModelInput& input, int radius_texels, Encode encode)
+      : grid_(input.map.size),
+        accuracy_(input.accuracy),
+        store_(store_precision(text_or(input.values, "store", "r32f"))),
+        log_(text_or(input.values, "combine", "linear") == "log"),
+        nearest_(log_ || text_or(input.values, "sample", "linear") == "nearest") {
+    border_ = stored(encode(T(Position<T>(1))));
+    texels_.reserve(input.map.depth.size());
+    for (const float depth : input.map.depth) texels_.push_back(stored(encode(T(static_cast<Position<T>>(depth)))));
+    if (radius_texels == 0) return;
+    texels_ = blurred(gaussian_weights(radius_texels), 1, 0);
+    texels_ = blurred(gaussian_weights(radius_texels), 0, 1);
+  }
+
+  Texel fetch(const Receiver& r, Tally& tally) const {
+    if (nearest_) {
+      const int x = grid_.nearest(grid_.position(r.uv.x, 0), tally);
+      return texel(x, grid_.nearest(grid_.position(r.uv.y, 0), tally));
+    }
+    const Position<T> half(0.5);
+    const Position<T> px = grid_.position(r.uv.x, 0) - half, py = grid_.position(r.uv.y, 0) - half;
+    // At a border the weights are continuous but their slope is not, which a propagated bound does not see.
+    const int x = grid_.nearest(px, tally), y = grid_.nearest(py, tally);
+    const T sx = sampler_weight<T>(px, std::floor(px), accuracy_, grid_.size());
+    const T sy = sampler_weight<T>(py, std::floor(py), accuracy_, grid_.size());
+    const Texel low = mix(texel(x, y), texel(x + 1, y), sx);
+    const Texel high = mix(texel(x, y + 1), texel(x + 1, y + 1), sx);
+    return mix(low, high, sy);
+  }
+
+ private:
+  TexelGrid<T> grid_;
+  GlAccuracy accuracy_;
+  StorePrecision store_;
+  bool log_;
+  bool nearest_;
+  Texel border_{};
+  std::vector<Texel> texels_;
+
+  Texel stored(Texel texel) const {
+    for (T& channel : texel) channel = round_to_store(channel, store_);
+    return texel;
+  }
+
+  const Texel& texel(int x, int y) const { return grid_.inside(x, y) ? texels_[grid_.index(x, y)] : border_; }
+
+  static Texel mix(const Texel& a, const Texel& b, T s) {
+    Texel result;
+    for (std::size_t i = 0; i < N; ++i) result[i] = a[i] + s * (b[i] - a[i]);
+    return result;
+  }
+
+  std::vector<Texel> blurred(const std::vector<float>& weights, int dx, int dy) const {
+    std::vector<Texel> result;
+    result.reserve(texels_.size());
+    for (int y = 0; y < grid_.size(); ++y) {
+      for (int x = 0; x < grid_.size(); ++x) {
+        result.push_back(stored(log_ ? add_logs(weights, x, y, dx, dy) : add(weights, x, y, dx, dy)));
+      }
+    }
+    return result;
+  }
+
+  Texel add(const std::vector<float>& weights, int x, int y, int dx, int dy) const {
+    const int radius = static_cast<int>(weights.size() / 2);
+    Texel sum{};
+    for (int i = -radius; i <= radius; ++i) {
+      const Texel& tap = texel(x + i * dx, y + i * dy);
+      const T weight(static_cast<Position<T>>(weights[static_cast<std::size_t>(i + radius)]));
+      for (std::size_t c = 0; c < N; ++c) sum[c] = sum[c] + weight * tap[c];
+    }
+    return sum;
+  }
+
+  /// ln(sum w e^x), shifted by the largest x so that nothing overflows.
+  Texel add_logs(const std::vector<float>& weights, int x, int y, int dx, int dy) const {
+    const int radius = static_cast<int>(weights.size() / 2);
+    Texel result;
+    for (std::size_t c = 0; c < N; ++c) {
+      T largest = texel(x - radius * dx, y - radius * dy)[c];
+      for (int i = -radius; i <= radius; ++i) largest = maximum(largest, texel(x + i * dx, y + i * dy)[c]);
+      T sum{};
+      for (int i = -radius; i <= radius; ++i) {
+        const T weight(static_cast<Position<T>>(weights[static_cast<std::size_t>(i + radius)]));
+        sum = sum + weight * exponential(texel(x + i * dx, y + i * dy)[c] - largest, accuracy_);
+      }
+      result[c] = largest + logarithm(sum);
+    }
+    return result;
+  }
+};
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,63 @@
+#include "filters/filter_spec.h"
+
+#include <fmt/format.h>
+
+#include <cassert>
+
+namespace shadowbench::filters {
+namespace {
+
+double number_or_param(const std::variant<double, std::string>& value, const ParamValues& values) {
+  if (const auto* name = std::get_if<std::string>(&value)) return number(values, *name);
+  return std::get<double>(value);
+}
+
+}  // namespace
+
+const ParamSpec* FilterSpec::find_param(const std::string& name) const {
+  for (const ParamSpec& param : params) {
+    if (param.name == name) return &param;
+  }
+  return nullptr;
+}
+
+std::string to_string(FilterKind kind) {
+  switch (kind) {
+    case FilterKind::kComparison: return "comparison";
+    case FilterKind::kBound: return "bound";
+    case FilterKind::kStochastic: return "stochastic";
+    case FilterKind::kOther: return "other";
+  }
+  return "other";
+}
+
+std::string to_string(const ParamValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  return fmt::format("{}", std::get<double>(value));
+}
+
+double number(const ParamValues& values, const std::string& name) {
+  const auto found = values.find(name);
+  assert(found != values.end());
+  return std::get<double>(found->second);
+}
+
+std::string text_or(const ParamValues& values, const std::string& name, const std::string& fallback) {
+  const auto found = values.find(name);
+  return found == values.end() ? fallback : to_string(found->second);
+}
+
+double radius_texels(const FilterSpec& spec, const ParamValues& values) {
+  return number_or_param(spec.radius_texels, values);
+}
+
+double bias_texels(const FilterSpec& spec, const ParamValues& values) {
+  return number_or_param(spec.bias_texels, values);
+}
+
+int prefilter_radius_texels(const FilterSpec& spec, const ParamValues& values) {
+  return spec.has_prefilter ? static_cast<int>(radius_texels(spec, values)) : 0;
+}
+
+}  // namespace shadowbench::filters

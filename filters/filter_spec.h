@@ -1,0 +1,87 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace shadowbench::filters {
+
+/// The value of a filter's parameter. Integers are kept as doubles; ParamSpec::integer tells them apart.
+using ParamValue = std::variant<double, bool, std::string>;
+
+/// Every parameter of one filter with its value, by name.
+using ParamValues = std::map<std::string, ParamValue>;
+
+/// The largest radius in texels of the shared Gaussian prefilter.
+inline constexpr int kMaxPrefilterRadius = 64;
+
+/// Says which contract a filter keeps, and so which tests apply to it.
+enum class FilterKind { kComparison, kStochastic, kBound, kOther };
+
+/// Describes one parameter, as the front matter declares it.
+struct ParamSpec {
+  std::string name;
+  ParamValue default_value;
+  bool integer = false;             ///< numbers only
+  bool is_const = false;            ///< becomes a #define instead of a uniform
+  std::optional<double> min;        ///< numbers only; inclusive
+  std::optional<double> max;        ///< numbers only; inclusive
+  std::vector<ParamValue> choices;  ///< the only values allowed; empty: any
+  std::string unit;
+  std::string text;  ///< help: what too little and too much do
+};
+
+/// Asks for a table of points in the unit disk, given to the GLSL as `const vec2 <name>[]`.
+struct DiskTable {
+  std::string name;
+  std::string count;  ///< name of the integer parameter that gives the number of points
+  unsigned seed = 1;
+};
+
+/// Everything the front matter of `<id>.glsl` says, and the GLSL that follows it.
+struct FilterSpec {
+  std::string id;    ///< file stem
+  std::string path;  ///< for messages
+  std::string title;
+  std::string source;  ///< citation
+  FilterKind kind = FilterKind::kOther;
+  std::vector<std::string> claims;
+  std::variant<double, std::string> radius_texels = 0.0;  ///< kernel half-width: a number or a parameter's name
+  std::variant<double, std::string> bias_texels = 0.0;    ///< half-width over which one depth stands for the receiver
+  std::vector<ParamSpec> params;                          ///< `store`, `combine` and `sample` lists included
+  std::vector<DiskTable> disks;
+  std::string body;                ///< GLSL after the front matter
+  int body_first_line = 1;         ///< line of the file at which `body` begins
+  bool has_encode = false;         ///< stores something else than depth
+  bool uses_samplers = false;      ///< reads the map past the counted functions: its fetch count is unknown
+  bool has_prefilter = false;      ///< `combine` is given: the map is blurred with radius `radius_texels`
+
+  const ParamSpec* find_param(const std::string& name) const;
+};
+
+/// Gives the names `comparison`, `bound`, `stochastic`, `other`.
+std::string to_string(FilterKind kind);
+
+/// Writes a value as the command line would take it.
+std::string to_string(const ParamValue& value);
+
+/// Gives a numeric parameter's value.
+/// Requires that the parameter exists and is a number.
+double number(const ParamValues& values, const std::string& name);
+
+/// Gives a text parameter's value, `fallback` where the filter has no such parameter.
+std::string text_or(const ParamValues& values, const std::string& name, const std::string& fallback);
+
+/// Gives the kernel's half-width in texels for these parameter values.
+double radius_texels(const FilterSpec& spec, const ParamValues& values);
+
+/// Gives how many texels of receiver slope a depth bias has to cover for these parameter values, without the texel
+/// that the sampling grid itself needs.
+double bias_texels(const FilterSpec& spec, const ParamValues& values);
+
+/// Gives the radius in texels of the Gaussian prefilter, 0 where the filter has none.
+int prefilter_radius_texels(const FilterSpec& spec, const ParamValues& values);
+
+}  // namespace shadowbench::filters

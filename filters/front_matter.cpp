@@ -1,0 +1,346 @@
+#include "filters/front_matter.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <sstream>
+
+#include "filters/error.h"
+#include "filters/nearest_name.h"
+
+namespace shadowbench::filters {
+namespace {
+
+constexpr std::string_view kOpen = "/*+++";
+constexpr std::string_view kClose = "+++*/";
+
+int count_lines(std::string_view text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
+
+/// Walks the TOML of one front matter; lines in messages are lines of the whole file.
+class Reader {
+ public:
+  Reader(std::string path, int first_line) : path_(std::move(path)), first_line_(first_line) {}
+
+  [[noreturn]] void fail(const toml::node* node, const std::string& message) const {
+    const int line = node ? static_cast<int>(node->source().begin.line) : 1;
+    throw Error(ErrorKind::kFilter, message, fmt::format("{}:{}", path_, first_line_ - 1 + std::max(line, 1)));
+  }
+
+  [[noreturn]] void fail_at(int toml_line, const std::string& message) const {
+    throw Error(ErrorKind::kFilter, message, fmt::format("{}:{}", path_, first_line_ - 1 + toml_line));
+  }
+
+  void check_keys(const toml::table& table, const std::vector<std::string>& known, const std::string& place) const {
+    for (const auto& [key, node] : table) {
+      const std::string name(key.str());
+      if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+      const auto near = nearest_name(name, known);
+      fail_at(static_cast<int>(key.source().begin.line),
+              fmt::format("unknown key '{}' in {}{}", name, place,
+                          near ? fmt::format("; did you mean '{}'?", *near) : fmt::format("; known: {}", fmt::join(known, ", "))));
+    }
+  }
+
+  std::string text(const toml::table& table, const std::string& key, bool required) const {
+    const toml::node* node = table.get(key);
+    if (!node) {
+      if (required) fail(&table, fmt::format("the front matter lacks '{}', a text", key));
+      return {};
+    }
+    const auto value = node->value_exact<std::string>();
+    if (!value) fail(node, fmt::format("'{}' must be a text in quotes", key));
+    return *value;
+  }
+
+  bool flag(const toml::table& table, const std::string& key) const {
+    const toml::node* node = table.get(key);
+    if (!node) return false;
+    const auto value = node->value_exact<bool>();
+    if (!value) fail(node, fmt::format("'{}' must be true or false", key));
+    return *value;
+  }
+
+  std::optional<double> finite(const toml::table& table, const std::string& key) const {
+    const toml::node* node = table.get(key);
+    if (!node) return std::nullopt;
+    const auto value = node->is_number() ? node->value<double>() : std::nullopt;
+    if (!value || !std::isfinite(*value)) fail(node, fmt::format("'{}' must be a finite number", key));
+    return value;
+  }
+
+  /// A list of texts; one text counts as a list of one.
+  std::vector<std::string> texts(const toml::table& table, const std::string& key) const {
+    const toml::node* node = table.get(key);
+    if (!node) return {};
+    if (const auto one = node->value_exact<std::string>()) return {*one};
+    const toml::array* list = node->as_array();
+    if (!list) fail(node, fmt::format("'{}' must be a text or a list of texts", key));
+    std::vector<std::string> result;
+    for (const toml::node& item : *list) {
+      const auto value = item.value_exact<std::string>();
+      if (!value) fail(&item, fmt::format("'{}' must hold texts only", key));
+      result.push_back(*value);
+    }
+    return result;
+  }
+
+  ParamValue value(const toml::node& node, const std::string& what) const {
+    if (const auto flag_value = node.value_exact<bool>()) return *flag_value;
+    if (const auto text_value = node.value_exact<std::string>()) return *text_value;
+    if (node.is_number() && std::isfinite(*node.value<double>())) return *node.value<double>();
+    fail(&node, fmt::format("{} must be a finite number, a text, true or false", what));
+  }
+
+ private:
+  std::string path_;
+  int first_line_;
+};
+
+std::string strip_comments(const std::string& glsl) {
+  std::string code;
+  for (std::size_t i = 0; i < glsl.size();) {
+    const bool line = glsl.compare(i, 2, "//") == 0;
+    const bool block = glsl.compare(i, 2, "/*") == 0;
+    if (!line && !block) {
+      code += glsl[i++];
+      continue;
+    }
+    const std::size_t end = line ? glsl.find('\n', i) : glsl.find("*/", i + 2);
+    code += ' ';
+    if (end == std::string::npos) break;
+    i = line ? end : end + 2;
+  }
+  return code;
+}
+
+bool matches(const std::string& text, const char* pattern) { return std::regex_search(text, std::regex(pattern)); }
+
+bool is_identifier(const std::string& name) {
+  static const std::regex identifier("[A-Za-z][A-Za-z0-9_]*");
+  return std::regex_match(name, identifier) && name.rfind("gl_", 0) != 0 && name.find("__") == std::string::npos;
+}
+
+FilterKind read_kind(const Reader& reader, const toml::table& root) {
+  const std::vector<FilterKind> kinds = {FilterKind::kComparison, FilterKind::kBound, FilterKind::kStochastic,
+                                         FilterKind::kOther};
+  const std::string name = reader.text(root, "kind", true);
+  for (const FilterKind kind : kinds) {
+    if (to_string(kind) == name) return kind;
+  }
+  reader.fail(root.get("kind"),
+              fmt::format("kind '{}' is unknown; known: comparison, bound, stochastic, other", name));
+}
+
+void check_default(const Reader& reader, const toml::node& node, const ParamSpec& param) {
+  if (!param.choices.empty()) {
+    if (std::find(param.choices.begin(), param.choices.end(), param.default_value) == param.choices.end()) {
+      reader.fail(&node, fmt::format("the default of '{}' is not one of its choices", param.name));
+    }
+    return;
+  }
+  const auto* value = std::get_if<double>(&param.default_value);
+  if (!value) {
+    if (std::holds_alternative<std::string>(param.default_value)) {
+      reader.fail(&node, fmt::format("'{}' is a text and needs 'choices'", param.name));
+    }
+    return;
+  }
+  if (!param.min || !param.max) reader.fail(&node, fmt::format("'{}' is a number and needs 'min' and 'max'", param.name));
+  if (*param.min > *param.max) reader.fail(&node, fmt::format("'{}' has min {} above max {}", param.name, *param.min, *param.max));
+  if (*value < *param.min || *value > *param.max) {
+    reader.fail(&node, fmt::format("the default of '{}' is {}, outside {} .. {}", param.name, *value, *param.min, *param.max));
+  }
+}
+
+ParamSpec read_param(const Reader& reader, const std::string& name, const toml::node& node) {
+  const toml::table* table = node.as_table();
+  if (!table) reader.fail(&node, fmt::format("'param.{}' must be a table", name));
+  if (!is_identifier(name)) reader.fail(&node, fmt::format("'{}' cannot be the name of a GLSL uniform", name));
+  reader.check_keys(*table, {"default", "min", "max", "choices", "unit", "text", "const"}, fmt::format("[param.{}]", name));
+  const toml::node* default_node = table->get("default");
+  if (!default_node) reader.fail(table, fmt::format("[param.{}] lacks 'default'", name));
+  ParamSpec param;
+  param.name = name;
+  param.default_value = reader.value(*default_node, "'default'");
+  param.integer = default_node->is_integer();
+  param.min = reader.finite(*table, "min");
+  param.max = reader.finite(*table, "max");
+  param.unit = reader.text(*table, "unit", false);
+  param.text = reader.text(*table, "text", true);
+  if (const toml::node* choices = table->get("choices")) {
+    if (!choices->as_array()) reader.fail(choices, "'choices' must be a list");
+    for (const toml::node& item : *choices->as_array()) param.choices.push_back(reader.value(item, "a choice"));
+  }
+  param.is_const = reader.flag(*table, "const") || std::holds_alternative<std::string>(param.default_value);
+  check_default(reader, *default_node, param);
+  return param;
+}
+
+/// `store`, `combine` and `sample` are parameters as well: the first value is the default.
+void add_list_param(const Reader& reader, const toml::table& root, FilterSpec& spec, const std::string& name,
+                    const std::vector<std::string>& known, const char* text) {
+  const std::vector<std::string> values = reader.texts(root, name);
+  for (const std::string& value : values) {
+    if (std::find(known.begin(), known.end(), value) != known.end()) continue;
+    reader.fail(root.get(name), fmt::format("{} '{}' is unknown; known: {}", name, value, fmt::join(known, ", ")));
+  }
+  if (values.empty()) return;
+  ParamSpec param;
+  param.name = name;
+  param.default_value = values.front();
+  param.choices.assign(values.begin(), values.end());
+  param.is_const = true;
+  param.text = text;
+  spec.params.push_back(param);
+}
+
+void read_params(const Reader& reader, const toml::table& root, FilterSpec& spec) {
+  const toml::node* node = root.get("param");
+  if (!node) return;
+  if (!node->as_table()) reader.fail(node, "'param' must hold tables: [param.NAME]");
+  std::vector<std::pair<std::string, const toml::node*>> found;
+  for (const auto& [key, value] : *node->as_table()) found.emplace_back(std::string(key.str()), &value);
+  // TOML tables are sorted by name; the author's order is the one people should read.
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+    return a.second->source().begin.line < b.second->source().begin.line;
+  });
+  for (const auto& [name, value] : found) spec.params.push_back(read_param(reader, name, *value));
+}
+
+std::variant<double, std::string> read_number_or_param(const Reader& reader, const toml::table& root,
+                                                       const FilterSpec& spec, const std::string& key,
+                                                       std::variant<double, std::string> fallback) {
+  const toml::node* node = root.get(key);
+  if (!node) return fallback;
+  if (const auto name = node->value_exact<std::string>()) {
+    const ParamSpec* param = spec.find_param(*name);
+    if (!param || !std::holds_alternative<double>(param->default_value)) {
+      reader.fail(node, fmt::format("'{}' names '{}', which is not a numeric parameter", key, *name));
+    }
+    return *name;
+  }
+  const auto value = reader.finite(root, key);
+  if (*value < 0.0) reader.fail(node, fmt::format("'{}' must not be negative", key));
+  return *value;
+}
+
+/// A filter that says how texels combine asks for the Gaussian prefilter; its radius is the kernel's.
+void read_prefilter(const Reader& reader, const toml::table& root, FilterSpec& spec) {
+  if (!root.contains("combine")) return;
+  const auto* name = std::get_if<std::string>(&spec.radius_texels);
+  const ParamSpec* param = name ? spec.find_param(*name) : nullptr;
+  const bool whole = param ? param->integer : std::holds_alternative<double>(spec.radius_texels) &&
+                                                  std::floor(std::get<double>(spec.radius_texels)) == std::get<double>(spec.radius_texels);
+  const double largest = param ? *param->max : name ? 0.0 : std::get<double>(spec.radius_texels);
+  if (!whole || largest > kMaxPrefilterRadius || (param && *param->min < 0.0)) {
+    reader.fail(root.get("combine"), fmt::format("'combine' asks for the prefilter, whose radius is 'radius_texels': that must be a whole number, or an integer parameter, within 0 .. {}", kMaxPrefilterRadius));
+  }
+  spec.has_prefilter = true;
+}
+
+void read_disks(const Reader& reader, const toml::table& root, FilterSpec& spec) {
+  const toml::node* node = root.get("disk");
+  if (!node) return;
+  if (!node->as_table()) reader.fail(node, "'disk' must hold tables: [disk.NAME]");
+  for (const auto& [key, value] : *node->as_table()) {
+    const toml::table* table = value.as_table();
+    if (!table) reader.fail(&value, "'disk' must hold tables: [disk.NAME]");
+    reader.check_keys(*table, {"count", "seed"}, fmt::format("[disk.{}]", key.str()));
+    DiskTable disk;
+    disk.name = std::string(key.str());
+    disk.count = reader.text(*table, "count", true);
+    const ParamSpec* param = spec.find_param(disk.count);
+    if (!is_identifier(disk.name)) reader.fail(table, fmt::format("'{}' cannot be the name of a GLSL array", disk.name));
+    if (!param || !param->integer || !param->is_const) {
+      reader.fail(table->get("count"), fmt::format("'count' names '{}', which is not a const integer parameter", disk.count));
+    }
+    disk.seed = static_cast<unsigned>(reader.finite(*table, "seed").value_or(1.0));
+    spec.disks.push_back(disk);
+  }
+}
+
+void read_root(const Reader& reader, const toml::table& root, FilterSpec& spec) {
+  reader.check_keys(root, {"title", "source", "kind", "store", "combine", "sample", "claims", "radius_texels",
+                           "bias_texels", "param", "disk"}, "the front matter");
+  spec.title = reader.text(root, "title", true);
+  spec.source = reader.text(root, "source", true);
+  spec.kind = read_kind(reader, root);
+  spec.claims = reader.texts(root, "claims");
+  read_params(reader, root, spec);
+  add_list_param(reader, root, spec, "store", {"r16f", "r32f", "rg16f", "rg32f", "rgba16f", "rgba32f", "r16", "rg16", "rgba16"},
+                 "format of the encoded map");
+  add_list_param(reader, root, spec, "combine", {"linear", "log"},
+                 "how the prefilter adds texels; log: log-sum-exp, read with the nearest texel");
+  add_list_param(reader, root, spec, "sample", {"linear", "nearest"}, "how the encoded map is read");
+  spec.radius_texels = read_number_or_param(reader, root, spec, "radius_texels", 0.0);
+  spec.bias_texels = read_number_or_param(reader, root, spec, "bias_texels", spec.radius_texels);
+  read_prefilter(reader, root, spec);
+  read_disks(reader, root, spec);
+}
+
+void inspect_body(const Reader& reader, const toml::table& root, FilterSpec& spec) {
+  const std::string code = strip_comments(spec.body);
+  spec.has_encode = matches(code, R"(\bvec4\s+encode\s*\()");
+  spec.uses_samplers = matches(code, R"(\b(map_depth|map_compare|map_compare_nearest|map_stored)\b)");
+  if (!matches(code, R"(\bfloat\s+visibility\s*\()")) {
+    reader.fail(nullptr, "the GLSL lacks 'float visibility(Receiver r)'");
+  }
+  const bool stores = root.contains("store");
+  if (stores && !spec.has_encode) reader.fail(root.get("store"), "'store' is given, but the GLSL lacks 'vec4 encode(EncodeInput e)'");
+  if (!stores && spec.has_encode) reader.fail(nullptr, "the GLSL has encode(), but the front matter lacks 'store', the format it writes");
+  for (const char* key : {"combine", "sample"}) {
+    if (root.contains(key) && !stores) reader.fail(root.get(key), fmt::format("'{}' needs 'store': a depth map is not prefiltered", key));
+  }
+}
+
+}  // namespace
+
+FilterSpec parse_filter(const std::string& text, const std::filesystem::path& path) {
+  const std::size_t open = text.find(kOpen);
+  const std::size_t close = open == std::string::npos ? open : text.find(kClose, open);
+  if (close == std::string::npos || text.find_first_not_of(" \t\r\n\xEF\xBB\xBF") != open) {
+    throw Error(ErrorKind::kFilter, "no front matter: the file must begin with /*+++, TOML, and +++*/", path.string() + ":1");
+  }
+  FilterSpec spec;
+  spec.id = path.stem().string();
+  spec.path = path.string();
+  const std::size_t begin = open + kOpen.size();
+  const int first_line = 1 + count_lines(std::string_view(text).substr(0, begin));
+  const Reader reader(spec.path, first_line);
+  toml::table root;
+  try {
+    root = toml::parse(text.substr(begin, close - begin));
+  } catch (const toml::parse_error& error) {
+    reader.fail_at(static_cast<int>(error.source().begin.line),
+                   fmt::format("malformed front matter: {}", error.description()));
+  }
+  read_root(reader, root, spec);
+  spec.body = text.substr(close + kClose.size());
+  spec.body_first_line = 1 + count_lines(std::string_view(text).substr(0, close));
+  inspect_body(reader, root, spec);
+  return spec;
+}
+
+FilterSpec load_filter(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  if (file) text << file.rdbuf();
+  if (!file || std::filesystem::is_directory(path)) {
+    throw Error(ErrorKind::kFilter, "cannot read this filter file: check the path and its permissions", path.string());
+  }
+  if (!is_identifier(path.stem().string())) {
+    throw Error(ErrorKind::kFilter,
+                fmt::format("'{}' cannot be a filter's id: rename the file to letters, digits and '_'", path.stem().string()),
+                path.string());
+  }
+  return parse_filter(text.str(), path);
+}
+
+}  // namespace shadowbench::filters

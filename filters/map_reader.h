@@ -1,0 +1,116 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "filters/receiver.h"
+#include "filters/scalar.h"
+#include "filters/store_format.h"
+
+namespace shadowbench::filters {
+
+struct DepthMap;
+
+/// Notes what happened while one receiver was looked up.
+struct Tally {
+  bool excused = false;  ///< rounding decided which texel was read, or on which side of a tie a comparison fell
+};
+
+/// A shift in texels.
+template <class T>
+struct Offset {
+  Position<T> x{};
+  Position<T> y{};
+};
+
+/// Turns a receiver's uv and an offset into texel coordinates, rounded as the shaders do it.
+template <class T>
+class TexelGrid {
+ public:
+  using P = Position<T>;
+  explicit TexelGrid(int size) : size_(size) {}
+
+  int size() const { return size_; }
+  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < size_ && y < size_; }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(x);
+  }
+
+  P position(float uv, P offset) const {
+    const P size = static_cast<P>(size_);
+    return (static_cast<P>(uv) + offset / size) * size;
+  }
+
+  /// Finds the texel that holds a position, and excuses positions within 4 ULP of a border.
+  int nearest(P position, Tally& tally) const {
+    if (std::abs(position - std::round(position)) <= static_cast<P>(border_tolerance())) tally.excused = true;
+    return static_cast<int>(std::floor(position));
+  }
+
+  /// Four ULP of a coordinate at the far end of the map.
+  double border_tolerance() const {
+    return 4.0 * static_cast<double>(std::numeric_limits<float>::epsilon()) * 0.5 * static_cast<double>(size_);
+  }
+
+ private:
+  int size_;
+};
+
+/// Reads a depth map as `compare_nearest`, `compare_2x2` and `fetch_depth` of shaders/lib/map_access.glsl do.
+/// Outside the map the depth is 1.
+template <class T>
+class DepthReader {
+ public:
+  using P = Position<T>;
+  DepthReader(int size, const std::vector<float>& depth, const GlAccuracy& accuracy)
+      : grid_(size), depth_(&depth), accuracy_(accuracy) {}
+
+  const TexelGrid<T>& grid() const { return grid_; }
+
+  T compare_nearest(const Receiver& r, Offset<T> offset, float z, Tally& tally) const {
+    const int x = grid_.nearest(grid_.position(r.uv.x, offset.x), tally);
+    const int y = grid_.nearest(grid_.position(r.uv.y, offset.y), tally);
+    return T(static_cast<P>(compare(x, y, z, tally)));
+  }
+
+  T compare_2x2(const Receiver& r, Offset<T> offset, float z, Tally& tally) const {
+    const P px = grid_.position(r.uv.x, offset.x) - P(0.5);
+    const P py = grid_.position(r.uv.y, offset.y) - P(0.5);
+    const P bx = std::floor(px), by = std::floor(py);
+    const int x = static_cast<int>(bx), y = static_cast<int>(by);
+    const T sx = sampler_weight<T>(px, bx, accuracy_, grid_.size());
+    const T sy = sampler_weight<T>(py, by, accuracy_, grid_.size());
+    const auto tap = [&](int dx, int dy) { return T(static_cast<P>(compare(x + dx, y + dy, z, tally))); };
+    const T low = mix(tap(0, 0), tap(1, 0), sx);
+    const T high = mix(tap(0, 1), tap(1, 1), sx);
+    return mix(low, high, sy);
+  }
+
+  float fetch_depth(const Receiver& r, Offset<T> offset, Tally& tally) const {
+    const int x = grid_.nearest(grid_.position(r.uv.x, offset.x), tally);
+    const int y = grid_.nearest(grid_.position(r.uv.y, offset.y), tally);
+    return stored(x, y);
+  }
+
+  static T mix(T a, T b, T s) { return a + s * (b - a); }
+
+ private:
+  TexelGrid<T> grid_;
+  const std::vector<float>* depth_;
+  GlAccuracy accuracy_;
+
+  float stored(int x, int y) const { return grid_.inside(x, y) ? (*depth_)[grid_.index(x, y)] : 1.0f; }
+
+  /// Ties are lit (LEQUAL).
+  int compare(int x, int y, float z, Tally& tally) const {
+    const float depth = stored(x, y);
+    const float ulp = std::nextafter(std::abs(z), 2.0f * std::abs(z) + 1.0f) - std::abs(z);
+    if (std::abs(z - depth) <= ulp) tally.excused = true;
+    return z <= depth ? 1 : 0;
+  }
+};
+
+}  // namespace shadowbench::filters

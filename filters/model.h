@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "filters/filter_spec.h"
+#include "filters/receiver.h"
+#include "filters/tracked.h"
+
+namespace shadowbench::filters {
+
+/// A depth map as read back from the GL; row 0 is v = 0, depth in [0,1].
+struct DepthMap {
+  int size = 0;              ///< texels per side
+  std::vector<float> depth;  ///< size * size
+};
+
+/// Everything a model may look at besides the receiver.
+struct ModelInput {
+  const FilterSpec& spec;
+  const ParamValues& values;  ///< complete
+  const DepthMap& map;        ///< must outlive what is prepared from it
+  GlAccuracy accuracy;        ///< used by Precision::kTracked only
+  std::uint32_t seed = 0;     ///< of the run: rotations
+};
+
+/// The arithmetic a model runs in.
+enum class Precision {
+  kFloat,    ///< as the GL does it
+  kDouble,   ///< the reference
+  kTracked,  ///< double, with a bound on what single precision can make of it
+};
+
+/// What a model says of one receiver.
+struct ModelResult {
+  double visibility = 1.0;
+  double bound = 0.0;    ///< Precision::kTracked: |GL - visibility| cannot exceed this
+  bool excused = false;  ///< a tap lies within one depth ULP of a tie or 4 ULP of a texel border: rounding decides
+};
+
+/// A model with its map prepared: encoded and blurred where the filter does that.
+class Lookup {
+ public:
+  virtual ~Lookup() = default;
+  virtual ModelResult at(const Receiver& receiver) const = 0;
+};
+
+/// The scalar model of a filter: the same arithmetic as `<id>.glsl`, without a GL.
+class Model {
+ public:
+  virtual ~Model() = default;
+  /// Cost: one pass over the map for filters that encode, two more for the prefilter; none otherwise.
+  virtual std::unique_ptr<Lookup> prepare(const ModelInput& input, Precision precision) const = 0;
+};
+
+/// Makes the model of a filter; CMake lists one for each `<id>.cpp` that stands beside its `<id>.glsl`.
+struct ModelEntry {
+  std::string id;
+  std::unique_ptr<Model> (*make)();
+};
+const std::vector<ModelEntry>& model_table();
+
+/// Gives a filter's model, null where it has none (a user's file).
+std::unique_ptr<Model> make_model(const std::string& id);
+
+/// Wraps `Filter<T>`, a class made from a ModelInput with `T visibility(const Receiver&, Tally&) const`, as a Model.
+template <template <class> class Filter>
+std::unique_ptr<Model> make_templated_model();
+
+}  // namespace shadowbench::filters
+
+#include "filters/model_impl.h"

@@ -1,0 +1,21 @@
+#include "filters/model.h"
+
+namespace shadowbench::filters {
+namespace {
+
+template <class T>
+class NoFilter {
+ public:
+  explicit NoFilter(const ModelInput& input) : map_(input.map.size, input.map.depth, input.accuracy) {}
+
+  T visibility(const Receiver& r, Tally& tally) const { return map_.compare_nearest(r, {}, r.depth, tally); }
+
+ private:
+  DepthReader<T> map_;
+};
+
+}  // namespace
+
+std::unique_ptr<Model> make_none_model() { return make_templated_model<NoFilter>(); }
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,51 @@
+#include <cmath>
+#include <numbers>
+
+#include "filters/disk_points.h"
+#include "filters/model.h"
+#include "filters/random.h"
+
+namespace shadowbench::filters {
+namespace {
+
+template <class T>
+class Poisson {
+  using P = Position<T>;
+
+ public:
+  explicit Poisson(const ModelInput& input)
+      : map_(input.map.size, input.map.depth, input.accuracy),
+        points_(generate_disk_points(input.spec, input.values, "disk_points")),
+        radius_(static_cast<P>(number(input.values, "radius"))),
+        rotation_(text_or(input.values, "rotation", "none")),
+        seed_(input.seed) {}
+
+  T visibility(const Receiver& r, Tally& tally) const {
+    const P angle = P(2) * std::numbers::pi_v<P> * static_cast<P>(turn(r.pixel));
+    const P c = radius_ * std::cos(angle), s = radius_ * std::sin(angle);
+    T sum{};
+    for (const glm::vec2& point : points_) {
+      const P x = static_cast<P>(point.x), y = static_cast<P>(point.y);
+      sum = sum + map_.compare_2x2(r, {c * x - s * y, s * x + c * y}, r.depth, tally);
+    }
+    return sum / T(static_cast<P>(points_.size()));
+  }
+
+ private:
+  DepthReader<T> map_;
+  std::vector<glm::vec2> points_;
+  P radius_;
+  std::string rotation_;
+  std::uint32_t seed_;
+
+  float turn(glm::ivec2 pixel) const {
+    if (rotation_ == "per-pixel") return random_turn(pixel, seed_);
+    return rotation_ == "interleaved-gradient" ? interleaved_gradient_turn(pixel) : 0.0f;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Model> make_poisson_model() { return make_templated_model<Poisson>(); }
+
+}  // namespace shadowbench::filters

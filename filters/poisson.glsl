@@ -1,0 +1,39 @@
+/*+++
+title = "Poisson-disk PCF"
+source = "Cook 1986, Stochastic Sampling in Computer Graphics, ACM TOG 5(1); taps by Mitchell 1991, best candidate"
+kind = "stochastic"
+radius_texels = "radius"
+[param.taps]
+default = 16
+choices = [4, 8, 16, 32]
+const = true
+unit = "hardware 2x2 fetches"
+text = "points in the disk; too few turn the penumbra into noise or bands"
+[param.radius]
+default = 3.0
+min = 0.0
+max = 64.0
+unit = "texels"
+text = "radius of the disk; wider is softer, and needs more taps and more bias"
+[param.rotation]
+default = "per-pixel"
+choices = ["none", "per-pixel", "interleaved-gradient"]
+text = "turn of the disk at each pixel: none shows bands, per-pixel white noise, interleaved-gradient a regular dither"
+[disk.disk_points]
+count = "taps"
+seed = 1
++++*/
+float visibility(Receiver r) {
+  float turn = 0.0;
+  if (rotation == ROTATION_PER_PIXEL) turn = random_turn(r.pixel);
+  if (rotation == ROTATION_INTERLEAVED_GRADIENT) turn = interleaved_gradient_turn(r.pixel);
+  float angle = 6.28318530718 * turn;
+  float c = radius * cos(angle);
+  float s = radius * sin(angle);
+  float sum = 0.0;
+  for (int i = 0; i < taps; ++i) {
+    vec2 p = disk_points[i];
+    sum += compare_2x2(r, vec2(c * p.x - s * p.y, s * p.x + c * p.y), r.depth);
+  }
+  return sum / float(taps);
+}

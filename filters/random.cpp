@@ -1,0 +1,35 @@
+#include "filters/random.h"
+
+#include <cmath>
+
+namespace shadowbench::filters {
+namespace {
+
+/// The upper 24 bits, which a float holds exactly.
+float to_turn(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
+
+}  // namespace
+
+std::uint32_t hash_bits(std::uint32_t x) {
+  x ^= x >> 16;
+  x *= 0x7feb352dU;
+  x ^= x >> 15;
+  x *= 0x846ca68bU;
+  x ^= x >> 16;
+  return x;
+}
+
+float random_turn(glm::ivec2 pixel, std::uint32_t seed) {
+  return to_turn(hash_bits(static_cast<std::uint32_t>(pixel.x) +
+                           hash_bits(static_cast<std::uint32_t>(pixel.y) + hash_bits(seed))));
+}
+
+float interleaved_gradient_turn(glm::ivec2 pixel) {
+  // 0.06711056 and 0.00583715 with 32 fraction bits, 52.9829189 with 26.
+  const std::uint32_t inner = 288237660U * static_cast<std::uint32_t>(pixel.x) +
+                              25070368U * static_cast<std::uint32_t>(pixel.y);
+  const std::uint64_t product = static_cast<std::uint64_t>(inner) * 3555623499U;
+  return to_turn(static_cast<std::uint32_t>(product >> 26));
+}
+
+}  // namespace shadowbench::filters

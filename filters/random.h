@@ -1,0 +1,21 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+
+namespace shadowbench::filters {
+
+/// Mixes the bits of an integer so that close inputs give unrelated outputs.
+/// Source: Wellons 2018, hash-prospector, "lowbias32". The same in shaders/lib/random.glsl.
+std::uint32_t hash_bits(std::uint32_t x);
+
+/// Gives a turn in [0,1) from a pixel and the run's seed: white noise.
+float random_turn(glm::ivec2 pixel, std::uint32_t seed);
+
+/// Gives a turn in [0,1) that differs strongly between neighbouring pixels: interleaved gradient noise.
+/// Source: Jimenez 2014, Next Generation Post Processing in Call of Duty: Advanced Warfare, SIGGRAPH; here in 32-bit
+/// fixed point, because its floating-point form differs between machines.
+float interleaved_gradient_turn(glm::ivec2 pixel);
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+namespace shadowbench::filters {
+
+/// Describes a receiver point to a filter; the same fields, in the same order, as `Receiver` in shaders/lib/receiver.glsl.
+struct Receiver {
+  glm::vec3 position_ws{0.0f};
+  glm::vec3 normal_ws{0.0f, 1.0f, 0.0f};  ///< geometric, flipped to the viewer
+  float n_dot_l = 1.0f;                   ///< of the geometric normal; filters are asked only where it is positive
+  glm::vec2 uv{0.5f};                     ///< where in the map, [0,1]; outside is lit
+  int layer = 0;                          ///< cascade or cube face; 0 for directional lights
+  float depth = 0.0f;                     ///< [0,1], 0 near, with the run's bias applied
+  float depth_unbiased = 0.0f;            ///< [0,1]
+  glm::vec2 depth_per_texel{0.0f};        ///< slope of the receiver's plane, per texel in u and in v
+  float texel_size_ws = 1.0f;             ///< metres
+  float depth_range_ws = 1.0f;            ///< metres between depth 0 and depth 1
+  float light_size = 0.0f;                ///< directional: penumbra width per metre of distance to the occluder
+  float view_depth = 0.0f;                ///< metres from the camera, along its axis
+  glm::ivec2 pixel{0};                    ///< (0,0) is the lower left pixel
+};
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cmath>
+#include <type_traits>
+
+#include "filters/tracked.h"
+
+namespace shadowbench::filters {
+
+/// The type that texel positions are computed in: rounding of positions is excused at texel borders, not tracked.
+template <class T>
+using Position = std::conditional_t<std::is_same_v<T, float>, float, double>;
+
+template <class T>
+T maximum(T a, T b) {
+  if constexpr (std::is_same_v<T, Tracked>) return max(a, b);
+  else return a > b ? a : b;
+}
+
+template <class T>
+T minimum(T a, T b) {
+  if constexpr (std::is_same_v<T, Tracked>) return min(a, b);
+  else return a < b ? a : b;
+}
+
+/// Gives e^x with the accuracy of the GL at hand.
+template <class T>
+T exponential(T x, [[maybe_unused]] const GlAccuracy& accuracy) {
+  if constexpr (std::is_same_v<T, Tracked>) {
+    const double e = std::exp(x.value);
+    const double propagated = e * std::expm1(x.bound);
+    return Tracked(e, propagated + accuracy.exp_roundoffs * kUnitRoundoff * (e + propagated) + 0x1p-126);
+  } else {
+    return std::exp(x);
+  }
+}
+
+/// Gives ln x. GLSL grants 3 ULP, or an absolute error of 2^-21 within [0.5, 2] (Khronos 2023, GLSL 4.60, 4.7.1).
+template <class T>
+T logarithm(T x) {
+  if constexpr (std::is_same_v<T, Tracked>) {
+    const double l = std::log(x.value);
+    const double smallest = x.value - x.bound;
+    if (smallest <= 0.0) return Tracked(l, HUGE_VAL);
+    return Tracked(l, x.bound / smallest + std::max(0x1p-21, 6.0 * kUnitRoundoff * std::abs(l)));
+  } else {
+    return std::log(x);
+  }
+}
+
+/// Gives the fraction of a texel position as the filtering weight that the sampler would use.
+template <class T>
+T sampler_weight(Position<T> position, Position<T> base, [[maybe_unused]] const GlAccuracy& accuracy,
+                 [[maybe_unused]] double map_size) {
+  const Position<T> fraction = position - base;
+  if constexpr (std::is_same_v<T, Tracked>) {
+    // u * size, - 0.5, and the subtraction of the base, each rounded at the map's scale.
+    double bound = 3.0 * kUnitRoundoff * map_size;
+    if (accuracy.weight_bits < 23.0) bound += std::exp2(-accuracy.weight_bits);
+    return Tracked(fraction, bound);
+  } else {
+    return fraction;
+  }
+}
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,42 @@
+#include "filters/store_format.h"
+
+#include <glm/gtc/packing.hpp>
+
+namespace shadowbench::filters {
+
+StorePrecision store_precision(const std::string& format) {
+  if (format.ends_with("32f")) return StorePrecision::kSingle;
+  return format.ends_with("16f") ? StorePrecision::kHalf : StorePrecision::kUnorm16;
+}
+
+int store_channels(const std::string& format) {
+  if (format.starts_with("rgba")) return 4;
+  return format.starts_with("rg") ? 2 : 1;
+}
+
+int store_bytes(const std::string& format) {
+  return store_channels(format) * (store_precision(format) == StorePrecision::kSingle ? 4 : 2);
+}
+
+float round_to_store(float value, StorePrecision precision) {
+  switch (precision) {
+    case StorePrecision::kSingle: return value;
+    case StorePrecision::kHalf: return glm::unpackHalf1x16(glm::packHalf1x16(value));
+    case StorePrecision::kUnorm16: return std::round(std::clamp(value, 0.0f, 1.0f) * 65535.0f) / 65535.0f;
+  }
+  return value;
+}
+
+Tracked round_to_store(Tracked value, StorePrecision precision) {
+  switch (precision) {
+    case StorePrecision::kSingle: return value;
+    // A GL may truncate instead of rounding to nearest: a whole spacing, not half of one.
+    case StorePrecision::kHalf:
+      if (std::abs(value.value) + value.bound > 65504.0) return {value.value, HUGE_VAL};
+      return {value.value, value.bound + 0x1p-10 * (std::abs(value.value) + value.bound) + 0x1p-24};
+    case StorePrecision::kUnorm16: return {value.value, value.bound + 1.0 / 65535.0};
+  }
+  return value;
+}
+
+}  // namespace shadowbench::filters

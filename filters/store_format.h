@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "filters/tracked.h"
+
+namespace shadowbench::filters {
+
+/// How an encoded map keeps its numbers.
+enum class StorePrecision { kSingle, kHalf, kUnorm16 };
+
+/// Reads the precision from a format's name, such as "rg16f".
+StorePrecision store_precision(const std::string& format);
+
+/// Gives the channels of a format's name, 1, 2 or 4.
+int store_channels(const std::string& format);
+
+/// Gives the bytes of one texel of a format.
+int store_bytes(const std::string& format);
+
+/// Rounds a value to what the store keeps; double stays as it is: it is the reference.
+float round_to_store(float value, StorePrecision precision);
+inline double round_to_store(double value, StorePrecision) { return value; }
+Tracked round_to_store(Tracked value, StorePrecision precision);
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,40 @@
+#include "filters/encoded_map.h"
+#include "filters/model.h"
+
+namespace shadowbench::filters {
+namespace {
+
+template <class T>
+class Vsm {
+  using P = Position<T>;
+
+ public:
+  explicit Vsm(const ModelInput& input)
+      : map_(input, static_cast<int>(number(input.values, "radius")), &Vsm::encode),
+        min_variance_(static_cast<P>(static_cast<float>(number(input.values, "min_variance")))),
+        reduction_(static_cast<P>(static_cast<float>(number(input.values, "bleed_reduction")))) {}
+
+  T visibility(const Receiver& r, Tally& tally) const {
+    const T zero(P(0)), one(P(1));
+    const auto moments = map_.fetch(r, tally);
+    const T distance = maximum(T(static_cast<P>(r.depth)) - moments[0], zero);
+    const T variance = maximum(moments[1] - moments[0] * moments[0], T(min_variance_));
+    const T spread = variance + distance * distance;
+    // Without a minimum variance this is 0/0 on lit surfaces, where the GLSL returns early.
+    const T bound = value_of(spread) > 0.0 ? variance / spread : one;
+    return maximum(bound - T(reduction_), zero) / (one - T(reduction_));
+  }
+
+ private:
+  EncodedMap<T, 2> map_;
+  P min_variance_;
+  P reduction_;
+
+  static std::array<T, 2> encode(T depth) { return {depth, depth * depth}; }
+};
+
+}  // namespace
+
+std::unique_ptr<Model> make_vsm_model() { return make_templated_model<Vsm>(); }
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace shadowbench::cli {
+
+/// What a chosen subcommand does; gives the exit code.
+using Action = std::function<int()>;
+
+/// Adds `run`; on parsing, `action` is set to what it does. `words` is the whole command line, for the record.
+void add_run_command(CLI::App& app, Action& action, const std::vector<std::string>& words);
+
+/// Adds `list filters|scenes|gl`.
+void add_list_command(CLI::App& app, Action& action);
+
+}  // namespace shadowbench::cli

@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "filters/catalogue.h"
+#include "filters/model.h"
+#include "harness/cli/commands.h"
+#include "harness/gl/measure.h"
+#include "harness/gl/timer.h"
+#include "harness/run/options.h"
+#include "harness/scene/load.h"
+
+namespace shadowbench::cli {
+namespace {
+
+using filters::FilterSpec;
+using filters::ParamSpec;
+
+struct ListArguments {
+  bool json = false;
+  bool measure = false;
+  std::string backend = "auto";
+};
+
+std::string describe_range(const ParamSpec& param) {
+  std::vector<std::string> choices;
+  for (const auto& choice : param.choices) choices.push_back(filters::to_string(choice));
+  if (!choices.empty()) return fmt::format("{}", fmt::join(choices, " | "));
+  if (std::holds_alternative<bool>(param.default_value)) return "true | false";
+  return fmt::format("{} .. {}{}", *param.min, *param.max, param.integer ? ", whole" : "");
+}
+
+void print_filter(const FilterSpec& spec) {
+  fmt::print("{}  {}\n  kind {}{}\n  source: {}\n", spec.id, spec.title, filters::to_string(spec.kind),
+             filters::make_model(spec.id) ? "" : ", without a model", spec.source);
+  for (const ParamSpec& param : spec.params) {
+    fmt::print("  {:<16} {} [{}]{}\n  {:<16} {}\n", param.name, describe_range(param),
+               filters::to_string(param.default_value), param.unit.empty() ? "" : " " + param.unit, "", param.text);
+  }
+  fmt::print("\n");
+}
+
+nlohmann::json to_json(const filters::ParamValue& value) {
+  return std::visit([](const auto& v) { return nlohmann::json(v); }, value);
+}
+
+nlohmann::json to_json(const ParamSpec& param) {
+  nlohmann::json json = {{"name", param.name},          {"default", to_json(param.default_value)},
+                         {"integer", param.integer},    {"const", param.is_const},
+                         {"unit", param.unit},          {"text", param.text},
+                         {"min", nullptr},              {"max", nullptr},
+                         {"choices", nlohmann::json::array()}};
+  if (param.min) json["min"] = *param.min;
+  if (param.max) json["max"] = *param.max;
+  for (const auto& choice : param.choices) json["choices"].push_back(to_json(choice));
+  return json;
+}
+
+nlohmann::json to_json(const FilterSpec& spec) {
+  nlohmann::json params = nlohmann::json::array();
+  for (const ParamSpec& param : spec.params) params.push_back(to_json(param));
+  return {{"id", spec.id},         {"title", spec.title},   {"source", spec.source},
+          {"kind", filters::to_string(spec.kind)},          {"claims", spec.claims},
+          {"model", filters::make_model(spec.id) != nullptr}, {"params", params}};
+}
+
+int list_filters(const ListArguments& arguments) {
+  const filters::Catalogue catalogue(run::find_resources().filters);
+  nlohmann::json json = nlohmann::json::array();
+  for (const FilterSpec& spec : catalogue.filters()) {
+    if (arguments.json) json.push_back(to_json(spec));
+    else print_filter(spec);
+  }
+  if (arguments.json) fmt::print("{}\n", json.dump(2));
+  return 0;
+}
+
+int list_scenes(const ListArguments& arguments) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const scene::SceneInfo& info : scene::list_scenes(run::find_resources().scenes)) {
+    if (arguments.json) json.push_back({{"name", info.name}, {"title", info.title}});
+    else fmt::print("{:<8} {}\n", info.name, info.title);
+  }
+  if (arguments.json) fmt::print("{}\n", json.dump(2));
+  return 0;
+}
+
+int list_gl(const ListArguments& arguments) {
+  const gl::ContextChoice choice = gl::create_context(gl::parse_backend(arguments.backend));
+  for (const std::string& reason : choice.refused) fmt::print("not used: {}\n", reason);
+  const gl::GlInfo& info = choice.context->info();
+  if (arguments.measure) {
+    fmt::print("{}", gl::format_measurement(info, gl::measure_gl(*choice.context)));
+    return 0;
+  }
+  fmt::print("{}: {}, OpenGL {}, maps up to {} x {}\n", info.backend, info.renderer, info.version, info.max_texture_size,
+             info.max_texture_size);
+  return 0;
+}
+
+}  // namespace
+
+void add_list_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("list", "Show what there is: filters, scenes, or the OpenGL underneath");
+  command->require_subcommand(1);
+  auto a = std::make_shared<ListArguments>();
+  CLI::App* filters = command->add_subcommand("filters", "Filters with parameters, ranges, units and source");
+  filters->add_flag("--json", a->json, "as JSON");
+  filters->callback([&action, a] { action = [a] { return list_filters(*a); }; });
+  CLI::App* scenes = command->add_subcommand("scenes", "Built-in scenes");
+  scenes->add_flag("--json", a->json, "as JSON");
+  scenes->callback([&action, a] { action = [a] { return list_scenes(*a); }; });
+  CLI::App* gl = command->add_subcommand("gl", "The OpenGL context that a run would use");
+  gl->add_flag("--measure", a->measure, "what this GL really does, by experiment");
+  gl->add_option("--gl", a->backend, "auto, osmesa, egl or glfw")->capture_default_str();
+  gl->callback([&action, a] { action = [a] { return list_gl(*a); }; });
+}
+
+}  // namespace shadowbench::cli

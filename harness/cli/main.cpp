@@ -1,0 +1,40 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "filters/error.h"
+#include "harness/cli/commands.h"
+
+namespace {
+
+constexpr int kUsageError = 2;
+constexpr int kBug = 70;
+
+/// One line for one failure; nothing else of the program prints errors.
+void print_error(const std::string& message) { fmt::print(stderr, "shadowbench: {}\n", message); }
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Compares soft-shadow filters: pictures, cost and error of each, over the same scenes.", "shadowbench");
+  app.require_subcommand(1);
+  shadowbench::cli::Action action;
+  shadowbench::cli::add_run_command(app, action, {argv, argv + argc});
+  shadowbench::cli::add_list_command(app, action);
+  try {
+    app.parse(argc, argv);
+    return action();
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    print_error(fmt::format("{}; see 'shadowbench --help'", error.what()));
+    return kUsageError;
+  } catch (const shadowbench::Error& error) {
+    print_error(error.what());
+    return static_cast<int>(error.kind());
+  } catch (const std::exception& error) {
+    print_error(fmt::format("bug: {}; please report it with the command line", error.what()));
+    return kBug;
+  }
+}

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <memory>
+
+#include "harness/run/progress.h"
+
+namespace shadowbench::cli {
+
+/// Shows progress on standard error: one line that is redrawn on a terminal, plain lines elsewhere.
+std::unique_ptr<run::Progress> make_progress();
+
+}  // namespace shadowbench::cli

@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+#include <sys/prctl.h>
+
+#include <algorithm>
+#include <charconv>
+#include <csignal>
+#include <memory>
+
+#include "filters/error.h"
+#include "harness/cli/commands.h"
+#include "harness/cli/progress_bar.h"
+#include "harness/run/run_experiment.h"
+#include "harness/scene/load.h"
+
+namespace shadowbench::cli {
+namespace {
+
+/// The command line as text; parsed and checked before anything is made.
+struct RunArguments {
+  std::vector<std::string> scenes;
+  bool ground = false;
+  std::string filters;
+  std::vector<std::string> filter_files;
+  std::string map_sizes = "1024";
+  std::string size = "960x540";
+  std::vector<std::string> bias;
+  std::string fit = "tight";
+  int rounds = 11;
+  std::uint32_t seed = 1;
+  std::string backend = "auto";
+  double cell_timeout_s = 60.0;
+  std::string out = "report/out";
+  bool worker = false;
+};
+
+[[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
+
+int parse_size(const std::string& text, const char* option) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < 1) {
+    fail(fmt::format("{}: '{}' must be a whole number, 1 or more", option, text));
+  }
+  return value;
+}
+
+std::vector<int> parse_map_sizes(const std::string& text) {
+  std::vector<int> sizes;
+  for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+    end = text.find(',', begin);
+    sizes.push_back(parse_size(text.substr(begin, end == std::string::npos ? end : end - begin), "--map-size"));
+  }
+  return sizes;
+}
+
+std::vector<std::string> builtin_scenes(const run::Resources& resources) {
+  std::vector<std::string> names;
+  for (const scene::SceneInfo& info : scene::list_scenes(resources.scenes)) names.push_back(info.name);
+  return names;
+}
+
+void add_filters(run::RunOptions& options, const RunArguments& arguments) {
+  filters::Catalogue catalogue(options.resources.filters);
+  for (const std::string& file : arguments.filter_files) catalogue.add_user_file(file);
+  options.filters = catalogue.parse_requests(arguments.filters);
+  for (const std::string& file : arguments.filter_files) {
+    const std::string id = std::filesystem::path(file).stem().string();
+    const auto is_it = [&](const filters::FilterRequest& request) { return request.spec.id == id; };
+    if (std::any_of(options.filters.begin(), options.filters.end(), is_it)) continue;
+    options.filters.push_back(catalogue.parse_requests(id).front());
+  }
+  for (std::size_t i = 0; i < options.filters.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (options.filters[i].label() == options.filters[j].label()) {
+        fail(fmt::format("--filters names '{}' twice", options.filters[i].label()));
+      }
+    }
+  }
+}
+
+void check(const RunArguments& arguments) {
+  if (arguments.rounds < 1 || arguments.rounds > 10000) {
+    fail(fmt::format("--rounds: {} is out of range: choose 1 .. 10000", arguments.rounds));
+  }
+  if (!(arguments.cell_timeout_s > 0.0 && arguments.cell_timeout_s <= 86400.0)) {
+    fail(fmt::format("--cell-timeout: {} is out of range: choose more than 0, at most 86400 seconds", arguments.cell_timeout_s));
+  }
+}
+
+run::RunOptions make_options(const RunArguments& arguments, std::vector<std::string> command) {
+  check(arguments);
+  run::RunOptions options;
+  options.resources = run::find_resources();
+  options.scenes = arguments.scenes.empty() ? builtin_scenes(options.resources) : arguments.scenes;
+  options.ground = arguments.ground;
+  add_filters(options, arguments);
+  options.map_sizes = parse_map_sizes(arguments.map_sizes);
+  const std::size_t cross = arguments.size.find('x');
+  if (cross == std::string::npos) fail(fmt::format("--size: '{}' must be WIDTHxHEIGHT, such as 960x540", arguments.size));
+  options.width = parse_size(arguments.size.substr(0, cross), "--size");
+  options.height = parse_size(arguments.size.substr(cross + 1), "--size");
+  options.fit = arguments.fit == "sphere" ? scene::FitMode::kSphere : scene::FitMode::kTight;
+  options.bias = run::parse_bias(arguments.bias);
+  options.bias_texts = arguments.bias;
+  options.rounds = arguments.rounds;
+  options.seed = arguments.seed;
+  options.backend = gl::parse_backend(arguments.backend);
+  options.cell_timeout_s = arguments.cell_timeout_s;
+  options.out = arguments.out;
+  options.command = std::move(command);
+  options.worker = arguments.worker;
+  return options;
+}
+
+int run(const RunArguments& arguments, std::vector<std::string> command) {
+  // A worker must not outlive the run that waits for it.
+  if (arguments.worker) prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const run::RunOptions options = make_options(arguments, std::move(command));
+  {
+    const std::unique_ptr<run::Progress> progress = make_progress();
+    run::run_experiment(options, *progress);
+  }
+  if (!options.worker) fmt::print("report: {}\n", (options.out / "index.html").string());
+  return 0;
+}
+
+void add_scene_options(CLI::App& command, RunArguments& a) {
+  command.add_option("--scene", a.scenes, "a built-in scene, or a .toml, .gltf, .glb or .obj file; may be repeated (default: all built-in scenes)")->allow_extra_args(false);
+  command.add_flag("--ground", a.ground, "put a floor under a bare model");
+  command.add_option("--map-size", a.map_sizes, "texels along a side of the shadow map; several with commas")->capture_default_str();
+  command.add_option("--size", a.size, "picture size in pixels, WIDTHxHEIGHT")->capture_default_str();
+  command.add_option("--fit", a.fit, "light frustum: 'tight' around casters and receivers, or 'sphere', stable under rotation")
+      ->check(CLI::IsMember({"tight", "sphere"}))->capture_default_str();
+}
+
+void add_filter_options(CLI::App& command, RunArguments& a) {
+  command.add_option("--filters", a.filters, "filters with parameters, such as none,vsm:radius=6,min_variance=1e-4,esm (default: all; see 'list filters')");
+  command.add_option("--filter-file", a.filter_files, "a filter of your own, one GLSL file; may be repeated")->allow_extra_args(false);
+  command.add_option("--bias", a.bias,
+                     "depth bias; repeat to add up: none | constant:depth=D | slope:kernels=K,texels=T,depth=D | normal-offset:texels=T. "
+                     "D in depth (0..1 over the light's range), T in shadow-map texels, K in kernel half-widths plus one texel "
+                     "(default slope:kernels=1,depth=2e-5)")->allow_extra_args(false);
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, Action& action, const std::vector<std::string>& words) {
+  CLI::App* command = app.add_subcommand("run", "Render scenes with filters and write a report");
+  auto a = std::make_shared<RunArguments>();
+  add_scene_options(*command, *a);
+  add_filter_options(*command, *a);
+  command->add_option("--rounds", a->rounds, "how often each filter is timed")->capture_default_str();
+  command->add_option("--seed", a->seed, "of random rotations and of the order of timing")->capture_default_str();
+  command->add_option("--gl", a->backend, "OpenGL context: auto, osmesa, egl or glfw")->capture_default_str();
+  command->add_option("--cell-timeout", a->cell_timeout_s, "seconds that a filter of your own may take on one scene")->capture_default_str();
+  command->add_option("--out", a->out, "report folder")->capture_default_str();
+  command->add_flag("--worker", a->worker, "")->group("");
+  command->callback([&action, a, words] { action = [a, words] { return run(*a, words); }; });
+}
+
+}  // namespace shadowbench::cli

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "harness/gl/shader_source.h"
+#include "harness/gl/vertex_array.h"
+
+namespace shadowbench::gl {
+
+/// Draws one triangle that covers the viewport.
+class FullscreenTriangle {
+ public:
+  FullscreenTriangle();
+
+  /// Draws with the program and framebuffer in use, having turned off depth, stencil and scissor test, blending,
+  /// culling and polygon offset, opened the colour mask, and set polygon mode to fill.
+  void draw() const;
+
+  /// Returns the vertex shader that goes with it. Its output `vec2 v_uv` is (0,0) at the lower left of the viewport.
+  static ShaderSource vertex_source();
+
+ private:
+  VertexArray empty_;
+};
+
+}  // namespace shadowbench::gl

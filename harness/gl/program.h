@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "filters/error.h"
+#include "harness/gl/handle.h"
+#include "harness/gl/shader_source.h"
+
+namespace shadowbench::gl {
+
+/// Owns a linked program. Uniforms are set by name, at any time, without `use()`.
+class Program {
+ public:
+  /// Compiles and links a vertex and a fragment shader.
+  /// Throws on errors: with `blame` (kFilter where a user's file is part of it) Error of that kind, its `where` the
+  /// first error's file and line; without, std::logic_error: a shader of ours that does not compile is a bug.
+  Program(std::string_view label, const ShaderSource& vertex, const ShaderSource& fragment,
+          std::optional<ErrorKind> blame = std::nullopt);
+
+  /// Compiles and links a compute shader; throws likewise.
+  Program(std::string_view label, const ShaderSource& compute, std::optional<ErrorKind> blame = std::nullopt);
+
+  /// Makes it the program of the next draw or dispatch.
+  void use() const;
+
+  /// Sets a uniform; of an array, the first elements. One that the sources name but the compiler dropped is ignored.
+  /// Throws std::logic_error for a name that no source contains.
+  void set(std::string_view name, int value);
+  void set(std::string_view name, std::uint32_t value);
+  void set(std::string_view name, float value);
+  void set(std::string_view name, const glm::ivec2& value);
+  void set(std::string_view name, const glm::vec2& value);
+  void set(std::string_view name, const glm::vec3& value);
+  void set(std::string_view name, const glm::vec4& value);
+  void set(std::string_view name, const glm::mat3& value);
+  void set(std::string_view name, const glm::mat4& value);
+  void set(std::string_view name, std::span<const float> values);
+  void set(std::string_view name, std::span<const glm::vec2> values);
+  void set(std::string_view name, std::span<const glm::vec4> values);
+
+  /// Says whether the compiler kept a uniform of this name.
+  bool has(std::string_view name) const;
+
+  const std::string& label() const { return label_; }
+  GLuint id() const { return handle_.id(); }
+
+ private:
+  struct Stage {
+    GLenum type;
+    const ShaderSource* source;
+  };
+  struct Delete {
+    void operator()(GLuint id) const { glDeleteProgram(id); }
+  };
+
+  void link(std::span<const Stage> stages, std::optional<ErrorKind> blame);
+  GLint location(std::string_view name);
+
+  std::string label_;
+  Handle<Delete> handle_;
+  std::vector<std::string> texts_;
+  std::map<std::string, GLint, std::less<>> locations_;
+};
+
+}  // namespace shadowbench::gl

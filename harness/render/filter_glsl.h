@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "filters/catalogue.h"
+#include "harness/gl/program.h"
+#include "harness/gl/shader_source.h"
+
+namespace shadowbench::render {
+
+/// Gives the pieces "filter_parameters" and "filter" that lookup.frag and encode.frag include: constants for `const`
+/// parameters (a choice becomes its index, with one name per choice, ROTATION_PER_PIXEL), uniforms for the others,
+/// tables of points, and the filter's own GLSL with the line numbers of its file.
+std::vector<gl::Piece> filter_pieces(const filters::FilterRequest& request);
+
+/// Sets the uniforms of the parameters that are not `const`.
+void set_parameters(gl::Program& program, const filters::FilterRequest& request);
+
+}  // namespace shadowbench::render

@@ -1,0 +1,68 @@
+#include "harness/render/filter_passes.h"
+
+#include "harness/render/filter_glsl.h"
+
+namespace shadowbench::render {
+
+FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
+                           const LightSetup& light)
+    : request_(request), light_(light), map_size_(map_size), lookup_(compile_lookup(shaders, {})) {
+  if (request.spec.has_encode) prefilter_.emplace(shaders, request, map_size, light);
+}
+
+gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, const Defines& defines) const {
+  gl::Program program =
+      shaders.compile_filter(request_.spec.id + " lookup", "lookup.frag", defines, filter_pieces(request_));
+  set_light(program, light_);
+  program.set("run_seed", light_.seed);
+  program.set("map_texel_uv", 1.0f / static_cast<float>(map_size_));
+  set_parameters(program, request_);
+  return program;
+}
+
+void FilterPasses::prefilter(const ShadowMap& map) {
+  if (prefilter_) prefilter_->run(map);
+}
+
+void FilterPasses::draw_lookup(gl::Program& program, const GBuffer& gbuffer, const ShadowMap& map) {
+  gbuffer.bind();
+  map.bind();
+  if (prefilter_) prefilter_->bind();
+  program.use();
+  triangle_.draw();
+}
+
+void FilterPasses::lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& target) {
+  target.bind();
+  draw_lookup(lookup_, gbuffer, map);
+}
+
+double FilterPasses::count_fetches(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map) {
+  gl::Program counting = compile_lookup(shaders, {{"COUNT_FETCHES", "1"}});
+  const gl::Texture visibility("counted visibility", GL_R32F, gbuffer.width(), gbuffer.height());
+  const gl::Texture fetches("fetches", GL_R32F, gbuffer.width(), gbuffer.height());
+  gl::Framebuffer framebuffer("fetch count");
+  framebuffer.attach_color(0, visibility);
+  framebuffer.attach_color(1, fetches);
+  framebuffer.bind();
+  draw_lookup(counting, gbuffer, map);
+  double sum = 0.0, receivers = 0.0;
+  for (const float count : fetches.read_floats(1)) {
+    if (count < 0.0f) continue;
+    sum += static_cast<double>(count);
+    receivers += 1.0;
+  }
+  return receivers > 0.0 ? sum / receivers : 0.0;
+}
+
+FilterCost FilterPasses::measure_cost(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map) {
+  FilterCost cost;
+  if (!request_.spec.uses_samplers) cost.fetches = count_fetches(shaders, gbuffer, map);
+  cost.map_bytes = prefilter_ ? prefilter_->bytes() : map.bytes();
+  cost.bytes_per_texel = cost.map_bytes / (static_cast<std::int64_t>(map_size_) * map_size_);
+  cost.passes = 2 + prefilter_passes();
+  cost.prefilter_texels = prefilter_ ? prefilter_->texels_written() : 0;
+  return cost;
+}
+
+}  // namespace shadowbench::render

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "harness/render/gbuffer.h"
+#include "harness/render/prefilter.h"
+
+namespace shadowbench::render {
+
+/// What a filter costs on any machine.
+struct FilterCost {
+  std::optional<double> fetches;      ///< mean texture fetches per receiver; empty: the filter reads samplers itself
+  std::int64_t bytes_per_texel = 0;   ///< of the map that the lookup reads
+  std::int64_t passes = 0;            ///< depth map, encode, blur, lookup
+  std::int64_t map_bytes = 0;         ///< of the map that the lookup reads
+  std::int64_t prefilter_texels = 0;  ///< texels that encode and blur write
+};
+
+/// One filter, with its parameters, over one G-buffer and one shadow map.
+class FilterPasses {
+ public:
+  /// Compiles what this filter needs, and nothing else.
+  /// Throws Error(kFilter) with the line of the filter's file.
+  FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size, const LightSetup& light);
+
+  bool has_prefilter() const { return prefilter_.has_value(); }
+  int prefilter_passes() const { return prefilter_ ? prefilter_->passes() : 0; }  ///< encode and blur
+
+  /// Encodes and blurs the map; does nothing for filters that read depth.
+  void prefilter(const ShadowMap& map);
+
+  /// Looks every receiver up; `target` is R32F, of the G-buffer's size. Background is 1.
+  void lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& target);
+
+  /// Compiles and runs the counting variant of the lookup. Call after prefilter().
+  FilterCost measure_cost(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
+
+  const filters::FilterRequest& request() const { return request_; }
+  const LightSetup& light() const { return light_; }
+
+ private:
+  filters::FilterRequest request_;
+  LightSetup light_;
+  int map_size_;
+  std::optional<Prefilter> prefilter_;
+  gl::Program lookup_;
+  gl::FullscreenTriangle triangle_;
+
+  gl::Program compile_lookup(ShaderLibrary& shaders, const Defines& defines) const;
+  void draw_lookup(gl::Program& program, const GBuffer& gbuffer, const ShadowMap& map);
+  double count_fetches(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
+};
+
+}  // namespace shadowbench::render

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "harness/gl/objects.h"
+#include "harness/render/geometry.h"
+#include "harness/scene/scene.h"
+
+namespace shadowbench::render {
+
+/// What a camera sees, drawn once per view; every filter and the truth use the same receiver points.
+class GBuffer {
+ public:
+  GBuffer(int width, int height);
+
+  /// Draws the scene; near and far follow its bounds.
+  void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::Scene& scene, const scene::Camera& camera);
+
+  /// Binds the textures to the units that lib/gbuffer.glsl and shade.frag name.
+  void bind() const;
+
+  int width() const { return position_.width(); }
+  int height() const { return position_.height(); }
+
+  const gl::Texture& position() const { return position_; }  ///< RGBA32F: world position, view depth (0: nothing)
+  const gl::Texture& normal() const { return normal_; }      ///< RGBA32F: geometric normal
+
+ private:
+  gl::Texture position_;
+  gl::Texture normal_;
+  gl::Texture shading_normal_;
+  gl::Texture albedo_;
+  gl::Texture depth_;
+  gl::Framebuffer framebuffer_{"g-buffer"};
+};
+
+/// Gives the matrix from world to clip space, depth zero-to-one, of a camera that looks at these bounds.
+glm::mat4 clip_from_world(const scene::Camera& camera, const scene::Bounds& bounds, double aspect);
+
+/// Sets the state that drawing opaque geometry needs; both faces are drawn.
+void set_geometry_state();
+
+}  // namespace shadowbench::render

@@ -1,0 +1,83 @@
+#include "harness/render/geometry.h"
+
+#include <cstddef>
+#include <span>
+
+namespace shadowbench::render {
+namespace {
+
+constexpr GLuint kBaseColorUnit = 12;  // of lib/material.glsl
+
+struct GpuVertex {
+  glm::vec3 position_ws;
+  glm::vec3 shading_normal_ws;
+  glm::vec3 face_normal_ws;
+  glm::vec2 uv;
+};
+
+glm::vec3 face_normal(const scene::Vertex& a, const scene::Vertex& b, const scene::Vertex& c) {
+  // In double: slivers far from the origin lose their normal in single precision.
+  const glm::dvec3 p(a.position_ws), q(b.position_ws), r(c.position_ws);
+  return glm::vec3(glm::normalize(glm::cross(q - p, r - p)));
+}
+
+void append_mesh(std::vector<GpuVertex>& vertices, const scene::Mesh& mesh) {
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const scene::Vertex& a = mesh.vertices[mesh.indices[i]];
+    const scene::Vertex& b = mesh.vertices[mesh.indices[i + 1]];
+    const scene::Vertex& c = mesh.vertices[mesh.indices[i + 2]];
+    const glm::vec3 normal = face_normal(a, b, c);
+    for (const scene::Vertex* v : {&a, &b, &c}) {
+      vertices.push_back({v->position_ws, v->normal_ws, normal, v->uv});
+    }
+  }
+}
+
+gl::Texture upload(const scene::Texture& texture) {
+  int levels = 1;
+  for (int side = std::max(texture.width, texture.height); side > 1; side /= 2) ++levels;
+  gl::Texture result("texture " + texture.name, GL_SRGB8_ALPHA8, texture.width, texture.height, levels);
+  result.upload_bytes(texture.rgba, 4);
+  result.generate_mipmaps();
+  result.set_filter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
+  result.set_wrap(GL_REPEAT);
+  return result;
+}
+
+}  // namespace
+
+Geometry::Geometry(const scene::Scene& scene) : materials_(scene.materials) {
+  std::vector<GpuVertex> vertices;
+  for (const scene::Mesh& mesh : scene.meshes) {
+    const int first = static_cast<int>(vertices.size());
+    append_mesh(vertices, mesh);
+    ranges_.push_back({first, static_cast<int>(vertices.size()) - first, mesh.material, mesh.casts_shadow});
+  }
+  triangles_ = static_cast<std::int64_t>(vertices.size() / 3);
+  for (const scene::Texture& texture : scene.textures) textures_.push_back(upload(texture));
+  buffer_.emplace_back("scene vertices", std::as_bytes(std::span(vertices)));
+  array_.set_vertices(buffer_.front(), sizeof(GpuVertex));
+  array_.set_attribute(0, 3, offsetof(GpuVertex, position_ws));
+  array_.set_attribute(1, 3, offsetof(GpuVertex, shading_normal_ws));
+  array_.set_attribute(2, 3, offsetof(GpuVertex, face_normal_ws));
+  array_.set_attribute(3, 2, offsetof(GpuVertex, uv));
+}
+
+Defines Geometry::variant(const scene::Material& material) const {
+  Defines defines;
+  if (material.base_color_texture >= 0) defines.emplace_back("HAS_TEXTURE", "1");
+  if (material.alpha_mode == scene::AlphaMode::kMask) defines.emplace_back("ALPHA_MASK", "1");
+  return defines;
+}
+
+void Geometry::set_material(gl::Program& program, const scene::Material& material) const {
+  program.set("base_color", material.base_color);
+  if (material.alpha_mode == scene::AlphaMode::kMask) program.set("alpha_cutoff", material.alpha_cutoff);
+  if (material.base_color_texture < 0) return;
+  gl::Sampler::unbind(kBaseColorUnit);
+  textures_[static_cast<std::size_t>(material.base_color_texture)].bind(kBaseColorUnit);
+}
+
+void Geometry::draw_range(const Range& range) const { glDrawArrays(GL_TRIANGLES, range.first, range.count); }
+
+}  // namespace shadowbench::render

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "harness/gl/objects.h"
+#include "harness/render/shader_library.h"
+#include "harness/scene/scene.h"
+
+namespace shadowbench::render {
+
+/// Says which of a scene's meshes a pass draws.
+enum class DrawSet { kAll, kCasters };
+
+/// A scene's triangles and textures in GL memory; corners are not shared, so that each carries its face's normal.
+class Geometry {
+ public:
+  explicit Geometry(const scene::Scene& scene);
+
+  /// Draws with the variants of `<shader>.vert/.frag` that the materials need; `prepare` sets a variant's own uniforms.
+  /// Requires the framebuffer and all other state to be set.
+  template <class Prepare>
+  void draw(ShaderLibrary& shaders, const std::string& shader, DrawSet set, Prepare prepare) const;
+
+  std::int64_t triangle_count() const { return triangles_; }
+
+ private:
+  struct Range {
+    int first = 0;
+    int count = 0;
+    int material = 0;
+    bool casts = true;
+  };
+  std::vector<Range> ranges_;
+  std::vector<scene::Material> materials_;
+  std::vector<gl::Texture> textures_;
+  std::vector<gl::Buffer> buffer_;  // one; a vector because it is made after the vertices are
+  gl::VertexArray array_{"scene"};
+  std::int64_t triangles_ = 0;
+
+  Defines variant(const scene::Material& material) const;
+  void set_material(gl::Program& program, const scene::Material& material) const;
+  void draw_range(const Range& range) const;
+};
+
+template <class Prepare>
+void Geometry::draw(ShaderLibrary& shaders, const std::string& shader, DrawSet set, Prepare prepare) const {
+  array_.bind();
+  for (const Range& range : ranges_) {
+    if (set == DrawSet::kCasters && !range.casts) continue;
+    const scene::Material& material = materials_[static_cast<std::size_t>(range.material)];
+    gl::Program& program = shaders.geometry(shader, variant(material));
+    prepare(program);
+    set_material(program, material);
+    program.use();
+    draw_range(range);
+  }
+}
+
+}  // namespace shadowbench::render

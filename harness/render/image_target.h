@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string_view>
+
+#include "harness/gl/objects.h"
+#include "report/image.h"
+
+namespace shadowbench::render {
+
+/// One texture with the framebuffer that draws into it.
+class ImageTarget {
+ public:
+  ImageTarget(std::string_view label, GLenum internal_format, int width, int height);
+
+  void bind() { framebuffer_.bind(); }
+  const gl::Texture& texture() const { return texture_; }
+
+ private:
+  gl::Texture texture_;
+  gl::Framebuffer framebuffer_;
+};
+
+/// Reads a texture back as an image, rows top to bottom.
+report::Image read_image(const gl::Texture& texture, int channels);
+
+}  // namespace shadowbench::render

@@ -1,0 +1,33 @@
+#include "harness/render/light_setup.h"
+
+#include <cmath>
+
+namespace shadowbench::render {
+namespace {
+
+glm::vec3 row(const glm::dmat4& m, int r) { return glm::vec3(glm::dvec3(m[0][r], m[1][r], m[2][r])); }
+
+}  // namespace
+
+LightSetup make_light_setup(const scene::LightFrustum& frustum, const scene::Light& light, const Bias& bias,
+                            std::uint32_t seed) {
+  const double half_angle = 0.5 * glm::radians(static_cast<double>(light.angular_diameter_deg));
+  return {frustum, 2.0 * std::tan(half_angle), bias, seed};
+}
+
+void set_light(gl::Program& program, const LightSetup& light) {
+  const scene::LightFrustum& frustum = light.frustum;
+  program.set("uv_depth_from_world", frustum.uv_depth_from_world);
+  program.set("light_direction_ws", frustum.direction_ws);
+  program.set("light_right_ws", row(frustum.light_from_world, 0));
+  program.set("light_up_ws", row(frustum.light_from_world, 1));
+  program.set("texel_size_ws", static_cast<float>(frustum.texel_size_ws));
+  program.set("depth_range_ws", static_cast<float>(frustum.depth_range_ws));
+  program.set("light_size", static_cast<float>(light.light_size));
+  program.set("bias_constant", static_cast<float>(light.bias.constant_depth));
+  program.set("bias_slope_texels", static_cast<float>(light.bias.slope_texels));
+  program.set("bias_normal_texels", static_cast<float>(light.bias.normal_offset_texels));
+  program.set("bias_max_tangent", static_cast<float>(light.bias.max_tangent));
+}
+
+}  // namespace shadowbench::render

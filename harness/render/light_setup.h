@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+#include "harness/gl/program.h"
+#include "harness/render/bias.h"
+#include "harness/scene/light_fit.h"
+#include "harness/scene/scene.h"
+
+namespace shadowbench::render {
+
+/// A light as the lookup sees it: where its map lies, how large it is, and how receivers are biased.
+struct LightSetup {
+  scene::LightFrustum frustum;
+  double light_size = 0.0;  ///< penumbra width per metre of distance to the occluder
+  Bias bias;
+  std::uint32_t seed = 0;  ///< of the run: random rotations
+};
+
+/// Describes a directional light; `light_size` follows from its angular diameter.
+LightSetup make_light_setup(const scene::LightFrustum& frustum, const scene::Light& light, const Bias& bias,
+                            std::uint32_t seed);
+
+/// Sets the uniforms of lib/light.glsl.
+void set_light(gl::Program& program, const LightSetup& light);
+
+
+}  // namespace shadowbench::render

@@ -1,0 +1,91 @@
+#include "harness/render/prefilter.h"
+
+#include <map>
+
+#include "filters/gaussian.h"
+#include "harness/render/filter_glsl.h"
+
+namespace shadowbench::render {
+namespace {
+
+constexpr GLuint kStoredUnit = 3;  // of lib/map_access.glsl
+
+GLenum store_format(const filters::ParamValues& values) {
+  static const std::map<std::string, GLenum> formats = {
+      {"r16f", GL_R16F},       {"r32f", GL_R32F},       {"rg16f", GL_RG16F}, {"rg32f", GL_RG32F},  {"rgba16f", GL_RGBA16F},
+      {"rgba32f", GL_RGBA32F}, {"r16", GL_R16}, {"rg16", GL_RG16},   {"rgba16", GL_RGBA16}};
+  return formats.at(filters::text_or(values, "store", ""));
+}
+
+bool combines_logs(const filters::FilterRequest& request) {
+  return filters::text_or(request.values, "combine", "linear") == "log";
+}
+
+}  // namespace
+
+Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
+                     const LightSetup& light)
+    : radius_(filters::prefilter_radius_texels(request.spec, request.values)),
+      stored_(request.spec.id + " map", store_format(request.values), map_size, map_size),
+      encode_(shaders.compile_filter(request.spec.id + " encode", "encode.frag", {}, filter_pieces(request))),
+      weights_(filters::gaussian_weights(radius_)) {
+  set_light(encode_, light);
+  encode_.set("run_seed", light.seed);
+  encode_.set("map_texel_uv", 1.0f / static_cast<float>(map_size));
+  set_parameters(encode_, request);
+  border_ = encode_border(store_format(request.values));
+  const bool nearest = combines_logs(request) || filters::text_or(request.values, "sample", "linear") == "nearest";
+  sampler_.set_filter(nearest ? GL_NEAREST : GL_LINEAR, nearest ? GL_NEAREST : GL_LINEAR);
+  sampler_.set_wrap(GL_CLAMP_TO_BORDER);
+  sampler_.set_border(border_);
+  if (radius_ == 0) return;
+  scratch_.emplace(request.spec.id + " blur", store_format(request.values), map_size, map_size);
+  blur_ = &shaders.fullscreen("blur.frag", combines_logs(request) ? Defines{{"COMBINE_LOGS", "1"}} : Defines{});
+}
+
+/// What lies outside the map is the encoding of depth 1, stored in the map's own format.
+glm::vec4 Prefilter::encode_border(GLenum format) {
+  ImageTarget texel("encoded border", format, 1, 1);
+  encode_.set("encode_border", 1);
+  texel.bind();
+  encode_.use();
+  triangle_.draw();
+  encode_.set("encode_border", 0);
+  std::vector<float> value = texel.texture().read_floats(texel.texture().format().channels);
+  value.resize(4, 0.0f);
+  return {value[0], value[1], value[2], value[3]};
+}
+
+void Prefilter::run(const ShadowMap& map) {
+  map.bind();
+  stored_.bind();
+  encode_.use();
+  triangle_.draw();
+  if (!blur_) return;
+  blur(stored_.texture(), *scratch_, {1, 0});
+  blur(scratch_->texture(), stored_, {0, 1});
+}
+
+void Prefilter::blur(const gl::Texture& from, ImageTarget& to, glm::ivec2 direction) {
+  to.bind();
+  blur_->set("direction", direction);
+  blur_->set("radius", radius_);
+  blur_->set("weights", weights_);
+  blur_->set("border", border_);
+  gl::Sampler::unbind(kStoredUnit);
+  from.bind(kStoredUnit);
+  blur_->use();
+  triangle_.draw();
+}
+
+void Prefilter::bind() const {
+  stored_.texture().bind(kStoredUnit);
+  sampler_.bind(kStoredUnit);
+}
+
+std::int64_t Prefilter::texels_written() const {
+  const std::int64_t side = stored_.texture().width();
+  return passes() * side * side;
+}
+
+}  // namespace shadowbench::render

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "filters/catalogue.h"
+#include "harness/gl/fullscreen.h"
+#include "harness/gl/objects.h"
+#include "harness/render/image_target.h"
+#include "harness/render/light_setup.h"
+#include "harness/render/shader_library.h"
+#include "harness/render/shadow_map.h"
+
+namespace shadowbench::render {
+
+/// The passes of a filter that stores something else than depth: `encode`, then `blur` twice where it asks for that.
+class Prefilter {
+ public:
+  /// Throws Error(kFilter) with the line of the filter's file, Error(kUsage) when the GL cannot give the map's size.
+  Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size, const LightSetup& light);
+
+  /// Encodes and blurs the depth map.
+  void run(const ShadowMap& map);
+
+  /// Binds the result to the unit of lib/map_access.glsl that fetch_map reads.
+  void bind() const;
+
+  int passes() const { return radius_ > 0 ? 3 : 1; }
+  std::int64_t bytes() const { return static_cast<std::int64_t>(stored_.texture().bytes()); }
+  std::int64_t texels_written() const;
+
+ private:
+  int radius_;
+  ImageTarget stored_;
+  std::optional<ImageTarget> scratch_;  ///< only with a blur
+  gl::Program encode_;
+  gl::Program* blur_ = nullptr;  ///< only with a blur
+  std::vector<float> weights_;
+  glm::vec4 border_{0.0f};
+  gl::FullscreenTriangle triangle_;
+  gl::Sampler sampler_{"encoded map"};
+
+  glm::vec4 encode_border(GLenum format);
+  void blur(const gl::Texture& from, ImageTarget& to, glm::ivec2 direction);
+};
+
+}  // namespace shadowbench::render

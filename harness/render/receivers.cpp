@@ -1,0 +1,74 @@
+#include "harness/render/receivers.h"
+
+#include "harness/gl/fullscreen.h"
+
+namespace shadowbench::render {
+namespace {
+
+/// The receiver pass as it was read back: two RGBA texels per pixel.
+struct ReceiverTexels {
+  int width;
+  std::vector<float> map;    // uv, depth, depth_unbiased
+  std::vector<float> plane;  // depth_per_texel, n_dot_l, view_depth (0: no receiver)
+
+  std::size_t pixels() const { return map.size() / 4; }
+  bool is_receiver(std::size_t i) const {
+    return plane[4 * i + 3] != 0.0f && plane[4 * i + 2] > 0.0f && map[4 * i + 3] <= 1.0f;
+  }
+};
+
+ReceiverTexels draw_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light) {
+  const gl::Texture map("receivers in the map", GL_RGBA32F, gbuffer.width(), gbuffer.height());
+  const gl::Texture plane("receiver planes", GL_RGBA32F, gbuffer.width(), gbuffer.height());
+  gl::Framebuffer framebuffer("receivers");
+  framebuffer.attach_color(0, map);
+  framebuffer.attach_color(1, plane);
+  gl::Program& program = shaders.fullscreen("receiver.frag");
+  set_light(program, light);
+  framebuffer.bind();
+  gbuffer.bind();
+  program.use();
+  gl::FullscreenTriangle().draw();
+  return {gbuffer.width(), map.read_floats(4), plane.read_floats(4)};
+}
+
+filters::Receiver make_receiver(const ReceiverTexels& texels, std::size_t i, const LightSetup& light) {
+  const float* map = &texels.map[4 * i];
+  const float* plane = &texels.plane[4 * i];
+  filters::Receiver r;
+  r.uv = {map[0], map[1]};
+  r.depth = map[2];
+  r.depth_unbiased = map[3];
+  r.depth_per_texel = {plane[0], plane[1]};
+  r.n_dot_l = plane[2];
+  r.view_depth = plane[3];
+  r.texel_size_ws = static_cast<float>(light.frustum.texel_size_ws);
+  r.depth_range_ws = static_cast<float>(light.frustum.depth_range_ws);
+  r.light_size = static_cast<float>(light.light_size);
+  r.pixel = {static_cast<int>(i) % texels.width, static_cast<int>(i) / texels.width};
+  return r;
+}
+
+}  // namespace
+
+std::int64_t count_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light) {
+  const ReceiverTexels texels = draw_receivers(shaders, gbuffer, light);
+  std::int64_t count = 0;
+  for (std::size_t i = 0; i < texels.pixels(); ++i) count += texels.is_receiver(i) ? 1 : 0;
+  return count;
+}
+
+std::vector<filters::Receiver> read_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light) {
+  const ReceiverTexels texels = draw_receivers(shaders, gbuffer, light);
+  const std::vector<float> positions = gbuffer.position().read_floats(4), normals = gbuffer.normal().read_floats(4);
+  std::vector<filters::Receiver> receivers;
+  for (std::size_t i = 0; i < texels.pixels(); ++i) {
+    if (!texels.is_receiver(i)) continue;
+    receivers.push_back(make_receiver(texels, i, light));
+    receivers.back().position_ws = {positions[4 * i], positions[4 * i + 1], positions[4 * i + 2]};
+    receivers.back().normal_ws = {normals[4 * i], normals[4 * i + 1], normals[4 * i + 2]};
+  }
+  return receivers;
+}
+
+}  // namespace shadowbench::render

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/gl/program.h"
+
+namespace shadowbench::render {
+
+using Defines = std::vector<std::pair<std::string, std::string>>;
+
+/// Compiles the project's own shaders, each variant when it is first asked for, and counts them.
+class ShaderLibrary {
+ public:
+  explicit ShaderLibrary(std::filesystem::path shader_folder) : folder_(std::move(shader_folder)) {}
+
+  /// Gives a fragment program over the full-screen triangle.
+  gl::Program& fullscreen(const std::string& fragment_file, const Defines& defines = {});
+
+  /// Gives a program that draws geometry: `<name>.vert` and `<name>.frag`.
+  gl::Program& geometry(const std::string& name, const Defines& defines = {});
+
+  /// Compiles a full-screen program that contains a filter's GLSL as the include "filter".
+  /// Throws Error(kFilter) with the line of the filter's file.
+  gl::Program compile_filter(const std::string& label, const std::string& fragment_file, const Defines& defines,
+                             const std::vector<gl::Piece>& pieces);
+
+  int compiled() const { return compiled_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::map<std::string, gl::Program> programs_;
+  int compiled_ = 0;
+
+  gl::ShaderSource source(const std::string& file, const Defines& defines, const std::vector<gl::Piece>& pieces) const;
+};
+
+}  // namespace shadowbench::render

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "filters/catalogue.h"
+#include "harness/gl/context.h"
+#include "harness/run/bias_rule.h"
+#include "harness/scene/light_fit.h"
+
+namespace shadowbench::run {
+
+/// The folders that come with the program.
+struct Resources {
+  std::filesystem::path filters;
+  std::filesystem::path shaders;
+  std::filesystem::path scenes;
+};
+
+/// Finds the program's folders: below $SHADOWBENCH_ROOT where that is set, else where the program was built from.
+/// Throws Error(kUsage) when they are not there.
+Resources find_resources();
+
+/// Everything that `shadowbench run` is told.
+struct RunOptions {
+  Resources resources;
+  std::vector<std::string> scenes;  ///< names or paths
+  bool ground = false;
+  std::vector<filters::FilterRequest> filters;
+  std::vector<int> map_sizes = {1024};
+  int width = 960;
+  int height = 540;
+  scene::FitMode fit = scene::FitMode::kTight;
+  BiasRule bias;
+  int rounds = 11;
+  std::uint32_t seed = 1;
+  gl::Backend backend = gl::Backend::kAuto;
+  double cell_timeout_s = 60.0;  ///< for one user's filter on one scene
+  std::filesystem::path out;
+  std::vector<std::string> command;      ///< the command line, for the record
+  std::vector<std::string> bias_texts;   ///< as given, for worker processes
+  bool worker = false;                   ///< runs user's filters itself and writes cells and float images only
+};
+
+}  // namespace shadowbench::run

@@ -1,0 +1,22 @@
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "filters/error.h"
+#include "harness/run/options.h"
+
+namespace shadowbench::run {
+
+Resources find_resources() {
+  const char* chosen = std::getenv("SHADOWBENCH_ROOT");
+  const std::filesystem::path root = chosen ? chosen : SHADOWBENCH_BUILT_FROM;
+  Resources resources{root / "filters", root / "shaders", root / "harness" / "scenes"};
+  for (const auto& folder : {resources.filters, resources.shaders, resources.scenes}) {
+    if (std::filesystem::is_directory(folder)) continue;
+    throw Error(ErrorKind::kUsage,
+                "this folder of the program is missing: set SHADOWBENCH_ROOT to a checkout of the project", folder.string());
+  }
+  return resources;
+}
+
+}  // namespace shadowbench::run

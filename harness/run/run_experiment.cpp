@@ -1,0 +1,134 @@
+#include "harness/run/run_experiment.h"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "filters/error.h"
+#include "harness/run/run_facts.h"
+#include "harness/run/scene_measurement.h"
+#include "harness/run/scene_output.h"
+#include "harness/run/user_filter.h"
+#include "harness/scene/load.h"
+#include "report/atomic_file.h"
+#include "report/json_io.h"
+#include "report/report.h"
+
+namespace shadowbench::run {
+namespace {
+
+/// A scene with what the command line called it.
+struct NamedScene {
+  std::string argument;
+  scene::Scene scene;
+};
+
+std::vector<NamedScene> load_scenes(const RunOptions& options) {
+  scene::LoadOptions load;
+  load.scenes_folder = options.resources.scenes;
+  load.ground = options.ground;
+  load.aspect = static_cast<double>(options.width) / options.height;
+  std::vector<NamedScene> scenes;
+  std::set<std::string> names;
+  for (const std::string& argument : options.scenes) {
+    scenes.push_back({argument, scene::load(argument, load)});
+    const std::string& name = scenes.back().scene.name;
+    if (names.insert(name).second) continue;
+    throw Error(ErrorKind::kUsage, fmt::format("two scenes are called '{}': rename one file, or run them apart", name));
+  }
+  return scenes;
+}
+
+/// A folder that cannot be written is better found before the work than after it.
+void require_writable(const std::filesystem::path& folder) {
+  report::AtomicFile(folder / "cells" / "probe").write("");
+}
+
+class Experiment {
+ public:
+  Experiment(const RunOptions& options, Progress& progress)
+      : options_(options), progress_(progress), renderer_(make_renderer(options.backend, options.resources)) {
+    run_.commit = build_commit();
+    run_.command = options.command;
+    run_.seed = options.seed;
+    run_.gl = describe_gl(renderer_);
+    run_.machine = describe_machine();
+    for (const std::string& reason : renderer_.refused) warn("not used: " + reason);
+  }
+
+  void run() {
+    require_writable(options_.out);
+    const std::vector<NamedScene> scenes = load_scenes(options_);
+    std::size_t views = 0;
+    for (const NamedScene& each : scenes) views += each.scene.cameras.size();
+    progress_.begin(static_cast<int>(views * options_.map_sizes.size() * options_.filters.size()));
+    for (const NamedScene& each : scenes) run_scene(each);
+    run_.work.shader_variants_compiled = renderer_.shaders.compiled();
+    progress_.show(done_, "writing the report");
+    if (!options_.worker) report::write_report(options_.out, run_, keys_);
+    progress_.show(done_, "done");
+  }
+
+ private:
+  const RunOptions& options_;
+  Progress& progress_;
+  Renderer renderer_;
+  report::RunRecord run_;
+  std::vector<std::string> keys_;
+  int done_ = 0;
+
+  void warn(const std::string& message) {
+    run_.warnings.push_back(message);
+    progress_.warn(message);
+  }
+
+  void run_scene(const NamedScene& each) {
+    run_.scenes.push_back({each.scene.name, each.scene.title});
+    for (const std::string& warning : each.scene.warnings) warn(each.scene.name + ": " + warning);
+    for (const scene::Camera& camera : each.scene.cameras) {
+      for (const int map_size : options_.map_sizes) {
+        run_task({&each.scene, &camera, map_size, options_.filters}, each.argument);
+      }
+    }
+  }
+
+  /// Measures a user's filters first, each in its own process, so that a mistake in one is heard of at once.
+  std::vector<MeasuredCell> run_user_filters(const SceneTask& task, const std::string& scene_argument) {
+    std::vector<MeasuredCell> cells;
+    for (const filters::FilterRequest& request : options_.filters) {
+      if (!request.user_file || options_.worker) continue;
+      show(task, request.label());
+      cells.push_back(measure_user_filter(options_, task, request, scene_argument, renderer_.context->info().backend));
+    }
+    return cells;
+  }
+
+  void run_task(SceneTask task, const std::string& scene_argument) {
+    std::vector<MeasuredCell> user_cells = run_user_filters(task, scene_argument);
+    const SceneTask all = task;
+    std::erase_if(task.filters, [&](const auto& request) { return request.user_file && !options_.worker; });
+    SceneMeasurement measured =
+        measure_scene(renderer_, options_, task, [&](const std::string& label) { show(task, label); });
+    for (MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
+    show(task, "pictures");
+    if (!options_.worker) write_pictures(options_, all, measured, run_.gl);
+    write_float_images(options_, all, measured, renderer_.context->info());
+    for (const MeasuredCell& cell : measured.cells) {
+      report::write_cell(options_.out, cell.record);
+      keys_.push_back(cell.record.key);
+    }
+    done_ += static_cast<int>(measured.cells.size());
+    run_.work.passes_run += measured.passes_run;
+    run_.work.passes_skipped += measured.passes_skipped;
+  }
+
+  void show(const SceneTask& task, const std::string& what) {
+    progress_.show(done_, fmt::format("{} · {} · {}", task.scene->name, task.map_size, what));
+  }
+};
+
+}  // namespace
+
+void run_experiment(const RunOptions& options, Progress& progress) { Experiment(options, progress).run(); }
+
+}  // namespace shadowbench::run

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "harness/run/renderer.h"
+#include "report/records.h"
+
+namespace shadowbench::run {
+
+/// Gives the commit that the program was built from, "+" appended where the tree had changes; "unknown" without git.
+std::string build_commit();
+
+/// Describes processor, cores, load, compiler and operating system.
+report::MachineRecord describe_machine();
+
+/// Describes the GL and the clock that times come from.
+report::GlRecord describe_gl(const Renderer& renderer);
+
+}  // namespace shadowbench::run

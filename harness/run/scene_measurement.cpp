@@ -1,0 +1,177 @@
+#include "harness/run/scene_measurement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "harness/render/filter_passes.h"
+#include "harness/render/receivers.h"
+#include "harness/render/shade_pass.h"
+#include "harness/run/statistics.h"
+#include "harness/run/timing.h"
+#include "report/cell_key.h"
+
+namespace shadowbench::run {
+namespace {
+
+/// The half-width of the widest kernel of a run: every filter sees the same map, padded for all of them.
+double largest_radius(const std::vector<filters::FilterRequest>& requests) {
+  double largest = 0.0;
+  for (const auto& request : requests) largest = std::max(largest, filters::radius_texels(request.spec, request.values));
+  return largest;
+}
+
+std::int64_t count_not_finite(const report::Image& image) {
+  return std::count_if(image.texels.begin(), image.texels.end(), [](float v) { return !std::isfinite(v); });
+}
+
+std::vector<double> add(std::vector<double> a, const std::vector<double>& b) {
+  for (std::size_t i = 0; i < b.size(); ++i) a[i] += b[i];
+  return a;
+}
+
+/// Everything that one task draws with.
+class SceneBench {
+ public:
+  SceneBench(Renderer& renderer, const RunOptions& options, const SceneTask& task)
+      : renderer_(renderer),
+        options_(options),
+        task_(task),
+        geometry_(*task.scene),
+        map_(task.map_size),
+        gbuffer_(options.width, options.height),
+        target_("visibility", GL_R32F, options.width, options.height),
+        frustum_(scene::fit_light(*task.scene, options.fit, task.map_size, std::ceil(largest_radius(task.filters)) + 1.0)) {
+    map_.draw(renderer_.shaders, geometry_, frustum_);
+    gbuffer_.draw(renderer_.shaders, geometry_, *task.scene, *task.camera);
+  }
+
+  SceneMeasurement run(const std::function<void(const std::string&)>& on_cell) {
+    SceneMeasurement result;
+    std::vector<std::unique_ptr<render::FilterPasses>> filters;
+    for (const auto& request : task_.filters) {
+      on_cell(request.label());
+      filters.push_back(make_passes(request));
+      result.cells.push_back(draw(*filters.back()));
+      count_passes(result, *filters.back());
+    }
+    time(result, filters);
+    result.depth_map = render::read_image(map_.texture(), 1);
+    renderer_.context->require_no_gl_errors();
+    return result;
+  }
+
+ private:
+  Renderer& renderer_;
+  const RunOptions& options_;
+  const SceneTask& task_;
+  render::Geometry geometry_;
+  render::ShadowMap map_;
+  render::GBuffer gbuffer_;
+  render::ImageTarget target_;
+  scene::LightFrustum frustum_;
+  std::int64_t receivers_ = -1;
+
+  std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request) {
+    const render::Bias bias = resolve_bias(options_.bias, request.spec, request.values);
+    const auto light = render::make_light_setup(frustum_, task_.scene->light, bias, options_.seed);
+    return std::make_unique<render::FilterPasses>(renderer_.shaders, request, task_.map_size, light);
+  }
+
+  MeasuredCell draw(render::FilterPasses& filter) {
+    MeasuredCell cell;
+    cell.record = make_record(options_, task_, filter.request());
+    cell.label = filter.request().label();
+    filter.prefilter(map_);
+    filter.lookup(gbuffer_, map_, target_);
+    cell.visibility = render::read_image(target_.texture(), 1);
+    cell.picture = render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera);
+    cell.record.nan = count_not_finite(cell.visibility);
+    if (receivers_ < 0) receivers_ = render::count_receivers(renderer_.shaders, gbuffer_, filter.light());
+    cell.record.receivers = receivers_;
+    set_cost(cell.record, filter.measure_cost(renderer_.shaders, gbuffer_, map_));
+    return cell;
+  }
+
+  static void set_cost(report::CellRecord& record, const render::FilterCost& cost) {
+    record.cost = {cost.fetches, cost.bytes_per_texel, cost.passes, cost.map_bytes, cost.prefilter_texels};
+    if (!cost.fetches) record.absent["cost.fetches"] = "the filter reads the map's samplers itself";
+  }
+
+  static void count_passes(SceneMeasurement& result, const render::FilterPasses& filter) {
+    const int prefilter = filter.prefilter_passes();
+    result.passes_run += 1 + prefilter;
+    result.passes_skipped += 3 - prefilter;
+  }
+
+  void time(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
+    std::vector<render::FilterPasses*> pointers;
+    for (const auto& filter : filters) pointers.push_back(filter.get());
+    const auto draw_map = [&] { map_.draw(renderer_.shaders, geometry_, frustum_); };
+    const RoundTimes times =
+        time_rounds(pointers, draw_map, map_, gbuffer_, {renderer_.timer, options_.rounds, options_.seed});
+    const FilterTimes* none = nullptr;
+    for (std::size_t i = 0; i < filters.size(); ++i) {
+      if (task_.filters[i].spec.id == "none") none = &times.filters[i];
+    }
+    for (std::size_t i = 0; i < filters.size(); ++i) {
+      set_times(result.cells[i].record, times.map, times.filters[i], none);
+    }
+  }
+
+  void set_times(report::CellRecord& record, const std::vector<double>& map, const FilterTimes& times,
+                 const FilterTimes* none) const {
+    record.time_ms.map = summarise(map);
+    record.time_ms.lookup = summarise(times.lookup);
+    if (times.prefilter.empty()) {
+      record.absent["time_ms.prefilter"] = "the filter reads the depth map itself";
+    } else {
+      record.time_ms.prefilter = summarise(times.prefilter);
+    }
+    if (!none) {
+      record.absent["ratio_to_none"] = "'none' was not in the run";
+      return;
+    }
+    const std::vector<double> moving = add(add(times.lookup, times.prefilter), map);
+    record.ratio_to_none.lookup = bootstrap_ratio(times.lookup, none->lookup, options_.seed);
+    record.ratio_to_none.static_map = record.ratio_to_none.lookup;
+    record.ratio_to_none.moving = bootstrap_ratio(moving, add(none->lookup, map), options_.seed);
+  }
+};
+
+report::ParamMap record_params(const filters::FilterRequest& request) {
+  report::ParamMap params;
+  for (const auto& [name, value] : request.values) {
+    std::visit([&params, &key = name](const auto& v) { params[key] = v; }, value);
+  }
+  return params;
+}
+
+}  // namespace
+
+report::CellRecord make_record(const RunOptions& options, const SceneTask& task, const filters::FilterRequest& request) {
+  report::CellRecord record;
+  record.scene = task.scene->name;
+  record.view = task.camera->name;
+  record.filter = request.spec.id;
+  record.params = record_params(request);
+  record.map_size = task.map_size;
+  record.map_format = "d32f";
+  const BiasRule& bias = options.bias;
+  record.bias = {bias.constant_depth, bias.slope_texels, bias.slope_kernels, bias.normal_offset_texels};
+  record.width = options.width;
+  record.height = options.height;
+  record.key = report::cell_key(record);
+  for (const char* group : {"error", "truth", "artefact", "attribution"}) {
+    record.absent[group] = "this version has no ray-traced truth yet";
+  }
+  record.absent["excused"] = "counted where filters are compared with their models";
+  return record;
+}
+
+SceneMeasurement measure_scene(Renderer& renderer, const RunOptions& options, const SceneTask& task,
+                               const std::function<void(const std::string&)>& on_cell) {
+  return SceneBench(renderer, options, task).run(on_cell);
+}
+
+}  // namespace shadowbench::run

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "harness/run/renderer.h"
+#include "harness/scene/scene.h"
+#include "report/image.h"
+#include "report/records.h"
+
+namespace shadowbench::run {
+
+/// One measured cell with its images; the images are empty where the status is not ok.
+struct MeasuredCell {
+  report::CellRecord record;
+  std::string label;          ///< filter and the parameters that were asked for
+  report::Image picture;      ///< linear RGB
+  report::Image visibility;   ///< 1 lit .. 0 blocked
+};
+
+/// One scene seen by one camera through one shadow map, with every filter.
+struct SceneMeasurement {
+  std::vector<MeasuredCell> cells;
+  report::Image depth_map;  ///< [0,1], row 0 is v = 1
+  std::vector<std::string> warnings;
+  int passes_run = 0;
+  int passes_skipped = 0;  ///< encode and blur passes that no chosen filter needed
+};
+
+/// What is to be measured in one go.
+struct SceneTask {
+  const scene::Scene* scene = nullptr;
+  const scene::Camera* camera = nullptr;
+  int map_size = 1024;
+  std::vector<filters::FilterRequest> filters;
+};
+
+/// Draws and times every filter of a task. `on_cell` hears of each filter before it is drawn.
+/// Throws Error(kFilter) for a filter's GLSL, Error(kUsage) for a map size that the GL cannot give.
+SceneMeasurement measure_scene(Renderer& renderer, const RunOptions& options, const SceneTask& task,
+                               const std::function<void(const std::string&)>& on_cell);
+
+/// Gives the record of a cell with its settings and key, nothing measured yet.
+report::CellRecord make_record(const RunOptions& options, const SceneTask& task, const filters::FilterRequest& request);
+
+}  // namespace shadowbench::run

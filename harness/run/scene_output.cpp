@@ -1,0 +1,130 @@
+#include "harness/run/scene_output.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "harness/run/run_facts.h"
+#include "report/file_name.h"
+#include "report/grid.h"
+#include "report/picture_io.h"
+#include "report/summary.h"
+
+namespace shadowbench::run {
+namespace {
+
+report::Metadata describe(const RunOptions& options, const SceneTask& task, const gl::GlInfo& info) {
+  const scene::Camera& camera = *task.camera;
+  const scene::Light& light = task.scene->light;
+  const auto text = [](const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
+  report::Metadata metadata;
+  metadata["shadowbench:command"] = fmt::format("{}", fmt::join(options.command, " "));
+  metadata["shadowbench:commit"] = build_commit();
+  metadata["shadowbench:scene"] = task.scene->name;
+  metadata["shadowbench:view"] = camera.name;
+  metadata["shadowbench:map_size"] = static_cast<double>(task.map_size);
+  metadata["shadowbench:seed"] = static_cast<double>(options.seed);
+  metadata["shadowbench:renderer"] = info.renderer;
+  metadata["shadowbench:camera_position_ws"] = text(camera.position_ws);
+  metadata["shadowbench:camera_forward_ws"] = text(camera.forward_ws);
+  metadata["shadowbench:light_direction_ws"] = text(light.direction_ws);
+  metadata["shadowbench:light_angular_diameter_deg"] = static_cast<double>(light.angular_diameter_deg);
+  return metadata;
+}
+
+/// Empty dark borders say nothing: the picture spans the depths that occur.
+report::GreyRange depth_picture_range(const report::Image& depth) {
+  float nearest = 1.0f, farthest = 0.0f;
+  for (const float d : depth.texels) {
+    if (d >= 1.0f) continue;
+    nearest = std::min(nearest, d);
+    farthest = std::max(farthest, d);
+  }
+  if (nearest >= farthest) return {0.0f, 1.0f};
+  return {nearest, farthest};
+}
+
+std::string caption(const report::CellRecord& cell, const report::GlRecord& gl) {
+  std::string text = report::describe_params(cell.params);
+  if (!cell.time_ms.lookup) return text;
+  if (!text.empty()) text += " · ";
+  text += fmt::format("lookup {} ms", report::format_number(cell.time_ms.lookup->median));
+  if (cell.time_ms.prefilter) text += fmt::format(" + prefilter {} ms", report::format_number(cell.time_ms.prefilter->median));
+  return text + (gl.software ? " (CPU)" : " (GPU)");
+}
+
+report::Rect choose_crop(const RunOptions& options, const std::vector<MeasuredCell>& cells) {
+  std::vector<const report::Image*> visibility;
+  std::size_t reference = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    visibility.push_back(&cells[i].visibility);
+    if (cells[i].record.filter == "none") reference = i;
+  }
+  return report::find_hardest_edge(visibility, reference, report::choose_crop_size({options.width, options.height}));
+}
+
+report::Grid make_grid(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
+                       const report::GlRecord& gl) {
+  report::Grid grid;
+  grid.title = task.scene->title.empty() ? task.scene->name : fmt::format("{}: {}", task.scene->name, task.scene->title);
+  grid.subtitle = report::describe_settings(measured.cells.front().record) + " · times: " + report::describe_clock(gl);
+  for (const MeasuredCell& cell : measured.cells) {
+    grid.tiles.push_back({cell.label, caption(cell.record, gl), cell.picture, cell.visibility, cell.record.message});
+  }
+  grid.crop = choose_crop(options, measured.cells);
+  return grid;
+}
+
+/// Writes a cell's own pictures; no two labels share a file.
+void write_cell_pictures(const RunOptions& options, const std::string& stem, MeasuredCell& cell) {
+  if (cell.picture.empty()) return;
+  const std::string base = "images/" + stem + "." + report::make_file_stem(cell.label);
+  cell.record.images.picture = base + ".picture.png";
+  cell.record.images.visibility = base + ".visibility.png";
+  report::write_picture_png(options.out / *cell.record.images.picture, cell.picture);
+  report::write_grey_png(options.out / *cell.record.images.visibility, cell.visibility);
+}
+
+}  // namespace
+
+std::string task_stem(const RunOptions& options, const SceneTask& task) {
+  std::string name = task.scene->name;
+  if (task.scene->cameras.size() > 1) name += "." + task.camera->name;
+  if (options.map_sizes.size() > 1) name += fmt::format(".map{}", task.map_size);
+  return report::make_file_stem(name);
+}
+
+std::string exr_name(const RunOptions& options, const SceneTask& task) { return task_stem(options, task) + ".exr"; }
+
+std::string visibility_part(const std::string& label) { return label + ".visibility"; }
+std::string picture_part(const std::string& label) { return label + ".picture"; }
+
+void write_float_images(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
+                        const gl::GlInfo& info) {
+  std::vector<report::Part> parts;
+  for (const MeasuredCell& cell : measured.cells) {
+    if (cell.visibility.empty()) continue;
+    parts.push_back({visibility_part(cell.label), {"Y"}, cell.visibility, false});
+    parts.push_back({picture_part(cell.label), {"R", "G", "B"}, cell.picture, true});
+  }
+  parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});
+  report::write_exr(options.out / exr_name(options, task), parts, describe(options, task, info));
+}
+
+void write_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured,
+                    const report::GlRecord& gl) {
+  const std::string stem = task_stem(options, task);
+  const std::string grid_name = stem + ".grid.png";
+  const std::string depth_name = "images/" + stem + ".depth_map.png";
+  report::write_grid(options.out / grid_name, make_grid(options, task, measured, gl));
+  report::write_grey_png(options.out / depth_name, measured.depth_map, depth_picture_range(measured.depth_map));
+  for (MeasuredCell& cell : measured.cells) {
+    write_cell_pictures(options, stem, cell);
+    cell.record.images.grid = grid_name;
+    cell.record.images.depth_map = depth_name;
+    cell.record.images.exr = exr_name(options, task);
+  }
+}
+
+}  // namespace shadowbench::run

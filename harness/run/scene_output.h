@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "harness/run/options.h"
+#include "harness/run/scene_measurement.h"
+
+namespace shadowbench::run {
+
+/// Gives the stem of all files of a task: the scene, with view and map size where the run has several.
+std::string task_stem(const RunOptions& options, const SceneTask& task);
+
+/// Gives the name of a task's float images below the report folder.
+std::string exr_name(const RunOptions& options, const SceneTask& task);
+
+/// Give the names of a cell's parts in that file.
+std::string visibility_part(const std::string& label);
+std::string picture_part(const std::string& label);
+
+/// Writes `<stem>.exr`: depth map, and visibility and picture of each filter, with metadata to repeat the run.
+/// Throws Error(kOutput).
+void write_float_images(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
+                        const gl::GlInfo& info);
+
+/// Writes what people look at: grid, single pictures, depth map; notes their paths in the records.
+/// Throws Error(kOutput).
+void write_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured,
+                    const report::GlRecord& gl);
+
+}  // namespace shadowbench::run

@@ -1,0 +1,122 @@
+#include "harness/run/user_filter.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <system_error>
+
+#include "filters/error.h"
+#include "harness/run/scene_output.h"
+#include "harness/run/worker_process.h"
+#include "report/json_io.h"
+#include "report/picture_io.h"
+
+namespace shadowbench::run {
+namespace {
+
+/// A folder that goes with its object.
+class TemporaryFolder {
+ public:
+  explicit TemporaryFolder(std::filesystem::path path) : path_(std::move(path)) {}
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string request_text(const filters::FilterRequest& request) {
+  std::string text = request.spec.id;
+  char separator = ':';
+  for (const std::string& name : request.set_by_user) {
+    text += separator + name + "=" + filters::to_string(request.values.at(name));
+    separator = ',';
+  }
+  return text;
+}
+
+std::vector<std::string> worker_arguments(const RunOptions& options, const SceneTask& task,
+                                          const filters::FilterRequest& request, const std::string& scene_argument,
+                                          const std::string& backend, const std::filesystem::path& folder) {
+  std::vector<std::string> arguments = {"run", "--worker", "--scene", scene_argument,
+                                        "--filter-file", request.spec.path,
+                                        "--filters", "none," + request_text(request),
+                                        "--map-size", fmt::format("{}", task.map_size),
+                                        "--size", fmt::format("{}x{}", options.width, options.height),
+                                        "--rounds", fmt::format("{}", options.rounds),
+                                        "--seed", fmt::format("{}", options.seed),
+                                        "--fit", options.fit == scene::FitMode::kSphere ? "sphere" : "tight",
+                                        "--gl", backend, "--out", folder.string()};
+  if (options.ground) arguments.push_back("--ground");
+  for (const std::string& bias : options.bias_texts) {
+    arguments.push_back("--bias");
+    arguments.push_back(bias);
+  }
+  return arguments;
+}
+
+/// The worker's message without the program's name in front.
+std::string clean(const std::string& text) {
+  const std::string prefix = "shadowbench: ";
+  const std::size_t begin = text.find(prefix);
+  std::string message = begin == std::string::npos ? text : text.substr(begin + prefix.size());
+  while (!message.empty() && message.back() == '\n') message.pop_back();
+  return message.empty() ? "no message" : message;
+}
+
+MeasuredCell failed_cell(const RunOptions& options, const SceneTask& task, const filters::FilterRequest& request,
+                         const WorkerOutcome& outcome) {
+  MeasuredCell cell;
+  cell.record = make_record(options, task, request);
+  cell.label = request.label();
+  if (outcome.timed_out) {
+    cell.record.status = report::CellStatus::kTimeout;
+    cell.record.message = fmt::format("not finished after {:g} s (--cell-timeout)", options.cell_timeout_s);
+  } else {
+    cell.record.status = report::CellStatus::kCrashed;
+    cell.record.message = outcome.signal ? fmt::format("killed by signal {} ({})", outcome.signal, strsignal(outcome.signal))
+                                         : fmt::format("ended with exit code {}: {}", *outcome.exit_code, clean(outcome.error_text));
+  }
+  for (const char* group : {"time_ms", "ratio_to_none", "cost", "receivers", "nan", "images"}) {
+    cell.record.absent[group] = cell.record.message;
+  }
+  return cell;
+}
+
+MeasuredCell read_cell(const RunOptions& options, const SceneTask& task, const filters::FilterRequest& request,
+                       const std::filesystem::path& folder) {
+  MeasuredCell cell;
+  cell.label = request.label();
+  cell.record = report::read_cell(folder, make_record(options, task, request).key);
+  cell.record.images = {};
+  const report::ExrFile file = report::read_exr(folder / exr_name(options, task));
+  for (const report::Part& part : file.parts) {
+    if (part.name == visibility_part(cell.label)) cell.visibility = part.image;
+    if (part.name == picture_part(cell.label)) cell.picture = part.image;
+  }
+  return cell;
+}
+
+}  // namespace
+
+MeasuredCell measure_user_filter(const RunOptions& options, const SceneTask& task,
+                                 const filters::FilterRequest& request, const std::string& scene_argument,
+                                 const std::string& backend) {
+  const TemporaryFolder folder(options.out / fmt::format(".worker-{}", getpid()));
+  const WorkerOutcome outcome = run_worker(
+      worker_arguments(options, task, request, scene_argument, backend, folder.path()), options.cell_timeout_s);
+  if (outcome.exit_code == 0) return read_cell(options, task, request, folder.path());
+  const int code = outcome.exit_code.value_or(0);
+  if (code >= static_cast<int>(ErrorKind::kUsage) && code <= static_cast<int>(ErrorKind::kOutput)) {
+    throw Error(static_cast<ErrorKind>(code), clean(outcome.error_text));
+  }
+  return failed_cell(options, task, request, outcome);
+}
+
+}  // namespace shadowbench::run

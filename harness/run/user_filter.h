@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "harness/run/options.h"
+#include "harness/run/scene_measurement.h"
+
+namespace shadowbench::run {
+
+/// Measures a user's filter, beside `none`, in a process of its own, so that an endless loop or a driver that crashes
+/// costs this cell and nothing else. `scene_argument` is what the command line calls the scene.
+///
+/// Returns the cell; its status says `timeout` or `crashed` where the process did not finish.
+/// Throws Error(kFilter) for the filter's GLSL, with the worker's message, and what else the worker refuses.
+MeasuredCell measure_user_filter(const RunOptions& options, const SceneTask& task,
+                                 const filters::FilterRequest& request, const std::string& scene_argument,
+                                 const std::string& backend);
+
+}  // namespace shadowbench::run

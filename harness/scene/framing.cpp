@@ -1,0 +1,127 @@
+#include "harness/scene/framing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "harness/scene/mesh_tools.h"
+#include "harness/scene/primitives.h"
+
+namespace shadowbench::scene {
+namespace {
+
+constexpr double kCameraAzimuthDeg = 30.0;
+constexpr double kCameraOffLongAxisDeg = 14.0;
+constexpr double kCameraElevationDeg = 24.0;
+constexpr double kVerticalFovDeg = 40.0;
+constexpr double kMargin = 1.04;
+constexpr double kSunFromCameraDeg = 80.0;
+constexpr double kSunElevationDeg = 50.0;
+
+/// Points from the scene to where something stands; azimuth 0 is +z, 90 is +x.
+glm::dvec3 direction_to(double azimuth_deg, double elevation_deg) {
+  const double azimuth = glm::radians(azimuth_deg);
+  const double elevation = glm::radians(elevation_deg);
+  return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation), std::cos(elevation) * std::cos(azimuth)};
+}
+
+/// Three quarters; a scene much longer than wide is seen from one of its ends, since it would be a thin line otherwise.
+double camera_azimuth_deg(const Bounds& bounds) {
+  constexpr float kElongated = 3.0f;
+  const glm::vec3 size = bounds.max - bounds.min;
+  if (size.x > kElongated * size.z) return 90.0 - kCameraOffLongAxisDeg;
+  return size.z > kElongated * size.x ? kCameraOffLongAxisDeg : kCameraAzimuthDeg;
+}
+
+/// Where the light throws a point on the plane y = ground_y; nothing for a light that does not come from above.
+std::optional<glm::dvec3> shadow_of(const glm::vec3& p, const Light& light, float ground_y) {
+  constexpr double kLowestSine = 0.1;
+  const glm::dvec3 direction = glm::normalize(glm::dvec3(light.direction_ws));
+  if (direction.y > -kLowestSine) return std::nullopt;
+  return glm::dvec3(p) + direction * ((static_cast<double>(ground_y) - static_cast<double>(p.y)) / direction.y);
+}
+
+std::vector<glm::dvec3> points_to_show(const Scene& scene, std::optional<float> ground_y) {
+  std::vector<glm::dvec3> points;
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Vertex& vertex : mesh.vertices) {
+      points.emplace_back(vertex.position_ws);
+      if (!ground_y) continue;
+      if (const auto shadow = shadow_of(vertex.position_ws, scene.light, *ground_y)) points.push_back(*shadow);
+    }
+  }
+  return points;
+}
+
+/// The two planes of a frustum that bound one axis of the picture, and where the eye must be for them to touch the
+/// points: at `centre` along the axis, `distance` behind the origin.
+struct Slab {
+  double low = std::numeric_limits<double>::lowest();
+  double high = std::numeric_limits<double>::lowest();
+  double tangent;
+  void add(double across, double ahead) {
+    high = std::max(high, across - tangent * ahead);
+    low = std::max(low, -across - tangent * ahead);
+  }
+  double centre() const { return 0.5 * (high - low); }
+  double distance() const { return 0.5 * (high + low) / tangent; }
+};
+
+}  // namespace
+
+Camera frame_camera(const Scene& scene, double aspect, std::optional<float> ground_y) {
+  const Bounds bounds = scene.bounds();
+  const glm::dvec3 forward = -direction_to(camera_azimuth_deg(bounds), kCameraElevationDeg);
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0.0, 1.0, 0.0)));
+  const glm::dvec3 up = glm::cross(right, forward);
+  const double tangent = std::tan(0.5 * glm::radians(kVerticalFovDeg)) / kMargin;
+  Slab horizontal{.tangent = tangent * aspect};
+  Slab vertical{.tangent = tangent};
+  double nearest = std::numeric_limits<double>::max();
+  for (const glm::dvec3& p : points_to_show(scene, ground_y)) {
+    horizontal.add(glm::dot(p, right), glm::dot(p, forward));
+    vertical.add(glm::dot(p, up), glm::dot(p, forward));
+    nearest = std::min(nearest, glm::dot(p, forward));
+  }
+  const double gap = 1e-3 * static_cast<double>(glm::length(bounds.max - bounds.min));
+  const double distance = std::max({horizontal.distance(), vertical.distance(), gap - nearest});
+  Camera camera;
+  camera.position_ws = glm::vec3(right * horizontal.centre() + up * vertical.centre() - forward * distance);
+  camera.forward_ws = glm::vec3(forward);
+  camera.up_ws = glm::vec3(up);
+  camera.vertical_fov_rad = static_cast<float>(glm::radians(kVerticalFovDeg));
+  return camera;
+}
+
+Light make_default_sun(const Bounds& bounds) {
+  Light sun;
+  const double azimuth = camera_azimuth_deg(bounds) + kSunFromCameraDeg;
+  sun.direction_ws = glm::vec3(-direction_to(azimuth, kSunElevationDeg));
+  return sun;
+}
+
+float ground_height(const Scene& scene) {
+  constexpr float kGap = 5e-4f;
+  const Bounds bounds = scene.bounds();
+  const float away_from_rounding = 1e-6f * std::abs(bounds.min.y);
+  return bounds.min.y - std::max(kGap * glm::length(bounds.max - bounds.min), away_from_rounding);
+}
+
+Mesh make_ground(const Scene& scene, float ground_y) {
+  constexpr float kBorder = 0.15f;
+  constexpr int kCells = 32;
+  Bounds covered;
+  for (const glm::dvec3& p : points_to_show(scene, ground_y)) covered.add(glm::vec3(p.x, ground_y, p.z));
+  const glm::vec3 size = covered.max - covered.min;
+  const float border = 2.0f * kBorder * std::max(size.x, size.z);
+  const glm::vec3 center = 0.5f * (covered.min + covered.max);
+  Mesh ground = transform_mesh(make_plane({size.x + border, size.z + border}, kCells),
+                               glm::translate(glm::dmat4(1.0), glm::dvec3(center)));
+  ground.name = "ground";
+  return ground;
+}
+
+}  // namespace shadowbench::scene

@@ -1,0 +1,109 @@
+#include "harness/scene/load.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "filters/error.h"
+#include "filters/nearest_name.h"
+#include "harness/scene/framing.h"
+#include "harness/scene/model.h"
+#include "harness/scene/scene_file.h"
+#include "harness/scene/validate.h"
+
+namespace shadowbench::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Scene files of a folder, by name.
+std::vector<fs::path> scene_files(const fs::path& folder) {
+  std::error_code failure;
+  fs::directory_iterator entries(folder, failure);
+  if (failure) {
+    throw Error(ErrorKind::kInput, "the folder of built-in scenes cannot be read: " + failure.message(), folder.string());
+  }
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : entries) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+fs::path find_built_in(const std::string& name, const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const fs::path& file : scene_files(folder)) {
+    if (file.stem() == name) return file;
+    names.push_back(file.stem().string());
+  }
+  const std::optional<std::string> nearest = nearest_name(name, names);
+  const std::string hint = nearest ? fmt::format("did you mean '{}'?", *nearest)
+                                   : fmt::format("built-in scenes: {}", fmt::join(names, ", "));
+  throw Error(ErrorKind::kUsage, fmt::format("there is no scene '{}'; {}", name, hint));
+}
+
+/// A path has a folder or the extension of a file that can be loaded; anything else is a name.
+bool is_path(const std::string& name_or_path) {
+  return name_or_path.find('/') != std::string::npos || fs::path(name_or_path).has_extension();
+}
+
+Scene with_floor(Scene scene, float ground_y) {
+  Material material;
+  material.name = "ground";
+  material.base_color = {0.42f, 0.40f, 0.37f, 1.0f};
+  Mesh floor = make_ground(scene, ground_y);
+  floor.material = static_cast<int>(scene.materials.size());
+  scene.materials.push_back(material);
+  scene.meshes.push_back(std::move(floor));
+  return scene;
+}
+
+/// Adds what a bare model lacks; its geometry must have been validated.
+Scene completed(Scene scene, const LoadOptions& options) {
+  const std::optional<float> ground_y = options.ground ? std::optional(ground_height(scene)) : std::nullopt;
+  if (scene.cameras.empty()) scene.cameras.push_back(frame_camera(scene, options.aspect, ground_y));
+  return ground_y ? with_floor(std::move(scene), *ground_y) : scene;
+}
+
+Scene load_model(const fs::path& file, const LoadOptions& options) {
+  ImportedModel model = import_model(file);
+  Scene scene;
+  scene.name = file.stem().string();
+  scene.title = scene.name;
+  scene.cameras = std::move(model.cameras);
+  const std::optional<Light> light = model.light;
+  scene = validate_geometry(add_model(std::move(scene), std::move(model)), file.string());
+  scene.light = light ? *light : make_default_sun(scene.bounds());
+  return validate(completed(std::move(scene), options), file.string());
+}
+
+Scene load_file(const fs::path& file, const LoadOptions& options) {
+  if (is_model_file(file)) return load_model(file, options);
+  if (file.extension() != ".toml") {
+    throw Error(ErrorKind::kUsage, "this kind of file is no scene: use .toml, .gltf, .glb or .obj", file.string());
+  }
+  Scene scene = load_scene(file);
+  if (options.ground) scene.warnings.push_back("a floor is added to bare models only; this scene file has its own objects");
+  return scene;
+}
+
+}  // namespace
+
+std::vector<SceneInfo> list_scenes(const fs::path& folder) {
+  std::vector<SceneInfo> scenes;
+  for (const fs::path& file : scene_files(folder)) {
+    scenes.push_back({file.stem().string(), read_scene_title(file), file});
+  }
+  return scenes;
+}
+
+Scene load(const std::string& name_or_path, const LoadOptions& options) {
+  if (is_path(name_or_path)) return load_file(name_or_path, options);
+  return load_file(find_built_in(name_or_path, options.scenes_folder), options);
+}
+
+}  // namespace shadowbench::scene

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "harness/scene/scene.h"
+
+namespace shadowbench::scene {
+
+/// Says how a scene is found and completed.
+struct LoadOptions {
+  std::filesystem::path scenes_folder;  ///< where the built-in scenes are
+  bool ground = false;                  ///< put a floor under a bare model
+  double aspect = 16.0 / 9.0;           ///< width / height of the picture that an automatic camera fills
+};
+
+/// A built-in scene as it is listed.
+struct SceneInfo {
+  std::string name;  ///< what `load` takes
+  std::string title;
+  std::filesystem::path file;
+};
+
+/// Lists the built-in scenes by name. Throws kInput where the folder or a title cannot be read.
+std::vector<SceneInfo> list_scenes(const std::filesystem::path& folder);
+
+/// Loads a built-in scene by its name, or a .toml, .gltf, .glb or .obj file by its path, and validates it.
+///
+/// A bare model uses its own cameras and its first directional light; what it lacks is completed by frame_camera and
+/// make_default_sun. `ground` adds a floor in a material of its own; scene files have their own objects, and ignore it
+/// with a warning.
+/// Throws kUsage for a name that is no scene, with the nearest one, or for another kind of file; kInput for a file that
+/// is missing or does not hold what it must.
+Scene load(const std::string& name_or_path, const LoadOptions& options);
+
+}  // namespace shadowbench::scene

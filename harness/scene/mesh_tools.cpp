@@ -1,0 +1,124 @@
+#include "harness/scene/mesh_tools.h"
+
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+namespace shadowbench::scene {
+namespace {
+
+/// The inverse transpose times the determinant, which also exists for flattened meshes.
+glm::dmat3 cofactor_matrix(const glm::dmat3& m) {
+  return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
+}
+
+glm::vec3 normalize_or_keep_zero(const glm::dvec3& v) {
+  const double length = glm::length(v);
+  return length > 0.0 ? glm::vec3(v / length) : glm::vec3(0.0f);
+}
+
+/// A triangle and, where the triangle has an area, its unit normal.
+struct Face {
+  glm::dvec3 area_normal;
+  glm::dvec3 normal;
+};
+
+std::vector<Face> face_normals(const Mesh& mesh) {
+  std::vector<Face> faces;
+  faces.reserve(mesh.indices.size() / 3);
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const glm::dvec3 area =
+        area_normal(mesh.vertices[mesh.indices[i]].position_ws, mesh.vertices[mesh.indices[i + 1]].position_ws,
+                    mesh.vertices[mesh.indices[i + 2]].position_ws);
+    faces.push_back({area, glm::dvec3(normalize_or_keep_zero(area))});
+  }
+  return faces;
+}
+
+Mesh without_geometry(const Mesh& mesh) {
+  Mesh copy;
+  copy.name = mesh.name;
+  copy.material = mesh.material;
+  copy.casts_shadow = mesh.casts_shadow;
+  return copy;
+}
+
+}  // namespace
+
+glm::dvec3 area_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+  return glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
+}
+
+Mesh transform_mesh(Mesh mesh, const glm::dmat4& world_from_local) {
+  const glm::dmat3 linear(world_from_local);
+  const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
+  const glm::dmat3 normal_matrix = side * cofactor_matrix(linear);
+  for (Vertex& vertex : mesh.vertices) {
+    vertex.position_ws = glm::vec3(world_from_local * glm::dvec4(glm::dvec3(vertex.position_ws), 1.0));
+    vertex.normal_ws = normalize_or_keep_zero(normal_matrix * glm::dvec3(vertex.normal_ws));
+  }
+  if (side > 0.0) return mesh;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+  return mesh;
+}
+
+Mesh join_meshes(Mesh first, const Mesh& second) {
+  const auto offset = static_cast<std::uint32_t>(first.vertices.size());
+  first.vertices.insert(first.vertices.end(), second.vertices.begin(), second.vertices.end());
+  for (const std::uint32_t index : second.indices) first.indices.push_back(index + offset);
+  return first;
+}
+
+Mesh with_flat_normals(const Mesh& mesh) {
+  const std::vector<Face> faces = face_normals(mesh);
+  Mesh flat = without_geometry(mesh);
+  flat.vertices.reserve(mesh.indices.size());
+  flat.indices.reserve(mesh.indices.size());
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    Vertex vertex = mesh.vertices[mesh.indices[i]];
+    vertex.normal_ws = glm::vec3(faces[i / 3].normal);
+    flat.vertices.push_back(vertex);
+    flat.indices.push_back(static_cast<std::uint32_t>(i));
+  }
+  return flat;
+}
+
+Mesh with_smooth_normals(const Mesh& mesh, double crease_deg) {
+  const double least_cosine = std::cos(glm::radians(crease_deg));
+  const std::vector<Face> faces = face_normals(mesh);
+  const auto position_of = [&](std::size_t corner) {
+    const glm::vec3& p = mesh.vertices[mesh.indices[corner]].position_ws;
+    return std::tuple(p.x, p.y, p.z);
+  };
+  std::map<std::tuple<float, float, float>, std::vector<std::size_t>> faces_at;
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) faces_at[position_of(i)].push_back(i / 3);
+
+  Mesh smooth = with_flat_normals(mesh);
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    glm::dvec3 sum(0.0);
+    for (const std::size_t neighbour : faces_at[position_of(i)]) {
+      if (glm::dot(faces[neighbour].normal, faces[i / 3].normal) >= least_cosine) sum += faces[neighbour].area_normal;
+    }
+    if (glm::length(sum) > 0.0) smooth.vertices[i].normal_ws = glm::vec3(glm::normalize(sum));
+  }
+  return smooth;
+}
+
+Mesh without_unused_vertices(Mesh mesh) {
+  constexpr std::uint32_t kUnused = ~std::uint32_t{0};
+  std::vector<std::uint32_t> new_index(mesh.vertices.size(), kUnused);
+  std::vector<Vertex> used;
+  used.reserve(std::min(mesh.vertices.size(), mesh.indices.size()));
+  for (std::uint32_t& index : mesh.indices) {
+    if (new_index[index] == kUnused) {
+      new_index[index] = static_cast<std::uint32_t>(used.size());
+      used.push_back(mesh.vertices[index]);
+    }
+    index = new_index[index];
+  }
+  mesh.vertices = std::move(used);
+  return mesh;
+}
+
+}  // namespace shadowbench::scene

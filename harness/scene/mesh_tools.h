@@ -1,0 +1,29 @@
+#pragma once
+
+#include "harness/scene/scene.h"
+
+namespace shadowbench::scene {
+
+/// Applies an affine transform to a mesh.
+/// Normals go through the inverse transpose; a mirroring transform (negative determinant) reverses the winding, so that
+/// outward faces stay outward.
+Mesh transform_mesh(Mesh mesh, const glm::dmat4& world_from_local);
+
+/// Adds the second mesh's triangles to the first, which keeps its name and material.
+Mesh join_meshes(Mesh first, const Mesh& second);
+
+/// Gives every triangle its own three vertices and its geometric normal.
+/// Requires indices in range.
+Mesh with_flat_normals(const Mesh& mesh);
+
+/// Gives every corner the mean normal, weighted by area, of the faces around it that turn by less than `crease_deg`.
+/// Corners belong together where their positions are equal. Requires indices in range.
+Mesh with_smooth_normals(const Mesh& mesh, double crease_deg);
+
+/// Drops vertices that no triangle uses. Requires indices in range.
+Mesh without_unused_vertices(Mesh mesh);
+
+/// Returns twice the area of a triangle times its unit normal, computed in double precision.
+glm::dvec3 area_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
+
+}  // namespace shadowbench::scene

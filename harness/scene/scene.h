@@ -1,0 +1,91 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace shadowbench::scene {
+
+/// One corner of a triangle, in world space; metres.
+struct Vertex {
+  glm::vec3 position_ws{0.0f};
+  glm::vec3 normal_ws{0.0f, 1.0f, 0.0f};  ///< shading normal, unit length
+  glm::vec2 uv{0.0f};
+};
+
+/// An 8-bit sRGB picture with alpha, rows top to bottom.
+struct Texture {
+  std::string name;
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgba;
+};
+
+enum class AlphaMode { kOpaque, kMask };
+
+struct Material {
+  std::string name;
+  glm::vec4 base_color{0.8f, 0.8f, 0.8f, 1.0f};  ///< linear
+  int base_color_texture = -1;                   ///< index into Scene::textures, -1: none
+  AlphaMode alpha_mode = AlphaMode::kOpaque;
+  float alpha_cutoff = 0.5f;
+};
+
+/// Triangles that share a material; node transforms are already applied.
+struct Mesh {
+  std::string name;
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;  ///< three per triangle, all < vertices.size()
+  int material = 0;                    ///< index into Scene::materials
+  bool casts_shadow = true;            ///< drawn into the shadow map
+};
+
+/// A place to look from. Perspective, unless `orthographic_height_m` is positive.
+struct Camera {
+  std::string name = "main";
+  glm::vec3 position_ws{0.0f};
+  glm::vec3 forward_ws{0.0f, 0.0f, -1.0f};  ///< unit length
+  glm::vec3 up_ws{0.0f, 1.0f, 0.0f};        ///< unit length, not parallel to forward_ws
+  float vertical_fov_rad = 0.8f;
+  float orthographic_height_m = 0.0f;  ///< full height of the view; 0: perspective
+};
+
+/// Spot and point lights get their place here.
+enum class LightKind { kDirectional };
+
+struct Light {
+  LightKind kind = LightKind::kDirectional;
+  glm::vec3 direction_ws{0.0f, -1.0f, 0.0f};  ///< the way the light travels, unit length
+  glm::vec3 color{1.0f};                      ///< linear
+  float intensity = 1.0f;
+  float angular_diameter_deg = 0.53f;  ///< seen from the scene; 0: a point at infinity
+};
+
+/// An axis-aligned box; empty while min > max.
+struct Bounds {
+  glm::vec3 min{1.0f};
+  glm::vec3 max{-1.0f};
+  bool empty() const { return min.x > max.x; }
+  void add(const glm::vec3& p);
+};
+
+/// Everything a run needs to know of a scene; checked: finite, not empty, indices in range.
+struct Scene {
+  std::string name;   ///< file stem; names report files
+  std::string title;  ///< for people
+  std::vector<Mesh> meshes;
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  std::vector<Camera> cameras;  ///< at least one
+  Light light;
+  glm::vec3 background{0.62f, 0.71f, 0.82f};  ///< linear
+  std::vector<std::string> warnings;          ///< what was changed or ignored while loading, for the user
+
+  Bounds bounds() const;
+  std::size_t triangle_count() const;
+};
+
+}  // namespace shadowbench::scene

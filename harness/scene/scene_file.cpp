@@ -1,0 +1,181 @@
+#include "harness/scene/scene_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "filters/nearest_name.h"
+#include "harness/scene/framing.h"
+#include "harness/scene/mesh_tools.h"
+#include "harness/scene/model.h"
+#include "harness/scene/scene_object.h"
+#include "harness/scene/toml_reader.h"
+#include "harness/scene/validate.h"
+
+namespace shadowbench::scene {
+namespace {
+
+constexpr Range kColor{0.0, 1.0};
+
+/// Builds a scene from its tables; materials come before the objects that use them.
+class SceneBuilder {
+ public:
+  SceneBuilder(const TomlTable& root, std::filesystem::path file) : root_(root), file_(std::move(file)) {}
+
+  Scene build() {
+    root_.require_known_keys({"title", "background", "model", "camera", "light", "material", "object"});
+    scene_.name = file_.stem().string();
+    scene_.title = root_.string("title");
+    scene_.background = glm::vec3(root_.vec3("background", kColor, glm::dvec3(scene_.background)));
+    scene_.light = read_light();
+    for (const TomlTable& table : root_.tables("material")) add_material(table);
+    for (const TomlTable& table : root_.tables("object")) add_object(table);
+    if (root_.has("model")) scene_ = add_model(std::move(scene_), read_model(root_, "model"));
+    for (const TomlTable& table : root_.tables("camera")) add_camera(table);
+    scene_ = validate_geometry(std::move(scene_), file_.string());
+    if (scene_.cameras.empty()) scene_.cameras.push_back(frame_camera(scene_, kPictureAspect, std::nullopt));
+    return validate(std::move(scene_), file_.string());
+  }
+
+ private:
+  static constexpr double kPictureAspect = 16.0 / 9.0;
+
+  Light read_light() const {
+    const std::optional<TomlTable> table = root_.table("light");
+    if (!table) throw root_.error("light", "the scene has no [light]");
+    table->require_known_keys({"type", "direction", "azimuth_deg", "elevation_deg", "color", "intensity",
+                               "angular_diameter_deg"});
+    table->choice("type", {"directional"}, "directional");
+    Light light;
+    light.direction_ws = glm::vec3(read_direction(*table));
+    light.color = glm::vec3(table->vec3("color", kColor, glm::dvec3(1.0)));
+    light.intensity = table->number_f("intensity", {0.0, 1000.0}, 1.0);
+    light.angular_diameter_deg = table->number_f("angular_diameter_deg", {0.0, 90.0}, 0.53);
+    return light;
+  }
+
+  static glm::dvec3 read_direction(const TomlTable& table) {
+    const bool by_angles = table.has("azimuth_deg") || table.has("elevation_deg");
+    if (table.has("direction") == by_angles) {
+      throw table.error("direction", "[light] needs a direction: either 'direction', or 'azimuth_deg' and 'elevation_deg'");
+    }
+    if (by_angles) {
+      const double azimuth = glm::radians(table.number("azimuth_deg", {-360.0, 360.0}));
+      const double elevation = glm::radians(table.number("elevation_deg", {-90.0, 90.0}));
+      return {-std::cos(elevation) * std::sin(azimuth), -std::sin(elevation), -std::cos(elevation) * std::cos(azimuth)};
+    }
+    const glm::dvec3 direction = table.vec3("direction", kAnyNumber);
+    if (glm::length(direction) > 0.0) return direction;
+    throw table.error("direction", "the light has no direction: 'direction' is [0, 0, 0]");
+  }
+
+  void add_camera(const TomlTable& table) {
+    table.require_known_keys({"name", "position", "target", "up", "vertical_fov_deg"});
+    Camera camera;
+    camera.name = table.string("name", camera.name);
+    for (const Camera& other : scene_.cameras) {
+      if (other.name == camera.name) throw table.error("name", fmt::format("two cameras have the name '{}'", camera.name));
+    }
+    const glm::dvec3 position = table.vec3("position", kAnyNumber);
+    const glm::dvec3 ahead = table.vec3("target", kAnyNumber) - position;
+    if (glm::length(ahead) == 0.0) throw table.error("target", "the camera's target is its position");
+    camera.position_ws = glm::vec3(position);
+    camera.forward_ws = glm::vec3(glm::normalize(ahead));
+    camera.up_ws = glm::vec3(table.vec3("up", kAnyNumber, glm::dvec3(0.0, 1.0, 0.0)));
+    camera.vertical_fov_rad = static_cast<float>(glm::radians(table.number("vertical_fov_deg", {1.0, 170.0}, 45.0)));
+    scene_.cameras.push_back(camera);
+  }
+
+  void add_material(const TomlTable& table) {
+    table.require_known_keys({"name", "color"});
+    Material material;
+    material.name = table.string("name");
+    material.base_color = glm::vec4(glm::vec3(table.vec3("color", kColor)), 1.0f);
+    for (const Material& other : scene_.materials) {
+      if (other.name != material.name) continue;
+      throw table.error("name", fmt::format("two materials have the name '{}'", material.name));
+    }
+    scene_.materials.push_back(material);
+    named_materials_.push_back(material.name);
+  }
+
+  void add_object(const TomlTable& table) {
+    const bool is_model = table.choice("shape", object_shapes()) == "model";
+    ImportedModel model = is_model ? read_model_object(table) : ImportedModel{};
+    if (!is_model) model.meshes.push_back(make_shape(table));
+    const glm::dmat4 world = world_from_object(table);
+    for (Mesh& mesh : model.meshes) {
+      mesh = transform_mesh(std::move(mesh), world);
+      mesh.casts_shadow = table.boolean("casts_shadow", true);
+      if (!is_model || table.has("name")) mesh.name = table.string("name", table.title());
+    }
+    if (is_model && !table.has("material")) {
+      scene_ = add_model(std::move(scene_), std::move(model));
+      return;
+    }
+    const int material = material_of(table);
+    for (Mesh& mesh : model.meshes) {
+      mesh.material = material;
+      scene_.meshes.push_back(std::move(mesh));
+    }
+  }
+
+  ImportedModel read_model_object(const TomlTable& table) const {
+    std::vector<std::string> known = common_object_keys();
+    known.emplace_back("file");
+    table.require_known_keys(known);
+    return read_model(table, "file");
+  }
+
+  /// Reads the model that `key` names; a missing file is the fault of that line.
+  ImportedModel read_model(const TomlTable& table, const std::string& key) const {
+    const std::filesystem::path file = file_.parent_path() / table.string(key);
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) {
+      throw table.error(key, fmt::format("'{}' in {}: there is no file {}", key, table.title(), file.string()));
+    }
+    return import_model(file);
+  }
+
+  /// The index of the object's material; objects without one share a grey default.
+  int material_of(const TomlTable& table) {
+    if (!table.has("material")) return default_material();
+    const std::string name = table.string("material");
+    for (std::size_t i = 0; i < named_materials_.size(); ++i) {
+      if (named_materials_[i] == name) return static_cast<int>(i);
+    }
+    const std::optional<std::string> nearest = nearest_name(name, named_materials_);
+    throw table.error("material", fmt::format("{} has the unknown material '{}'{}", table.title(), name,
+                                              nearest ? fmt::format("; did you mean '{}'?", *nearest) : ""));
+  }
+
+  int default_material() {
+    if (default_material_ < 0) {
+      default_material_ = static_cast<int>(scene_.materials.size());
+      scene_.materials.push_back({.name = "default"});
+    }
+    return default_material_;
+  }
+
+  const TomlTable& root_;
+  std::filesystem::path file_;
+  Scene scene_;
+  std::vector<std::string> named_materials_;  ///< the first of the scene's materials
+  int default_material_ = -1;
+};
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& file) {
+  const toml::table document = parse_toml_file(file);
+  const TomlTable root(document, "the scene", file.string());
+  return SceneBuilder(root, file).build();
+}
+
+std::string read_scene_title(const std::filesystem::path& file) {
+  const toml::table document = parse_toml_file(file);
+  return TomlTable(document, "the scene", file.string()).string("title");
+}
+
+}  // namespace shadowbench::scene

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "harness/scene/scene.h"
+
+namespace shadowbench::scene {
+
+/// Reads and validates a scene file.
+///
+/// Lengths are metres, colours linear, angles degrees, +y is up. An azimuth of 0 is +z, of 90 is +x. Keys:
+/// - `title` (required), `background` = [r, g, b], `model` = "file.gltf": a model as it is
+/// - `[light]` (required): `type` = "directional", `direction` = [x, y, z] (the way the light travels), or
+///   `azimuth_deg` and `elevation_deg` (where it stands); `color`, `intensity`, `angular_diameter_deg`
+/// - `[camera]`, or several `[[camera]]`: `name`, `position`, `target`, `up`, `vertical_fov_deg`; without one, the
+///   scene is framed by frame_camera
+/// - `[[material]]`: `name`, `color`
+/// - `[[object]]`: `shape`, `name`, `material`, `casts_shadow`, `center`, `rotation_deg` (about x, then y, then z),
+///   `scale` (a number or three), and by shape
+///   - `plane` (faces +y): `size` = [x, z], `cells`
+///   - `box`: `size` = [x, y, z], `cells` along the longest edge
+///   - `sphere`: `radius`, `segments`
+///   - `cylinder` (along y): `radius`, `height`, `segments`, `cells`
+///   - `bars` (in the plane z = 0): `count`, `bar_width`, `spacing`, `length`, `direction` = "vertical", "horizontal"
+///     or "both", `cells`
+///   - `model`: `file`, relative to the scene file; keeps its own materials unless `material` is given
+///
+/// Throws kInput with "file:line" for anything missing, unknown, out of range or malformed.
+Scene load_scene(const std::filesystem::path& file);
+
+/// Reads a scene file's title alone. Throws as load_scene does.
+std::string read_scene_title(const std::filesystem::path& file);
+
+}  // namespace shadowbench::scene

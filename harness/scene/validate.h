@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "harness/scene/scene.h"
+
+namespace shadowbench::scene {
+
+/// Checks that a scene can be rendered and measured, and repairs what has one sensible repair.
+///
+/// Throws kInput, at `where`, for: no triangles, an index out of range, a coordinate or normal that is not finite or
+/// lies beyond 1e12 m, a light without direction, a camera without direction or with an impossible view.
+/// Drops triangles without area and vertices that no triangle uses, gives zero normals the face's, and normalises
+/// directions; what changes the picture is told in `warnings`.
+Scene validate(Scene scene, const std::string& where);
+
+/// Does the part of `validate` that concerns meshes and materials; what frames or measures a scene can rely on it.
+Scene validate_geometry(Scene scene, const std::string& where);
+
+}  // namespace shadowbench::scene

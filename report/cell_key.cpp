@@ -1,0 +1,55 @@
+#include "report/cell_key.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "report/json_values.h"
+
+namespace shadowbench::report {
+namespace {
+
+using nlohmann::json;
+
+json canonical(const json& value) {
+  if (value.is_number_float()) {
+    return number_json(value.get<double>());
+  }
+  json result = value;
+  if (result.is_structured()) {
+    for (json& child : result) {
+      child = canonical(child);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::uint64_t hash_text(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const char c : text) {
+    hash ^= static_cast<unsigned char>(c);
+    hash *= 0x100000001b3U;
+  }
+  return hash;
+}
+
+json cell_settings(const CellRecord& cell) {
+  return json{{"scene", cell.scene},           {"view", cell.view},
+              {"filter", cell.filter},         {"params", value_json(cell.params)},
+              {"map_size", cell.map_size},     {"map_format", cell.map_format},
+              {"bias", value_json(cell.bias)}, {"size", {cell.width, cell.height}}};
+}
+
+std::string cell_key(const json& settings) { return fmt::format("{:016x}", hash_text(dump_line(canonical(settings)))); }
+
+std::string cell_key(const CellRecord& cell) { return cell_key(cell_settings(cell)); }
+
+bool is_cell_key(std::string_view text) {
+  const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+  return text.size() == 16 && std::all_of(text.begin(), text.end(), is_digit);
+}
+
+}  // namespace shadowbench::report

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "report/hardest_edge.h"
+#include "report/image.h"
+
+namespace shadowbench::report {
+
+/// Is one filter's place in a grid.
+struct GridTile {
+  std::string label;    ///< "vsm"
+  std::string caption;  ///< "radius 4, rg32f · 12.3 ms (CPU)"; wrapped where it is long
+  Image picture;        ///< linear RGB; empty where the cell has none
+  Image visibility;     ///< 1 channel, the picture's size; empty where the cell has none
+  std::string message;  ///< shown instead of the images where both are empty: "timed out after 10 s"
+};
+
+/// Is a labelled picture of what filters make of one scene, for people.
+struct Grid {
+  std::string title;
+  std::string subtitle;
+  std::vector<GridTile> tiles;
+  Rect crop;              ///< pixels of the pictures, outlined there and magnified below; may be empty
+  int columns = 3;        ///< tiles side by side
+  double exposure = 1.0;  ///< linear factor, the same for all tiles
+};
+
+/// Draws a grid: blocks of `columns` tiles; in each a label, a caption, the picture, the visibility, and the crop of
+/// both side by side, magnified to whole texels. Large pictures are reduced in linear light. Returns display-referred
+/// sRGB values in [0,1], 3 channels. A texel that is not finite becomes magenta. Throws Error(kOutput) where the font
+/// is not installed.
+Image draw_grid(const Grid& grid);
+
+/// Draws a grid into an 8-bit PNG file.
+/// Throws Error(kOutput).
+void write_grid(const std::filesystem::path& path, const Grid& grid);
+
+}  // namespace shadowbench::report

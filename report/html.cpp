@@ -1,0 +1,185 @@
+#include "report/html.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "report/embedded.h"
+#include "report/file_name.h"
+#include "report/json_values.h"
+#include "report/summary.h"
+
+namespace shadowbench::report {
+namespace {
+
+using OptionalPath = std::optional<std::string>;
+
+std::string link(const std::string& path, const std::string& text) {
+  return fmt::format("<a href=\"{}\">{}</a>", encode_url_path(path), escape_html(text));
+}
+
+std::string figure(const std::string& path, const std::string& caption, std::string_view style) {
+  return fmt::format(
+      "<figure class=\"{2}\"><a href=\"{0}\"><img src=\"{0}\" alt=\"{1}\" loading=\"lazy\"></a>"
+      "<figcaption>{1}</figcaption></figure>\n",
+      encode_url_path(path), escape_html(caption), style);
+}
+
+std::string html_list(const std::vector<std::string>& items) {
+  std::string text = "<ul>\n";
+  for (const std::string& item : items) {
+    text += fmt::format("<li>{}</li>\n", escape_html(item));
+  }
+  return text + "</ul>\n";
+}
+
+std::string html_row(const std::vector<std::string>& fields, std::string_view element) {
+  std::string text = "<tr>";
+  for (const std::string& field : fields) {
+    text += fmt::format("<{0}>{1}</{0}>", element, escape_html(field));
+  }
+  return text + "</tr>\n";
+}
+
+std::string html_table(const TextTable& table, const std::string& name) {
+  std::string text = fmt::format(
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table>\n<caption>{0}</caption>\n"
+      "<thead>{1}</thead>\n<tbody>\n",
+      escape_html(name), html_row(table.header, "th"));
+  for (const auto& row : table.rows) {
+    text += html_row(row, "td");
+  }
+  return text + "</tbody></table></div>\n";
+}
+
+std::string html_facts(const RunRecord& run) {
+  std::string text = "<dl>\n";
+  for (const auto& [name, value] : list_run_facts(run)) {
+    text += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_html(name), escape_html(value));
+  }
+  return text + "</dl>\n";
+}
+
+std::string title_of(const RunRecord& run, const std::string& scene) {
+  const auto found = std::find_if(run.scenes.begin(), run.scenes.end(),
+                                  [&](const SceneRecord& candidate) { return candidate.name == scene; });
+  return found == run.scenes.end() ? std::string() : found->title;
+}
+
+// The first path that a cell of the group names: cells of one group share it.
+OptionalPath find_path(const CellGroup& group, OptionalPath ImagesRecord::*member) {
+  for (const CellRecord& cell : group.cells) {
+    if (cell.images.*member) {
+      return cell.images.*member;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string html_single_pictures(const CellGroup& group) {
+  std::string figures;
+  for (const CellRecord& cell : group.cells) {
+    const std::string params = cell.params.empty() ? std::string() : " (" + describe_params(cell.params) + ")";
+    if (cell.images.picture) {
+      figures += figure(*cell.images.picture, cell.filter + params + ": picture", "single");
+    }
+    if (cell.images.visibility) {
+      figures += figure(*cell.images.visibility, cell.filter + params + ": visibility", "single");
+    }
+  }
+  if (const auto map = find_path(group, &ImagesRecord::depth_map)) {
+    figures += figure(*map, "depth map, as the light sees the scene", "single");
+  }
+  return figures.empty() ? figures
+                         : "<details open><summary>Single pictures and depth map</summary>\n<div class=\"gallery\">\n" +
+                               figures + "</div></details>\n";
+}
+
+std::string html_group(const RunRecord& run, const CellGroup& group, std::size_t number) {
+  const std::string title = title_of(run, group.scene);
+  std::string text = fmt::format("<section id=\"group-{}\">\n<h2>{}{}</h2>\n<p class=\"note\">{}</p>\n", number,
+                                 escape_html(group.scene), title.empty() ? "" : ": " + escape_html(title),
+                                 escape_html(describe_settings(group.cells.front())));
+  text += html_list(describe_group(group, run.gl));
+  text += html_table(make_table(group, run.gl), "Times of " + group.scene + ": " + describe_clock(run.gl));
+  if (const auto grid = find_path(group, &ImagesRecord::grid)) {
+    text += figure(*grid, "all filters on " + group.scene + ", full size behind the link", "grid");
+  }
+  text += html_single_pictures(group);
+  if (const auto exr = find_path(group, &ImagesRecord::exr)) {
+    text += "<p>" + link(*exr, *exr) + " holds the float images of all filters.</p>\n";
+  }
+  return text + "</section>\n";
+}
+
+std::string html_navigation(const std::vector<CellGroup>& groups) {
+  std::string text = "<nav>";
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    text += fmt::format("<a href=\"#group-{}\">{}</a> ", i, escape_html(groups[i].scene));
+  }
+  return text + "</nav>\n";
+}
+
+std::string html_absences(const std::vector<CellRecord>& cells) {
+  std::vector<std::string> items;
+  for (const auto& [reason, count] : count_absences(cells)) {
+    items.push_back(fmt::format("{} ({} of {} cells)", reason, count, cells.size()));
+  }
+  return items.empty() ? std::string()
+                       : "<section>\n<h2>What is not there, and why</h2>\n" + html_list(items) + "</section>\n";
+}
+
+std::string html_head() {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n"
+      "<title>Shadow filters compared</title>\n<style>\n{}</style>\n</head>\n",
+      page_style());
+}
+
+}  // namespace
+
+std::string escape_html(std::string_view text) {
+  const auto valid = nlohmann::json::parse(dump_line(std::string(text))).get<std::string>();
+  std::string escaped;
+  for (const char c : valid) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      case '\'':
+        escaped += "&#39;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+std::string make_index_html(const RunRecord& run, const std::vector<CellRecord>& cells) {
+  const std::vector<CellGroup> groups = group_cells(cells);
+  std::string page = html_head() + "<body>\n<main>\n<h1>Shadow filters compared</h1>\n" + html_navigation(groups);
+  page += html_facts(run);
+  page += "<p>Data: " + link("summary.md", "summary.md") + ", " + link("timings.csv", "timings.csv") + ", " +
+          link("results.json", "results.json") + " (" + link("results.schema.json", "its schema") + ").</p>\n";
+  if (!run.warnings.empty()) {
+    page += "<section class=\"warnings\">\n<h2>Warnings</h2>\n" + html_list(run.warnings) + "</section>\n";
+  }
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    page += html_group(run, groups[i], i);
+  }
+  return page + html_absences(cells) + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace shadowbench::report

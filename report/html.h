@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "report/records.h"
+
+namespace shadowbench::report {
+
+/// Escapes a text for HTML, in elements and in quoted attributes; bytes that are not UTF-8 become U+FFFD.
+std::string escape_html(std::string_view text);
+
+/// Makes index.html: one page that opens from disk and loads nothing but the report's own pictures, by relative links.
+/// Holds the run's facts, warnings, per group of comparable cells its grid, sentences, table, depth map and single
+/// pictures, links to the data files, and what is absent and why.
+std::string make_index_html(const RunRecord& run, const std::vector<CellRecord>& cells);
+
+}  // namespace shadowbench::report

@@ -1,0 +1,187 @@
+#include "report/json_values.h"
+
+#include <cassert>
+#include <cmath>
+#include <stdexcept>
+
+namespace shadowbench::report {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kLargestExactInteger = 9007199254740992.0;  // 2^53
+
+void require(bool holds, const char* expected) {
+  if (!holds) {
+    throw std::invalid_argument(expected);
+  }
+}
+
+}  // namespace
+
+json number_json(double value) {
+  assert(std::isfinite(value));
+  if (std::nearbyint(value) == value && std::abs(value) <= kLargestExactInteger) {
+    return static_cast<std::int64_t>(value);
+  }
+  return value;
+}
+
+std::string dump_line(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
+
+json value_json(const std::string& value) { return value; }
+json value_json(int value) { return value; }
+json value_json(std::int64_t value) { return value; }
+json value_json(std::uint64_t value) { return value; }
+json value_json(bool value) { return value; }
+json value_json(double value) { return number_json(value); }
+
+NLOHMANN_JSON_SERIALIZE_ENUM(CellStatus, {{CellStatus::kOk, "ok"},
+                                          {CellStatus::kTimeout, "timeout"},
+                                          {CellStatus::kCrashed, "crashed"},
+                                          {CellStatus::kError, "error"}})
+NLOHMANN_JSON_SERIALIZE_ENUM(TimerKind,
+                             {{TimerKind::kWallClock, "wall_clock"}, {TimerKind::kTimerQuery, "timer_query"}})
+
+json value_json(CellStatus value) { return value; }
+json value_json(TimerKind value) { return value; }
+
+json value_json(const Quartiles& value) {
+  return {{"median", value.median}, {"q1", value.q1}, {"q3", value.q3}, {"n", value.n}};
+}
+
+json value_json(const Ratio& value) {
+  return {{"median", value.median}, {"ci95", json::array({value.ci95.low, value.ci95.high})}};
+}
+
+json value_json(const ParamMap& value) {
+  json result = json::object();
+  for (const auto& [name, param] : value) {
+    result[name] = std::visit([](const auto& held) { return value_json(held); }, param);
+  }
+  return result;
+}
+
+json value_json(const BiasRecord& value) {
+  return {{"constant_depth", number_json(value.constant_depth)},
+          {"slope_texels", number_json(value.slope_texels)},
+          {"slope_kernels", number_json(value.slope_kernels)},
+          {"normal_offset_texels", number_json(value.normal_offset_texels)}};
+}
+
+json value_json(const std::map<std::string, std::string>& value) { return json(value); }
+json value_json(const std::vector<std::string>& value) { return json(value); }
+
+json value_json(const std::vector<SceneRecord>& value) {
+  json result = json::array();
+  for (const SceneRecord& scene : value) {
+    result.push_back({{"name", scene.name}, {"title", scene.title}});
+  }
+  return result;
+}
+
+template <>
+std::string read_value(const json& json) {
+  return json.get<std::string>();
+}
+
+template <>
+bool read_value(const json& json) {
+  return json.get<bool>();
+}
+
+template <>
+double read_value(const json& json) {
+  require(json.is_number(), "a number");
+  return json.get<double>();
+}
+
+template <>
+std::int64_t read_value(const json& json) {
+  require(json.is_number_integer(), "an integer");
+  return json.get<std::int64_t>();
+}
+
+template <>
+std::uint64_t read_value(const json& json) {
+  require(json.is_number_unsigned(), "an integer that is not negative");
+  return json.get<std::uint64_t>();
+}
+
+template <>
+int read_value(const json& json) {
+  require(json.is_number_integer(), "an integer");
+  return json.get<int>();
+}
+
+template <>
+CellStatus read_value(const json& value) {
+  const auto status = value.get<CellStatus>();
+  require(value == json(status), "ok, timeout, crashed or error");
+  return status;
+}
+
+template <>
+TimerKind read_value(const json& value) {
+  const auto kind = value.get<TimerKind>();
+  require(value == json(kind), "wall_clock or timer_query");
+  return kind;
+}
+
+template <>
+Quartiles read_value(const json& json) {
+  return {read_value<double>(json.at("median")), read_value<double>(json.at("q1")), read_value<double>(json.at("q3")),
+          read_value<int>(json.at("n"))};
+}
+
+template <>
+Ratio read_value(const json& json) {
+  const auto& ci95 = json.at("ci95");
+  require(ci95.is_array() && ci95.size() == 2, "two numbers");
+  return {read_value<double>(json.at("median")), {read_value<double>(ci95[0]), read_value<double>(ci95[1])}};
+}
+
+template <>
+ParamMap read_value(const json& json) {
+  require(json.is_object(), "an object");
+  ParamMap params;
+  for (const auto& [name, value] : json.items()) {
+    if (value.is_boolean()) {
+      params[name] = value.get<bool>();
+    } else if (value.is_string()) {
+      params[name] = value.get<std::string>();
+    } else {
+      params[name] = read_value<double>(value);
+    }
+  }
+  return params;
+}
+
+template <>
+BiasRecord read_value(const json& json) {
+  return {read_value<double>(json.at("constant_depth")), read_value<double>(json.at("slope_texels")),
+          read_value<double>(json.at("slope_kernels")),
+          read_value<double>(json.at("normal_offset_texels"))};
+}
+
+template <>
+std::map<std::string, std::string> read_value(const json& json) {
+  return json.get<std::map<std::string, std::string>>();
+}
+
+template <>
+std::vector<std::string> read_value(const json& json) {
+  return json.get<std::vector<std::string>>();
+}
+
+template <>
+std::vector<SceneRecord> read_value(const json& json) {
+  require(json.is_array(), "an array");
+  std::vector<SceneRecord> scenes;
+  for (const auto& scene : json) {
+    scenes.push_back({read_value<std::string>(scene.at("name")), read_value<std::string>(scene.at("title"))});
+  }
+  return scenes;
+}
+
+}  // namespace shadowbench::report

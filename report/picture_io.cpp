@@ -1,0 +1,110 @@
+#include "report/picture_io.h"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+
+#include "filters/error.h"
+#include "report/atomic_file.h"
+
+namespace shadowbench::report {
+namespace {
+
+std::uint8_t to_code(float value) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
+}
+
+struct Codes {
+  int channels = 0;
+  std::vector<std::uint8_t> bytes;
+};
+
+bool is_finite_texel(const float* texel, int channels) {
+  return std::all_of(texel, texel + channels, [](float value) { return std::isfinite(value); });
+}
+
+template <class Encode>
+Codes encode_texels(const Image& image, int channels, Encode encode) {
+  Codes codes{channels, {}};
+  codes.bytes.reserve(image.texels.size() / static_cast<std::size_t>(image.channels) *
+                      static_cast<std::size_t>(channels));
+  for (const float* texel = image.texels.data(); texel != image.texels.data() + image.texels.size();
+       texel += image.channels) {
+    const bool finite = is_finite_texel(texel, image.channels);
+    for (int c = 0; c < channels; ++c) {
+      const float magenta = c == 1 ? 0.0f : 1.0f;
+      codes.bytes.push_back(to_code(finite ? encode(texel[std::min(c, image.channels - 1)]) : magenta));
+    }
+  }
+  return codes;
+}
+
+[[noreturn]] void fail_to_write(const std::filesystem::path& path, const std::string& reason) {
+  throw Error(ErrorKind::kOutput,
+              fmt::format("the picture cannot be written ({}); check the folder's rights and free space, or choose "
+                          "another with --out",
+                          reason),
+              path.string());
+}
+
+void write_png(const std::filesystem::path& path, const Image& image, const Codes& codes) {
+  PendingFile file(path);
+  const auto output = OIIO::ImageOutput::create(file.temporary_path().string());
+  if (!output) {
+    fail_to_write(path, OIIO::geterror());
+  }
+  OIIO::ImageSpec spec(image.width, image.height, codes.channels, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  if (!output->open(file.temporary_path().string(), spec) ||
+      !output->write_image(OIIO::TypeDesc::UINT8, codes.bytes.data()) || !output->close()) {
+    fail_to_write(path, output->geterror());
+  }
+  file.commit();
+}
+
+}  // namespace
+
+float encode_srgb(float linear) {
+  if (!(linear > 0.0f)) {
+    return std::isnan(linear) ? linear : 0.0f;
+  }
+  const float value = std::min(linear, 1.0f);
+  return value <= 0.0031308f ? 12.92f * value : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
+}
+
+void write_picture_png(const std::filesystem::path& path, const Image& picture) {
+  assert(picture.channels == 3);
+  write_png(path, picture, encode_texels(picture, 3, encode_srgb));
+}
+
+void write_display_png(const std::filesystem::path& path, const Image& picture) {
+  assert(picture.channels == 3);
+  write_png(path, picture, encode_texels(picture, 3, [](float value) { return value; }));
+}
+
+void write_grey_png(const std::filesystem::path& path, const Image& image, GreyRange range) {
+  assert(image.channels == 1 && range.black != range.white);
+  const bool finite = is_finite_texel(image.texels.data(), static_cast<int>(image.texels.size()));
+  const float scale = 1.0f / (range.white - range.black);
+  write_png(path, image,
+            encode_texels(image, finite ? 1 : 3, [&](float value) { return (value - range.black) * scale; }));
+}
+
+Image read_picture(const std::filesystem::path& path) {
+  const auto input = OIIO::ImageInput::open(path.string());
+  if (!input) {
+    throw Error(ErrorKind::kInput, fmt::format("the picture cannot be read ({})", OIIO::geterror()), path.string());
+  }
+  const OIIO::ImageSpec spec = input->spec();
+  Image image(spec.width, spec.height, spec.nchannels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.texels.data())) {
+    throw Error(ErrorKind::kInput, fmt::format("the picture is damaged ({})", input->geterror()), path.string());
+  }
+  return image;
+}
+
+}  // namespace shadowbench::report

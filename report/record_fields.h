@@ -1,0 +1,89 @@
+#pragma once
+
+#include "report/records.h"
+
+namespace shadowbench::report {
+
+/// Calls `visit(path, value)` for every field of a cell: the one list that writing, reading and `absent` follow.
+/// A dot in the path is a group; optional values may be null in the JSON.
+template <class Cell, class Visitor>
+void visit_cell_fields(Cell& cell, Visitor&& visit) {
+  visit("key", cell.key);
+  visit("status", cell.status);
+  visit("message", cell.message);
+  visit("scene", cell.scene);
+  visit("view", cell.view);
+  visit("filter", cell.filter);
+  visit("params", cell.params);
+  visit("map_size", cell.map_size);
+  visit("map_format", cell.map_format);
+  visit("bias", cell.bias);
+  visit("size.width", cell.width);
+  visit("size.height", cell.height);
+  visit("receivers", cell.receivers);
+  visit("excused", cell.excused);
+  visit("nan", cell.nan);
+  visit("time_ms.map", cell.time_ms.map);
+  visit("time_ms.prefilter", cell.time_ms.prefilter);
+  visit("time_ms.lookup", cell.time_ms.lookup);
+  visit("ratio_to_none.lookup", cell.ratio_to_none.lookup);
+  visit("ratio_to_none.static", cell.ratio_to_none.static_map);
+  visit("ratio_to_none.moving", cell.ratio_to_none.moving);
+  visit("cost.fetches", cell.cost.fetches);
+  visit("cost.bytes_per_texel", cell.cost.bytes_per_texel);
+  visit("cost.passes", cell.cost.passes);
+  visit("cost.map_bytes", cell.cost.map_bytes);
+  visit("cost.prefilter_texels", cell.cost.prefilter_texels);
+  visit("error.rmse", cell.error.rmse);
+  visit("error.mae", cell.error.mae);
+  visit("error.p95", cell.error.p95);
+  visit("error.max", cell.error.max);
+  visit("error.mean", cell.error.mean);
+  visit("error.flip", cell.error.flip);
+  visit("error.kernel_rmse", cell.error.kernel_rmse);
+  visit("truth.se", cell.truth.se);
+  visit("truth.unanimous", cell.truth.unanimous);
+  visit("artefact.acne", cell.artefact.acne);
+  visit("artefact.leak", cell.artefact.leak);
+  visit("artefact.contact_gap", cell.artefact.contact_gap);
+  visit("artefact.noise", cell.artefact.noise);
+  visit("attribution.numeric.rms", cell.attribution.numeric.rms);
+  visit("attribution.numeric.share", cell.attribution.numeric.share);
+  visit("attribution.estimator.rms", cell.attribution.estimator.rms);
+  visit("attribution.estimator.share", cell.attribution.estimator.share);
+  visit("attribution.discretisation.rms", cell.attribution.discretisation.rms);
+  visit("attribution.discretisation.share", cell.attribution.discretisation.share);
+  visit("attribution.model.rms", cell.attribution.model.rms);
+  visit("attribution.model.share", cell.attribution.model.share);
+  visit("images.picture", cell.images.picture);
+  visit("images.visibility", cell.images.visibility);
+  visit("images.depth_map", cell.images.depth_map);
+  visit("images.grid", cell.images.grid);
+  visit("images.exr", cell.images.exr);
+  visit("absent", cell.absent);
+}
+
+/// Calls `visit(path, value)` for every field of a run.
+template <class Run, class Visitor>
+void visit_run_fields(Run& run, Visitor&& visit) {
+  visit("commit", run.commit);
+  visit("command", run.command);
+  visit("seed", run.seed);
+  visit("gl.backend", run.gl.backend);
+  visit("gl.renderer", run.gl.renderer);
+  visit("gl.version", run.gl.version);
+  visit("gl.software", run.gl.software);
+  visit("gl.timer", run.gl.timer);
+  visit("machine.cpu", run.machine.cpu);
+  visit("machine.cores", run.machine.cores);
+  visit("machine.load_at_start", run.machine.load_at_start);
+  visit("machine.compiler", run.machine.compiler);
+  visit("machine.os", run.machine.os);
+  visit("work.shader_variants_compiled", run.work.shader_variants_compiled);
+  visit("work.passes_run", run.work.passes_run);
+  visit("work.passes_skipped", run.work.passes_skipped);
+  visit("scenes", run.scenes);
+  visit("warnings", run.warnings);
+}
+
+}  // namespace shadowbench::report

@@ -1,0 +1,198 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace shadowbench::report {
+
+/// Version of results.json and of the cell files; a reader refuses any other.
+inline constexpr int kSchemaVersion = 1;
+
+/// Holds the spread of repeated measurements; `n` of them.
+struct Quartiles {
+  double median = 0.0;
+  double q1 = 0.0;
+  double q3 = 0.0;
+  int n = 0;
+};
+
+/// Holds a confidence interval.
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// Holds the median of per-round ratios with its 95 % bootstrap interval.
+struct Ratio {
+  double median = 0.0;
+  Interval ci95;
+};
+
+/// Says how a cell ended.
+enum class CellStatus { kOk, kTimeout, kCrashed, kError };
+
+/// Holds one parameter's value.
+using ParamValue = std::variant<double, std::string, bool>;
+using ParamMap = std::map<std::string, ParamValue>;
+
+/// Holds the depth bias that every filter of the run was given.
+struct BiasRecord {
+  double constant_depth = 0.0;        ///< added in the light's depth, [0,1]
+  double slope_texels = 0.0;          ///< slope-scaled: depth change over this many shadow-map texels
+  double slope_kernels = 0.0;         ///< the same, in units of the filter's kernel half-width plus one texel
+  double normal_offset_texels = 0.0;  ///< receiver moved along its normal, in shadow-map texels
+};
+
+/// Holds what a cell's passes cost in time, in milliseconds of the clock that the run names.
+struct TimeRecord {
+  std::optional<Quartiles> map;
+  std::optional<Quartiles> prefilter;
+  std::optional<Quartiles> lookup;
+};
+
+/// Holds per-round ratios to the filter `none`; `none` itself carries 1 [1, 1].
+struct RatioRecord {
+  std::optional<Ratio> lookup;
+  std::optional<Ratio> static_map;  ///< map and prefilter cached: lookup alone is paid
+  std::optional<Ratio> moving;      ///< map, prefilter and lookup are paid in every frame
+};
+
+/// Holds the costs that do not depend on the machine.
+struct CostRecord {
+  std::optional<double> fetches;  ///< mean texture fetches per receiver
+  std::optional<std::int64_t> bytes_per_texel;
+  std::optional<std::int64_t> passes;
+  std::optional<std::int64_t> map_bytes;
+  std::optional<std::int64_t> prefilter_texels;
+};
+
+/// Holds the error against the truth, in visibility.
+struct ErrorRecord {
+  std::optional<double> rmse;
+  std::optional<double> mae;
+  std::optional<double> p95;
+  std::optional<double> max;
+  std::optional<double> mean;  ///< signed
+  std::optional<double> flip;
+  std::optional<double> kernel_rmse;
+};
+
+/// Says how sure the truth itself is.
+struct TruthRecord {
+  std::optional<double> se;
+  std::optional<double> unanimous;
+};
+
+/// Holds the rates of the faults a person sees.
+struct ArtefactRecord {
+  std::optional<double> acne;
+  std::optional<double> leak;
+  std::optional<double> contact_gap;
+  std::optional<double> noise;
+};
+
+/// Holds one part of the error.
+struct AttributionPart {
+  std::optional<double> rms;
+  std::optional<double> share;
+};
+
+/// Holds the four parts that the error is the sum of.
+struct AttributionRecord {
+  AttributionPart numeric;
+  AttributionPart estimator;
+  AttributionPart discretisation;
+  AttributionPart model;
+};
+
+/// Holds paths relative to the report folder, with '/' between folders.
+struct ImagesRecord {
+  std::optional<std::string> picture;
+  std::optional<std::string> visibility;
+  std::optional<std::string> depth_map;  ///< one per scene and map settings
+  std::optional<std::string> grid;       ///< one per scene, view and map settings
+  std::optional<std::string> exr;        ///< one per scene
+};
+
+/// Holds everything measured of one scene x view x filter x parameters x map settings.
+///
+/// What does not exist stays empty, and `absent` says why: dotted field name, or the name of a whole group
+/// ("error"), to reason. A null that nobody explained is written as "not measured".
+struct CellRecord {
+  std::string key;  ///< cell_key() of the settings below
+  CellStatus status = CellStatus::kOk;
+  std::string message;  ///< why `status` is not ok; empty otherwise
+  std::string scene;
+  std::string view;
+  std::string filter;
+  ParamMap params;
+  int map_size = 0;        ///< texels along a side
+  std::string map_format;  ///< "d32f"
+  BiasRecord bias;
+  int width = 0;  ///< pixels
+  int height = 0;
+  std::optional<std::int64_t> receivers;  ///< pixels that count
+  std::optional<std::int64_t> excused;    ///< pixels left out: on a tie or a texel's border
+  std::optional<std::int64_t> nan;        ///< pixels whose visibility is not finite
+  TimeRecord time_ms;
+  RatioRecord ratio_to_none;
+  CostRecord cost;
+  ErrorRecord error;
+  TruthRecord truth;
+  ArtefactRecord artefact;
+  AttributionRecord attribution;
+  ImagesRecord images;
+  std::map<std::string, std::string> absent;
+};
+
+/// Says which clock the times come from.
+enum class TimerKind { kWallClock, kTimerQuery };
+
+/// Describes the OpenGL that drew the pictures.
+struct GlRecord {
+  std::string backend;   ///< "osmesa", "egl", "glfw"
+  std::string renderer;  ///< GL_RENDERER
+  std::string version;   ///< GL_VERSION
+  bool software = true;  ///< a rasteriser on the CPU
+  TimerKind timer = TimerKind::kWallClock;
+};
+
+/// Describes the machine and the build.
+struct MachineRecord {
+  std::string cpu;
+  int cores = 0;
+  std::optional<double> load_at_start;  ///< one-minute load average
+  std::string compiler;
+  std::string os;
+};
+
+/// Counts the work that was done, and the work that no chosen filter needed.
+struct WorkRecord {
+  std::int64_t shader_variants_compiled = 0;
+  std::int64_t passes_run = 0;
+  std::int64_t passes_skipped = 0;
+};
+
+/// Names a scene for people.
+struct SceneRecord {
+  std::string name;
+  std::string title;
+};
+
+/// Holds what is common to all cells of a run.
+struct RunRecord {
+  std::string commit;
+  std::vector<std::string> command;  ///< the command line, one entry per argument
+  std::uint64_t seed = 0;
+  GlRecord gl;
+  MachineRecord machine;
+  WorkRecord work;
+  std::vector<SceneRecord> scenes;
+  std::vector<std::string> warnings;
+};
+
+}  // namespace shadowbench::report

@@ -1,0 +1,284 @@
+#include "report/summary.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "report/cell_key.h"
+#include "report/json_values.h"
+
+namespace shadowbench::report {
+namespace {
+
+constexpr const char* kNothing = "–";
+
+std::string format_param(const ParamValue& value) {
+  if (const auto* number = std::get_if<double>(&value)) {
+    return dump_line(number_json(*number));
+  }
+  if (const auto* flag = std::get_if<bool>(&value)) {
+    return *flag ? "on" : "off";
+  }
+  return std::get<std::string>(value);
+}
+
+std::string format_quartiles(const std::optional<Quartiles>& time) {
+  return time
+             ? fmt::format("{} [{}, {}]", format_number(time->median), format_number(time->q1), format_number(time->q3))
+             : kNothing;
+}
+
+std::string format_ratio(const std::optional<Ratio>& ratio) {
+  return ratio ? fmt::format("{} [{}, {}]", format_number(ratio->median), format_number(ratio->ci95.low),
+                             format_number(ratio->ci95.high))
+               : kNothing;
+}
+
+template <class T>
+std::string format_optional(const std::optional<T>& value) {
+  return value ? format_number(static_cast<double>(*value)) : kNothing;
+}
+
+const char* name_of(CellStatus status) {
+  switch (status) {
+    case CellStatus::kOk:
+      return "ok";
+    case CellStatus::kTimeout:
+      return "timeout";
+    case CellStatus::kCrashed:
+      return "crashed";
+    case CellStatus::kError:
+      break;
+  }
+  return "error";
+}
+
+std::string format_status(const CellRecord& cell) {
+  return cell.message.empty() ? name_of(cell.status) : fmt::format("{}: {}", name_of(cell.status), cell.message);
+}
+
+// The filter's id, with its parameters where the group holds it more than once.
+std::string label_cell(const CellGroup& group, const CellRecord& cell) {
+  const auto count = std::count_if(group.cells.begin(), group.cells.end(),
+                                   [&](const CellRecord& other) { return other.filter == cell.filter; });
+  return count > 1 && !cell.params.empty() ? fmt::format("{} ({})", cell.filter, describe_params(cell.params))
+                                           : cell.filter;
+}
+
+Interval lookup_interval(const CellRecord& cell, bool by_ratio) {
+  return by_ratio ? cell.ratio_to_none.lookup->ci95 : Interval{cell.time_ms.lookup->q1, cell.time_ms.lookup->q3};
+}
+
+double lookup_median(const CellRecord& cell, bool by_ratio) {
+  return by_ratio ? cell.ratio_to_none.lookup->median : cell.time_ms.lookup->median;
+}
+
+bool overlap(const Interval& a, const Interval& b) { return a.low <= b.high && b.low <= a.high; }
+
+std::string join_tied(const CellGroup& group, const std::vector<std::size_t>& indices) {
+  std::vector<std::string> names;
+  for (const std::size_t i : indices) {
+    names.push_back(label_cell(group, group.cells[i]));
+  }
+  return fmt::format("{}", fmt::join(names, " tied with "));
+}
+
+std::string describe_ranking(const CellGroup& group, const std::vector<std::vector<std::size_t>>& ranks) {
+  std::string text = "Lookup, fastest first: ";
+  for (std::size_t i = 0; i < ranks.size(); ++i) {
+    text += (i > 0 ? "; then " : "") + join_tied(group, ranks[i]);
+  }
+  return text + ".";
+}
+
+std::string describe_extremes(const CellGroup& group, const CellRecord& fastest, const CellRecord& slowest,
+                              const GlRecord& gl) {
+  std::string text = fmt::format("In {}, the lookup of {} takes {} ms", describe_clock(gl), label_cell(group, fastest),
+                                 format_number(fastest.time_ms.lookup->median));
+  if (&fastest != &slowest) {
+    text +=
+        fmt::format(", that of {} {} ms", label_cell(group, slowest), format_number(slowest.time_ms.lookup->median));
+    if (slowest.ratio_to_none.lookup) {
+      text += fmt::format(", which is {} times that of the filter none", format_ratio(slowest.ratio_to_none.lookup));
+    }
+  }
+  return text + ".";
+}
+
+std::vector<std::string> describe_prefilters(const CellGroup& group, const GlRecord& gl) {
+  std::vector<std::string> parts;
+  for (const CellRecord& cell : group.cells) {
+    if (cell.time_ms.prefilter) {
+      parts.push_back(fmt::format("{} {} {}", label_cell(group, cell), format_number(cell.time_ms.prefilter->median),
+                                  time_unit(gl)));
+    }
+  }
+  if (parts.empty()) {
+    return {};
+  }
+  return {fmt::format("A prefilter comes on top, paid again whenever the map changes: {}.", fmt::join(parts, ", "))};
+}
+
+std::vector<std::string> describe_troubles(const CellGroup& group) {
+  std::vector<std::string> sentences;
+  for (const CellRecord& cell : group.cells) {
+    if (cell.status != CellStatus::kOk) {
+      sentences.push_back(fmt::format("{} did not finish ({}).", label_cell(group, cell), format_status(cell)));
+    }
+    if (cell.nan.value_or(0) > 0) {
+      sentences.push_back(fmt::format("{} has {} pixels that are not finite.", label_cell(group, cell), *cell.nan));
+    }
+  }
+  return sentences;
+}
+
+}  // namespace
+
+std::string format_number(double value) {
+  if (!std::isfinite(value)) {
+    return kNothing;
+  }
+  const double size = std::abs(value);
+  if (size >= 99.95 && size < 1e15) {
+    return fmt::format("{:.0f}", value);
+  }
+  return fmt::format("{:.3g}", value);
+}
+
+std::string describe_clock(const GlRecord& gl) {
+  const bool wall_clock = gl.timer == TimerKind::kWallClock;
+  if (gl.software) {
+    return wall_clock ? "CPU time (software rasteriser)" : "GL timer query (software rasteriser)";
+  }
+  return wall_clock ? "wall-clock time" : "GPU time (timer query)";
+}
+
+std::string time_unit(const GlRecord& gl) {
+  if (gl.timer == TimerKind::kWallClock) {
+    return gl.software ? "ms (CPU)" : "ms";
+  }
+  return gl.software ? "ms (GL timer)" : "ms (GPU)";
+}
+
+std::string describe_params(const ParamMap& params) {
+  std::vector<std::string> parts;
+  for (const auto& [name, value] : params) {
+    parts.push_back(name + " " + format_param(value));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string describe_settings(const CellRecord& cell) {
+  return fmt::format(
+      "view {} · map {} × {} {} · picture {} × {} · bias: constant {} (depth), slope {} texels + {} kernels, "
+      "normal offset {} texels",
+      cell.view, cell.map_size, cell.map_size, cell.map_format, cell.width, cell.height,
+      format_number(cell.bias.constant_depth), format_number(cell.bias.slope_texels), format_number(cell.bias.slope_kernels),
+      format_number(cell.bias.normal_offset_texels));
+}
+
+std::vector<CellGroup> group_cells(const std::vector<CellRecord>& cells) {
+  std::vector<CellGroup> groups;
+  std::map<std::string, std::size_t> places;
+  for (const CellRecord& cell : cells) {
+    auto settings = cell_settings(cell);
+    settings.erase("filter");
+    settings.erase("params");
+    const auto [place, is_new] = places.emplace(dump_line(settings), groups.size());
+    if (is_new) {
+      groups.push_back({cell.scene, {}});
+    }
+    groups[place->second].cells.push_back(cell);
+  }
+  return groups;
+}
+
+std::vector<std::vector<std::size_t>> rank_lookups(const std::vector<CellRecord>& cells) {
+  std::vector<std::size_t> order;
+  bool by_ratio = true;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells[i].time_ms.lookup) {
+      order.push_back(i);
+      by_ratio = by_ratio && cells[i].ratio_to_none.lookup.has_value();
+    }
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return lookup_median(cells[a], by_ratio) < lookup_median(cells[b], by_ratio);
+  });
+  std::vector<std::vector<std::size_t>> groups;
+  for (const std::size_t i : order) {
+    const bool tied = !groups.empty() && overlap(lookup_interval(cells[groups.back().front()], by_ratio),
+                                                 lookup_interval(cells[i], by_ratio));
+    if (!tied) {
+      groups.emplace_back();
+    }
+    groups.back().push_back(i);
+  }
+  return groups;
+}
+
+std::vector<std::string> describe_group(const CellGroup& group, const GlRecord& gl) {
+  std::vector<std::string> sentences;
+  const auto ranks = rank_lookups(group.cells);
+  if (!ranks.empty()) {
+    sentences.push_back(describe_ranking(group, ranks));
+    sentences.push_back(
+        describe_extremes(group, group.cells[ranks.front().front()], group.cells[ranks.back().back()], gl));
+  }
+  for (const auto& more : {describe_prefilters(group, gl), describe_troubles(group)}) {
+    sentences.insert(sentences.end(), more.begin(), more.end());
+  }
+  return sentences;
+}
+
+TextTable make_table(const CellGroup& group, const GlRecord& gl) {
+  const std::string unit = time_unit(gl);
+  TextTable table;
+  table.header = {"filter",
+                  "parameters",
+                  fmt::format("lookup, {}, median [quartiles]", unit),
+                  "lookup / none, median [95 %]",
+                  fmt::format("prefilter, {}", unit),
+                  fmt::format("map, {}", unit),
+                  "fetches per receiver",
+                  "bytes per texel",
+                  "passes",
+                  "status"};
+  for (const CellRecord& cell : group.cells) {
+    table.rows.push_back({cell.filter, cell.params.empty() ? kNothing : describe_params(cell.params),
+                          format_quartiles(cell.time_ms.lookup), format_ratio(cell.ratio_to_none.lookup),
+                          format_quartiles(cell.time_ms.prefilter), format_quartiles(cell.time_ms.map),
+                          format_optional(cell.cost.fetches), format_optional(cell.cost.bytes_per_texel),
+                          format_optional(cell.cost.passes), format_status(cell)});
+  }
+  return table;
+}
+
+std::vector<std::pair<std::string, std::string>> list_run_facts(const RunRecord& run) {
+  return {{"command", fmt::format("{}", fmt::join(run.command, " "))},
+          {"commit", run.commit},
+          {"seed", fmt::format("{}", run.seed)},
+          {"times", describe_clock(run.gl)},
+          {"GL", fmt::format("{} · {} · {}", run.gl.backend, run.gl.renderer, run.gl.version)},
+          {"machine", fmt::format("{} · {} cores · load {} at the start", run.machine.cpu, run.machine.cores,
+                                  format_optional(run.machine.load_at_start))},
+          {"system", fmt::format("{} · {}", run.machine.os, run.machine.compiler)},
+          {"work", fmt::format("{} shader variants compiled, {} passes run, {} passes skipped because no filter needed "
+                               "them",
+                               run.work.shader_variants_compiled, run.work.passes_run, run.work.passes_skipped)}};
+}
+
+std::map<std::string, int> count_absences(const std::vector<CellRecord>& cells) {
+  std::map<std::string, int> counts;
+  for (const CellRecord& cell : cells) {
+    for (const auto& [field, reason] : cell.absent) {
+      ++counts[field + ": " + reason];
+    }
+  }
+  return counts;
+}
+
+}  // namespace shadowbench::report

@@ -1,0 +1,238 @@
+#include "report/tables.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "report/json_values.h"
+#include "report/summary.h"
+
+namespace shadowbench::report {
+namespace {
+
+using Extract = std::function<std::string(const RunRecord&, const CellRecord&)>;
+
+struct Column {
+  CsvColumn column;
+  Extract extract;
+};
+
+std::string plain(double value) { return fmt::format("{}", value); }
+
+template <class T>
+std::string plain(const std::optional<T>& value) {
+  return value ? fmt::format("{}", *value) : std::string();
+}
+
+// Columns that depend on the cell alone.
+template <class Get>
+Column cell_column(std::string name, std::string meaning, Get get) {
+  return {{std::move(name), std::move(meaning)},
+          [get](const RunRecord&, const CellRecord& cell) -> std::string { return get(cell); }};
+}
+
+std::vector<Column> setting_columns() {
+  return {
+      cell_column("scene", "the scene's name", [](const CellRecord& c) { return c.scene; }),
+      cell_column("view", "the camera's name", [](const CellRecord& c) { return c.view; }),
+      cell_column("filter", "the filter's id", [](const CellRecord& c) { return c.filter; }),
+      cell_column("params", "the filter's parameters as JSON",
+                  [](const CellRecord& c) { return dump_line(value_json(c.params)); }),
+      cell_column("map_size", "shadow map, texels along a side", [](const CellRecord& c) { return plain(c.map_size); }),
+      cell_column("map_format", "the shadow map's format", [](const CellRecord& c) { return c.map_format; }),
+      cell_column("bias_constant_depth", "constant bias, depth in [0,1]",
+                  [](const CellRecord& c) { return plain(c.bias.constant_depth); }),
+      cell_column("bias_slope_texels", "slope-scaled bias, texels",
+                  [](const CellRecord& c) { return plain(c.bias.slope_texels); }),
+      cell_column("bias_slope_kernels", "slope-scaled bias, in kernel half-widths plus one texel",
+                  [](const CellRecord& c) { return plain(c.bias.slope_kernels); }),
+      cell_column("bias_normal_offset_texels", "normal offset, texels",
+                  [](const CellRecord& c) { return plain(c.bias.normal_offset_texels); }),
+      cell_column("width", "picture, pixels", [](const CellRecord& c) { return plain(c.width); }),
+      cell_column("height", "picture, pixels", [](const CellRecord& c) { return plain(c.height); }),
+      cell_column("status", "ok, timeout, crashed or error",
+                  [](const CellRecord& c) { return value_json(c.status).get<std::string>(); }),
+      cell_column("message", "why the status is not ok", [](const CellRecord& c) { return c.message; }),
+      {{"clock", "what the times are times of"},
+       [](const RunRecord& run, const CellRecord&) { return describe_clock(run.gl); }},
+  };
+}
+
+using TimeMember = std::optional<Quartiles> TimeRecord::*;
+
+std::vector<Column> time_columns(const std::string& name, const std::string& meaning, TimeMember member) {
+  const auto field = [member](auto Quartiles::*part) {
+    return [member, part](const CellRecord& c) {
+      const auto& time = c.time_ms.*member;
+      return time ? fmt::format("{}", (*time).*part) : std::string();
+    };
+  };
+  return {cell_column(name + "_median_ms", meaning + ", milliseconds, median", field(&Quartiles::median)),
+          cell_column(name + "_q1_ms", meaning + ", milliseconds, first quartile", field(&Quartiles::q1)),
+          cell_column(name + "_q3_ms", meaning + ", milliseconds, third quartile", field(&Quartiles::q3)),
+          cell_column(name + "_n", meaning + ", number of measurements", field(&Quartiles::n))};
+}
+
+using RatioMember = std::optional<Ratio> RatioRecord::*;
+
+std::vector<Column> ratio_columns(const std::string& name, const std::string& meaning, RatioMember member) {
+  const auto field = [member](auto get) {
+    return [member, get](const CellRecord& c) {
+      const auto& ratio = c.ratio_to_none.*member;
+      return ratio ? plain(get(*ratio)) : std::string();
+    };
+  };
+  return {
+      cell_column(name + "_median", meaning + ", median over rounds", field([](const Ratio& r) { return r.median; })),
+      cell_column(name + "_low", meaning + ", 95 % interval", field([](const Ratio& r) { return r.ci95.low; })),
+      cell_column(name + "_high", meaning + ", 95 % interval", field([](const Ratio& r) { return r.ci95.high; }))};
+}
+
+std::vector<Column> cost_columns() {
+  return {
+      cell_column("fetches", "texture fetches per receiver, mean",
+                  [](const CellRecord& c) { return plain(c.cost.fetches); }),
+      cell_column("bytes_per_texel", "of what the lookup reads",
+                  [](const CellRecord& c) { return plain(c.cost.bytes_per_texel); }),
+      cell_column("passes", "passes per frame", [](const CellRecord& c) { return plain(c.cost.passes); }),
+      cell_column("map_bytes", "memory of the maps", [](const CellRecord& c) { return plain(c.cost.map_bytes); }),
+      cell_column("prefilter_texels", "texels that the prefilter writes",
+                  [](const CellRecord& c) { return plain(c.cost.prefilter_texels); }),
+      cell_column("receivers", "pixels that count", [](const CellRecord& c) { return plain(c.receivers); }),
+      cell_column("nan", "pixels whose visibility is not finite", [](const CellRecord& c) { return plain(c.nan); }),
+      cell_column("key", "the cell's file is cells/<key>.json", [](const CellRecord& c) { return c.key; }),
+  };
+}
+
+std::vector<Column> all_columns() {
+  std::vector<Column> columns = setting_columns();
+  const auto append = [&](const std::vector<Column>& more) { columns.insert(columns.end(), more.begin(), more.end()); };
+  append(time_columns("lookup", "filtered lookup of all pixels", &TimeRecord::lookup));
+  append(time_columns("prefilter", "encoding and blurring the map", &TimeRecord::prefilter));
+  append(time_columns("map", "drawing the depth map", &TimeRecord::map));
+  append(ratio_columns("ratio_lookup", "lookup against none", &RatioRecord::lookup));
+  append(ratio_columns("ratio_static", "frame with a cached map against none", &RatioRecord::static_map));
+  append(ratio_columns("ratio_moving", "frame with a new map against none", &RatioRecord::moving));
+  append(cost_columns());
+  return columns;
+}
+
+std::string join_row(const std::vector<std::string>& fields) {
+  std::vector<std::string> quoted(fields.size());
+  std::transform(fields.begin(), fields.end(), quoted.begin(), quote_csv);
+  return fmt::format("{}\r\n", fmt::join(quoted, ","));
+}
+
+std::string markdown_row(const std::vector<std::string>& fields) {
+  std::vector<std::string> escaped(fields.size());
+  std::transform(fields.begin(), fields.end(), escaped.begin(), escape_markdown);
+  return fmt::format("| {} |\n", fmt::join(escaped, " | "));
+}
+
+std::string markdown_table(const TextTable& table) {
+  std::string text = markdown_row(table.header) + "|";
+  for (std::size_t i = 0; i < table.header.size(); ++i) {
+    text += "---|";
+  }
+  text += "\n";
+  for (const auto& row : table.rows) {
+    text += markdown_row(row);
+  }
+  return text;
+}
+
+std::string markdown_list(const std::vector<std::string>& items) {
+  std::string text;
+  for (const std::string& item : items) {
+    text += "- " + escape_markdown(item) + "\n";
+  }
+  return text;
+}
+
+std::string markdown_group(const CellGroup& group, const GlRecord& gl) {
+  return fmt::format("## {}\n\n{}. Times are {}.\n\n{}\n{}\n", escape_markdown(group.scene),
+                     escape_markdown(describe_settings(group.cells.front())), describe_clock(gl),
+                     markdown_table(make_table(group, gl)), markdown_list(describe_group(group, gl)));
+}
+
+std::string markdown_absences(const std::vector<CellRecord>& cells) {
+  std::vector<std::string> items;
+  for (const auto& [reason, count] : count_absences(cells)) {
+    items.push_back(fmt::format("{} ({} of {} cells)", reason, count, cells.size()));
+  }
+  return items.empty() ? std::string() : "## What is not there, and why\n\n" + markdown_list(items) + "\n";
+}
+
+}  // namespace
+
+std::vector<CsvColumn> list_csv_columns() {
+  std::vector<CsvColumn> names;
+  for (const Column& column : all_columns()) {
+    names.push_back(column.column);
+  }
+  return names;
+}
+
+std::string quote_csv(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
+    return std::string(text);
+  }
+  std::string quoted = "\"";
+  for (const char c : text) {
+    quoted += c == '"' ? "\"\"" : std::string(1, c);
+  }
+  return quoted + "\"";
+}
+
+std::string make_timings_csv(const RunRecord& run, const std::vector<CellRecord>& cells) {
+  const std::vector<Column> columns = all_columns();
+  std::vector<std::string> fields;
+  for (const Column& column : columns) {
+    fields.push_back(column.column.name);
+  }
+  std::string csv = join_row(fields);
+  for (const CellRecord& cell : cells) {
+    std::transform(columns.begin(), columns.end(), fields.begin(),
+                   [&](const Column& column) { return column.extract(run, cell); });
+    csv += join_row(fields);
+  }
+  return csv;
+}
+
+std::string escape_markdown(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '\n' || c == '\r') {
+      escaped += ' ';
+      continue;
+    }
+    if (std::string_view("\\`*_[]<>|#~").find(c) != std::string_view::npos) {
+      escaped += '\\';
+    }
+    escaped += c;
+  }
+  return escaped;
+}
+
+std::string make_summary(const RunRecord& run, const std::vector<CellRecord>& cells) {
+  std::string text = "# Shadow filters compared\n\n";
+  for (const auto& [name, value] : list_run_facts(run)) {
+    text += fmt::format("- **{}**: {}\n", name, escape_markdown(value));
+  }
+  text += "\nAll times are " + describe_clock(run.gl) + ". Filters whose intervals overlap are tied.\n\n";
+  if (!run.warnings.empty()) {
+    text += "## Warnings\n\n" + markdown_list(run.warnings) + "\n";
+  }
+  for (const CellGroup& group : group_cells(cells)) {
+    text += markdown_group(group, run.gl);
+  }
+  text += markdown_absences(cells) + "## Columns of timings.csv\n\n";
+  for (const CsvColumn& column : list_csv_columns()) {
+    text += fmt::format("- `{}`: {}\n", column.name, escape_markdown(column.meaning));
+  }
+  return text;
+}
+
+}  // namespace shadowbench::report

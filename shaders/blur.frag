@@ -1,0 +1,27 @@
+// One direction of the separable Gaussian prefilter; with COMBINE_LOGS the texels hold logarithms.
+layout(binding = 3) uniform sampler2D map_stored;
+uniform ivec2 direction;
+uniform int radius;
+uniform float weights[129];
+uniform vec4 border;
+
+layout(location = 0) out vec4 out_stored;
+
+vec4 tap(int i) {
+  ivec2 texel = ivec2(gl_FragCoord.xy) + i * direction;
+  bool inside = all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, textureSize(map_stored, 0)));
+  return inside ? texelFetch(map_stored, texel, 0) : border;
+}
+
+void main() {
+  vec4 sum = vec4(0.0);
+#ifdef COMBINE_LOGS
+  vec4 largest = tap(-radius);
+  for (int i = -radius; i <= radius; ++i) largest = max(largest, tap(i));
+  for (int i = -radius; i <= radius; ++i) sum += weights[i + radius] * exp(tap(i) - largest);
+  out_stored = largest + log(sum);
+#else
+  for (int i = -radius; i <= radius; ++i) sum += weights[i + radius] * tap(i);
+  out_stored = sum;
+#endif
+}

@@ -1,0 +1,41 @@
+#include "lib/light.glsl"
+
+// What a filter is told of a receiver point; filters/receiver.h documents the fields.
+struct Receiver {
+  vec3 position_ws; vec3 normal_ws;
+  float n_dot_l; vec2 uv; int layer;
+  float depth; float depth_unbiased;
+  vec2 depth_per_texel;
+  float texel_size_ws; float depth_range_ws; float light_size; float view_depth; ivec2 pixel; };
+
+// The map may be steep, but not vertical: it would have to bias without bound.
+vec2 plane_depth_per_texel(vec3 normal_ws, float n_dot_l) {
+  vec2 along_map = vec2(dot(normal_ws, light_right_ws), dot(normal_ws, light_up_ws));
+  vec2 tangent = along_map / max(n_dot_l, 1e-4);
+  return tangent * (texel_size_ws / depth_range_ws);
+}
+
+Receiver make_receiver(vec3 position_ws, vec3 normal_ws, float view_depth, ivec2 pixel) {
+  Receiver r;
+  r.position_ws = position_ws;
+  r.normal_ws = normal_ws;
+  r.n_dot_l = -dot(normal_ws, light_direction_ws);
+  // `precise`: the pass that hands these values to the models must get the very same bits.
+  float sin_theta = sqrt(max(1.0 - r.n_dot_l * r.n_dot_l, 0.0));
+  precise vec3 offset_ws = position_ws + normal_ws * (bias_normal_texels * texel_size_ws * sin_theta);
+  precise vec4 lookup_point = uv_depth_from_world * vec4(offset_ws, 1.0);
+  precise vec4 own_point = uv_depth_from_world * vec4(position_ws, 1.0);
+  r.uv = lookup_point.xy;
+  r.layer = 0;
+  r.depth_per_texel = plane_depth_per_texel(normal_ws, r.n_dot_l);
+  vec2 steepness = min(abs(r.depth_per_texel), vec2(bias_max_tangent * texel_size_ws / depth_range_ws));
+  precise float biased = lookup_point.z - (bias_constant + bias_slope_texels * (steepness.x + steepness.y));
+  r.depth = biased;
+  r.depth_unbiased = own_point.z;
+  r.texel_size_ws = texel_size_ws;
+  r.depth_range_ws = depth_range_ws;
+  r.light_size = light_size;
+  r.view_depth = view_depth;
+  r.pixel = pixel;
+  return r;
+}

@@ -1,0 +1,32 @@
+// Asks the filter for the visibility of every receiver; timed.
+#include "lib/receiver.glsl"
+#include "lib/gbuffer.glsl"
+#include "lib/map_access.glsl"
+#include "lib/random.glsl"
+#include "lib/encode_input.glsl"
+#include "filter_parameters"
+#include "filter"
+
+layout(location = 0) out float out_visibility;
+#ifdef COUNT_FETCHES
+layout(location = 1) out float out_fetches;
+#endif
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec4 position = texelFetch(gbuffer_position, pixel, 0);
+  out_visibility = 1.0;
+#ifdef COUNT_FETCHES
+  out_fetches = -1.0;  // not a receiver
+#endif
+  if (position.w == 0.0) return;
+  Receiver r = make_receiver(position.xyz, texelFetch(gbuffer_normal, pixel, 0).xyz, position.w, pixel);
+  if (r.n_dot_l <= 0.0) {
+    out_visibility = 0.0;  // the surface shadows itself: there is nothing to filter
+    return;
+  }
+  if (r.depth_unbiased <= 1.0) out_visibility = visibility(r);
+#ifdef COUNT_FETCHES
+  out_fetches = float(fetch_count);
+#endif
+}

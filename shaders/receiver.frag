@@ -1,0 +1,17 @@
+// Writes the receivers that the lookup pass sees, for the models; never timed.
+#include "lib/receiver.glsl"
+#include "lib/gbuffer.glsl"
+
+layout(location = 0) out vec4 out_map;    // uv, depth, depth_unbiased
+layout(location = 1) out vec4 out_plane;  // depth_per_texel, n_dot_l, view_depth (0: no receiver)
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec4 position = texelFetch(gbuffer_position, pixel, 0);
+  out_map = vec4(0.0);
+  out_plane = vec4(0.0);
+  if (position.w == 0.0) return;
+  Receiver r = make_receiver(position.xyz, texelFetch(gbuffer_normal, pixel, 0).xyz, position.w, pixel);
+  out_map = vec4(r.uv, r.depth, r.depth_unbiased);
+  out_plane = vec4(r.depth_per_texel, r.n_dot_l, r.view_depth);
+}

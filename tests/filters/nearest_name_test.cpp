@@ -1,0 +1,31 @@
+#include "filters/nearest_name.h"
+
+#include <gtest/gtest.h>
+
+namespace shadowbench {
+namespace {
+
+const std::vector<std::string> kNames{"none", "pcf2x2", "tent3x3", "poisson", "vsm", "esm"};
+
+TEST(NearestNameTest, SwappedNeighbours_AreOneMistake) {
+  EXPECT_EQ(nearest_name("pfc2x2", {"xyc2x2", "pcf2x2"}), "pcf2x2");
+  EXPECT_EQ(nearest_name("vms", kNames), "vsm");
+}
+
+TEST(NearestNameTest, MissingExtraAndWrongLetters_FindTheName) {
+  EXPECT_EQ(nearest_name("poison", kNames), "poisson");
+  EXPECT_EQ(nearest_name("nonee", kNames), "none");
+  EXPECT_EQ(nearest_name("tent3x4", kNames), "tent3x3");
+}
+
+TEST(NearestNameTest, Case_IsIgnored) { EXPECT_EQ(nearest_name("PCF2X2", kNames), "pcf2x2"); }
+
+TEST(NearestNameTest, NothingLike_GivesNothing) {
+  EXPECT_EQ(nearest_name("chandelier", kNames), std::nullopt);
+  EXPECT_EQ(nearest_name("", kNames), std::nullopt);
+  EXPECT_EQ(nearest_name("vsm", {}), std::nullopt);
+  EXPECT_EQ(nearest_name(std::string(100000, 'x'), kNames), std::nullopt);
+}
+
+}  // namespace
+}  // namespace shadowbench

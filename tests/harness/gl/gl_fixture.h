@@ -1,0 +1,20 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "harness/gl/context.h"
+
+namespace shadowbench::gl {
+
+/// Gives each test an OSMesa context of its own, and fails it for any GL error that it leaves behind.
+class GlTest : public ::testing::Test {
+ protected:
+  Context& context() { return *choice_.context; }
+
+  void TearDown() override { EXPECT_NO_THROW(context().require_no_gl_errors()); }
+
+ private:
+  ContextChoice choice_ = create_context(Backend::kOsmesa);
+};
+
+}  // namespace shadowbench::gl

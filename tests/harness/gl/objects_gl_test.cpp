@@ -1,0 +1,306 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "harness/gl/fullscreen.h"
+#include "harness/gl/objects.h"
+#include "harness/gl/probe.h"
+#include "tests/harness/gl/expect_error.h"
+#include "tests/harness/gl/gl_fixture.h"
+
+namespace shadowbench::gl {
+namespace {
+
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
+using ::testing::FloatEq;
+using ::testing::HasSubstr;
+
+std::string get_label(GLenum identifier, GLuint id) {
+  std::array<char, 256> text{};
+  glGetObjectLabel(identifier, id, static_cast<GLsizei>(text.size()), nullptr, text.data());
+  return text.data();
+}
+
+struct RoundTrip {
+  GLenum format;
+  int channels;
+  double step;  ///< between neighbouring values near 1
+};
+
+class TextureRoundTrip : public ::testing::TestWithParam<RoundTrip> {
+ private:
+  ContextChoice choice_ = create_context(Backend::kOsmesa);
+};
+
+TEST_P(TextureRoundTrip, Floats_ComeBackWithinTheFormatsStep) {
+  const RoundTrip& format = GetParam();
+  constexpr int kWidth = 5;
+  constexpr int kHeight = 3;
+  std::vector<float> texels;
+  for (int i = 0; i < kWidth * kHeight * format.channels; ++i) {
+    texels.push_back(static_cast<float>(i) / static_cast<float>(kWidth * kHeight * format.channels));
+  }
+  Texture texture("round trip", format.format, kWidth, kHeight);
+  texture.upload_floats(texels, format.channels);
+  const auto back = texture.read_floats(format.channels);
+  ASSERT_EQ(back.size(), texels.size());
+  for (std::size_t i = 0; i < texels.size(); ++i) EXPECT_NEAR(back[i], texels[i], format.step) << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, TextureRoundTrip,
+                         ::testing::Values(RoundTrip{GL_R32F, 1, 0.0}, RoundTrip{GL_RG32F, 2, 0.0},
+                                           RoundTrip{GL_RGBA32F, 4, 0.0}, RoundTrip{GL_R16F, 1, 0x1p-11},
+                                           RoundTrip{GL_RG16F, 2, 0x1p-11}, RoundTrip{GL_RGBA16F, 4, 0x1p-11},
+                                           RoundTrip{GL_RG16, 2, 0x1p-16}, RoundTrip{GL_RGBA8, 4, 0x1p-8},
+                                           RoundTrip{GL_DEPTH_COMPONENT16, 1, 0x1p-16},
+                                           RoundTrip{GL_DEPTH_COMPONENT24, 1, 0x1p-23},
+                                           RoundTrip{GL_DEPTH_COMPONENT32F, 1, 0.0}),
+                         [](const auto& test) { return std::string(pixel_format(test.param.format).name); });
+
+TEST_F(GlTest, Texture_ReadsFewerChannelsThanItHas) {
+  Texture texture("rg", GL_RG32F, 2, 1);
+  texture.upload_floats(std::array{1.0f, 2.0f, 3.0f, 4.0f}, 2);
+  EXPECT_THAT(texture.read_floats(1), ElementsAre(1.0f, 3.0f));
+}
+
+TEST_F(GlTest, Texture_ReadsRightWhateverTransferStateIsSet) {
+  glPixelStorei(GL_PACK_ALIGNMENT, 8);
+  glPixelStorei(GL_PACK_ROW_LENGTH, 17);
+  glPixelStorei(GL_UNPACK_SKIP_PIXELS, 1);
+  Texture texture("odd", GL_R32F, 3, 2);
+  const std::array texels = {1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f};
+  texture.upload_floats(texels, 1);
+  EXPECT_THAT(texture.read_floats(1), ElementsAreArray(texels));
+}
+
+TEST_F(GlTest, Texture_TakesNormalisedBytes) {
+  Texture texture("bytes", GL_RGBA8, 1, 1);
+  texture.upload_bytes(std::array<std::uint8_t, 4>{0, 51, 255, 102}, 4);
+  EXPECT_THAT(texture.read_floats(4), ElementsAre(0.0f, FloatEq(0.2f), 1.0f, FloatEq(0.4f)));
+}
+
+TEST_F(GlTest, Texture_WrongNumberOfTexels_IsABug) {
+  Texture texture("small", GL_R32F, 2, 2);
+  EXPECT_THROW(texture.upload_floats(std::array{1.0f}, 1), std::logic_error);
+  EXPECT_THROW(texture.upload_bytes(std::array<std::uint8_t, 3>{}, 1), std::logic_error);
+}
+
+TEST_F(GlTest, Texture_AboveTheLimit_IsAUsageErrorWithLimitAndValue) {
+  const int limit = context().info().max_texture_size;
+  const Error error = catch_error([&] { Texture("depth map", GL_R8, limit + 1, 1); });
+  EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+  EXPECT_THAT(error.message(), HasSubstr("depth map"));
+  EXPECT_THAT(error.message(), HasSubstr(std::to_string(limit + 1) + "x1"));
+  EXPECT_THAT(error.message(), HasSubstr("at most " + std::to_string(limit)));
+  EXPECT_EQ(catch_error([&] { Texture("tall", GL_R8, 1, limit + 1); }).kind(), ErrorKind::kUsage);
+  EXPECT_NO_THROW(Texture("at the limit", GL_R8, limit, 1));
+}
+
+TEST_F(GlTest, Texture_OfNoSize_IsAUsageError) {
+  EXPECT_EQ(catch_error([] { Texture("none", GL_R8, 0, 4); }).kind(), ErrorKind::kUsage);
+  EXPECT_EQ(catch_error([] { Texture("none", GL_R8, 4, -1); }).kind(), ErrorKind::kUsage);
+}
+
+TEST_F(GlTest, Texture_BeyondMemory_IsAContextError) {
+  const int limit = context().info().max_texture_size;
+  const Error error = catch_error([&] { Texture("huge", GL_RGBA32F, limit, limit); });
+  EXPECT_EQ(error.kind(), ErrorKind::kContext);
+  EXPECT_THAT(error.message(), HasSubstr("huge"));
+  context().take_gl_errors();
+}
+
+TEST_F(GlTest, Texture_CountsTheBytesOfAllLevels) {
+  EXPECT_EQ(Texture("one", GL_RG32F, 8, 4).bytes(), 8u * 4u * 8u);
+  EXPECT_EQ(Texture("all", GL_R32F, 4, 4, 3).bytes(), (16u + 4u + 1u) * 4u);
+}
+
+TEST_F(GlTest, Texture_MovedFrom_OwnsNothing) {
+  Texture first("first", GL_R32F, 1, 1);
+  const GLuint id = first.id();
+  Texture second = std::move(first);
+  EXPECT_EQ(second.id(), id);
+  EXPECT_EQ(first.id(), 0u);
+  second = Texture("third", GL_R32F, 1, 1);
+  EXPECT_EQ(glIsTexture(id), GL_FALSE);
+}
+
+TEST_F(GlTest, Objects_CarryTheirLabels) {
+  EXPECT_EQ(get_label(GL_TEXTURE, Texture("shadow map", GL_R8, 1, 1).id()), "shadow map");
+  EXPECT_EQ(get_label(GL_BUFFER, Buffer("vertices", 4).id()), "vertices");
+  EXPECT_EQ(get_label(GL_FRAMEBUFFER, Framebuffer("g-buffer").id()), "g-buffer");
+  EXPECT_EQ(get_label(GL_SAMPLER, Sampler("compare").id()), "compare");
+  EXPECT_EQ(get_label(GL_VERTEX_ARRAY, VertexArray("mesh").id()), "mesh");
+}
+
+TEST_F(GlTest, Label_LongerThanGlAllows_IsCut) {
+  EXPECT_EQ(get_label(GL_BUFFER, Buffer(std::string(5000, 'x'), 4).id()), std::string(255, 'x'));
+}
+
+TEST_F(GlTest, Objects_AreDeletedWithTheirScope) {
+  GLuint texture = 0;
+  GLuint buffer = 0;
+  {
+    texture = Texture("t", GL_R8, 1, 1).id();
+    buffer = Buffer("b", 4).id();
+  }
+  EXPECT_EQ(glIsTexture(texture), GL_FALSE);
+  EXPECT_EQ(glIsBuffer(buffer), GL_FALSE);
+}
+
+TEST_F(GlTest, Buffer_HoldsWhatWasUploaded) {
+  const std::array values = {1, 2, 3, 4};
+  Buffer buffer("numbers", std::as_bytes(std::span(values)));
+  const std::array<int, 1> nine = {9};
+  buffer.upload(std::as_bytes(std::span(nine)), 2 * sizeof(int));
+  const auto bytes = buffer.read();
+  ASSERT_EQ(bytes.size(), sizeof(values));
+  EXPECT_THAT(std::span(reinterpret_cast<const int*>(bytes.data()), 4), ElementsAre(1, 2, 9, 4));
+}
+
+TEST_F(GlTest, Buffer_StartsAsZeros) { EXPECT_THAT(Buffer("counters", 64).read(), Each(std::byte{0})); }
+
+TEST_F(GlTest, Buffer_EmptyOne_IsAllowed) { EXPECT_TRUE(Buffer("empty", 0).read().empty()); }
+
+TEST_F(GlTest, Buffer_UploadPastItsEnd_IsABug) {
+  Buffer buffer("small", 4);
+  EXPECT_THROW(buffer.upload(std::as_bytes(std::span("toolong")), 0), std::logic_error);
+  EXPECT_THROW(buffer.upload({}, 5), std::logic_error);
+}
+
+TEST_F(GlTest, Framebuffer_ClearsEachTextureByItself) {
+  Texture first("first", GL_RG32F, 4, 2);
+  Texture second("second", GL_R32F, 4, 2);
+  Texture depth("depth", GL_DEPTH_COMPONENT32F, 4, 2);
+  Framebuffer framebuffer("three");
+  framebuffer.attach_color(0, first);
+  framebuffer.attach_color(2, second);
+  framebuffer.attach_depth(depth);
+  framebuffer.bind();
+  framebuffer.clear_color(0, {1.0f, 2.0f, 0.0f, 0.0f});
+  framebuffer.clear_color(2, {3.0f, 0.0f, 0.0f, 0.0f});
+  framebuffer.clear_depth(0.5f);
+  EXPECT_THAT(first.read_floats(2), ElementsAre(1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2));
+  EXPECT_THAT(second.read_floats(1), Each(3.0f));
+  EXPECT_THAT(depth.read_floats(1), Each(0.5f));
+  EXPECT_EQ(framebuffer.width(), 4);
+  EXPECT_EQ(framebuffer.height(), 2);
+}
+
+TEST_F(GlTest, Framebuffer_WithNothingAttached_IsABug) { EXPECT_THROW(Framebuffer("empty").bind(), std::logic_error); }
+
+TEST_F(GlTest, Framebuffer_OfUnequalSizes_IsABug) {
+  Texture small("small", GL_R32F, 2, 2);
+  Texture large("large", GL_DEPTH_COMPONENT24, 4, 4);
+  Framebuffer framebuffer("mixed");
+  framebuffer.attach_color(0, small);
+  EXPECT_THROW(framebuffer.attach_depth(large), std::logic_error);
+}
+
+TEST_F(GlTest, Framebuffer_ColourOutOfRange_IsABug) {
+  Texture texture("t", GL_R32F, 2, 2);
+  Framebuffer framebuffer("f");
+  EXPECT_THROW(framebuffer.attach_color(8, texture), std::logic_error);
+  EXPECT_THROW(framebuffer.attach_color(-1, texture), std::logic_error);
+}
+
+TEST_F(GlTest, FullscreenTriangle_CoversEveryPixelOnce_WhateverStateIsSet) {
+  for (const GLenum capability : {GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_CULL_FACE, GL_BLEND}) glEnable(capability);
+  glScissor(0, 0, 1, 1);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+  glCullFace(GL_FRONT_AND_BACK);
+  Query samples("samples", GL_SAMPLES_PASSED);
+  Probe probe("probe_load.frag", {37, 23});
+  probe.program().set("u_iterations", 0);
+  samples.begin();
+  probe.draw();
+  samples.end();
+  EXPECT_EQ(samples.result(), 37u * 23u);
+  EXPECT_FLOAT_EQ(probe.run().back(), 36.5f * 0.001f + 22.5f * 0.0001f);
+}
+
+// Samples two texels, 0 and 1, half way between them.
+float sample_halfway(const Texture& map) {
+  Probe probe("probe_filter.frag", {1, 1});
+  map.bind(0);
+  probe.program().set("u_map", 0);
+  probe.program().set("u_first", 0.5f);
+  probe.program().set("u_step", 0.0f);
+  return probe.run().front();
+}
+
+TEST_F(GlTest, Sampler_OverridesTheTexturesFilter_UntilUnbound) {
+  Texture map("step", GL_R32F, 2, 1);
+  map.upload_floats(std::array{0.0f, 1.0f}, 1);
+  Sampler linear("linear");
+  linear.set_filter(GL_LINEAR, GL_LINEAR);
+  Sampler::unbind(0);
+  EXPECT_NE(sample_halfway(map), 0.5f);
+  linear.bind(0);
+  EXPECT_EQ(sample_halfway(map), 0.5f);
+  Sampler::unbind(0);
+  EXPECT_NE(sample_halfway(map), 0.5f);
+  map.set_filter(GL_LINEAR, GL_LINEAR);
+  EXPECT_EQ(sample_halfway(map), 0.5f);
+}
+
+// Samples beyond the right edge of a 2x1 map.
+float sample_outside(const Texture& map, const std::string& shader) {
+  Probe probe(shader, {1, 1});
+  map.bind(0);
+  probe.program().set("u_map", 0);
+  probe.program().set("u_first", 4.0f);
+  probe.program().set("u_step", 0.0f);
+  if (shader == "probe_compare.frag") probe.program().set("u_reference", 0.5f);
+  return probe.run().front();
+}
+
+TEST_F(GlTest, Border_IsWhatLiesOutside_OfTextureAndSampler) {
+  Texture map("border", GL_R32F, 2, 1);
+  map.upload_floats(std::array{1.0f, 1.0f}, 1);
+  Sampler::unbind(0);
+  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 1.0f);
+  map.set_wrap(GL_CLAMP_TO_BORDER);
+  map.set_border({0.25f, 0.0f, 0.0f, 0.0f});
+  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 0.25f);
+  Sampler sampler("border");
+  sampler.set_wrap(GL_CLAMP_TO_BORDER);
+  sampler.set_border({0.75f, 0.0f, 0.0f, 0.0f});
+  sampler.bind(0);
+  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 0.75f);
+}
+
+TEST_F(GlTest, Compare_ObeysItsFunction_OfTextureAndSampler) {
+  Texture map("depth", GL_DEPTH_COMPONENT32F, 2, 1);
+  map.upload_floats(std::array{0.5f, 0.5f}, 1);
+  Sampler::unbind(0);
+  map.set_compare(GL_LEQUAL);
+  EXPECT_EQ(sample_outside(map, "probe_compare.frag"), 1.0f);
+  map.set_compare(GL_LESS);
+  EXPECT_EQ(sample_outside(map, "probe_compare.frag"), 0.0f);
+  Sampler sampler("lequal");
+  sampler.set_compare(GL_LEQUAL);
+  sampler.bind(0);
+  EXPECT_EQ(sample_outside(map, "probe_compare.frag"), 1.0f);
+  map.set_compare(GL_NONE);
+  Sampler::unbind(0);
+  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 0.5f);
+}
+
+TEST_F(GlTest, Mipmaps_AverageTheLevelAbove) {
+  Texture map("mips", GL_R32F, 2, 2, 2);
+  map.upload_floats(std::array{0.0f, 1.0f, 2.0f, 3.0f}, 1);
+  map.generate_mipmaps();
+  float top = 0.0f;
+  glGetTextureImage(map.id(), 1, GL_RED, GL_FLOAT, sizeof(top), &top);
+  EXPECT_EQ(top, 1.5f);
+}
+
+}  // namespace
+}  // namespace shadowbench::gl

@@ -1,0 +1,153 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <stdexcept>
+
+#include "harness/gl/fullscreen.h"
+#include "harness/gl/objects.h"
+#include "harness/gl/program.h"
+#include "tests/harness/gl/expect_error.h"
+#include "tests/harness/gl/gl_fixture.h"
+
+namespace shadowbench::gl {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+ShaderSource make_source(const std::string& text) {
+  SourceOptions options;
+  options.main_file = "main";
+  options.pieces = {{"main", text, "main.frag", 1}};
+  return build_source(options);
+}
+
+/// Builds a lookup shader around a user's filter, which begins in line 18 of its file.
+ShaderSource make_filter_source(const std::string& filter) {
+  SourceOptions options;
+  options.main_file = "main";
+  options.pieces = {
+      {"main", "out float o;\nfloat visibility();\n#include \"filter\"\nvoid main() { o = visibility(); }\n",
+       "lookup.frag", 1},
+      {"lib", "float helper() {\n  return 1.0;\n}\n", "lib.glsl", 1},
+      {"filter", filter, "/home/me/soft.glsl", 18}};
+  return build_source(options);
+}
+
+Program make_filter_program(const std::string& filter) {
+  return Program("soft", FullscreenTriangle::vertex_source(), make_filter_source(filter), ErrorKind::kFilter);
+}
+
+std::vector<float> draw(Program& program) {
+  Texture target("target", GL_RGBA32F, 1, 1);
+  Framebuffer framebuffer("target");
+  framebuffer.attach_color(0, target);
+  framebuffer.bind();
+  program.use();
+  FullscreenTriangle().draw();
+  return target.read_floats(4);
+}
+
+TEST_F(GlTest, CompileErrorInAFilter_NamesTheUsersLine) {
+  const Error error = catch_error([] { make_filter_program("\nfloat visibility() {\n  return nosuch;\n}\n"); });
+  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
+  EXPECT_EQ(error.where(), "/home/me/soft.glsl:20");
+  EXPECT_THAT(error.message(), HasSubstr("nosuch"));
+  EXPECT_THAT(error.message(), HasSubstr("'soft'"));
+}
+
+TEST_F(GlTest, CompileErrorAfterAnInclude_NamesTheUsersLine) {
+  const Error error = catch_error(
+      [] { make_filter_program("#include \"lib\"\nfloat visibility() { return helper(); }\nfloat x = nosuch;\n"); });
+  EXPECT_EQ(error.where(), "/home/me/soft.glsl:20");
+}
+
+TEST_F(GlTest, CompileErrorInOurPartOfTheShader_NamesOurLine) {
+  const Error error = catch_error([] { make_filter_program("#define visibility nosuch\n"); });
+  EXPECT_EQ(error.where(), "lookup.frag:4");
+}
+
+TEST_F(GlTest, MissingFunction_IsALinkErrorOfTheFilter) {
+  const Error error = catch_error([] { make_filter_program("float unrelated() { return 1.0; }\n"); });
+  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
+  EXPECT_THAT(error.message(), HasSubstr("visibility"));
+}
+
+TEST_F(GlTest, CompileErrorInAShaderOfOurs_IsABug) {
+  EXPECT_THROW(Program("ours", FullscreenTriangle::vertex_source(), make_source("nonsense")), std::logic_error);
+}
+
+TEST_F(GlTest, CompileError_LeavesNoGlError) {
+  catch_error([] { make_filter_program("x"); });
+  EXPECT_THAT(context().take_gl_errors(), ::testing::IsEmpty());
+}
+
+TEST_F(GlTest, Defines_ReachTheShader) {
+  SourceOptions options;
+  options.main_file = "main";
+  options.defines = {{"VALUE", "7.0"}};
+  options.pieces = {{"main", "out vec4 o;\nvoid main() { o = vec4(VALUE); }\n", "main.frag", 1}};
+  Program program("defines", FullscreenTriangle::vertex_source(), build_source(options));
+  EXPECT_THAT(draw(program), ElementsAre(7, 7, 7, 7));
+}
+
+TEST_F(GlTest, Uniforms_OfEveryType_ReachTheShader) {
+  Program program("uniforms", FullscreenTriangle::vertex_source(), make_source(R"(
+uniform int i; uniform uint u; uniform float f; uniform ivec2 i2; uniform vec2 v2; uniform vec3 v3; uniform vec4 v4;
+uniform mat3 m3; uniform mat4 m4; uniform float fs[3]; uniform vec2 v2s[2]; uniform vec4 v4s[2];
+out vec4 o;
+void main() {
+  o.x = float(i) + float(u) * 10.0 + f * 100.0 + float(i2.y) * 1000.0;
+  o.y = v2.y + v3.z * 10.0 + v4.w * 100.0;
+  o.z = m3[1][0] + m4[3][1] * 10.0;
+  o.w = fs[2] + v2s[1].y * 10.0 + v4s[1].w * 100.0;
+}
+)"));
+  program.set("i", 1);
+  program.set("u", 2u);
+  program.set("f", 3.0f);
+  program.set("i2", glm::ivec2(0, 4));
+  program.set("v2", glm::vec2(0, 1));
+  program.set("v3", glm::vec3(0, 0, 2));
+  program.set("v4", glm::vec4(0, 0, 0, 3));
+  program.set("m3", glm::mat3(0, 0, 0, 5, 0, 0, 0, 0, 0));
+  program.set("m4", glm::mat4(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 6, 0, 0));
+  program.set("fs", std::array{0.0f, 0.0f, 7.0f});
+  program.set("v2s", std::array{glm::vec2(0), glm::vec2(0, 8)});
+  program.set("v4s", std::array{glm::vec4(0), glm::vec4(0, 0, 0, 9)});
+  EXPECT_THAT(draw(program), ElementsAre(4321, 321, 65, 987));
+}
+
+TEST_F(GlTest, UniformThatTheCompilerDropped_IsIgnored) {
+  Program program("dropped", FullscreenTriangle::vertex_source(),
+                  make_source("uniform float dropped;\nout vec4 o;\nvoid main() { o = vec4(1.0); }\n"));
+  EXPECT_FALSE(program.has("dropped"));
+  EXPECT_NO_THROW(program.set("dropped", 1.0f));
+}
+
+TEST_F(GlTest, UniformThatNoSourceNames_IsABug) {
+  Program program("typo", FullscreenTriangle::vertex_source(),
+                  make_source("uniform float radius_texels;\nout vec4 o;\nvoid main() { o = vec4(radius_texels); }\n"));
+  EXPECT_TRUE(program.has("radius_texels"));
+  EXPECT_THROW(program.set("radius", 1.0f), std::logic_error);
+}
+
+TEST_F(GlTest, ComputeProgram_WritesABuffer) {
+  SourceOptions options;
+  options.main_file = "main";
+  options.pieces = {{"main",
+                     "layout(local_size_x = 4) in;\nlayout(std430, binding = 0) buffer B { uint values[]; };\n"
+                     "void main() { values[gl_GlobalInvocationID.x] = gl_GlobalInvocationID.x * 3u; }\n",
+                     "main.comp", 1}};
+  Program program("compute", build_source(options));
+  Buffer buffer("values", 4 * sizeof(std::uint32_t));
+  buffer.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
+  program.use();
+  glDispatchCompute(1, 1, 1);
+  const auto bytes = buffer.read();
+  EXPECT_THAT(std::span(reinterpret_cast<const std::uint32_t*>(bytes.data()), 4), ElementsAre(0u, 3u, 6u, 9u));
+}
+
+}  // namespace
+}  // namespace shadowbench::gl

@@ -1,0 +1,181 @@
+#include "harness/gl/shader_source.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "tests/harness/gl/expect_error.h"
+
+namespace shadowbench::gl {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// Holds shader files in a folder of its own.
+class ShaderSourceTest : public ::testing::Test {
+ protected:
+  ShaderSourceTest() {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(::testing::TempDir()) / (std::string("shader_source_") + info->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_ / "lib");
+    options_.roots = {folder_};
+    options_.main_file = "main.frag";
+  }
+  ~ShaderSourceTest() override { std::filesystem::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).generic_string(); }
+
+  std::filesystem::path folder_;
+  SourceOptions options_;
+};
+
+/// Says where each line of the text comes from, as a compiler that obeys `#line` would: "file:line text".
+std::vector<std::string> locate_lines(const ShaderSource& source) {
+  std::vector<std::string> located;
+  std::istringstream stream(source.text);
+  std::size_t file = 0;
+  int number = 1;
+  for (std::string line; std::getline(stream, line); ++number) {
+    int next = 0;
+    if (std::sscanf(line.c_str(), "#line %d %zu", &next, &file) == 2) {
+      EXPECT_EQ(static_cast<std::size_t>(next / kLinesPerFile), file);
+      number = next % kLinesPerFile - 1;
+      continue;
+    }
+    const auto name = std::filesystem::path(source.files.at(file)).filename().string();
+    located.push_back(name + ":" + std::to_string(number) + " " + line);
+  }
+  return located;
+}
+
+TEST_F(ShaderSourceTest, Version_ComesFirst_ThenTheDefines) {
+  write("main.frag", "void main() {}\n");
+  options_.defines = {{"TAPS", "8"}, {"LOG", "1"}};
+  const auto source = build_source(options_);
+  EXPECT_THAT(source.text, ::testing::StartsWith("#version 450 core\n#define TAPS 8\n#define LOG 1\n"));
+}
+
+TEST_F(ShaderSourceTest, EveryLine_KeepsItsOwnFileAndNumber) {
+  write("main.frag", "m1\n#include \"lib/a.glsl\"\nm3\n  #  include \"filter\" // the user's\nm5");
+  write("lib/a.glsl", "a1\n#include \"lib/b.glsl\"\na3\n");
+  write("lib/b.glsl", "b1\r\nb2\r\n");
+  options_.pieces = {{"filter", "u18\n#include \"lib/b.glsl\"\nu20\n", "user.glsl", 18}};
+  EXPECT_THAT(locate_lines(build_source(options_)),
+              ElementsAre("(set by the program):1 #version 450 core", "main.frag:1 m1", "a.glsl:1 a1", "b.glsl:1 b1",
+                          "b.glsl:2 b2", "a.glsl:3 a3", "main.frag:3 m3", "user.glsl:18 u18", "user.glsl:20 u20",
+                          "main.frag:5 m5"));
+}
+
+TEST_F(ShaderSourceTest, SameFileByTwoNames_IsInsertedOnce) {
+  write("main.frag", "#include \"lib/a.glsl\"\n#include \"lib/../lib/a.glsl\"\n#include \"./lib/a.glsl\"\n");
+  write("lib/a.glsl", "only\n");
+  const auto lines = locate_lines(build_source(options_));
+  EXPECT_THAT(lines, ElementsAre(::testing::_, "a.glsl:1 only"));
+}
+
+TEST_F(ShaderSourceTest, FirstRootThatHasTheFile_Wins) {
+  std::filesystem::create_directories(folder_ / "second");
+  write("second/main.frag", "second\n");
+  write("second/other.glsl", "other\n");
+  write("main.frag", "first\n#include \"other.glsl\"\n");
+  options_.roots = {folder_, folder_ / "second"};
+  EXPECT_THAT(locate_lines(build_source(options_)),
+              ElementsAre(::testing::_, "main.frag:1 first", "other.glsl:1 other"));
+}
+
+TEST_F(ShaderSourceTest, Piece_StandsInForAFileOfItsName) {
+  write("main.frag", "file\n");
+  options_.pieces = {{"main.frag", "piece\n", "user.glsl", 1}};
+  EXPECT_THAT(locate_lines(build_source(options_)), ElementsAre(::testing::_, "user.glsl:1 piece"));
+}
+
+TEST_F(ShaderSourceTest, IncludeInAComment_IsLeftAlone) {
+  write("main.frag",
+        "/* one\n#include \"missing\"\n*/\n// #include \"missing\"\n// not open: /*\n#include \"lib/a.glsl\"\n");
+  write("lib/a.glsl", "a1\n");
+  const auto source = build_source(options_);
+  EXPECT_THAT(source.text, HasSubstr("a1\n"));
+  EXPECT_THAT(source.text, HasSubstr("#include \"missing\""));
+}
+
+TEST_F(ShaderSourceTest, ByteOrderMark_IsDropped) {
+  write("main.frag", "\xEF\xBB\xBFm1\n");
+  EXPECT_THAT(build_source(options_).text, Not(HasSubstr("\xEF\xBB\xBF")));
+}
+
+TEST_F(ShaderSourceTest, Circle_IsRefusedWhereItCloses) {
+  write("main.frag", "#include \"lib/a.glsl\"\n");
+  write("lib/a.glsl", "\n#include \"lib/b.glsl\"\n");
+  write("lib/b.glsl", "\n\n#include \"lib/a.glsl\"\n");
+  const Error error = catch_error([&] { build_source(options_); });
+  EXPECT_EQ(error.kind(), ErrorKind::kInput);
+  EXPECT_EQ(error.where(), path("lib/b.glsl") + ":3");
+  EXPECT_THAT(error.message(), HasSubstr("includes itself"));
+}
+
+TEST_F(ShaderSourceTest, MissingInclude_NamesTheUsersLineAndTheFolders) {
+  write("main.frag", "#include \"filter\"\n");
+  options_.pieces = {{"filter", "x\n#include \"lib/nosuch.glsl\"\n", "user.glsl", 20}};
+  const Error error = catch_error([&] { build_source(options_); });
+  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
+  EXPECT_EQ(error.where(), "user.glsl:21");
+  EXPECT_THAT(error.message(), HasSubstr("lib/nosuch.glsl"));
+  EXPECT_THAT(error.message(), HasSubstr(folder_.string()));
+}
+
+TEST_F(ShaderSourceTest, MissingMainFile_IsAnInputError) {
+  const Error error = catch_error([&] { build_source(options_); });
+  EXPECT_EQ(error.kind(), ErrorKind::kInput);
+  EXPECT_THAT(error.message(), HasSubstr("main.frag"));
+}
+
+TEST_F(ShaderSourceTest, Folder_IsNoFile) {
+  options_.main_file = "lib";
+  EXPECT_THAT(catch_error([&] { build_source(options_); }).message(), HasSubstr("not found"));
+}
+
+TEST_F(ShaderSourceTest, MalformedInclude_NamesItsLine) {
+  for (const std::string bad :
+       {"#include <lib/a.glsl>", "#include", "#include \"", "#include \"\"", "#include \"a\" b"}) {
+    write("main.frag", "\n" + bad + "\n");
+    const Error error = catch_error([&] { build_source(options_); });
+    EXPECT_EQ(error.where(), path("main.frag") + ":2") << bad;
+    EXPECT_THAT(error.message(), HasSubstr("malformed")) << bad;
+  }
+}
+
+TEST_F(ShaderSourceTest, VersionInTheText_IsRefused) {
+  write("main.frag", "#include \"filter\"\n");
+  options_.pieces = {{"filter", "#version 330\n", "user.glsl", 5}};
+  const Error error = catch_error([&] { build_source(options_); });
+  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
+  EXPECT_EQ(error.where(), "user.glsl:5");
+}
+
+TEST_F(ShaderSourceTest, TextWithTooManyLines_IsRefused) {
+  write("main.frag", std::string(kLinesPerFile - 2, '\n'));
+  EXPECT_NO_THROW(build_source(options_));
+  write("main.frag", std::string(kLinesPerFile, '\n'));
+  EXPECT_EQ(catch_error([&] { build_source(options_); }).where(), path("main.frag"));
+}
+
+TEST_F(ShaderSourceTest, OpenComment_IsRefusedInItsOwnFile) {
+  write("main.frag", "#include \"filter\"\nvoid main() {}\n");
+  options_.pieces = {{"filter", "x\n/* never closed\n", "user.glsl", 5}};
+  const Error error = catch_error([&] { build_source(options_); });
+  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
+  EXPECT_EQ(error.where(), "user.glsl:6");
+}
+
+}  // namespace
+}  // namespace shadowbench::gl

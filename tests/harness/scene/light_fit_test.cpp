@@ -1,0 +1,142 @@
+#include "harness/scene/light_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "harness/scene/mesh_tools.h"
+#include "harness/scene/primitives.h"
+#include "test_files.h"
+
+namespace shadowbench::scene {
+namespace {
+
+const std::vector<glm::vec3> kDirections{{0, -1, 0},  {0, 1, 0},      {1, 0, 0},         {-1, 0, 0},     {0, 0, 1},
+                                         {0, 0, -1},  {1, -1, 1},     {-0.3f, -1, 0.2f}, {0.01f, -1, 0}, {5, -0.1f, 2},
+                                         {1, 1, 0},   {1e-8f, -1, 0}, {-3, -4, 0}};
+
+Scene make_scene(glm::vec3 direction, glm::vec3 offset = glm::vec3(0.0f)) {
+  Scene scene;
+  const glm::dmat4 moved = glm::translate(glm::dmat4(1.0), glm::dvec3(offset));
+  const glm::dmat4 raised = glm::translate(moved, glm::dvec3(1.0, 1.5, -2.0));
+  scene.meshes.push_back(transform_mesh(make_plane({10.0f, 8.0f}, 4), moved));
+  scene.meshes.back().casts_shadow = false;
+  scene.meshes.push_back(transform_mesh(make_box({1.0f, 2.0f, 0.5f}, 2), raised));
+  scene.light.direction_ws = glm::normalize(direction);
+  return scene;
+}
+
+/// What a 16-bit depth map rounds to 0 or 1.
+constexpr double kHalfStep16 = 0.5 / 65535.0;
+
+/// Every vertex lies at least `pad` of the map from its border and strictly inside the depth range.
+void expect_inside(const Scene& scene, const LightFrustum& fit, double pad) {
+  const auto slack = 1e-6 + 1e-7 * static_cast<double>(glm::length(scene.bounds().max)) / fit.texel_size_ws / 256.0;
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Vertex& vertex : mesh.vertices) {
+      const glm::dvec4 p = glm::dvec4(fit.uv_depth_from_world * glm::vec4(vertex.position_ws, 1.0f));
+      ASSERT_EQ(p.w, 1.0);
+      for (int i = 0; i < 2; ++i) {
+        ASSERT_GE(p[i], pad - slack);
+        ASSERT_LE(p[i], 1.0 - pad + slack);
+      }
+      ASSERT_GT(p.z, kHalfStep16);
+      ASSERT_LT(p.z, 1.0 - kHalfStep16);
+    }
+  }
+}
+
+class LightFitTest : public testing::TestWithParam<FitMode> {};
+INSTANTIATE_TEST_SUITE_P(Modes, LightFitTest, testing::Values(FitMode::kSphere, FitMode::kTight));
+
+TEST_P(LightFitTest, AnyDirection_HoldsEveryVertexWithItsPadding) {
+  for (const glm::vec3& direction : kDirections) {
+    const Scene scene = make_scene(direction);
+    expect_inside(scene, fit_light(scene, GetParam(), 256, 5.5), 5.5 / 256.0);
+  }
+}
+
+TEST_P(LightFitTest, FarFromTheOrigin_StillHoldsEveryVertex) {
+  for (const glm::vec3& direction : kDirections) {
+    const Scene scene = make_scene(direction, {1e4f, -2e4f, 5e3f});
+    expect_inside(scene, fit_light(scene, GetParam(), 256, 2.0), 2.0 / 256.0);
+  }
+}
+
+TEST_P(LightFitTest, View_IsRigidAndLooksAlongTheLight) {
+  for (const glm::vec3& direction : kDirections) {
+    const LightFrustum fit = fit_light(make_scene(direction), GetParam(), 256, 1.0);
+    const glm::dmat3 rotation(fit.light_from_world);
+    EXPECT_NEAR(glm::determinant(rotation), 1.0, 1e-12);
+    const glm::dmat3 product = rotation * glm::transpose(rotation);
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(product[i][k], i == k ? 1.0 : 0.0, 1e-12);
+    }
+    EXPECT_NEAR((rotation * glm::dvec3(fit.direction_ws)).z, -1.0, 1e-6);
+  }
+}
+
+TEST_P(LightFitTest, OneTexelInTheWorld_IsOneTexelInTheMapOnBothAxes) {
+  const LightFrustum fit = fit_light(make_scene({1, -2, 0.5f}), GetParam(), 512, 3.0);
+  EXPECT_NEAR(fit.width_ws, 512.0 * fit.texel_size_ws, 1e-9);
+  const glm::dmat3 world_from_light = glm::transpose(glm::dmat3(fit.light_from_world));
+  for (int axis = 0; axis < 2; ++axis) {
+    const glm::dvec3 step = world_from_light[axis] * fit.texel_size_ws;
+    const glm::dvec3 moved = glm::dmat3(glm::mat3(fit.uv_depth_from_world)) * step;
+    EXPECT_NEAR(moved[axis] * 512.0, 1.0, 1e-4);
+    EXPECT_NEAR(moved[1 - axis] * 512.0, 0.0, 1e-4);
+  }
+}
+
+TEST_P(LightFitTest, DepthGrowsAlongTheLightByTheRange) {
+  const LightFrustum fit = fit_light(make_scene({1, -2, 0.5f}), GetParam(), 512, 3.0);
+  const glm::dvec3 step = glm::dvec3(fit.direction_ws) * fit.depth_range_ws;
+  EXPECT_NEAR((glm::dmat3(glm::mat3(fit.uv_depth_from_world)) * step).z, 1.0, 1e-5);
+}
+
+TEST_P(LightFitTest, UvIsHalfOfClipSpacePlusHalf) {
+  const LightFrustum fit = fit_light(make_scene({1, -2, 0.5f}), GetParam(), 512, 3.0);
+  const glm::vec4 clip = fit.clip_from_world * glm::vec4(1.0f, 0.5f, -2.0f, 1.0f);
+  const glm::vec4 uv = fit.uv_depth_from_world * glm::vec4(1.0f, 0.5f, -2.0f, 1.0f);
+  EXPECT_NEAR(uv.x, clip.x * 0.5f + 0.5f, 1e-6f);
+  EXPECT_NEAR(uv.y, clip.y * 0.5f + 0.5f, 1e-6f);
+  EXPECT_NEAR(uv.z, clip.z, 1e-6f);
+}
+
+TEST_P(LightFitTest, FlatScenes_HaveADepthRange) {
+  for (const glm::vec3& direction : {glm::vec3(0, -1, 0), glm::vec3(1, 0, 0)}) {
+    Scene scene = make_scene(direction);
+    scene.meshes.pop_back();
+    const LightFrustum fit = fit_light(scene, GetParam(), 256, 1.0);
+    EXPECT_GT(fit.depth_range_ws, 1e-4);
+    expect_inside(scene, fit, 1.0 / 256.0);
+  }
+}
+
+TEST(LightFitTest, TightMap_TouchesTheSceneOnItsLongerSide) {
+  Scene scene = make_scene({0, -1, 0});
+  const LightFrustum fit = fit_light(scene, FitMode::kTight, 100, 10.0);
+  EXPECT_NEAR(fit.width_ws, 10.0 * 100.0 / 80.0, 1e-6);
+  EXPECT_NEAR(fit.depth_range_ws, 2.5, 0.01);
+}
+
+TEST(LightFitTest, SphereMap_KeepsItsWidthWhenTheLightTurns) {
+  const double width = fit_light(make_scene({0, -1, 0}), FitMode::kSphere, 256, 2.0).width_ws;
+  for (const glm::vec3& direction : kDirections) {
+    EXPECT_NEAR(fit_light(make_scene(direction), FitMode::kSphere, 256, 2.0).width_ws, width, 1e-9);
+    EXPECT_LE(fit_light(make_scene(direction), FitMode::kTight, 256, 2.0).width_ws, width);
+  }
+}
+
+TEST(LightFitTest, ReceiversThatCastNothing_AreInsideTheMap) {
+  Scene scene = make_scene({0, -1, 0});
+  EXPECT_GT(fit_light(scene, FitMode::kTight, 256, 0.0).width_ws, 9.9);
+}
+
+TEST(LightFitTest, PaddingThatLeavesNoTexel_IsAUsageError) {
+  const Error error = error_of([] { fit_light(make_scene({0, -1, 0}), FitMode::kTight, 16, 8.0); });
+  EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+}
+
+}  // namespace
+}  // namespace shadowbench::scene

@@ -1,0 +1,241 @@
+#include "harness/scene/load.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "harness/scene/framing.h"
+#include "harness/scene/light_fit.h"
+#include "test_files.h"
+
+namespace shadowbench::scene {
+namespace {
+
+using testing::HasSubstr;
+
+const std::filesystem::path kScenes = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "harness" / "scenes";
+constexpr double kAspect = 16.0 / 9.0;
+
+LoadOptions make_options(bool ground = false) { return {.scenes_folder = kScenes, .ground = ground, .aspect = kAspect}; }
+
+/// Where the camera sees a point: x and y in [-1,1] inside the picture, z ahead.
+glm::dvec3 seen_at(const Camera& camera, const glm::vec3& p) {
+  const glm::dvec3 forward(camera.forward_ws);
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(camera.up_ws)));
+  const glm::dvec3 offset = glm::dvec3(p) - glm::dvec3(camera.position_ws);
+  const double ahead = glm::dot(offset, forward);
+  const double tangent = std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad));
+  const double y = glm::dot(offset, glm::cross(right, forward)) / (ahead * tangent);
+  return {glm::dot(offset, right) / (ahead * tangent * kAspect), y, ahead};
+}
+
+std::filesystem::path write_tower(const TestFolder& folder) {
+  return folder.write("tower.obj",
+                      "v 0 1 0\nv 1 1 0\nv 1 1 1\nv 0 1 1\nv 0 4 0\nv 1 4 0\nv 1 4 1\nv 0 4 1\n"
+                      "f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n");
+}
+
+TEST(LoadTest, BuiltInScenes_AreFive) {
+  std::vector<std::string> names;
+  for (const SceneInfo& info : list_scenes(kScenes)) {
+    names.push_back(info.name);
+    EXPECT_FALSE(info.title.empty());
+  }
+  EXPECT_THAT(names, testing::ElementsAre("ball", "cubes", "fence", "stack", "steps"));
+}
+
+TEST(LoadTest, BuiltInScenes_LoadWithoutWarningsOnASmallFloor) {
+  for (const SceneInfo& info : list_scenes(kScenes)) {
+    SCOPED_TRACE(info.name);
+    const Scene scene = load(info.name, make_options());
+    EXPECT_EQ(scene.name, info.name);
+    EXPECT_TRUE(scene.warnings.empty());
+    const glm::vec3 size = scene.bounds().max - scene.bounds().min;
+    EXPECT_LT(std::max(size.x, size.z), 14.0f);
+    EXPECT_NEAR(scene.bounds().min.y, 0.0f, 0.01f);
+    EXPECT_LT(scene.light.direction_ws.y, 0.0f);
+  }
+}
+
+TEST(LoadTest, BuiltInScenes_ShowTheirCastersShadowsOnTheFloor) {
+  for (const SceneInfo& info : list_scenes(kScenes)) {
+    SCOPED_TRACE(info.name);
+    const Scene scene = load(info.name, make_options());
+    std::size_t shown = 0;
+    std::size_t all = 0;
+    for (std::size_t i = 1; i < scene.meshes.size(); ++i) {
+      for (const Vertex& vertex : scene.meshes[i].vertices) {
+        const glm::vec3 p = vertex.position_ws;
+        const glm::vec3 shadow = p - scene.light.direction_ws * (p.y / scene.light.direction_ws.y);
+        const glm::dvec3 seen = seen_at(scene.cameras[0], shadow);
+        ++all;
+        if (std::abs(seen.x) < 1.0 && std::abs(seen.y) < 1.0 && seen.z > 0.0) ++shown;
+      }
+    }
+    EXPECT_GT(static_cast<double>(shown), 0.75 * static_cast<double>(all));
+  }
+}
+
+TEST(LoadTest, BallScene_TouchesItsFloorUnderAWideLight) {
+  const Scene scene = load("ball", make_options());
+  EXPECT_FLOAT_EQ(scene.light.angular_diameter_deg, 3.0f);
+  for (const Mesh& mesh : scene.meshes) {
+    Bounds box;
+    for (const Vertex& v : mesh.vertices) box.add(v.position_ws);
+    EXPECT_NEAR(box.min.y, 0.0f, 1e-6f) << mesh.name;
+  }
+}
+
+TEST(LoadTest, UnknownName_IsAUsageErrorWithTheNearestName) {
+  const Error near = error_of([] { load("cube", make_options()); });
+  EXPECT_EQ(near.kind(), ErrorKind::kUsage);
+  EXPECT_THAT(near.message(), AllOf(HasSubstr("'cube'"), HasSubstr("did you mean 'cubes'")));
+  const Error far = error_of([] { load("cathedral", make_options()); });
+  EXPECT_THAT(far.message(), HasSubstr("built-in scenes: ball, cubes"));
+}
+
+TEST(LoadTest, MissingFile_IsAnInputError) {
+  for (const std::string path : {"nowhere/model.gltf", "absent.glb", "absent.obj", "absent.toml", "./cubes.toml"}) {
+    const Error error = error_of([&] { load(path, make_options()); });
+    EXPECT_EQ(error.kind(), ErrorKind::kInput) << path;
+    EXPECT_THAT(error.where(), HasSubstr(path));
+  }
+}
+
+TEST(LoadTest, OtherKindsOfFile_AreAUsageError) {
+  const Error error = error_of([] { load("model.fbx", make_options()); });
+  EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+  EXPECT_THAT(error.message(), HasSubstr(".gltf"));
+}
+
+TEST(LoadTest, FolderInsteadOfAFile_IsAnInputError) {
+  const TestFolder folder;
+  std::filesystem::create_directory(folder.path() / "x.gltf");
+  EXPECT_EQ(error_of([&] { load((folder.path() / "x.gltf").string(), make_options()); }).kind(), ErrorKind::kInput);
+}
+
+TEST(LoadTest, EmptyOrMeaninglessFiles_AreInputErrors) {
+  const TestFolder folder;
+  for (const std::string name : {"a.gltf", "a.glb", "a.obj", "a.toml"}) {
+    for (const std::string& content : {std::string(), std::string("\x7f" "ELF nonsense\n\0\1\2", 16)}) {
+      const auto file = folder.write(name, content);
+      EXPECT_EQ(error_of([&] { load(file.string(), make_options()); }).kind(), ErrorKind::kInput) << name;
+    }
+  }
+}
+
+TEST(LoadTest, BareModel_FillsThePictureAndFitsInside) {
+  const TestFolder folder;
+  const Scene scene = load(write_tower(folder).string(), make_options());
+  glm::dvec2 low(2.0);
+  glm::dvec2 high(-2.0);
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Vertex& vertex : mesh.vertices) {
+      const glm::dvec3 seen = seen_at(scene.cameras[0], vertex.position_ws);
+      ASSERT_GT(seen.z, 0.0);
+      low = glm::min(low, glm::dvec2(seen));
+      high = glm::max(high, glm::dvec2(seen));
+    }
+  }
+  EXPECT_GT(low.y, -1.0);
+  EXPECT_LT(high.y, 1.0);
+  EXPECT_GT(std::max(high.x - low.x, high.y - low.y), 1.85);
+  EXPECT_NEAR(low.y + high.y, 0.0, 0.01);
+}
+
+TEST(LoadTest, BareModel_HasASunFromAboveAcrossTheView) {
+  const TestFolder folder;
+  const Scene scene = load(write_tower(folder).string(), make_options());
+  EXPECT_NEAR(scene.light.direction_ws.y, -std::sin(glm::radians(50.0f)), 1e-5f);
+  EXPECT_LT(std::abs(glm::dot(glm::vec2(scene.light.direction_ws.x, scene.light.direction_ws.z),
+                              glm::vec2(scene.cameras[0].forward_ws.x, scene.cameras[0].forward_ws.z))),
+            0.3f);
+}
+
+TEST(LoadTest, Ground_LiesJustBelowTheModelAndCatchesItsShadow) {
+  const TestFolder folder;
+  const std::string file = write_tower(folder).string();
+  const Scene bare = load(file, make_options());
+  const Scene scene = load(file, make_options(true));
+  ASSERT_EQ(scene.meshes.size(), bare.meshes.size() + 1);
+  const Mesh& floor = scene.meshes.back();
+  EXPECT_EQ(floor.name, "ground");
+  EXPECT_NE(scene.materials[static_cast<std::size_t>(floor.material)].base_color, bare.materials[0].base_color);
+  Bounds box;
+  for (const Vertex& v : floor.vertices) box.add(v.position_ws);
+  EXPECT_LT(box.max.y, bare.bounds().min.y);
+  EXPECT_GT(box.max.y, bare.bounds().min.y - 0.01f);
+  for (const Vertex& v : bare.meshes[0].vertices) {
+    const glm::vec3 shadow = v.position_ws + scene.light.direction_ws * ((box.max.y - v.position_ws.y) / scene.light.direction_ws.y);
+    EXPECT_TRUE(shadow.x > box.min.x && shadow.x < box.max.x && shadow.z > box.min.z && shadow.z < box.max.z);
+    const glm::dvec3 seen = seen_at(scene.cameras[0], shadow);
+    EXPECT_LT(std::max(std::abs(seen.x), std::abs(seen.y)), 1.0);
+  }
+}
+
+TEST(LoadTest, GroundUnderASceneFile_IsIgnoredWithAWarning) {
+  const Scene scene = load("cubes", make_options(true));
+  EXPECT_EQ(scene.meshes.size(), load("cubes", make_options()).meshes.size());
+  EXPECT_THAT(scene.warnings, testing::ElementsAre(HasSubstr("bare models")));
+}
+
+TEST(LoadTest, LongScene_IsSeenFromItsEnd) {
+  const TestFolder folder;
+  const auto file = folder.write("row.obj", "v 0 0 0\nv 100 0 0\nv 100 2 1\nf 1 2 3\n");
+  const Camera camera = load(file.string(), make_options()).cameras[0];
+  EXPECT_GT(std::abs(camera.forward_ws.x), 2.0f * std::abs(camera.forward_ws.z));
+}
+
+TEST(LoadTest, ModelsOwnCameraAndLight_AreUsed) {
+  const TestFolder folder;
+  folder.write("data.bin", bytes_of(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}));
+  const auto file = folder.write("own.gltf", R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1, 2]}],
+    "extensionsUsed": ["KHR_lights_punctual"],
+    "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional"}]}},
+    "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}],
+    "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 9]}, {"extensions": {"KHR_lights_punctual": {"light": 0}}}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": "data.bin"}]})");
+  const Scene scene = load(file.string(), make_options());
+  ASSERT_EQ(scene.cameras.size(), 1U);
+  EXPECT_EQ(scene.cameras[0].position_ws, glm::vec3(0, 0, 9));
+  EXPECT_EQ(scene.light.direction_ws, glm::vec3(0, 0, -1));
+}
+
+/// The models lie outside the project; SHADOWBENCH_SCENES names their folder.
+class RealModelTest : public testing::TestWithParam<std::pair<const char*, std::size_t>> {};
+
+TEST_P(RealModelTest, LoadsFramedLitAndFitted) {
+  const char* folder = std::getenv("SHADOWBENCH_SCENES");
+  if (!folder) GTEST_SKIP() << "SHADOWBENCH_SCENES does not name the folder of real models";
+  const auto& [file, triangles] = GetParam();
+  for (const bool ground : {false, true}) {
+    const Scene scene = load((std::filesystem::path(folder) / file).string(), make_options(ground));
+    EXPECT_GE(scene.triangle_count(), triangles);
+    const LightFrustum fit = fit_light(scene, FitMode::kTight, 1024, 4.0);
+    EXPECT_GT(fit.texel_size_ws, 0.0);
+    for (const Mesh& mesh : scene.meshes) {
+      if (mesh.name == "ground" && ground) continue;
+      for (const Vertex& vertex : mesh.vertices) {
+        const glm::dvec3 seen = seen_at(scene.cameras[0], vertex.position_ws);
+        ASSERT_LT(std::max(std::abs(seen.x), std::abs(seen.y)), 1.0);
+        const glm::vec4 depth = fit.uv_depth_from_world * glm::vec4(vertex.position_ws, 1.0f);
+        ASSERT_TRUE(depth.z > 0.0f && depth.z < 1.0f);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, RealModelTest,
+                         testing::Values(std::pair("dxsdk_crypt/dxsdk_crypt.gltf", 8744U),
+                                         std::pair("dxsdk_shadow_columns/dxsdk_shadow_columns.gltf", 16646U),
+                                         std::pair("fern_02/fern_02.gltf", 6232U),
+                                         std::pair("japanese_bridge_garden/japanese_bridge_garden.gltf", 21883U),
+                                         std::pair("kaykit_city_block/kaykit_city_block.gltf", 134025U),
+                                         std::pair("sheen_chair/sheen_chair.gltf", 39936U),
+                                         std::pair("spot/spot.obj", 5856U)));
+
+}  // namespace
+}  // namespace shadowbench::scene

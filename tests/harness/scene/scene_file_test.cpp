@@ -1,0 +1,208 @@
+#include "harness/scene/scene_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <glm/gtc/constants.hpp>
+
+#include "test_files.h"
+
+namespace shadowbench::scene {
+namespace {
+
+using testing::HasSubstr;
+
+/// A whole scene in eleven lines; the object's table starts on line 7.
+constexpr const char* kBase = R"(title = "Test"
+[light]
+direction = [0, -1, 0]
+[camera]
+position = [0, 2, 5]
+target = [0, 0, 0]
+[[object]]
+shape = "box"
+size = [1, 2, 3]
+name = "crate"
+center = [0, 1, 0]
+)";
+
+Scene load_text(const std::string& text) {
+  const TestFolder folder;
+  return load_scene(folder.write("test.toml", text));
+}
+
+struct Complaint {
+  std::string message;
+  std::string line;
+};
+
+Complaint complaint_about(const std::string& text) {
+  const Error error = error_of([&] { load_text(text); });
+  EXPECT_EQ(error.kind(), ErrorKind::kInput);
+  const std::size_t colon = error.where().rfind(".toml:");
+  EXPECT_NE(colon, std::string::npos) << error.what();
+  return {error.message(), colon == std::string::npos ? "" : error.where().substr(colon + 6)};
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  EXPECT_NE(text.find(from), std::string::npos) << from;
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(SceneFileTest, WholeScene_HasItsParts) {
+  const Scene scene = load_text(kBase);
+  EXPECT_EQ(scene.name, "test");
+  EXPECT_EQ(scene.title, "Test");
+  ASSERT_EQ(scene.meshes.size(), 1U);
+  EXPECT_EQ(scene.meshes[0].name, "crate");
+  EXPECT_EQ(scene.bounds().min, glm::vec3(-0.5f, 0.0f, -1.5f));
+  EXPECT_EQ(scene.bounds().max, glm::vec3(0.5f, 2.0f, 1.5f));
+  ASSERT_EQ(scene.cameras.size(), 1U);
+  EXPECT_EQ(scene.cameras[0].position_ws, glm::vec3(0, 2, 5));
+  EXPECT_EQ(scene.light.direction_ws, glm::vec3(0, -1, 0));
+  EXPECT_FLOAT_EQ(scene.light.angular_diameter_deg, 0.53f);
+}
+
+TEST(SceneFileTest, UnknownKey_NamesItsLineAndTheNearestKnownOne) {
+  const Complaint c = complaint_about(replaced(kBase, "center", "centre"));
+  EXPECT_THAT(c.message, AllOf(HasSubstr("'centre'"), HasSubstr("did you mean 'center'")));
+  EXPECT_EQ(c.line, "11");
+  EXPECT_EQ(complaint_about(std::string("titel = 1\n") + kBase).line, "1");
+  EXPECT_EQ(complaint_about(replaced(kBase, "target", "taget")).line, "6");
+  EXPECT_EQ(complaint_about(replaced(kBase, "direction =", "angle = 1\ndirection =")).line, "3");
+}
+
+TEST(SceneFileTest, KeyOfAnotherShape_IsUnknown) {
+  EXPECT_THAT(complaint_about(std::string(kBase) + "radius = 2\n").message, HasSubstr("unknown key 'radius'"));
+}
+
+TEST(SceneFileTest, MissingValue_SaysWhatIsExpected) {
+  const Complaint c = complaint_about(replaced(kBase, "size = [1, 2, 3]\n", ""));
+  EXPECT_THAT(c.message, AllOf(HasSubstr("lacks 'size'"), HasSubstr("3 numbers")));
+  EXPECT_EQ(c.line, "7");
+}
+
+TEST(SceneFileTest, WrongTypesAndRanges_SayWhatIsExpectedAndWhere) {
+  const std::vector<std::pair<std::string, std::string>> bad{
+      {"[1, 2]", "3 numbers"},       {"\"big\"", "3 numbers"},  {"[1, 2, 0]", "above 0"},
+      {"[1, 2, -3]", "above 0"},     {"[1, 2, nan]", "above 0"}, {"[1, inf, 3]", "above 0"},
+      {"[1, \"two\", 3]", "above 0"}};
+  for (const auto& [value, expected] : bad) {
+    const Complaint c = complaint_about(replaced(kBase, "[1, 2, 3]", value));
+    EXPECT_THAT(c.message, AllOf(HasSubstr("'size'"), HasSubstr(expected))) << value;
+    EXPECT_EQ(c.line, "9") << value;
+  }
+  EXPECT_THAT(complaint_about(std::string(kBase) + "cells = 1.5\n").message, HasSubstr("whole number"));
+  EXPECT_THAT(complaint_about(std::string(kBase) + "cells = 0\n").message, HasSubstr("from 1 to 512"));
+  EXPECT_THAT(complaint_about(std::string(kBase) + "casts_shadow = 1\n").message, HasSubstr("true or false"));
+  EXPECT_THAT(complaint_about(std::string(kBase) + "scale = 0\n").message, HasSubstr("must not be 0"));
+}
+
+TEST(SceneFileTest, BrokenToml_NamesItsLine) {
+  const Complaint c = complaint_about(replaced(kBase, "[1, 2, 3]", "[1, 2"));
+  EXPECT_THAT(c.message, HasSubstr("not valid TOML"));
+  EXPECT_THAT(c.line, testing::AnyOf("9", "10"));
+}
+
+TEST(SceneFileTest, UnknownShapeOrMaterial_SuggestsTheNearest) {
+  EXPECT_THAT(complaint_about(replaced(kBase, "\"box\"", "\"bpx\"")).message, HasSubstr("did you mean 'box'"));
+  const std::string with_material = std::string(kBase) + "material = \"redd\"\n[[material]]\nname = \"red\"\ncolor = [1,0,0]\n";
+  const Complaint c = complaint_about(with_material);
+  EXPECT_THAT(c.message, AllOf(HasSubstr("'redd'"), HasSubstr("did you mean 'red'")));
+  EXPECT_EQ(c.line, "12");
+}
+
+TEST(SceneFileTest, Light_NeedsExactlyOneDirection) {
+  EXPECT_THAT(complaint_about(replaced(kBase, "direction = [0, -1, 0]\n", "")).message, HasSubstr("needs a direction"));
+  EXPECT_THAT(complaint_about(replaced(kBase, "[0, -1, 0]", "[0, 0, 0]")).message, HasSubstr("has no direction"));
+  EXPECT_THAT(complaint_about(replaced(kBase, "[0, -1, 0]", "[0, -1, 0]\nazimuth_deg = 1")).message, HasSubstr("either"));
+  const Error no_light = error_of([] { load_text(replaced(kBase, "[light]\ndirection = [0, -1, 0]\n", "")); });
+  EXPECT_THAT(no_light.message(), HasSubstr("no [light]"));
+  EXPECT_THAT(complaint_about(replaced(kBase, "[light]", "[light]\ntype = \"spot\"")).message, HasSubstr("'spot'"));
+}
+
+TEST(SceneFileTest, AzimuthAndElevation_SayWhereTheLightStands) {
+  const Scene scene = load_text(replaced(kBase, "direction = [0, -1, 0]", "azimuth_deg = 90\nelevation_deg = 30"));
+  EXPECT_NEAR(scene.light.direction_ws.x, -std::sqrt(0.75f), 1e-6f);
+  EXPECT_NEAR(scene.light.direction_ws.y, -0.5f, 1e-6f);
+  EXPECT_NEAR(scene.light.direction_ws.z, 0.0f, 1e-6f);
+}
+
+TEST(SceneFileTest, Rotation_TurnsAboutXFirstThenYThenZ) {
+  const Scene scene = load_text(replaced(kBase, "center = [0, 1, 0]", "rotation_deg = [90, 90, 90]"));
+  // x: (1, 2, 3) -> (1, 3, 2); then y: -> (2, 3, 1); then z: -> (3, 2, 1).
+  const glm::vec3 size = scene.bounds().max - scene.bounds().min;
+  EXPECT_NEAR(size.x, 3.0f, 1e-5f);
+  EXPECT_NEAR(size.y, 2.0f, 1e-5f);
+  EXPECT_NEAR(size.z, 1.0f, 1e-5f);
+}
+
+TEST(SceneFileTest, Scale_IsANumberOrThree) {
+  EXPECT_FLOAT_EQ(load_text(std::string(kBase) + "scale = 2\n").bounds().max.z, 3.0f);
+  EXPECT_FLOAT_EQ(load_text(std::string(kBase) + "scale = [1, 1, 4.0]\n").bounds().max.z, 6.0f);
+}
+
+TEST(SceneFileTest, EveryShape_Loads) {
+  for (const std::string shape : {"shape = \"plane\"\nsize = [2, 2]", "shape = \"sphere\"\nradius = 1",
+                                  "shape = \"cylinder\"\nradius = 1\nheight = 2",
+                                  "shape = \"bars\"\ncount = 3\nbar_width = 0.1\nspacing = 0.5\nlength = 2\ndirection = \"both\""}) {
+    const Scene scene = load_text(replaced(kBase, "shape = \"box\"\nsize = [1, 2, 3]", shape));
+    EXPECT_GT(scene.triangle_count(), 0U) << shape;
+    EXPECT_TRUE(scene.warnings.empty()) << shape;
+  }
+}
+
+TEST(SceneFileTest, BarsCloserThanTheirWidth_AreAnError) {
+  const std::string bars = "shape = \"bars\"\ncount = 3\nbar_width = 0.5\nspacing = 0.5\nlength = 2";
+  EXPECT_THAT(complaint_about(replaced(kBase, "shape = \"box\"\nsize = [1, 2, 3]", bars)).message, HasSubstr("'bar_width'"));
+}
+
+TEST(SceneFileTest, SeveralCameras_KeepTheirNamesAndOrder) {
+  const std::string second = "[[camera]]\nname = \"b\"\nposition = [9, 9, 9]\ntarget = [0, 0, 0]\n";
+  const Scene scene = load_text(replaced(kBase, "[camera]\n", second + "[[camera]]\nname = \"a\"\n"));
+  ASSERT_EQ(scene.cameras.size(), 2U);
+  EXPECT_EQ(scene.cameras[0].name, "b");
+  EXPECT_EQ(scene.cameras[1].name, "a");
+  EXPECT_THAT(complaint_about(replaced(kBase, "[camera]\n", second + "[[camera]]\nname = \"b\"\n")).message,
+              HasSubstr("two cameras"));
+}
+
+TEST(SceneFileTest, CameraAtItsTarget_IsAnError) {
+  EXPECT_EQ(complaint_about(replaced(kBase, "[0, 2, 5]", "[0, 0, 0]")).line, "6");
+}
+
+TEST(SceneFileTest, NoCamera_IsFramed) {
+  const Scene scene = load_text(replaced(kBase, "[camera]\nposition = [0, 2, 5]\ntarget = [0, 0, 0]\n", ""));
+  EXPECT_EQ(scene.cameras.size(), 1U);
+}
+
+TEST(SceneFileTest, EmptyScene_IsAnError) {
+  const Error error = error_of([] { load_text("title = \"t\"\n[light]\ndirection = [0, -1, 0]\n"); });
+  EXPECT_THAT(error.message(), HasSubstr("empty"));
+}
+
+TEST(SceneFileTest, CastsShadowFalse_IsKept) {
+  EXPECT_TRUE(load_text(kBase).meshes[0].casts_shadow);
+  EXPECT_FALSE(load_text(std::string(kBase) + "casts_shadow = false\n").meshes[0].casts_shadow);
+}
+
+TEST(SceneFileTest, ModelObject_IsReadBesideTheSceneAndTakesTheGivenMaterial) {
+  const TestFolder folder;
+  folder.write("models/tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string object = "[[object]]\nshape = \"model\"\nfile = \"models/tri.obj\"\ncenter = [0, 5, 0]\n";
+  const Scene own = load_scene(folder.write("a.toml", kBase + object));
+  EXPECT_FLOAT_EQ(own.bounds().max.y, 6.0f);
+  EXPECT_EQ(own.materials[static_cast<std::size_t>(own.meshes[1].material)].name, "default");
+  const std::string red = "material = \"red\"\n[[material]]\nname = \"red\"\ncolor = [1, 0, 0]\n";
+  const Scene given = load_scene(folder.write("b.toml", kBase + object + red));
+  EXPECT_EQ(given.materials[static_cast<std::size_t>(given.meshes[1].material)].name, "red");
+}
+
+TEST(SceneFileTest, MissingModel_NamesTheLineThatWantsIt) {
+  const Complaint c = complaint_about(std::string(kBase) + "[[object]]\nshape = \"model\"\nfile = \"no.gltf\"\n");
+  EXPECT_THAT(c.message, HasSubstr("no.gltf"));
+  EXPECT_EQ(c.line, "14");
+}
+
+}  // namespace
+}  // namespace shadowbench::scene

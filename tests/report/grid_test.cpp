@@ -1,0 +1,241 @@
+#include "report/grid.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "report/grid_layout.h"
+#include "report/picture_io.h"
+#include "synthetic.h"
+
+namespace shadowbench::report {
+namespace {
+
+constexpr int kFrameWidth = 2;
+
+bool overlaps(const Rect& a, const Rect& b) {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+bool contains(const Rect& outer, const Rect& inner) {
+  return inner.x >= outer.x && inner.y >= outer.y && inner.x + inner.width <= outer.x + outer.width &&
+         inner.y + inner.height <= outer.y + outer.height;
+}
+
+Rect grow(const Rect& r, int by) { return {r.x - by, r.y - by, r.width + 2 * by, r.height + 2 * by}; }
+
+std::vector<Rect> list_boxes(const GridLayout& layout) {
+  std::vector<Rect> boxes;
+  for (const Panel& panel : layout.panels) {
+    boxes.push_back(grow(panel.box, kFrameWidth));
+  }
+  for (const TextLine& line : layout.texts) {
+    if (line.role != TextRole::kMessage) {
+      boxes.push_back(line.box);
+    }
+  }
+  boxes.insert(boxes.end(), layout.message_boxes.begin(), layout.message_boxes.end());
+  return boxes;
+}
+
+void expect_sound(const Grid& grid) {
+  const GridLayout layout = layout_grid(grid);
+  const Rect canvas{0, 0, layout.canvas.width, layout.canvas.height};
+  const std::vector<Rect> boxes = list_boxes(layout);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    EXPECT_TRUE(contains(canvas, boxes[i])) << i;
+    for (std::size_t j = 0; j < i; ++j) {
+      EXPECT_FALSE(overlaps(boxes[i], boxes[j])) << i << " " << j;
+    }
+  }
+  for (const TextLine& line : layout.texts) {
+    EXPECT_LE(measure_text(line.text, font_of(line.role)), line.box.width) << line.text;
+  }
+}
+
+// Everything a grid says, spaces left out, so that wrapping does not matter.
+std::string all_text(const Grid& grid) {
+  std::string text;
+  for (const TextLine& line : layout_grid(grid).texts) {
+    text += line.text;
+  }
+  text.erase(std::remove(text.begin(), text.end(), ' '), text.end());
+  return text;
+}
+
+std::vector<Panel> panels_of(const Grid& grid, PanelKind kind) {
+  std::vector<Panel> panels;
+  for (const Panel& panel : layout_grid(grid).panels) {
+    if (panel.kind == kind) {
+      panels.push_back(panel);
+    }
+  }
+  return panels;
+}
+
+Grid make_hard_grid() {
+  Grid grid = make_grid(7, 96, 54);
+  grid.title = "A scene whose title is so long that it must be wrapped, because someone named it so and meant it so";
+  grid.tiles[1].caption =
+      "taps 16, radius 2.5 texels, rotation interleaved-gradient, store rg32f, min_variance 1e-05 · 12.3 ms (CPU)";
+  grid.tiles[2].label = "a_very_long_filter_name_without_any_space_in_it_that_a_user_chose";
+  grid.tiles[4].picture = Image();
+  grid.tiles[4].visibility = Image();
+  grid.tiles[4].message = "timed out after 10 s";
+  return grid;
+}
+
+TEST(Grid, AnyNumberOfFilters_NothingOverlapsAndNothingIsCut) {
+  for (int tiles = 0; tiles <= 12; ++tiles) {
+    SCOPED_TRACE(tiles);
+    expect_sound(make_grid(tiles, 96, 54));
+  }
+}
+
+TEST(Grid, AnySizeOfPicture_NothingOverlapsAndNothingIsCut) {
+  for (const Size size : {Size{1, 1}, Size{64, 36}, Size{960, 540}, Size{300, 900}, Size{1500, 90}}) {
+    SCOPED_TRACE(size.width);
+    expect_sound(make_grid(4, size.width, size.height));
+  }
+}
+
+TEST(Grid, LongTextsAndFailedTile_NothingOverlapsAndNothingIsCut) {
+  expect_sound(make_hard_grid());
+  Grid grid = make_hard_grid();
+  grid.tiles[4].message = std::string(3000, 'x');
+  expect_sound(grid);
+  Grid failed;
+  failed.tiles = {{"vsm", "radius 4", {}, {}, "the filter crashed"}};
+  expect_sound(failed);
+}
+
+TEST(Grid, EveryText_IsShownWhole) {
+  const Grid grid = make_hard_grid();
+  const std::string shown = all_text(grid);
+  for (std::string text :
+       {grid.title, grid.subtitle, grid.tiles[1].caption, grid.tiles[2].label, grid.tiles[4].message}) {
+    text.erase(std::remove(text.begin(), text.end(), ' '), text.end());
+    EXPECT_THAT(shown, ::testing::HasSubstr(text));
+  }
+}
+
+TEST(Grid, EveryFinishedFilter_HasItsFourPanels) {
+  const Grid grid = make_hard_grid();
+  for (const PanelKind kind :
+       {PanelKind::kPicture, PanelKind::kVisibility, PanelKind::kPictureCrop, PanelKind::kVisibilityCrop}) {
+    std::vector<std::size_t> tiles;
+    for (const Panel& panel : panels_of(grid, kind)) {
+      tiles.push_back(panel.tile);
+    }
+    EXPECT_THAT(tiles, ::testing::ElementsAre(0, 1, 2, 3, 5, 6));
+  }
+  EXPECT_EQ(layout_grid(grid).message_boxes.size(), 1u);
+}
+
+TEST(Grid, DefaultRun_IsAbout1500PixelsWideInThreeColumns) {
+  const Grid grid = make_grid(6, 960, 540);
+  EXPECT_NEAR(layout_grid(grid).canvas.width, 1500, 20);
+  const auto pictures = panels_of(grid, PanelKind::kPicture);
+  EXPECT_EQ(pictures[0].box.y, pictures[2].box.y);
+  EXPECT_LT(pictures[2].box.y, pictures[3].box.y);
+  EXPECT_EQ(pictures[0].box.x, pictures[3].box.x);
+}
+
+TEST(Grid, MagnifiedCrop_ShowsWholeTexelsOfThatCrop) {
+  const Grid grid = make_grid(2, 96, 54);
+  const Image canvas = draw_grid(grid);
+  for (const Panel& panel : panels_of(grid, PanelKind::kVisibilityCrop)) {
+    const int factor = panel.box.width / grid.crop.width;
+    ASSERT_EQ(panel.box.width, factor * grid.crop.width);
+    ASSERT_EQ(panel.box.height, factor * grid.crop.height);
+    for (int y = 0; y < panel.box.height; ++y) {
+      for (int x = 0; x < panel.box.width; ++x) {
+        ASSERT_EQ(*canvas.at(panel.box.x + x, panel.box.y + y),
+                  *grid.tiles[panel.tile].visibility.at(grid.crop.x + x / factor, grid.crop.y + y / factor));
+      }
+    }
+  }
+}
+
+TEST(Grid, EqualTiles_LookEqual) {
+  Grid grid = make_grid(2, 960, 540);
+  grid.tiles[1].picture = grid.tiles[0].picture;
+  grid.exposure = 1.5;
+  const Image canvas = draw_grid(grid);
+  const auto panels = panels_of(grid, PanelKind::kPicture);
+  for (int y = 0; y < panels[0].box.height; ++y) {
+    const float* a = canvas.at(panels[0].box.x, panels[0].box.y + y);
+    const float* b = canvas.at(panels[1].box.x, panels[1].box.y + y);
+    ASSERT_TRUE(std::equal(a, a + panels[0].box.width * 3, b)) << y;
+  }
+}
+
+TEST(Grid, ReducedPicture_KeepsLightAndAddsNoRinging) {
+  Grid grid = make_grid(1, 960, 540);
+  grid.crop = {};
+  grid.tiles[0].picture = Image(960, 540, 3);
+  for (int y = 0; y < 540; ++y) {
+    for (int x = 0; x < 960; ++x) {
+      std::fill_n(grid.tiles[0].picture.at(x, y), 3, x < 480 ? 0.2f : 0.6f);
+    }
+  }
+  const Image canvas = draw_grid(grid);
+  const Panel panel = panels_of(grid, PanelKind::kPicture).at(0);
+  for (int x = 0; x < panel.box.width; ++x) {
+    const float value = *canvas.at(panel.box.x + x, panel.box.y + 100);
+    EXPECT_GE(value, encode_srgb(0.2f) - 1e-5f);
+    EXPECT_LE(value, encode_srgb(0.6f) + 1e-5f);
+  }
+  EXPECT_NEAR(*canvas.at(panel.box.x + 10, panel.box.y + 100), encode_srgb(0.2f), 1e-5f);
+  EXPECT_NEAR(*canvas.at(panel.box.x + panel.box.width - 10, panel.box.y + 100), encode_srgb(0.6f), 1e-5f);
+}
+
+TEST(Grid, TexelThatIsNotFinite_IsMagenta) {
+  Grid grid = make_grid(1, 64, 36);
+  grid.crop = {};
+  *grid.tiles[0].visibility.at(0, 0) = std::numeric_limits<float>::quiet_NaN();
+  const Panel panel = panels_of(grid, PanelKind::kVisibility).at(0);
+  const Image canvas = draw_grid(grid);
+  EXPECT_EQ(canvas.at(panel.box.x, panel.box.y)[0], 1.0f);
+  EXPECT_EQ(canvas.at(panel.box.x, panel.box.y)[1], 0.0f);
+}
+
+// The drawn picture, not the plan: ink outside the boxes would be text cut off or overlapping.
+TEST(Grid, OutsideTheBoxes_TheCanvasIsEmpty) {
+  const Grid grid = make_hard_grid();
+  Image canvas = draw_grid(grid);
+  for (const Rect& box : list_boxes(layout_grid(grid))) {
+    for (int y = box.y; y < box.y + box.height; ++y) {
+      std::fill_n(canvas.at(box.x, y), box.width * 3, 1.0f);
+    }
+  }
+  EXPECT_THAT(canvas.texels, ::testing::Each(1.0f));
+}
+
+TEST(Grid, CropIsOutlinedOnThePicture) {
+  const Grid grid = make_grid(1, 468, 260);
+  const Image canvas = draw_grid(grid);
+  const Panel panel = panels_of(grid, PanelKind::kVisibility).at(0);
+  ASSERT_EQ(panel.box.width, 468);
+  const float* left = canvas.at(panel.box.x + grid.crop.x - 1, panel.box.y + grid.crop.y + 5);
+  const float* inside = canvas.at(panel.box.x + grid.crop.x, panel.box.y + grid.crop.y + 5);
+  EXPECT_NE(left[0], left[2]);
+  EXPECT_EQ(inside[0], *grid.tiles[0].visibility.at(grid.crop.x, grid.crop.y + 5));
+}
+
+TEST(Grid, File_HoldsTheDrawnPicture) {
+  const TemporaryFolder folder("grid_file");
+  const Grid grid = make_grid(2, 64, 36);
+  write_grid(folder.path() / "cubes.grid.png", grid);
+  const Image back = read_picture(folder.path() / "cubes.grid.png");
+  const Image drawn = draw_grid(grid);
+  ASSERT_EQ(back.width, drawn.width);
+  ASSERT_EQ(back.height, drawn.height);
+  for (std::size_t i = 0; i < drawn.texels.size(); ++i) {
+    ASSERT_NEAR(back.texels[i], drawn.texels[i], 0.51f / 255.0f);
+  }
+}
+
+}  // namespace
+}  // namespace shadowbench::report

@@ -1,0 +1,146 @@
+#include "report/html.h"
+
+#include <gmock/gmock.h>
+
+#include <regex>
+#include <set>
+
+#include "report/json_io.h"
+#include "report/picture_io.h"
+#include "report/report.h"
+#include "synthetic.h"
+
+namespace shadowbench::report {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::set<std::string> list_links(const std::string& page) {
+  static const std::regex kLink("(?:href|src)=\"([^\"]*)\"");
+  std::set<std::string> links;
+  for (std::sregex_iterator found(page.begin(), page.end(), kLink), end; found != end; ++found) {
+    links.insert((*found)[1]);
+  }
+  return links;
+}
+
+std::string decode_url(const std::string& url) {
+  std::string text;
+  for (std::size_t i = 0; i < url.size(); ++i) {
+    if (url[i] == '%') {
+      text += static_cast<char>(std::stoi(url.substr(i + 1, 2), nullptr, 16));
+      i += 2;
+    } else {
+      text += url[i];
+    }
+  }
+  return text;
+}
+
+// Every tag that opens is closed, in order.
+void expect_balanced(const std::string& page) {
+  static const std::regex kTag("<(/?)([a-z0-9]+)[^>]*>");
+  static const std::set<std::string> kVoid = {"meta", "link", "img"};
+  std::vector<std::string> open;
+  for (std::sregex_iterator found(page.begin(), page.end(), kTag), end; found != end; ++found) {
+    const std::string name = (*found)[2];
+    if (kVoid.count(name) != 0) {
+      continue;
+    }
+    if ((*found)[1].length() == 0) {
+      open.push_back(name);
+    } else {
+      ASSERT_FALSE(open.empty()) << name;
+      ASSERT_EQ(open.back(), name);
+      open.pop_back();
+    }
+  }
+  EXPECT_TRUE(open.empty());
+}
+
+CellRecord make_illustrated_cell(const std::string& scene, const std::string& filter) {
+  CellRecord cell = make_cell(scene, filter, 4.0);
+  cell.images = {scene + "." + filter + ".png", scene + "." + filter + ".visibility.png", scene + ".depth.png",
+                 scene + ".grid.png", scene + ".exr"};
+  return cell;
+}
+
+TEST(Html, HostileNames_AreEscaped) {
+  CellRecord cell = make_illustrated_cell("<script>alert('1')</script>", "\"><img src=x onerror=y>");
+  cell.status = CellStatus::kError;
+  cell.message = "</td></table><b>";
+  cell.params["<i>"] = std::string("&lt;");
+  RunRecord run = make_run();
+  run.warnings = {"<u>"};
+  run.gl.renderer = "<s>";
+  const std::string page = make_index_html(run, {cell});
+  for (const char* tag : {"<script", "<img src=x", "<b>", "<i>", "<u>", "<s>"}) {
+    EXPECT_THAT(page, Not(HasSubstr(tag)));
+  }
+  EXPECT_THAT(page, HasSubstr("&lt;script&gt;alert(&#39;1&#39;)"));
+  expect_balanced(page);
+}
+
+TEST(Html, Page_LoadsNothingFromElsewhere) {
+  const std::string page = make_index_html(make_run(), {make_illustrated_cell("cubes", "vsm")});
+  for (const std::string& url : list_links(page)) {
+    EXPECT_THAT(url, Not(::testing::AnyOf(HasSubstr("//"), ::testing::StartsWith("/")))) << url;
+  }
+  EXPECT_THAT(page, Not(HasSubstr("@import")));
+  EXPECT_THAT(page, Not(HasSubstr("url(")));
+  EXPECT_THAT(page, HasSubstr("prefers-color-scheme: dark"));
+  expect_balanced(page);
+}
+
+TEST(Html, EveryLink_LeadsToAFileOfTheReport) {
+  const TemporaryFolder folder("html_links");
+  std::vector<std::string> keys;
+  for (const std::string scene : {"cubes", "we ird#%<scene>?"}) {
+    const CellRecord cell = make_illustrated_cell(scene, "vsm");
+    for (const auto& path : {cell.images.picture, cell.images.visibility, cell.images.depth_map, cell.images.grid}) {
+      write_grey_png(folder.path() / *path, Image(2, 2, 1));
+    }
+    write_exr(folder.path() / *cell.images.exr, {{"a", {"Y"}, Image(2, 2, 1)}}, {});
+    write_cell(folder.path(), cell);
+    keys.push_back(cell.key);
+  }
+  write_report(folder.path(), make_run(), keys);
+  const std::string page = read_text(folder.path() / "index.html");
+  std::size_t files = 0;
+  for (const std::string& url : list_links(page)) {
+    if (url.front() == '#') {
+      EXPECT_THAT(page, HasSubstr("id=\"" + url.substr(1) + "\""));
+    } else if (url.rfind("data:", 0) != 0) {
+      EXPECT_TRUE(std::filesystem::exists(folder.path() / decode_url(url))) << url;
+      ++files;
+    }
+  }
+  EXPECT_EQ(files, 14u);
+}
+
+TEST(Html, Page_HoldsWhatTheReportIsOf) {
+  RunRecord run = make_run();
+  run.warnings = {"something is odd"};
+  CellRecord failed = make_cell("cubes", "mine", 4.0);
+  failed.status = CellStatus::kCrashed;
+  failed.message = "signal 11";
+  const std::string page = make_index_html(run, {make_illustrated_cell("cubes", "vsm"), failed});
+  for (const char* text : {"cubes: Three cubes on a floor", "Some CPU", "something is odd", "crashed: signal 11",
+                           "CPU time (software rasteriser)", "cubes.grid.png", "cubes.depth.png", "cubes.exr",
+                           "timings.csv", "results.json", "no truth in this run", "class=\"scroll\""}) {
+    EXPECT_THAT(page, HasSubstr(text));
+  }
+}
+
+TEST(Report, OfNoCell_IsWritten) {
+  const TemporaryFolder folder("report_empty");
+  write_report(folder.path(), make_run(), {});
+  for (const char* name : {"results.json", "results.schema.json", "timings.csv", "summary.md", "index.html"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
+  }
+  expect_balanced(read_text(folder.path() / "index.html"));
+}
+
+}  // namespace
+}  // namespace shadowbench::report

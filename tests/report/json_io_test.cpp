@@ -1,0 +1,237 @@
+#include "report/json_io.h"
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "filters/error.h"
+#include "report/atomic_file.h"
+#include "synthetic.h"
+
+namespace shadowbench::report {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+// Debian's python3-jsonschema is the judge of the schema.
+bool is_valid(const std::filesystem::path& file, const std::filesystem::path& schema) {
+  const std::string command =
+      "/usr/bin/python3 -m jsonschema -i '" + file.string() + "' '" + schema.string() + "' >/dev/null 2>&1";
+  return std::system(command.c_str()) == 0;
+}
+
+std::vector<std::string> write_cells(const std::filesystem::path& dir, const std::vector<CellRecord>& cells) {
+  std::vector<std::string> keys;
+  for (const CellRecord& cell : cells) {
+    write_cell(dir, cell);
+    keys.push_back(cell.key);
+  }
+  return keys;
+}
+
+CellRecord make_timed_out_cell() {
+  CellRecord cell = make_cell("cubes", "esm", 1.0);
+  cell.status = CellStatus::kTimeout;
+  cell.message = "no answer after 10 s";
+  cell.time_ms = {};
+  cell.ratio_to_none = {};
+  cell.images = {};
+  return cell;
+}
+
+// A cell in which everything that later issues bring exists.
+CellRecord make_full_cell() {
+  CellRecord cell = make_cell("cubes", "full", 4.0);
+  cell.time_ms.prefilter = Quartiles{1.5, 1.25, 1.75, 3};
+  cell.ratio_to_none.static_map = Ratio{1.5, {1.25, 1.75}};
+  cell.ratio_to_none.moving = Ratio{2.5, {2.25, 2.75}};
+  cell.cost.prefilter_texels = 2097152;
+  cell.error = {0.1, 0.05, 0.2, 1.0, -0.01, 0.3, 0.04};
+  cell.truth = {0.001, 0.9};
+  cell.artefact = {0.1, 0.2, 0.3, 0.4};
+  cell.attribution = {{0.1, 0.5}, {0.2, -0.1}, {0.3, 0.2}, {0.4, 0.4}};
+  cell.images = {"a.png", "b.png", "c.png", "d.png", "e.exr"};
+  cell.absent.clear();
+  return cell;
+}
+
+std::string message_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kInput);
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(JsonIo, Cell_ComesBackAsItWas) {
+  for (const CellRecord& cell : {make_cell("cubes", "vsm", 4.5), make_timed_out_cell(), make_full_cell()}) {
+    const json written = to_json(cell);
+    EXPECT_EQ(to_json(cell_from_json(written, "here")), written);
+  }
+  const CellRecord back = cell_from_json(to_json(make_full_cell()), "here");
+  EXPECT_EQ(back.attribution.estimator.share, -0.1);
+  EXPECT_EQ(back.error.kernel_rmse, 0.04);
+  EXPECT_EQ(back.ratio_to_none.moving->ci95.high, 2.75);
+  EXPECT_EQ(back.time_ms.prefilter->n, 3);
+  EXPECT_EQ(back.images.exr, "e.exr");
+  EXPECT_EQ(std::get<std::string>(back.params.at("store")), "rg32f");
+}
+
+TEST(JsonIo, FullCell_HasNoNullButStability) {
+  EXPECT_THAT(to_json(make_full_cell()).at("absent"), json({{"stability", "not measured"}}));
+}
+
+TEST(JsonIo, NotFinite_IsNullWithItsReason) {
+  CellRecord cell = make_cell("cubes", "vsm", 4.0);
+  cell.cost.fetches = std::numeric_limits<double>::quiet_NaN();
+  cell.time_ms.lookup->q3 = std::numeric_limits<double>::infinity();
+  const json written = to_json(cell);
+  EXPECT_TRUE(written.at("cost").at("fetches").is_null());
+  EXPECT_TRUE(written.at("time_ms").at("lookup").is_null());
+  EXPECT_EQ(written.at("absent").at("cost.fetches"), "the value was not finite");
+  EXPECT_EQ(written.at("absent").at("time_ms.lookup"), "the value was not finite");
+}
+
+void expect_explained(const json& value, const std::string& path, const json& absent) {
+  const std::string group = path.substr(0, path.find('.'));
+  const std::string middle = path.substr(0, path.rfind('.'));
+  if (value.is_null()) {
+    EXPECT_TRUE(absent.contains(path) || absent.contains(group) || absent.contains(middle)) << path;
+  } else if (value.is_object()) {
+    for (const auto& [name, child] : value.items()) {
+      expect_explained(child, path.empty() ? name : path + "." + name, absent);
+    }
+  }
+}
+
+TEST(JsonIo, EveryNull_HasAReason) {
+  for (const CellRecord& cell : {make_cell("cubes", "vsm", 4.5), make_timed_out_cell(), CellRecord{}}) {
+    const json written = to_json(cell);
+    expect_explained(written, "", written.at("absent"));
+  }
+  EXPECT_EQ(to_json(make_cell("cubes", "vsm", 4.5)).at("absent").at("error"), "no truth in this run");
+}
+
+TEST(JsonIo, TextThatIsNotUtf8_IsWrittenAllTheSame) {
+  const TemporaryFolder folder("json_utf8");
+  CellRecord cell = make_cell("bad\xff", "vsm", 4.0);
+  write_cell(folder.path(), cell);
+  EXPECT_EQ(read_cell(folder.path(), cell.key).scene, "bad\xEF\xBF\xBD");
+}
+
+TEST(JsonIo, Results_AreValidAgainstTheirSchema) {
+  const TemporaryFolder folder("json_valid");
+  RunRecord run = make_run();
+  run.warnings = {"a \"warning\""};
+  run.machine.load_at_start = std::nullopt;
+  const auto keys =
+      write_cells(folder.path(), {make_cell("cubes", "vsm", 4.5), make_timed_out_cell(), make_full_cell()});
+  write_results(folder.path(), run, keys);
+  EXPECT_TRUE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
+  EXPECT_EQ(read_text(folder.path() / "results.schema.json"),
+            read_text(std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "report" / "results.schema.json"));
+}
+
+TEST(JsonIo, ResultsOfNoCell_AreValidToo) {
+  const TemporaryFolder folder("json_empty");
+  write_results(folder.path(), make_run(), {});
+  EXPECT_TRUE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
+  EXPECT_TRUE(read_results(folder.path() / "results.json").cells.empty());
+}
+
+TEST(JsonIo, CellFile_IsValidAgainstItsPartOfTheSchema) {
+  const TemporaryFolder folder("json_cell");
+  const CellRecord cell = make_cell("cubes", "vsm", 4.5);
+  write_cell(folder.path(), cell);
+  json schema = json::parse(results_schema());
+  schema = {{"$schema", schema["$schema"]}, {"$ref", "#/$defs/cell_file"}, {"$defs", schema["$defs"]}};
+  write_text_file(folder.path() / "schema.json", schema.dump());
+  EXPECT_TRUE(is_valid(cell_path(folder.path(), cell.key), folder.path() / "schema.json"));
+}
+
+// One broken results.json per line: each must be refused by the schema.
+TEST(JsonIo, BrokenRecords_AreRefusedByTheSchema) {
+  const TemporaryFolder folder("json_broken");
+  const auto keys = write_cells(folder.path(), {make_cell("cubes", "vsm", 4.5)});
+  write_results(folder.path(), make_run(), keys);
+  const json good = json::parse(read_text(folder.path() / "results.json"));
+  const std::vector<json> patches = {
+      json::parse(R"([{"op": "remove", "path": "/cells/0/time_ms/map"}])"),
+      json::parse(R"([{"op": "add", "path": "/cells/0/extra", "value": 1}])"),
+      json::parse(R"([{"op": "add", "path": "/cells/0/error/extra", "value": 1}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/time_ms/lookup/n", "value": "9"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/status", "value": "fine"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/status", "value": "timeout"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/params/radius", "value": null}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/key", "value": "../../x"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/images/picture", "value": "/etc/passwd"}])"),
+      json::parse(R"([{"op": "replace", "path": "/schema_version", "value": 2}])"),
+      json::parse(R"([{"op": "remove", "path": "/gl/timer"}])"),
+      json::parse(R"([{"op": "add", "path": "/gl/extra", "value": 1}])"),
+  };
+  for (const json& patch : patches) {
+    write_text_file(folder.path() / "broken.json", good.patch(patch).dump());
+    EXPECT_FALSE(is_valid(folder.path() / "broken.json", folder.path() / "results.schema.json")) << patch;
+  }
+  EXPECT_TRUE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
+}
+
+TEST(JsonIo, Results_HoldTheNamedCellsInTheGivenOrder) {
+  const TemporaryFolder folder("json_order");
+  auto keys = write_cells(
+      folder.path(), {make_cell("cubes", "none", 4.0), make_cell("cubes", "vsm", 5.0), make_cell("stale", "vsm", 6.0)});
+  keys = {keys[1], keys[0]};
+  write_results(folder.path(), make_run(), keys);
+  const Results results = read_results(folder.path() / "results.json");
+  ASSERT_EQ(results.cells.size(), 2u);
+  EXPECT_EQ(results.cells[0].filter, "vsm");
+  EXPECT_EQ(results.cells[1].filter, "none");
+  EXPECT_EQ(to_json(results.run), to_json(make_run()));
+}
+
+TEST(JsonIo, CutOffFile_IsAnInputErrorThatNamesItAndSaysWhatToDo) {
+  const TemporaryFolder folder("json_cut");
+  const CellRecord cell = make_cell("cubes", "vsm", 4.5);
+  write_cell(folder.path(), cell);
+  const std::string whole = read_text(cell_path(folder.path(), cell.key));
+  write_text_file(cell_path(folder.path(), cell.key), whole.substr(0, whole.size() / 2));
+  const std::string message = message_of([&] { read_cell(folder.path(), cell.key); });
+  EXPECT_THAT(message, HasSubstr(cell_path(folder.path(), cell.key).string()));
+  EXPECT_THAT(message, HasSubstr("cut off"));
+  EXPECT_THAT(message, HasSubstr("delete it and run again"));
+  EXPECT_THAT(message_of([&] { write_results(folder.path(), make_run(), {cell.key}); }), HasSubstr("cut off"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "results.json"));
+}
+
+TEST(JsonIo, OtherSchemaVersion_IsAnInputError) {
+  const TemporaryFolder folder("json_version");
+  write_text_file(folder.path() / "results.json", R"({"schema_version": 99})");
+  EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }),
+              HasSubstr("schema_version is 99, and this program reads 1"));
+  write_text_file(folder.path() / "results.json", "[]");
+  EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }), HasSubstr("is missing"));
+}
+
+TEST(JsonIo, MissingFile_IsAnInputError) {
+  EXPECT_THAT(message_of([] { read_results("/nowhere/results.json"); }), HasSubstr("/nowhere/results.json"));
+}
+
+TEST(JsonIo, FieldOfAnotherType_IsAnInputErrorThatNamesTheField) {
+  json written = to_json(make_cell("cubes", "vsm", 4.5));
+  written["cost"]["passes"] = 1.5;
+  EXPECT_THAT(message_of([&] { cell_from_json(written, "f.json"); }), HasSubstr("f.json: the field 'cost.passes'"));
+  written = to_json(make_cell("cubes", "vsm", 4.5));
+  written["status"] = "fine";
+  EXPECT_THAT(message_of([&] { cell_from_json(written, "f.json"); }), HasSubstr("'status'"));
+  written.erase("status");
+  EXPECT_THAT(message_of([&] { cell_from_json(written, "f.json"); }), HasSubstr("'status' is missing"));
+  EXPECT_THAT(message_of([&] { cell_from_json(json(), "f.json"); }), HasSubstr("is missing"));
+}
+
+}  // namespace
+}  // namespace shadowbench::report

@@ -1,0 +1,166 @@
+#include "report/picture_io.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "filters/error.h"
+#include "report/atomic_file.h"
+#include "synthetic.h"
+
+namespace shadowbench::report {
+namespace {
+
+Image make_noise(int width, int height, int channels) {
+  Image image(width, height, channels);
+  for (std::size_t i = 0; i < image.texels.size(); ++i) {
+    image.texels[i] = std::sin(static_cast<float>(i) * 12.9898f) * 43758.547f;
+  }
+  return image;
+}
+
+bool has_same_bits(const Image& a, const Image& b) {
+  return a.width == b.width && a.height == b.height && a.channels == b.channels &&
+         std::memcmp(a.texels.data(), b.texels.data(), a.texels.size() * sizeof(float)) == 0;
+}
+
+int code_at(const Image& image, int x, int channel) {
+  return static_cast<int>(std::lround(image.at(x, 0)[channel] * 255.0f));
+}
+
+std::size_t count_files(const std::filesystem::path& dir) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(dir), {}));
+}
+
+TEST(PictureIo, Srgb_EqualsTheStandardsValues) {
+  EXPECT_EQ(encode_srgb(-1.0f), 0.0f);
+  EXPECT_NEAR(encode_srgb(0.002f), 0.02584f, 1e-6f);
+  EXPECT_NEAR(encode_srgb(0.5f), 0.735357f, 1e-5f);
+  EXPECT_FLOAT_EQ(encode_srgb(9.0f), 1.0f);
+  EXPECT_TRUE(std::isnan(encode_srgb(std::numeric_limits<float>::quiet_NaN())));
+}
+
+TEST(PictureIo, PicturePng_IsEncodedForADisplay) {
+  const TemporaryFolder folder("png_picture");
+  Image picture(2, 1, 3);
+  picture.texels = {0.0f, 0.5f, 1.0f, -1.0f, 2.0f, 0.2158605f};
+  write_picture_png(folder.path() / "a.png", picture);
+  const Image back = read_picture(folder.path() / "a.png");
+  ASSERT_EQ(back.channels, 3);
+  EXPECT_EQ(code_at(back, 0, 0), 0);
+  EXPECT_EQ(code_at(back, 0, 1), 188);
+  EXPECT_EQ(code_at(back, 0, 2), 255);
+  EXPECT_EQ(code_at(back, 1, 0), 0);
+  EXPECT_EQ(code_at(back, 1, 1), 255);
+  EXPECT_EQ(code_at(back, 1, 2), 128);
+  EXPECT_EQ(count_files(folder.path()), 1u);
+}
+
+TEST(PictureIo, GreyPng_IsLinearInTheValue) {
+  const TemporaryFolder folder("png_grey");
+  Image image(4, 1, 1);
+  image.texels = {0.0f, 0.5f, 1.0f, 2.0f};
+  write_grey_png(folder.path() / "a.png", image);
+  const Image back = read_picture(folder.path() / "a.png");
+  ASSERT_EQ(back.channels, 1);
+  EXPECT_EQ(code_at(back, 1, 0), 128);
+  EXPECT_EQ(code_at(back, 3, 0), 255);
+  write_grey_png(folder.path() / "b.png", image, {1.0f, 0.0f});
+  EXPECT_EQ(code_at(read_picture(folder.path() / "b.png"), 0, 0), 255);
+  EXPECT_EQ(code_at(read_picture(folder.path() / "b.png"), 2, 0), 0);
+}
+
+TEST(PictureIo, TexelThatIsNotFinite_IsMagenta) {
+  const TemporaryFolder folder("png_nan");
+  Image image(2, 1, 1);
+  image.texels = {0.25f, std::numeric_limits<float>::quiet_NaN()};
+  write_grey_png(folder.path() / "a.png", image);
+  const Image grey = read_picture(folder.path() / "a.png");
+  ASSERT_EQ(grey.channels, 3);
+  EXPECT_EQ(code_at(grey, 0, 1), 64);
+  EXPECT_EQ(code_at(grey, 1, 0), 255);
+  EXPECT_EQ(code_at(grey, 1, 1), 0);
+  EXPECT_EQ(code_at(grey, 1, 2), 255);
+}
+
+TEST(PictureIo, Exr_ComesBackBitForBit) {
+  const TemporaryFolder folder("exr_bits");
+  Image special = make_noise(7, 5, 1);
+  special.texels[3] = std::numeric_limits<float>::infinity();
+  special.texels[4] = std::numeric_limits<float>::denorm_min();
+  special.texels[5] = -0.0f;
+  special.texels[6] = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<Part> parts = {{"gbuffer", {"X", "Y", "Z"}, make_noise(7, 5, 3)},
+                                   {"vsm.visibility", {"visibility"}, special},
+                                   {"attribution", {"numeric", "estimator", "bias"}, make_noise(7, 5, 3)},
+                                   {"vsm.picture", {"R", "G", "B"}, make_noise(7, 5, 3)}};
+  const Metadata metadata = {{"shadowbench:seed", 7.0},
+                             {"shadowbench:command", std::string("shadowbench run --seed 7")}};
+  write_exr(folder.path() / "a.exr", parts, metadata);
+  const ExrFile back = read_exr(folder.path() / "a.exr");
+  ASSERT_EQ(back.parts.size(), parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    EXPECT_EQ(back.parts[i].name, parts[i].name);
+    EXPECT_EQ(back.parts[i].channel_names, parts[i].channel_names) << parts[i].name;
+    EXPECT_TRUE(has_same_bits(back.parts[i].image, parts[i].image)) << parts[i].name;
+    EXPECT_FALSE(back.parts[i].half);
+  }
+  EXPECT_EQ(back.metadata.at("shadowbench:seed"), metadata.at("shadowbench:seed"));
+  EXPECT_EQ(back.metadata.at("shadowbench:command"), metadata.at("shadowbench:command"));
+  EXPECT_EQ(count_files(folder.path()), 1u);
+}
+
+TEST(PictureIo, ExrParts_MayDifferInSize) {
+  const TemporaryFolder folder("exr_sizes");
+  const std::vector<Part> parts = {{"visibility", {"visibility"}, make_noise(8, 4, 1)},
+                                   {"depth", {"Z"}, make_noise(32, 32, 1)}};
+  write_exr(folder.path() / "a.exr", parts, {});
+  const ExrFile back = read_exr(folder.path() / "a.exr");
+  ASSERT_EQ(back.parts.size(), 2u);
+  EXPECT_TRUE(has_same_bits(back.parts[1].image, parts[1].image));
+}
+
+TEST(PictureIo, HalfPart_IsRoundedToHalf) {
+  const TemporaryFolder folder("exr_half");
+  Image image(2, 1, 1);
+  image.texels = {0.5f, 0.1f};
+  write_exr(folder.path() / "a.exr", {{"picture", {"Y"}, image, true}}, {});
+  const Part part = read_exr(folder.path() / "a.exr").parts.at(0);
+  EXPECT_TRUE(part.half);
+  EXPECT_EQ(part.image.texels[0], 0.5f);
+  EXPECT_EQ(part.image.texels[1], 0.0999755859375f);
+}
+
+TEST(PictureIo, PartsOfOneName_AreAnOutputError) {
+  const TemporaryFolder folder("exr_names");
+  const Part part{"a", {"Y"}, make_noise(2, 2, 1)};
+  EXPECT_THROW(write_exr(folder.path() / "a.exr", {part, part}, {}), Error);
+  EXPECT_THROW(write_exr(folder.path() / "a.exr", {{"a", {"Y", "Y"}, make_noise(2, 2, 2)}}, {}), Error);
+  EXPECT_EQ(count_files(folder.path()), 0u);
+}
+
+TEST(PictureIo, FolderThatIsAFile_IsAnOutputError) {
+  const TemporaryFolder folder("exr_folder");
+  write_text_file(folder.path() / "file", "");
+  EXPECT_THROW(write_grey_png(folder.path() / "file" / "a.png", Image(2, 2, 1)), Error);
+  EXPECT_THROW(write_exr(folder.path() / "file" / "a.exr", {{"a", {"Y"}, Image(2, 2, 1)}}, {}), Error);
+}
+
+TEST(PictureIo, DamagedFile_IsAnInputError) {
+  const TemporaryFolder folder("exr_damaged");
+  write_text_file(folder.path() / "a.exr", "not an image");
+  for (const char* name : {"a.exr", "missing.exr"}) {
+    try {
+      read_exr(folder.path() / name);
+      FAIL() << name;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kInput);
+      EXPECT_THAT(error.what(), ::testing::HasSubstr(name));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace shadowbench::report

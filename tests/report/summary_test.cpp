@@ -1,0 +1,116 @@
+#include "report/summary.h"
+
+#include <gmock/gmock.h>
+
+#include "synthetic.h"
+
+namespace shadowbench::report {
+namespace {
+
+using ::testing::Contains;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+CellRecord make_ranked(const std::string& filter, double low, double median, double high) {
+  CellRecord cell = make_cell("cubes", filter, median);
+  cell.ratio_to_none.lookup = Ratio{median, {low, high}};
+  return cell;
+}
+
+TEST(Summary, Numbers_HaveThreeDigits) {
+  EXPECT_EQ(format_number(0.05124), "0.0512");
+  EXPECT_EQ(format_number(4.0), "4");
+  EXPECT_EQ(format_number(13.94), "13.9");
+  EXPECT_EQ(format_number(99.96), "100");
+  EXPECT_EQ(format_number(1240.4), "1240");
+  EXPECT_EQ(format_number(4194304.0), "4194304");
+}
+
+TEST(Summary, SoftwareTimes_AreCalledCpuTime) {
+  GlRecord gl = make_run().gl;
+  EXPECT_EQ(describe_clock(gl), "CPU time (software rasteriser)");
+  EXPECT_EQ(time_unit(gl), "ms (CPU)");
+  gl.software = false;
+  gl.timer = TimerKind::kTimerQuery;
+  EXPECT_EQ(describe_clock(gl), "GPU time (timer query)");
+  EXPECT_EQ(time_unit(gl), "ms (GPU)");
+}
+
+TEST(Summary, Ranking_GoesByRatioAndTiesOverlappingIntervals) {
+  const std::vector<CellRecord> cells = {make_ranked("slow", 3.0, 3.1, 3.2), make_ranked("none", 1.0, 1.0, 1.0),
+                                         make_ranked("near", 0.98, 1.01, 1.04), make_ranked("apart", 1.05, 1.1, 1.15)};
+  EXPECT_THAT(rank_lookups(cells), ElementsAre(ElementsAre(1, 2), ElementsAre(3), ElementsAre(0)));
+}
+
+TEST(Summary, Ties_AreWithTheFastestOfAGroup) {
+  const std::vector<CellRecord> chain = {make_ranked("a", 1.0, 1.1, 1.2), make_ranked("b", 1.15, 1.25, 1.35),
+                                         make_ranked("c", 1.3, 1.4, 1.5)};
+  EXPECT_THAT(rank_lookups(chain), ElementsAre(ElementsAre(0, 1), ElementsAre(2)));
+}
+
+TEST(Summary, WithoutRatios_QuartilesRankAndUntimedCellsAreLeftOut) {
+  std::vector<CellRecord> cells = {make_cell("cubes", "a", 9.0), make_cell("cubes", "b", 4.0),
+                                   make_cell("cubes", "c", 4.1), make_cell("cubes", "d", 1.0)};
+  cells[0].ratio_to_none.lookup.reset();
+  cells[3].time_ms.lookup.reset();
+  EXPECT_THAT(rank_lookups(cells), ElementsAre(ElementsAre(1, 2), ElementsAre(0)));
+}
+
+TEST(Summary, OverlappingFilters_AreCalledTied) {
+  const CellGroup group{
+      "cubes",
+      {make_ranked("none", 1.0, 1.0, 1.0), make_ranked("pcf2x2", 0.98, 1.01, 1.04), make_ranked("vsm", 2.0, 2.1, 2.2)}};
+  const auto sentences = describe_group(group, make_run().gl);
+  EXPECT_THAT(sentences, Contains("Lookup, fastest first: none tied with pcf2x2; then vsm."));
+  EXPECT_THAT(sentences, Contains(HasSubstr("CPU time (software rasteriser)")));
+}
+
+TEST(Summary, FailedCellsAndPixelsThatAreNotFinite_AreSaid) {
+  CellGroup group{"cubes", {make_cell("cubes", "vsm", 4.0), make_cell("cubes", "mine", 4.0)}};
+  group.cells[0].nan = 12;
+  group.cells[1].status = CellStatus::kTimeout;
+  group.cells[1].message = "no answer after 10 s";
+  group.cells[1].time_ms = {};
+  const auto sentences = describe_group(group, make_run().gl);
+  EXPECT_THAT(sentences, Contains("vsm has 12 pixels that are not finite."));
+  EXPECT_THAT(sentences, Contains("mine did not finish (timeout: no answer after 10 s)."));
+}
+
+TEST(Summary, OneFilterTwice_IsToldApartByItsParameters) {
+  CellGroup group{"cubes", {make_ranked("vsm", 1.0, 1.0, 1.0), make_ranked("vsm", 2.0, 2.0, 2.0)}};
+  group.cells[1].params["radius"] = 8.0;
+  EXPECT_THAT(describe_group(group, make_run().gl)[0],
+              HasSubstr("vsm (radius 4, store rg32f); then vsm (radius 8, store rg32f)"));
+}
+
+TEST(Summary, Groups_HoldOnlyWhatMayBeCompared) {
+  std::vector<CellRecord> cells = {make_cell("cubes", "none", 4.0), make_cell("stack", "none", 4.0),
+                                   make_cell("cubes", "vsm", 4.0), make_cell("cubes", "vsm", 4.0)};
+  cells[3].map_size = 2048;
+  const auto groups = group_cells(cells);
+  ASSERT_THAT(groups, SizeIs(3));
+  EXPECT_THAT(groups[0].cells, SizeIs(2));
+  EXPECT_EQ(groups[1].scene, "stack");
+  EXPECT_EQ(groups[2].cells[0].map_size, 2048);
+}
+
+TEST(Summary, TableRows_AreAsLongAsTheHeader) {
+  CellRecord empty;
+  empty.filter = "mine";
+  const TextTable table = make_table({"cubes", {make_cell("cubes", "vsm", 4.0), empty}}, make_run().gl);
+  EXPECT_THAT(table.rows, Each(SizeIs(table.header.size())));
+  EXPECT_THAT(table.header, Contains("lookup, ms (CPU), median [quartiles]"));
+  EXPECT_THAT(table.rows[0], Contains("4 [3.92, 4.08]"));
+  EXPECT_THAT(table.rows[1], Not(Contains(HasSubstr("nan"))));
+}
+
+TEST(Summary, Absences_AreCounted) {
+  const auto counts = count_absences({make_cell("cubes", "a", 1.0), make_cell("cubes", "b", 1.0)});
+  EXPECT_EQ(counts.at("error: no truth in this run"), 2);
+}
+
+}  // namespace
+}  // namespace shadowbench::report

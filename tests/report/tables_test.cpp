@@ -1,0 +1,102 @@
+#include "report/tables.h"
+
+#include <gmock/gmock.h>
+
+#include "synthetic.h"
+
+namespace shadowbench::report {
+namespace {
+
+using ::testing::Each;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+// Reads CSV by RFC 4180: what a spreadsheet would see.
+std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
+  std::vector<std::vector<std::string>> rows(1, {""});
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (quoted && text.compare(i, 2, "\"\"") == 0) {
+      rows.back().back() += text[++i];
+    } else if (text[i] == '"') {
+      quoted = !quoted;
+    } else if (!quoted && text[i] == ',') {
+      rows.back().emplace_back();
+    } else if (!quoted && text.compare(i, 2, "\r\n") == 0) {
+      rows.push_back({""});
+      ++i;
+    } else {
+      rows.back().back() += text[i];
+    }
+  }
+  rows.pop_back();
+  return rows;
+}
+
+std::string field(const std::vector<std::vector<std::string>>& rows, std::size_t row, const std::string& column) {
+  const auto found = std::find(rows[0].begin(), rows[0].end(), column);
+  EXPECT_NE(found, rows[0].end()) << column;
+  return rows.at(row).at(static_cast<std::size_t>(found - rows[0].begin()));
+}
+
+TEST(TimingsCsv, EveryRow_HasEveryColumn) {
+  CellRecord failed;
+  failed.scene = "a \"scene\",\r\nwith everything";
+  failed.status = CellStatus::kCrashed;
+  failed.message = "signal 11, \"segfault\"";
+  const auto rows = parse_csv(make_timings_csv(make_run(), {make_cell("cubes", "vsm", 4.5), failed}));
+  ASSERT_THAT(rows, SizeIs(3));
+  EXPECT_THAT(rows, Each(SizeIs(list_csv_columns().size())));
+  EXPECT_EQ(field(rows, 2, "scene"), failed.scene);
+  EXPECT_EQ(field(rows, 2, "message"), failed.message);
+  EXPECT_EQ(field(rows, 2, "lookup_median_ms"), "");
+}
+
+TEST(TimingsCsv, Fields_HoldTheirColumnsValues) {
+  CellRecord cell = make_cell("cubes", "vsm", 4.5);
+  cell.time_ms.prefilter = Quartiles{12.5, 12.25, 12.75, 8};
+  cell.ratio_to_none.static_map = Ratio{1.5, {1.25, 1.75}};
+  cell.ratio_to_none.moving = Ratio{2.5, {2.25, 2.75}};
+  const auto rows = parse_csv(make_timings_csv(make_run(), {cell}));
+  EXPECT_EQ(field(rows, 1, "clock"), "CPU time (software rasteriser)");
+  EXPECT_EQ(field(rows, 1, "params"), R"({"radius":4,"store":"rg32f"})");
+  EXPECT_EQ(field(rows, 1, "lookup_median_ms"), "4.5");
+  EXPECT_EQ(field(rows, 1, "prefilter_q1_ms"), "12.25");
+  EXPECT_EQ(field(rows, 1, "prefilter_n"), "8");
+  EXPECT_EQ(field(rows, 1, "map_q3_ms"), "3.75");
+  EXPECT_EQ(field(rows, 1, "ratio_lookup_median"), "1.125");
+  EXPECT_EQ(field(rows, 1, "ratio_static_low"), "1.25");
+  EXPECT_EQ(field(rows, 1, "ratio_moving_high"), "2.75");
+  EXPECT_EQ(field(rows, 1, "map_bytes"), "4194304");
+  EXPECT_EQ(field(rows, 1, "key"), cell.key);
+}
+
+TEST(TimingsCsv, Numbers_ReadBackAsTheSameDoubles) {
+  const double value = 0.1 + 0.2;
+  CellRecord cell = make_cell("cubes", "vsm", value);
+  const auto rows = parse_csv(make_timings_csv(make_run(), {cell}));
+  EXPECT_EQ(std::stod(field(rows, 1, "lookup_median_ms")), value);
+}
+
+TEST(SummaryMd, HoldsTheRunTheTablesAndTheReasons) {
+  RunRecord run = make_run();
+  run.warnings = {"something is odd"};
+  const std::string summary = make_summary(run, {make_cell("cubes", "vsm", 4.5), make_cell("stack", "vsm", 4.5)});
+  for (const char* text : {"Some CPU", "llvmpipe", "All times are CPU time (software rasteriser)", "## cubes",
+                           "## stack", "| vsm |", "something is odd", "error: no truth in this run (2 of 2 cells)",
+                           "`lookup_median_ms`: filtered lookup", "Debian GNU/Linux 12", "40 passes run"}) {
+    EXPECT_THAT(summary, HasSubstr(text));
+  }
+}
+
+TEST(SummaryMd, Names_CannotBreakTheTable) {
+  EXPECT_EQ(escape_markdown("a|b\n<c> `d` *e* [f]_g"), "a\\|b \\<c\\> \\`d\\` \\*e\\* \\[f\\]\\_g");
+  CellRecord cell = make_cell("a|b", "x|y", 4.0);
+  cell.message = "line 1\nline 2 | 3";
+  cell.status = CellStatus::kError;
+  EXPECT_THAT(make_summary(make_run(), {cell}), HasSubstr("| x\\|y |"));
+  EXPECT_THAT(make_summary(make_run(), {cell}), HasSubstr("line 1 line 2 \\| 3 |"));
+}
+
+}  // namespace
+}  // namespace shadowbench::report
