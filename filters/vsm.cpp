@@ -19,9 +19,7 @@ class Vsm {
     const auto moments = map_.fetch(r, tally);
     const T distance = maximum(T(static_cast<P>(r.depth)) - moments[0], zero);
     const T variance = maximum(moments[1] - moments[0] * moments[0], T(min_variance_));
-    const T spread = variance + distance * distance;
-    // Without a minimum variance this is 0/0 on lit surfaces, where the GLSL returns early.
-    const T bound = value_of(spread) > 0.0 ? variance / spread : one;
+    const T bound = value_of(variance) > 0.0 ? chebyshev(variance, distance) : value_of(distance) > 0.0 ? zero : one;
     return maximum(bound - T(reduction_), zero) / (one - T(reduction_));
   }
 
@@ -29,6 +27,12 @@ class Vsm {
   EncodedMap<T, 2> map_;
   P min_variance_;
   P reduction_;
+
+  /// The GLSL's v / (v + d^2), written with one v: a propagated bound would count the error of the other one again.
+  static T chebyshev(T variance, T distance) {
+    const T one(P(1));
+    return one / (one + distance * distance / variance);
+  }
 
   static std::array<T, 2> encode(T depth) { return {depth, depth * depth}; }
 };

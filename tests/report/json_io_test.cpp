@@ -114,7 +114,11 @@ TEST(JsonIo, EveryNull_HasAReason) {
     const json written = to_json(cell);
     expect_explained(written, "", written.at("absent"));
   }
-  EXPECT_EQ(to_json(make_cell("cubes", "vsm", 4.5)).at("absent").at("error"), "no truth in this run");
+  const json absent = to_json(make_cell("cubes", "vsm", 4.5)).at("absent");
+  EXPECT_EQ(absent.at("error"), "no truth in this run");
+  EXPECT_EQ(absent.at("artefact"), "not measured");
+  EXPECT_EQ(absent.at("cost.prefilter_texels"), "not measured");
+  EXPECT_FALSE(absent.contains("cost"));
 }
 
 TEST(JsonIo, TextThatIsNotUtf8_IsWrittenAllTheSame) {
@@ -171,6 +175,7 @@ TEST(JsonIo, BrokenRecords_AreRefusedByTheSchema) {
       json::parse(R"([{"op": "replace", "path": "/cells/0/key", "value": "../../x"}])"),
       json::parse(R"([{"op": "replace", "path": "/cells/0/images/picture", "value": "/etc/passwd"}])"),
       json::parse(R"([{"op": "replace", "path": "/schema_version", "value": 2}])"),
+      json::parse(R"([{"op": "add", "path": "/extra", "value": 1}])"),
       json::parse(R"([{"op": "remove", "path": "/gl/timer"}])"),
       json::parse(R"([{"op": "add", "path": "/gl/extra", "value": 1}])"),
   };

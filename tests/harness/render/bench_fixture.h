@@ -1,0 +1,103 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "filters/catalogue.h"
+#include "harness/gl/context.h"
+#include "harness/gl/measure.h"
+#include "harness/render/filter_passes.h"
+#include "harness/render/receivers.h"
+#include "harness/run/bias_rule.h"
+#include "harness/run/options.h"
+#include "harness/scene/load.h"
+
+namespace shadowbench::test {
+
+/// A scene drawn with one filter, everything at hand that the harness itself uses.
+class Bench {
+ public:
+  Bench(gl::Context& context, const scene::Scene& scene, int map_size = 1024, int width = 480, int height = 270)
+      : context_(context),
+        scene_(scene),
+        shaders_(run::find_resources().shaders),
+        geometry_(scene),
+        frustum_(scene::fit_light(scene, scene::FitMode::kTight, map_size, 6.0)),
+        map_(map_size),
+        gbuffer_(width, height),
+        target_("visibility", GL_R32F, width, height) {
+    map_.draw(shaders_, geometry_, frustum_);
+    gbuffer_.draw(shaders_, geometry_, scene_, scene_.cameras.front());
+  }
+
+  render::LightSetup light(const filters::FilterRequest& request, const run::BiasRule& rule = {}) const {
+    const render::Bias bias = run::resolve_bias(rule, request.spec, request.values);
+    return render::make_light_setup(frustum_, scene_.light, bias, 7);
+  }
+
+  /// Gives visibility as the GL wrote it: rows bottom to top, like Receiver::pixel.
+  std::vector<float> draw(const filters::FilterRequest& request, const run::BiasRule& rule = {}) {
+    render::FilterPasses filter(shaders_, request, map_.size(), light(request, rule));
+    filter.prefilter(map_);
+    filter.lookup(gbuffer_, map_, target_);
+    std::vector<float> visibility = target_.texture().read_floats(1);
+    context_.require_no_gl_errors();
+    return visibility;
+  }
+
+  std::vector<filters::Receiver> receivers(const filters::FilterRequest& request, const run::BiasRule& rule = {}) {
+    return render::read_receivers(shaders_, gbuffer_, light(request, rule));
+  }
+
+  std::size_t index(const filters::Receiver& r) const {
+    return static_cast<std::size_t>(r.pixel.y) * static_cast<std::size_t>(gbuffer_.width()) +
+           static_cast<std::size_t>(r.pixel.x);
+  }
+
+  render::ShaderLibrary& shaders() { return shaders_; }
+  render::GBuffer& gbuffer() { return gbuffer_; }
+  render::ShadowMap& map() { return map_; }
+  const scene::LightFrustum& frustum() const { return frustum_; }
+
+ private:
+  gl::Context& context_;
+  const scene::Scene& scene_;
+  render::ShaderLibrary shaders_;
+  render::Geometry geometry_;
+  scene::LightFrustum frustum_;
+  render::ShadowMap map_;
+  render::GBuffer gbuffer_;
+  render::ImageTarget target_;
+};
+
+/// One context for all tests of a program.
+inline gl::Context& shared_context() {
+  static gl::ContextChoice choice = gl::create_context(gl::Backend::kAuto);
+  return *choice.context;
+}
+
+inline scene::Scene load_builtin(const std::string& name) {
+  return scene::load(name, {.scenes_folder = run::find_resources().scenes});
+}
+
+inline std::vector<std::string> builtin_scenes() {
+  std::vector<std::string> names;
+  for (const auto& info : scene::list_scenes(run::find_resources().scenes)) names.push_back(info.name);
+  return names;
+}
+
+inline const filters::Catalogue& catalogue() {
+  static const filters::Catalogue filters(run::find_resources().filters);
+  return filters;
+}
+
+inline std::vector<std::string> filter_ids() {
+  std::vector<std::string> ids;
+  for (const auto& spec : catalogue().filters()) ids.push_back(spec.id);
+  return ids;
+}
+
+}  // namespace shadowbench::test

@@ -1,0 +1,133 @@
+// Every filter's model, run over the map that was read back and on the very receivers that the GPU used, agrees with
+// the GL image: these tests are what makes the filters trustworthy.
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "filters/model.h"
+#include "tests/harness/render/bench_fixture.h"
+
+namespace shadowbench::test {
+namespace {
+
+struct Agreement {
+  std::size_t compared = 0;
+  std::size_t excused = 0;
+  double worst_float = 0.0;          ///< |GL - float model|
+  double worst_double = 0.0;         ///< |GL - double model|
+  double worst_bound_ratio = 0.0;    ///< |GL - double model| / propagated bound
+  double median_bound = 0.0;
+  double shadowed = 0.0;             ///< share of receivers under 0.5: a test on lit pixels alone proves nothing
+};
+
+filters::GlAccuracy measured_accuracy() {
+  static const gl::GlMeasurement measured = gl::measure_gl(shared_context());
+  return {measured.exp_ulp, static_cast<double>(std::min(measured.rg32f.bits, measured.r32f.bits))};
+}
+
+double pcf_tolerance() {
+  static const int bits = gl::measure_pcf_weight_bits(shared_context(), GL_DEPTH_COMPONENT32F);
+  return bits >= 22 ? 1e-4 : 1.0 / 128.0;
+}
+
+Agreement compare(Bench& bench, const filters::FilterRequest& request) {
+  const std::vector<float> image = bench.draw(request);
+  const filters::DepthMap map = bench.map().read();
+  const filters::ModelInput input{request.spec, request.values, map, measured_accuracy(), 7};
+  const auto model = filters::make_model(request.spec.id);
+  const auto in_float = model->prepare(input, filters::Precision::kFloat);
+  const auto tracked = model->prepare(input, filters::Precision::kTracked);
+  Agreement result;
+  std::vector<double> bounds;
+  for (const filters::Receiver& r : bench.receivers(request)) {
+    const double gpu = static_cast<double>(image[bench.index(r)]);
+    const filters::ModelResult single = in_float->at(r), reference = tracked->at(r);
+    ++result.compared;
+    if (gpu < 0.5) result.shadowed += 1.0;
+    if (single.excused || reference.excused) {
+      ++result.excused;
+      continue;
+    }
+    result.worst_float = std::max(result.worst_float, std::abs(gpu - single.visibility));
+    result.worst_double = std::max(result.worst_double, std::abs(gpu - reference.visibility));
+    if (reference.bound > 0.0) {
+      result.worst_bound_ratio = std::max(result.worst_bound_ratio, std::abs(gpu - reference.visibility) / reference.bound);
+    }
+    bounds.push_back(reference.bound);
+  }
+  std::nth_element(bounds.begin(), bounds.begin() + static_cast<std::ptrdiff_t>(bounds.size() / 2), bounds.end());
+  result.median_bound = bounds[bounds.size() / 2];
+  result.shadowed /= static_cast<double>(result.compared);
+  return result;
+}
+
+class ModelAgreement : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {
+ protected:
+  Agreement run(const std::string& parameters = "") {
+    const auto& [scene_name, filter] = GetParam();
+    const scene::Scene scene = load_builtin(scene_name);
+    Bench bench(shared_context(), scene);
+    const Agreement a = compare(bench, catalogue().parse_requests(filter + parameters).front());
+    std::printf("%s %s%s: %zu receivers, %.3f %% excused, float %.2g, double %.2g (%.2f of its bound, median bound %.2g)\n",
+                scene_name.c_str(), filter.c_str(), parameters.c_str(), a.compared,
+                100.0 * static_cast<double>(a.excused) / static_cast<double>(a.compared), a.worst_float, a.worst_double,
+                a.worst_bound_ratio, a.median_bound);
+    EXPECT_GT(a.compared, 20000u);
+    EXPECT_GT(a.shadowed, 0.01);
+    EXPECT_LT(static_cast<double>(a.excused), 0.005 * static_cast<double>(a.compared));
+    return a;
+  }
+
+  bool is_encoded() const { return catalogue().find(std::get<1>(GetParam())).has_encode; }
+};
+
+TEST_P(ModelAgreement, GlImageEqualsModel) {
+  const Agreement a = run();
+  if (is_encoded()) {
+    EXPECT_LE(a.worst_float, 2e-3);
+    EXPECT_LE(a.worst_bound_ratio, 1.0);
+    EXPECT_LE(a.median_bound, 0.01) << "a bound this wide says nothing";
+  } else {
+    EXPECT_LE(a.worst_float, pcf_tolerance());
+    EXPECT_LE(a.worst_double, pcf_tolerance());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllFilters, ModelAgreement,
+                         ::testing::Combine(::testing::ValuesIn(builtin_scenes()), ::testing::ValuesIn(filter_ids())),
+                         [](const auto& each) { return std::get<0>(each.param) + "_" + std::get<1>(each.param); });
+
+/// Parameters that take another path through a filter.
+class ModelVariants : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(ModelVariants, GlImageEqualsModel) {
+  const scene::Scene scene = load_builtin("stack");
+  Bench bench(shared_context(), scene, 256);
+  const filters::FilterRequest request = catalogue().parse_requests(GetParam()).front();
+  const Agreement a = compare(bench, request);
+  EXPECT_GT(a.shadowed, 0.01);
+  EXPECT_LT(static_cast<double>(a.excused), 0.005 * static_cast<double>(a.compared));
+  const bool half = filters::text_or(request.values, "store", "").ends_with("16f");
+  if (request.spec.has_encode) {
+    EXPECT_LE(a.worst_bound_ratio, 1.0);
+    EXPECT_LE(a.worst_float, half ? 1.0 : 2e-3);
+  } else {
+    EXPECT_LE(a.worst_float, pcf_tolerance());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Parameters, ModelVariants,
+                         ::testing::Values("poisson:rotation=none", "poisson:rotation=interleaved-gradient,taps=8",
+                                           "poisson:radius=0,taps=4", "poisson:taps=32,radius=6", "vsm:radius=0",
+                                           "vsm:radius=12", "vsm:bleed_reduction=0.3", "vsm:min_variance=0.001,store=rg16f",
+                                           "esm:radius=0", "esm:c=20", "esm:combine=log,c=500", "esm:combine=log,radius=0",
+                                           "esm:c=8,store=r16f"),
+                         [](const auto& each) {
+                           std::string name = each.param;
+                           for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace shadowbench::test
