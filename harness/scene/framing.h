@@ -12,8 +12,8 @@ namespace shadowbench::scene {
 /// Requires at least one vertex. Reads the meshes and the light of `scene` only.
 Camera frame_camera(const Scene& scene, double aspect, std::optional<float> ground_y);
 
-/// Returns the sun of a scene of these bounds that has none: 50 degrees high, from the right of frame_camera's view and a
-/// little from the front, so that shadows fall to the left.
+/// Returns the sun of a scene of these bounds that has none: 50 degrees high, from the right of frame_camera's view and
+/// a little from the front, so that shadows fall to the left.
 Light make_default_sun(const Bounds& bounds);
 
 /// Returns the height of a floor just below the meshes: near enough to look like contact, far enough not to coincide.

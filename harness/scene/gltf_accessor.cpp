@@ -60,8 +60,8 @@ std::size_t component_size(int component_type, const std::string& owner, const s
     case TINYGLTF_COMPONENT_TYPE_FLOAT:
       return 4;
     default:
-      throw Error(ErrorKind::kInput, fmt::format("{} has component type {}, which glTF 2.0 does not know", owner,
-                                                 component_type), where);
+      throw Error(ErrorKind::kInput,
+                  fmt::format("{} has component type {}, which glTF 2.0 does not know", owner, component_type), where);
   }
 }
 
@@ -70,15 +70,18 @@ Elements place(Elements layout, Span span, std::size_t offset, const std::string
   const std::size_t element_size = component_size(layout.component_type, owner, where) * layout.components;
   if (layout.stride == 0) layout.stride = element_size;
   if (layout.stride < element_size) {
-    throw Error(ErrorKind::kInput, fmt::format("{} has a stride of {} bytes for elements of {}", owner, layout.stride,
-                                               element_size), where);
+    throw Error(ErrorKind::kInput,
+                fmt::format("{} has a stride of {} bytes for elements of {}", owner, layout.stride, element_size),
+                where);
   }
   const bool fits = layout.count > 0 && offset <= span.size && element_size <= span.size - offset &&
                     layout.count - 1 <= (span.size - offset - element_size) / layout.stride;
   if (layout.count > 0 && !fits) {
-    throw Error(ErrorKind::kInput, fmt::format("{} is out of range: {} elements of {} bytes, stride {}, from byte {} of "
-                                               "a buffer view of {} bytes", owner, layout.count, element_size,
-                                               layout.stride, offset, span.size), where);
+    throw Error(ErrorKind::kInput,
+                fmt::format("{} is out of range: {} elements of {} bytes, stride {}, from byte {} of "
+                            "a buffer view of {} bytes",
+                            owner, layout.count, element_size, layout.stride, offset, span.size),
+                where);
   }
   layout.data = span.data + offset;
   return layout;
@@ -94,8 +97,8 @@ Elements checked_elements(const tinygltf::Model& model, int index, int component
     throw Error(ErrorKind::kInput, fmt::format("{} must have {} component(s) per element", owner, components), where);
   }
   if (accessor.count > kMostElements) {
-    throw Error(ErrorKind::kInput, fmt::format("{} has {} elements; at most {} are read", owner, accessor.count,
-                                               kMostElements), where);
+    throw Error(ErrorKind::kInput,
+                fmt::format("{} has {} elements; at most {} are read", owner, accessor.count, kMostElements), where);
   }
   Elements elements{nullptr, accessor.count, 0, accessor.componentType, static_cast<std::size_t>(components)};
   component_size(accessor.componentType, owner, where);
@@ -168,12 +171,12 @@ std::vector<double> with_sparse_values(std::vector<double> values, const tinyglt
     throw Error(ErrorKind::kInput, fmt::format("{} has a count or offset out of range", owner), where);
   }
   const auto count = static_cast<std::size_t>(sparse.count);
-  const Elements slots =
-      place({nullptr, count, 0, sparse.indices.componentType, 1}, checked_view(model, sparse.indices.bufferView, owner,
-            where), static_cast<std::size_t>(sparse.indices.byteOffset), owner, where);
-  const Elements news =
-      place({nullptr, count, 0, base.component_type, base.components}, checked_view(model, sparse.values.bufferView,
-            owner, where), static_cast<std::size_t>(sparse.values.byteOffset), owner, where);
+  const Elements slots = place({nullptr, count, 0, sparse.indices.componentType, 1},
+                               checked_view(model, sparse.indices.bufferView, owner, where),
+                               static_cast<std::size_t>(sparse.indices.byteOffset), owner, where);
+  const Elements news = place({nullptr, count, 0, base.component_type, base.components},
+                              checked_view(model, sparse.values.bufferView, owner, where),
+                              static_cast<std::size_t>(sparse.values.byteOffset), owner, where);
   const std::vector<double> slot_values = load_all(slots);
   const std::vector<double> new_values = load_all(news);
   for (std::size_t i = 0; i < count; ++i) {
@@ -181,8 +184,9 @@ std::vector<double> with_sparse_values(std::vector<double> values, const tinyglt
       throw Error(ErrorKind::kInput, fmt::format("{} replaces element {} of {}", owner, slot_values[i], base.count),
                   where);
     }
-    std::copy_n(new_values.begin() + static_cast<std::ptrdiff_t>(i * base.components), base.components,
-                values.begin() + static_cast<std::ptrdiff_t>(slot_values[i]) * static_cast<std::ptrdiff_t>(base.components));
+    std::copy_n(
+        new_values.begin() + static_cast<std::ptrdiff_t>(i * base.components), base.components,
+        values.begin() + static_cast<std::ptrdiff_t>(slot_values[i]) * static_cast<std::ptrdiff_t>(base.components));
   }
   return values;
 }
@@ -216,8 +220,11 @@ std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int access
                            type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
                            type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
   if (!is_unsigned) {
-    throw Error(ErrorKind::kInput, fmt::format("accessor {} holds indices, but its component type {} is not an "
-                                               "unsigned integer", accessor, type), where);
+    throw Error(ErrorKind::kInput,
+                fmt::format("accessor {} holds indices, but its component type {} is not an "
+                            "unsigned integer",
+                            accessor, type),
+                where);
   }
   std::vector<std::uint32_t> indices;
   indices.reserve(values.size());

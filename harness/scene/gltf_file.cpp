@@ -107,7 +107,8 @@ class GltfImporter {
   }
 
   void add_mesh(const tinygltf::Node& node, const glm::dmat4& world_from_node) {
-    if (static_cast<std::size_t>(node.mesh) >= source_.meshes.size()) fail(fmt::format("there is no mesh {}", node.mesh));
+    if (static_cast<std::size_t>(node.mesh) >= source_.meshes.size())
+      fail(fmt::format("there is no mesh {}", node.mesh));
     for (const Mesh& local : local_meshes(node.mesh)) {
       Mesh mesh = transform_mesh(local, world_from_node);
       if (!node.name.empty()) mesh.name = node.name;
@@ -130,7 +131,8 @@ class GltfImporter {
   }
 
   bool is_drawn(const tinygltf::Primitive& primitive, const std::string& name) {
-    const bool has_faces = primitive.mode == TINYGLTF_MODE_TRIANGLES || primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
+    const bool has_faces = primitive.mode == TINYGLTF_MODE_TRIANGLES ||
+                           primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
                            primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN;
     if (!has_faces) warn(fmt::format("points and lines of '{}' are left out", name));
     if (!primitive.attributes.contains("POSITION")) warn(fmt::format("a part of '{}' has no positions", name));
@@ -191,7 +193,8 @@ class GltfImporter {
     const std::vector<float> normals = read_attribute(primitive, "NORMAL", 3);
     const std::vector<float> uvs = read_attribute(primitive, texcoord, 2);
     const std::size_t count = positions.size() / 3;
-    const bool same_count = (normals.empty() || normals.size() == 3 * count) && (uvs.empty() || uvs.size() == 2 * count);
+    const bool same_count =
+        (normals.empty() || normals.size() == 3 * count) && (uvs.empty() || uvs.size() == 2 * count);
     if (!same_count) fail(fmt::format("the attributes of '{}' differ in their number of elements", mesh.name));
     std::vector<Vertex> vertices(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -203,7 +206,8 @@ class GltfImporter {
   }
 
   void add_camera(const tinygltf::Node& node, const glm::dmat4& world_from_node) {
-    if (static_cast<std::size_t>(node.camera) >= source_.cameras.size()) fail(fmt::format("there is no camera {}", node.camera));
+    if (static_cast<std::size_t>(node.camera) >= source_.cameras.size())
+      fail(fmt::format("there is no camera {}", node.camera));
     const tinygltf::Camera& source = source_.cameras[static_cast<std::size_t>(node.camera)];
     Camera camera;
     const std::string fallback_name = node.name.empty() ? fmt::format("camera {}", node.camera) : node.name;
@@ -223,7 +227,8 @@ class GltfImporter {
     const auto extension = node.extensions.find("KHR_lights_punctual");
     if (extension == node.extensions.end() || !extension->second.Has("light")) return;
     const int index = extension->second.Get("light").GetNumberAsInt();
-    if (index < 0 || static_cast<std::size_t>(index) >= source_.lights.size()) fail(fmt::format("there is no light {}", index));
+    if (index < 0 || static_cast<std::size_t>(index) >= source_.lights.size())
+      fail(fmt::format("there is no light {}", index));
     const tinygltf::Light& source = source_.lights[static_cast<std::size_t>(index)];
     if (source.type != "directional") {
       warn(fmt::format("{} lights are not modelled yet; they are left out", source.type));

@@ -21,7 +21,8 @@ void check_values(const std::vector<double>& values, std::size_t count, const st
                   const std::string& where) {
   if (values.empty()) return;
   if (values.size() != count) {
-    throw Error(ErrorKind::kInput, fmt::format("{} must have {} numbers, but has {}", what, count, values.size()), where);
+    throw Error(ErrorKind::kInput, fmt::format("{} must have {} numbers, but has {}", what, count, values.size()),
+                where);
   }
   for (const double value : values) {
     if (!std::isfinite(value)) throw Error(ErrorKind::kInput, what + " is not finite", where);
@@ -59,7 +60,8 @@ std::vector<int> root_nodes(const tinygltf::Model& model) {
   std::vector<bool> is_child(model.nodes.size(), false);
   for (const tinygltf::Node& node : model.nodes) {
     for (const int child : node.children) {
-      if (child >= 0 && static_cast<std::size_t>(child) < is_child.size()) is_child[static_cast<std::size_t>(child)] = true;
+      if (child >= 0 && static_cast<std::size_t>(child) < is_child.size())
+        is_child[static_cast<std::size_t>(child)] = true;
     }
   }
   std::vector<int> roots;
@@ -89,8 +91,10 @@ std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, const std::str
       throw Error(ErrorKind::kInput, fmt::format("there is no node {} (of {})", parent.node, seen.size()), where);
     }
     if (seen[index]) {
-      throw Error(ErrorKind::kInput, fmt::format("{} is reached twice: the nodes form a cycle, or it has two parents",
-                                                 describe(model, parent.node)), where);
+      throw Error(ErrorKind::kInput,
+                  fmt::format("{} is reached twice: the nodes form a cycle, or it has two parents",
+                              describe(model, parent.node)),
+                  where);
     }
     seen[index] = true;
     placed.push_back({parent.node, parent.world_from_node * local_transform(model, parent.node, where)});

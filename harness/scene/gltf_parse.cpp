@@ -99,8 +99,11 @@ void require_readable_extensions(const tinygltf::Model& model, const std::string
   for (const std::string& extension : model.extensionsRequired) {
     const bool only_looks = extension.starts_with("KHR_materials_");
     if (only_looks || std::ranges::find(kRead, extension) != kRead.end()) continue;
-    throw Error(ErrorKind::kInput, fmt::format("the file requires the extension {}, which is not supported; save it "
-                                               "without", extension), where);
+    throw Error(ErrorKind::kInput,
+                fmt::format("the file requires the extension {}, which is not supported; save it "
+                            "without",
+                            extension),
+                where);
   }
 }
 
@@ -145,8 +148,9 @@ tinygltf::Model parse_gltf(const fs::path& file) {
   std::string failure;
   const bool parsed = parse_bytes(parser, &model, &failure, bytes, guard.folder);
   if (!guard.refused.empty()) {
-    throw Error(ErrorKind::kInput, fmt::format("it refers to '{}', outside its folder; such files are not read",
-                                               guard.refused.front()), where);
+    throw Error(ErrorKind::kInput,
+                fmt::format("it refers to '{}', outside its folder; such files are not read", guard.refused.front()),
+                where);
   }
   require_readable_extensions(model, where);
   if (!parsed || !failure.empty()) throw Error(ErrorKind::kInput, "not valid glTF: " + one_line(failure), where);

@@ -75,8 +75,10 @@ glm::dmat4 scale_then_move(const glm::dvec3& scale, const glm::dvec3& offset) {
 LightFrustum fit_light(const Scene& scene, FitMode mode, int map_size, double pad_texels) {
   const double used_texels = map_size - 2.0 * pad_texels;
   if (!(used_texels >= 1.0)) {
-    throw Error(ErrorKind::kUsage, fmt::format("a map of {} texels has no room for a kernel of {} texels on every side; "
-                                               "use a larger map or a smaller radius", map_size, pad_texels));
+    throw Error(ErrorKind::kUsage,
+                fmt::format("a map of {} texels has no room for a kernel of {} texels on every side; "
+                            "use a larger map or a smaller radius",
+                            map_size, pad_texels));
   }
   const Bounds bounds = scene.bounds();
   const glm::dvec3 center = center_of(bounds);

@@ -19,8 +19,8 @@ struct LightFrustum {
   glm::mat4 uv_depth_from_world{1.0f};  ///< to (u, v, depth) in [0,1]; v = 0 is the map's first row, as in GL
   double width_ws = 0.0;                ///< side of the map, padding included
   double texel_size_ws = 0.0;
-  double depth_range_ws = 0.0;          ///< from depth 0 to depth 1
-  glm::vec3 direction_ws{0.0f};         ///< the way the light travels, unit length
+  double depth_range_ws = 0.0;   ///< from depth 0 to depth 1
+  glm::vec3 direction_ws{0.0f};  ///< the way the light travels, unit length
 };
 
 /// Fits a directional light's frustum to a validated scene.

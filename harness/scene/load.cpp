@@ -24,7 +24,8 @@ std::vector<fs::path> scene_files(const fs::path& folder) {
   std::error_code failure;
   fs::directory_iterator entries(folder, failure);
   if (failure) {
-    throw Error(ErrorKind::kInput, "the folder of built-in scenes cannot be read: " + failure.message(), folder.string());
+    throw Error(ErrorKind::kInput, "the folder of built-in scenes cannot be read: " + failure.message(),
+                folder.string());
   }
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : entries) {
@@ -87,7 +88,8 @@ Scene load_file(const fs::path& file, const LoadOptions& options) {
     throw Error(ErrorKind::kUsage, "this kind of file is no scene: use .toml, .gltf, .glb or .obj", file.string());
   }
   Scene scene = load_scene(file);
-  if (options.ground) scene.warnings.push_back("a floor is added to bare models only; this scene file has its own objects");
+  if (options.ground)
+    scene.warnings.push_back("a floor is added to bare models only; this scene file has its own objects");
   return scene;
 }
 

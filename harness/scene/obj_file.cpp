@@ -124,7 +124,8 @@ class ObjImporter {
     material.base_color = {source.diffuse[0], source.diffuse[1], source.diffuse[2], 1.0f};
     if (!source.diffuse_texname.empty()) {
       const auto file = resolve_inside(file_.parent_path(), source.diffuse_texname);
-      if (!file) fail(fmt::format("map_Kd '{}' lies outside its folder; such files are not read", source.diffuse_texname));
+      if (!file)
+        fail(fmt::format("map_Kd '{}' lies outside its folder; such files are not read", source.diffuse_texname));
       material.base_color_texture = static_cast<int>(result_.textures.size());
       result_.textures.push_back(decode_texture(read_file_bytes(*file), source.diffuse_texname, where_));
     }

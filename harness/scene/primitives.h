@@ -30,9 +30,9 @@ enum class BarDirection { kVertical, kHorizontal, kBoth };
 
 /// Describes a grid of thin bars in the plane z = 0, centred on the origin.
 struct Bars {
-  int count = 10;           ///< bars in each direction
+  int count = 10;             ///< bars in each direction
   float bar_width_m = 0.04f;  ///< width and depth of a bar
-  float spacing_m = 0.2f;   ///< from one bar's centre to the next one's
+  float spacing_m = 0.2f;     ///< from one bar's centre to the next one's
   float length_m = 2.0f;
   BarDirection direction = BarDirection::kVertical;
   int cells = 8;  ///< along a bar

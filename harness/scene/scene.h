@@ -1,8 +1,7 @@
 #pragma once
 
-#include <glm/glm.hpp>
-
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,7 +12,7 @@ namespace shadowbench::scene {
 struct Vertex {
   glm::vec3 position_ws{0.0f};
   glm::vec3 normal_ws{0.0f, 1.0f, 0.0f};  ///< shading normal, unit length
-  glm::vec2 uv{0.0f};
+  glm::vec2 uv{0.0f};                     ///< v = 0 is the texture's first row, as in glTF
 };
 
 /// An 8-bit sRGB picture with alpha, rows top to bottom.

@@ -44,8 +44,8 @@ class SceneBuilder {
   Light read_light() const {
     const std::optional<TomlTable> table = root_.table("light");
     if (!table) throw root_.error("light", "the scene has no [light]");
-    table->require_known_keys({"type", "direction", "azimuth_deg", "elevation_deg", "color", "intensity",
-                               "angular_diameter_deg"});
+    table->require_known_keys(
+        {"type", "direction", "azimuth_deg", "elevation_deg", "color", "intensity", "angular_diameter_deg"});
     table->choice("type", {"directional"}, "directional");
     Light light;
     light.direction_ws = glm::vec3(read_direction(*table));
@@ -58,7 +58,8 @@ class SceneBuilder {
   static glm::dvec3 read_direction(const TomlTable& table) {
     const bool by_angles = table.has("azimuth_deg") || table.has("elevation_deg");
     if (table.has("direction") == by_angles) {
-      throw table.error("direction", "[light] needs a direction: either 'direction', or 'azimuth_deg' and 'elevation_deg'");
+      throw table.error("direction",
+                        "[light] needs a direction: either 'direction', or 'azimuth_deg' and 'elevation_deg'");
     }
     if (by_angles) {
       const double azimuth = glm::radians(table.number("azimuth_deg", {-360.0, 360.0}));
@@ -75,7 +76,8 @@ class SceneBuilder {
     Camera camera;
     camera.name = table.string("name", camera.name);
     for (const Camera& other : scene_.cameras) {
-      if (other.name == camera.name) throw table.error("name", fmt::format("two cameras have the name '{}'", camera.name));
+      if (other.name == camera.name)
+        throw table.error("name", fmt::format("two cameras have the name '{}'", camera.name));
     }
     const glm::dvec3 position = table.vec3("position", kAnyNumber);
     const glm::dvec3 ahead = table.vec3("target", kAnyNumber) - position;

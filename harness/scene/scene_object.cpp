@@ -46,15 +46,21 @@ Mesh make_cylinder_of(const TomlTable& object) {
 
 const std::map<std::string, Shape>& shapes() {
   static const std::map<std::string, Shape> all{
-      {"plane", {{"size", "cells"}, [](const TomlTable& o) {
-         return make_plane(glm::vec2(o.vec2("size", kPositive)), o.integer("cells", kCells, 16));
-       }}},
-      {"box", {{"size", "cells"}, [](const TomlTable& o) {
-         return make_box(glm::vec3(o.vec3("size", kPositive)), o.integer("cells", kCells, 8));
-       }}},
-      {"sphere", {{"radius", "segments"}, [](const TomlTable& o) {
-         return make_sphere(o.number_f("radius", kPositive), o.integer("segments", kSegments, 96));
-       }}},
+      {"plane",
+       {{"size", "cells"},
+        [](const TomlTable& o) {
+          return make_plane(glm::vec2(o.vec2("size", kPositive)), o.integer("cells", kCells, 16));
+        }}},
+      {"box",
+       {{"size", "cells"},
+        [](const TomlTable& o) {
+          return make_box(glm::vec3(o.vec3("size", kPositive)), o.integer("cells", kCells, 8));
+        }}},
+      {"sphere",
+       {{"radius", "segments"},
+        [](const TomlTable& o) {
+          return make_sphere(o.number_f("radius", kPositive), o.integer("segments", kSegments, 96));
+        }}},
       {"cylinder", {{"radius", "height", "segments", "cells"}, make_cylinder_of}},
       {"bars", {{"count", "bar_width", "spacing", "length", "direction", "cells"}, make_bars_of}}};
   return all;
@@ -72,7 +78,8 @@ glm::dvec3 read_scale(const TomlTable& object) {
 }  // namespace
 
 const std::vector<std::string>& common_object_keys() {
-  static const std::vector<std::string> keys{"shape", "name", "material", "casts_shadow", "center", "rotation_deg", "scale"};
+  static const std::vector<std::string> keys{"shape",  "name",         "material", "casts_shadow",
+                                             "center", "rotation_deg", "scale"};
   return keys;
 }
 

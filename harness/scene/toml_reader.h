@@ -1,11 +1,12 @@
 #pragma once
 
+#include <toml++/toml.h>
+
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <toml++/toml.h>
 #include <vector>
 
 #include "filters/error.h"

@@ -47,7 +47,8 @@ void check_indices(const Mesh& mesh, const Scene& scene, const std::string& wher
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
     if (mesh.indices[i] < mesh.vertices.size()) continue;
     fail(fmt::format("index {} of mesh '{}' is {}, but there are {} vertices", i, mesh.name, mesh.indices[i],
-                     mesh.vertices.size()), where);
+                     mesh.vertices.size()),
+         where);
   }
   if (mesh.material < 0 || static_cast<std::size_t>(mesh.material) >= scene.materials.size()) {
     fail(fmt::format("mesh '{}' has material {} of {}", mesh.name, mesh.material, scene.materials.size()), where);
@@ -160,7 +161,8 @@ std::vector<Camera> with_unique_names(std::vector<Camera> cameras) {
 void check_material(const Material& material, const Scene& scene, const std::string& where) {
   if (material.base_color_texture >= static_cast<int>(scene.textures.size())) {
     fail(fmt::format("material '{}' has texture {} of {}", material.name, material.base_color_texture,
-                     scene.textures.size()), where);
+                     scene.textures.size()),
+         where);
   }
   const bool finite = is_finite(glm::vec3(material.base_color)) && std::isfinite(material.base_color.a) &&
                       std::isfinite(material.alpha_cutoff);
@@ -181,7 +183,8 @@ Scene validate_geometry(Scene scene, const std::string& where) {
   const std::size_t dropped = given - scene.triangle_count();
   if (given == 0) fail("the scene is empty: it has no triangles", where);
   if (dropped == given) fail(fmt::format("none of its {} triangles has an area", given), where);
-  if (dropped > 0) scene.warnings.push_back(fmt::format("{} of {} triangles without area were dropped", dropped, given));
+  if (dropped > 0)
+    scene.warnings.push_back(fmt::format("{} of {} triangles without area were dropped", dropped, given));
   return scene;
 }
 

@@ -35,6 +35,7 @@ TEST(CellKey, EverySetting_ChangesTheKey) {
       [](CellRecord& c) { c.map_format = "d16"; },
       [](CellRecord& c) { c.bias.constant_depth = 1e-4; },
       [](CellRecord& c) { c.bias.slope_texels = 1.0; },
+      [](CellRecord& c) { c.bias.slope_kernels = 1.0; },
       [](CellRecord& c) { c.bias.normal_offset_texels = 1.0; },
       [](CellRecord& c) { c.width = 540; },
       [](CellRecord& c) { c.height = 960; },

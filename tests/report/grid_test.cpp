@@ -39,6 +39,10 @@ std::vector<Rect> list_boxes(const GridLayout& layout) {
   return boxes;
 }
 
+bool lies_in_any(const Rect& inner, const std::vector<Rect>& boxes) {
+  return std::any_of(boxes.begin(), boxes.end(), [&](const Rect& outer) { return contains(outer, inner); });
+}
+
 void expect_sound(const Grid& grid) {
   const GridLayout layout = layout_grid(grid);
   const Rect canvas{0, 0, layout.canvas.width, layout.canvas.height};
@@ -51,6 +55,7 @@ void expect_sound(const Grid& grid) {
   }
   for (const TextLine& line : layout.texts) {
     EXPECT_LE(measure_text(line.text, font_of(line.role)), line.box.width) << line.text;
+    EXPECT_TRUE(line.role != TextRole::kMessage || lies_in_any(line.box, layout.message_boxes)) << line.text;
   }
 }
 
@@ -169,6 +174,17 @@ TEST(Grid, EqualTiles_LookEqual) {
     const float* b = canvas.at(panels[1].box.x, panels[1].box.y + y);
     ASSERT_TRUE(std::equal(a, a + panels[0].box.width * 3, b)) << y;
   }
+}
+
+TEST(Grid, Exposure_ScalesThePictureInLinearLightAndNotTheVisibility) {
+  Grid grid = make_grid(1, 64, 36);
+  grid.exposure = 0.5;
+  const Image canvas = draw_grid(grid);
+  const Panel picture = panels_of(grid, PanelKind::kPicture).at(0);
+  const Panel visibility = panels_of(grid, PanelKind::kVisibility).at(0);
+  const int right = picture.box.width - 1;
+  EXPECT_EQ(*canvas.at(picture.box.x + right, picture.box.y), encode_srgb(0.5f * *grid.tiles[0].picture.at(63, 0)));
+  EXPECT_EQ(*canvas.at(visibility.box.x + right, visibility.box.y), 1.0f);
 }
 
 TEST(Grid, ReducedPicture_KeepsLightAndAddsNoRinging) {

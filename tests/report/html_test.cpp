@@ -67,7 +67,7 @@ CellRecord make_illustrated_cell(const std::string& scene, const std::string& fi
 }
 
 TEST(Html, HostileNames_AreEscaped) {
-  CellRecord cell = make_illustrated_cell("<script>alert('1')</script>", "\"><img src=x onerror=y>");
+  CellRecord cell = make_illustrated_cell("<script>alert('1', \"2\")</script>", "\"><img src=x onerror=y>");
   cell.status = CellStatus::kError;
   cell.message = "</td></table><b>";
   cell.params["<i>"] = std::string("&lt;");
@@ -75,10 +75,10 @@ TEST(Html, HostileNames_AreEscaped) {
   run.warnings = {"<u>"};
   run.gl.renderer = "<s>";
   const std::string page = make_index_html(run, {cell});
-  for (const char* tag : {"<script", "<img src=x", "<b>", "<i>", "<u>", "<s>"}) {
+  for (const char* tag : {"<script", "<img src=x", "\"2\"", "<b>", "<i>", "<u>", "<s>"}) {
     EXPECT_THAT(page, Not(HasSubstr(tag)));
   }
-  EXPECT_THAT(page, HasSubstr("&lt;script&gt;alert(&#39;1&#39;)"));
+  EXPECT_THAT(page, HasSubstr("&lt;script&gt;alert(&#39;1&#39;, &quot;2&quot;)"));
   expect_balanced(page);
 }
 

@@ -52,6 +52,14 @@ TEST(TimingsCsv, EveryRow_HasEveryColumn) {
   EXPECT_EQ(field(rows, 2, "lookup_median_ms"), "");
 }
 
+TEST(TimingsCsv, OnlyFieldsThatNeedIt_AreQuoted) {
+  EXPECT_EQ(quote_csv("a b; c"), "a b; c");
+  EXPECT_EQ(quote_csv("a,b"), "\"a,b\"");
+  EXPECT_EQ(quote_csv("a\"b"), "\"a\"\"b\"");
+  EXPECT_EQ(quote_csv("a\nb"), "\"a\nb\"");
+  EXPECT_EQ(quote_csv("a\rb"), "\"a\rb\"");
+}
+
 TEST(TimingsCsv, Fields_HoldTheirColumnsValues) {
   CellRecord cell = make_cell("cubes", "vsm", 4.5);
   cell.time_ms.prefilter = Quartiles{12.5, 12.25, 12.75, 8};

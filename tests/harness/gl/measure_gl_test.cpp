@@ -93,6 +93,18 @@ TEST_F(GlTest, WallTime_GrowsWithTheWork) {
   EXPECT_GT(time(400), 4.0 * time(20));
 }
 
+TEST_F(GlTest, WallTime_LeavesOutWhatWasQueuedBefore) {
+  Probe probe("probe_load.frag", {512, 512});
+  probe.program().set("u_iterations", 400);
+  const auto time_nothing = [&] {
+    probe.draw();
+    return time_ms(TimerKind::kWallClock, [] {});
+  };
+  probe.draw();
+  const double one_draw = time_ms(TimerKind::kWallClock, [&] { probe.draw(); });
+  EXPECT_LT(std::min({time_nothing(), time_nothing(), time_nothing()}), 0.2 * one_draw);
+}
+
 TEST_F(GlTest, QueryTime_IsPositive) {
   Probe probe("probe_load.frag", {256, 256});
   probe.program().set("u_iterations", 100);

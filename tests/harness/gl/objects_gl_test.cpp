@@ -69,13 +69,18 @@ TEST_F(GlTest, Texture_ReadsFewerChannelsThanItHas) {
   EXPECT_THAT(texture.read_floats(1), ElementsAre(1.0f, 3.0f));
 }
 
-TEST_F(GlTest, Texture_ReadsRightWhateverTransferStateIsSet) {
-  glPixelStorei(GL_PACK_ALIGNMENT, 8);
-  glPixelStorei(GL_PACK_ROW_LENGTH, 17);
-  glPixelStorei(GL_UNPACK_SKIP_PIXELS, 1);
+void disturb_transfer_state() {
+  for (const GLenum name : {GL_PACK_ALIGNMENT, GL_UNPACK_ALIGNMENT}) glPixelStorei(name, 8);
+  for (const GLenum name : {GL_PACK_ROW_LENGTH, GL_UNPACK_ROW_LENGTH}) glPixelStorei(name, 17);
+  for (const GLenum name : {GL_PACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS}) glPixelStorei(name, 1);
+}
+
+TEST_F(GlTest, Texture_TransfersRight_WhateverTransferStateIsSet) {
   Texture texture("odd", GL_R32F, 3, 2);
   const std::array texels = {1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f};
+  disturb_transfer_state();
   texture.upload_floats(texels, 1);
+  disturb_transfer_state();
   EXPECT_THAT(texture.read_floats(1), ElementsAreArray(texels));
 }
 
@@ -163,7 +168,10 @@ TEST_F(GlTest, Buffer_HoldsWhatWasUploaded) {
   EXPECT_THAT(std::span(reinterpret_cast<const int*>(bytes.data()), 4), ElementsAre(1, 2, 9, 4));
 }
 
-TEST_F(GlTest, Buffer_StartsAsZeros) { EXPECT_THAT(Buffer("counters", 64).read(), Each(std::byte{0})); }
+TEST_F(GlTest, Buffer_StartsAsZeros) {
+  for (int i = 0; i < 8; ++i) Buffer("dirt", std::vector<std::byte>(1000, std::byte{7}));
+  EXPECT_THAT(Buffer("counters", 1000).read(), Each(std::byte{0}));
+}
 
 TEST_F(GlTest, Buffer_EmptyOne_IsAllowed) { EXPECT_TRUE(Buffer("empty", 0).read().empty()); }
 
@@ -248,6 +256,9 @@ TEST_F(GlTest, Sampler_OverridesTheTexturesFilter_UntilUnbound) {
   EXPECT_NE(sample_halfway(map), 0.5f);
   map.set_filter(GL_LINEAR, GL_LINEAR);
   EXPECT_EQ(sample_halfway(map), 0.5f);
+  Sampler nearest("nearest, as new ones are");
+  nearest.bind(0);
+  EXPECT_NE(sample_halfway(map), 0.5f);
 }
 
 // Samples beyond the right edge of a 2x1 map.
@@ -261,11 +272,24 @@ float sample_outside(const Texture& map, const std::string& shader) {
   return probe.run().front();
 }
 
+TEST_F(GlTest, Outside_IsTheEdge_OfNewTexturesAndSamplers) {
+  Texture map("edge", GL_R32F, 2, 1);
+  map.upload_floats(std::array{0.25f, 1.0f}, 1);
+  Sampler::unbind(0);
+  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 1.0f);
+  map.set_wrap(GL_REPEAT);
+  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 0.25f);
+  Sampler sampler("edge");
+  sampler.bind(0);
+  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 1.0f);
+  sampler.set_wrap(GL_REPEAT);
+  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 0.25f);
+}
+
 TEST_F(GlTest, Border_IsWhatLiesOutside_OfTextureAndSampler) {
   Texture map("border", GL_R32F, 2, 1);
   map.upload_floats(std::array{1.0f, 1.0f}, 1);
   Sampler::unbind(0);
-  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 1.0f);
   map.set_wrap(GL_CLAMP_TO_BORDER);
   map.set_border({0.25f, 0.0f, 0.0f, 0.0f});
   EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 0.25f);
@@ -288,6 +312,8 @@ TEST_F(GlTest, Compare_ObeysItsFunction_OfTextureAndSampler) {
   sampler.set_compare(GL_LEQUAL);
   sampler.bind(0);
   EXPECT_EQ(sample_outside(map, "probe_compare.frag"), 1.0f);
+  sampler.set_compare(GL_GREATER);
+  EXPECT_EQ(sample_outside(map, "probe_compare.frag"), 0.0f);
   map.set_compare(GL_NONE);
   Sampler::unbind(0);
   EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 0.5f);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstddef>
 #include <stdexcept>
 
 #include "harness/gl/fullscreen.h"
@@ -131,6 +132,42 @@ TEST_F(GlTest, UniformThatNoSourceNames_IsABug) {
                   make_source("uniform float radius_texels;\nout vec4 o;\nvoid main() { o = vec4(radius_texels); }\n"));
   EXPECT_TRUE(program.has("radius_texels"));
   EXPECT_THROW(program.set("radius", 1.0f), std::logic_error);
+  EXPECT_THROW(program.set("texels", 1.0f), std::logic_error);
+}
+
+struct Vertex {
+  glm::vec2 position;
+  glm::vec3 color;
+};
+
+Program make_vertex_program() {
+  return Program("vertices",
+                 make_source("layout(location = 0) in vec2 position;\nlayout(location = 3) in vec3 color;\n"
+                             "flat out vec3 v_color;\n"
+                             "void main() { v_color = color; gl_Position = vec4(position, 0.0, 1.0); }\n"),
+                 make_source("flat in vec3 v_color;\nout vec4 o;\nvoid main() { o = vec4(v_color, 1.0); }\n"));
+}
+
+TEST_F(GlTest, VertexArray_FeedsInterleavedAttributesByIndex) {
+  const std::array vertices = {Vertex{{9, 9}, {0, 0, 0}}, Vertex{{-1, -1}, {1, 2, 3}}, Vertex{{3, -1}, {1, 2, 3}},
+                               Vertex{{-1, 3}, {4, 5, 6}}};
+  const std::array<std::uint32_t, 3> indices = {1, 2, 3};
+  const Buffer vertex_buffer("vertices", std::as_bytes(std::span(vertices)));
+  const Buffer index_buffer("indices", std::as_bytes(std::span(indices)));
+  VertexArray array("triangle");
+  array.set_vertices(vertex_buffer, sizeof(Vertex));
+  array.set_attribute(0, 2, offsetof(Vertex, position));
+  array.set_attribute(3, 3, offsetof(Vertex, color));
+  array.set_indices(index_buffer);
+  const Program program = make_vertex_program();
+  Texture target("target", GL_RGBA32F, 1, 1);
+  Framebuffer framebuffer("target");
+  framebuffer.attach_color(0, target);
+  framebuffer.bind();
+  program.use();
+  array.bind();
+  glDrawElements(GL_TRIANGLES, 3, GL_UNSIGNED_INT, nullptr);
+  EXPECT_THAT(target.read_floats(4), ElementsAre(4, 5, 6, 1));
 }
 
 TEST_F(GlTest, ComputeProgram_WritesABuffer) {

@@ -39,6 +39,12 @@ TEST(ShaderLog, NvidiaWarningBeforeTheError_IsNotTheFirstError) {
   EXPECT_EQ(log.message, "error C0000: syntax error\nlookup.frag:3: warning C7050: \"v\" might be used");
 }
 
+TEST(ShaderLog, OtherDriversWarning_IsNotTheFirstError) {
+  const auto log = translate_log("WARNING: 1:3: extension\nERROR: 2:14: syntax\n", kFiles);
+  EXPECT_EQ(log.where, "my filter.glsl:14");
+  EXPECT_EQ(log.message, "syntax\nlookup.frag:3: extension");
+}
+
 TEST(ShaderLog, LineThatSaysTheFile_OverrulesMesasIndexOfZero) {
   const auto log = translate_log("0:200014(5): error: one\n1:100007(5): error: two\n", kFiles);
   EXPECT_EQ(log.where, "my filter.glsl:14");

@@ -145,8 +145,8 @@ TEST_F(ShaderSourceTest, Folder_IsNoFile) {
 }
 
 TEST_F(ShaderSourceTest, MalformedInclude_NamesItsLine) {
-  for (const std::string bad :
-       {"#include <lib/a.glsl>", "#include", "#include \"", "#include \"\"", "#include \"a\" b"}) {
+  for (const std::string bad : {"#include <lib/a.glsl>", "#include", "#include \"", "#include \"\" // x",
+                                "#include \"\"", "#include \"a\" b"}) {
     write("main.frag", "\n" + bad + "\n");
     const Error error = catch_error([&] { build_source(options_); });
     EXPECT_EQ(error.where(), path("main.frag") + ":2") << bad;

@@ -36,7 +36,8 @@ std::string json_of(const Parts& p) {
   const std::string uri = p.uri.empty() ? "" : fmt::format(R"(, "uri": "{}")", p.uri);
   return fmt::format(R"({{"asset": {{"version": "2.0"}}, "scenes": {}, "nodes": {},
     "meshes": [{{"name": "quad", "primitives": [{}]}}], "accessors": {}, "bufferViews": {},
-    "buffers": [{{"byteLength": {}{}}}]{}}})", p.scenes, p.nodes, p.primitive, p.accessors, p.views, p.buffer.size(), uri, p.more);
+    "buffers": [{{"byteLength": {}{}}}]{}}})",
+                     p.scenes, p.nodes, p.primitive, p.accessors, p.views, p.buffer.size(), uri, p.more);
 }
 
 ImportedModel import_parts(const Parts& parts) {
@@ -66,7 +67,9 @@ glm::dvec3 first_face(const Mesh& mesh) {
                      mesh.vertices[mesh.indices[2]].position_ws);
 }
 
-std::string little_endian(std::size_t value) { return bytes_of(std::vector<std::uint32_t>{static_cast<std::uint32_t>(value)}); }
+std::string little_endian(std::size_t value) {
+  return bytes_of(std::vector<std::uint32_t>{static_cast<std::uint32_t>(value)});
+}
 
 std::string glb_of(Parts parts) {
   parts.uri.clear();
@@ -133,8 +136,8 @@ TEST(GltfFileTest, MeshPlacedTwice_IsThereTwice) {
 }
 
 TEST(GltfFileTest, StripAndFan_WindAsTheQuadDoes) {
-  for (const auto& [mode, indices] : {std::pair(5, std::vector<std::uint16_t>{0, 1, 3, 2}),
-                                      std::pair(6, std::vector<std::uint16_t>{0, 1, 2, 3})}) {
+  for (const auto& [mode, indices] :
+       {std::pair(5, std::vector<std::uint16_t>{0, 1, 3, 2}), std::pair(6, std::vector<std::uint16_t>{0, 1, 2, 3})}) {
     Parts parts;
     parts.buffer = bytes_of(kQuad) + bytes_of(indices) + std::string(4, '\0');
     parts.primitive = fmt::format(R"({{"attributes": {{"POSITION": 0}}, "indices": 1, "mode": {}}})", mode);
@@ -145,7 +148,9 @@ TEST(GltfFileTest, StripAndFan_WindAsTheQuadDoes) {
     for (const Vertex& v : mesh.vertices) EXPECT_EQ(v.normal_ws, glm::vec3(0, 0, 1)) << mode;
     double area = 0.0;
     for (std::size_t i = 0; i < 6; i += 3) {
-      area += 0.5 * area_normal(mesh.vertices[i].position_ws, mesh.vertices[i + 1].position_ws, mesh.vertices[i + 2].position_ws).z;
+      area += 0.5 * area_normal(mesh.vertices[i].position_ws, mesh.vertices[i + 1].position_ws,
+                                mesh.vertices[i + 2].position_ws)
+                        .z;
     }
     EXPECT_NEAR(area, 1.0, 1e-6) << mode;
   }
@@ -214,9 +219,11 @@ TEST(GltfFileTest, DamagedReferences_AreToldAndNeverRead) {
       {"wrong type", &Parts::accessors, R"("VEC3")", R"("VEC2")", "must have 3 component"},
       {"view too long", &Parts::views, R"("byteLength": 48)", R"("byteLength": 480)", "runs past its buffer"},
       {"view offset", &Parts::views, R"("byteOffset": 48)", R"("byteOffset": 4800)", "runs past its buffer"},
-      {"no such buffer", &Parts::views, R"({"buffer": 0, "byteLength": 48)", R"({"buffer": 3, "byteLength": 48)", "names buffer 3"},
+      {"no such buffer", &Parts::views, R"({"buffer": 0, "byteLength": 48)", R"({"buffer": 3, "byteLength": 48)",
+       "names buffer 3"},
       {"stride too short", &Parts::views, R"("byteLength": 48)", R"("byteLength": 48, "byteStride": 4)", "stride of 4"},
-      {"stride too long", &Parts::views, R"("byteLength": 48)", R"("byteLength": 48, "byteStride": 16)", "out of range"},
+      {"stride too long", &Parts::views, R"("byteLength": 48)", R"("byteLength": 48, "byteStride": 16)",
+       "out of range"},
       {"no such accessor", &Parts::primitive, R"("POSITION": 0)", R"("POSITION": 9)", "no accessor 9"},
       {"negative accessor", &Parts::primitive, R"("POSITION": 0)", R"("POSITION": -1)", "accessor -1"},
       {"no such material", &Parts::primitive, R"("indices": 1)", R"("indices": 1, "material": 3)", "no material 3"},
@@ -225,8 +232,10 @@ TEST(GltfFileTest, DamagedReferences_AreToldAndNeverRead) {
       {"no such child", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "children": [8])", "no node 8"},
       {"matrix length", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "matrix": [1, 0])", ""},
       {"rotation length", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "rotation": [0, 1])", ""},
-      {"zero rotation", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "rotation": [0, 0, 0, 0])", "rotation of node 0 is zero"},
-      {"number overflow", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "translation": [1e999, 0, 0])", "not valid glTF"},
+      {"zero rotation", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "rotation": [0, 0, 0, 0])",
+       "rotation of node 0 is zero"},
+      {"number overflow", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "translation": [1e999, 0, 0])",
+       "not valid glTF"},
       {"not JSON", &Parts::nodes, "[{", "[{{", "not valid glTF"}};
   for (const Damage& damage : damages) {
     SCOPED_TRACE(damage.what);
@@ -334,7 +343,8 @@ TEST(GltfFileTest, Cameras_StandWhereTheirNodesAre) {
   Parts parts;
   parts.more = R"(, "cameras": [{"type": "perspective", "name": "eye", "perspective": {"yfov": 0.5, "znear": 0.1}},
       {"type": "orthographic", "orthographic": {"xmag": 3, "ymag": 2, "znear": 0, "zfar": 10}}])";
-  parts.nodes = R"([{"mesh": 0}, {"camera": 0, "translation": [1, 2, 3], "rotation": [0, 0.70710678118654752, 0, 0.70710678118654752]},
+  parts.nodes =
+      R"([{"mesh": 0}, {"camera": 0, "translation": [1, 2, 3], "rotation": [0, 0.70710678118654752, 0, 0.70710678118654752]},
                     {"camera": 1, "name": "plan"}])";
   parts.scenes = R"([{"nodes": [0, 1, 2]}])";
   const std::vector<Camera> cameras = import_parts(parts).cameras;
@@ -386,7 +396,8 @@ std::string tga_bytes() {
 Parts textured_parts(const std::string& image) {
   Parts parts;
   parts.more = fmt::format(R"(, "images": [{}], "textures": [{{"source": 0}}], "materials": [{{"pbrMetallicRoughness":
-      {{"baseColorTexture": {{"index": 0}}}}}}])", image);
+      {{"baseColorTexture": {{"index": 0}}}}}}])",
+                           image);
   parts.primitive = R"({"attributes": {"POSITION": 0, "TEXCOORD_0": 2}, "indices": 1, "material": 0})";
   parts.accessors = R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
                         {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"},

@@ -11,9 +11,9 @@
 namespace shadowbench::scene {
 namespace {
 
-const std::vector<glm::vec3> kDirections{{0, -1, 0},  {0, 1, 0},      {1, 0, 0},         {-1, 0, 0},     {0, 0, 1},
-                                         {0, 0, -1},  {1, -1, 1},     {-0.3f, -1, 0.2f}, {0.01f, -1, 0}, {5, -0.1f, 2},
-                                         {1, 1, 0},   {1e-8f, -1, 0}, {-3, -4, 0}};
+const std::vector<glm::vec3> kDirections{{0, -1, 0}, {0, 1, 0},      {1, 0, 0},         {-1, 0, 0},     {0, 0, 1},
+                                         {0, 0, -1}, {1, -1, 1},     {-0.3f, -1, 0.2f}, {0.01f, -1, 0}, {5, -0.1f, 2},
+                                         {1, 1, 0},  {1e-8f, -1, 0}, {-3, -4, 0}};
 
 Scene make_scene(glm::vec3 direction, glm::vec3 offset = glm::vec3(0.0f)) {
   Scene scene;

@@ -17,7 +17,9 @@ using testing::HasSubstr;
 const std::filesystem::path kScenes = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "harness" / "scenes";
 constexpr double kAspect = 16.0 / 9.0;
 
-LoadOptions make_options(bool ground = false) { return {.scenes_folder = kScenes, .ground = ground, .aspect = kAspect}; }
+LoadOptions make_options(bool ground = false) {
+  return {.scenes_folder = kScenes, .ground = ground, .aspect = kAspect};
+}
 
 /// Where the camera sees a point: x and y in [-1,1] inside the picture, z ahead.
 glm::dvec3 seen_at(const Camera& camera, const glm::vec3& p) {
@@ -118,7 +120,9 @@ TEST(LoadTest, FolderInsteadOfAFile_IsAnInputError) {
 TEST(LoadTest, EmptyOrMeaninglessFiles_AreInputErrors) {
   const TestFolder folder;
   for (const std::string name : {"a.gltf", "a.glb", "a.obj", "a.toml"}) {
-    for (const std::string& content : {std::string(), std::string("\x7f" "ELF nonsense\n\0\1\2", 16)}) {
+    for (const std::string& content : {std::string(), std::string("\x7f"
+                                                                  "ELF nonsense\n\0\1\2",
+                                                                  16)}) {
       const auto file = folder.write(name, content);
       EXPECT_EQ(error_of([&] { load(file.string(), make_options()); }).kind(), ErrorKind::kInput) << name;
     }
@@ -167,7 +171,8 @@ TEST(LoadTest, Ground_LiesJustBelowTheModelAndCatchesItsShadow) {
   EXPECT_LT(box.max.y, bare.bounds().min.y);
   EXPECT_GT(box.max.y, bare.bounds().min.y - 0.01f);
   for (const Vertex& v : bare.meshes[0].vertices) {
-    const glm::vec3 shadow = v.position_ws + scene.light.direction_ws * ((box.max.y - v.position_ws.y) / scene.light.direction_ws.y);
+    const glm::vec3 shadow =
+        v.position_ws + scene.light.direction_ws * ((box.max.y - v.position_ws.y) / scene.light.direction_ws.y);
     EXPECT_TRUE(shadow.x > box.min.x && shadow.x < box.max.x && shadow.z > box.min.z && shadow.z < box.max.z);
     const glm::dvec3 seen = seen_at(scene.cameras[0], shadow);
     EXPECT_LT(std::max(std::abs(seen.x), std::abs(seen.y)), 1.0);

@@ -38,10 +38,12 @@ TEST(ObjFileTest, TextureCoordinates_RunFromTheTop) {
 TEST(ObjFileTest, Materials_GiveTheirColours) {
   const TestFolder folder;
   folder.write("m.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
-  const auto file = folder.write("test.obj", std::string("mtllib m.mtl\n") + kQuad + "usemtl red\nf 1 2 3\nusemtl blue\nf 1 3 4\nusemtl none\nf 1 2 4\n");
+  const auto file = folder.write("test.obj", std::string("mtllib m.mtl\n") + kQuad +
+                                                 "usemtl red\nf 1 2 3\nusemtl blue\nf 1 3 4\nusemtl none\nf 1 2 4\n");
   const ImportedModel model = import_obj(file);
   std::vector<glm::vec4> colours;
-  for (const Mesh& mesh : model.meshes) colours.push_back(model.materials[static_cast<std::size_t>(mesh.material)].base_color);
+  for (const Mesh& mesh : model.meshes)
+    colours.push_back(model.materials[static_cast<std::size_t>(mesh.material)].base_color);
   EXPECT_EQ(colours.size(), 3U);
   EXPECT_THAT(colours, testing::Contains(glm::vec4(1, 0, 0, 1)));
   EXPECT_THAT(colours, testing::Contains(glm::vec4(0, 0, 1, 1)));
@@ -78,8 +80,10 @@ TEST(ObjFileTest, NumbersInEverySpelling_Read) {
 
 TEST(ObjFileTest, IndexOutOfRange_IsAnError) {
   EXPECT_THAT(error_of([] { import_text(std::string(kQuad) + "f 1 2 5\n"); }).message(), HasSubstr("vertex 5"));
-  EXPECT_THAT(error_of([] { import_text(std::string(kQuad) + "vn 0 0 1\nf 1//1 2//1 3//2\n"); }).message(), HasSubstr("normal 2"));
-  EXPECT_THAT(error_of([] { import_text(std::string(kQuad) + "vt 0 0\nf 1/1 2/1 3/2\n"); }).message(), HasSubstr("texture coordinate 2"));
+  EXPECT_THAT(error_of([] { import_text(std::string(kQuad) + "vn 0 0 1\nf 1//1 2//1 3//2\n"); }).message(),
+              HasSubstr("normal 2"));
+  EXPECT_THAT(error_of([] { import_text(std::string(kQuad) + "vt 0 0\nf 1/1 2/1 3/2\n"); }).message(),
+              HasSubstr("texture coordinate 2"));
   error_of([] { import_text(std::string(kQuad) + "f 1 2 0\n"); });
   error_of([] { import_text(std::string(kQuad) + "f 1 2 -9\n"); });
 }

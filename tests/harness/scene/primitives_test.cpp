@@ -27,7 +27,8 @@ double area_of(const Mesh& mesh) {
 /// By the divergence theorem: positive only where faces point outward.
 double volume_of(const Mesh& mesh) {
   double volume = 0.0;
-  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) volume += glm::dot(corner(mesh, i), face_normal(mesh, i)) / 6.0;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
+    volume += glm::dot(corner(mesh, i), face_normal(mesh, i)) / 6.0;
   return volume;
 }
 

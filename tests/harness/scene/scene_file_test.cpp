@@ -84,9 +84,8 @@ TEST(SceneFileTest, MissingValue_SaysWhatIsExpected) {
 
 TEST(SceneFileTest, WrongTypesAndRanges_SayWhatIsExpectedAndWhere) {
   const std::vector<std::pair<std::string, std::string>> bad{
-      {"[1, 2]", "3 numbers"},       {"\"big\"", "3 numbers"},  {"[1, 2, 0]", "above 0"},
-      {"[1, 2, -3]", "above 0"},     {"[1, 2, nan]", "above 0"}, {"[1, inf, 3]", "above 0"},
-      {"[1, \"two\", 3]", "above 0"}};
+      {"[1, 2]", "3 numbers"},    {"\"big\"", "3 numbers"},   {"[1, 2, 0]", "above 0"},      {"[1, 2, -3]", "above 0"},
+      {"[1, 2, nan]", "above 0"}, {"[1, inf, 3]", "above 0"}, {"[1, \"two\", 3]", "above 0"}};
   for (const auto& [value, expected] : bad) {
     const Complaint c = complaint_about(replaced(kBase, "[1, 2, 3]", value));
     EXPECT_THAT(c.message, AllOf(HasSubstr("'size'"), HasSubstr(expected))) << value;
@@ -106,7 +105,8 @@ TEST(SceneFileTest, BrokenToml_NamesItsLine) {
 
 TEST(SceneFileTest, UnknownShapeOrMaterial_SuggestsTheNearest) {
   EXPECT_THAT(complaint_about(replaced(kBase, "\"box\"", "\"bpx\"")).message, HasSubstr("did you mean 'box'"));
-  const std::string with_material = std::string(kBase) + "material = \"redd\"\n[[material]]\nname = \"red\"\ncolor = [1,0,0]\n";
+  const std::string with_material =
+      std::string(kBase) + "material = \"redd\"\n[[material]]\nname = \"red\"\ncolor = [1,0,0]\n";
   const Complaint c = complaint_about(with_material);
   EXPECT_THAT(c.message, AllOf(HasSubstr("'redd'"), HasSubstr("did you mean 'red'")));
   EXPECT_EQ(c.line, "12");
@@ -115,7 +115,8 @@ TEST(SceneFileTest, UnknownShapeOrMaterial_SuggestsTheNearest) {
 TEST(SceneFileTest, Light_NeedsExactlyOneDirection) {
   EXPECT_THAT(complaint_about(replaced(kBase, "direction = [0, -1, 0]\n", "")).message, HasSubstr("needs a direction"));
   EXPECT_THAT(complaint_about(replaced(kBase, "[0, -1, 0]", "[0, 0, 0]")).message, HasSubstr("has no direction"));
-  EXPECT_THAT(complaint_about(replaced(kBase, "[0, -1, 0]", "[0, -1, 0]\nazimuth_deg = 1")).message, HasSubstr("either"));
+  EXPECT_THAT(complaint_about(replaced(kBase, "[0, -1, 0]", "[0, -1, 0]\nazimuth_deg = 1")).message,
+              HasSubstr("either"));
   const Error no_light = error_of([] { load_text(replaced(kBase, "[light]\ndirection = [0, -1, 0]\n", "")); });
   EXPECT_THAT(no_light.message(), HasSubstr("no [light]"));
   EXPECT_THAT(complaint_about(replaced(kBase, "[light]", "[light]\ntype = \"spot\"")).message, HasSubstr("'spot'"));
@@ -143,9 +144,10 @@ TEST(SceneFileTest, Scale_IsANumberOrThree) {
 }
 
 TEST(SceneFileTest, EveryShape_Loads) {
-  for (const std::string shape : {"shape = \"plane\"\nsize = [2, 2]", "shape = \"sphere\"\nradius = 1",
-                                  "shape = \"cylinder\"\nradius = 1\nheight = 2",
-                                  "shape = \"bars\"\ncount = 3\nbar_width = 0.1\nspacing = 0.5\nlength = 2\ndirection = \"both\""}) {
+  for (const std::string shape :
+       {"shape = \"plane\"\nsize = [2, 2]", "shape = \"sphere\"\nradius = 1",
+        "shape = \"cylinder\"\nradius = 1\nheight = 2",
+        "shape = \"bars\"\ncount = 3\nbar_width = 0.1\nspacing = 0.5\nlength = 2\ndirection = \"both\""}) {
     const Scene scene = load_text(replaced(kBase, "shape = \"box\"\nsize = [1, 2, 3]", shape));
     EXPECT_GT(scene.triangle_count(), 0U) << shape;
     EXPECT_TRUE(scene.warnings.empty()) << shape;
@@ -154,7 +156,8 @@ TEST(SceneFileTest, EveryShape_Loads) {
 
 TEST(SceneFileTest, BarsCloserThanTheirWidth_AreAnError) {
   const std::string bars = "shape = \"bars\"\ncount = 3\nbar_width = 0.5\nspacing = 0.5\nlength = 2";
-  EXPECT_THAT(complaint_about(replaced(kBase, "shape = \"box\"\nsize = [1, 2, 3]", bars)).message, HasSubstr("'bar_width'"));
+  EXPECT_THAT(complaint_about(replaced(kBase, "shape = \"box\"\nsize = [1, 2, 3]", bars)).message,
+              HasSubstr("'bar_width'"));
 }
 
 TEST(SceneFileTest, SeveralCameras_KeepTheirNamesAndOrder) {
@@ -190,10 +193,10 @@ TEST(SceneFileTest, ModelObject_IsReadBesideTheSceneAndTakesTheGivenMaterial) {
   const TestFolder folder;
   folder.write("models/tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const std::string object = "[[object]]\nshape = \"model\"\nfile = \"models/tri.obj\"\ncenter = [0, 5, 0]\n";
-  const Scene own = load_scene(folder.write("a.toml", kBase + object));
+  const std::string red = "material = \"red\"\n[[material]]\nname = \"red\"\ncolor = [1, 0, 0]\n";
+  const Scene own = load_scene(folder.write("a.toml", kBase + red + object));
   EXPECT_FLOAT_EQ(own.bounds().max.y, 6.0f);
   EXPECT_EQ(own.materials[static_cast<std::size_t>(own.meshes[1].material)].name, "default");
-  const std::string red = "material = \"red\"\n[[material]]\nname = \"red\"\ncolor = [1, 0, 0]\n";
   const Scene given = load_scene(folder.write("b.toml", kBase + object + red));
   EXPECT_EQ(given.materials[static_cast<std::size_t>(given.meshes[1].material)].name, "red");
 }

@@ -1,0 +1,27 @@
+#!/bin/sh
+# Installs the Debian 12 packages that building, testing and running Shadowbench need; does nothing where they are.
+set -eu
+
+packages="
+  cmake g++ git ninja-build pkg-config python3-glad
+  libbenchmark-dev libcli11-dev libegl-dev libfmt-dev libgl-dev libglfw3-dev libglm-dev libgmock-dev libgtest-dev
+  libopenimageio-dev libosmesa6-dev libtinygltf-dev libtinyobjloader-dev libtomlplusplus-dev nlohmann-json3-dev
+  fonts-dejavu-core libegl1 libegl-mesa0 libgl1-mesa-dri python3-jsonschema xauth xvfb
+"
+
+missing=""
+for package in $packages; do
+  status=$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true)
+  [ "$status" = "install ok installed" ] || missing="$missing $package"
+done
+[ -n "$missing" ] || exit 0
+
+as_root=""
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "setup.sh: run as root, or install sudo; missing:$missing" >&2; exit 1; }
+  as_root="sudo"
+fi
+echo "setup.sh: installing$missing"
+$as_root apt-get update -q
+# shellcheck disable=SC2086  # the lists are words on purpose
+$as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing

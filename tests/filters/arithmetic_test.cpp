@@ -1,0 +1,120 @@
+// The pieces that models are made of.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "filters/disk_points.h"
+#include "filters/gaussian.h"
+#include "filters/random.h"
+#include "filters/scalar.h"
+#include "filters/store_format.h"
+
+namespace shadowbench::filters {
+namespace {
+
+TEST(Tracked, BoundHoldsForSinglePrecision_OnRandomExpressions) {
+  std::mt19937 generator(3);
+  std::uniform_real_distribution<float> draw(-2.0f, 2.0f);
+  double tightest = 0.0;
+  for (int i = 0; i < 20000; ++i) {
+    const float a = draw(generator), b = draw(generator), c = draw(generator);
+    const float single = std::exp(a * b - c) / (1.5f + a * a) + std::max(b, c) * (a - b);
+    const Tracked ta(static_cast<double>(a)), tb(static_cast<double>(b)), tc(static_cast<double>(c));
+    const Tracked tracked = exponential(ta * tb - tc, {}) / (Tracked(1.5) + ta * ta) + max(tb, tc) * (ta - tb);
+    const double error = std::abs(static_cast<double>(single) - tracked.value);
+    ASSERT_LE(error, tracked.bound);
+    tightest = std::max(tightest, error / tracked.bound);
+  }
+  EXPECT_GT(tightest, 0.02) << "a bound that nothing comes near says nothing";
+}
+
+TEST(Tracked, DivisionByWhatMayBeZero_HasNoBound) {
+  EXPECT_TRUE(std::isinf((Tracked(1.0) / Tracked(1e-9, 1e-8)).bound));
+}
+
+TEST(Tracked, Cancellation_ShowsInTheBound) {
+  const Tracked a = Tracked(1.0) / Tracked(3.0), difference = a - Tracked(1.0 / 3.0);
+  EXPECT_GT(difference.bound, 100.0 * std::abs(difference.value) + 1e-9);
+}
+
+TEST(Gaussian, SumsToOne_IsSymmetric_AndFallsToItsEdge) {
+  for (const int radius : {0, 1, 4, 16, 64}) {
+    const std::vector<float> w = gaussian_weights(radius);
+    ASSERT_EQ(w.size(), static_cast<std::size_t>(2 * radius + 1));
+    EXPECT_NEAR(std::accumulate(w.begin(), w.end(), 0.0), 1.0, 1e-6);
+    for (std::size_t i = 0; i < w.size(); ++i) EXPECT_EQ(w[i], w[w.size() - 1 - i]);
+    if (radius > 0) {
+      EXPECT_NEAR(w.front() / w[static_cast<std::size_t>(radius)], std::exp(-2.0f), 1e-6f);
+    }
+  }
+}
+
+TEST(DiskPoints, AreCentredInTheUnitDisk_AndWellSpread) {
+  for (const int count : {4, 8, 16, 32}) {
+    const auto points = generate_disk_points(count, 1);
+    ASSERT_EQ(points.size(), static_cast<std::size_t>(count));
+    glm::vec2 mean(0.0f);
+    float nearest = 2.0f;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      EXPECT_LE(glm::length(points[i]), 1.0f + 1e-6f);
+      mean += points[i] / static_cast<float>(count);
+      for (std::size_t j = 0; j < i; ++j) nearest = std::min(nearest, glm::length(points[i] - points[j]));
+    }
+    EXPECT_LT(glm::length(mean), 1e-6f);
+    // A square grid of as many points in the disk is sqrt(pi / count) apart.
+    EXPECT_GT(nearest, 0.6f * std::sqrt(3.14159f / static_cast<float>(count))) << count;
+  }
+}
+
+TEST(DiskPoints, DependOnTheSeedAlone) {
+  EXPECT_EQ(generate_disk_points(8, 1), generate_disk_points(8, 1));
+  EXPECT_NE(generate_disk_points(8, 1), generate_disk_points(8, 2));
+}
+
+TEST(Random, TurnsAreUniform) {
+  double sum = 0.0, squares = 0.0;
+  for (int y = 0; y < 100; ++y) {
+    for (int x = 0; x < 100; ++x) {
+      const double turn = static_cast<double>(random_turn({x, y}, 1));
+      ASSERT_GE(turn, 0.0);
+      ASSERT_LT(turn, 1.0);
+      sum += turn;
+      squares += turn * turn;
+    }
+  }
+  EXPECT_NEAR(sum / 1e4, 0.5, 0.012);  // 4 standard errors of a uniform mean
+  EXPECT_NEAR(squares / 1e4, 1.0 / 3.0, 0.012);
+}
+
+TEST(Random, InterleavedGradient_FollowsItsFloatingPointForm) {
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const auto fract = [](double v) { return v - std::floor(v); };
+      const double expected = fract(52.9829189 * fract(0.06711056 * x + 0.00583715 * y));
+      const double turn = static_cast<double>(interleaved_gradient_turn({x, y}));
+      const double distance = std::abs(turn - expected);
+      EXPECT_LT(std::min(distance, 1.0 - distance), 2e-6) << x << "," << y;
+    }
+  }
+}
+
+TEST(StoreFormat, NamesGiveChannelsBytesAndPrecision) {
+  EXPECT_EQ(store_channels("r32f"), 1);
+  EXPECT_EQ(store_channels("rg16f"), 2);
+  EXPECT_EQ(store_channels("rgba16"), 4);
+  EXPECT_EQ(store_bytes("rg32f"), 8);
+  EXPECT_EQ(store_bytes("rgba16f"), 8);
+  EXPECT_EQ(store_precision("rg16f"), StorePrecision::kHalf);
+  EXPECT_EQ(store_precision("rg16"), StorePrecision::kUnorm16);
+}
+
+TEST(StoreFormat, HalfOverflowsAbove65504) {
+  EXPECT_TRUE(std::isinf(round_to_store(std::exp(11.10f), StorePrecision::kHalf)));
+  EXPECT_FALSE(std::isinf(round_to_store(std::exp(11.08f), StorePrecision::kHalf)));
+}
+
+}  // namespace
+}  // namespace shadowbench::filters

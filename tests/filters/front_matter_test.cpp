@@ -1,0 +1,111 @@
+#include "filters/front_matter.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "filters/error.h"
+
+namespace shadowbench::filters {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Puts lines into the front matter of a filter that is otherwise right; they start at line 6.
+std::string with(const std::string& lines, const std::string& glsl = "float visibility(Receiver r) { return 1.0; }\n") {
+  return "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nradius_texels = 2\n" + lines + "+++*/\n" + glsl;
+}
+
+void expect_error(const std::string& text, const std::string& where, const std::string& words) {
+  try {
+    parse_filter(text, "dir/mine.glsl");
+    ADD_FAILURE() << "accepted: " << text;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kFilter);
+    EXPECT_EQ(error.where(), where) << error.what();
+    EXPECT_THAT(error.message(), HasSubstr(words));
+  }
+}
+
+TEST(FrontMatter, GivesEveryField) {
+  const FilterSpec spec = parse_filter(
+      "/*+++\ntitle = \"Title\"\nsource = \"Source\"\nkind = \"bound\"\nstore = [\"rg32f\", \"rg16f\"]\n"
+      "combine = [\"linear\", \"log\"]\nsample = \"linear\"\nclaims = [\"contact-hardening\"]\nradius_texels = \"radius\"\n"
+      "[param.radius]\ndefault = 3\nmin = 0\nmax = 9\nunit = \"texels\"\ntext = \"help\"\n"
+      "[param.amount]\ndefault = 0.5\nmin = 0.0\nmax = 1.0\ntext = \"help\"\nconst = true\n+++*/\n"
+      "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n",
+      "dir/mine.glsl");
+  EXPECT_EQ(spec.id, "mine");
+  EXPECT_EQ(spec.title, "Title");
+  EXPECT_EQ(spec.source, "Source");
+  EXPECT_EQ(spec.kind, FilterKind::kBound);
+  EXPECT_EQ(spec.claims, std::vector<std::string>{"contact-hardening"});
+  EXPECT_TRUE(spec.has_encode);
+  EXPECT_TRUE(spec.has_prefilter);
+  ASSERT_EQ(spec.params.size(), 5u);
+  EXPECT_EQ(spec.params[0].name, "radius");
+  EXPECT_TRUE(spec.params[0].integer);
+  EXPECT_EQ(spec.params[0].unit, "texels");
+  EXPECT_EQ(spec.params[1].name, "amount");
+  EXPECT_TRUE(spec.params[1].is_const);
+  EXPECT_FALSE(spec.params[1].integer);
+  EXPECT_EQ(to_string(spec.find_param("store")->default_value), "rg32f");
+  EXPECT_EQ(radius_texels(spec, {{"radius", 5.0}}), 5.0);
+  EXPECT_EQ(prefilter_radius_texels(spec, {{"radius", 5.0}}), 5);
+}
+
+TEST(FrontMatter, BodyKeepsItsLineNumbers) {
+  const FilterSpec spec = parse_filter(with(""), "mine.glsl");
+  EXPECT_EQ(spec.body_first_line, 6);
+  EXPECT_EQ(spec.body.substr(0, 7), "\nfloat ");
+}
+
+TEST(FrontMatter, BiasRadiusIsTheKernels_UnlessGiven) {
+  EXPECT_EQ(bias_texels(parse_filter(with(""), "a.glsl"), {}), 2.0);
+  EXPECT_EQ(bias_texels(parse_filter(with("bias_texels = 0\n"), "a.glsl"), {}), 0.0);
+}
+
+TEST(FrontMatter, SamplersInCode_NotInComments_MakeFetchesUnknown) {
+  EXPECT_TRUE(parse_filter(with("", "float visibility(Receiver r) { return texture(map_depth, r.uv).r; }"), "a.glsl").uses_samplers);
+  EXPECT_FALSE(parse_filter(with("", "// map_depth\nfloat visibility(Receiver r) { return 1.0; /* map_stored */ }"), "a.glsl").uses_samplers);
+}
+
+TEST(FrontMatter, MissingOrMalformed_NamesTheLine) {
+  expect_error("float visibility(Receiver r) { return 1.0; }", "dir/mine.glsl:1", "no front matter");
+  expect_error("/*+++\ntitle = \"t\"\n", "dir/mine.glsl:1", "no front matter");
+  expect_error(with("x = = 1\n"), "dir/mine.glsl:6", "malformed");
+  expect_error("/*+++\nsource = \"s\"\nkind = \"other\"\n+++*/\nfloat visibility(Receiver r) {}", "dir/mine.glsl:1", "'title'");
+}
+
+TEST(FrontMatter, UnknownKeysAndValues_SuggestTheNearest) {
+  expect_error(with("clams = []\n"), "dir/mine.glsl:6", "did you mean 'claims'");
+  expect_error(with("[param.a]\ndefault = 1.0\nmni = 0.0\nmax = 2.0\ntext = \"x\"\n"), "dir/mine.glsl:8", "did you mean 'min'");
+  expect_error("/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"fast\"\n+++*/\nfloat visibility(Receiver r) {}", "dir/mine.glsl:4", "'fast'");
+}
+
+TEST(FrontMatter, WrongTypes_AreRefused) {
+  expect_error(with("claims = 3\n"), "dir/mine.glsl:6", "list of texts");
+  expect_error(with("[param.a]\ndefault = nan\nmin = 0.0\nmax = 1.0\ntext = \"x\"\n"), "dir/mine.glsl:7", "finite");
+  expect_error(with("[param.a]\ndefault = 3.0\nmin = 0.0\nmax = 1.0\ntext = \"x\"\n"), "dir/mine.glsl:7", "outside 0 .. 1");
+  expect_error(with("[param.a]\ndefault = 3.0\ntext = \"x\"\n"), "dir/mine.glsl:7", "needs 'min' and 'max'");
+  expect_error(with("[param.a]\ndefault = \"x\"\nchoices = [\"y\"]\ntext = \"x\"\n"), "dir/mine.glsl:7", "not one of its choices");
+  expect_error(with("[param.gl_a]\ndefault = 1.0\nmin = 0.0\nmax = 1.0\ntext = \"x\"\n"), "dir/mine.glsl:6", "GLSL uniform");
+}
+
+TEST(FrontMatter, StoreAndEncode_ComeTogether) {
+  expect_error(with("store = \"r32f\"\n"), "dir/mine.glsl:6", "lacks 'vec4 encode");
+  expect_error(with("", "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }"),
+               "dir/mine.glsl:1", "lacks 'store'");
+  expect_error(with("combine = \"linear\"\n"), "dir/mine.glsl:6", "needs 'store'");
+  expect_error(with("store = \"rgb8\"\n"), "dir/mine.glsl:6", "'rgb8' is unknown");
+}
+
+TEST(FrontMatter, NoVisibility_IsRefused) { expect_error(with("", "float lit() { return 1.0; }"), "dir/mine.glsl:1", "visibility"); }
+
+TEST(FrontMatter, PrefilterRadius_MustBeWhole) {
+  const std::string glsl = "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }";
+  expect_error("/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nstore = \"r32f\"\ncombine = \"linear\"\nradius_texels = 1.5\n+++*/\n" + glsl,
+               "dir/mine.glsl:6", "whole number");
+}
+
+}  // namespace
+}  // namespace shadowbench::filters

@@ -1,0 +1,131 @@
+// Models against results that can be worked out by hand.
+
+#include "filters/model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "filters/catalogue.h"
+
+namespace shadowbench::filters {
+namespace {
+
+/// A map whose texels left of `edge` hold `near`, the others `far`.
+DepthMap make_edge(int size, int edge, float near, float far) {
+  DepthMap map{size, {}};
+  for (int i = 0; i < size * size; ++i) map.depth.push_back(i % size < edge ? near : far);
+  return map;
+}
+
+/// Looks up a receiver at a position in texels.
+double look_up(const std::string& request_text, const DepthMap& map, double x, double y, float depth) {
+  static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
+  const FilterRequest request = catalogue.parse_requests(request_text).front();
+  const ModelInput input{request.spec, request.values, map, {}, 0};
+  Receiver r;
+  r.uv = {static_cast<float>(x / map.size), static_cast<float>(y / map.size)};
+  r.depth = depth;
+  return make_model(request.spec.id)->prepare(input, Precision::kDouble)->at(r).visibility;
+}
+
+TEST(NoneModel, ComparesTheTexelThatHoldsThePoint) {
+  const DepthMap map = make_edge(16, 8, 0.25f, 1.0f);
+  EXPECT_EQ(look_up("none", map, 7.9, 4.5, 0.5f), 0.0);
+  EXPECT_EQ(look_up("none", map, 8.1, 4.5, 0.5f), 1.0);
+  EXPECT_EQ(look_up("none", map, 4.5, 4.5, 0.25f), 1.0) << "ties are lit";
+}
+
+TEST(NoneModel, OutsideTheMap_IsLit) {
+  const DepthMap map = make_edge(16, 16, 0.0f, 0.0f);
+  EXPECT_EQ(look_up("none", map, -0.5, 8.0, 1.0f), 1.0);
+  EXPECT_EQ(look_up("none", map, 8.0, 16.5, 1.0f), 1.0);
+}
+
+TEST(Pcf2x2Model, IsATentAcrossAnEdge) {
+  const DepthMap map = make_edge(16, 8, 0.25f, 1.0f);
+  for (const double s : {0.0, 0.25, 0.5, 0.75}) EXPECT_NEAR(look_up("pcf2x2", map, 7.5 + s, 4.5, 0.5f), s, 1e-6);
+}
+
+TEST(Tent3x3Model, WeighsThreeTexelsPerAxis) {
+  const DepthMap map = make_edge(16, 8, 0.25f, 1.0f);
+  // One texel lit: weight s/2; two: s/2 + 1/2.
+  for (const double s : {0.1, 0.4, 0.9}) {
+    EXPECT_NEAR(look_up("tent3x3", map, 7.0 + s, 4.5, 0.5f), 0.5 * s, 1e-6);
+    EXPECT_NEAR(look_up("tent3x3", map, 8.0 + s, 4.5, 0.5f), 0.5 * s + 0.5, 1e-6);
+  }
+}
+
+TEST(PoissonModel, RadiusZero_IsItsBaseComparison) {
+  const DepthMap map = make_edge(16, 8, 0.25f, 1.0f);
+  for (const double x : {7.2, 7.8, 8.3}) {
+    EXPECT_NEAR(look_up("poisson:radius=0", map, x, 4.2, 0.5f), look_up("pcf2x2", map, x, 4.2, 0.5f), 1e-12);
+  }
+}
+
+TEST(VsmModel, TwoDepths_OneOfThemTheReceivers_IsExact) {
+  // Donnelly and Lauritzen 2006, section 3: for a kernel of two depths whose far one is the receiver's, V = w.
+  const DepthMap map = make_edge(64, 32, 0.25f, 0.75f);
+  const double v = look_up("vsm:radius=0,min_variance=0", map, 31.5 + 0.3, 20.5, 0.75f);
+  EXPECT_NEAR(v, 0.3, 1e-6);
+}
+
+TEST(VsmModel, TwoOccluders_BleedAsTheClosedFormSays) {
+  // shared algebra: V = s2 / (s2 + (t - mu)^2) with a = .1, b = .6, half each, t = .7 gives .3378; the truth is 0.
+  const DepthMap map = make_edge(64, 32, 0.1f, 0.6f);
+  EXPECT_NEAR(look_up("vsm:radius=0,min_variance=0", map, 32.0, 20.5, 0.7f), 0.3378, 1e-4);
+}
+
+TEST(VsmModel, BleedReduction_CutsTheDarkEnd) {
+  const DepthMap map = make_edge(64, 32, 0.25f, 0.75f);
+  EXPECT_NEAR(look_up("vsm:radius=0,min_variance=0,bleed_reduction=0.2", map, 32.0, 20.5, 0.75f), 0.375, 1e-6);
+}
+
+TEST(EsmModel, TwoLayers_FollowTheClosedForm) {
+  // V = w + (1 - w) exp(-c (t - a)) with a = .3, t = .7, w = .5.
+  const DepthMap map = make_edge(64, 32, 0.3f, 0.7f);
+  EXPECT_NEAR(look_up("esm:radius=0,c=5", map, 32.0, 20.5, 0.7f), 0.56767, 1e-5);
+  EXPECT_NEAR(look_up("esm:radius=0,c=10", map, 32.0, 20.5, 0.7f), 0.50916, 1e-5);
+  EXPECT_NEAR(look_up("esm:radius=0,c=40", map, 32.0, 20.5, 0.7f), 0.5, 1e-5);
+}
+
+TEST(EsmModel, LogSpaceBlur_EqualsLinearBlur_WhereBothAreRead) {
+  const DepthMap map = make_edge(64, 32, 0.3f, 0.7f);
+  for (const double x : {28.5, 31.5, 33.5}) {  // texel centres: nearest and bilinear reads agree
+    EXPECT_NEAR(look_up("esm:combine=log,c=30", map, x, 20.5, 0.7f), look_up("esm:c=30", map, x, 20.5, 0.7f), 1e-9);
+  }
+}
+
+TEST(EsmModel, LogSpace_DoesNotOverflow) {
+  const DepthMap map = make_edge(64, 32, 0.3f, 0.7f);
+  const double v = look_up("esm:combine=log,c=2000", map, 31.5, 20.5, 0.7f);
+  EXPECT_TRUE(std::isfinite(v));
+  EXPECT_GT(v, 0.3);
+  EXPECT_LT(v, 0.5);
+}
+
+TEST(Prefilter, OutsideTheMap_HoldsDepthOne) {
+  const DepthMap map = make_edge(16, 16, 0.25f, 0.25f);
+  EXPECT_LT(look_up("vsm:radius=4", map, 8.0, 8.0, 0.5f), 0.01);
+  EXPECT_GT(look_up("vsm:radius=4", map, 0.0, 8.0, 0.5f), 0.4);
+}
+
+TEST(Excuse, TiesAndBorders_AreNamed) {
+  static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
+  const FilterRequest request = catalogue.parse_requests("none").front();
+  const DepthMap map = make_edge(16, 8, 0.25f, 1.0f);
+  const ModelInput input{request.spec, request.values, map, {}, 0};
+  const auto lookup = make_model("none")->prepare(input, Precision::kDouble);
+  Receiver r;
+  r.uv = {4.5f / 16.0f, 4.5f / 16.0f};
+  r.depth = 0.5f;
+  EXPECT_FALSE(lookup->at(r).excused);
+  r.depth = std::nextafter(0.25f, 1.0f);
+  EXPECT_TRUE(lookup->at(r).excused) << "one ULP from a tie";
+  r.depth = 0.5f;
+  r.uv.x = std::nextafter(8.0f / 16.0f, 1.0f);
+  EXPECT_TRUE(lookup->at(r).excused) << "at a texel's border";
+}
+
+}  // namespace
+}  // namespace shadowbench::filters

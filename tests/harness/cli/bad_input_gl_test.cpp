@@ -1,0 +1,93 @@
+// Each kind of bad input gets one clear message and its exit code.
+
+#include "tests/harness/cli/program.h"
+
+namespace shadowbench::test {
+namespace {
+
+using BadInput = ProgramTest;
+
+constexpr const char* kSmall = "run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes ";
+
+std::string small(const std::string& rest) { return kSmall + rest; }
+
+TEST_F(BadInput, UnknownOption) { expect_refusal("run --colour red", 2, {"--colour"}); }
+TEST_F(BadInput, NoCommand) { expect_refusal("", 2, {"subcommand"}); }
+TEST_F(BadInput, UnknownFilter) { expect_refusal(small("--filters pcf2x3"), 2, {"pcf2x3", "did you mean 'pcf2x2'"}); }
+TEST_F(BadInput, UnknownParameter) {
+  expect_refusal(small("--filters vsm:min_varianc=1"), 2, {"min_varianc", "did you mean 'min_variance'"});
+}
+TEST_F(BadInput, ParameterOutOfRange) {
+  expect_refusal(small("--filters esm:c=1e9"), 2, {"esm:c=", "out of range", "1 .. 2000"});
+}
+TEST_F(BadInput, ParameterNotANumber) { expect_refusal(small("--filters esm:c=nan"), 2, {"'nan'", "finite number"}); }
+TEST_F(BadInput, ParameterNotAChoice) { expect_refusal(small("--filters poisson:taps=5"), 2, {"taps=5", "4, 8, 16, 32"}); }
+TEST_F(BadInput, SameFilterTwice) { expect_refusal(small("--filters none,none"), 2, {"'none' twice"}); }
+TEST_F(BadInput, UnknownScene) { expect_refusal("run --out out --scene cube", 2, {"cube", "cubes"}); }
+TEST_F(BadInput, MissingScene) { expect_refusal("run --out out --scene no/such.gltf", 3, {"no/such.gltf"}); }
+TEST_F(BadInput, MalformedSceneNamesTheLine) {
+  write("bad.toml", "title = \"x\"\n[camera\n");
+  expect_refusal("run --out out --scene bad.toml", 3, {"bad.toml:2"});
+}
+TEST_F(BadInput, MalformedGltf) {
+  write("bad.gltf", "{ \"asset\": ");
+  expect_refusal("run --out out --scene bad.gltf", 3, {"bad.gltf"});
+}
+TEST_F(BadInput, EmptyGltf) {
+  write("empty.gltf", R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[]}],"scene":0})");
+  expect_refusal("run --out out --scene empty.gltf", 3, {"empty.gltf"});
+}
+TEST_F(BadInput, NotFiniteVertex) {
+  write("nan.obj", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n");
+  expect_refusal("run --out out --scene nan.obj", 3, {"nan.obj"});
+}
+TEST_F(BadInput, OnlyDegenerateTriangles) {
+  write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  expect_refusal("run --out out --scene flat.obj", 3, {"flat.obj"});
+}
+TEST_F(BadInput, LightWithoutDirection) {
+  const std::string cubes = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/harness/scenes/cubes.toml");
+  std::string text = cubes;
+  text.replace(text.find("azimuth_deg = 72"), 16, "direction = [0, 0, 0]");
+  text.replace(text.find("elevation_deg = 38"), 18, "");
+  write("dark.toml", text);
+  expect_refusal("run --out out --scene dark.toml", 3, {"dark.toml", "direction"});
+}
+TEST_F(BadInput, MapLargerThanTheGl) {
+  expect_refusal("run --out out --scene cubes --filters none --map-size 1000000", 2, {"1000000", "16384"});
+}
+TEST_F(BadInput, MapSizeZero) { expect_refusal("run --out out --map-size 0", 2, {"--map-size", "'0'"}); }
+TEST_F(BadInput, PictureSizeMalformed) { expect_refusal("run --out out --size 64", 2, {"--size", "WIDTHxHEIGHT"}); }
+TEST_F(BadInput, PictureLargerThanTheGl) { expect_refusal("run --out out --size 100000x10", 2, {"100000"}); }
+TEST_F(BadInput, NegativeBias) { expect_refusal(small("--bias slope:kernels=-1"), 2, {"--bias", "'-1'"}); }
+TEST_F(BadInput, UnknownBias) { expect_refusal(small("--bias slop:kernels=1"), 2, {"did you mean 'slope'"}); }
+TEST_F(BadInput, NoRounds) { expect_refusal(small("--rounds 0"), 2, {"--rounds"}); }
+TEST_F(BadInput, UnknownContext) { expect_refusal(small("--gl vulkan"), 2, {"vulkan"}); }
+TEST_F(BadInput, NoContext) {
+  expect_refusal("run --out out --scene cubes --gl glfw --size 64x36", 4, {"glfw"});
+}
+TEST_F(BadInput, OutputFolderCannotBeWritten) {
+  write("out", "a file, not a folder");
+  const Outcome outcome = run(kSmall);
+  EXPECT_EQ(outcome.exit_code, 6) << outcome.err;
+  EXPECT_NE(outcome.err.find("out"), std::string::npos);
+  EXPECT_EQ(read_text(folder() / "out"), "a file, not a folder");
+}
+TEST_F(BadInput, MissingFilterFile) {
+  expect_refusal(small("--filter-file no/such.glsl"), 5, {"no/such.glsl"});
+}
+TEST_F(BadInput, FrontMatterMistakeNamesFileAndLine) {
+  expect_refusal(small("--filter-file " + user_filter("broken_front_matter.glsl")), 5,
+                 {"broken_front_matter.glsl:7", "defualt", "did you mean 'default'"});
+}
+TEST_F(BadInput, GlslMistakeNamesFileAndLine) {
+  expect_refusal(small("--filter-file " + user_filter("broken_glsl.glsl")), 5,
+                 {"broken_glsl.glsl:9", "no_such_variable"});
+}
+TEST_F(BadInput, UserFilterWithATakenId) {
+  const auto copy = write("vsm.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/vsm.glsl"));
+  expect_refusal(small("--filter-file " + copy.string()), 2, {"'vsm'", "taken"});
+}
+
+}  // namespace
+}  // namespace shadowbench::test

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace shadowbench::test {
+
+/// What a run of the program gave.
+struct Outcome {
+  int exit_code = -1;
+  std::string out;
+  std::string err;
+};
+
+inline std::string read_text(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// A folder of its own for each test, removed afterwards; runs the program in it.
+class ProgramTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    std::string name = std::string(info->test_suite_name()) + "." + info->name();
+    for (char& c : name) c = c == '/' ? '_' : c;
+    folder_ = std::filesystem::temp_directory_path() / ("shadowbench." + name + "." + std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+
+  void TearDown() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+
+  const std::filesystem::path& folder() const { return folder_; }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return folder_ / name;
+  }
+
+  /// Runs `shadowbench ARGUMENTS` through the shell.
+  Outcome run(const std::string& arguments) const {
+    const std::string command = "cd '" + folder_.string() + "' && '" SHADOWBENCH_PROGRAM "' " + arguments +
+                                " >stdout.txt 2>stderr.txt </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder_ / "stdout.txt"),
+            read_text(folder_ / "stderr.txt")};
+  }
+
+  /// Expects one clear message with all the words, the exit code, and no report.
+  void expect_refusal(const std::string& arguments, int exit_code, const std::vector<std::string>& words) const {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
+    const std::size_t begin = outcome.err.rfind("shadowbench: ");
+    ASSERT_NE(begin, std::string::npos) << outcome.err;
+    for (const std::string& word : words) EXPECT_NE(outcome.err.find(word, begin), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "results.json"));
+  }
+
+  static std::string user_filter(const std::string& name) {
+    return std::string(SHADOWBENCH_SOURCE_DIR) + "/tests/user_filters/" + name;
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace shadowbench::test

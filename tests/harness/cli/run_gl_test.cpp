@@ -1,0 +1,95 @@
+// `shadowbench run` and `list`, as a user calls them.
+
+#include <nlohmann/json.hpp>
+
+#include "tests/harness/cli/program.h"
+
+namespace shadowbench::test {
+namespace {
+
+using Command = ProgramTest;
+
+nlohmann::json results(const std::filesystem::path& folder) {
+  return nlohmann::json::parse(read_text(folder / "out" / "results.json"));
+}
+
+TEST_F(Command, AllScenesAndFilters_WriteAValidReport) {
+  const Outcome outcome = run("run --out out --size 128x72 --map-size 128 --rounds 2");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json json = results(folder());
+  EXPECT_EQ(json["cells"].size(), 30u);
+  for (const auto& cell : json["cells"]) EXPECT_EQ(cell["nan"], 0);
+  for (const char* scene : {"cubes", "stack", "fence", "ball", "steps"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder() / "out" / (std::string(scene) + ".grid.png")));
+    EXPECT_TRUE(std::filesystem::exists(folder() / "out" / (std::string(scene) + ".exr")));
+  }
+  for (const char* file : {"timings.csv", "summary.md", "index.html", "results.schema.json"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder() / "out" / file)) << file;
+  }
+  const std::string check = "/usr/bin/python3 -m jsonschema -i '" + (folder() / "out" / "results.json").string() + "' '" +
+                            (folder() / "out" / "results.schema.json").string() + "'";
+  EXPECT_EQ(std::system(check.c_str()), 0);
+}
+
+TEST_F(Command, UserFilter_GetsCellAndPictures) {
+  const Outcome outcome = run("run --out out --size 64x36 --map-size 64 --rounds 2 --scene cubes --filters none,nine_compares:weight=0.5 --filter-file " +
+                              user_filter("nine_compares.glsl"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json json = results(folder());
+  ASSERT_EQ(json["cells"].size(), 2u);
+  const nlohmann::json& cell = json["cells"][1];
+  EXPECT_EQ(cell["filter"], "nine_compares");
+  EXPECT_EQ(cell["status"], "ok");
+  EXPECT_EQ(cell["params"]["weight"], 0.5);
+  EXPECT_EQ(cell["cost"]["fetches"], 9.0);
+  EXPECT_TRUE(std::filesystem::exists(folder() / "out" / cell["images"]["picture"].get<std::string>()));
+  for (const auto& entry : std::filesystem::directory_iterator(folder() / "out")) {
+    EXPECT_NE(entry.path().filename().string().rfind(".worker", 0), 0u) << entry.path();
+  }
+}
+
+TEST_F(Command, EndlessUserFilter_TimesOutAndTheRunGoesOn) {
+  const Outcome outcome = run("run --out out --size 320x180 --map-size 64 --rounds 2 --scene cubes --filters none,endless --cell-timeout 3 --filter-file " +
+                              user_filter("endless.glsl"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json json = results(folder());
+  ASSERT_EQ(json["cells"].size(), 2u);
+  EXPECT_EQ(json["cells"][0]["status"], "ok");
+  EXPECT_EQ(json["cells"][1]["filter"], "endless");
+  EXPECT_EQ(json["cells"][1]["status"], "timeout");
+  EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "cubes.grid.png"));
+}
+
+TEST_F(Command, SameSeed_SamePictures) {
+  ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene ball --filters poisson").exit_code, 0);
+  const std::string first = read_text(folder() / "out" / "images" / "ball.poisson.visibility.png");
+  ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene ball --filters poisson").exit_code, 0);
+  EXPECT_EQ(read_text(folder() / "out" / "images" / "ball.poisson.visibility.png"), first);
+  ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene ball --filters poisson --seed 2").exit_code, 0);
+  EXPECT_NE(read_text(folder() / "out" / "images" / "ball.poisson.visibility.png"), first);
+}
+
+TEST_F(Command, SeveralMapSizes_DoNotShareFiles) {
+  ASSERT_EQ(run("run --out out --size 64x36 --map-size 64,128 --rounds 1 --scene cubes --filters none").exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "cubes.map64.grid.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "cubes.map128.grid.png"));
+  EXPECT_EQ(results(folder())["cells"].size(), 2u);
+}
+
+TEST_F(Command, ListFilters_ShowsWhatTheFrontMatterSays) {
+  const Outcome outcome = run("list filters");
+  EXPECT_EQ(outcome.exit_code, 0);
+  for (const char* word : {"min_variance", "1e-05", "depth^2", "Donnelly", "per-pixel"}) {
+    EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
+  }
+  const nlohmann::json json = nlohmann::json::parse(run("list filters --json").out);
+  EXPECT_EQ(json.size(), 6u);
+}
+
+TEST_F(Command, ListScenes_NamesAllFive) {
+  const std::string out = run("list scenes").out;
+  for (const char* name : {"cubes", "stack", "fence", "ball", "steps"}) EXPECT_NE(out.find(name), std::string::npos);
+}
+
+}  // namespace
+}  // namespace shadowbench::test
