@@ -18,12 +18,10 @@ bool is_plain(char c) {
 }  // namespace
 
 std::string make_file_stem(std::string_view name) {
-  std::string stem(name);
-  std::replace_if(
-      stem.begin(), stem.end(), [](char c) { return !is_plain(c); }, '_');
-  if (stem.empty() || stem.front() == '.' || stem.front() == '-') {
-    stem.insert(0, "_");
-  }
+  const bool starts_plainly = !name.empty() && name.front() != '.' && name.front() != '-';
+  std::string stem(starts_plainly ? "" : "_");
+  stem += name;
+  std::replace_if(stem.begin(), stem.end(), [](char c) { return !is_plain(c); }, '_');
   if (stem == name && stem.size() <= kMaxStem) {
     return stem;
   }

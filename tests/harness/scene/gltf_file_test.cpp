@@ -442,7 +442,7 @@ TEST(GltfFileTest, FilesWithDamagedBytes_LoadOrAreRefused) {
   const TestFolder folder;
   const std::string sound = glb_of(textured_parts(R"({"bufferView": 3, "mimeType": "image/png"})"));
   std::mt19937 random(7);
-  for (int round = 0; round < 2000; ++round) {
+  for (int round = 0; round < 500; ++round) {
     std::string damaged = sound;
     for (int i = 0; i < 1 + round % 3; ++i) damaged[random() % damaged.size()] = static_cast<char>(random());
     if (round % 10 == 0) damaged.resize(random() % damaged.size());
