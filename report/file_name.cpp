@@ -21,7 +21,8 @@ std::string make_file_stem(std::string_view name) {
   const bool starts_plainly = !name.empty() && name.front() != '.' && name.front() != '-';
   std::string stem(starts_plainly ? "" : "_");
   stem += name;
-  std::replace_if(stem.begin(), stem.end(), [](char c) { return !is_plain(c); }, '_');
+  std::replace_if(
+      stem.begin(), stem.end(), [](char c) { return !is_plain(c); }, '_');
   if (stem == name && stem.size() <= kMaxStem) {
     return stem;
   }

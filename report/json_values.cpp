@@ -160,8 +160,7 @@ ParamMap read_value(const json& json) {
 template <>
 BiasRecord read_value(const json& json) {
   return {read_value<double>(json.at("constant_depth")), read_value<double>(json.at("slope_texels")),
-          read_value<double>(json.at("slope_kernels")),
-          read_value<double>(json.at("normal_offset_texels"))};
+          read_value<double>(json.at("slope_kernels")), read_value<double>(json.at("normal_offset_texels"))};
 }
 
 template <>

@@ -176,8 +176,8 @@ std::string describe_settings(const CellRecord& cell) {
       "view {} · map {} × {} {} · picture {} × {} · bias: constant {} (depth), slope {} texels + {} kernels, "
       "normal offset {} texels",
       cell.view, cell.map_size, cell.map_size, cell.map_format, cell.width, cell.height,
-      format_number(cell.bias.constant_depth), format_number(cell.bias.slope_texels), format_number(cell.bias.slope_kernels),
-      format_number(cell.bias.normal_offset_texels));
+      format_number(cell.bias.constant_depth), format_number(cell.bias.slope_texels),
+      format_number(cell.bias.slope_kernels), format_number(cell.bias.normal_offset_texels));
 }
 
 std::vector<CellGroup> group_cells(const std::vector<CellRecord>& cells) {

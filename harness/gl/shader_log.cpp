@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
+#include <cstddef>
+#include <cstdio>
 #include <optional>
-#include <regex>
 
 #include "harness/gl/shader_source.h"
 
@@ -18,45 +18,50 @@ struct Complaint {
   bool error = false;
 };
 
-// Each has three groups: index into the files, line, text.
-const std::array<std::regex, 3>& get_forms() {
-  static const std::array<std::regex, 3> forms = {
-      std::regex(R"(^(\d+):(\d+)\(\d+\):\s*(.*)$)"),  // Mesa      2:14(5): error: x
-      std::regex(R"(^(\d+)\((\d+)\)\s*:\s*(.*)$)"),   // NVIDIA    2(14) : error C1008: x
-      std::regex(R"(^(?=ERROR|WARNING)(?:ERROR|WARNING):\s*(\d+):(\d+):\s*(.*)$)")};  // others    ERROR: 2:14: x
-  return forms;
+/// Holds what a line says by itself.
+struct Place {
+  int index = 0;
+  int line = 0;
+  std::size_t text_at = 0;
+};
+
+std::optional<Place> find_place(const std::string& line) {
+  // Widths keep the numbers inside an int; a blank matches any blanks, or none.
+  constexpr std::array kForms = {
+      "%9d:%9d(%*9d): %n",     // Mesa      2:14(5): error: x
+      "%9d(%9d) : %n",         // NVIDIA    2(14) : error C1008: x
+      "ERROR: %9d:%9d: %n",    // others    ERROR: 2:14: x
+      "WARNING: %9d:%9d: %n",  //
+  };
+  for (const char* form : kForms) {
+    Place place;
+    int end = 0;
+    if (std::sscanf(line.c_str(), form, &place.index, &place.line, &end) != 2 || end == 0) continue;
+    place.text_at = static_cast<std::size_t>(end);
+    return place;
+  }
+  return std::nullopt;
 }
 
 bool contains_error(std::string_view line) {
   return line.find("error") != std::string_view::npos || line.starts_with("ERROR");
 }
 
-std::optional<int> parse_number(const std::string& digits) {
-  int number = 0;
-  const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  return parsed.ec == std::errc() ? std::optional(number) : std::nullopt;
-}
-
 // Takes the file from the line number, or from the driver's index where the number says nothing.
-std::optional<std::string> locate(std::optional<int> index, std::optional<int> line,
-                                  const std::vector<std::string>& files) {
-  if (!index || !line) return std::nullopt;
-  const auto file = static_cast<std::size_t>(*line >= kLinesPerFile ? *line / kLinesPerFile : *index);
+std::optional<std::string> locate(const Place& place, const std::vector<std::string>& files) {
+  if (place.index < 0 || place.line < 0) return std::nullopt;
+  const auto file = static_cast<std::size_t>(place.line >= kLinesPerFile ? place.line / kLinesPerFile : place.index);
   if (file >= files.size()) return std::nullopt;
-  return fmt::format("{}:{}", files[file], *line % kLinesPerFile);
+  return fmt::format("{}:{}", files[file], place.line % kLinesPerFile);
 }
 
 std::optional<Complaint> parse_line(const std::string& line, const std::vector<std::string>& files) {
-  for (const auto& form : get_forms()) {
-    std::smatch match;
-    if (!std::regex_match(line, match, form)) continue;
-    const auto where = locate(parse_number(match[1].str()), parse_number(match[2].str()), files);
-    if (!where) return std::nullopt;
-    const std::string text = match[3].str();
-    const bool error = line.starts_with("ERROR") || text.starts_with("error") || text.starts_with("fatal error");
-    return Complaint{*where, text, error};
-  }
-  return std::nullopt;
+  const auto place = find_place(line);
+  const auto where = place ? locate(*place, files) : std::nullopt;
+  if (!where) return std::nullopt;
+  const std::string text = line.substr(place->text_at);
+  const bool error = line.starts_with("ERROR") || text.starts_with("error") || text.starts_with("fatal error");
+  return Complaint{*where, text, error};
 }
 
 // "error: x" without the word, which the caller's sentence has already.

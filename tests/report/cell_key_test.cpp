@@ -25,14 +25,14 @@ TEST(CellKey, OrderOfKeysAndWayOfWritingNumbers_DoNotMatter) {
 
 TEST(CellKey, EverySetting_ChangesTheKey) {
   const std::vector<std::function<void(CellRecord&)>> changes = {
-      [](CellRecord& c) { c.scene = "x"; },
-      [](CellRecord& c) { c.view = "x"; },
-      [](CellRecord& c) { c.filter = "x"; },
+      [](CellRecord& c) { c.scene += "x"; },
+      [](CellRecord& c) { c.view += "x"; },
+      [](CellRecord& c) { c.filter += "x"; },
       [](CellRecord& c) { c.params["radius"] = 5.0; },
       [](CellRecord& c) { c.params["store"] = std::string("rg16f"); },
       [](CellRecord& c) { c.params["more"] = true; },
       [](CellRecord& c) { c.map_size = 2048; },
-      [](CellRecord& c) { c.map_format = "d16"; },
+      [](CellRecord& c) { c.map_format += "x"; },
       [](CellRecord& c) { c.bias.constant_depth = 1e-4; },
       [](CellRecord& c) { c.bias.slope_texels = 1.0; },
       [](CellRecord& c) { c.bias.slope_kernels = 1.0; },
