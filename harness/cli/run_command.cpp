@@ -8,8 +8,8 @@
 
 #include "filters/error.h"
 #include "harness/cli/commands.h"
+#include "harness/cli/experiment_loader.h"
 #include "harness/cli/progress_bar.h"
-#include "harness/run/run_experiment.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::cli {
@@ -118,7 +118,7 @@ int run(const RunArguments& arguments, std::vector<std::string> command) {
   const run::RunOptions options = make_options(arguments, std::move(command));
   {
     const std::unique_ptr<run::Progress> progress = make_progress();
-    run::run_experiment(options, *progress);
+    load_and_run_experiment(options, *progress);
   }
   if (!options.worker) fmt::print("report: {}\n", (options.out / "index.html").string());
   return 0;
