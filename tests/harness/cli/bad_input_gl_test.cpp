@@ -64,6 +64,8 @@ TEST_F(BadInput, UnknownBias) { expect_refusal(small("--bias slop:kernels=1"), 2
 TEST_F(BadInput, NoRounds) { expect_refusal(small("--rounds 0"), 2, {"--rounds"}); }
 TEST_F(BadInput, UnknownContext) { expect_refusal(small("--gl vulkan"), 2, {"vulkan"}); }
 TEST_F(BadInput, NoContext) {
+  unsetenv("DISPLAY");
+  unsetenv("WAYLAND_DISPLAY");
   expect_refusal("run --out out --scene cubes --gl glfw --size 64x36", 4, {"glfw"});
 }
 TEST_F(BadInput, OutputFolderCannotBeWritten) {
