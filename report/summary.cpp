@@ -135,6 +135,20 @@ std::vector<std::string> describe_troubles(const CellGroup& group) {
   return sentences;
 }
 
+/// Lists the parts of a bias that are there: "2e-05 depth + slope over 1 x (kernel half-width + 1) texels".
+std::string describe_bias(const BiasRecord& bias) {
+  std::vector<std::string> parts;
+  if (bias.constant_depth > 0.0) parts.push_back(format_number(bias.constant_depth) + " depth");
+  if (bias.slope_texels > 0.0) parts.push_back(fmt::format("slope over {} texels", format_number(bias.slope_texels)));
+  if (bias.slope_kernels > 0.0) {
+    parts.push_back(fmt::format("slope over {} × (kernel half-width + 1) texels", format_number(bias.slope_kernels)));
+  }
+  if (bias.normal_offset_texels > 0.0) {
+    parts.push_back(fmt::format("normal offset of {} texels", format_number(bias.normal_offset_texels)));
+  }
+  return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, " + "));
+}
+
 }  // namespace
 
 std::string format_number(double value) {
@@ -172,12 +186,8 @@ std::string describe_params(const ParamMap& params) {
 }
 
 std::string describe_settings(const CellRecord& cell) {
-  return fmt::format(
-      "view {} · map {} × {} {} · picture {} × {} · bias: constant {} (depth), slope {} texels + {} kernels, "
-      "normal offset {} texels",
-      cell.view, cell.map_size, cell.map_size, cell.map_format, cell.width, cell.height,
-      format_number(cell.bias.constant_depth), format_number(cell.bias.slope_texels),
-      format_number(cell.bias.slope_kernels), format_number(cell.bias.normal_offset_texels));
+  return fmt::format("view {} · map {} × {} {} · picture {} × {} · bias: {}", cell.view, cell.map_size, cell.map_size,
+                     cell.map_format, cell.width, cell.height, describe_bias(cell.bias));
 }
 
 std::vector<CellGroup> group_cells(const std::vector<CellRecord>& cells) {

@@ -27,7 +27,7 @@ class TerminalBar final : public run::Progress {
     std::fflush(stderr);
   }
 
-  void warn(const std::string& message) override { fmt::print(stderr, "\r\033[Kwarning: {}\n", message); }
+  void note(const std::string& message) override { fmt::print(stderr, "\r\033[K{}\n", message); }
 
  private:
   int cells_ = 1;
@@ -45,7 +45,7 @@ class PlainLines final : public run::Progress {
  public:
   void begin(int cells) override { cells_ = cells; }
   void show(int done, const std::string& what) override { fmt::print(stderr, "{}/{} {}\n", done, cells_, what); }
-  void warn(const std::string& message) override { fmt::print(stderr, "warning: {}\n", message); }
+  void note(const std::string& message) override { fmt::print(stderr, "{}\n", message); }
 
  private:
   int cells_ = 0;

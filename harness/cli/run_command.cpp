@@ -5,6 +5,7 @@
 #include <charconv>
 #include <csignal>
 #include <memory>
+#include <optional>
 
 #include "filters/error.h"
 #include "harness/cli/commands.h"
@@ -31,6 +32,7 @@ struct RunArguments {
   double cell_timeout_s = 60.0;
   std::string out = "report/out";
   bool worker = false;
+  std::optional<double> pad_texels;  ///< workers see the same map as the run they belong to
 };
 
 [[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
@@ -109,6 +111,7 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   options.out = arguments.out;
   options.command = std::move(command);
   options.worker = arguments.worker;
+  options.pad_texels = arguments.pad_texels;
   return options;
 }
 
@@ -155,6 +158,7 @@ void add_run_command(CLI::App& app, Action& action, const std::vector<std::strin
   command->add_option("--cell-timeout", a->cell_timeout_s, "seconds that a filter of your own may take on one scene")->capture_default_str();
   command->add_option("--out", a->out, "report folder")->capture_default_str();
   command->add_flag("--worker", a->worker, "")->group("");
+  command->add_option("--pad-texels", a->pad_texels, "")->group("");
   command->callback([&action, a, words] { action = [a, words] { return run(*a, words); }; });
 }
 

@@ -35,6 +35,7 @@ struct RunOptions {
   int height = 540;
   scene::FitMode fit = scene::FitMode::kTight;
   BiasRule bias;
+  std::optional<double> pad_texels;  ///< around the scene in the map; empty: what the widest kernel needs
   int rounds = 11;
   std::uint32_t seed = 1;
   gl::Backend backend = gl::Backend::kAuto;

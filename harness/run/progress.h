@@ -13,7 +13,7 @@ class Progress {
   /// The cell named is under way, `done` cells are finished.
   virtual void show(int done, const std::string& what) = 0;
   /// Something the user should know, once.
-  virtual void warn(const std::string& message) = 0;
+  virtual void note(const std::string& message) = 0;
 };
 
 }  // namespace shadowbench::run

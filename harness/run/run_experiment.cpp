@@ -6,6 +6,7 @@
 
 #include "filters/error.h"
 #include "harness/run/run_facts.h"
+#include "harness/run/scene_assets.h"
 #include "harness/run/scene_measurement.h"
 #include "harness/run/scene_output.h"
 #include "harness/run/user_filter.h"
@@ -53,7 +54,8 @@ class Experiment {
     run_.seed = options.seed;
     run_.gl = describe_gl(renderer_);
     run_.machine = describe_machine();
-    for (const std::string& reason : renderer_.refused) warn("not used: " + reason);
+    progress_.note(fmt::format("OpenGL by {}: {}", run_.gl.backend, run_.gl.renderer));
+    for (const std::string& reason : renderer_.refused) progress_.note("not used: " + reason);
   }
 
   void run() {
@@ -79,15 +81,17 @@ class Experiment {
 
   void warn(const std::string& message) {
     run_.warnings.push_back(message);
-    progress_.warn(message);
+    progress_.note("warning: " + message);
   }
 
   void run_scene(const NamedScene& each) {
     run_.scenes.push_back({each.scene.name, each.scene.title});
     for (const std::string& warning : each.scene.warnings) warn(each.scene.name + ": " + warning);
+    SceneAssets assets(renderer_, options_, each.scene,
+                       options_.pad_texels.value_or(largest_padding_texels(options_.filters)));
     for (const scene::Camera& camera : each.scene.cameras) {
       for (const int map_size : options_.map_sizes) {
-        run_task({&each.scene, &camera, map_size, options_.filters}, each.argument);
+        run_task({&each.scene, &camera, map_size, options_.filters}, assets, each.argument);
       }
     }
   }
@@ -103,12 +107,12 @@ class Experiment {
     return cells;
   }
 
-  void run_task(SceneTask task, const std::string& scene_argument) {
+  void run_task(SceneTask task, SceneAssets& assets, const std::string& scene_argument) {
     std::vector<MeasuredCell> user_cells = run_user_filters(task, scene_argument);
     const SceneTask all = task;
     std::erase_if(task.filters, [&](const auto& request) { return request.user_file && !options_.worker; });
     SceneMeasurement measured =
-        measure_scene(renderer_, options_, task, [&](const std::string& label) { show(task, label); });
+        measure_scene(renderer_, options_, task, assets, [&](const std::string& label) { show(task, label); });
     for (MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
     show(task, "pictures");
     if (!options_.worker) write_pictures(options_, all, measured, run_.gl);

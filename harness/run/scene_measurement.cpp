@@ -14,13 +14,6 @@
 namespace shadowbench::run {
 namespace {
 
-/// The half-width of the widest kernel of a run: every filter sees the same map, padded for all of them.
-double largest_radius(const std::vector<filters::FilterRequest>& requests) {
-  double largest = 0.0;
-  for (const auto& request : requests) largest = std::max(largest, filters::radius_texels(request.spec, request.values));
-  return largest;
-}
-
 std::int64_t count_not_finite(const report::Image& image) {
   return std::count_if(image.texels.begin(), image.texels.end(), [](float v) { return !std::isfinite(v); });
 }
@@ -33,18 +26,14 @@ std::vector<double> add(std::vector<double> a, const std::vector<double>& b) {
 /// Everything that one task draws with.
 class SceneBench {
  public:
-  SceneBench(Renderer& renderer, const RunOptions& options, const SceneTask& task)
+  SceneBench(Renderer& renderer, const RunOptions& options, const SceneTask& task, SceneAssets& assets)
       : renderer_(renderer),
         options_(options),
         task_(task),
-        geometry_(*task.scene),
-        map_(task.map_size),
-        gbuffer_(options.width, options.height),
-        target_("visibility", GL_R32F, options.width, options.height),
-        frustum_(scene::fit_light(*task.scene, options.fit, task.map_size, std::ceil(largest_radius(task.filters)) + 1.0)) {
-    map_.draw(renderer_.shaders, geometry_, frustum_);
-    gbuffer_.draw(renderer_.shaders, geometry_, *task.scene, *task.camera);
-  }
+        assets_(assets),
+        light_(assets.light_map(task.map_size)),
+        gbuffer_(assets.gbuffer(*task.camera)),
+        target_("visibility", GL_R32F, options.width, options.height) {}
 
   SceneMeasurement run(const std::function<void(const std::string&)>& on_cell) {
     SceneMeasurement result;
@@ -56,7 +45,7 @@ class SceneBench {
       count_passes(result, *filters.back());
     }
     time(result, filters);
-    result.depth_map = render::read_image(map_.texture(), 1);
+    result.depth_map = render::read_image(light_.map.texture(), 1);
     renderer_.context->require_no_gl_errors();
     return result;
   }
@@ -65,16 +54,15 @@ class SceneBench {
   Renderer& renderer_;
   const RunOptions& options_;
   const SceneTask& task_;
-  render::Geometry geometry_;
-  render::ShadowMap map_;
-  render::GBuffer gbuffer_;
+  SceneAssets& assets_;
+  LightMap& light_;
+  render::GBuffer& gbuffer_;
   render::ImageTarget target_;
-  scene::LightFrustum frustum_;
   std::int64_t receivers_ = -1;
 
   std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request) {
     const render::Bias bias = resolve_bias(options_.bias, request.spec, request.values);
-    const auto light = render::make_light_setup(frustum_, task_.scene->light, bias, options_.seed);
+    const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed);
     return std::make_unique<render::FilterPasses>(renderer_.shaders, request, task_.map_size, light);
   }
 
@@ -82,14 +70,14 @@ class SceneBench {
     MeasuredCell cell;
     cell.record = make_record(options_, task_, filter.request());
     cell.label = filter.request().label();
-    filter.prefilter(map_);
-    filter.lookup(gbuffer_, map_, target_);
+    filter.prefilter(light_.map);
+    filter.lookup(gbuffer_, light_.map, target_);
     cell.visibility = render::read_image(target_.texture(), 1);
     cell.picture = render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera);
     cell.record.nan = count_not_finite(cell.visibility);
     if (receivers_ < 0) receivers_ = render::count_receivers(renderer_.shaders, gbuffer_, filter.light());
     cell.record.receivers = receivers_;
-    set_cost(cell.record, filter.measure_cost(renderer_.shaders, gbuffer_, map_));
+    set_cost(cell.record, filter.measure_cost(renderer_.shaders, gbuffer_, light_.map));
     return cell;
   }
 
@@ -107,9 +95,9 @@ class SceneBench {
   void time(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
     std::vector<render::FilterPasses*> pointers;
     for (const auto& filter : filters) pointers.push_back(filter.get());
-    const auto draw_map = [&] { map_.draw(renderer_.shaders, geometry_, frustum_); };
+    const auto draw_map = [&] { assets_.redraw(light_); };
     const RoundTimes times =
-        time_rounds(pointers, draw_map, map_, gbuffer_, {renderer_.timer, options_.rounds, options_.seed});
+        time_rounds(pointers, draw_map, light_.map, gbuffer_, {renderer_.timer, options_.rounds, options_.seed});
     const FilterTimes* none = nullptr;
     for (std::size_t i = 0; i < filters.size(); ++i) {
       if (task_.filters[i].spec.id == "none") none = &times.filters[i];
@@ -169,9 +157,9 @@ report::CellRecord make_record(const RunOptions& options, const SceneTask& task,
   return record;
 }
 
-SceneMeasurement measure_scene(Renderer& renderer, const RunOptions& options, const SceneTask& task,
+SceneMeasurement measure_scene(Renderer& renderer, const RunOptions& options, const SceneTask& task, SceneAssets& assets,
                                const std::function<void(const std::string&)>& on_cell) {
-  return SceneBench(renderer, options, task).run(on_cell);
+  return SceneBench(renderer, options, task, assets).run(on_cell);
 }
 
 }  // namespace shadowbench::run

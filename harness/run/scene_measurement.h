@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "harness/run/renderer.h"
+#include "harness/run/scene_assets.h"
 #include "harness/scene/scene.h"
 #include "report/image.h"
 #include "report/records.h"
@@ -37,7 +38,7 @@ struct SceneTask {
 
 /// Draws and times every filter of a task. `on_cell` hears of each filter before it is drawn.
 /// Throws Error(kFilter) for a filter's GLSL, Error(kUsage) for a map size that the GL cannot give.
-SceneMeasurement measure_scene(Renderer& renderer, const RunOptions& options, const SceneTask& task,
+SceneMeasurement measure_scene(Renderer& renderer, const RunOptions& options, const SceneTask& task, SceneAssets& assets,
                                const std::function<void(const std::string&)>& on_cell);
 
 /// Gives the record of a cell with its settings and key, nothing measured yet.

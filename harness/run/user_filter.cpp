@@ -52,6 +52,7 @@ std::vector<std::string> worker_arguments(const RunOptions& options, const Scene
                                         "--rounds", fmt::format("{}", options.rounds),
                                         "--seed", fmt::format("{}", options.seed),
                                         "--fit", options.fit == scene::FitMode::kSphere ? "sphere" : "tight",
+                                        "--pad-texels", fmt::format("{}", largest_padding_texels(options.filters)),
                                         "--gl", backend, "--out", folder.string()};
   if (options.ground) arguments.push_back("--ground");
   for (const std::string& bias : options.bias_texts) {
@@ -95,7 +96,9 @@ MeasuredCell read_cell(const RunOptions& options, const SceneTask& task, const f
   cell.label = request.label();
   cell.record = report::read_cell(folder, make_record(options, task, request).key);
   cell.record.images = {};
-  const report::ExrFile file = report::read_exr(folder / exr_name(options, task));
+  RunOptions of_worker = options;
+  of_worker.map_sizes = {task.map_size};
+  const report::ExrFile file = report::read_exr(folder / exr_name(of_worker, task));
   for (const report::Part& part : file.parts) {
     if (part.name == visibility_part(cell.label)) cell.visibility = part.image;
     if (part.name == picture_part(cell.label)) cell.picture = part.image;

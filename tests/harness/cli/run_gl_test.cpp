@@ -48,6 +48,21 @@ TEST_F(Command, UserFilter_GetsCellAndPictures) {
   }
 }
 
+TEST_F(Command, UserFilter_SeesTheSameMapAsTheOthers_AtEverySize) {
+  // A user's copy of a built-in filter: same map, same pixels.
+  write("copied.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/pcf2x2.glsl"));
+  const Outcome outcome = run(
+      "run --out out --size 64x36 --map-size 32,64 --rounds 1 --scene cubes --filters pcf2x2,vsm,copied --filter-file "
+      "copied.glsl");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* stem : {"cubes.map32", "cubes.map64"}) {
+    const std::string base = (folder() / "out" / "images" / stem).string();
+    const std::string picture = read_text(base + ".copied.visibility.png");
+    EXPECT_FALSE(picture.empty());
+    EXPECT_EQ(picture, read_text(base + ".pcf2x2.visibility.png")) << stem;
+  }
+}
+
 TEST_F(Command, EndlessUserFilter_TimesOutAndTheRunGoesOn) {
   const Outcome outcome = run("run --out out --size 320x180 --map-size 64 --rounds 2 --scene cubes --filters none,endless --cell-timeout 3 --filter-file " +
                               user_filter("endless.glsl"));

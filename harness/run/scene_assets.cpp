@@ -1,0 +1,36 @@
+#include "harness/run/scene_assets.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace shadowbench::run {
+
+SceneAssets::SceneAssets(Renderer& renderer, const RunOptions& options, const scene::Scene& scene, double pad_texels)
+    : renderer_(renderer), options_(options), scene_(scene), pad_texels_(pad_texels), geometry_(scene) {}
+
+LightMap& SceneAssets::light_map(int map_size) {
+  const auto found = maps_.find(map_size);
+  if (found != maps_.end()) return found->second;
+  LightMap light{scene::fit_light(scene_, options_.fit, map_size, pad_texels_), render::ShadowMap(map_size)};
+  LightMap& kept = maps_.emplace(map_size, std::move(light)).first->second;
+  redraw(kept);
+  return kept;
+}
+
+void SceneAssets::redraw(LightMap& light) { light.map.draw(renderer_.shaders, geometry_, light.frustum); }
+
+render::GBuffer& SceneAssets::gbuffer(const scene::Camera& camera) {
+  const auto found = gbuffers_.find(&camera);
+  if (found != gbuffers_.end()) return found->second;
+  render::GBuffer& kept = gbuffers_.try_emplace(&camera, options_.width, options_.height).first->second;
+  kept.draw(renderer_.shaders, geometry_, scene_, camera);
+  return kept;
+}
+
+double largest_padding_texels(const std::vector<filters::FilterRequest>& requests) {
+  double largest = 0.0;
+  for (const auto& request : requests) largest = std::max(largest, filters::radius_texels(request.spec, request.values));
+  return std::ceil(largest) + 1.0;
+}
+
+}  // namespace shadowbench::run

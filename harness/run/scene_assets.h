@@ -1,0 +1,47 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "harness/render/gbuffer.h"
+#include "harness/render/shadow_map.h"
+#include "harness/run/options.h"
+#include "harness/run/renderer.h"
+
+namespace shadowbench::run {
+
+/// A light's depth map with the frustum it was drawn in.
+struct LightMap {
+  scene::LightFrustum frustum;
+  render::ShadowMap map;
+};
+
+/// What all cells of one scene share: its geometry, one G-buffer per view, one depth map per size. Each is drawn when it
+/// is first asked for and kept, since neither light nor casters change during a run.
+class SceneAssets {
+ public:
+  /// `pad_texels` is the half-width of the run's widest kernel: every filter sees the same map.
+  SceneAssets(Renderer& renderer, const RunOptions& options, const scene::Scene& scene, double pad_texels);
+
+  /// Throws Error(kUsage) when the GL cannot give a map of this size.
+  LightMap& light_map(int map_size);
+
+  render::GBuffer& gbuffer(const scene::Camera& camera);
+
+  /// Draws a map again, as a moving light would; for timing.
+  void redraw(LightMap& light);
+
+ private:
+  Renderer& renderer_;
+  const RunOptions& options_;
+  const scene::Scene& scene_;
+  double pad_texels_;
+  render::Geometry geometry_;
+  std::map<int, LightMap> maps_;
+  std::map<const scene::Camera*, render::GBuffer> gbuffers_;
+};
+
+/// Gives the padding that the widest kernel of these filters needs, in whole texels.
+double largest_padding_texels(const std::vector<filters::FilterRequest>& requests);
+
+}  // namespace shadowbench::run
