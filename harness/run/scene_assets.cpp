@@ -11,7 +11,9 @@ SceneAssets::SceneAssets(Renderer& renderer, const RunOptions& options, const sc
 LightMap& SceneAssets::light_map(int map_size) {
   const auto found = maps_.find(map_size);
   if (found != maps_.end()) return found->second;
-  LightMap light{scene::fit_light(scene_, options_.fit, map_size, pad_texels_), render::ShadowMap(map_size)};
+  // A map smaller than the padding keeps half of its width for the scene.
+  const double pad_texels = std::min(pad_texels_, 0.25 * map_size);
+  LightMap light{scene::fit_light(scene_, options_.fit, map_size, pad_texels), render::ShadowMap(map_size)};
   LightMap& kept = maps_.emplace(map_size, std::move(light)).first->second;
   redraw(kept);
   return kept;

@@ -91,6 +91,12 @@ TEST_F(Command, SeveralMapSizes_DoNotShareFiles) {
   EXPECT_EQ(results(folder())["cells"].size(), 2u);
 }
 
+TEST_F(Command, MapOfOneTexel_Works) {
+  const Outcome outcome = run("run --out out --size 64x36 --map-size 1 --rounds 1 --scene cubes");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const auto& cell : results(folder())["cells"]) EXPECT_EQ(cell["nan"], 0);
+}
+
 TEST_F(Command, ListFilters_ShowsWhatTheFrontMatterSays) {
   const Outcome outcome = run("list filters");
   EXPECT_EQ(outcome.exit_code, 0);

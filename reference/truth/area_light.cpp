@@ -1,0 +1,66 @@
+#include "reference/truth/area_light.h"
+
+#include <cmath>
+#include <limits>
+
+#include "reference/truth/sobol.h"
+
+namespace shadowbench::reference {
+namespace {
+
+/// Two unit vectors perpendicular to an axis and to each other.
+struct Tangents {
+  glm::dvec3 u;
+  glm::dvec3 v;
+};
+
+Tangents make_tangents(const glm::dvec3& axis) {
+  const glm::dvec3 n = glm::normalize(axis), a = glm::abs(n);
+  const glm::dvec3 least = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0) : a.y <= a.z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+  const glm::dvec3 u = glm::normalize(glm::cross(n, least));
+  return {u, glm::cross(n, u)};
+}
+
+}  // namespace
+
+AreaLight AreaLight::make_sun(const glm::dvec3& to_light, double angular_diameter_deg) {
+  AreaLight light;
+  const Tangents tangents = make_tangents(to_light);
+  const double radius = std::tan(0.5 * glm::radians(angular_diameter_deg));
+  light.centre_ = glm::normalize(to_light);
+  light.u_ = radius * tangents.u;
+  light.v_ = radius * tangents.v;
+  return light;
+}
+
+AreaLight AreaLight::make_disk(const glm::dvec3& centre_ws, const glm::dvec3& axis, double radius_m) {
+  AreaLight light;
+  const Tangents tangents = make_tangents(axis);
+  light.shape_ = Shape::kDisk;
+  light.centre_ = centre_ws;
+  light.u_ = radius_m * tangents.u;
+  light.v_ = radius_m * tangents.v;
+  return light;
+}
+
+AreaLight AreaLight::make_rectangle(const glm::dvec3& centre_ws, const glm::dvec3& half_u, const glm::dvec3& half_v) {
+  AreaLight light;
+  light.shape_ = Shape::kRectangle;
+  light.centre_ = centre_ws;
+  light.u_ = half_u;
+  light.v_ = half_v;
+  return light;
+}
+
+glm::dvec3 AreaLight::direction(const glm::dvec3& from, const glm::dvec2& sample) const {
+  const glm::dvec2 p = shape_ == Shape::kRectangle ? 2.0 * sample - 1.0 : map_to_disk(sample);
+  return centre_direction(from) + p.x * u_ + p.y * v_;
+}
+
+glm::dvec3 AreaLight::centre_direction(const glm::dvec3& from) const {
+  return shape_ == Shape::kSun ? centre_ : centre_ - from;
+}
+
+float AreaLight::reach() const { return shape_ == Shape::kSun ? std::numeric_limits<float>::infinity() : 1.0f; }
+
+}  // namespace shadowbench::reference

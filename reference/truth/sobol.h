@@ -1,0 +1,24 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+
+namespace shadowbench::reference {
+
+/// Gives point `index` of the Sobol sequence's first two dimensions, Owen-scrambled by `seed`, as 32-bit fractions.
+///
+/// Different seeds give independent randomisations, each of them uniform: the mean over a scramble is unbiased, and
+/// several scrambles give an honest standard error. XOR with random bits (a digital shift) keeps both properties and
+/// makes a further randomisation cheaply. Cost: 64 hashes; keep the points.
+/// Source: Sobol 1967; Owen 1995; scrambling by hashing after Burley 2020, Practical Hash-based Owen Scrambling, JCGT 9(4).
+glm::uvec2 sobol_bits(std::uint32_t index, std::uint32_t seed);
+
+/// Reads 32-bit fractions as a point of [0,1)^2.
+inline glm::dvec2 to_unit_square(glm::uvec2 bits) { return {bits.x * 0x1p-32, bits.y * 0x1p-32}; }
+
+/// Maps the unit square to the unit disk, equal areas to equal areas.
+/// Source: Shirley and Chiu 1997, A Low Distortion Map Between Disk and Square, JGT 2(3).
+glm::dvec2 map_to_disk(glm::dvec2 square);
+
+}  // namespace shadowbench::reference
