@@ -244,6 +244,15 @@ std::vector<std::string> describe_group(const CellGroup& group, const GlRecord& 
   return sentences;
 }
 
+namespace {
+
+std::string format_rmse(const CellRecord& cell) {
+  if (!cell.error.rmse || !cell.truth.se) return kNothing;
+  return fmt::format("{} ({})", format_number(*cell.error.rmse), format_number(*cell.truth.se));
+}
+
+}  // namespace
+
 TextTable make_table(const CellGroup& group, const GlRecord& gl) {
   const std::string unit = time_unit(gl);
   TextTable table;
@@ -251,6 +260,7 @@ TextTable make_table(const CellGroup& group, const GlRecord& gl) {
                   "parameters",
                   fmt::format("lookup, {}, median [quartiles]", unit),
                   "lookup / none, median [95 %]",
+                  "RMSE to the area truth (its standard error)",
                   fmt::format("prefilter, {}", unit),
                   fmt::format("map, {}", unit),
                   "fetches per receiver",
@@ -259,7 +269,7 @@ TextTable make_table(const CellGroup& group, const GlRecord& gl) {
                   "status"};
   for (const CellRecord& cell : group.cells) {
     table.rows.push_back({cell.filter, cell.params.empty() ? kNothing : describe_params(cell.params),
-                          format_quartiles(cell.time_ms.lookup), format_ratio(cell.ratio_to_none.lookup),
+                          format_quartiles(cell.time_ms.lookup), format_ratio(cell.ratio_to_none.lookup), format_rmse(cell),
                           format_quartiles(cell.time_ms.prefilter), format_quartiles(cell.time_ms.map),
                           format_optional(cell.cost.fetches), format_optional(cell.cost.bytes_per_texel),
                           format_optional(cell.cost.passes), format_status(cell)});

@@ -31,6 +31,7 @@ struct RunArguments {
   std::string backend = "auto";
   double cell_timeout_s = 60.0;
   std::string out = "report/out";
+  bool no_truth = false;
   bool worker = false;
   std::optional<double> pad_texels;  ///< workers see the same map as the run they belong to
 };
@@ -110,6 +111,7 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   options.cell_timeout_s = arguments.cell_timeout_s;
   options.out = arguments.out;
   options.command = std::move(command);
+  options.truth = !arguments.no_truth && !arguments.worker;
   options.worker = arguments.worker;
   options.pad_texels = arguments.pad_texels;
   return options;
@@ -156,6 +158,7 @@ void add_run_command(CLI::App& app, Action& action, const std::vector<std::strin
   command->add_option("--seed", a->seed, "of random rotations and of the order of timing")->capture_default_str();
   command->add_option("--gl", a->backend, "OpenGL context: auto, osmesa, egl or glfw")->capture_default_str();
   command->add_option("--cell-timeout", a->cell_timeout_s, "seconds that a filter of your own may take on one scene")->capture_default_str();
+  command->add_flag("--no-truth", a->no_truth, "do not trace rays: no truth, no errors");
   command->add_option("--out", a->out, "report folder")->capture_default_str();
   command->add_flag("--worker", a->worker, "")->group("");
   command->add_option("--pad-texels", a->pad_texels, "")->group("");

@@ -23,4 +23,7 @@ class ImageTarget {
 /// Reads a texture back as an image, rows top to bottom.
 report::Image read_image(const gl::Texture& texture, int channels);
 
+/// Makes an R32F texture of a one-channel image, rows top to bottom.
+gl::Texture upload_image(const report::Image& image);
+
 }  // namespace shadowbench::render

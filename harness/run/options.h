@@ -39,6 +39,7 @@ struct RunOptions {
   int rounds = 11;
   std::uint32_t seed = 1;
   gl::Backend backend = gl::Backend::kAuto;
+  bool truth = true;  ///< trace visibility and score every filter against it
   double cell_timeout_s = 60.0;  ///< for one user's filter on one scene
   std::filesystem::path out;
   std::vector<std::string> command;      ///< the command line, for the record

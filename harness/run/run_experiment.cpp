@@ -114,9 +114,12 @@ class Experiment {
     SceneMeasurement measured =
         measure_scene(renderer_, options_, task, assets, [&](const std::string& label) { show(task, label); });
     for (MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
+    show(task, "truth");
+    const SceneTruth& truth = assets.truth(*task.camera);
+    for (MeasuredCell& cell : measured.cells) score(cell.record, cell.visibility, truth);
     show(task, "pictures");
-    if (!options_.worker) write_pictures(options_, all, measured, run_.gl);
-    write_float_images(options_, all, measured, renderer_.context->info());
+    if (!options_.worker) write_pictures(options_, all, measured, truth, run_.gl);
+    write_float_images(options_, all, measured, truth, renderer_.context->info());
     for (const MeasuredCell& cell : measured.cells) {
       report::write_cell(options_.out, cell.record);
       keys_.push_back(cell.record.key);

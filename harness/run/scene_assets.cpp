@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/render/shade_pass.h"
+
 namespace shadowbench::run {
 
 SceneAssets::SceneAssets(Renderer& renderer, const RunOptions& options, const scene::Scene& scene, double pad_texels)
@@ -27,6 +29,29 @@ render::GBuffer& SceneAssets::gbuffer(const scene::Camera& camera) {
   render::GBuffer& kept = gbuffers_.try_emplace(&camera, options_.width, options_.height).first->second;
   kept.draw(renderer_.shaders, geometry_, scene_, camera);
   return kept;
+}
+
+const SceneTruth& SceneAssets::truth(const scene::Camera& camera) {
+  const auto found = truths_.find(&camera);
+  if (found != truths_.end()) return found->second;
+  return truths_.emplace(&camera, make_truth(camera)).first->second;
+}
+
+SceneTruth SceneAssets::make_truth(const scene::Camera& camera) {
+  SceneTruth truth;
+  if (!options_.truth) {
+    truth.absent = "the run was made with --no-truth";
+    return truth;
+  }
+  render::GBuffer& view = gbuffer(camera);
+  truth = trace_scene(scene_, view, options_.seed);
+  if (!truth.absent.empty()) return truth;
+  const auto shaded = [&](const report::Image& visibility) {
+    return render::shade(renderer_.shaders, view, render::upload_image(visibility), scene_, camera);
+  };
+  truth.hard_picture = shaded(truth.hard);
+  truth.area_picture = shaded(truth.area);
+  return truth;
 }
 
 double largest_padding_texels(const std::vector<filters::FilterRequest>& requests) {

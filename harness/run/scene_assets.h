@@ -7,6 +7,7 @@
 #include "harness/render/shadow_map.h"
 #include "harness/run/options.h"
 #include "harness/run/renderer.h"
+#include "harness/run/scene_truth.h"
 
 namespace shadowbench::run {
 
@@ -28,6 +29,9 @@ class SceneAssets {
 
   render::GBuffer& gbuffer(const scene::Camera& camera);
 
+  /// Gives the truth of a view, traced when it is first asked for.
+  const SceneTruth& truth(const scene::Camera& camera);
+
   /// Draws a map again, as a moving light would; for timing.
   void redraw(LightMap& light);
 
@@ -39,6 +43,9 @@ class SceneAssets {
   render::Geometry geometry_;
   std::map<int, LightMap> maps_;
   std::map<const scene::Camera*, render::GBuffer> gbuffers_;
+  std::map<const scene::Camera*, SceneTruth> truths_;
+
+  SceneTruth make_truth(const scene::Camera& camera);
 };
 
 /// Gives the padding that the widest kernel of these filters needs, in whole texels.

@@ -150,9 +150,6 @@ report::CellRecord make_record(const RunOptions& options, const SceneTask& task,
   record.width = options.width;
   record.height = options.height;
   record.key = report::cell_key(record);
-  for (const char* group : {"error", "truth", "artefact", "attribution"}) {
-    record.absent[group] = "this version has no ray-traced truth yet";
-  }
   record.absent["excused"] = "counted where filters are compared with their models";
   return record;
 }

@@ -51,7 +51,9 @@ std::string caption(const report::CellRecord& cell, const report::GlRecord& gl) 
   if (!text.empty()) text += " · ";
   text += fmt::format("lookup {} ms", report::format_number(cell.time_ms.lookup->median));
   if (cell.time_ms.prefilter) text += fmt::format(" + prefilter {} ms", report::format_number(cell.time_ms.prefilter->median));
-  return text + (gl.software ? " (CPU)" : " (GPU)");
+  text += gl.software ? " (CPU)" : " (GPU)";
+  if (cell.error.rmse) text += fmt::format(" · RMSE {}", report::format_number(*cell.error.rmse));
+  return text;
 }
 
 report::Rect choose_crop(const RunOptions& options, const std::vector<MeasuredCell>& cells) {
@@ -64,14 +66,26 @@ report::Rect choose_crop(const RunOptions& options, const std::vector<MeasuredCe
   return report::find_hardest_edge(visibility, reference, report::choose_crop_size({options.width, options.height}));
 }
 
+/// The truth comes first: what every filter would like to look like.
+std::vector<report::GridTile> make_truth_tiles(const SceneTask& task, const SceneTruth& truth) {
+  if (!truth.absent.empty()) return {};
+  const std::string sun = fmt::format("rays to a sun of {} degrees, standard error {}",
+                                      report::format_number(static_cast<double>(task.scene->light.angular_diameter_deg)),
+                                      report::format_number(truth.standard_error));
+  return {{"truth, hard", "one ray to the light's centre", truth.hard_picture, truth.hard, ""},
+          {"truth, area", sun, truth.area_picture, truth.area, ""}};
+}
+
 report::Grid make_grid(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
-                       const report::GlRecord& gl) {
+                       const SceneTruth& truth, const report::GlRecord& gl) {
   report::Grid grid;
   grid.title = task.scene->title.empty() ? task.scene->name : fmt::format("{}: {}", task.scene->name, task.scene->title);
   grid.subtitle = report::describe_settings(measured.cells.front().record) + " · times: " + report::describe_clock(gl);
+  grid.tiles = make_truth_tiles(task, truth);
   for (const MeasuredCell& cell : measured.cells) {
     grid.tiles.push_back({cell.label, caption(cell.record, gl), cell.picture, cell.visibility, cell.record.message});
   }
+  grid.columns = truth.absent.empty() ? 4 : 3;
   grid.crop = choose_crop(options, measured.cells);
   return grid;
 }
@@ -101,23 +115,27 @@ std::string visibility_part(const std::string& label) { return label + ".visibil
 std::string picture_part(const std::string& label) { return label + ".picture"; }
 
 void write_float_images(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
-                        const gl::GlInfo& info) {
+                        const SceneTruth& truth, const gl::GlInfo& info) {
   std::vector<report::Part> parts;
   for (const MeasuredCell& cell : measured.cells) {
     if (cell.visibility.empty()) continue;
     parts.push_back({visibility_part(cell.label), {"Y"}, cell.visibility, false});
     parts.push_back({picture_part(cell.label), {"R", "G", "B"}, cell.picture, true});
   }
+  if (truth.absent.empty()) {
+    parts.push_back({"truth.hard", {"Y"}, truth.hard, false});
+    parts.push_back({"truth.area", {"Y"}, truth.area, false});
+  }
   parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});
   report::write_exr(options.out / exr_name(options, task), parts, describe(options, task, info));
 }
 
 void write_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured,
-                    const report::GlRecord& gl) {
+                    const SceneTruth& truth, const report::GlRecord& gl) {
   const std::string stem = task_stem(options, task);
   const std::string grid_name = stem + ".grid.png";
   const std::string depth_name = "images/" + stem + ".depth_map.png";
-  report::write_grid(options.out / grid_name, make_grid(options, task, measured, gl));
+  report::write_grid(options.out / grid_name, make_grid(options, task, measured, truth, gl));
   report::write_grey_png(options.out / depth_name, measured.depth_map, depth_picture_range(measured.depth_map));
   for (MeasuredCell& cell : measured.cells) {
     write_cell_pictures(options, stem, cell);

@@ -5,6 +5,7 @@
 
 #include "harness/run/options.h"
 #include "harness/run/scene_measurement.h"
+#include "harness/run/scene_truth.h"
 
 namespace shadowbench::run {
 
@@ -18,14 +19,14 @@ std::string exr_name(const RunOptions& options, const SceneTask& task);
 std::string visibility_part(const std::string& label);
 std::string picture_part(const std::string& label);
 
-/// Writes `<stem>.exr`: depth map, and visibility and picture of each filter, with metadata to repeat the run.
+/// Writes `<stem>.exr`: depth map, truth, and visibility and picture of each filter, with metadata to repeat the run.
 /// Throws Error(kOutput).
 void write_float_images(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
-                        const gl::GlInfo& info);
+                        const SceneTruth& truth, const gl::GlInfo& info);
 
 /// Writes what people look at: grid, single pictures, depth map; notes their paths in the records.
 /// Throws Error(kOutput).
 void write_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured,
-                    const report::GlRecord& gl);
+                    const SceneTruth& truth, const report::GlRecord& gl);
 
 }  // namespace shadowbench::run

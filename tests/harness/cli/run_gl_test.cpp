@@ -91,6 +91,26 @@ TEST_F(Command, SeveralMapSizes_DoNotShareFiles) {
   EXPECT_EQ(results(folder())["cells"].size(), 2u);
 }
 
+TEST_F(Command, EveryCell_IsScoredAgainstTheTruth) {
+  const Outcome outcome = run("run --out out --size 128x72 --rounds 1 --scene cubes --filters none,vsm:radius=20");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json json = results(folder());
+  const nlohmann::json &none = json["cells"][0]["error"], &wide = json["cells"][1]["error"];
+  EXPECT_GT(none["rmse"], 0.0);
+  EXPECT_LT(none["rmse"], 0.1);
+  EXPECT_GT(wide["rmse"], none["rmse"]) << "a blur of 41 texels is wider than the sun's penumbra";
+  EXPECT_LE(json["cells"][0]["truth"]["se"], 0.005);
+  EXPECT_LE(none["mae"], none["rmse"]);
+  EXPECT_LE(none["rmse"], none["max"]);
+}
+
+TEST_F(Command, WithoutTruth_SaysSo) {
+  ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --no-truth").exit_code, 0);
+  const nlohmann::json json = results(folder());
+  EXPECT_TRUE(json["cells"][0]["error"]["rmse"].is_null());
+  EXPECT_EQ(json["cells"][0]["absent"]["error"], "the run was made with --no-truth");
+}
+
 TEST_F(Command, MapOfOneTexel_Works) {
   const Outcome outcome = run("run --out out --size 64x36 --map-size 1 --rounds 1 --scene cubes");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;

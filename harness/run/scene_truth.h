@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/render/gbuffer.h"
+#include "report/image.h"
+#include "report/records.h"
+
+namespace shadowbench::run {
+
+/// Ray-traced visibility of one view's receivers, rows top to bottom like every report image.
+struct SceneTruth {
+  std::string absent;              ///< why there is none; empty where there is
+  report::Image hard;              ///< the light as a point: 1 seen, 0 blocked
+  report::Image area;              ///< the fraction of the light that is seen
+  report::Image hard_picture;      ///< shaded with `hard`, linear RGB
+  report::Image area_picture;      ///< shaded with `area`, linear RGB
+  std::vector<std::uint8_t> mask;  ///< 1 where a pixel counts: a surface that faces the light
+  double standard_error = 0.0;     ///< root mean square over the pixels that count
+  double unanimous = 0.0;          ///< share of them whose rays all agree, and which therefore have no standard error
+};
+
+/// Traces the receivers that a G-buffer holds; the pictures are left empty.
+/// Cost: 64 rays for most pixels, up to 16384 at the edges of shadows.
+SceneTruth trace_scene(const scene::Scene& scene, const render::GBuffer& gbuffer, std::uint32_t seed);
+
+/// Scores a visibility image against the truth and notes the errors, or why there are none, in its record.
+void score(report::CellRecord& record, const report::Image& visibility, const SceneTruth& truth);
+
+}  // namespace shadowbench::run

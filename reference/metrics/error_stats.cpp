@@ -1,0 +1,40 @@
+#include "reference/metrics/error_stats.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+namespace shadowbench::reference {
+
+std::optional<ErrorStats> measure_error(std::span<const float> image, std::span<const float> truth,
+                                        std::span<const std::uint8_t> mask) {
+  assert(image.size() == truth.size() && image.size() == mask.size());
+  ErrorStats stats;
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    if (!mask[i]) continue;
+    const double error = static_cast<double>(image[i]) - static_cast<double>(truth[i]);
+    if (!std::isfinite(error)) {
+      ++stats.not_finite;
+      continue;
+    }
+    distances.push_back(std::abs(error));
+    stats.mean += error;
+    stats.rmse += error * error;
+    stats.mae += std::abs(error);
+  }
+  if (distances.empty()) return std::nullopt;
+  const double count = static_cast<double>(distances.size());
+  stats.count = static_cast<std::int64_t>(distances.size());
+  stats.mean /= count;
+  stats.mae /= count;
+  stats.rmse = std::sqrt(stats.rmse / count);
+  const auto rank = static_cast<std::ptrdiff_t>(std::ceil(0.95 * count)) - 1;
+  std::nth_element(distances.begin(), distances.begin() + rank, distances.end());
+  stats.p95 = distances[static_cast<std::size_t>(rank)];
+  stats.max = *std::max_element(distances.begin() + rank, distances.end());
+  return stats;
+}
+
+}  // namespace shadowbench::reference
