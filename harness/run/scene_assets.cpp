@@ -13,8 +13,8 @@ SceneAssets::SceneAssets(Renderer& renderer, const RunOptions& options, const sc
 LightMap& SceneAssets::light_map(int map_size) {
   const auto found = maps_.find(map_size);
   if (found != maps_.end()) return found->second;
-  // A map smaller than the padding keeps half of its width for the scene.
-  const double pad_texels = std::min(pad_texels_, 0.25 * map_size);
+  // A map smaller than the padding keeps half of its texels for the scene.
+  const double pad_texels = std::min(pad_texels_, 0.25 * (map_size - 1));
   LightMap light{scene::fit_light(scene_, options_.fit, map_size, pad_texels), render::ShadowMap(map_size)};
   LightMap& kept = maps_.emplace(map_size, std::move(light)).first->second;
   redraw(kept);
