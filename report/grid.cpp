@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "report/diverging.h"
 #include "report/grid_layout.h"
 #include "report/picture_io.h"
 #include "report/text.h"
@@ -119,6 +120,36 @@ void outline_crop(Image& canvas, const Rect& crop, const Rect& box) {
   }
 }
 
+Image color_errors(const Image& errors, double scale) {
+  Image colored(errors.width, errors.height, 3);
+  for (std::size_t i = 0; i < errors.texels.size(); ++i) {
+    const float value = errors.texels[i];
+    const Rgb color = std::isfinite(value) ? map_diverging(value, static_cast<float>(scale)) : kNotFinite;
+    std::copy(color.begin(), color.end(), colored.texels.begin() + static_cast<std::ptrdiff_t>(3 * i));
+  }
+  return colored;
+}
+
+// Draws display values as they are.
+void draw_display_image(Image& canvas, const Image& image, const Rect& box) {
+  const Image shown = fit_image(image, box);
+  for (int y = 0; y < shown.height; ++y) {
+    const float* row = shown.at(0, y);
+    std::copy(row, row + 3 * shown.width, canvas.at(box.x, box.y + y));
+  }
+  frame_rect(canvas, box, 1, kFrame);
+}
+
+void draw_color_bar(Image& canvas, const Rect& box, double scale) {
+  Image bar(box.width, box.height, 1);
+  for (int y = 0; y < box.height; ++y) {
+    for (int x = 0; x < box.width; ++x) {
+      *bar.at(x, y) = static_cast<float>(scale * (2.0 * (x + 0.5) / box.width - 1.0));
+    }
+  }
+  draw_display_image(canvas, color_errors(bar, scale), box);
+}
+
 void draw_panel(Image& canvas, const Grid& grid, const Panel& panel) {
   const GridTile& tile = grid.tiles[panel.tile];
   const bool is_crop = panel.kind == PanelKind::kPictureCrop || panel.kind == PanelKind::kVisibilityCrop;
@@ -163,8 +194,13 @@ Image draw_grid(const Grid& grid) {
     fill_rect(canvas, box, kMessageBackground);
   }
   for (const Panel& panel : layout.panels) {
-    draw_panel(canvas, grid, panel);
+    if (panel.kind == PanelKind::kError) {
+      draw_display_image(canvas, color_errors(grid.tiles[panel.tile].error, layout.error_scale), panel.box);
+    } else {
+      draw_panel(canvas, grid, panel);
+    }
   }
+  if (layout.color_bar) draw_color_bar(canvas, *layout.color_bar, layout.error_scale);
   for (const TextLine& line : layout.texts) {
     draw_text(canvas, line.box.x, line.box.y, line.text, font_of(line.role), ink_of(line.role));
   }

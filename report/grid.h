@@ -15,6 +15,7 @@ struct GridTile {
   std::string caption;  ///< "radius 4, rg32f · 12.3 ms (CPU)"; wrapped where it is long
   Image picture;        ///< linear RGB; empty where the cell has none
   Image visibility;     ///< 1 channel, the picture's size; empty where the cell has none
+  Image error;          ///< 1 channel, signed: visibility less truth; empty where there is no truth
   std::string message;  ///< shown instead of the images where both are empty: "timed out after 10 s"
 };
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "report/diverging.h"
+
 namespace shadowbench::report {
 namespace {
 
@@ -15,17 +17,19 @@ constexpr int kBlockGap = 34;
 constexpr int kMessagePadding = 16;
 constexpr int kMaxPictureHeight = 560;
 constexpr int kMaxCropHeight = 260;
+constexpr int kColorBarWidth = 240;
 
 // Height of each row of a block, shared by its tiles so that they line up.
 struct BlockRows {
   int text = 0;
   int picture = 0;
   int visibility = 0;
+  int error = 0;
   int crop = 0;
 
   int images_height() const {
     int height = 0;
-    for (const int row : {picture, visibility, crop}) {
+    for (const int row : {picture, visibility, error, crop}) {
       height += row > 0 ? row + kRowGap : 0;
     }
     return std::max(0, height - kRowGap);
@@ -47,6 +51,7 @@ class Builder {
     for (std::size_t first = 0; first < grid_.tiles.size(); first += columns_) {
       y = add_block(first, std::min(first + columns_, grid_.tiles.size()), y) + kBlockGap;
     }
+    y = add_color_bar(y);
     y = add_text(legend(), TextRole::kLegend, full_width(y));
     layout_.canvas.height = y + kMargin;
     return std::move(layout_);
@@ -77,6 +82,7 @@ class Builder {
                                           text_height(tile.caption, TextRole::kCaption, kTileWidth));
       rows.picture = std::max(rows.picture, shown_size(tile.picture).height);
       rows.visibility = std::max(rows.visibility, shown_size(tile.visibility).height);
+      rows.error = std::max(rows.error, shown_size(tile.error).height);
       for (const Image* image : {&tile.picture, &tile.visibility}) {
         rows.crop = std::max(rows.crop, crop_size(*image).height);
       }
@@ -111,6 +117,22 @@ class Builder {
     return bottom;
   }
 
+  /// One scale for the whole grid, with its bar and what its ends mean.
+  int add_color_bar(int y) {
+    std::vector<const Image*> errors;
+    for (const GridTile& tile : grid_.tiles) {
+      if (!tile.error.empty()) errors.push_back(&tile.error);
+    }
+    if (errors.empty()) return y;
+    layout_.error_scale = choose_error_scale(errors);
+    const int height = line_height(font_of(TextRole::kLegend));
+    layout_.color_bar = Rect{kMargin, y, kColorBarWidth, height};
+    const std::string text = fmt::format("error, visibility less area truth: -{0} (too dark, blue) to +{0} (too bright, red)",
+                                         layout_.error_scale);
+    const int x = kMargin + kColorBarWidth + kColumnGap;
+    return std::max(add_text(text, TextRole::kLegend, {x, y, layout_.canvas.width - kMargin - x, 0}), y + height) + kRowGap;
+  }
+
   int add_message(const GridTile& tile, const Rect& place) {
     const int width = place.width - 2 * kMessagePadding;
     const int needed = text_height(tile.message, TextRole::kMessage, width) + 2 * kMessagePadding;
@@ -126,6 +148,8 @@ class Builder {
     y += rows.picture > 0 ? rows.picture + kRowGap : 0;
     add_panel({column.x, y, column.width, rows.visibility}, shown_size(tile.visibility), index, PanelKind::kVisibility);
     y += rows.visibility > 0 ? rows.visibility + kRowGap : 0;
+    add_panel({column.x, y, column.width, rows.error}, shown_size(tile.error), index, PanelKind::kError);
+    y += rows.error > 0 ? rows.error + kRowGap : 0;
     const int half = (column.width - kRowGap) / 2;
     add_panel({column.x, y, half, rows.crop}, crop_size(tile.picture), index, PanelKind::kPictureCrop);
     add_panel({column.x + column.width - half, y, half, rows.crop}, crop_size(tile.visibility), index,
@@ -146,7 +170,8 @@ class Builder {
     if (layout_.panels.empty()) {
       return {};
     }
-    std::string text = "Top: shaded picture. Below it: visibility (white lit, black blocked).";
+    std::string text = "Top: shaded picture. Below it: visibility (white lit, black blocked)";
+    text += layout_.color_bar ? ", then its error." : ".";
     for (const Panel& panel : layout_.panels) {
       if (panel.kind == PanelKind::kVisibilityCrop || panel.kind == PanelKind::kPictureCrop) {
         const int factor = panel.box.width / std::max(1, grid_.crop.width);

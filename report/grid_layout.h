@@ -20,7 +20,7 @@ struct TextLine {
 };
 
 /// Says which of a tile's images a panel shows.
-enum class PanelKind { kPicture, kVisibility, kPictureCrop, kVisibilityCrop };
+enum class PanelKind { kPicture, kVisibility, kError, kPictureCrop, kVisibilityCrop };
 
 /// Is the place of one image; `box` has the size it is shown at.
 struct Panel {
@@ -34,6 +34,8 @@ struct GridLayout {
   Size canvas;
   std::vector<TextLine> texts;
   std::vector<Panel> panels;
+  std::optional<Rect> color_bar;    ///< where errors are shown
+  double error_scale = 0.0;         ///< the error at the bar's right end
   std::vector<Rect> message_boxes;  ///< one per tile without images, around its message
 };
 

@@ -72,8 +72,8 @@ std::vector<report::GridTile> make_truth_tiles(const SceneTask& task, const Scen
   const std::string sun = fmt::format("rays to a sun of {} degrees, standard error {}",
                                       report::format_number(static_cast<double>(task.scene->light.angular_diameter_deg)),
                                       report::format_number(truth.standard_error));
-  return {{"truth, hard", "one ray to the light's centre", truth.hard_picture, truth.hard, ""},
-          {"truth, area", sun, truth.area_picture, truth.area, ""}};
+  return {{"truth, hard", "one ray to the light's centre", truth.hard_picture, truth.hard, make_error_image(truth.hard, truth), ""},
+          {"truth, area", sun, truth.area_picture, truth.area, make_error_image(truth.area, truth), ""}};
 }
 
 report::Grid make_grid(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
@@ -83,7 +83,8 @@ report::Grid make_grid(const RunOptions& options, const SceneTask& task, const S
   grid.subtitle = report::describe_settings(measured.cells.front().record) + " · times: " + report::describe_clock(gl);
   grid.tiles = make_truth_tiles(task, truth);
   for (const MeasuredCell& cell : measured.cells) {
-    grid.tiles.push_back({cell.label, caption(cell.record, gl), cell.picture, cell.visibility, cell.record.message});
+    grid.tiles.push_back({cell.label, caption(cell.record, gl), cell.picture, cell.visibility,
+                          make_error_image(cell.visibility, truth), cell.record.message});
   }
   grid.columns = truth.absent.empty() ? 4 : 3;
   grid.crop = choose_crop(options, measured.cells);

@@ -98,6 +98,15 @@ SceneTruth trace_scene(const scene::Scene& scene, const render::GBuffer& gbuffer
   return truth;
 }
 
+report::Image make_error_image(const report::Image& visibility, const SceneTruth& truth) {
+  if (!truth.absent.empty() || visibility.empty()) return {};
+  report::Image error(visibility.width, visibility.height, 1);
+  for (std::size_t i = 0; i < error.texels.size(); ++i) {
+    if (truth.mask[i]) error.texels[i] = visibility.texels[i] - truth.area.texels[i];
+  }
+  return error;
+}
+
 void score(report::CellRecord& record, const report::Image& visibility, const SceneTruth& truth) {
   for (const char* group : {"artefact", "attribution"}) record.absent[group] = "not measured in this version";
   const auto stats = truth.absent.empty() && !visibility.empty()

@@ -29,4 +29,7 @@ SceneTruth trace_scene(const scene::Scene& scene, const render::GBuffer& gbuffer
 /// Scores a visibility image against the truth and notes the errors, or why there are none, in its record.
 void score(report::CellRecord& record, const report::Image& visibility, const SceneTruth& truth);
 
+/// Gives visibility less area truth where pixels count, 0 elsewhere; empty where there is no truth or no visibility.
+report::Image make_error_image(const report::Image& visibility, const SceneTruth& truth);
+
 }  // namespace shadowbench::run

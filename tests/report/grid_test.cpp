@@ -111,7 +111,7 @@ TEST(Grid, LongTextsAndFailedTile_NothingOverlapsAndNothingIsCut) {
   grid.tiles[4].message = std::string(3000, 'x');
   expect_sound(grid);
   Grid failed;
-  failed.tiles = {{"vsm", "radius 4", {}, {}, "the filter crashed"}};
+  failed.tiles = {{"vsm", "radius 4", {}, {}, {}, "the filter crashed"}};
   expect_sound(failed);
 }
 
@@ -251,6 +251,27 @@ TEST(Grid, File_HoldsTheDrawnPicture) {
   for (std::size_t i = 0; i < drawn.texels.size(); ++i) {
     ASSERT_NEAR(back.texels[i], drawn.texels[i], 0.51f / 255.0f);
   }
+}
+
+TEST(Grid, TilesWithErrors_GetAHeatMapAndOneColourBar) {
+  Grid grid;
+  grid.title = "t";
+  grid.tiles = {make_tile("truth", 96, 54, 0.5f), make_tile("a", 96, 54, 0.4f)};
+  const GridLayout without = layout_grid(grid);
+  EXPECT_FALSE(without.color_bar);
+  grid.tiles[1].error = Image(96, 54, 1);
+  grid.tiles[1].error.texels[40] = -0.3f;
+  const GridLayout layout = layout_grid(grid);
+  ASSERT_TRUE(layout.color_bar);
+  EXPECT_DOUBLE_EQ(layout.error_scale, 0.5);
+  EXPECT_EQ(std::count_if(layout.panels.begin(), layout.panels.end(), [](const Panel& p) { return p.kind == PanelKind::kError; }), 1);
+  EXPECT_GT(layout.canvas.height, without.canvas.height);
+  const Image drawn = draw_grid(grid);
+  const Rect bar = *layout.color_bar;
+  const float* left = drawn.at(bar.x + 2, bar.y + 2);
+  const float* right = drawn.at(bar.x + bar.width - 3, bar.y + 2);
+  EXPECT_GT(left[2], left[0] + 0.3f);
+  EXPECT_GT(right[0], right[2] + 0.3f);
 }
 
 }  // namespace

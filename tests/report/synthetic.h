@@ -73,7 +73,7 @@ inline Image shade(const Image& visibility) {
 inline GridTile make_tile(const std::string& label, int width, int height, float softness) {
   Image visibility = make_visibility(width, height, softness);
   Image picture = shade(visibility);
-  return {label, "radius 4, rg32f · 12.3 ms (CPU)", std::move(picture), std::move(visibility), {}};
+  return {label, "radius 4, rg32f · 12.3 ms (CPU)", std::move(picture), std::move(visibility), {}, {}};
 }
 
 /// A grid of `tiles` filters whose edges grow softer.
