@@ -171,7 +171,7 @@ std::string make_index_html(const RunRecord& run, const std::vector<CellRecord>&
   const std::vector<CellGroup> groups = group_cells(cells);
   std::string page = html_head() + "<body>\n<main>\n<h1>Shadow filters compared</h1>\n" + html_navigation(groups);
   page += html_facts(run);
-  page += "<p>Data: " + link("summary.md", "summary.md") + ", " + link("timings.csv", "timings.csv") + ", " +
+  page += "<p>Data: " + link("summary.md", "summary.md") + ", " + link("timings.csv", "timings.csv") + ", " + link("accuracy.csv", "accuracy.csv") + ", " +
           link("results.json", "results.json") + " (" + link("results.schema.json", "its schema") + ").</p>\n";
   if (!run.warnings.empty()) {
     page += "<section class=\"warnings\">\n<h2>Warnings</h2>\n" + html_list(run.warnings) + "</section>\n";

@@ -13,7 +13,8 @@ void write_report(const std::filesystem::path& dir, const RunRecord& run, const 
   for (const std::string& key : keys) {
     cells.push_back(read_cell(dir, key));
   }
-  write_text_file(dir / "timings.csv", make_timings_csv(run, cells));
+  write_text_file(dir / "timings.csv", make_csv(CsvTable::kTimings, run, cells));
+  write_text_file(dir / "accuracy.csv", make_csv(CsvTable::kAccuracy, run, cells));
   write_text_file(dir / "summary.md", make_summary(run, cells));
   write_text_file(dir / "index.html", make_index_html(run, cells));
 }

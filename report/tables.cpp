@@ -55,9 +55,16 @@ std::vector<Column> setting_columns() {
       cell_column("status", "ok, timeout, crashed or error",
                   [](const CellRecord& c) { return value_json(c.status).get<std::string>(); }),
       cell_column("message", "why the status is not ok", [](const CellRecord& c) { return c.message; }),
-      {{"clock", "what the times are times of"},
-       [](const RunRecord& run, const CellRecord&) { return describe_clock(run.gl); }},
   };
+}
+
+Column clock_column() {
+  return {{"clock", "what the times are times of"},
+          [](const RunRecord& run, const CellRecord&) { return describe_clock(run.gl); }};
+}
+
+Column key_column() {
+  return cell_column("key", "the cell's file is cells/<key>.json", [](const CellRecord& c) { return c.key; });
 }
 
 using TimeMember = std::optional<Quartiles> TimeRecord::*;
@@ -102,13 +109,34 @@ std::vector<Column> cost_columns() {
                   [](const CellRecord& c) { return plain(c.cost.prefilter_texels); }),
       cell_column("receivers", "pixels that count", [](const CellRecord& c) { return plain(c.receivers); }),
       cell_column("nan", "pixels whose visibility is not finite", [](const CellRecord& c) { return plain(c.nan); }),
-      cell_column("key", "the cell's file is cells/<key>.json", [](const CellRecord& c) { return c.key; }),
   };
 }
 
-std::vector<Column> all_columns() {
+std::vector<Column> error_columns() {
+  return {
+      cell_column("rmse", "root mean square of visibility less area truth", [](const CellRecord& c) { return plain(c.error.rmse); }),
+      cell_column("mae", "mean absolute error", [](const CellRecord& c) { return plain(c.error.mae); }),
+      cell_column("p95", "95th percentile of the absolute error", [](const CellRecord& c) { return plain(c.error.p95); }),
+      cell_column("max", "largest absolute error", [](const CellRecord& c) { return plain(c.error.max); }),
+      cell_column("mean", "mean error; positive: too bright", [](const CellRecord& c) { return plain(c.error.mean); }),
+      cell_column("truth_se", "standard error of the truth, root mean square over the pixels that count",
+                  [](const CellRecord& c) { return plain(c.truth.se); }),
+      cell_column("truth_unanimous", "share of those pixels whose rays all agree",
+                  [](const CellRecord& c) { return plain(c.truth.unanimous); }),
+      cell_column("receivers", "pixels that count", [](const CellRecord& c) { return plain(c.receivers); }),
+      cell_column("nan", "pixels whose visibility is not finite", [](const CellRecord& c) { return plain(c.nan); }),
+  };
+}
+
+std::vector<Column> columns_of(CsvTable table) {
   std::vector<Column> columns = setting_columns();
   const auto append = [&](const std::vector<Column>& more) { columns.insert(columns.end(), more.begin(), more.end()); };
+  if (table == CsvTable::kAccuracy) {
+    append(error_columns());
+    columns.push_back(key_column());
+    return columns;
+  }
+  columns.push_back(clock_column());
   append(time_columns("lookup", "filtered lookup of all pixels", &TimeRecord::lookup));
   append(time_columns("prefilter", "encoding and blurring the map", &TimeRecord::prefilter));
   append(time_columns("map", "drawing the depth map", &TimeRecord::map));
@@ -116,6 +144,7 @@ std::vector<Column> all_columns() {
   append(ratio_columns("ratio_static", "frame with a cached map against none", &RatioRecord::static_map));
   append(ratio_columns("ratio_moving", "frame with a new map against none", &RatioRecord::moving));
   append(cost_columns());
+  columns.push_back(key_column());
   return columns;
 }
 
@@ -167,9 +196,9 @@ std::string markdown_absences(const std::vector<CellRecord>& cells) {
 
 }  // namespace
 
-std::vector<CsvColumn> list_csv_columns() {
+std::vector<CsvColumn> list_csv_columns(CsvTable table) {
   std::vector<CsvColumn> names;
-  for (const Column& column : all_columns()) {
+  for (const Column& column : columns_of(table)) {
     names.push_back(column.column);
   }
   return names;
@@ -186,8 +215,8 @@ std::string quote_csv(std::string_view text) {
   return quoted + "\"";
 }
 
-std::string make_timings_csv(const RunRecord& run, const std::vector<CellRecord>& cells) {
-  const std::vector<Column> columns = all_columns();
+std::string make_csv(CsvTable table, const RunRecord& run, const std::vector<CellRecord>& cells) {
+  const std::vector<Column> columns = columns_of(table);
   std::vector<std::string> fields;
   for (const Column& column : columns) {
     fields.push_back(column.column.name);
@@ -216,6 +245,18 @@ std::string escape_markdown(std::string_view text) {
   return escaped;
 }
 
+namespace {
+
+std::string markdown_columns(CsvTable table) {
+  std::string text;
+  for (const CsvColumn& column : list_csv_columns(table)) {
+    text += fmt::format("- `{}`: {}\n", column.name, escape_markdown(column.meaning));
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string make_summary(const RunRecord& run, const std::vector<CellRecord>& cells) {
   std::string text = "# Shadow filters compared\n\n";
   for (const auto& [name, value] : list_run_facts(run)) {
@@ -228,10 +269,8 @@ std::string make_summary(const RunRecord& run, const std::vector<CellRecord>& ce
   for (const CellGroup& group : group_cells(cells)) {
     text += markdown_group(group, run.gl);
   }
-  text += markdown_absences(cells) + "## Columns of timings.csv\n\n";
-  for (const CsvColumn& column : list_csv_columns()) {
-    text += fmt::format("- `{}`: {}\n", column.name, escape_markdown(column.meaning));
-  }
+  text += markdown_absences(cells) + "## Columns of timings.csv\n\n" + markdown_columns(CsvTable::kTimings);
+  text += "\n## Columns of accuracy.csv\n\n" + markdown_columns(CsvTable::kAccuracy);
   return text;
 }
 

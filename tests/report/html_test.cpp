@@ -116,7 +116,7 @@ TEST(Html, EveryLink_LeadsToAFileOfTheReport) {
       ++files;
     }
   }
-  EXPECT_EQ(files, 14u);
+  EXPECT_EQ(files, 15u);
 }
 
 TEST(Html, Page_HoldsWhatTheReportIsOf) {

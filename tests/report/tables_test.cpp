@@ -44,9 +44,9 @@ TEST(TimingsCsv, EveryRow_HasEveryColumn) {
   failed.scene = "a \"scene\",\r\nwith everything";
   failed.status = CellStatus::kCrashed;
   failed.message = "signal 11, \"segfault\"";
-  const auto rows = parse_csv(make_timings_csv(make_run(), {make_cell("cubes", "vsm", 4.5), failed}));
+  const auto rows = parse_csv(make_csv(CsvTable::kTimings, make_run(), {make_cell("cubes", "vsm", 4.5), failed}));
   ASSERT_THAT(rows, SizeIs(3));
-  EXPECT_THAT(rows, Each(SizeIs(list_csv_columns().size())));
+  EXPECT_THAT(rows, Each(SizeIs(list_csv_columns(CsvTable::kTimings).size())));
   EXPECT_EQ(field(rows, 2, "scene"), failed.scene);
   EXPECT_EQ(field(rows, 2, "message"), failed.message);
   EXPECT_EQ(field(rows, 2, "lookup_median_ms"), "");
@@ -65,7 +65,7 @@ TEST(TimingsCsv, Fields_HoldTheirColumnsValues) {
   cell.time_ms.prefilter = Quartiles{12.5, 12.25, 12.75, 8};
   cell.ratio_to_none.static_map = Ratio{1.5, {1.25, 1.75}};
   cell.ratio_to_none.moving = Ratio{2.5, {2.25, 2.75}};
-  const auto rows = parse_csv(make_timings_csv(make_run(), {cell}));
+  const auto rows = parse_csv(make_csv(CsvTable::kTimings, make_run(), {cell}));
   EXPECT_EQ(field(rows, 1, "clock"), "CPU time (software rasteriser)");
   EXPECT_EQ(field(rows, 1, "params"), R"({"radius":4,"store":"rg32f"})");
   EXPECT_EQ(field(rows, 1, "lookup_median_ms"), "4.5");
@@ -82,7 +82,7 @@ TEST(TimingsCsv, Fields_HoldTheirColumnsValues) {
 TEST(TimingsCsv, Numbers_ReadBackAsTheSameDoubles) {
   const double value = 0.1 + 0.2;
   CellRecord cell = make_cell("cubes", "vsm", value);
-  const auto rows = parse_csv(make_timings_csv(make_run(), {cell}));
+  const auto rows = parse_csv(make_csv(CsvTable::kTimings, make_run(), {cell}));
   EXPECT_EQ(std::stod(field(rows, 1, "lookup_median_ms")), value);
 }
 
@@ -104,6 +104,23 @@ TEST(SummaryMd, Names_CannotBreakTheTable) {
   cell.status = CellStatus::kError;
   EXPECT_THAT(make_summary(make_run(), {cell}), HasSubstr("| x\\|y |"));
   EXPECT_THAT(make_summary(make_run(), {cell}), HasSubstr("line 1 line 2 \\| 3 |"));
+}
+
+TEST(AccuracyCsv, HoldsTheErrors_AndEmptyFieldsWhereThereAreNone) {
+  CellRecord scored = make_cell("cubes", "vsm", 4.5);
+  scored.error.rmse = 0.25;
+  scored.error.mean = -0.125;
+  scored.truth.se = 0.0009765625;
+  const auto rows = parse_csv(make_csv(CsvTable::kAccuracy, make_run(), {scored, make_cell("cubes", "none", 1.0)}));
+  ASSERT_THAT(rows, SizeIs(3));
+  EXPECT_THAT(rows, Each(SizeIs(list_csv_columns(CsvTable::kAccuracy).size())));
+  const auto column = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::find(rows[0].begin(), rows[0].end(), name) - rows[0].begin());
+  };
+  EXPECT_EQ(rows[1][column("rmse")], "0.25");
+  EXPECT_EQ(rows[1][column("mean")], "-0.125");
+  EXPECT_EQ(rows[1][column("truth_se")], "0.0009765625");
+  EXPECT_EQ(rows[1][column("max")], "");
 }
 
 }  // namespace
