@@ -119,6 +119,8 @@ std::vector<Column> error_columns() {
       cell_column("p95", "95th percentile of the absolute error", [](const CellRecord& c) { return plain(c.error.p95); }),
       cell_column("max", "largest absolute error", [](const CellRecord& c) { return plain(c.error.max); }),
       cell_column("mean", "mean error; positive: too bright", [](const CellRecord& c) { return plain(c.error.mean); }),
+      cell_column("flip", "mean LDR-FLIP of the picture against the one shaded with the area truth",
+                  [](const CellRecord& c) { return plain(c.error.flip); }),
       cell_column("truth_se", "standard error of the truth, root mean square over the pixels that count",
                   [](const CellRecord& c) { return plain(c.truth.se); }),
       cell_column("truth_unanimous", "share of those pixels whose rays all agree",

@@ -1,6 +1,7 @@
 #include "harness/run/run_experiment.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for_each.h>
 
 #include <set>
 
@@ -116,7 +117,9 @@ class Experiment {
     for (MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
     show(task, "truth");
     const SceneTruth& truth = assets.truth(*task.camera);
-    for (MeasuredCell& cell : measured.cells) score(cell.record, cell.visibility, truth);
+    tbb::parallel_for_each(measured.cells, [&](MeasuredCell& cell) {
+      score(cell.record, cell.visibility, cell.picture, truth);
+    });
     show(task, "pictures");
     if (!options_.worker) write_pictures(options_, all, measured, truth, run_.gl);
     write_float_images(options_, all, measured, truth, renderer_.context->info());

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 #include "harness/render/image_target.h"
 #include "reference/metrics/error_stats.h"
+#include "reference/metrics/flip.h"
 #include "reference/truth/visibility.h"
 
 namespace shadowbench::run {
@@ -72,6 +75,23 @@ void summarise_errors(SceneTruth& truth, const reference::AreaTruth& area) {
   truth.unanimous = unanimous / count;
 }
 
+/// A display shows 0 to 1.
+reference::LinearPicture to_picture(const report::Image& image) {
+  reference::LinearPicture picture{image.width, image.height, {}};
+  for (std::size_t i = 0; i + 2 < image.texels.size(); i += 3) {
+    picture.pixels.push_back(glm::clamp(glm::vec3(image.texels[i], image.texels[i + 1], image.texels[i + 2]), 0.0f, 1.0f));
+  }
+  return picture;
+}
+
+/// Gives nothing where a pixel is not finite: it would spread over its neighbours.
+std::optional<double> mean_flip(const report::Image& picture, const report::Image& truth) {
+  const auto is_finite = [](float value) { return std::isfinite(value); };
+  if (!std::all_of(picture.texels.begin(), picture.texels.end(), is_finite)) return std::nullopt;
+  const std::vector<float> flip = reference::measure_flip(to_picture(picture), to_picture(truth));
+  return std::accumulate(flip.begin(), flip.end(), 0.0) / static_cast<double>(flip.size());
+}
+
 }  // namespace
 
 SceneTruth trace_scene(const scene::Scene& scene, const render::GBuffer& gbuffer, std::uint32_t seed) {
@@ -107,7 +127,8 @@ report::Image make_error_image(const report::Image& visibility, const SceneTruth
   return error;
 }
 
-void score(report::CellRecord& record, const report::Image& visibility, const SceneTruth& truth) {
+void score(report::CellRecord& record, const report::Image& visibility, const report::Image& picture,
+           const SceneTruth& truth) {
   for (const char* group : {"artefact", "attribution"}) record.absent[group] = "not measured in this version";
   const auto stats = truth.absent.empty() && !visibility.empty()
                          ? reference::measure_error(visibility.texels, truth.area.texels, truth.mask)
@@ -120,8 +141,9 @@ void score(report::CellRecord& record, const report::Image& visibility, const Sc
     record.absent["truth"] = reason;
     return;
   }
-  record.error = {stats->rmse, stats->mae, stats->p95, stats->max, stats->mean, std::nullopt, std::nullopt};
-  record.absent["error.flip"] = "not measured in this version";
+  record.error = {stats->rmse, stats->mae, stats->p95, stats->max, stats->mean, mean_flip(picture, truth.area_picture),
+                  std::nullopt};
+  if (!record.error.flip) record.absent["error.flip"] = "the picture has pixels that are not finite";
   record.absent["error.kernel_rmse"] = "not measured in this version";
   record.truth = {truth.standard_error, truth.unanimous};
 }

@@ -26,8 +26,11 @@ struct SceneTruth {
 /// Cost: 64 rays for most pixels, up to 16384 at the edges of shadows.
 SceneTruth trace_scene(const scene::Scene& scene, const render::GBuffer& gbuffer, std::uint32_t seed);
 
-/// Scores a visibility image against the truth and notes the errors, or why there are none, in its record.
-void score(report::CellRecord& record, const report::Image& visibility, const SceneTruth& truth);
+/// Scores a cell's images against the truth and notes the errors, or why there are none, in its record: visibility over
+/// the pixels that count, and the mean LDR-FLIP of the shaded picture against the picture shaded with the area truth.
+/// Cost: about a second per megapixel. Safe to call from many threads, each with its own record.
+void score(report::CellRecord& record, const report::Image& visibility, const report::Image& picture,
+           const SceneTruth& truth);
 
 /// Gives visibility less area truth where pixels count, 0 elsewhere; empty where there is no truth or no visibility.
 report::Image make_error_image(const report::Image& visibility, const SceneTruth& truth);

@@ -102,6 +102,8 @@ TEST_F(Command, EveryCell_IsScoredAgainstTheTruth) {
   EXPECT_LE(json["cells"][0]["truth"]["se"], 0.005);
   EXPECT_LE(none["mae"], none["rmse"]);
   EXPECT_LE(none["rmse"], none["max"]);
+  EXPECT_GT(none["flip"], 0.0);
+  EXPECT_GT(wide["flip"], none["flip"]);
 }
 
 TEST_F(Command, WithoutTruth_SaysSo) {
