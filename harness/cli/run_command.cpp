@@ -51,7 +51,9 @@ std::vector<int> parse_map_sizes(const std::string& text) {
   std::vector<int> sizes;
   for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
     end = text.find(',', begin);
-    sizes.push_back(parse_size(text.substr(begin, end == std::string::npos ? end : end - begin), "--map-size"));
+    const int size = parse_size(text.substr(begin, end == std::string::npos ? end : end - begin), "--map-size");
+    if (std::find(sizes.begin(), sizes.end(), size) != sizes.end()) fail(fmt::format("--map-size names {} twice", size));
+    sizes.push_back(size);
   }
   return sizes;
 }

@@ -61,6 +61,7 @@ class Experiment {
 
   void run() {
     require_writable(options_.out);
+    remove_stale_worker_folders(options_.out);
     const std::vector<NamedScene> scenes = load_scenes(options_);
     std::size_t views = 0;
     for (const NamedScene& each : scenes) views += each.scene.cameras.size();

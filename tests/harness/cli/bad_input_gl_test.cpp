@@ -57,6 +57,7 @@ TEST_F(BadInput, MapLargerThanTheGl) {
   expect_refusal("run --out out --scene cubes --filters none --map-size 1000000", 2, {"1000000", "16384"});
 }
 TEST_F(BadInput, MapSizeZero) { expect_refusal("run --out out --map-size 0", 2, {"--map-size", "'0'"}); }
+TEST_F(BadInput, SameMapSizeTwice) { expect_refusal("run --out out --map-size 64,64", 2, {"64 twice"}); }
 TEST_F(BadInput, PictureSizeMalformed) { expect_refusal("run --out out --size 64", 2, {"--size", "WIDTHxHEIGHT"}); }
 TEST_F(BadInput, PictureLargerThanTheGl) { expect_refusal("run --out out --size 100000x10", 2, {"100000"}); }
 TEST_F(BadInput, NegativeBias) { expect_refusal(small("--bias slope:kernels=-1"), 2, {"--bias", "'-1'"}); }

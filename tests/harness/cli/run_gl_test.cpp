@@ -75,6 +75,12 @@ TEST_F(Command, EndlessUserFilter_TimesOutAndTheRunGoesOn) {
   EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "cubes.grid.png"));
 }
 
+TEST_F(Command, WhatAKilledRunLeft_IsRemovedByTheNext) {
+  std::filesystem::create_directories(folder() / "out" / ".worker-99999999" / "cells");
+  ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder() / "out" / ".worker-99999999"));
+}
+
 TEST_F(Command, SameSeed_SamePictures) {
   ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene ball --filters poisson").exit_code, 0);
   const std::string first = read_text(folder() / "out" / "images" / "ball.poisson.visibility.png");
