@@ -76,8 +76,9 @@ void add_filters(run::RunOptions& options, const RunArguments& arguments) {
   }
   for (std::size_t i = 0; i < options.filters.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (options.filters[i].label() == options.filters[j].label()) {
-        fail(fmt::format("--filters names '{}' twice", options.filters[i].label()));
+      const filters::FilterRequest &a = options.filters[i], &b = options.filters[j];
+      if (a.spec.id == b.spec.id && a.values == b.values) {
+        fail(fmt::format("--filters names '{}' twice: '{}' has the same parameters", a.label(), b.label()));
       }
     }
   }
@@ -146,7 +147,7 @@ void add_filter_options(CLI::App& command, RunArguments& a) {
   command.add_option("--bias", a.bias,
                      "depth bias; repeat to add up: none | constant:depth=D | slope:kernels=K,texels=T,depth=D | normal-offset:texels=T. "
                      "D in depth (0..1 over the light's range), T in shadow-map texels, K in kernel half-widths plus one texel "
-                     "(default slope:kernels=1,depth=2e-5)")->allow_extra_args(false);
+                     "(default slope:kernels=1,depth=2e-5). Planes steeper than 10:1 towards the light are biased as 10:1")->allow_extra_args(false);
 }
 
 }  // namespace

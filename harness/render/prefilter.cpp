@@ -1,5 +1,7 @@
 #include "harness/render/prefilter.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "filters/gaussian.h"
@@ -81,6 +83,17 @@ void Prefilter::blur(const gl::Texture& from, ImageTarget& to, glm::ivec2 direct
 void Prefilter::bind() const {
   stored_.texture().bind(kStoredUnit);
   sampler_.bind(kStoredUnit);
+}
+
+std::int64_t Prefilter::count_not_finite() const {
+  const int channels = stored_.texture().format().channels;
+  const std::vector<float> values = stored_.texture().read_floats(channels);
+  std::int64_t count = 0;
+  for (std::size_t i = 0; i < values.size(); i += static_cast<std::size_t>(channels)) {
+    const auto texel = values.begin() + static_cast<std::ptrdiff_t>(i);
+    if (!std::all_of(texel, texel + channels, [](float v) { return std::isfinite(v); })) ++count;
+  }
+  return count;
 }
 
 std::int64_t Prefilter::texels_written() const {

@@ -25,6 +25,10 @@ class Prefilter {
   /// Binds the result to the unit of lib/map_access.glsl that fetch_map reads.
   void bind() const;
 
+  /// Counts texels of the result that hold infinity or NaN: an exponential overflowed. min() and clamp() in a lookup
+  /// would hide them in the image.
+  std::int64_t count_not_finite() const;
+
   int passes() const { return radius_ > 0 ? 3 : 1; }
   std::int64_t bytes() const { return static_cast<std::int64_t>(stored_.texture().bytes()); }
   std::int64_t texels_written() const;

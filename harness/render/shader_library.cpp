@@ -1,5 +1,10 @@
 #include "harness/render/shader_library.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "filters/error.h"
 #include "harness/gl/fullscreen.h"
 
 namespace shadowbench::render {
@@ -9,6 +14,16 @@ std::string variant_name(const std::string& file, const Defines& defines) {
   std::string name = file;
   for (const auto& [key, value] : defines) name += " " + key;
   return name;
+}
+
+/// A missing brace shows only in the code that follows the filter's: the place that helps is the end of the filter.
+Error blame_filter(const Error& error, const gl::Piece& filter) {
+  if (error.kind() != ErrorKind::kFilter || error.where().rfind(filter.display_name, 0) == 0) return error;
+  const auto lines = std::count(filter.text.begin(), filter.text.end(), '\n');
+  return Error(ErrorKind::kFilter,
+               fmt::format("the GLSL breaks the code after it, at or before this line (a missing brace, or a name that the "
+                           "program uses itself?): {}", error.message()),
+               fmt::format("{}:{}", filter.display_name, filter.first_line + static_cast<int>(lines) - 1));
 }
 
 }  // namespace
@@ -44,8 +59,12 @@ gl::Program& ShaderLibrary::geometry(const std::string& shader, const Defines& d
 gl::Program ShaderLibrary::compile_filter(const std::string& label, const std::string& fragment_file,
                                           const Defines& defines, const std::vector<gl::Piece>& pieces) {
   ++compiled_;
-  return gl::Program(label, gl::FullscreenTriangle::vertex_source(), source(fragment_file, defines, pieces),
-                     ErrorKind::kFilter);
+  try {
+    return gl::Program(label, gl::FullscreenTriangle::vertex_source(), source(fragment_file, defines, pieces),
+                       ErrorKind::kFilter);
+  } catch (const Error& error) {
+    throw blame_filter(error, pieces.back());
+  }
 }
 
 }  // namespace shadowbench::render

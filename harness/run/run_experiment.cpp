@@ -115,6 +115,7 @@ class Experiment {
     std::erase_if(task.filters, [&](const auto& request) { return request.user_file && !options_.worker; });
     SceneMeasurement measured =
         measure_scene(renderer_, options_, task, assets, [&](const std::string& label) { show(task, label); });
+    for (const std::string& warning : measured.warnings) warn(warning);
     for (MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
     show(task, "truth");
     const SceneTruth& truth = assets.truth(*task.camera);

@@ -1,5 +1,7 @@
 #include "harness/run/scene_measurement.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -43,6 +45,7 @@ class SceneBench {
       filters.push_back(make_passes(request));
       result.cells.push_back(draw(*filters.back()));
       count_passes(result, *filters.back());
+      warn_of_overflow(result, *filters.back());
     }
     time(result, filters);
     result.depth_map = render::read_image(light_.map.texture(), 1);
@@ -84,6 +87,18 @@ class SceneBench {
   static void set_cost(report::CellRecord& record, const render::FilterCost& cost) {
     record.cost = {cost.fetches, cost.bytes_per_texel, cost.passes, cost.map_bytes, cost.prefilter_texels};
     if (!cost.fetches) record.absent["cost.fetches"] = "the filter reads the map's samplers itself";
+  }
+
+  /// An overflow in the map is often invisible in the image, which is then wrong without a NaN.
+  void warn_of_overflow(SceneMeasurement& result, const render::FilterPasses& filter) const {
+    const std::string name = fmt::format("{}: {}", task_.scene->name, filter.request().label());
+    const std::int64_t broken = filter.count_broken_texels();
+    if (broken > 0) {
+      result.warnings.push_back(fmt::format("{}: {} texels of its map are infinite or NaN, so its image is not to be "
+                                            "trusted; choose a smaller exponent, a wider store, or combine=log", name, broken));
+    }
+    const std::int64_t nan = result.cells.back().record.nan.value_or(0);
+    if (nan > 0) result.warnings.push_back(fmt::format("{}: {} pixels are not finite", name, nan));
   }
 
   static void count_passes(SceneMeasurement& result, const render::FilterPasses& filter) {

@@ -103,8 +103,10 @@ std::uint32_t Occluders::find_blocked(const RayPacket& packet) const {
 }
 
 glm::vec3 Occluders::offset_origin(const glm::vec3& position, const glm::vec3& normal) const {
-  const glm::vec3 error = kRoundings * 0x1p-24f * (glm::abs(position) + impl_->largest);
-  glm::vec3 moved = position + normal * glm::dot(error, glm::abs(normal));
+  // One bound for all axes: a coordinate that is 0 everywhere would leave the point on its surface.
+  const auto largest = [](const glm::vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
+  const float error = kRoundings * 0x1p-24f * (largest(position) + largest(impl_->largest));
+  glm::vec3 moved = position + normal * error;
   // The sum itself is rounded: one step further, away from the surface.
   for (int axis = 0; axis < 3; ++axis) {
     if (normal[axis] > 0.0f) moved[axis] = std::nextafter(moved[axis], HUGE_VALF);

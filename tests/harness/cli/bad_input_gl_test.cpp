@@ -23,6 +23,7 @@ TEST_F(BadInput, ParameterOutOfRange) {
 TEST_F(BadInput, ParameterNotANumber) { expect_refusal(small("--filters esm:c=nan"), 2, {"'nan'", "finite number"}); }
 TEST_F(BadInput, ParameterNotAChoice) { expect_refusal(small("--filters poisson:taps=5"), 2, {"taps=5", "4, 8, 16, 32"}); }
 TEST_F(BadInput, SameFilterTwice) { expect_refusal(small("--filters none,none"), 2, {"'none' twice"}); }
+TEST_F(BadInput, SameParametersInOtherWords) { expect_refusal(small("--filters vsm,vsm:radius=4"), 2, {"twice"}); }
 TEST_F(BadInput, UnknownScene) { expect_refusal("run --out out --scene cube", 2, {"cube", "cubes"}); }
 TEST_F(BadInput, MissingScene) { expect_refusal("run --out out --scene no/such.gltf", 3, {"no/such.gltf"}); }
 TEST_F(BadInput, MalformedSceneNamesTheLine) {
@@ -86,6 +87,12 @@ TEST_F(BadInput, FrontMatterMistakeNamesFileAndLine) {
 TEST_F(BadInput, GlslMistakeNamesFileAndLine) {
   expect_refusal(small("--filter-file " + user_filter("broken_glsl.glsl")), 5,
                  {"broken_glsl.glsl:9", "no_such_variable"});
+}
+TEST_F(BadInput, MissingBraceNamesTheUsersFile) {
+  std::string text = read_text(user_filter("nine_compares.glsl"));
+  text.erase(text.rfind('}'));
+  write("unclosed.glsl", text);
+  expect_refusal(small("--filter-file unclosed.glsl"), 5, {"unclosed.glsl:", "missing brace"});
 }
 TEST_F(BadInput, UserFilterWithATakenId) {
   const auto copy = write("vsm.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/vsm.glsl"));

@@ -119,6 +119,13 @@ TEST_F(Command, WithoutTruth_SaysSo) {
   EXPECT_EQ(json["cells"][0]["absent"]["error"], "the run was made with --no-truth");
 }
 
+TEST_F(Command, OverflowInTheMap_IsWarnedOf) {
+  const Outcome outcome = run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none,esm:c=2000");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("infinite or NaN"), std::string::npos) << outcome.err;
+  ASSERT_EQ(results(folder())["warnings"].size(), 1u);
+}
+
 TEST_F(Command, MapOfOneTexel_Works) {
   const Outcome outcome = run("run --out out --size 64x36 --map-size 1 --rounds 1 --scene cubes");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;

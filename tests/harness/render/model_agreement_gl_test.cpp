@@ -18,6 +18,7 @@ struct Agreement {
   double worst_double = 0.0;         ///< |GL - double model|
   double worst_bound_ratio = 0.0;    ///< |GL - double model| / propagated bound
   double median_bound = 0.0;
+  std::size_t unbounded = 0;         ///< receivers without a finite bound
   double shadowed = 0.0;             ///< share of receivers under 0.5: a test on lit pixels alone proves nothing
 };
 
@@ -49,6 +50,8 @@ Agreement compare(Bench& bench, const filters::FilterRequest& request) {
       ++result.excused;
       continue;
     }
+    EXPECT_TRUE(std::isfinite(gpu)) << "pixel " << r.pixel.x << "," << r.pixel.y;
+    if (!std::isfinite(reference.bound)) ++result.unbounded;
     result.worst_float = std::max(result.worst_float, std::abs(gpu - single.visibility));
     result.worst_double = std::max(result.worst_double, std::abs(gpu - reference.visibility));
     if (reference.bound > 0.0) {
@@ -76,6 +79,7 @@ class ModelAgreement : public ::testing::TestWithParam<std::tuple<std::string, s
     EXPECT_GT(a.compared, 20000u);
     EXPECT_GT(a.shadowed, 0.01);
     EXPECT_LT(static_cast<double>(a.excused), 0.005 * static_cast<double>(a.compared));
+    EXPECT_EQ(a.unbounded, 0u);
     return a;
   }
 

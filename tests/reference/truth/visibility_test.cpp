@@ -187,6 +187,16 @@ TEST(HardTruth, OfAPointLight_IsAStep) {
   EXPECT_EQ(trace_area(occluders, image, light, {}).visibility, visibility) << "size 0 is a hard shadow";
 }
 
+TEST(Occluders, APlaneAtCoordinateZero_DoesNotShadowItself) {
+  for (const double elevation : {90.0, 60.0, 5.0}) {
+    const std::vector<OccluderMesh> floor = {make_sheet(-5.0, 5.0, -5.0, 5.0, 0.0, 20)};
+    const Occluders occluders(floor);
+    const double angle = glm::radians(elevation);
+    const AreaLight light = AreaLight::make_sun({std::cos(angle), std::sin(angle), 0.0}, 0.53);
+    for (const float v : trace_hard(occluders, make_line(-4.0, 4.0, 200), light)) ASSERT_EQ(v, 1.0f) << elevation;
+  }
+}
+
 TEST(Occluders, NeitherSelfHitsNorLeaks_AtAnyScale) {
   for (const double scale : {1e-3, 1.0, 1e3, 1e6}) {
     // A tilted floor with a roof over half of it, away from the origin.
