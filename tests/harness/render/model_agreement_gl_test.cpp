@@ -18,7 +18,7 @@ struct Agreement {
   double worst_double = 0.0;         ///< |GL - double model|
   double worst_bound_ratio = 0.0;    ///< |GL - double model| / propagated bound
   double median_bound = 0.0;
-  std::size_t unbounded = 0;         ///< receivers without a finite bound
+  std::size_t unbounded = 0;         ///< receivers whose bound says nothing: 1 or more
   double shadowed = 0.0;             ///< share of receivers under 0.5: a test on lit pixels alone proves nothing
 };
 
@@ -51,7 +51,7 @@ Agreement compare(Bench& bench, const filters::FilterRequest& request) {
       continue;
     }
     EXPECT_TRUE(std::isfinite(gpu)) << "pixel " << r.pixel.x << "," << r.pixel.y;
-    if (!std::isfinite(reference.bound)) ++result.unbounded;
+    if (!(reference.bound < 1.0)) ++result.unbounded;
     result.worst_float = std::max(result.worst_float, std::abs(gpu - single.visibility));
     result.worst_double = std::max(result.worst_double, std::abs(gpu - reference.visibility));
     if (reference.bound > 0.0) {
@@ -79,7 +79,8 @@ class ModelAgreement : public ::testing::TestWithParam<std::tuple<std::string, s
     EXPECT_GT(a.compared, 20000u);
     EXPECT_GT(a.shadowed, 0.01);
     EXPECT_LT(static_cast<double>(a.excused), 0.005 * static_cast<double>(a.compared));
-    EXPECT_EQ(a.unbounded, 0u);
+    // Across a silhouette the position's rounding alone can exceed the minimum variance.
+    EXPECT_LT(static_cast<double>(a.unbounded), 0.05 * static_cast<double>(a.compared));
     return a;
   }
 
