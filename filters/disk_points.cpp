@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 namespace shadowbench::filters {
@@ -29,6 +31,16 @@ double squared_distance(const std::vector<glm::dvec2>& points, glm::dvec2 candid
 }
 
 }  // namespace
+
+glm::dvec2 map_to_disk(glm::dvec2 square) {
+  const glm::dvec2 p = 2.0 * square - 1.0;
+  if (p.x == 0.0 && p.y == 0.0) return p;
+  const bool wide = std::abs(p.x) > std::abs(p.y);
+  const double radius = wide ? p.x : p.y;
+  const double quarter = std::numbers::pi / 4.0;
+  const double angle = wide ? quarter * (p.y / p.x) : 2.0 * quarter - quarter * (p.x / p.y);
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
 
 std::vector<glm::vec2> generate_disk_points(int count, unsigned seed) {
   std::mt19937 generator(seed);

@@ -9,6 +9,10 @@
 
 namespace shadowbench::filters {
 
+/// Maps the unit square to the unit disk, equal areas to equal areas.
+/// Source: Shirley and Chiu 1997, A Low Distortion Map Between Disk and Square, JGT 2(3).
+glm::dvec2 map_to_disk(glm::dvec2 square);
+
 /// Generates `count` well-spread points in the unit disk; the same for the same count and seed on every machine.
 ///
 /// Mitchell's best-candidate method (Mitchell 1991, Spectrally Optimal Sampling for Distribution Ray Tracing), then

@@ -24,14 +24,20 @@ class EncodedMap {
       : grid_(input.map.size),
         accuracy_(input.accuracy),
         store_(store_precision(text_or(input.values, "store", "r32f"))),
-        log_(text_or(input.values, "combine", "linear") == "log"),
-        nearest_(log_ || text_or(input.values, "sample", "linear") == "nearest") {
+        log_(is_log(input.values)),
+        nearest_(is_nearest(input.values)) {
     border_ = stored(encode(T(Position<T>(1))));
     texels_.reserve(input.map.depth.size());
     for (const float depth : input.map.depth) texels_.push_back(stored(encode(T(static_cast<Position<T>>(depth)))));
     if (radius_texels == 0) return;
     texels_ = blurred(gaussian_weights(radius_texels), 1, 0);
     texels_ = blurred(gaussian_weights(radius_texels), 0, 1);
+  }
+
+  /// The prefilter's kernel, whose half-width is the parameter `radius`.
+  static Kernel kernel(const ParamValues& values) {
+    return Kernel::make_gaussian(static_cast<int>(number(values, "radius")),
+                                 is_nearest(values) ? Reconstruction::kNearest : Reconstruction::kBilinear);
   }
 
   Texel fetch(const Receiver& r, Tally& tally) const {
@@ -58,6 +64,11 @@ class EncodedMap {
   bool nearest_;
   Texel border_{};
   std::vector<Texel> texels_;
+
+  static bool is_log(const ParamValues& values) { return text_or(values, "combine", "linear") == "log"; }
+  static bool is_nearest(const ParamValues& values) {
+    return is_log(values) || text_or(values, "sample", "linear") == "nearest";
+  }
 
   Texel stored(Texel texel) const {
     for (T& channel : texel) channel = round_to_store(channel, store_);

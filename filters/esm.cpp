@@ -15,6 +15,8 @@ class Esm {
         log_(text_or(input.values, "combine", "linear") == "log"),
         map_(input, static_cast<int>(number(input.values, "radius")), [this](T depth) { return encode(depth); }) {}
 
+  static Kernel kernel(const ParamValues& values) { return EncodedMap<T, 1>::kernel(values); }
+
   T visibility(const Receiver& r, Tally& tally) const {
     const T occluder = map_.fetch(r, tally)[0];
     const T receiver = T(c_) * T(static_cast<P>(r.depth));

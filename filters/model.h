@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "filters/filter_spec.h"
+#include "filters/kernel.h"
 #include "filters/receiver.h"
 #include "filters/tracked.h"
 
@@ -53,6 +54,9 @@ class Model {
   virtual ~Model() = default;
   /// Cost: one pass over the map for filters that encode, two more for the prefilter; none otherwise.
   virtual std::unique_ptr<Lookup> prepare(const ModelInput& input, Precision precision) const = 0;
+
+  /// Names the kernel that the filter averages with, for these complete parameter values.
+  virtual Kernel kernel(const ParamValues& values) const = 0;
 };
 
 /// Makes the model of a filter; CMake lists one for each `<id>.cpp` that stands beside its `<id>.glsl`.
@@ -65,7 +69,8 @@ const std::vector<ModelEntry>& model_table();
 /// Gives a filter's model, null where it has none (a user's file).
 std::unique_ptr<Model> make_model(const std::string& id);
 
-/// Wraps `Filter<T>`, a class made from a ModelInput with `T visibility(const Receiver&, Tally&) const`, as a Model.
+/// Wraps `Filter<T>`, a class made from a ModelInput with `T visibility(const Receiver&, Tally&) const` and
+/// `static Kernel kernel(const ParamValues&)`, as a Model.
 template <template <class> class Filter>
 std::unique_ptr<Model> make_templated_model();
 

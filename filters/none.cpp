@@ -8,6 +8,8 @@ class NoFilter {
  public:
   explicit NoFilter(const ModelInput& input) : map_(input.map.size, input.map.depth, input.accuracy) {}
 
+  static Kernel kernel(const ParamValues&) { return Kernel::make_point(Reconstruction::kNearest); }
+
   T visibility(const Receiver& r, Tally& tally) const { return map_.compare_nearest(r, {}, r.depth, tally); }
 
  private:

@@ -8,6 +8,8 @@ class Pcf2x2 {
  public:
   explicit Pcf2x2(const ModelInput& input) : map_(input.map.size, input.map.depth, input.accuracy) {}
 
+  static Kernel kernel(const ParamValues&) { return Kernel::make_point(Reconstruction::kBilinear); }
+
   T visibility(const Receiver& r, Tally& tally) const { return map_.compare_2x2(r, {}, r.depth, tally); }
 
  private:

@@ -20,6 +20,8 @@ class Poisson {
         rotation_(text_or(input.values, "rotation", "none")),
         seed_(input.seed) {}
 
+  static Kernel kernel(const ParamValues& values) { return Kernel::make_disk(number(values, "radius")); }
+
   T visibility(const Receiver& r, Tally& tally) const {
     const P angle = P(2) * std::numbers::pi_v<P> * static_cast<P>(turn(r.pixel));
     const P c = radius_ * std::cos(angle), s = radius_ * std::sin(angle);

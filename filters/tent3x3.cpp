@@ -8,6 +8,8 @@ class Tent3x3 {
  public:
   explicit Tent3x3(const ModelInput& input) : map_(input.map.size, input.map.depth, input.accuracy) {}
 
+  static Kernel kernel(const ParamValues&) { return Kernel::make_grid({{-0.5, 0.5}, {0.5, 0.5}}, Reconstruction::kBilinear); }
+
   T visibility(const Receiver& r, Tally& tally) const {
     using P = Position<T>;
     T sum{};

@@ -14,6 +14,8 @@ class Vsm {
         min_variance_(static_cast<P>(static_cast<float>(number(input.values, "min_variance")))),
         reduction_(static_cast<P>(static_cast<float>(number(input.values, "bleed_reduction")))) {}
 
+  static Kernel kernel(const ParamValues& values) { return EncodedMap<T, 2>::kernel(values); }
+
   T visibility(const Receiver& r, Tally& tally) const {
     const T zero(P(0)), one(P(1));
     const auto moments = map_.fetch(r, tally);

@@ -63,7 +63,7 @@ report::Image to_image(const ViewReceivers& receivers, const std::vector<float>&
   return image;
 }
 
-void summarise_errors(SceneTruth& truth, const reference::AreaTruth& area) {
+void summarise_errors(SceneTruth& truth, const reference::TracedVisibility& area) {
   double squares = 0.0, unanimous = 0.0, count = 0.0;
   for (std::size_t i = 0; i < truth.mask.size(); ++i) {
     if (!truth.mask[i]) continue;
@@ -110,9 +110,9 @@ SceneTruth trace_scene(const scene::Scene& scene, const render::GBuffer& gbuffer
   const reference::Occluders occluders(list_occluders(scene));
   const auto light = reference::AreaLight::make_sun(glm::dvec3(to_light), static_cast<double>(scene.light.angular_diameter_deg));
   truth.hard = to_image(receivers, reference::trace_hard(occluders, receivers.image, light));
-  reference::AreaSettings settings;
+  reference::TraceSettings settings;
   settings.seed = seed;
-  const reference::AreaTruth area = reference::trace_area(occluders, receivers.image, light, settings);
+  const reference::TracedVisibility area = reference::trace_area(occluders, receivers.image, light, settings);
   truth.area = to_image(receivers, area.visibility);
   summarise_errors(truth, area);
   return truth;

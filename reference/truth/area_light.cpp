@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "reference/truth/sobol.h"
+#include "filters/disk_points.h"
 
 namespace shadowbench::reference {
 namespace {
@@ -52,9 +52,8 @@ AreaLight AreaLight::make_rectangle(const glm::dvec3& centre_ws, const glm::dvec
   return light;
 }
 
-glm::dvec3 AreaLight::direction(const glm::dvec3& from, const glm::dvec2& sample) const {
-  const glm::dvec2 p = shape_ == Shape::kRectangle ? 2.0 * sample - 1.0 : map_to_disk(sample);
-  return centre_direction(from) + p.x * u_ + p.y * v_;
+glm::dvec2 AreaLight::map_sample(const glm::dvec2& sample) const {
+  return shape_ == Shape::kRectangle ? 2.0 * sample - 1.0 : filters::map_to_disk(sample);
 }
 
 glm::dvec3 AreaLight::centre_direction(const glm::dvec3& from) const {

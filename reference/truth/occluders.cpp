@@ -3,8 +3,10 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+#include <limits>
+
+#include "reference/truth/cut_out.h"
 
 namespace shadowbench::reference {
 namespace {
@@ -26,6 +28,26 @@ std::vector<std::uint32_t> keep_triangles_with_area(const OccluderMesh& mesh) {
   return kept;
 }
 
+/// The part of a 16-wide ray that occlusion and intersection have in common.
+void fill(RTCRay16& rays, int (&valid)[RayPacket::kSize], const RayPacket& packet) {
+  const auto copy = [](const RayPacket::Lanes& from, float (&to)[RayPacket::kSize]) { std::copy(from.begin(), from.end(), to); };
+  copy(packet.origin[0], rays.org_x);
+  copy(packet.origin[1], rays.org_y);
+  copy(packet.origin[2], rays.org_z);
+  copy(packet.direction[0], rays.dir_x);
+  copy(packet.direction[1], rays.dir_y);
+  copy(packet.direction[2], rays.dir_z);
+  for (int i = 0; i < RayPacket::kSize; ++i) {
+    valid[i] = packet.active >> i & 1u ? -1 : 0;
+    rays.tnear[i] = 0.0f;
+    rays.tfar[i] = packet.reach;
+    rays.time[i] = 0.0f;
+    rays.mask[i] = 0xffffffffu;
+    rays.id[i] = 0;
+    rays.flags[i] = 0;
+  }
+}
+
 }  // namespace
 
 struct Occluders::Impl {
@@ -33,6 +55,8 @@ struct Occluders::Impl {
   RTCScene scene = rtcNewScene(device);
   glm::vec3 largest{0.0f};  ///< largest coordinate per axis, by magnitude
   std::int64_t triangles = 0;
+  std::int64_t degenerate = 0;
+  std::vector<std::unique_ptr<HoleTest>> hole_tests;
 
   Impl() = default;
   Impl(const Impl&) = delete;
@@ -43,7 +67,9 @@ struct Occluders::Impl {
   }
 
   void add(const OccluderMesh& mesh) {
-    const std::vector<std::uint32_t> indices = keep_triangles_with_area(mesh);
+    std::vector<std::uint32_t> indices = keep_triangles_with_area(mesh);
+    triangles += static_cast<std::int64_t>(indices.size() / 3);
+    degenerate += static_cast<std::int64_t>((mesh.indices.size() - indices.size()) / 3);
     if (indices.empty()) return;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
@@ -52,10 +78,15 @@ struct Occluders::Impl {
     void* corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                             3 * sizeof(std::uint32_t), indices.size() / 3);
     std::copy(indices.begin(), indices.end(), static_cast<std::uint32_t*>(corners));
+    if (mesh.cut_out) {
+      hole_tests.push_back(std::make_unique<HoleTest>(HoleTest{*mesh.cut_out, std::move(indices)}));
+      rtcSetGeometryUserData(geometry, hole_tests.back().get());
+      rtcSetGeometryOccludedFilterFunction(geometry, &forgive_holes);
+      rtcSetGeometryIntersectFilterFunction(geometry, &forgive_holes);
+    }
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
-    triangles += static_cast<std::int64_t>(indices.size() / 3);
     for (const glm::vec3& p : mesh.positions) largest = glm::max(largest, glm::abs(p));
   }
 };
@@ -73,39 +104,39 @@ Occluders::Occluders(Occluders&&) noexcept = default;
 Occluders& Occluders::operator=(Occluders&&) noexcept = default;
 
 std::uint32_t Occluders::find_blocked(const RayPacket& packet) const {
-  assert(packet.count <= RayPacket::kSize);
   RTCRay16 rays;
   alignas(64) int valid[RayPacket::kSize];
-  for (int i = 0; i < RayPacket::kSize; ++i) {
-    const auto k = static_cast<std::size_t>(std::min(i, std::max(packet.count - 1, 0)));
-    valid[i] = i < packet.count ? -1 : 0;
-    rays.org_x[i] = packet.origins[k].x;
-    rays.org_y[i] = packet.origins[k].y;
-    rays.org_z[i] = packet.origins[k].z;
-    rays.dir_x[i] = packet.directions[k].x;
-    rays.dir_y[i] = packet.directions[k].y;
-    rays.dir_z[i] = packet.directions[k].z;
-    rays.tnear[i] = 0.0f;
-    rays.tfar[i] = packet.reach;
-    rays.time[i] = 0.0f;
-    rays.mask[i] = 0xffffffffu;
-    rays.id[i] = 0;
-    rays.flags[i] = 0;
-  }
+  fill(rays, valid, packet);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded16(valid, impl_->scene, &context, &rays);
   std::uint32_t blocked = 0;
-  for (int i = 0; i < packet.count; ++i) {
+  for (int i = 0; i < RayPacket::kSize; ++i) {
     if (rays.tfar[i] < 0.0f) blocked |= 1u << i;  // Embree marks a hit with -inf
   }
-  return blocked;
+  return blocked & packet.active;
 }
 
-glm::vec3 Occluders::offset_origin(const glm::vec3& position, const glm::vec3& normal) const {
+RayPacket::Lanes Occluders::find_nearest(const RayPacket& packet) const {
+  RTCRayHit16 hits;
+  alignas(64) int valid[RayPacket::kSize];
+  fill(hits.ray, valid, packet);
+  std::fill(std::begin(hits.hit.geomID), std::end(hits.hit.geomID), RTC_INVALID_GEOMETRY_ID);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect16(valid, impl_->scene, &context, &hits);
+  RayPacket::Lanes distances;
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    const bool is_hit = valid[i] != 0 && hits.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+    distances[i] = is_hit ? hits.ray.tfar[i] : std::numeric_limits<float>::infinity();
+  }
+  return distances;
+}
+
+glm::vec3 Occluders::offset_origin(const glm::vec3& position, const glm::vec3& normal, float extent) const {
   // One bound for all axes: a coordinate that is 0 everywhere would leave the point on its surface.
   const auto largest = [](const glm::vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
-  const float error = kRoundings * 0x1p-24f * (largest(position) + largest(impl_->largest));
+  const float error = kRoundings * 0x1p-24f * (largest(position) + largest(impl_->largest) + extent);
   glm::vec3 moved = position + normal * error;
   // The sum itself is rounded: one step further, away from the surface.
   for (int axis = 0; axis < 3; ++axis) {
@@ -116,5 +147,13 @@ glm::vec3 Occluders::offset_origin(const glm::vec3& position, const glm::vec3& n
 }
 
 std::int64_t Occluders::triangle_count() const { return impl_->triangles; }
+std::int64_t Occluders::degenerate_count() const { return impl_->degenerate; }
+float Occluders::farthest() const { return glm::length(impl_->largest); }
+
+Box Occluders::bounds() const {
+  RTCBounds bounds;
+  rtcGetSceneBounds(impl_->scene, &bounds);
+  return {{bounds.lower_x, bounds.lower_y, bounds.lower_z}, {bounds.upper_x, bounds.upper_y, bounds.upper_z}};
+}
 
 }  // namespace shadowbench::reference

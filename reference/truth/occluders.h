@@ -2,27 +2,38 @@
 
 #include <glm/glm.hpp>
 
-#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "reference/truth/ray_packet.h"
+
 namespace shadowbench::reference {
+
+/// Says where a mesh has holes: a ray passes where the alpha of its texture is under the cutoff, as the depth pass discards.
+/// The texture repeats and is read bilinearly, its first row at v = 0.
+struct CutOut {
+  std::vector<glm::vec2> uvs;       ///< one per position
+  int width = 0;                    ///< of the texture; 0: none, alpha is `base_alpha` everywhere
+  int height = 0;
+  std::vector<std::uint8_t> alpha;  ///< width * height
+  float base_alpha = 1.0f;          ///< factor
+  float cutoff = 0.5f;
+};
 
 /// Triangles that block light, both faces; world space, metres.
 struct OccluderMesh {
   std::vector<glm::vec3> positions;
   std::vector<std::uint32_t> indices;  ///< three per triangle, all < positions.size()
+  std::optional<CutOut> cut_out;
 };
 
-/// Sixteen rays, traced together.
-struct RayPacket {
-  static constexpr int kSize = 16;
-  std::array<glm::vec3, kSize> origins;
-  std::array<glm::vec3, kSize> directions;  ///< need not be of unit length
-  float reach = 0.0f;                       ///< in units of a direction's length; infinity for lights at infinity
-  int count = 0;                            ///< the first so many are traced
+/// An axis-aligned box; empty while min > max.
+struct Box {
+  glm::vec3 min{1.0f};
+  glm::vec3 max{-1.0f};
 };
 
 /// A scene to trace shadow rays in.
@@ -35,16 +46,25 @@ class Occluders {
   Occluders(Occluders&&) noexcept;
   Occluders& operator=(Occluders&&) noexcept;
 
-  /// Says for each ray of a packet whether anything blocks it, as bits: bit i belongs to ray i. Safe to call from many
-  /// threads.
+  /// Says for each active ray of a packet whether anything blocks it, as bits: bit i belongs to ray i. Safe to call from
+  /// many threads.
   std::uint32_t find_blocked(const RayPacket& packet) const;
 
-  /// Moves a point off its surface, along the geometric normal towards the viewer, by a bound on the error that single
-  /// precision may have left in it: of its own coordinates and of the scene's largest ones, which interpolation mixed.
-  /// Source: Pharr, Jakob and Humphreys 2016, Physically Based Rendering, 3rd ed., section 3.9.
-  glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& normal) const;
+  /// Gives for each active ray how far it gets, in units of its direction's length; infinity where nothing is hit.
+  RayPacket::Lanes find_nearest(const RayPacket& packet) const;
 
-  std::int64_t triangle_count() const;
+  /// Moves a point off its surface, along the geometric normal towards the viewer, by a bound on the error that single
+  /// precision may have left in it: of its own coordinates and of the scene's largest ones, which interpolation mixed,
+  /// and of steps of up to `extent` metres that are taken from it along the surface.
+  /// Source: Pharr, Jakob and Humphreys 2016, Physically Based Rendering, 3rd ed., section 3.9.
+  glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& normal, float extent = 0.0f) const;
+
+  std::int64_t triangle_count() const;    ///< without the degenerate ones
+  std::int64_t degenerate_count() const;  ///< triangles that were dropped
+  Box bounds() const;                     ///< of what is traced
+
+  /// Gives the distance from the origin within which everything lies, metres.
+  float farthest() const;
 
  private:
   struct Impl;

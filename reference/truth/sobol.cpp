@@ -1,8 +1,6 @@
 #include "reference/truth/sobol.h"
 
 #include <array>
-#include <cmath>
-#include <numbers>
 
 #include "filters/random.h"
 
@@ -55,14 +53,8 @@ glm::uvec2 sobol_bits(std::uint32_t index, std::uint32_t seed) {
           scramble(second_dimension(index), filters::hash_bits(seed ^ 0x85ebca6bu))};
 }
 
-glm::dvec2 map_to_disk(glm::dvec2 square) {
-  const glm::dvec2 p = 2.0 * square - 1.0;
-  if (p.x == 0.0 && p.y == 0.0) return p;
-  const bool wide = std::abs(p.x) > std::abs(p.y);
-  const double radius = wide ? p.x : p.y;
-  const double quarter = std::numbers::pi / 4.0;
-  const double angle = wide ? quarter * (p.y / p.x) : 2.0 * quarter - quarter * (p.x / p.y);
-  return {radius * std::cos(angle), radius * std::sin(angle)};
+std::uint32_t shuffle_index(std::uint32_t index, std::uint32_t seed) {
+  return scramble(index, filters::hash_bits(seed ^ 0xc2b2ae35u));  // a bit depends on the bits above it only
 }
 
 }  // namespace shadowbench::reference

@@ -14,11 +14,12 @@ namespace shadowbench::reference {
 /// Source: Sobol 1967; Owen 1995; scrambling by hashing after Burley 2020, Practical Hash-based Owen Scrambling, JCGT 9(4).
 glm::uvec2 sobol_bits(std::uint32_t index, std::uint32_t seed);
 
+/// Gives the place of `index` in a shuffle that keeps every aligned run of 2^k indices together, so that a second pair of
+/// dimensions, taken in this order, is as evenly spread as the first and independent of it.
+/// Source: Burley 2020, section 5.
+std::uint32_t shuffle_index(std::uint32_t index, std::uint32_t seed);
+
 /// Reads 32-bit fractions as a point of [0,1)^2.
 inline glm::dvec2 to_unit_square(glm::uvec2 bits) { return {bits.x * 0x1p-32, bits.y * 0x1p-32}; }
-
-/// Maps the unit square to the unit disk, equal areas to equal areas.
-/// Source: Shirley and Chiu 1997, A Low Distortion Map Between Disk and Square, JGT 2(3).
-glm::dvec2 map_to_disk(glm::dvec2 square);
 
 }  // namespace shadowbench::reference

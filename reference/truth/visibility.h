@@ -1,44 +1,35 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
+#include "filters/kernel.h"
 #include "reference/truth/area_light.h"
 #include "reference/truth/occluders.h"
+#include "reference/truth/receiver_image.h"
+#include "reference/truth/sample_sets.h"
 
 namespace shadowbench::reference {
 
-/// A receiver point of the G-buffer.
-struct ReceiverPoint {
-  glm::vec3 position_ws{0.0f};
-  glm::vec3 normal_ws{0.0f, 1.0f, 0.0f};  ///< geometric, unit length, flipped to the viewer
-  bool counts = false;                    ///< false: background, or turned away from the light; not traced
-};
-
-/// Receivers as an image, row by row.
-struct ReceiverImage {
-  int width = 0;
-  int height = 0;
-  std::vector<ReceiverPoint> points;  ///< width * height
-};
-
-/// Says how sure the area truth is to be.
-struct AreaSettings {
+/// Says how sure a traced fraction is to be.
+struct TraceSettings {
   double standard_error = 0.005;  ///< wanted for every pixel that is not unanimous
   int max_points = 1024;          ///< per scramble; a power of two, at least 16
   std::uint32_t seed = 1;
+  std::function<void(const RayPacket&)> on_packet = {};  ///< hears of every packet, from many threads; for measurement
 };
 
-/// The number of independent scrambles; the standard error has one degree of freedom less.
-inline constexpr int kScrambles = 16;
-
-/// The visibility of a light at every receiver; 1 lit, 0 blocked, 1 where a point does not count.
-struct AreaTruth {
+/// A traced fraction of rays at every receiver; 1 lit, 0 blocked, 1 where a point does not count.
+struct TracedVisibility {
   std::vector<float> visibility;
-  std::vector<float> standard_error;      ///< over the scrambles; where all rays agree there is none: 0, see `unanimous`
-  std::vector<std::uint8_t> unanimous;    ///< all rays of this pixel agree; the truth lies within 3 / rays of them (95 %)
-  std::vector<std::uint32_t> rays;        ///< traced for this pixel
+  std::vector<float> standard_error;    ///< over the scrambles; where all rays agree there is none: 0, see `unanimous`
+  std::vector<std::uint8_t> unanimous;  ///< all rays of this pixel agree; the truth lies within 3 / rays of them (95 %)
+  std::vector<std::uint32_t> rays;      ///< traced for this pixel; 64: its neighbours agree with it too
 };
+
+/// The number of rays of a pixel that agrees with its neighbours.
+inline constexpr std::uint32_t kRaysOfSettledPixel = 64;
 
 /// Traces the fraction of an area light that each receiver sees.
 ///
@@ -47,10 +38,33 @@ struct AreaTruth {
 /// or `max_points` is reached. The part of the light below a receiver's own plane is blocked by it. The result depends on
 /// neither the number of threads nor the order of pixels.
 /// Cost: 64 rays for a pixel away from edges, up to 16 * max_points at one.
-AreaTruth trace_area(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
-                     const AreaSettings& settings);
+TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
+                            const TraceSettings& settings);
+
+/// Where a kernel lies in the world: the texel grid of a directional light's map.
+struct MapGrid {
+  glm::dvec3 to_light{0.0, 1.0, 0.0};  ///< unit length
+  glm::dvec3 right{1.0, 0.0, 0.0};     ///< one texel in u is `texel_size_ws` metres along it; unit length
+  glm::dvec3 up{0.0, 0.0, 1.0};        ///< the same for v
+  double texel_size_ws = 1.0;          ///< metres
+};
+
+/// Traces the fraction of a kernel, centred on each receiver and projected along the light onto its tangent plane, from
+/// which the light's centre is seen: the filter with an ideal map and an ideal receiver-plane bias.
+/// Adaptive like trace_area(), at the same cost.
+TracedVisibility trace_kernel(const Occluders& occluders, const ReceiverImage& receivers, const filters::Kernel& kernel,
+                              const MapGrid& grid, const TraceSettings& settings);
+
+/// The same for a uniform square of this half-width in texels.
+TracedVisibility trace_square(const Occluders& occluders, const ReceiverImage& receivers, double half_width_texels,
+                              const MapGrid& grid, const TraceSettings& settings);
 
 /// Traces one ray from each receiver to the light's centre: 1 seen, 0 blocked, 1 where a point does not count.
 std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light);
+
+/// Gives for each receiver how far along the light the surface lies that light from infinity meets first, in metres: what
+/// an ideal depth map would hold. Infinity where nothing blocks and where a point does not count.
+std::vector<float> trace_first_blockers(const Occluders& occluders, const ReceiverImage& receivers,
+                                        const glm::dvec3& to_light);
 
 }  // namespace shadowbench::reference

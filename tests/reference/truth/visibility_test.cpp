@@ -1,181 +1,111 @@
-// Ray-traced visibility against closed forms, by z-tests: the truth that filters are scored against is itself checked.
+// What tracing does besides following closed forms: order, threads, offsets, holes, odd lights.
 
 #include "reference/truth/visibility.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
-#include <functional>
-#include <numbers>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "tests/reference/truth/shapes.h"
 
 namespace shadowbench::reference {
 namespace {
 
-/// A rectangle at height h, from (x0, z0) to (x1, z1), in n x n cells: giant triangles limit the accuracy.
-OccluderMesh make_sheet(double x0, double x1, double z0, double z1, double h, int n = 64) {
-  OccluderMesh mesh;
-  for (int j = 0; j <= n; ++j) {
-    for (int i = 0; i <= n; ++i) {
-      mesh.positions.emplace_back(x0 + (x1 - x0) * i / n, h, z0 + (z1 - z0) * j / n);
-    }
-  }
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      const auto a = static_cast<std::uint32_t>(j * (n + 1) + i), b = a + 1, c = a + static_cast<std::uint32_t>(n + 1);
-      mesh.indices.insert(mesh.indices.end(), {a, c, b, b, c, c + 1});
-    }
-  }
-  return mesh;
-}
-
-OccluderMesh make_disk_sheet(double radius, double h, int segments = 2048) {
-  OccluderMesh mesh;
-  mesh.positions.emplace_back(0.0f, static_cast<float>(h), 0.0f);
-  for (int i = 0; i < segments; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / segments;
-    mesh.positions.emplace_back(radius * std::cos(angle), h, radius * std::sin(angle));
-    const auto next = static_cast<std::uint32_t>(1 + (i + 1) % segments);
-    mesh.indices.insert(mesh.indices.end(), {0u, next, static_cast<std::uint32_t>(1 + i)});
-  }
-  return mesh;
-}
-
-/// Receivers on the ground along x, several rows deep.
-ReceiverImage make_line(double x0, double x1, int width, int height = 8) {
-  ReceiverImage image{width, height, {}};
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      image.points.push_back({glm::vec3(x0 + (x1 - x0) * (x + 0.5) / width, 0.0, 0.01 * y), {0.0f, 1.0f, 0.0f}, true});
-    }
-  }
-  return image;
-}
-
-/// Two-sided z-test of many pixels with 15 degrees of freedom: at a family-wise level of 1e-3 over some 2000 pixels,
-/// Bonferroni asks for the quantile at 2.5e-7 per tail, which is 8.0 for Student's t.
-constexpr double kCorrectedQuantile = 8.0;
-
-struct ZScores {
-  int unanimous = 0;
-  int beyond_limit = 0;  ///< unanimous pixels whose exact value lies beyond their 95 % limit
-  double worst = 0.0;
-  double rms = 0.0;
-  int count = 0;
-};
-
-ZScores score(const AreaTruth& truth, const ReceiverImage& image, const std::function<double(const glm::dvec3&)>& exact) {
-  ZScores scores;
-  for (std::size_t i = 0; i < image.points.size(); ++i) {
-    const double expected = exact(glm::dvec3(image.points[i].position_ws));
-    const double got = static_cast<double>(truth.visibility[i]);
-    if (truth.unanimous[i]) {
-      ++scores.unanimous;
-      if (std::abs(got - expected) > 3.0 / truth.rays[i]) ++scores.beyond_limit;
-      continue;
-    }
-    const double z = (got - expected) / static_cast<double>(truth.standard_error[i]);
-    scores.worst = std::max(scores.worst, std::abs(z));
-    scores.rms += z * z;
-    ++scores.count;
-  }
-  scores.rms = std::sqrt(scores.rms / scores.count);
-  return scores;
-}
-
-void expect_agreement(const ZScores& scores) {
-  std::printf("%d penumbra pixels, rms z %.3f, worst %.2f\n", scores.count, scores.rms, scores.worst);
-  EXPECT_GT(scores.count, 500);
-  EXPECT_LE(scores.beyond_limit, 0.05 * scores.unanimous);
-  EXPECT_LT(scores.worst, kCorrectedQuantile);
-  EXPECT_GT(scores.rms, 0.8);
-  EXPECT_LT(scores.rms, 1.25);
-}
-
-constexpr double kOccluderHeight = 2.0;
-constexpr double kLightHeight = 10.0;
-
-/// Half-plane filling x < 0 over a disk light: V = (acos t - t sqrt(1 - t^2)) / pi, t = x (1 - H/h) / R.
-double half_plane_over_disk(double x, double radius) {
-  const double t = std::clamp(x * (1.0 - kLightHeight / kOccluderHeight) / radius, -1.0, 1.0);
-  return (std::acos(t) - t * std::sqrt(1.0 - t * t)) / std::numbers::pi;
-}
-
-std::vector<OccluderMesh> half_plane() { return {make_sheet(-40.0, 0.0, -40.0, 40.0, kOccluderHeight)}; }
-
-TEST(AreaTruth, HalfPlaneOverDisk_FollowsTheClosedForm) {
-  const Occluders occluders(half_plane());
-  const AreaLight light = AreaLight::make_disk({0.0, kLightHeight, 0.0}, {0.0, -1.0, 0.0}, 1.0);
-  const ReceiverImage image = make_line(-0.35, 0.35, 240);
-  // The light's centre is above x = 0, so the edge's shadow is centred there for every row.
-  expect_agreement(score(trace_area(occluders, image, light, {0.005, 1024, 1}), image,
-                         [](const glm::dvec3& p) { return half_plane_over_disk(p.x, 1.0); }));
-}
-
-TEST(AreaTruth, HalfPlaneOverRectangle_IsALinearRamp) {
-  const Occluders occluders(half_plane());
-  const AreaLight light = AreaLight::make_rectangle({0.0, kLightHeight, 0.0}, {0.7, 0.0, 0.0}, {0.0, 0.0, 0.5});
-  const ReceiverImage image = make_line(-0.25, 0.25, 240);
-  const double width = 1.4 * kOccluderHeight / (kLightHeight - kOccluderHeight);
-  expect_agreement(score(trace_area(occluders, image, light, {0.005, 1024, 2}), image,
-                         [&](const glm::dvec3& p) { return std::clamp(0.5 + p.x / width, 0.0, 1.0); }));
-}
-
-TEST(AreaTruth, Slit_AddsUp) {
-  // Edges at -0.1 and 0.1: what one half-plane lets through and the other lets through, less one.
-  std::vector<OccluderMesh> slit = {make_sheet(-40.0, -0.1, -40.0, 40.0, kOccluderHeight),
-                                    make_sheet(0.1, 40.0, -40.0, 40.0, kOccluderHeight)};
-  const Occluders occluders(slit);
-  const AreaLight light = AreaLight::make_disk({0.0, kLightHeight, 0.0}, {0.0, -1.0, 0.0}, 1.0);
-  const ReceiverImage image = make_line(-0.45, 0.45, 240);
-  // An edge at e shifts the shadow's centre to e H / (H - h) on the ground below a light above x = 0.
-  const double shift = 0.1 * kLightHeight / (kLightHeight - kOccluderHeight);
-  expect_agreement(score(trace_area(occluders, image, light, {0.005, 1024, 3}), image, [&](const glm::dvec3& p) {
-    return std::max(0.0, half_plane_over_disk(p.x + shift, 1.0) + half_plane_over_disk(shift - p.x, 1.0) - 1.0);
-  }));
-}
-
-/// The area of two disks' overlap.
-double lens_area(double r1, double r2, double d) {
-  if (d >= r1 + r2) return 0.0;
-  const double small = std::min(r1, r2);
-  if (d <= std::abs(r1 - r2)) return std::numbers::pi * small * small;
-  const double a = std::acos(std::clamp((d * d + r1 * r1 - r2 * r2) / (2.0 * d * r1), -1.0, 1.0));
-  const double b = std::acos(std::clamp((d * d + r2 * r2 - r1 * r1) / (2.0 * d * r2), -1.0, 1.0));
-  return r1 * r1 * (a - std::sin(2.0 * a) / 2.0) + r2 * r2 * (b - std::sin(2.0 * b) / 2.0);
-}
-
-TEST(AreaTruth, DiskOverDisk_IsALens) {
-  const std::vector<OccluderMesh> disk = {make_disk_sheet(0.3, kOccluderHeight)};
-  const Occluders occluders(disk);
-  const AreaLight light = AreaLight::make_disk({0.0, kLightHeight, 0.0}, {0.0, -1.0, 0.0}, 1.0);
-  const ReceiverImage image = make_line(-0.7, 0.7, 240);
-  // Seen from the ground, the occluder covers a disk of radius r H/h around p + (c - p) H/h in the light's plane.
-  const double scale = kLightHeight / kOccluderHeight;
-  expect_agreement(score(trace_area(occluders, image, light, {0.005, 1024, 4}), image, [&](const glm::dvec3& p) {
-    const double distance = std::hypot(p.x, p.z) * std::abs(1.0 - scale);
-    return 1.0 - lens_area(1.0, 0.3 * scale, distance) / std::numbers::pi;
-  }));
-}
-
-TEST(AreaTruth, SunOverHalfPlane_FollowsTheClosedForm) {
-  const Occluders occluders(half_plane());
-  const AreaLight light = AreaLight::make_sun({0.0, 1.0, 0.0}, 3.0);
-  const double radius = kOccluderHeight * std::tan(glm::radians(1.5));
-  const ReceiverImage image = make_line(-0.06, 0.06, 240);
-  expect_agreement(score(trace_area(occluders, image, light, {0.005, 1024, 5}), image, [&](const glm::dvec3& p) {
-    const double t = std::clamp(-p.x / radius, -1.0, 1.0);
-    return (std::acos(t) - t * std::sqrt(1.0 - t * t)) / std::numbers::pi;
-  }));
-}
+std::vector<OccluderMesh> half_plane() { return {make_sheet(-40.0, 0.0, -40.0, 40.0, 2.0)}; }
 
 TEST(AreaTruth, DoesNotDependOnThreads) {
   const Occluders occluders(half_plane());
   const AreaLight light = AreaLight::make_sun({0.0, 1.0, 0.0}, 3.0);
   const ReceiverImage image = make_line(-0.06, 0.06, 100);
-  const AreaTruth many = trace_area(occluders, image, light, {});
+  const TracedVisibility many = trace_area(occluders, image, light, {});
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   EXPECT_EQ(trace_area(occluders, image, light, {}).visibility, many.visibility);
+}
+
+TEST(AreaTruth, DoesNotDependOnTheOrderOfPixels) {
+  // A pixel's random numbers follow its place in the image; its truth does not.
+  const Occluders occluders(half_plane());
+  const AreaLight light = AreaLight::make_sun({0.0, 1.0, 0.0}, 3.0);
+  const ReceiverImage image = make_line(-0.06, 0.06, 100);
+  ReceiverImage reversed = image;
+  std::reverse(reversed.points.begin(), reversed.points.end());
+  const TracedVisibility forth = trace_area(occluders, image, light, {}), back = trace_area(occluders, reversed, light, {});
+  const std::size_t last = image.points.size() - 1;
+  for (std::size_t i = 0; i <= last; ++i) {
+    const double error = static_cast<double>(std::hypot(forth.standard_error[i], back.standard_error[last - i]));
+    ASSERT_LE(std::abs(forth.visibility[i] - back.visibility[last - i]), 8.0 * error + 3.0 / 64.0 * (error == 0.0)) << i;
+  }
+}
+
+/// A floor seen by a sun through a sheet of this cut-out.
+std::vector<float> trace_through(const CutOut& cut_out) {
+  OccluderMesh sheet = make_sheet(-1.0, 1.0, -1.0, 1.0, 1.0, 4);
+  sheet.cut_out = cut_out;
+  for (const glm::vec3& p : sheet.positions) sheet.cut_out->uvs.emplace_back(0.5f * (p.x + 1.0f), 0.5f * (p.z + 1.0f));
+  const std::vector<OccluderMesh> meshes = {sheet};
+  const Occluders occluders(meshes);
+  return trace_hard(occluders, make_line(-0.99, 0.99, 400, 1), AreaLight::make_sun({0.0, 1.0, 0.0}, 0.0));
+}
+
+TEST(CutOut, RaysPassWhereTheTextureIsTransparent) {
+  // Two texels side by side: bilinear alpha crosses the cutoff half-way between their centres.
+  const std::vector<float> lit = trace_through({{}, 2, 1, {255, 0}, 1.0f, 0.5f});
+  for (std::size_t i = 0; i < lit.size(); ++i) {
+    const double u = (static_cast<double>(i) + 0.5) / 400.0 * 0.99 + 0.005;
+    if (std::abs(u - 0.5) < 0.01 || u < 0.01 || u > 0.99) continue;  // the texture repeats: its other edge
+    ASSERT_EQ(lit[i], u < 0.5 ? 0.0f : 1.0f) << u;
+  }
+}
+
+TEST(CutOut, BaseAlphaIsAFactor_AndCutoffTheLimit) {
+  EXPECT_EQ(trace_through({{}, 0, 0, {}, 0.4f, 0.5f})[100], 1.0f);
+  EXPECT_EQ(trace_through({{}, 0, 0, {}, 0.6f, 0.5f})[100], 0.0f);
+  EXPECT_EQ(trace_through({{}, 1, 1, {153}, 0.8f, 0.5f})[100], 1.0f) << "0.6 * 0.8 = 0.48";
+  EXPECT_EQ(trace_through({{}, 1, 1, {153}, 0.8f, 0.4f})[100], 0.0f);
+}
+
+TEST(CutOut, HolesLetLightReachTheNextSurface) {
+  OccluderMesh open = make_sheet(-1.0, 1.0, -1.0, 1.0, 2.0, 4);
+  open.cut_out = CutOut{std::vector<glm::vec2>(open.positions.size()), 0, 0, {}, 0.0f, 0.5f};
+  const std::vector<OccluderMesh> meshes = {open, make_sheet(-1.0, 0.0, -1.0, 1.0, 1.0, 4)};
+  const Occluders occluders(meshes);
+  const std::vector<float> distances = trace_first_blockers(occluders, make_line(-0.9, 0.9, 10, 1), {0.0, 1.0, 0.0});
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(distances[i], 1.0f, 1e-5f);
+  for (std::size_t i = 5; i < 10; ++i) EXPECT_EQ(distances[i], std::numeric_limits<float>::infinity());
+}
+
+TEST(FirstBlockers, GiveTheSurfaceThatLightMeetsFirst) {
+  const std::vector<OccluderMesh> stacked = {make_sheet(-5.0, 5.0, -5.0, 5.0, 0.5), make_sheet(-1.0, 1.0, -5.0, 5.0, 2.0)};
+  const Occluders occluders(stacked);
+  const std::vector<float> distances = trace_first_blockers(occluders, make_line(-3.0, 3.0, 60, 1), {0.0, 2.0, 0.0});
+  for (std::size_t i = 0; i < 60; ++i) EXPECT_NEAR(distances[i], i < 20 || i >= 40 ? 0.5f : 2.0f, 1e-5f) << i;
+}
+
+TEST(Occluders, CountTrianglesAndBounds_WithoutTheDegenerate) {
+  OccluderMesh mesh = make_sheet(-1.0, 2.0, -3.0, 4.0, 0.5, 3);
+  mesh.indices.insert(mesh.indices.end(), {0, 0, 1, 2, 2, 2});
+  const std::vector<OccluderMesh> meshes = {mesh};
+  const Occluders occluders(meshes);
+  EXPECT_EQ(occluders.triangle_count(), 18);
+  EXPECT_EQ(occluders.degenerate_count(), 2);
+  EXPECT_EQ(occluders.bounds().min, glm::vec3(-1.0f, 0.5f, -3.0f));
+  EXPECT_EQ(occluders.bounds().max, glm::vec3(2.0f, 0.5f, 4.0f));
+}
+
+TEST(OddLights, GiveFiniteVisibility) {
+  const Occluders box(std::vector<OccluderMesh>{make_sphere({0.0, 10.0, 0.0}, 2.0, 64)});
+  const ReceiverImage image = make_line(-1.0, 1.0, 16, 1);
+  const auto inside = AreaLight::make_disk({0.0, 10.0, 0.0}, {0.0, -1.0, 0.0}, 1.0);
+  for (const float v : trace_area(box, image, inside, {}).visibility) EXPECT_EQ(v, 0.0f) << "a light inside geometry";
+  const auto below = AreaLight::make_disk({0.0, -10.0, 0.0}, {0.0, -1.0, 0.0}, 1.0);
+  for (const float v : trace_area(box, image, below, {}).visibility) EXPECT_EQ(v, 0.0f) << "a light below the horizon";
+  const Occluders nothing(std::vector<OccluderMesh>{});
+  for (const float v : trace_area(nothing, image, inside, {}).visibility) EXPECT_EQ(v, 1.0f) << "an empty scene";
 }
 
 TEST(HardTruth, OfAPointLight_IsAStep) {

@@ -1,0 +1,77 @@
+#include "filters/kernel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "filters/disk_points.h"
+#include "filters/gaussian.h"
+
+namespace shadowbench::filters {
+namespace {
+
+/// Inverts the distribution of the unit tent on [-1,1].
+double sample_tent(double u) { return u < 0.5 ? std::sqrt(2.0 * u) - 1.0 : 1.0 - std::sqrt(2.0 * (1.0 - u)); }
+
+double sample_atoms(const std::vector<Kernel::Atom>& atoms, double u) {
+  double sum = 0.0;
+  for (const Kernel::Atom& atom : atoms) {
+    sum += atom.weight;
+    if (u < sum) return atom.offset;
+  }
+  return atoms.back().offset;
+}
+
+}  // namespace
+
+Kernel Kernel::make_point(Reconstruction reconstruction) { return make_grid({{0.0, 1.0}}, reconstruction); }
+
+Kernel Kernel::make_grid(std::vector<Atom> atoms, Reconstruction reconstruction) {
+  assert(!atoms.empty());
+  Kernel kernel;
+  kernel.atoms_ = std::move(atoms);
+  kernel.reconstruction_ = reconstruction;
+  return kernel;
+}
+
+Kernel Kernel::make_gaussian(int radius_texels, Reconstruction reconstruction) {
+  const std::vector<float> weights = gaussian_weights(radius_texels);
+  std::vector<Atom> atoms;
+  for (int i = -radius_texels; i <= radius_texels; ++i) {
+    atoms.push_back({static_cast<double>(i), static_cast<double>(weights[static_cast<std::size_t>(i + radius_texels)])});
+  }
+  return make_grid(std::move(atoms), reconstruction);
+}
+
+Kernel Kernel::make_disk(double radius_texels) {
+  if (radius_texels <= 0.0) return make_point(Reconstruction::kBilinear);
+  Kernel kernel;
+  kernel.disk_radius_ = radius_texels;
+  kernel.reconstruction_ = Reconstruction::kBilinear;
+  return kernel;
+}
+
+glm::dvec2 Kernel::sample(const glm::dvec2& shape, const glm::dvec2& between) const {
+  const glm::dvec2 position = atoms_.empty() ? disk_radius_ * map_to_disk(shape)
+                                             : glm::dvec2(sample_atoms(atoms_, shape.x), sample_atoms(atoms_, shape.y));
+  if (reconstruction_ == Reconstruction::kNearest) return position;
+  return position + glm::dvec2(sample_tent(between.x), sample_tent(between.y));
+}
+
+double Kernel::half_width() const {
+  const double shape = atoms_.empty() ? disk_radius_ : std::max(-atoms_.front().offset, atoms_.back().offset);
+  return shape + (reconstruction_ == Reconstruction::kBilinear ? 1.0 : 0.0);
+}
+
+bool Kernel::is_point() const { return half_width() == 0.0; }
+
+std::string Kernel::name() const {
+  std::string text = reconstruction_ == Reconstruction::kBilinear ? "tent" : "point";
+  if (atoms_.empty()) return text + fmt::format(" * disk {}", disk_radius_);
+  for (const Atom& atom : atoms_) text += fmt::format(" {}:{}", atom.offset, atom.weight);
+  return text;
+}
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <string>
+#include <vector>
+
+namespace shadowbench::filters {
+
+/// How a filter reads between the texels of a map.
+enum class Reconstruction {
+  kNearest,   ///< the texel that holds the position: a point of the continuous kernel
+  kBilinear,  ///< the four texels around it: the unit tent per axis
+};
+
+/// The kernel that a filter averages the map with, in texels around the receiver: a shape convolved with the
+/// reconstruction. It has two faces: weights on the texel grid for a receiver somewhere between texels (K), and a
+/// continuous density (k) that rays can sample. Both sum to 1 and are symmetric.
+class Kernel {
+ public:
+  /// One position of a shape on one axis.
+  struct Atom {
+    double offset = 0.0;  ///< texels
+    double weight = 1.0;
+  };
+
+  /// The receiver's own position.
+  static Kernel make_point(Reconstruction reconstruction);
+
+  /// The same atoms along both axes, as a product. Requires weights that sum to 1, offsets that ascend.
+  static Kernel make_grid(std::vector<Atom> atoms, Reconstruction reconstruction);
+
+  /// The weights of the Gaussian prefilter; see gaussian_weights().
+  static Kernel make_gaussian(int radius_texels, Reconstruction reconstruction);
+
+  /// A uniform disk, read bilinearly.
+  static Kernel make_disk(double radius_texels);
+
+  /// Gives a point of the continuous kernel, in texels; `shape` and `between` in [0,1)^2, equal areas for equal weights.
+  glm::dvec2 sample(const glm::dvec2& shape, const glm::dvec2& between) const;
+
+  /// Gives the half-width of the square outside which the continuous kernel is 0, in texels.
+  double half_width() const;
+
+  /// Says whether the continuous kernel is a single point.
+  bool is_point() const;
+
+  Reconstruction reconstruction() const { return reconstruction_; }
+  const std::vector<Atom>& atoms() const { return atoms_; }  ///< per axis; empty for a disk
+  double disk_radius() const { return disk_radius_; }        ///< texels; 0 for a grid
+
+  /// Names the kernel so that different kernels have different names.
+  std::string name() const;
+
+ private:
+  std::vector<Atom> atoms_;
+  double disk_radius_ = 0.0;
+  Reconstruction reconstruction_ = Reconstruction::kNearest;
+};
+
+}  // namespace shadowbench::filters

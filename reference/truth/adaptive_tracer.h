@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+
+#include "reference/truth/visibility.h"
+
+namespace shadowbench::reference {
+
+/// The rays of one receiver: origin and direction are affine in a sample's offset.
+struct RayFan {
+  glm::vec3 origin{0.0f};
+  glm::vec3 origin_x{0.0f};
+  glm::vec3 origin_y{0.0f};
+  glm::vec3 direction{0.0f};
+  glm::vec3 direction_x{0.0f};
+  glm::vec3 direction_y{0.0f};
+  glm::vec3 normal{0.0f};  ///< rays below this plane are blocked
+  float reach = 0.0f;      ///< in units of a direction's length
+};
+
+/// Traces every receiver's fan over the same sample sets; see trace_area() for when a pixel stops.
+TracedVisibility trace_fans(const Occluders& occluders, const ReceiverImage& receivers, const SampleSets& samples,
+                            const TraceSettings& settings,
+                            const std::function<RayFan(const ReceiverPoint&)>& make_fan);
+
+}  // namespace shadowbench::reference

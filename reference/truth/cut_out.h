@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "reference/truth/occluders.h"
+
+struct RTCFilterFunctionNArguments;
+
+namespace shadowbench::reference {
+
+/// What Embree calls for hits on a mesh with holes.
+struct HoleTest {
+  CutOut cut_out;
+  std::vector<std::uint32_t> indices;  ///< three per triangle that is traced
+
+  /// Says whether a point of a triangle, given by the weights of its second and third corner, is a hole.
+  bool is_hole(std::uint32_t triangle, float u, float v) const;
+};
+
+/// Forgives hits in holes; the geometry's user data is a HoleTest.
+void forgive_holes(const RTCFilterFunctionNArguments* arguments);
+
+}  // namespace shadowbench::reference

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <vector>
+
+namespace shadowbench::reference {
+
+/// A receiver point of the G-buffer.
+struct ReceiverPoint {
+  glm::vec3 position_ws{0.0f};
+  glm::vec3 normal_ws{0.0f, 1.0f, 0.0f};  ///< geometric, unit length, flipped to the viewer
+  bool counts = false;                    ///< false: background, or turned away from the light; not traced
+};
+
+/// Receivers as an image, row by row.
+struct ReceiverImage {
+  int width = 0;
+  int height = 0;
+  std::vector<ReceiverPoint> points;  ///< width * height
+};
+
+}  // namespace shadowbench::reference

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "reference/truth/ray_packet.h"
+
+namespace shadowbench::reference {
+
+/// The number of independent scrambles; a standard error over them has one degree of freedom less.
+inline constexpr int kScrambles = RayPacket::kSize;
+
+/// Low-discrepancy points, mapped once to where rays go: 64 randomisations, of which neighbouring pixels take different
+/// ones, each with 16 independent scrambles side by side as the lanes of a packet.
+///
+/// Each scramble is a Sobol sequence of its own Owen scrambling; the randomisations differ by digital shifts, which keep
+/// it uniform. The first 4^k points of a scramble are evenly spread.
+class SampleSets {
+ public:
+  static constexpr int kSets = 64;
+
+  /// Maps two independent points of [0,1)^2 to an offset.
+  using Mapping = std::function<glm::dvec2(const glm::dvec2& first, const glm::dvec2& second)>;
+
+  /// One point of every scramble.
+  struct Lanes {
+    alignas(64) RayPacket::Lanes x;
+    alignas(64) RayPacket::Lanes y;
+  };
+
+  /// Cost: 16 * 64 * `max_points` mappings, 128 bytes for every 16 of them.
+  SampleSets(int max_points, std::uint32_t seed, const Mapping& mapping);
+
+  const Lanes& at(int set, int point) const {
+    return lanes_[static_cast<std::size_t>(set) * static_cast<std::size_t>(max_points_) + static_cast<std::size_t>(point)];
+  }
+
+  int max_points() const { return max_points_; }
+
+ private:
+  int max_points_;
+  std::vector<Lanes> lanes_;  ///< set by set
+};
+
+}  // namespace shadowbench::reference

@@ -1,0 +1,114 @@
+// Ray-traced kernels against closed forms: an edge in front of a slanted light shows the kernel's own distribution.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "filters/gaussian.h"
+#include "tests/reference/truth/shapes.h"
+#include "tests/reference/truth/z_scores.h"
+
+namespace shadowbench::reference {
+namespace {
+
+using filters::Kernel;
+using filters::Reconstruction;
+
+constexpr double kHeight = 2.0;
+constexpr double kTexel = 0.02;
+constexpr double kTilt = 50.0;  ///< degrees between the light and the floor's normal
+
+/// The light comes from +x: texels along u are foreshortened on the floor.
+MapGrid tilted_grid() {
+  const double angle = glm::radians(kTilt);
+  return {{std::sin(angle), std::cos(angle), 0.0}, {std::cos(angle), -std::sin(angle), 0.0}, {0.0, 0.0, 1.0}, kTexel};
+}
+
+/// How far the shadow's edge lies behind a receiver, in texels of u: positive is lit.
+double texels_from_edge(const glm::dvec3& p) {
+  const double angle = glm::radians(kTilt);
+  return (p.x + kHeight * std::tan(angle)) * std::cos(angle) / kTexel;
+}
+
+double tent_below(double x) {
+  const double t = std::clamp(x, -1.0, 1.0);
+  return t < 0.0 ? 0.5 * (1.0 + t) * (1.0 + t) : 1.0 - 0.5 * (1.0 - t) * (1.0 - t);
+}
+
+/// Receivers across the shadow's edge, `reach` texels to either side.
+ReceiverImage make_receivers(double reach) {
+  const double angle = glm::radians(kTilt), edge = -kHeight * std::tan(angle), half = reach * kTexel / std::cos(angle);
+  return make_line(edge - half, edge + half, 160, 8);
+}
+
+template <class Exact>
+void expect_kernel(const Kernel& kernel, Exact exact) {
+  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight), make_sheet(-40.0, 40.0, -40.0, 40.0, 0.0)};
+  const Occluders occluders(meshes);
+  const ReceiverImage image = make_receivers(0.9 * kernel.half_width());
+  expect_agreement(score(trace_kernel(occluders, image, kernel, tilted_grid(), {.seed = 3}), image,
+                         [&](const glm::dvec3& p) { return exact(texels_from_edge(p)); }));
+}
+
+TEST(KernelTruth, OfATent) { expect_kernel(Kernel::make_point(Reconstruction::kBilinear), tent_below); }
+
+TEST(KernelTruth, OfATrapezoid) {
+  expect_kernel(Kernel::make_grid({{-0.5, 0.5}, {0.5, 0.5}}, Reconstruction::kBilinear),
+                [](double t) { return 0.5 * (tent_below(t - 0.5) + tent_below(t + 0.5)); });
+}
+
+TEST(KernelTruth, OfAGaussian) {
+  const std::vector<float> weights = filters::gaussian_weights(4);
+  expect_kernel(Kernel::make_gaussian(4, Reconstruction::kBilinear), [&](double t) {
+    double sum = 0.0;
+    for (int i = -4; i <= 4; ++i) sum += static_cast<double>(weights[static_cast<std::size_t>(i + 4)]) * tent_below(t - i);
+    return sum;
+  });
+}
+
+TEST(KernelTruth, OfADisk) {
+  // Chords of the disk, each blurred by the tent.
+  expect_kernel(Kernel::make_disk(3.0), [](double t) {
+    double sum = 0.0;
+    constexpr int kSteps = 4000;
+    for (int i = 0; i < kSteps; ++i) {
+      const double x = -3.0 + 6.0 * (i + 0.5) / kSteps;
+      sum += 2.0 * std::sqrt(9.0 - x * x) * (6.0 / kSteps) * tent_below(t - x);
+    }
+    return sum / (9.0 * std::numbers::pi);
+  });
+}
+
+TEST(KernelTruth, OfAPoint_IsTheHardShadow) {
+  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
+  const Occluders occluders(meshes);
+  const ReceiverImage image = make_receivers(3.0);
+  const MapGrid grid = tilted_grid();
+  EXPECT_EQ(trace_kernel(occluders, image, Kernel::make_point(Reconstruction::kNearest), grid, {}).visibility,
+            trace_hard(occluders, image, AreaLight::make_sun(grid.to_light, 0.53)));
+}
+
+TEST(KernelTruth, AnEmptySlantedPlane_IsLit_AtEveryAngle) {
+  for (const double tilt : {0.0, 45.0, 80.0, 89.0, 89.9}) {
+    const double angle = glm::radians(tilt);
+    const MapGrid grid = {{std::sin(angle), std::cos(angle), 0.0}, {std::cos(angle), -std::sin(angle), 0.0}, {0.0, 0.0, 1.0}, kTexel};
+    const std::vector<OccluderMesh> meshes = {make_sheet(-5.0, 5.0, -5.0, 5.0, 0.1, 40)};
+    const Occluders occluders(meshes);
+    ReceiverImage image = make_line(-4.0, 4.0, 200);
+    for (ReceiverPoint& point : image.points) point.position_ws.y = 0.1f;
+    for (const float v : trace_kernel(occluders, image, Kernel::make_disk(16.0), grid, {}).visibility) ASSERT_EQ(v, 1.0f) << tilt;
+  }
+}
+
+TEST(SquareTruth, IsALinearRamp) {
+  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
+  const Occluders occluders(meshes);
+  const ReceiverImage image = make_receivers(2.5);
+  expect_agreement(score(trace_square(occluders, image, 2.5, tilted_grid(), {.seed = 4}), image, [](const glm::dvec3& p) {
+    return std::clamp(0.5 + texels_from_edge(p) / 5.0, 0.0, 1.0);
+  }));
+}
+
+}  // namespace
+}  // namespace shadowbench::reference

@@ -1,0 +1,56 @@
+#pragma once
+
+// Traced fractions against exact ones, in units of their stated standard errors.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+#include "reference/truth/visibility.h"
+
+namespace shadowbench::reference {
+
+/// Two-sided z-test of many pixels with 15 degrees of freedom: at a family-wise level of 1e-3 over some 2000 pixels,
+/// Bonferroni asks for the quantile at 2.5e-7 per tail, which is 8.0 for Student's t.
+inline constexpr double kCorrectedQuantile = 8.0;
+
+struct ZScores {
+  int unanimous = 0;
+  int beyond_limit = 0;  ///< unanimous pixels whose exact value lies beyond their 95 % limit
+  double worst = 0.0;
+  double rms = 0.0;
+  int count = 0;
+};
+
+inline ZScores score(const TracedVisibility& truth, const ReceiverImage& image, const std::function<double(const glm::dvec3&)>& exact) {
+  ZScores scores;
+  for (std::size_t i = 0; i < image.points.size(); ++i) {
+    const double expected = exact(glm::dvec3(image.points[i].position_ws));
+    const double got = static_cast<double>(truth.visibility[i]);
+    if (truth.unanimous[i]) {
+      ++scores.unanimous;
+      if (std::abs(got - expected) > 3.0 / truth.rays[i]) ++scores.beyond_limit;
+      continue;
+    }
+    const double z = (got - expected) / static_cast<double>(truth.standard_error[i]);
+    scores.worst = std::max(scores.worst, std::abs(z));
+    scores.rms += z * z;
+    ++scores.count;
+  }
+  scores.rms = std::sqrt(scores.rms / scores.count);
+  return scores;
+}
+
+inline void expect_agreement(const ZScores& scores) {
+  std::printf("%d penumbra pixels, rms z %.3f, worst %.2f\n", scores.count, scores.rms, scores.worst);
+  EXPECT_GT(scores.count, 500);
+  EXPECT_LE(scores.beyond_limit, 0.05 * scores.unanimous);
+  EXPECT_LT(scores.worst, kCorrectedQuantile);
+  EXPECT_GT(scores.rms, 0.8);
+  EXPECT_LT(scores.rms, 1.25);
+}
+
+}  // namespace shadowbench::reference
