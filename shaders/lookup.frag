@@ -21,7 +21,7 @@ void main() {
 #endif
   if (position.w == 0.0) return;
   Receiver r = make_receiver(position.xyz, texelFetch(gbuffer_normal, pixel, 0).xyz, position.w, pixel);
-  if (r.n_dot_l <= 0.0) {
+  if (r.n_dot_l <= faces_light) {
     out_visibility = 0.0;  // the surface shadows itself: there is nothing to filter
     return;
   }

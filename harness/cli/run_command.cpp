@@ -32,6 +32,9 @@ struct RunArguments {
   double cell_timeout_s = 60.0;
   std::string out = "report/out";
   bool no_truth = false;
+  bool no_attribution = false;
+  std::string cache;
+  bool no_cache = false;
   bool worker = false;
   std::optional<double> pad_texels;  ///< workers see the same map as the run they belong to
 };
@@ -115,6 +118,8 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   options.out = arguments.out;
   options.command = std::move(command);
   options.truth = !arguments.no_truth && !arguments.worker;
+  options.attribution = !arguments.no_attribution;
+  if (!arguments.no_cache) options.cache = arguments.cache.empty() ? run::default_cache_folder() : std::filesystem::path(arguments.cache);
   options.worker = arguments.worker;
   options.pad_texels = arguments.pad_texels;
   return options;
@@ -162,6 +167,9 @@ void add_run_command(CLI::App& app, Action& action, const std::vector<std::strin
   command->add_option("--gl", a->backend, "OpenGL context: auto, osmesa, egl or glfw")->capture_default_str();
   command->add_option("--cell-timeout", a->cell_timeout_s, "seconds that a filter of your own may take on one scene")->capture_default_str();
   command->add_flag("--no-truth", a->no_truth, "do not trace rays: no truth, no errors");
+  command->add_flag("--no-attribution", a->no_attribution, "do not take the errors apart: no kernels are traced, no models run");
+  command->add_option("--cache", a->cache, "folder that keeps traced images for later runs (default: shadowbench in $XDG_CACHE_HOME or ~/.cache)");
+  command->add_flag("--no-cache", a->no_cache, "trace everything, keep nothing");
   command->add_option("--out", a->out, "report folder")->capture_default_str();
   command->add_flag("--worker", a->worker, "")->group("");
   command->add_option("--pad-texels", a->pad_texels, "")->group("");

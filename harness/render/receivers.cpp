@@ -13,7 +13,7 @@ struct ReceiverTexels {
 
   std::size_t pixels() const { return map.size() / 4; }
   bool is_receiver(std::size_t i) const {
-    return plane[4 * i + 3] != 0.0f && plane[4 * i + 2] > 0.0f && map[4 * i + 3] <= 1.0f;
+    return plane[4 * i + 3] != 0.0f && plane[4 * i + 2] > filters::kFacesLight && map[4 * i + 3] <= 1.0f;
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -66,6 +67,14 @@ void add(BiasRule& rule, const std::string& text) {
   }
 }
 
+render::Bias resolve_bias(const BiasRule& rule, double half_width_texels) {
+  render::Bias bias;
+  bias.constant_depth = rule.constant_depth;
+  bias.slope_texels = rule.slope_texels + rule.slope_kernels * (half_width_texels + 1.0);
+  bias.normal_offset_texels = rule.normal_offset_texels;
+  return bias;
+}
+
 }  // namespace
 
 BiasRule parse_bias(const std::vector<std::string>& texts) {
@@ -76,11 +85,12 @@ BiasRule parse_bias(const std::vector<std::string>& texts) {
 }
 
 render::Bias resolve_bias(const BiasRule& rule, const filters::FilterSpec& spec, const filters::ParamValues& values) {
-  render::Bias bias;
-  bias.constant_depth = rule.constant_depth;
-  bias.slope_texels = rule.slope_texels + rule.slope_kernels * (filters::bias_texels(spec, values) + 1.0);
-  bias.normal_offset_texels = rule.normal_offset_texels;
-  return bias;
+  return resolve_bias(rule, filters::bias_texels(spec, values));
+}
+
+render::Bias resolve_comparison_bias(const BiasRule& rule, const filters::FilterSpec& spec,
+                                     const filters::ParamValues& values) {
+  return resolve_bias(rule, std::max(filters::bias_texels(spec, values), filters::radius_texels(spec, values)));
 }
 
 }  // namespace shadowbench::run

@@ -25,4 +25,9 @@ BiasRule parse_bias(const std::vector<std::string>& texts);
 /// Gives the bias of one filter under a rule: slope (r + 1) texels per kernel, r from the front matter.
 render::Bias resolve_bias(const BiasRule& rule, const filters::FilterSpec& spec, const filters::ParamValues& values);
 
+/// Gives the bias that a percentage-closer filter of the same kernel gets under a rule. Filters that compare get it anyway;
+/// a bound that takes the slope in by itself (`bias_texels` less than `radius_texels`) would show acne as a comparison.
+render::Bias resolve_comparison_bias(const BiasRule& rule, const filters::FilterSpec& spec,
+                                     const filters::ParamValues& values);
+
 }  // namespace shadowbench::run

@@ -24,6 +24,10 @@ struct Resources {
 /// Throws Error(kUsage) when they are not there.
 Resources find_resources();
 
+/// Gives the folder for traced images: $XDG_CACHE_HOME/shadowbench, else ~/.cache/shadowbench; empty where neither is set.
+/// Source: XDG Base Directory Specification 0.8.
+std::filesystem::path default_cache_folder();
+
 /// Everything that `shadowbench run` is told.
 struct RunOptions {
   Resources resources;
@@ -39,7 +43,9 @@ struct RunOptions {
   int rounds = 11;
   std::uint32_t seed = 1;
   gl::Backend backend = gl::Backend::kAuto;
-  bool truth = true;  ///< trace visibility and score every filter against it
+  bool truth = true;        ///< trace visibility and score every filter against it
+  bool attribution = true;  ///< take the errors apart; needs truth
+  std::filesystem::path cache;   ///< keeps traced images between runs; empty: nothing is kept
   double cell_timeout_s = 60.0;  ///< for one user's filter on one scene
   std::filesystem::path out;
   std::vector<std::string> command;      ///< the command line, for the record

@@ -19,4 +19,10 @@ Resources find_resources() {
   return resources;
 }
 
+std::filesystem::path default_cache_folder() {
+  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg && *xdg == '/') return std::filesystem::path(xdg) / "shadowbench";
+  if (const char* home = std::getenv("HOME"); home && *home == '/') return std::filesystem::path(home) / ".cache" / "shadowbench";
+  return {};
+}
+
 }  // namespace shadowbench::run

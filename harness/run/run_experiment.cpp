@@ -6,6 +6,7 @@
 #include <set>
 
 #include "filters/error.h"
+#include "harness/run/cell_analysis.h"
 #include "harness/run/run_facts.h"
 #include "harness/run/scene_assets.h"
 #include "harness/run/scene_measurement.h"
@@ -41,6 +42,9 @@ std::vector<NamedScene> load_scenes(const RunOptions& options) {
   return scenes;
 }
 
+/// A default run's truths take some 15 MiB.
+constexpr std::uintmax_t kMaxCacheBytes = std::uintmax_t{1} << 30;
+
 /// A folder that cannot be written is better found before the work than after it.
 void require_writable(const std::filesystem::path& folder) {
   report::AtomicFile(folder / "cells" / "probe").write("");
@@ -49,7 +53,8 @@ void require_writable(const std::filesystem::path& folder) {
 class Experiment {
  public:
   Experiment(const RunOptions& options, Progress& progress)
-      : options_(options), progress_(progress), renderer_(make_renderer(options.backend, options.resources)) {
+      : options_(options), progress_(progress), renderer_(make_renderer(options.backend, options.resources)),
+        cache_(options.cache, [this](const std::string& message) { warn(message); }) {
     run_.commit = build_commit();
     run_.command = options.command;
     run_.seed = options.seed;
@@ -68,6 +73,7 @@ class Experiment {
     progress_.begin(static_cast<int>(views * options_.map_sizes.size() * options_.filters.size()));
     for (const NamedScene& each : scenes) run_scene(each);
     run_.work.shader_variants_compiled = renderer_.shaders.compiled();
+    cache_.prune(kMaxCacheBytes);
     progress_.show(done_, "writing the report");
     if (!options_.worker) report::write_report(options_.out, run_, keys_);
     progress_.show(done_, "done");
@@ -77,6 +83,7 @@ class Experiment {
   const RunOptions& options_;
   Progress& progress_;
   Renderer renderer_;
+  TruthCache cache_;
   report::RunRecord run_;
   std::vector<std::string> keys_;
   int done_ = 0;
@@ -89,7 +96,7 @@ class Experiment {
   void run_scene(const NamedScene& each) {
     run_.scenes.push_back({each.scene.name, each.scene.title});
     for (const std::string& warning : each.scene.warnings) warn(each.scene.name + ": " + warning);
-    SceneAssets assets(renderer_, options_, each.scene,
+    SceneAssets assets(renderer_, options_, each.scene, cache_,
                        options_.pad_texels.value_or(largest_padding_texels(options_.filters)));
     for (const scene::Camera& camera : each.scene.cameras) {
       for (const int map_size : options_.map_sizes) {
@@ -119,9 +126,7 @@ class Experiment {
     for (MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
     show(task, "truth");
     const SceneTruth& truth = assets.truth(*task.camera);
-    tbb::parallel_for_each(measured.cells, [&](MeasuredCell& cell) {
-      score(cell.record, cell.visibility, cell.picture, truth);
-    });
+    if (!options_.worker) explain(measured, task, assets, truth);
     show(task, "pictures");
     if (!options_.worker) write_pictures(options_, all, measured, truth, run_.gl);
     write_float_images(options_, all, measured, truth, renderer_.context->info());
@@ -132,6 +137,16 @@ class Experiment {
     done_ += static_cast<int>(measured.cells.size());
     run_.work.passes_run += measured.passes_run;
     run_.work.passes_skipped += measured.passes_skipped;
+  }
+
+  /// Says how wrong each cell is, and why.
+  void explain(SceneMeasurement& measured, const SceneTask& task, SceneAssets& assets, const SceneTruth& truth) {
+    tbb::parallel_for_each(measured.cells, [&](MeasuredCell& cell) {
+      score(cell.record, cell.visibility, cell.picture, truth);
+    });
+    show(task, "attribution");
+    CellAnalyser analyser(renderer_, options_, task, assets, truth);
+    for (MeasuredCell& cell : measured.cells) analyser.analyse(cell);
   }
 
   void show(const SceneTask& task, const std::string& what) {

@@ -7,8 +7,13 @@
 
 namespace shadowbench::run {
 
-SceneAssets::SceneAssets(Renderer& renderer, const RunOptions& options, const scene::Scene& scene, double pad_texels)
-    : renderer_(renderer), options_(options), scene_(scene), pad_texels_(pad_texels), geometry_(scene) {}
+SceneAssets::SceneAssets(Renderer& renderer, const RunOptions& options, const scene::Scene& scene, TruthCache& cache, double pad_texels)
+    : renderer_(renderer),
+      options_(options),
+      scene_(scene),
+      pad_texels_(pad_texels),
+      geometry_(scene),
+      tracer_(scene, cache, options.seed) {}
 
 LightMap& SceneAssets::light_map(int map_size) {
   const auto found = maps_.find(map_size);
@@ -44,7 +49,7 @@ SceneTruth SceneAssets::make_truth(const scene::Camera& camera) {
     return truth;
   }
   render::GBuffer& view = gbuffer(camera);
-  truth = trace_scene(scene_, view, options_.seed);
+  truth = trace_scene(tracer_, read_view_receivers(view, -scene_.light.direction_ws));
   if (!truth.absent.empty()) return truth;
   const auto shaded = [&](const report::Image& visibility) {
     return render::shade(renderer_.shaders, view, render::upload_image(visibility), scene_, camera);

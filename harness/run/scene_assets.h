@@ -7,6 +7,7 @@
 #include "harness/render/shadow_map.h"
 #include "harness/run/options.h"
 #include "harness/run/renderer.h"
+#include "harness/run/scene_tracer.h"
 #include "harness/run/scene_truth.h"
 
 namespace shadowbench::run {
@@ -22,7 +23,7 @@ struct LightMap {
 class SceneAssets {
  public:
   /// `pad_texels` is the half-width of the run's widest kernel: every filter sees the same map.
-  SceneAssets(Renderer& renderer, const RunOptions& options, const scene::Scene& scene, double pad_texels);
+  SceneAssets(Renderer& renderer, const RunOptions& options, const scene::Scene& scene, TruthCache& cache, double pad_texels);
 
   /// Throws Error(kUsage) when the GL cannot give a map of this size.
   LightMap& light_map(int map_size);
@@ -31,6 +32,9 @@ class SceneAssets {
 
   /// Gives the truth of a view, traced when it is first asked for.
   const SceneTruth& truth(const scene::Camera& camera);
+
+  /// Gives what traces this scene.
+  SceneTracer& tracer() { return tracer_; }
 
   /// Draws a map again, as a moving light would; for timing.
   void redraw(LightMap& light);
@@ -41,6 +45,7 @@ class SceneAssets {
   const scene::Scene& scene_;
   double pad_texels_;
   render::Geometry geometry_;
+  SceneTracer tracer_;
   std::map<int, LightMap> maps_;
   std::map<const scene::Camera*, render::GBuffer> gbuffers_;
   std::map<const scene::Camera*, SceneTruth> truths_;

@@ -14,9 +14,11 @@ namespace shadowbench::run {
 /// One measured cell with its images; the images are empty where the status is not ok.
 struct MeasuredCell {
   report::CellRecord record;
+  filters::FilterRequest request;
   std::string label;          ///< filter and the parameters that were asked for
   report::Image picture;      ///< linear RGB
   report::Image visibility;   ///< 1 lit .. 0 blocked
+  std::vector<report::Image> error_parts;  ///< in the order of reference::ErrorPart; empty where there is no attribution
 };
 
 /// One scene seen by one camera through one shadow map, with every filter.

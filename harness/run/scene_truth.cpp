@@ -5,63 +5,11 @@
 #include <numeric>
 #include <optional>
 
-#include "harness/render/image_target.h"
 #include "reference/metrics/error_stats.h"
 #include "reference/metrics/flip.h"
-#include "reference/truth/visibility.h"
 
 namespace shadowbench::run {
 namespace {
-
-std::vector<reference::OccluderMesh> list_occluders(const scene::Scene& scene) {
-  std::vector<reference::OccluderMesh> meshes;
-  for (const scene::Mesh& mesh : scene.meshes) {
-    if (!mesh.casts_shadow) continue;
-    reference::OccluderMesh occluder;
-    for (const scene::Vertex& vertex : mesh.vertices) occluder.positions.push_back(vertex.position_ws);
-    occluder.indices = mesh.indices;
-    meshes.push_back(std::move(occluder));
-  }
-  return meshes;
-}
-
-bool has_cut_out_casters(const scene::Scene& scene) {
-  return std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const scene::Mesh& mesh) {
-    return mesh.casts_shadow &&
-           scene.materials[static_cast<std::size_t>(mesh.material)].alpha_mode == scene::AlphaMode::kMask;
-  });
-}
-
-/// The pixels of a view, rows top to bottom.
-struct ViewReceivers {
-  reference::ReceiverImage image;
-  std::vector<std::uint8_t> is_surface;  ///< 0: background
-};
-
-ViewReceivers list_receivers(const render::GBuffer& gbuffer, const glm::vec3& to_light) {
-  const report::Image positions = render::read_image(gbuffer.position(), 4);
-  const report::Image normals = render::read_image(gbuffer.normal(), 4);
-  ViewReceivers receivers{{gbuffer.width(), gbuffer.height(), {}}, {}};
-  for (std::size_t i = 0; i < positions.texels.size(); i += 4) {
-    const float* p = &positions.texels[i];
-    const float* n = &normals.texels[i];
-    const glm::vec3 normal(n[0], n[1], n[2]);
-    const bool is_surface = p[3] != 0.0f;
-    receivers.is_surface.push_back(is_surface ? 1 : 0);
-    receivers.image.points.push_back({{p[0], p[1], p[2]}, normal, is_surface && glm::dot(normal, to_light) > 0.0f});
-  }
-  return receivers;
-}
-
-/// As in the lookup pass: a surface turned away from the light is dark, the background is lit.
-report::Image to_image(const ViewReceivers& receivers, const std::vector<float>& visibility) {
-  report::Image image(receivers.image.width, receivers.image.height, 1);
-  for (std::size_t i = 0; i < visibility.size(); ++i) {
-    const bool counts = receivers.image.points[i].counts;
-    image.texels[i] = counts ? visibility[i] : receivers.is_surface[i] ? 0.0f : 1.0f;
-  }
-  return image;
-}
 
 void summarise_errors(SceneTruth& truth, const reference::TracedVisibility& area) {
   double squares = 0.0, unanimous = 0.0, count = 0.0;
@@ -94,27 +42,18 @@ std::optional<double> mean_flip(const report::Image& picture, const report::Imag
 
 }  // namespace
 
-SceneTruth trace_scene(const scene::Scene& scene, const render::GBuffer& gbuffer, std::uint32_t seed) {
+SceneTruth trace_scene(SceneTracer& tracer, ViewReceivers receivers) {
   SceneTruth truth;
-  if (has_cut_out_casters(scene)) {
-    truth.absent = "the scene has cut-out casters, which are not traced yet";
-    return truth;
-  }
-  const glm::vec3 to_light = -scene.light.direction_ws;
-  const ViewReceivers receivers = list_receivers(gbuffer, to_light);
-  for (const reference::ReceiverPoint& point : receivers.image.points) truth.mask.push_back(point.counts ? 1 : 0);
-  if (std::find(truth.mask.begin(), truth.mask.end(), 1) == truth.mask.end()) {
+  truth.mask = receivers.mask();
+  truth.receivers = std::move(receivers);
+  if (!truth.receivers.any_counts()) {
     truth.absent = "no surface in view faces the light";
     return truth;
   }
-  const reference::Occluders occluders(list_occluders(scene));
-  const auto light = reference::AreaLight::make_sun(glm::dvec3(to_light), static_cast<double>(scene.light.angular_diameter_deg));
-  truth.hard = to_image(receivers, reference::trace_hard(occluders, receivers.image, light));
-  reference::TraceSettings settings;
-  settings.seed = seed;
-  const reference::TracedVisibility area = reference::trace_area(occluders, receivers.image, light, settings);
-  truth.area = to_image(receivers, area.visibility);
-  summarise_errors(truth, area);
+  truth.rays = tracer.trace_view(truth.receivers);
+  truth.hard = truth.receivers.to_image(truth.rays.hard);
+  truth.area = truth.receivers.to_image(truth.rays.area.visibility);
+  summarise_errors(truth, truth.rays.area);
   return truth;
 }
 
@@ -129,7 +68,6 @@ report::Image make_error_image(const report::Image& visibility, const SceneTruth
 
 void score(report::CellRecord& record, const report::Image& visibility, const report::Image& picture,
            const SceneTruth& truth) {
-  for (const char* group : {"artefact", "attribution"}) record.absent[group] = "not measured in this version";
   const auto stats = truth.absent.empty() && !visibility.empty()
                          ? reference::measure_error(visibility.texels, truth.area.texels, truth.mask)
                          : std::nullopt;
@@ -144,7 +82,6 @@ void score(report::CellRecord& record, const report::Image& visibility, const re
   record.error = {stats->rmse, stats->mae, stats->p95, stats->max, stats->mean, mean_flip(picture, truth.area_picture),
                   std::nullopt};
   if (!record.error.flip) record.absent["error.flip"] = "the picture has pixels that are not finite";
-  record.absent["error.kernel_rmse"] = "not measured in this version";
   record.truth = {truth.standard_error, truth.unanimous};
 }
 

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/render/gbuffer.h"
+#include "harness/run/scene_tracer.h"
+#include "harness/run/view_receivers.h"
 #include "report/image.h"
 #include "report/records.h"
 
@@ -13,6 +14,8 @@ namespace shadowbench::run {
 /// Ray-traced visibility of one view's receivers, rows top to bottom like every report image.
 struct SceneTruth {
   std::string absent;              ///< why there is none; empty where there is
+  ViewReceivers receivers;
+  ViewRays rays;
   report::Image hard;              ///< the light as a point: 1 seen, 0 blocked
   report::Image area;              ///< the fraction of the light that is seen
   report::Image hard_picture;      ///< shaded with `hard`, linear RGB
@@ -22,9 +25,8 @@ struct SceneTruth {
   double unanimous = 0.0;          ///< share of them whose rays all agree, and which therefore have no standard error
 };
 
-/// Traces the receivers that a G-buffer holds; the pictures are left empty.
-/// Cost: 64 rays for most pixels, up to 16384 at the edges of shadows.
-SceneTruth trace_scene(const scene::Scene& scene, const render::GBuffer& gbuffer, std::uint32_t seed);
+/// Traces the receivers of a view; the pictures are left empty.
+SceneTruth trace_scene(SceneTracer& tracer, ViewReceivers receivers);
 
 /// Scores a cell's images against the truth and notes the errors, or why there are none, in its record: visibility over
 /// the pixels that count, and the mean LDR-FLIP of the shaded picture against the picture shaded with the area truth.

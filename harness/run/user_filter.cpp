@@ -75,6 +75,7 @@ MeasuredCell failed_cell(const RunOptions& options, const SceneTask& task, const
                          const WorkerOutcome& outcome) {
   MeasuredCell cell;
   cell.record = make_record(options, task, request);
+  cell.request = request;
   cell.label = request.label();
   if (outcome.timed_out) {
     cell.record.status = report::CellStatus::kTimeout;
@@ -93,6 +94,7 @@ MeasuredCell failed_cell(const RunOptions& options, const SceneTask& task, const
 MeasuredCell read_cell(const RunOptions& options, const SceneTask& task, const filters::FilterRequest& request,
                        const std::filesystem::path& folder) {
   MeasuredCell cell;
+  cell.request = request;
   cell.label = request.label();
   cell.record = report::read_cell(folder, make_record(options, task, request).key);
   cell.record.images = {};

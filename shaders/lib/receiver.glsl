@@ -8,6 +8,9 @@ struct Receiver {
   vec2 depth_per_texel;
   float texel_size_ws; float depth_range_ws; float light_size; float view_depth; ivec2 pixel; };
 
+// A surface faces the light where n.l is greater; the same in filters/receiver.h.
+const float faces_light = 1e-5;
+
 // The map may be steep, but not vertical: it would have to bias without bound.
 vec2 plane_depth_per_texel(vec3 normal_ws, float n_dot_l) {
   vec2 along_map = vec2(dot(normal_ws, light_right_ws), dot(normal_ws, light_up_ws));

@@ -1,0 +1,127 @@
+#include "harness/run/cell_analysis.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/render/receivers.h"
+#include "harness/run/model_images.h"
+#include "reference/metrics/attribution.h"
+#include "reference/metrics/error_stats.h"
+
+namespace shadowbench::run {
+namespace {
+
+std::vector<std::uint8_t> find_settled(const reference::TracedVisibility& traced) {
+  std::vector<std::uint8_t> settled;
+  for (const std::uint32_t rays : traced.rays) settled.push_back(rays == reference::kRaysOfSettledPixel ? 1 : 0);
+  return settled;
+}
+
+void note(report::CellRecord& record, const char* field, std::optional<double>& to, const std::optional<double>& rate,
+          const std::string& reason) {
+  to = rate;
+  if (!rate) record.absent[field] = reason;
+}
+
+/// Says which receivers there are too few of for a rate.
+std::string too_few(const char* which) { return fmt::format("fewer than {} receivers {}", reference::kFewestReceivers, which); }
+
+void note_parts(report::CellRecord& record, const reference::Attribution& attribution) {
+  report::AttributionRecord& to = record.attribution;
+  const std::array<report::AttributionPart*, reference::kErrorParts> parts = {&to.numeric, &to.estimator, &to.discretisation, &to.model};
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (attribution.stats[p]) *parts[p] = {attribution.stats[p]->rms, attribution.stats[p]->share};
+  }
+  if (!attribution.stats.front()) record.absent["attribution"] = "there is no error to take apart";
+}
+
+}  // namespace
+
+CellAnalyser::CellAnalyser(Renderer& renderer, const RunOptions& options, const SceneTask& task, SceneAssets& assets,
+                           const SceneTruth& truth)
+    : renderer_(renderer), options_(options), task_(task), assets_(assets), truth_(truth), light_(assets.light_map(task.map_size)) {
+  if (truth_.absent.empty()) make_masks();
+}
+
+void CellAnalyser::make_masks() {
+  const double half_width = options_.pad_texels.value_or(largest_padding_texels(options_.filters));
+  const reference::TracedVisibility around =
+      assets_.tracer().trace_surroundings(truth_.receivers, half_width, light_.frustum);
+  const std::vector<std::uint8_t> area_settled = find_settled(truth_.rays.area), around_settled = find_settled(around);
+  masks_ = reference::make_artefact_masks({truth_.mask, truth_.rays.area.visibility, area_settled, around.visibility,
+                                           around_settled, truth_.rays.first_blockers_ws,
+                                           reference::kContactTexels * light_.frustum.texel_size_ws});
+}
+
+const reference::TracedVisibility& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {
+  const auto [place, is_new] = kernels_.try_emplace(kernel.name());
+  if (is_new) place->second = assets_.tracer().trace_kernel(truth_.receivers, kernel, light_.frustum);
+  return place->second;
+}
+
+void CellAnalyser::analyse(MeasuredCell& cell) {
+  report::CellRecord& record = cell.record;
+  if (!masks_ || cell.visibility.empty()) {
+    const std::string reason = truth_.absent.empty() ? record.message : truth_.absent;
+    for (const char* group : {"artefact", "attribution", "error.kernel_rmse", "excused"}) record.absent[group] = reason;
+    return;
+  }
+  count_artefacts(cell);
+  attribute(cell);
+}
+
+void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
+  report::CellRecord& record = cell.record;
+  const std::vector<float>& image = cell.visibility.texels;
+  note(record, "artefact.acne", record.artefact.acne, reference::rate_below(image, masks_->acne, reference::kAcneBelow),
+       too_few("are wholly lit, with their surroundings"));
+  note(record, "artefact.leak", record.artefact.leak, reference::rate_above(image, masks_->leak, reference::kLeakAbove),
+       too_few("are wholly blocked, with their surroundings, by something that does not touch them"));
+  note(record, "artefact.contact_gap", record.artefact.contact_gap,
+       reference::rate_above(image, masks_->contact_gap, reference::kGapAbove),
+       too_few("are wholly blocked by something that touches them"));
+}
+
+std::vector<filters::Receiver> CellAnalyser::read_receivers(const render::Bias& bias) const {
+  const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed);
+  return render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera), light);
+}
+
+void CellAnalyser::attribute(MeasuredCell& cell) {
+  report::CellRecord& record = cell.record;
+  const filters::FilterRequest& request = cell.request;
+  const auto model = filters::make_model(request.spec.id);
+  const bool wanted = options_.attribution;
+  if (!model || request.user_file || !wanted) {
+    const char* reason = wanted ? "the filter has no scalar model" : "the run was made with --no-attribution";
+    for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused"}) record.absent[field] = reason;
+    return;
+  }
+  if (!map_) map_ = light_.map.read();
+  const ModelReceivers receivers = {read_receivers(resolve_bias(options_.bias, request.spec, request.values)),
+                                    read_receivers(resolve_comparison_bias(options_.bias, request.spec, request.values))};
+  const ModelImages images = evaluate_model(request, *map_, receivers, options_.seed, options_.width, options_.height);
+  const std::vector<float>& kernel = kernel_truth(model->kernel(request.values)).visibility;
+  const std::vector<float>& image = cell.visibility.texels;
+  reference::Attribution attribution = reference::attribute_error(
+      {image, images.model, images.closer, kernel, truth_.area.texels, truth_.mask});
+  record.excused = images.excused;
+  record.absent.erase("excused");
+  note_parts(record, attribution);
+  const auto to_kernel = reference::measure_error(image, kernel, truth_.mask);
+  note(record, "error.kernel_rmse", record.error.kernel_rmse, to_kernel ? std::optional(to_kernel->rmse) : std::nullopt,
+       "no pixel of the image is finite");
+  const bool bound = request.spec.kind == filters::FilterKind::kBound;
+  note(record, "artefact.noise", record.artefact.noise,
+       bound ? std::nullopt : reference::rate_noise(image, images.closer, kernel, truth_.mask, options_.width),
+       bound ? "a bound differs from the percentage-closer filter of its kernel by more than noise"
+             : too_few("lie in the kernel's penumbra"));
+  for (std::vector<float>& part : attribution.parts) {
+    report::Image& to = cell.error_parts.emplace_back(options_.width, options_.height, 1);
+    to.texels = std::move(part);
+  }
+}
+
+}  // namespace shadowbench::run

@@ -1,0 +1,149 @@
+#include "harness/run/scene_tracer.h"
+
+#include <fmt/format.h>
+
+#include "harness/run/content_hash.h"
+#include "reference/truth/version.h"
+
+namespace shadowbench::run {
+namespace {
+
+reference::CutOut make_cut_out(const scene::Scene& scene, const scene::Mesh& mesh, const scene::Material& material) {
+  reference::CutOut cut_out;
+  for (const scene::Vertex& vertex : mesh.vertices) cut_out.uvs.push_back(vertex.uv);
+  cut_out.base_alpha = material.base_color.a;
+  cut_out.cutoff = material.alpha_cutoff;
+  if (material.base_color_texture < 0) return cut_out;
+  const scene::Texture& texture = scene.textures[static_cast<std::size_t>(material.base_color_texture)];
+  cut_out.width = texture.width;
+  cut_out.height = texture.height;
+  for (std::size_t i = 3; i < texture.rgba.size(); i += 4) cut_out.alpha.push_back(texture.rgba[i]);
+  return cut_out;
+}
+
+std::vector<reference::OccluderMesh> list_occluders(const scene::Scene& scene) {
+  std::vector<reference::OccluderMesh> meshes;
+  for (const scene::Mesh& mesh : scene.meshes) {
+    if (!mesh.casts_shadow) continue;
+    reference::OccluderMesh& occluder = meshes.emplace_back();
+    for (const scene::Vertex& vertex : mesh.vertices) occluder.positions.push_back(vertex.position_ws);
+    occluder.indices = mesh.indices;
+    const scene::Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+    if (material.alpha_mode == scene::AlphaMode::kMask) occluder.cut_out = make_cut_out(scene, mesh, material);
+  }
+  return meshes;
+}
+
+std::string name_geometry(const std::vector<reference::OccluderMesh>& meshes) {
+  ContentHash hash;
+  hash.add(reference::truth_version());
+  for (const reference::OccluderMesh& mesh : meshes) {
+    hash.add_values(std::span<const glm::vec3>(mesh.positions));
+    hash.add_values(std::span<const std::uint32_t>(mesh.indices));
+    if (!mesh.cut_out) continue;
+    const reference::CutOut& holes = *mesh.cut_out;
+    hash.add_values(std::span<const glm::vec2>(holes.uvs));
+    hash.add(fmt::format("{} {} {} {}", holes.width, holes.height, holes.base_alpha, holes.cutoff));
+    hash.add_values(std::span<const std::uint8_t>(holes.alpha));
+  }
+  return hash.name();
+}
+
+reference::MapGrid make_grid(const scene::LightFrustum& frustum) {
+  const auto row = [&](int r) {
+    const glm::dmat4& m = frustum.light_from_world;
+    return glm::dvec3(m[0][r], m[1][r], m[2][r]);
+  };
+  return {-glm::dvec3(frustum.direction_ws), row(0), row(1), frustum.texel_size_ws};
+}
+
+std::string name_grid(const reference::MapGrid& grid) {
+  return fmt::format("texel {} right {} {} {} up {} {} {}", grid.texel_size_ws, grid.right.x, grid.right.y, grid.right.z,
+                     grid.up.x, grid.up.y, grid.up.z);
+}
+
+template <class T>
+report::Part make_part(const char* name, const reference::ReceiverImage& size, const std::vector<T>& values) {
+  report::Image image(size.width, size.height, 1);
+  for (std::size_t i = 0; i < values.size(); ++i) image.texels[i] = static_cast<float>(values[i]);
+  return {name, {"Y"}, std::move(image), false};
+}
+
+std::vector<report::Part> to_parts(const reference::ReceiverImage& size, const reference::TracedVisibility& traced) {
+  return {make_part("visibility", size, traced.visibility), make_part("standard_error", size, traced.standard_error),
+          make_part("unanimous", size, traced.unanimous), make_part("rays", size, traced.rays)};
+}
+
+template <class T>
+std::vector<T> convert(const report::Part& part) {
+  return {part.image.texels.begin(), part.image.texels.end()};
+}
+
+reference::TracedVisibility from_parts(const std::vector<report::Part>& parts) {
+  return {parts[0].image.texels, parts[1].image.texels, convert<std::uint8_t>(parts[2]), convert<std::uint32_t>(parts[3])};
+}
+
+}  // namespace
+
+SceneTracer::SceneTracer(const scene::Scene& scene, TruthCache& cache, std::uint32_t seed)
+    : scene_(scene), cache_(cache), seed_(seed), geometry_(name_geometry(list_occluders(scene))) {}
+
+const reference::Occluders& SceneTracer::occluders() {
+  if (!occluders_) occluders_.emplace(list_occluders(scene_));
+  return *occluders_;
+}
+
+reference::TraceSettings SceneTracer::settings() const {
+  reference::TraceSettings settings;
+  settings.seed = seed_;
+  return settings;
+}
+
+std::vector<report::Part> SceneTracer::find_or_trace(const ViewReceivers& receivers, const std::string& what,
+                                                     const std::function<std::vector<report::Part>()>& trace) {
+  ContentHash hash;
+  const reference::TraceSettings s = settings();
+  for (const std::string& text : {geometry_, receivers.content, what,
+                                  fmt::format("{} {} {}", s.standard_error, s.max_points, s.seed)}) {
+    hash.add(text);
+  }
+  const std::string name = hash.name();
+  if (auto kept = cache_.load(name)) return std::move(*kept);
+  std::vector<report::Part> parts = trace();
+  cache_.store(name, parts);
+  return parts;
+}
+
+ViewRays SceneTracer::trace_view(const ViewReceivers& receivers) {
+  const glm::dvec3 to_light = -glm::dvec3(scene_.light.direction_ws);
+  const double diameter = static_cast<double>(scene_.light.angular_diameter_deg);
+  const auto parts = find_or_trace(receivers, fmt::format("sun of {} degrees", diameter), [&] {
+    const auto light = reference::AreaLight::make_sun(to_light, diameter);
+    auto traced = to_parts(receivers.image, reference::trace_area(occluders(), receivers.image, light, settings()));
+    traced.push_back(make_part("hard", receivers.image, reference::trace_hard(occluders(), receivers.image, light)));
+    traced.push_back(make_part("first_blockers", receivers.image,
+                               reference::trace_first_blockers(occluders(), receivers.image, to_light)));
+    return traced;
+  });
+  return {from_parts(parts), parts[4].image.texels, parts[5].image.texels};
+}
+
+reference::TracedVisibility SceneTracer::trace_kernel(const ViewReceivers& receivers, const filters::Kernel& kernel,
+                                                      const scene::LightFrustum& frustum) {
+  const reference::MapGrid grid = make_grid(frustum);
+  return from_parts(find_or_trace(receivers, fmt::format("kernel {} {}", kernel.name(), name_grid(grid)), [&] {
+    return to_parts(receivers.image, reference::trace_kernel(occluders(), receivers.image, kernel, grid, settings()));
+  }));
+}
+
+reference::TracedVisibility SceneTracer::trace_surroundings(const ViewReceivers& receivers, double half_width_texels,
+                                                            const scene::LightFrustum& frustum) {
+  const reference::MapGrid grid = make_grid(frustum);
+  return from_parts(find_or_trace(receivers, fmt::format("square {} {}", half_width_texels, name_grid(grid)), [&] {
+    reference::TraceSettings rough = settings();
+    rough.standard_error = 1.0;
+    return to_parts(receivers.image, reference::trace_square(occluders(), receivers.image, half_width_texels, grid, rough));
+  }));
+}
+
+}  // namespace shadowbench::run

@@ -1,0 +1,87 @@
+#include "harness/run/truth_cache.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "filters/error.h"
+#include "harness/run/content_hash.h"
+
+namespace shadowbench::run {
+namespace {
+
+constexpr const char* kName = "shadowbench:truth";
+constexpr const char* kChecksum = "shadowbench:checksum";
+
+std::string checksum(const std::vector<report::Part>& parts) {
+  ContentHash hash;
+  for (const report::Part& part : parts) {
+    hash.add(part.name);
+    hash.add_values(std::span<const float>(part.image.texels));
+  }
+  return hash.name();
+}
+
+bool holds(const report::ExrFile& file, const char* attribute, const std::string& text) {
+  const auto found = file.metadata.find(attribute);
+  if (found == file.metadata.end()) return false;
+  const auto* value = std::get_if<std::string>(&found->second);
+  return value && *value == text;
+}
+
+}  // namespace
+
+TruthCache::TruthCache(std::filesystem::path folder, std::function<void(const std::string&)> note)
+    : folder_(std::move(folder)), note_(std::move(note)) {}
+
+std::optional<std::vector<report::Part>> TruthCache::load(const std::string& name) {
+  std::error_code error;
+  if (!folder_.empty() && std::filesystem::exists(path_of(name), error)) {
+    try {
+      report::ExrFile file = report::read_exr(path_of(name));
+      if (holds(file, kName, name) && holds(file, kChecksum, checksum(file.parts))) {
+        std::filesystem::last_write_time(path_of(name), std::filesystem::file_time_type::clock::now(), error);
+        ++loaded_;
+        return std::move(file.parts);
+      }
+    } catch (const Error&) {
+      // Damaged: traced again and written anew.
+    }
+  }
+  ++traced_;
+  return std::nullopt;
+}
+
+void TruthCache::store(const std::string& name, const std::vector<report::Part>& parts) {
+  if (folder_.empty()) return;
+  try {
+    report::write_exr(path_of(name), parts, {{kName, name}, {kChecksum, checksum(parts)}});
+  } catch (const Error& error) {
+    note_(fmt::format("traced images are not kept for the next run: {}; choose another folder with --cache", error.what()));
+    folder_.clear();
+  }
+}
+
+void TruthCache::prune(std::uintmax_t max_bytes) const {
+  struct Entry {
+    std::filesystem::path path;
+    std::filesystem::file_time_type used;
+    std::uintmax_t bytes;
+  };
+  std::vector<Entry> entries;
+  std::uintmax_t total = 0;
+  std::error_code error;
+  for (const auto& file : std::filesystem::directory_iterator(folder_, error)) {
+    if (file.path().extension() != ".exr") continue;
+    entries.push_back({file.path(), file.last_write_time(error), file.file_size(error)});
+    total += entries.back().bytes;
+  }
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
+  for (const Entry& entry : entries) {
+    if (total <= max_bytes) return;
+    if (std::filesystem::remove(entry.path, error)) total -= entry.bytes;
+  }
+}
+
+}  // namespace shadowbench::run

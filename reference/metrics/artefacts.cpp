@@ -1,0 +1,88 @@
+#include "reference/metrics/artefacts.h"
+
+#include <cassert>
+#include <cmath>
+
+namespace shadowbench::reference {
+namespace {
+
+template <class IsFault>
+std::optional<double> rate(std::span<const float> image, std::span<const std::uint8_t> mask, IsFault is_fault) {
+  assert(image.size() == mask.size());
+  double faults = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    if (!mask[i]) continue;
+    count += 1.0;
+    if (!std::isfinite(image[i]) || is_fault(image[i])) faults += 1.0;
+  }
+  if (count < kFewestReceivers) return std::nullopt;
+  return faults / count;
+}
+
+/// A 3 x 3 window of an image.
+class Window {
+ public:
+  Window(int width, std::size_t pixels) : width_(width), height_(static_cast<int>(pixels) / width) {}
+
+  template <class Visit>
+  bool visit(std::size_t i, Visit visit) const {
+    const int x = static_cast<int>(i) % width_, y = static_cast<int>(i) / width_;
+    if (x == 0 || y == 0 || x + 1 == width_ || y + 1 == height_) return false;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (!visit(static_cast<std::size_t>((y + dy) * width_ + x + dx))) return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  int width_;
+  int height_;
+};
+
+}  // namespace
+
+ArtefactMasks make_artefact_masks(const RaysAtReceivers& rays) {
+  const std::size_t pixels = rays.counts.size();
+  ArtefactMasks masks{std::vector<std::uint8_t>(pixels), std::vector<std::uint8_t>(pixels), std::vector<std::uint8_t>(pixels)};
+  for (std::size_t i = 0; i < pixels; ++i) {
+    if (!rays.counts[i]) continue;
+    const bool settled = rays.area_settled[i] && rays.surroundings_settled[i];
+    const bool touches = static_cast<double>(rays.first_blocker_ws[i]) <= rays.contact_ws;
+    if (settled && rays.area[i] == 1.0f && rays.surroundings[i] == 1.0f) masks.acne[i] = 1;
+    if (settled && rays.area[i] == 0.0f && rays.surroundings[i] == 0.0f && !touches) masks.leak[i] = 1;
+    if (rays.area[i] == 0.0f && touches) masks.contact_gap[i] = 1;
+  }
+  return masks;
+}
+
+std::optional<double> rate_below(std::span<const float> image, std::span<const std::uint8_t> mask, float limit) {
+  return rate(image, mask, [&](float value) { return value < limit; });
+}
+
+std::optional<double> rate_above(std::span<const float> image, std::span<const std::uint8_t> mask, float limit) {
+  return rate(image, mask, [&](float value) { return value > limit; });
+}
+
+std::optional<double> rate_noise(std::span<const float> image, std::span<const double> closer,
+                                 std::span<const float> kernel, std::span<const std::uint8_t> counts, int width) {
+  const Window window(width, image.size());
+  double noisy = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    if (!counts[i] || !(kernel[i] > 0.0f && kernel[i] < 1.0f)) continue;
+    double sum = 0.0;
+    const bool whole = window.visit(i, [&](std::size_t n) {
+      sum += static_cast<double>(image[n]) - closer[n];
+      return counts[n] != 0;
+    });
+    if (!whole) continue;
+    count += 1.0;
+    const double deviation = static_cast<double>(image[i]) - closer[i] - sum / 9.0;
+    if (!(std::abs(deviation) <= kNoiseAbove)) noisy += 1.0;
+  }
+  if (count < kFewestReceivers) return std::nullopt;
+  return noisy / count;
+}
+
+}  // namespace shadowbench::reference

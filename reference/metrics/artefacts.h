@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace shadowbench::reference {
+
+// The faults that a person sees, each as a rate over a mask of receivers. Masks follow from rays, the same for all filters of
+// one view and map; only the mask of noise follows from the filter's own kernel.
+
+/// What rays say of each receiver of a view.
+struct RaysAtReceivers {
+  std::span<const std::uint8_t> counts;     ///< 0: background, or turned away from the light
+  std::span<const float> area;              ///< fraction of the light that is seen
+  std::span<const std::uint8_t> area_settled;          ///< all rays of the pixel and of its eight neighbours agree
+  std::span<const float> surroundings;      ///< fraction of a square, wider than any kernel of the run, that is lit
+  std::span<const std::uint8_t> surroundings_settled;  ///< likewise
+  std::span<const float> first_blocker_ws;  ///< metres along the light to the surface that light meets first
+  double contact_ws = 0.0;                  ///< metres: nearer blockers touch the receiver
+};
+
+/// Where each fault can occur; 1 inside.
+struct ArtefactMasks {
+  std::vector<std::uint8_t> acne;         ///< wholly lit, and so are the surroundings and the neighbouring pixels
+  std::vector<std::uint8_t> leak;         ///< wholly blocked, likewise, by something that does not touch the receiver
+  std::vector<std::uint8_t> contact_gap;  ///< wholly blocked, by something that touches the receiver
+};
+
+/// A lit receiver darker than this is acne.
+inline constexpr float kAcneBelow = 0.9f;
+/// A blocked receiver brighter than this is a leak.
+inline constexpr float kLeakAbove = 0.1f;
+/// A receiver blocked by what touches it, brighter than this, is a contact gap (peter-panning).
+inline constexpr float kGapAbove = 0.5f;
+/// A deviation from the neighbourhood beyond this is noise.
+inline constexpr double kNoiseAbove = 0.05;
+/// What lies within so many texels along the light touches the receiver.
+inline constexpr double kContactTexels = 8.0;
+
+/// A rate over fewer receivers would say more of the view than of the filter.
+inline constexpr int kFewestReceivers = 100;
+
+ArtefactMasks make_artefact_masks(const RaysAtReceivers& rays);
+
+/// The share of a mask's pixels whose value is less than a limit. Pixels that are not finite are at fault.
+/// Gives nothing for a mask of fewer than kFewestReceivers.
+std::optional<double> rate_below(std::span<const float> image, std::span<const std::uint8_t> mask, float limit);
+
+/// The share of a mask's pixels whose value is greater than a limit, likewise.
+std::optional<double> rate_above(std::span<const float> image, std::span<const std::uint8_t> mask, float limit);
+
+/// The share of a filter's penumbra that is noisy: the image less the brute-force percentage-closer filter of its kernel
+/// deviates from its own mean over 3 x 3 pixels by more than kNoiseAbove. The penumbra is where the ray-traced kernel lies
+/// strictly between 0 and 1 and all nine pixels count. Edges that the map draws as stairs are in image and percentage-closer
+/// filter alike, and cancel. Meant for filters that compare; a bound differs from its percentage-closer filter by more than
+/// noise. Gives nothing where the penumbra has fewer than kFewestReceivers.
+std::optional<double> rate_noise(std::span<const float> image, std::span<const double> closer,
+                                 std::span<const float> kernel, std::span<const std::uint8_t> counts, int width);
+
+}  // namespace shadowbench::reference

@@ -1,0 +1,161 @@
+// Kernels: continuous shape and weights on the texel grid agree with each other, with the filters, and with closed forms.
+
+#include "filters/kernel.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <set>
+
+#include "filters/catalogue.h"
+#include "filters/percentage_closer.h"
+
+namespace shadowbench::filters {
+namespace {
+
+const Catalogue& catalogue() {
+  static const Catalogue filters(SHADOWBENCH_SOURCE_DIR "/filters");
+  return filters;
+}
+
+Kernel kernel_of(const std::string& text) {
+  const FilterRequest request = catalogue().parse_requests(text).front();
+  return make_model(request.spec.id)->kernel(request.values);
+}
+
+DepthMap make_random_map(int size, unsigned seed) {
+  std::mt19937 random(seed);
+  DepthMap map{size, {}};
+  for (int i = 0; i < size * size; ++i) map.depth.push_back(static_cast<float>(random()) * 0x1p-32f);
+  return map;
+}
+
+Receiver make_receiver(double x, double y, int size, float depth) {
+  Receiver r;
+  r.uv = {static_cast<float>(x / size), static_cast<float>(y / size)};
+  r.depth = depth;
+  return r;
+}
+
+TEST(KernelNames, TellKernelsApart) {
+  std::set<std::string> names;
+  for (const char* text : {"none", "pcf2x2", "tent3x3", "poisson", "poisson:radius=2", "vsm", "vsm:radius=6", "esm:combine=log"}) {
+    EXPECT_TRUE(names.insert(kernel_of(text).name()).second) << text;
+  }
+  EXPECT_EQ(kernel_of("vsm").name(), kernel_of("esm").name()) << "one prefilter, one kernel";
+}
+
+TEST(KernelWidths, AreTheShapeAndItsReconstruction) {
+  EXPECT_TRUE(kernel_of("none").is_point());
+  EXPECT_EQ(kernel_of("pcf2x2").half_width(), 1.0);
+  EXPECT_EQ(kernel_of("tent3x3").half_width(), 1.5);
+  EXPECT_EQ(kernel_of("poisson:radius=3").half_width(), 4.0);
+  EXPECT_EQ(kernel_of("vsm:radius=4").half_width(), 5.0);
+  EXPECT_EQ(kernel_of("esm:radius=4,combine=log").half_width(), 4.0);
+  EXPECT_EQ(kernel_of("poisson:radius=0").name(), kernel_of("pcf2x2").name());
+}
+
+/// Second moment of a kernel per axis, by a regular grid of samples.
+double second_moment(const Kernel& kernel) {
+  constexpr int kSteps = 1024, kBetween = 64;
+  double sum = 0.0;
+  for (int i = 0; i < kSteps * kSteps; ++i) {
+    const glm::dvec2 u((i % kSteps + 0.5) / kSteps, (i / kSteps + 0.5) / kSteps);
+    const int j = (i * 37 + i / kSteps * 11) % (kBetween * kBetween);
+    const glm::dvec2 offset = kernel.sample(u, {(j % kBetween + 0.5) / kBetween, (j / kBetween + 0.5) / kBetween});
+    sum += 0.5 * glm::dot(offset, offset);
+  }
+  return sum / (kSteps * kSteps);
+}
+
+TEST(KernelSamples, HaveTheShapesSpread) {
+  // Variances add under convolution: tent 1/6, box of width 2 from two atoms 1/4, disk R^2/4.
+  EXPECT_NEAR(second_moment(kernel_of("pcf2x2")), 1.0 / 6.0, 1e-3);
+  EXPECT_NEAR(second_moment(kernel_of("tent3x3")), 1.0 / 4.0 + 1.0 / 6.0, 1e-3);
+  EXPECT_NEAR(second_moment(kernel_of("poisson:radius=3")), 9.0 / 4.0 + 1.0 / 6.0, 0.01);
+  double gaussian = 0.0;
+  const Kernel vsm = kernel_of("vsm:radius=4");
+  for (const Kernel::Atom& atom : vsm.atoms()) gaussian += atom.weight * atom.offset * atom.offset;
+  EXPECT_NEAR(second_moment(vsm), gaussian + 1.0 / 6.0, 0.01);
+  EXPECT_EQ(second_moment(kernel_of("none")), 0.0);
+}
+
+/// Filters that compare are their own brute-force percentage-closer filter.
+TEST(PercentageCloser, EqualsTheModelsThatCompare) {
+  const DepthMap map = make_random_map(32, 5);
+  std::mt19937 random(6);
+  for (const char* text : {"none", "pcf2x2", "tent3x3"}) {
+    const FilterRequest request = catalogue().parse_requests(text).front();
+    const ModelInput input{request.spec, request.values, map, {}, 0};
+    const auto lookup = make_model(request.spec.id)->prepare(input, Precision::kDouble);
+    const PercentageCloser closer(kernel_of(text), map);
+    for (int i = 0; i < 2000; ++i) {
+      const auto coordinate = [&] { return -2.0 + 36.0 * static_cast<double>(random()) * 0x1p-32; };
+      const Receiver r = make_receiver(coordinate(), coordinate(), 32, static_cast<float>(random()) * 0x1p-32f);
+      const ModelResult result = lookup->at(r);
+      if (result.excused) continue;
+      ASSERT_NEAR(closer.at(r), result.visibility, 1e-12) << text;
+    }
+  }
+}
+
+/// On a map of depths 0 and 1 the mean depth is the share that is lit: VSM's first moment, ESM's mean of exponentials.
+TEST(PercentageCloser, HasTheWeightsOfThePrefilter) {
+  DepthMap map = make_random_map(48, 7);
+  for (float& depth : map.depth) depth = depth < 0.5f ? 0.0f : 1.0f;
+  for (const char* text : {"esm:c=20,radius=3", "esm:c=20,radius=6", "esm:c=20,radius=0", "esm:c=20,radius=3,combine=log"}) {
+    const FilterRequest request = catalogue().parse_requests(text).front();
+    const ModelInput input{request.spec, request.values, map, {}, 0};
+    const auto lookup = make_model("esm")->prepare(input, Precision::kDouble);
+    const PercentageCloser closer(kernel_of(text), map);
+    for (int i = 0; i < 200; ++i) {
+      const double x = 12.3 + 0.11 * i, y = 30.7 - 0.07 * i;
+      // With the receiver at depth 1, ESM is the mean of exp(-c (1 - z)), which is w + (1 - w) e^-c.
+      ASSERT_NEAR(closer.at(make_receiver(x, y, 48, 1.0f)), lookup->at(make_receiver(x, y, 48, 1.0f)).visibility, 1e-6) << text << i;
+    }
+  }
+}
+
+TEST(PercentageCloser, OfADisk_IsTheMeanOfManyTaps) {
+  const DepthMap map = make_random_map(32, 9);
+  const PercentageCloser closer(kernel_of("poisson:radius=3"), map), tent(kernel_of("pcf2x2"), map);
+  double worst = 0.0;
+  for (int place = 0; place < 20; ++place) {
+    const double px = 10.0 + 0.37 * place, py = 14.0 + 0.23 * place;
+    double sum = 0.0;
+    constexpr int kSteps = 300;
+    int inside = 0;
+    for (int i = 0; i < kSteps * kSteps; ++i) {
+      const double x = -3.0 + 6.0 * (i % kSteps + 0.5) / kSteps, y = -3.0 + 6.0 * (i / kSteps + 0.5) / kSteps;
+      if (x * x + y * y > 9.0) continue;
+      sum += tent.at(make_receiver(px + x, py + y, 32, 0.5f));
+      ++inside;
+    }
+    worst = std::max(worst, std::abs(closer.at(make_receiver(px, py, 32, 0.5f)) - sum / inside));
+  }
+  EXPECT_LT(worst, 5e-4);
+}
+
+TEST(DiskWeights, InsideTheDisk_AreItsDensity_AndSumToOne) {
+  for (const double radius : {0.3, 1.0, 3.0, 17.5, 64.0}) {
+    const DiskWeights weights(radius);
+    const double density = 1.0 / (std::numbers::pi * radius * radius);
+    if (radius > 2.0) {
+      EXPECT_NEAR(weights.at(0.2, -0.3), density, 1e-9);
+    }
+    EXPECT_EQ(weights.at(radius + 1.0, 0.0), 0.0);
+    for (const double shift : {0.0, 0.31, 0.5}) {
+      double sum = 0.0;
+      const int reach = static_cast<int>(radius) + 3;
+      for (int y = -reach; y <= reach; ++y) {
+        for (int x = -reach; x <= reach; ++x) sum += weights.at(x + shift, y + 0.7 * shift);
+      }
+      EXPECT_NEAR(sum, 1.0, 2e-4) << radius << " " << shift;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace shadowbench::filters

@@ -1,0 +1,80 @@
+// Rates of the faults that a person sees, over masks made by hand.
+
+#include "reference/metrics/artefacts.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace shadowbench::reference {
+namespace {
+
+constexpr float kFar = std::numeric_limits<float>::infinity();
+
+TEST(ArtefactMasks, FollowTheRays) {
+  //                                     lit  lit, edge near  turned away  blocked  by a touching one  penumbra  edge of umbra
+  const std::vector<std::uint8_t> counts = {1, 1, 0, 1, 1, 1, 1};
+  const std::vector<float> area = {1, 1, 1, 0, 0, 0.5f, 0};
+  const std::vector<std::uint8_t> area_settled = {1, 1, 1, 1, 0, 0, 0};
+  const std::vector<float> around = {1, 0.9f, 1, 0, 0.5f, 0.5f, 0.2f};
+  const std::vector<std::uint8_t> around_settled = {1, 0, 1, 1, 0, 0, 0};
+  const std::vector<float> blocker = {kFar, kFar, kFar, 3.0f, 0.1f, 0.1f, 3.0f};
+  const ArtefactMasks masks = make_artefact_masks({counts, area, area_settled, around, around_settled, blocker, 0.2});
+  EXPECT_EQ(masks.acne, (std::vector<std::uint8_t>{1, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(masks.leak, (std::vector<std::uint8_t>{0, 0, 0, 1, 0, 0, 0}));
+  EXPECT_EQ(masks.contact_gap, (std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0}));
+}
+
+TEST(ArtefactRates, CountFaultsOverTheMask) {
+  std::vector<float> image(400, 1.0f);
+  std::vector<std::uint8_t> mask(400, 0);
+  for (std::size_t i = 0; i < 200; ++i) mask[i] = 1;
+  for (std::size_t i = 0; i < 10; ++i) image[i] = 0.2f;
+  for (std::size_t i = 300; i < 350; ++i) image[i] = 0.0f;  // outside the mask
+  EXPECT_EQ(rate_below(image, mask, kAcneBelow), 10.0 / 200.0);
+  EXPECT_EQ(rate_above(image, mask, kLeakAbove), 1.0);
+  image[20] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(rate_below(image, mask, kAcneBelow), 11.0 / 200.0) << "what is not finite is at fault";
+}
+
+TEST(ArtefactRates, OverTooFewReceivers_AreAbsent) {
+  std::vector<std::uint8_t> mask(400, 0);
+  EXPECT_FALSE(rate_below(std::vector<float>(400), mask, kAcneBelow));
+  for (std::size_t i = 0; i + 1 < kFewestReceivers; ++i) mask[i] = 1;
+  EXPECT_FALSE(rate_below(std::vector<float>(400), mask, kAcneBelow));
+  mask[399] = 1;
+  EXPECT_TRUE(rate_below(std::vector<float>(400), mask, kAcneBelow));
+}
+
+/// A penumbra of 40 x 40 pixels whose percentage-closer filter is a ramp, and an image that differs by `noise(x, y)`.
+template <class Noise>
+std::optional<double> measure_noise(Noise noise) {
+  constexpr int kSide = 40;
+  std::vector<float> image, kernel(kSide * kSide, 0.5f);
+  std::vector<double> closer;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    closer.push_back(static_cast<double>(i % kSide) / kSide);
+    image.push_back(static_cast<float>(closer.back() + noise(i % kSide, i / kSide)));
+  }
+  return rate_noise(image, closer, kernel, std::vector<std::uint8_t>(image.size(), 1), kSide);
+}
+
+TEST(NoiseRate, IsZero_WhereTheImageIsItsPercentageCloserFilter) {
+  EXPECT_EQ(measure_noise([](int, int) { return 0.0; }), 0.0);
+  EXPECT_EQ(measure_noise([](int x, int) { return 0.01 * x; }), 0.0) << "a smooth difference is not noise";
+}
+
+TEST(NoiseRate, CountsWhatDiffersFromItsNeighbours) {
+  // One pixel in a 4 x 4 block is off by 0.09: by 0.08 from its window's mean, its neighbours by 0.01.
+  const auto rate = measure_noise([](int x, int y) { return x % 4 == 1 && y % 4 == 1 ? 0.09 : 0.0; });
+  ASSERT_TRUE(rate);
+  EXPECT_NEAR(*rate, 100.0 / (38.0 * 38.0), 1e-12);
+}
+
+TEST(NoiseRate, WithoutPenumbra_IsAbsent) {
+  const std::vector<float> lit(1600, 1.0f);
+  EXPECT_FALSE(rate_noise(lit, std::vector<double>(1600, 1.0), lit, std::vector<std::uint8_t>(1600, 1), 40));
+}
+
+}  // namespace
+}  // namespace shadowbench::reference
