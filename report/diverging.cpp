@@ -10,11 +10,12 @@ constexpr std::array<float, 3> kBelow{0.09f, 0.31f, 0.66f};
 constexpr std::array<float, 3> kZero{0.95f, 0.95f, 0.94f};
 constexpr std::array<float, 3> kAbove{0.74f, 0.09f, 0.13f};
 constexpr double kSmallestScale = 0.01;
+constexpr float kSmallestError = 0.001f;  // a tenth of the smallest scale: nobody sees less
 
 double round_up_nicely(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
   for (const double step : {1.0, 2.0, 5.0}) {
-    if (value <= step * power * (1.0 + 1e-9)) return step * power;
+    if (value <= step * power * (1.0 + 1e-6)) return step * power;
   }
   return 10.0 * power;
 }
@@ -33,7 +34,7 @@ double choose_error_scale(const std::vector<const Image*>& errors) {
   std::vector<float> magnitudes;
   for (const Image* image : errors) {
     for (const float value : image->texels) {
-      if (std::isfinite(value) && value != 0.0f) magnitudes.push_back(std::abs(value));
+      if (std::isfinite(value) && std::abs(value) >= kSmallestError) magnitudes.push_back(std::abs(value));
     }
   }
   if (magnitudes.empty()) return kSmallestScale;

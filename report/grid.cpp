@@ -23,6 +23,9 @@ constexpr Rgb kOutline{0.93f, 0.32f, 0.05f};
 constexpr Rgb kMessageBackground{0.98f, 0.93f, 0.90f};
 constexpr Rgb kMessageInk{0.55f, 0.15f, 0.05f};
 constexpr Rgb kNotFinite{1.0f, 0.0f, 1.0f};
+constexpr Rgb kTrack{0.95f, 0.95f, 0.95f};
+constexpr Rgb kZeroLine{0.45f, 0.47f, 0.50f};
+constexpr Rgb kNetTick{0.0f, 0.0f, 0.0f};
 constexpr int kOutlineWidth = 2;
 
 void fill_rect(Image& canvas, const Rect& rect, const Rgb& color) {
@@ -169,6 +172,25 @@ void draw_panel(Image& canvas, const Grid& grid, const Panel& panel) {
   }
 }
 
+// The zero line shows above and below the parts only; the tick of the RMSE lies over them.
+void draw_bar(Image& canvas, const BarPlace& bar) {
+  fill_rect(canvas, bar.track, kTrack);
+  fill_rect(canvas, bar.zero_line, kZeroLine);
+  for (const SegmentBox& segment : bar.segments) {
+    fill_rect(canvas, segment.box, list_error_parts()[segment.part].color);
+  }
+  fill_rect(canvas, bar.net_tick, kNetTick);
+}
+
+void draw_bars(Image& canvas, const GridLayout& layout) {
+  for (const BarPlace& bar : layout.bars) {
+    draw_bar(canvas, bar);
+  }
+  for (const Swatch& swatch : layout.swatches) {
+    fill_rect(canvas, swatch.box, list_error_parts()[swatch.part].color);
+  }
+}
+
 Rgb ink_of(TextRole role) {
   switch (role) {
     case TextRole::kTitle:
@@ -201,6 +223,7 @@ Image draw_grid(const Grid& grid) {
     }
   }
   if (layout.color_bar) draw_color_bar(canvas, *layout.color_bar, layout.error_scale);
+  draw_bars(canvas, layout);
   for (const TextLine& line : layout.texts) {
     draw_text(canvas, line.box.x, line.box.y, line.text, font_of(line.role), ink_of(line.role));
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "report/diverging.h"
+#include "report/summary.h"
 
 namespace shadowbench::report {
 namespace {
@@ -18,6 +19,9 @@ constexpr int kMessagePadding = 16;
 constexpr int kMaxPictureHeight = 560;
 constexpr int kMaxCropHeight = 260;
 constexpr int kColorBarWidth = 240;
+constexpr int kBarHeight = 30;
+constexpr int kSwatchGap = 8;
+constexpr int kLegendGap = 28;
 
 // Height of each row of a block, shared by its tiles so that they line up.
 struct BlockRows {
@@ -25,11 +29,12 @@ struct BlockRows {
   int picture = 0;
   int visibility = 0;
   int error = 0;
+  int bar = 0;
   int crop = 0;
 
   int images_height() const {
     int height = 0;
-    for (const int row : {picture, visibility, error, crop}) {
+    for (const int row : {picture, visibility, error, bar, crop}) {
       height += row > 0 ? row + kRowGap : 0;
     }
     return std::max(0, height - kRowGap);
@@ -42,6 +47,7 @@ class Builder {
     const int columns = std::clamp(static_cast<int>(grid.tiles.size()), 1, std::max(1, grid.columns));
     columns_ = static_cast<std::size_t>(columns);
     layout_.canvas.width = 2 * kMargin + columns * kTileWidth + (columns - 1) * kColumnGap;
+    layout_.bar_scale = choose_scale_of_bars();
   }
 
   GridLayout build() {
@@ -52,6 +58,7 @@ class Builder {
       y = add_block(first, std::min(first + columns_, grid_.tiles.size()), y) + kBlockGap;
     }
     y = add_color_bar(y);
+    y = add_bar_legend(y);
     y = add_text(legend(), TextRole::kLegend, full_width(y));
     layout_.canvas.height = y + kMargin;
     return std::move(layout_);
@@ -59,6 +66,30 @@ class Builder {
 
  private:
   Rect full_width(int y) const { return {kMargin, y, layout_.canvas.width - 2 * kMargin, 0}; }
+
+  std::optional<BarScale> choose_scale_of_bars() const {
+    std::vector<AttributionBar> bars;
+    for (const GridTile& tile : grid_.tiles) {
+      if (tile.attribution) bars.push_back(*tile.attribution);
+    }
+    return bars.empty() ? std::nullopt : std::optional(choose_bar_scale(bars));
+  }
+
+  // What is said below a tile's bar, or instead of it.
+  std::string bar_text(const GridTile& tile) const {
+    if (tile.attribution) return label_bar(*tile.attribution);
+    return layout_.bar_scale && has_image(tile) && !tile.no_attribution.empty()
+               ? "no attribution: " + tile.no_attribution
+               : std::string();
+  }
+
+  static bool has_image(const GridTile& tile) {
+    return !tile.picture.empty() || !tile.visibility.empty() || !tile.error.empty();
+  }
+
+  int bar_row_height(const GridTile& tile) const {
+    return (tile.attribution ? kBarHeight : 0) + text_height(bar_text(tile), TextRole::kCaption, kTileWidth);
+  }
 
   int text_height(const std::string& text, TextRole role, int width) const {
     return static_cast<int>(wrap_text(text, font_of(role), width).size()) * line_height(font_of(role));
@@ -83,6 +114,7 @@ class Builder {
       rows.picture = std::max(rows.picture, shown_size(tile.picture).height);
       rows.visibility = std::max(rows.visibility, shown_size(tile.visibility).height);
       rows.error = std::max(rows.error, shown_size(tile.error).height);
+      rows.bar = std::max(rows.bar, bar_row_height(tile));
       for (const Image* image : {&tile.picture, &tile.visibility}) {
         rows.crop = std::max(rows.crop, crop_size(*image).height);
       }
@@ -108,7 +140,7 @@ class Builder {
       const int x = kMargin + static_cast<int>(i - begin) * (kTileWidth + kColumnGap);
       const int caption_y = add_text(tile.label, TextRole::kLabel, {x, y, kTileWidth, 0});
       add_text(tile.caption, TextRole::kCaption, {x, caption_y, kTileWidth, 0});
-      if (tile.picture.empty() && tile.visibility.empty()) {
+      if (!has_image(tile)) {
         bottom = std::max(bottom, add_message(tile, {x, images_y, kTileWidth, rows.images_height()}));
       } else {
         add_panels(i, {x, images_y, kTileWidth, 0}, rows);
@@ -124,13 +156,43 @@ class Builder {
       if (!tile.error.empty()) errors.push_back(&tile.error);
     }
     if (errors.empty()) return y;
-    layout_.error_scale = choose_error_scale(errors);
+    layout_.error_scale = grid_.error_scale ? *grid_.error_scale : choose_error_scale(errors);
     const int height = line_height(font_of(TextRole::kLegend));
     layout_.color_bar = Rect{kMargin, y, kColorBarWidth, height};
-    const std::string text = fmt::format("error, visibility less area truth: -{0} (too dark, blue) to +{0} (too bright, red)",
-                                         layout_.error_scale);
+    const std::string text =
+        fmt::format("{0}: -{1} (too dark, blue) to +{1} (too bright, red)", grid_.error_name, layout_.error_scale);
     const int x = kMargin + kColorBarWidth + kColumnGap;
-    return std::max(add_text(text, TextRole::kLegend, {x, y, layout_.canvas.width - kMargin - x, 0}), y + height) + kRowGap;
+    const int text_end = add_text(text, TextRole::kLegend, {x, y, layout_.canvas.width - kMargin - x, 0});
+    return std::max(text_end, y + height) + kRowGap;
+  }
+
+  /// Says what the bars' colours, lengths and lines mean.
+  int add_bar_legend(int y) {
+    if (!layout_.bar_scale) return y;
+    y = add_swatches(y);
+    const std::string text = fmt::format(
+        "Bars: what the error is made of, each part's share times RMSE; parts left of the grey line offset the others. "
+        "The black tick is the RMSE, the full width {}.",
+        format_number(layout_.bar_scale->length));
+    return add_text(text, TextRole::kLegend, full_width(y)) + kRowGap;
+  }
+
+  int add_swatches(int y) {
+    const int height = line_height(font_of(TextRole::kLegend));
+    const int right = layout_.canvas.width - kMargin;
+    int x = kMargin;
+    for (std::size_t part = 0; part < kErrorParts; ++part) {
+      const std::string name = list_error_parts()[part].name;
+      const int width = measure_text(name, font_of(TextRole::kLegend));
+      if (x > kMargin && x + height + kSwatchGap + width > right) {
+        x = kMargin;
+        y += height + kSwatchGap;
+      }
+      layout_.swatches.push_back({{x, y, height, height}, part});
+      layout_.texts.push_back({{x + height + kSwatchGap, y, width, height}, name, TextRole::kLegend});
+      x += height + kSwatchGap + width + kLegendGap;
+    }
+    return y + height + kSwatchGap;
   }
 
   int add_message(const GridTile& tile, const Rect& place) {
@@ -150,10 +212,22 @@ class Builder {
     y += rows.visibility > 0 ? rows.visibility + kRowGap : 0;
     add_panel({column.x, y, column.width, rows.error}, shown_size(tile.error), index, PanelKind::kError);
     y += rows.error > 0 ? rows.error + kRowGap : 0;
+    add_bar(index, {column.x, y, column.width, kBarHeight});
+    y += rows.bar > 0 ? rows.bar + kRowGap : 0;
     const int half = (column.width - kRowGap) / 2;
     add_panel({column.x, y, half, rows.crop}, crop_size(tile.picture), index, PanelKind::kPictureCrop);
     add_panel({column.x + column.width - half, y, half, rows.crop}, crop_size(tile.visibility), index,
               PanelKind::kVisibilityCrop);
+  }
+
+  void add_bar(std::size_t index, const Rect& box) {
+    const GridTile& tile = grid_.tiles[index];
+    int text_y = box.y;
+    if (tile.attribution) {
+      layout_.bars.push_back(place_bar(*tile.attribution, *layout_.bar_scale, box, index));
+      text_y += box.height;
+    }
+    add_text(bar_text(tile), TextRole::kCaption, {box.x, text_y, box.width, 0});
   }
 
   // Places an image in the middle of its row.
@@ -167,11 +241,14 @@ class Builder {
   }
 
   std::string legend() const {
-    if (layout_.panels.empty()) {
+    const bool shows_more_than_errors = std::any_of(layout_.panels.begin(), layout_.panels.end(),
+                                                    [](const Panel& p) { return p.kind != PanelKind::kError; });
+    if (!shows_more_than_errors) {
       return {};
     }
     std::string text = "Top: shaded picture. Below it: visibility (white lit, black blocked)";
-    text += layout_.color_bar ? ", then its error." : ".";
+    text += layout_.color_bar ? ", then its error" : "";
+    text += layout_.bar_scale ? ", then the parts of the error." : ".";
     for (const Panel& panel : layout_.panels) {
       if (panel.kind == PanelKind::kVisibilityCrop || panel.kind == PanelKind::kPictureCrop) {
         const int factor = panel.box.width / std::max(1, grid_.crop.width);

@@ -29,6 +29,12 @@ struct Panel {
   PanelKind kind = PanelKind::kPicture;
 };
 
+/// Is the place of a patch in a part's colour, beside its name.
+struct Swatch {
+  Rect box;
+  std::size_t part = 0;
+};
+
 /// Holds the place of everything in a grid; no two boxes overlap, and all lie in the canvas.
 struct GridLayout {
   Size canvas;
@@ -37,6 +43,9 @@ struct GridLayout {
   std::optional<Rect> color_bar;    ///< where errors are shown
   double error_scale = 0.0;         ///< the error at the bar's right end
   std::vector<Rect> message_boxes;  ///< one per tile without images, around its message
+  std::vector<BarPlace> bars;       ///< one per tile with an attribution
+  std::optional<BarScale> bar_scale;  ///< where bars are shown
+  std::vector<Swatch> swatches;       ///< the bars' legend
 };
 
 /// Returns the font of a kind of text.

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 
+#include "report/attribution_html.h"
 #include "report/embedded.h"
 #include "report/file_name.h"
 #include "report/json_values.h"
 #include "report/summary.h"
+#include "report/text_tables.h"
 
 namespace shadowbench::report {
 namespace {
@@ -41,11 +43,12 @@ std::string html_row(const std::vector<std::string>& fields, std::string_view el
   return text + "</tr>\n";
 }
 
-std::string html_table(const TextTable& table, const std::string& name) {
+std::string html_table(const TextTable& table, const std::string& name, std::string_view style) {
   std::string text = fmt::format(
-      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table>\n<caption>{0}</caption>\n"
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\">"
+      "<table class=\"{2}\">\n<caption>{0}</caption>\n"
       "<thead>{1}</thead>\n<tbody>\n",
-      escape_html(name), html_row(table.header, "th"));
+      escape_html(name), html_row(table.header, "th"), style);
   for (const auto& row : table.rows) {
     text += html_row(row, "td");
   }
@@ -76,6 +79,22 @@ OptionalPath find_path(const CellGroup& group, OptionalPath ImagesRecord::*membe
   return std::nullopt;
 }
 
+std::string html_gallery(const std::string& title, const std::string& figures, std::string_view style) {
+  return figures.empty() ? figures
+                         : fmt::format("<details open><summary>{}</summary>\n<div class=\"{}\">\n{}</div></details>\n",
+                                       escape_html(title), style, figures);
+}
+
+std::string html_attribution_pictures(const CellGroup& group) {
+  std::string figures;
+  for (const CellRecord& cell : group.cells) {
+    if (cell.images.attribution) {
+      figures += figure(*cell.images.attribution, label_cell(group, cell) + ": the error and its four parts", "single");
+    }
+  }
+  return html_gallery("Where in the picture the error comes from", figures, "gallery wide");
+}
+
 std::string html_single_pictures(const CellGroup& group) {
   std::string figures;
   for (const CellRecord& cell : group.cells) {
@@ -90,9 +109,7 @@ std::string html_single_pictures(const CellGroup& group) {
   if (const auto map = find_path(group, &ImagesRecord::depth_map)) {
     figures += figure(*map, "depth map, as the light sees the scene", "single");
   }
-  return figures.empty() ? figures
-                         : "<details open><summary>Single pictures and depth map</summary>\n<div class=\"gallery\">\n" +
-                               figures + "</div></details>\n";
+  return html_gallery("Single pictures and depth map", figures, "gallery");
 }
 
 std::string html_group(const RunRecord& run, const CellGroup& group, std::size_t number) {
@@ -101,10 +118,13 @@ std::string html_group(const RunRecord& run, const CellGroup& group, std::size_t
                                  escape_html(group.scene), title.empty() ? "" : ": " + escape_html(title),
                                  escape_html(describe_settings(group.cells.front())));
   text += html_list(describe_group(group, run.gl));
-  text += html_table(make_table(group, run.gl), "Times of " + group.scene + ": " + describe_clock(run.gl));
+  text += html_table(make_cost_table(group, run.gl), "What it costs: " + describe_clock(run.gl), "cost");
+  text += html_table(make_accuracy_table(group), "How wrong it is, and why: errors of visibility in [0,1]", "accuracy");
+  text += make_bars_html(group);
   if (const auto grid = find_path(group, &ImagesRecord::grid)) {
     text += figure(*grid, "all filters on " + group.scene + ", full size behind the link", "grid");
   }
+  text += html_attribution_pictures(group);
   text += html_single_pictures(group);
   if (const auto exr = find_path(group, &ImagesRecord::exr)) {
     text += "<p>" + link(*exr, *exr) + " holds the float images of all filters.</p>\n";

@@ -12,8 +12,8 @@ namespace shadowbench::report {
 std::string escape_html(std::string_view text);
 
 /// Makes index.html: one page that opens from disk and loads nothing but the report's own pictures, by relative links.
-/// Holds the run's facts, warnings, per group of comparable cells its grid, sentences, table, depth map and single
-/// pictures, links to the data files, and what is absent and why.
+/// Holds the run's facts, warnings, per group of comparable cells its sentences, tables, bars of the error's parts,
+/// grid, pictures of these parts, single pictures and depth map, links to the data files, and what is absent and why.
 std::string make_index_html(const RunRecord& run, const std::vector<CellRecord>& cells);
 
 }  // namespace shadowbench::report

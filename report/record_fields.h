@@ -60,6 +60,7 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("images.depth_map", cell.images.depth_map);
   visit("images.grid", cell.images.grid);
   visit("images.exr", cell.images.exr);
+  visit("images.attribution", cell.images.attribution);
   visit("absent", cell.absent);
 }
 
@@ -82,6 +83,8 @@ void visit_run_fields(Run& run, Visitor&& visit) {
   visit("work.shader_variants_compiled", run.work.shader_variants_compiled);
   visit("work.passes_run", run.work.passes_run);
   visit("work.passes_skipped", run.work.passes_skipped);
+  visit("work.truths_traced", run.work.truths_traced);
+  visit("work.truths_cached", run.work.truths_cached);
   visit("scenes", run.scenes);
   visit("warnings", run.warnings);
 }

@@ -78,7 +78,7 @@ struct ErrorRecord {
   std::optional<double> max;
   std::optional<double> mean;  ///< signed
   std::optional<double> flip;
-  std::optional<double> kernel_rmse;
+  std::optional<double> kernel_rmse;  ///< against the truth seen through the filter's own kernel
 };
 
 /// Says how sure the truth itself is.
@@ -87,18 +87,19 @@ struct TruthRecord {
   std::optional<double> unanimous;
 };
 
-/// Holds the rates of the faults a person sees.
+/// Holds the rates of the faults a person sees, each a share of some receivers, in [0,1].
 struct ArtefactRecord {
-  std::optional<double> acne;
-  std::optional<double> leak;
-  std::optional<double> contact_gap;
-  std::optional<double> noise;
+  std::optional<double> acne;         ///< of the wholly lit receivers (the area light, and the guard square around the
+                                      ///< receiver in the map), those darker than the limit
+  std::optional<double> leak;         ///< of those wholly blocked by something not near, those brighter than the limit
+  std::optional<double> contact_gap;  ///< of those blocked by a surface near them, those brighter than the limit
+  std::optional<double> noise;        ///< of those in the filter's penumbra, those off the local mean by the limit
 };
 
 /// Holds one part of the error.
 struct AttributionPart {
-  std::optional<double> rms;
-  std::optional<double> share;
+  std::optional<double> rms;    ///< root mean square, in visibility
+  std::optional<double> share;  ///< mean(error * part) / mean(error^2): all shares sum to 1, and may be negative
 };
 
 /// Holds the four parts that the error is the sum of.
@@ -116,6 +117,7 @@ struct ImagesRecord {
   std::optional<std::string> depth_map;  ///< one per scene and map settings
   std::optional<std::string> grid;       ///< one per scene, view and map settings
   std::optional<std::string> exr;        ///< one per scene
+  std::optional<std::string> attribution = std::nullopt;  ///< the error and its four parts, as heat maps
 };
 
 /// Holds everything measured of one scene x view x filter x parameters x map settings.
@@ -175,6 +177,8 @@ struct WorkRecord {
   std::int64_t shader_variants_compiled = 0;
   std::int64_t passes_run = 0;
   std::int64_t passes_skipped = 0;
+  std::int64_t truths_traced = 0;  ///< ray-traced images computed in this run
+  std::int64_t truths_cached = 0;  ///< ray-traced images read from the cache
 };
 
 /// Names a scene for people.

@@ -7,13 +7,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "report/accuracy_words.h"
 #include "report/cell_key.h"
 #include "report/json_values.h"
 
 namespace shadowbench::report {
 namespace {
-
-constexpr const char* kNothing = "–";
 
 std::string format_param(const ParamValue& value) {
   if (const auto* number = std::get_if<double>(&value)) {
@@ -23,23 +22,6 @@ std::string format_param(const ParamValue& value) {
     return *flag ? "on" : "off";
   }
   return std::get<std::string>(value);
-}
-
-std::string format_quartiles(const std::optional<Quartiles>& time) {
-  return time
-             ? fmt::format("{} [{}, {}]", format_number(time->median), format_number(time->q1), format_number(time->q3))
-             : kNothing;
-}
-
-std::string format_ratio(const std::optional<Ratio>& ratio) {
-  return ratio ? fmt::format("{} [{}, {}]", format_number(ratio->median), format_number(ratio->ci95.low),
-                             format_number(ratio->ci95.high))
-               : kNothing;
-}
-
-template <class T>
-std::string format_optional(const std::optional<T>& value) {
-  return value ? format_number(static_cast<double>(*value)) : kNothing;
 }
 
 const char* name_of(CellStatus status) {
@@ -54,18 +36,6 @@ const char* name_of(CellStatus status) {
       break;
   }
   return "error";
-}
-
-std::string format_status(const CellRecord& cell) {
-  return cell.message.empty() ? name_of(cell.status) : fmt::format("{}: {}", name_of(cell.status), cell.message);
-}
-
-// The filter's id, with its parameters where the group holds it more than once.
-std::string label_cell(const CellGroup& group, const CellRecord& cell) {
-  const auto count = std::count_if(group.cells.begin(), group.cells.end(),
-                                   [&](const CellRecord& other) { return other.filter == cell.filter; });
-  return count > 1 && !cell.params.empty() ? fmt::format("{} ({})", cell.filter, describe_params(cell.params))
-                                           : cell.filter;
 }
 
 Interval lookup_interval(const CellRecord& cell, bool by_ratio) {
@@ -126,13 +96,20 @@ std::vector<std::string> describe_troubles(const CellGroup& group) {
   std::vector<std::string> sentences;
   for (const CellRecord& cell : group.cells) {
     if (cell.status != CellStatus::kOk) {
-      sentences.push_back(fmt::format("{} did not finish ({}).", label_cell(group, cell), format_status(cell)));
+      sentences.push_back(fmt::format("{} did not finish ({}).", label_cell(group, cell), describe_status(cell)));
     }
     if (cell.nan.value_or(0) > 0) {
       sentences.push_back(fmt::format("{} has {} pixels that are not finite.", label_cell(group, cell), *cell.nan));
     }
   }
   return sentences;
+}
+
+std::string describe_work(const WorkRecord& work) {
+  return fmt::format(
+      "{} shader variants compiled, {} passes run, {} passes skipped because no filter needed them, "
+      "{} truths ray traced, {} truths read from the cache",
+      work.shader_variants_compiled, work.passes_run, work.passes_skipped, work.truths_traced, work.truths_cached);
 }
 
 /// Lists the parts of a bias that are there: "2e-05 depth + slope over 1 x (kernel half-width + 1) texels".
@@ -160,6 +137,23 @@ std::string format_number(double value) {
     return fmt::format("{:.0f}", value);
   }
   return fmt::format("{:.3g}", value);
+}
+
+std::string describe_status(const CellRecord& cell) {
+  return cell.message.empty() ? name_of(cell.status) : fmt::format("{}: {}", name_of(cell.status), cell.message);
+}
+
+std::string label_cell(const CellGroup& group, const CellRecord& cell) {
+  const auto count = std::count_if(group.cells.begin(), group.cells.end(),
+                                   [&](const CellRecord& other) { return other.filter == cell.filter; });
+  return count > 1 && !cell.params.empty() ? fmt::format("{} ({})", cell.filter, describe_params(cell.params))
+                                           : cell.filter;
+}
+
+std::string format_ratio(const std::optional<Ratio>& ratio) {
+  return ratio ? fmt::format("{} [{}, {}]", format_number(ratio->median), format_number(ratio->ci95.low),
+                             format_number(ratio->ci95.high))
+               : kNothing;
 }
 
 std::string describe_clock(const GlRecord& gl) {
@@ -238,43 +232,10 @@ std::vector<std::string> describe_group(const CellGroup& group, const GlRecord& 
     sentences.push_back(
         describe_extremes(group, group.cells[ranks.front().front()], group.cells[ranks.back().back()], gl));
   }
-  for (const auto& more : {describe_prefilters(group, gl), describe_troubles(group)}) {
+  for (const auto& more : {describe_prefilters(group, gl), describe_accuracy(group), describe_troubles(group)}) {
     sentences.insert(sentences.end(), more.begin(), more.end());
   }
   return sentences;
-}
-
-namespace {
-
-std::string format_rmse(const CellRecord& cell) {
-  if (!cell.error.rmse || !cell.truth.se) return kNothing;
-  return fmt::format("{} ({})", format_number(*cell.error.rmse), format_number(*cell.truth.se));
-}
-
-}  // namespace
-
-TextTable make_table(const CellGroup& group, const GlRecord& gl) {
-  const std::string unit = time_unit(gl);
-  TextTable table;
-  table.header = {"filter",
-                  "parameters",
-                  fmt::format("lookup, {}, median [quartiles]", unit),
-                  "lookup / none, median [95 %]",
-                  "RMSE to the area truth (its standard error)",
-                  fmt::format("prefilter, {}", unit),
-                  fmt::format("map, {}", unit),
-                  "fetches per receiver",
-                  "bytes per texel",
-                  "passes",
-                  "status"};
-  for (const CellRecord& cell : group.cells) {
-    table.rows.push_back({cell.filter, cell.params.empty() ? kNothing : describe_params(cell.params),
-                          format_quartiles(cell.time_ms.lookup), format_ratio(cell.ratio_to_none.lookup), format_rmse(cell),
-                          format_quartiles(cell.time_ms.prefilter), format_quartiles(cell.time_ms.map),
-                          format_optional(cell.cost.fetches), format_optional(cell.cost.bytes_per_texel),
-                          format_optional(cell.cost.passes), format_status(cell)});
-  }
-  return table;
 }
 
 std::vector<std::pair<std::string, std::string>> list_run_facts(const RunRecord& run) {
@@ -284,11 +245,9 @@ std::vector<std::pair<std::string, std::string>> list_run_facts(const RunRecord&
           {"times", describe_clock(run.gl)},
           {"GL", fmt::format("{} · {} · {}", run.gl.backend, run.gl.renderer, run.gl.version)},
           {"machine", fmt::format("{} · {} cores · load {} at the start", run.machine.cpu, run.machine.cores,
-                                  format_optional(run.machine.load_at_start))},
+                                  run.machine.load_at_start ? format_number(*run.machine.load_at_start) : kNothing)},
           {"system", fmt::format("{} · {}", run.machine.os, run.machine.compiler)},
-          {"work", fmt::format("{} shader variants compiled, {} passes run, {} passes skipped because no filter needed "
-                               "them",
-                               run.work.shader_variants_compiled, run.work.passes_run, run.work.passes_skipped)}};
+          {"work", describe_work(run.work)}};
 }
 
 std::map<std::string, int> count_absences(const std::vector<CellRecord>& cells) {

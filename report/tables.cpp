@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <functional>
 
+#include "report/error_parts.h"
 #include "report/json_values.h"
 #include "report/summary.h"
+#include "reference/metrics/artefacts.h"
+#include "report/text_tables.h"
 
 namespace shadowbench::report {
 namespace {
@@ -114,13 +117,18 @@ std::vector<Column> cost_columns() {
 
 std::vector<Column> error_columns() {
   return {
-      cell_column("rmse", "root mean square of visibility less area truth", [](const CellRecord& c) { return plain(c.error.rmse); }),
+      cell_column("rmse", "root mean square of visibility less area truth",
+                  [](const CellRecord& c) { return plain(c.error.rmse); }),
       cell_column("mae", "mean absolute error", [](const CellRecord& c) { return plain(c.error.mae); }),
-      cell_column("p95", "95th percentile of the absolute error", [](const CellRecord& c) { return plain(c.error.p95); }),
+      cell_column("p95", "95th percentile of the absolute error",
+                  [](const CellRecord& c) { return plain(c.error.p95); }),
       cell_column("max", "largest absolute error", [](const CellRecord& c) { return plain(c.error.max); }),
       cell_column("mean", "mean error; positive: too bright", [](const CellRecord& c) { return plain(c.error.mean); }),
       cell_column("flip", "mean LDR-FLIP of the picture against the one shaded with the area truth",
                   [](const CellRecord& c) { return plain(c.error.flip); }),
+      cell_column("kernel_rmse",
+                  "root mean square of visibility less kernel truth: what the filter's own kernel sees, ray traced",
+                  [](const CellRecord& c) { return plain(c.error.kernel_rmse); }),
       cell_column("truth_se", "standard error of the truth, root mean square over the pixels that count",
                   [](const CellRecord& c) { return plain(c.truth.se); }),
       cell_column("truth_unanimous", "share of those pixels whose rays all agree",
@@ -130,11 +138,60 @@ std::vector<Column> error_columns() {
   };
 }
 
+std::vector<Column> artefact_columns() {
+  const reference::ArtefactLimits& limits = reference::kArtefactLimits;
+  const auto column = [](const char* name, const std::string& meaning, std::optional<double> ArtefactRecord::*member) {
+    return cell_column(name, meaning, [member](const CellRecord& c) { return plain(c.artefact.*member); });
+  };
+  return {
+      column("acne",
+             fmt::format(
+                 "share in [0,1] of the wholly lit receivers (before the area light, and in the map within the run's "
+                 "widest kernel and {} texel) that are darker than {}",
+                 limits.guard_texels, limits.acne_below),
+             &ArtefactRecord::acne),
+      column("leak",
+             fmt::format("share in [0,1] of the receivers wholly blocked by something farther than {} texels that are "
+                         "brighter than {}",
+                         limits.contact_texels, limits.leak_above),
+             &ArtefactRecord::leak),
+      column(
+          "contact_gap",
+          fmt::format("share in [0,1] of the receivers blocked by a surface within {} texels that are brighter than {}",
+                      limits.contact_texels, limits.contact_gap_above),
+          &ArtefactRecord::contact_gap),
+      column("noise",
+             fmt::format("share in [0,1] of the receivers in the filter's penumbra where the image less its own "
+                         "percentage-closer filter is more than {} off its 3 x 3 mean",
+                         limits.noise_above),
+             &ArtefactRecord::noise),
+  };
+}
+
+std::vector<Column> attribution_columns() {
+  std::vector<Column> columns;
+  for (const ErrorPart& part : list_error_parts()) {
+    const auto record = part.record;
+    columns.push_back(
+        cell_column(fmt::format("{}_rms", part.id),
+                    fmt::format("root mean square of the error's part {}, visibility: {}", part.name, part.meaning),
+                    [record](const CellRecord& c) { return plain((c.attribution.*record).rms); }));
+    columns.push_back(cell_column(
+        fmt::format("{}_share", part.id),
+        fmt::format("mean(error * part) / mean(error^2) of the part {}; the four sum to 1, and may be negative",
+                    part.name),
+        [record](const CellRecord& c) { return plain((c.attribution.*record).share); }));
+  }
+  return columns;
+}
+
 std::vector<Column> columns_of(CsvTable table) {
   std::vector<Column> columns = setting_columns();
   const auto append = [&](const std::vector<Column>& more) { columns.insert(columns.end(), more.begin(), more.end()); };
   if (table == CsvTable::kAccuracy) {
     append(error_columns());
+    append(artefact_columns());
+    append(attribution_columns());
     columns.push_back(key_column());
     return columns;
   }
@@ -183,9 +240,10 @@ std::string markdown_list(const std::vector<std::string>& items) {
 }
 
 std::string markdown_group(const CellGroup& group, const GlRecord& gl) {
-  return fmt::format("## {}\n\n{}. Times are {}.\n\n{}\n{}\n", escape_markdown(group.scene),
-                     escape_markdown(describe_settings(group.cells.front())), describe_clock(gl),
-                     markdown_table(make_table(group, gl)), markdown_list(describe_group(group, gl)));
+  return fmt::format("## {}\n\n{}. Times are {}.\n\n{}\n### What it costs\n\n{}\n### How wrong it is, and why\n\n{}\n",
+                     escape_markdown(group.scene), escape_markdown(describe_settings(group.cells.front())),
+                     describe_clock(gl), markdown_list(describe_group(group, gl)),
+                     markdown_table(make_cost_table(group, gl)), markdown_table(make_accuracy_table(group)));
 }
 
 std::string markdown_absences(const std::vector<CellRecord>& cells) {

@@ -46,13 +46,13 @@ CellAnalyser::CellAnalyser(Renderer& renderer, const RunOptions& options, const 
 }
 
 void CellAnalyser::make_masks() {
-  const double half_width = options_.pad_texels.value_or(largest_padding_texels(options_.filters));
+  const double half_width = largest_radius_texels(options_.filters) + reference::kArtefactLimits.guard_texels;
   const reference::TracedVisibility around =
       assets_.tracer().trace_surroundings(truth_.receivers, half_width, light_.frustum);
   const std::vector<std::uint8_t> area_settled = find_settled(truth_.rays.area), around_settled = find_settled(around);
   masks_ = reference::make_artefact_masks({truth_.mask, truth_.rays.area.visibility, area_settled, around.visibility,
                                            around_settled, truth_.rays.first_blockers_ws,
-                                           reference::kContactTexels * light_.frustum.texel_size_ws});
+                                           reference::kArtefactLimits.contact_texels * light_.frustum.texel_size_ws});
 }
 
 const reference::TracedVisibility& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {
@@ -65,7 +65,7 @@ void CellAnalyser::analyse(MeasuredCell& cell) {
   report::CellRecord& record = cell.record;
   if (!masks_ || cell.visibility.empty()) {
     const std::string reason = truth_.absent.empty() ? record.message : truth_.absent;
-    for (const char* group : {"artefact", "attribution", "error.kernel_rmse", "excused"}) record.absent[group] = reason;
+    for (const char* group : {"artefact", "attribution", "error.kernel_rmse", "excused", "images.attribution"}) record.absent[group] = reason;
     return;
   }
   count_artefacts(cell);
@@ -75,12 +75,13 @@ void CellAnalyser::analyse(MeasuredCell& cell) {
 void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
   report::CellRecord& record = cell.record;
   const std::vector<float>& image = cell.visibility.texels;
-  note(record, "artefact.acne", record.artefact.acne, reference::rate_below(image, masks_->acne, reference::kAcneBelow),
+  const reference::ArtefactLimits& limits = reference::kArtefactLimits;
+  note(record, "artefact.acne", record.artefact.acne, reference::rate_below(image, masks_->acne, limits.acne_below),
        too_few("are wholly lit, with their surroundings"));
-  note(record, "artefact.leak", record.artefact.leak, reference::rate_above(image, masks_->leak, reference::kLeakAbove),
+  note(record, "artefact.leak", record.artefact.leak, reference::rate_above(image, masks_->leak, limits.leak_above),
        too_few("are wholly blocked, with their surroundings, by something that does not touch them"));
   note(record, "artefact.contact_gap", record.artefact.contact_gap,
-       reference::rate_above(image, masks_->contact_gap, reference::kGapAbove),
+       reference::rate_above(image, masks_->contact_gap, limits.contact_gap_above),
        too_few("are wholly blocked by something that touches them"));
 }
 
@@ -96,7 +97,7 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   const bool wanted = options_.attribution;
   if (!model || request.user_file || !wanted) {
     const char* reason = wanted ? "the filter has no scalar model" : "the run was made with --no-attribution";
-    for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused"}) record.absent[field] = reason;
+    for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused", "images.attribution"}) record.absent[field] = reason;
     return;
   }
   if (!map_) map_ = light_.map.read();

@@ -73,6 +73,8 @@ class Experiment {
     progress_.begin(static_cast<int>(views * options_.map_sizes.size() * options_.filters.size()));
     for (const NamedScene& each : scenes) run_scene(each);
     run_.work.shader_variants_compiled = renderer_.shaders.compiled();
+    run_.work.truths_traced = cache_.traced();
+    run_.work.truths_cached = cache_.loaded();
     cache_.prune(kMaxCacheBytes);
     progress_.show(done_, "writing the report");
     if (!options_.worker) report::write_report(options_.out, run_, keys_);

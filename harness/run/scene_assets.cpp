@@ -59,10 +59,14 @@ SceneTruth SceneAssets::make_truth(const scene::Camera& camera) {
   return truth;
 }
 
-double largest_padding_texels(const std::vector<filters::FilterRequest>& requests) {
+double largest_radius_texels(const std::vector<filters::FilterRequest>& requests) {
   double largest = 0.0;
   for (const auto& request : requests) largest = std::max(largest, filters::radius_texels(request.spec, request.values));
-  return std::ceil(largest) + 1.0;
+  return largest;
+}
+
+double largest_padding_texels(const std::vector<filters::FilterRequest>& requests) {
+  return std::ceil(largest_radius_texels(requests)) + 1.0;
 }
 
 }  // namespace shadowbench::run

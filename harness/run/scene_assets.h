@@ -53,6 +53,9 @@ class SceneAssets {
   SceneTruth make_truth(const scene::Camera& camera);
 };
 
+/// Gives the half-width in texels of the widest kernel of these filters.
+double largest_radius_texels(const std::vector<filters::FilterRequest>& requests);
+
 /// Gives the padding that the widest kernel of these filters needs, in whole texels.
 double largest_padding_texels(const std::vector<filters::FilterRequest>& requests);
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "harness/run/run_facts.h"
+#include "report/attribution_picture.h"
+#include "report/diverging.h"
 #include "report/file_name.h"
 #include "report/grid.h"
 #include "report/picture_io.h"
@@ -76,6 +78,16 @@ std::vector<report::GridTile> make_truth_tiles(const SceneTask& task, const Scen
           {"truth, area", sun, truth.area_picture, truth.area, make_error_image(truth.area, truth), ""}};
 }
 
+/// One scale for the pictures of a task, so that they compare; nothing where there are no errors.
+std::optional<double> choose_error_scale(const std::vector<report::GridTile>& tiles) {
+  std::vector<const report::Image*> errors;
+  for (const report::GridTile& tile : tiles) {
+    if (!tile.error.empty()) errors.push_back(&tile.error);
+  }
+  if (errors.empty()) return std::nullopt;
+  return report::choose_error_scale(errors);
+}
+
 report::Grid make_grid(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
                        const SceneTruth& truth, const report::GlRecord& gl) {
   report::Grid grid;
@@ -84,8 +96,11 @@ report::Grid make_grid(const RunOptions& options, const SceneTask& task, const S
   grid.tiles = make_truth_tiles(task, truth);
   for (const MeasuredCell& cell : measured.cells) {
     grid.tiles.push_back({cell.label, caption(cell.record, gl), cell.picture, cell.visibility,
-                          make_error_image(cell.visibility, truth), cell.record.message});
+                          make_error_image(cell.visibility, truth), cell.record.message,
+                          report::make_attribution_bar(cell.record)});
+    if (!grid.tiles.back().attribution) grid.tiles.back().no_attribution = report::explain_no_attribution(cell.record);
   }
+  grid.error_scale = choose_error_scale(grid.tiles);
   grid.columns = truth.absent.empty() ? 4 : 3;
   grid.crop = choose_crop(options, measured.cells);
   return grid;
@@ -99,6 +114,24 @@ void write_cell_pictures(const RunOptions& options, const std::string& stem, Mea
   cell.record.images.visibility = base + ".visibility.png";
   report::write_picture_png(options.out / *cell.record.images.picture, cell.picture);
   report::write_grey_png(options.out / *cell.record.images.visibility, cell.visibility);
+}
+
+/// Draws a cell's error and its parts, on the scale of its grid.
+void write_attribution(const RunOptions& options, const std::string& stem, MeasuredCell& cell, const SceneTruth& truth,
+                       const report::Grid& grid) {
+  if (cell.error_parts.empty()) return;
+  report::AttributionPicture picture;
+  picture.title = fmt::format("{} on {}: where its error comes from", cell.label, cell.record.scene);
+  picture.subtitle = report::describe_settings(cell.record);
+  picture.total = make_error_image(cell.visibility, truth);
+  picture.total_caption = report::caption_total(cell.record.error);
+  for (std::size_t p = 0; p < report::kErrorParts; ++p) {
+    picture.parts[p] = cell.error_parts[p];
+    picture.captions[p] = report::caption_part(cell.record.attribution.*report::list_error_parts()[p].record);
+  }
+  picture.scale = grid.error_scale;
+  cell.record.images.attribution = fmt::format("images/{}.{}.attribution.png", stem, report::make_file_stem(cell.label));
+  report::write_attribution_picture(options.out / *cell.record.images.attribution, picture);
 }
 
 }  // namespace
@@ -122,6 +155,9 @@ void write_float_images(const RunOptions& options, const SceneTask& task, const 
     if (cell.visibility.empty()) continue;
     parts.push_back({visibility_part(cell.label), {"Y"}, cell.visibility, false});
     parts.push_back({picture_part(cell.label), {"R", "G", "B"}, cell.picture, true});
+    for (std::size_t p = 0; p < cell.error_parts.size(); ++p) {
+      parts.push_back({fmt::format("{}.error.{}", cell.label, report::list_error_parts()[p].id), {"Y"}, cell.error_parts[p], false});
+    }
   }
   if (truth.absent.empty()) {
     parts.push_back({"truth.hard", {"Y"}, truth.hard, false});
@@ -136,10 +172,12 @@ void write_pictures(const RunOptions& options, const SceneTask& task, SceneMeasu
   const std::string stem = task_stem(options, task);
   const std::string grid_name = stem + ".grid.png";
   const std::string depth_name = "images/" + stem + ".depth_map.png";
-  report::write_grid(options.out / grid_name, make_grid(options, task, measured, truth, gl));
+  const report::Grid grid = make_grid(options, task, measured, truth, gl);
+  report::write_grid(options.out / grid_name, grid);
   report::write_grey_png(options.out / depth_name, measured.depth_map, depth_picture_range(measured.depth_map));
   for (MeasuredCell& cell : measured.cells) {
     write_cell_pictures(options, stem, cell);
+    write_attribution(options, stem, cell, truth, grid);
     cell.record.images.grid = grid_name;
     cell.record.images.depth_map = depth_name;
     cell.record.images.exr = exr_name(options, task);

@@ -85,11 +85,13 @@ reference::TracedVisibility from_parts(const std::vector<report::Part>& parts) {
 
 }  // namespace
 
+reference::Occluders make_occluders(const scene::Scene& scene) { return reference::Occluders(list_occluders(scene)); }
+
 SceneTracer::SceneTracer(const scene::Scene& scene, TruthCache& cache, std::uint32_t seed)
     : scene_(scene), cache_(cache), seed_(seed), geometry_(name_geometry(list_occluders(scene))) {}
 
 const reference::Occluders& SceneTracer::occluders() {
-  if (!occluders_) occluders_.emplace(list_occluders(scene_));
+  if (!occluders_) occluders_.emplace(make_occluders(scene_));
   return *occluders_;
 }
 

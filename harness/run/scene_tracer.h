@@ -20,6 +20,9 @@ struct ViewRays {
   std::vector<float> first_blockers_ws;  ///< see trace_first_blockers()
 };
 
+/// Makes what rays can hit of a scene: every caster, with the holes of its material.
+reference::Occluders make_occluders(const scene::Scene& scene);
+
 /// Traces one scene's views, or takes what an earlier run traced from the cache. Nothing is built for tracing until
 /// something has to be traced.
 class SceneTracer {

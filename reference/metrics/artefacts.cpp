@@ -57,12 +57,12 @@ ArtefactMasks make_artefact_masks(const RaysAtReceivers& rays) {
   return masks;
 }
 
-std::optional<double> rate_below(std::span<const float> image, std::span<const std::uint8_t> mask, float limit) {
-  return rate(image, mask, [&](float value) { return value < limit; });
+std::optional<double> rate_below(std::span<const float> image, std::span<const std::uint8_t> mask, double limit) {
+  return rate(image, mask, [&](float value) { return static_cast<double>(value) < limit; });
 }
 
-std::optional<double> rate_above(std::span<const float> image, std::span<const std::uint8_t> mask, float limit) {
-  return rate(image, mask, [&](float value) { return value > limit; });
+std::optional<double> rate_above(std::span<const float> image, std::span<const std::uint8_t> mask, double limit) {
+  return rate(image, mask, [&](float value) { return static_cast<double>(value) > limit; });
 }
 
 std::optional<double> rate_noise(std::span<const float> image, std::span<const double> closer,
@@ -79,7 +79,7 @@ std::optional<double> rate_noise(std::span<const float> image, std::span<const d
     if (!whole) continue;
     count += 1.0;
     const double deviation = static_cast<double>(image[i]) - closer[i] - sum / 9.0;
-    if (!(std::abs(deviation) <= kNoiseAbove)) noisy += 1.0;
+    if (!(std::abs(deviation) <= kArtefactLimits.noise_above)) noisy += 1.0;
   }
   if (count < kFewestReceivers) return std::nullopt;
   return noisy / count;

@@ -28,16 +28,16 @@ struct ArtefactMasks {
   std::vector<std::uint8_t> contact_gap;  ///< wholly blocked, by something that touches the receiver
 };
 
-/// A lit receiver darker than this is acne.
-inline constexpr float kAcneBelow = 0.9f;
-/// A blocked receiver brighter than this is a leak.
-inline constexpr float kLeakAbove = 0.1f;
-/// A receiver blocked by what touches it, brighter than this, is a contact gap (peter-panning).
-inline constexpr float kGapAbove = 0.5f;
-/// A deviation from the neighbourhood beyond this is noise.
-inline constexpr double kNoiseAbove = 0.05;
-/// What lies within so many texels along the light touches the receiver.
-inline constexpr double kContactTexels = 8.0;
+/// From which visibility on, and in which receivers, an image has a fault that a person sees.
+struct ArtefactLimits {
+  double acne_below = 0.9;         ///< visibility of a wholly lit receiver
+  double guard_texels = 1.0;       ///< the surroundings of a receiver are the run's widest kernel and this much around it
+  double leak_above = 0.1;         ///< visibility of a wholly blocked receiver
+  double contact_gap_above = 0.5;  ///< visibility of a receiver that is blocked by what touches it (peter-panning)
+  double contact_texels = 8.0;     ///< how near along the light that is at most; what leaks is blocked by something farther
+  double noise_above = 0.05;       ///< image less its percentage-closer filter, away from its 3 x 3 mean
+};
+inline constexpr ArtefactLimits kArtefactLimits;
 
 /// A rate over fewer receivers would say more of the view than of the filter.
 inline constexpr int kFewestReceivers = 100;
@@ -46,13 +46,13 @@ ArtefactMasks make_artefact_masks(const RaysAtReceivers& rays);
 
 /// The share of a mask's pixels whose value is less than a limit. Pixels that are not finite are at fault.
 /// Gives nothing for a mask of fewer than kFewestReceivers.
-std::optional<double> rate_below(std::span<const float> image, std::span<const std::uint8_t> mask, float limit);
+std::optional<double> rate_below(std::span<const float> image, std::span<const std::uint8_t> mask, double limit);
 
 /// The share of a mask's pixels whose value is greater than a limit, likewise.
-std::optional<double> rate_above(std::span<const float> image, std::span<const std::uint8_t> mask, float limit);
+std::optional<double> rate_above(std::span<const float> image, std::span<const std::uint8_t> mask, double limit);
 
 /// The share of a filter's penumbra that is noisy: the image less the brute-force percentage-closer filter of its kernel
-/// deviates from its own mean over 3 x 3 pixels by more than kNoiseAbove. The penumbra is where the ray-traced kernel lies
+/// deviates from its own mean over 3 x 3 pixels by more than noise_above. The penumbra is where the ray-traced kernel lies
 /// strictly between 0 and 1 and all nine pixels count. Edges that the map draws as stairs are in image and percentage-closer
 /// filter alike, and cancel. Meant for filters that compare; a bound differs from its percentage-closer filter by more than
 /// noise. Gives nothing where the penumbra has fewer than kFewestReceivers.

@@ -22,25 +22,56 @@ constexpr int kEdgePoints = 16;
 
 using Counts = std::array<int, kScrambles>;
 
-/// One point of all scrambles as a packet. Rays below the receiver's own plane stay inactive.
-RayPacket make_packet(const RayFan& fan, const SampleSets::Lanes& lanes) {
-  RayPacket packet;
-  packet.reach = fan.reach;
-  for (int axis = 0; axis < 3; ++axis) {
-    RayPacket::Lanes& origin = packet.origin[static_cast<std::size_t>(axis)];
-    RayPacket::Lanes& direction = packet.direction[static_cast<std::size_t>(axis)];
-    for (std::size_t i = 0; i < lanes.x.size(); ++i) {
-      origin[i] = fan.origin[axis] + lanes.x[i] * fan.origin_x[axis] + lanes.y[i] * fan.origin_y[axis];
-      direction[i] = fan.direction[axis] + lanes.x[i] * fan.direction_x[axis] + lanes.y[i] * fan.direction_y[axis];
+/// Writes base + x * along_x + y * along_y, lane by lane.
+void write_lanes(RayPacket::Lanes& to, float base, float along_x, float along_y, const SampleSets::Lanes& offsets) {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] = base + offsets.x[i] * along_x + offsets.y[i] * along_y;
+}
+
+/// Traces a fan's points, one packet of all scrambles for each, and counts the rays that reach the light.
+class FanTracer {
+ public:
+  explicit FanTracer(const RayFan& fan) : fan_(fan) {
+    static constexpr SampleSets::Lanes kCentre{};
+    write(kCentre, packet_.origin, fan.origin, fan.origin_x, fan.origin_y);
+    write(kCentre, packet_.direction, fan.direction, fan.direction_x, fan.direction_y);
+    find_active();
+  }
+
+  void trace(const Occluders& occluders, const SampleSets::Lanes& offsets, const TraceSettings& settings) {
+    if (fan_.origin_moves) write(offsets, packet_.origin, fan_.origin, fan_.origin_x, fan_.origin_y);
+    if (fan_.direction_moves) {
+      write(offsets, packet_.direction, fan_.direction, fan_.direction_x, fan_.direction_y);
+      find_active();
+    }
+    packet_.reach.fill(fan_.reach);
+    if (settings.on_packet) settings.on_packet(packet_);
+    occluders.find_blocked(packet_);
+    for (std::size_t s = 0; s < lit_.size(); ++s) lit_[s] -= packet_.reach[s] < 0.0f ? 0 : packet_.active[s];
+  }
+
+  const Counts& lit() const { return lit_; }
+
+ private:
+  const RayFan& fan_;
+  RayPacket packet_;
+  Counts lit_{};
+
+  static void write(const SampleSets::Lanes& offsets, std::array<RayPacket::Lanes, 3>& to, const glm::vec3& base,
+                    const glm::vec3& along_x, const glm::vec3& along_y) {
+    for (int axis = 0; axis < 3; ++axis) {
+      write_lanes(to[static_cast<std::size_t>(axis)], base[axis], along_x[axis], along_y[axis], offsets);
     }
   }
-  const auto& d = packet.direction;
-  for (std::size_t i = 0; i < lanes.x.size(); ++i) {
-    const float above = d[0][i] * fan.normal.x + d[1][i] * fan.normal.y + d[2][i] * fan.normal.z;
-    packet.active |= (above > 0.0f ? 1u : 0u) << i;
+
+  /// Rays below the receiver's own plane are blocked by it.
+  void find_active() {
+    const auto& d = packet_.direction;
+    for (std::size_t i = 0; i < packet_.active.size(); ++i) {
+      const float above = d[0][i] * fan_.normal.x + d[1][i] * fan_.normal.y + d[2][i] * fan_.normal.z;
+      packet_.active[i] = above > 0.0f ? -1 : 0;
+    }
   }
-  return packet;
-}
+};
 
 class AdaptiveTracer {
  public:
@@ -103,18 +134,12 @@ class AdaptiveTracer {
     const RayFan fan = make_fan_(receivers_.points[pixel]);
     const std::uint32_t key = static_cast<std::uint32_t>(pixel) + filters::hash_bits(settings_.seed);
     const int set = static_cast<int>(filters::hash_bits(key) % SampleSets::kSets);
-    Counts lit{};
+    FanTracer tracer(fan);
     int traced = 0;
     for (int points = least; points <= most; points *= 2) {
-      for (; traced < points; ++traced) add(lit, make_packet(fan, samples_.at(set, traced)));
-      if (conclude(pixel, lit, points) <= settings_.standard_error) break;
+      for (; traced < points; ++traced) tracer.trace(occluders_, samples_.at(set, traced), settings_);
+      if (conclude(pixel, tracer.lit(), points) <= settings_.standard_error) break;
     }
-  }
-
-  void add(Counts& lit, const RayPacket& packet) const {
-    if (settings_.on_packet) settings_.on_packet(packet);
-    const std::uint32_t seen = packet.active & ~occluders_.find_blocked(packet);
-    for (std::size_t s = 0; s < lit.size(); ++s) lit[s] += static_cast<int>(seen >> s & 1u);
   }
 
   /// Notes mean and standard error over the scrambles; gives the latter.

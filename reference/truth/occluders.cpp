@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <limits>
 
 #include "reference/truth/cut_out.h"
@@ -28,25 +30,11 @@ std::vector<std::uint32_t> keep_triangles_with_area(const OccluderMesh& mesh) {
   return kept;
 }
 
-/// The part of a 16-wide ray that occlusion and intersection have in common.
-void fill(RTCRay16& rays, int (&valid)[RayPacket::kSize], const RayPacket& packet) {
-  const auto copy = [](const RayPacket::Lanes& from, float (&to)[RayPacket::kSize]) { std::copy(from.begin(), from.end(), to); };
-  copy(packet.origin[0], rays.org_x);
-  copy(packet.origin[1], rays.org_y);
-  copy(packet.origin[2], rays.org_z);
-  copy(packet.direction[0], rays.dir_x);
-  copy(packet.direction[1], rays.dir_y);
-  copy(packet.direction[2], rays.dir_z);
-  for (int i = 0; i < RayPacket::kSize; ++i) {
-    valid[i] = packet.active >> i & 1u ? -1 : 0;
-    rays.tnear[i] = 0.0f;
-    rays.tfar[i] = packet.reach;
-    rays.time[i] = 0.0f;
-    rays.mask[i] = 0xffffffffu;
-    rays.id[i] = 0;
-    rays.flags[i] = 0;
-  }
-}
+// A packet is handed to Embree as it is.
+static_assert(sizeof(RTCRay16) == offsetof(RayPacket, active));
+static_assert(offsetof(RTCRay16, dir_x) == offsetof(RayPacket, direction));
+static_assert(offsetof(RTCRay16, tfar) == offsetof(RayPacket, reach));
+static_assert(offsetof(RTCRay16, mask) == offsetof(RayPacket, mask));
 
 }  // namespace
 
@@ -103,31 +91,22 @@ Occluders::~Occluders() = default;
 Occluders::Occluders(Occluders&&) noexcept = default;
 Occluders& Occluders::operator=(Occluders&&) noexcept = default;
 
-std::uint32_t Occluders::find_blocked(const RayPacket& packet) const {
-  RTCRay16 rays;
-  alignas(64) int valid[RayPacket::kSize];
-  fill(rays, valid, packet);
+void Occluders::find_blocked(RayPacket& packet) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcOccluded16(valid, impl_->scene, &context, &rays);
-  std::uint32_t blocked = 0;
-  for (int i = 0; i < RayPacket::kSize; ++i) {
-    if (rays.tfar[i] < 0.0f) blocked |= 1u << i;  // Embree marks a hit with -inf
-  }
-  return blocked & packet.active;
+  rtcOccluded16(packet.active.data(), impl_->scene, &context, reinterpret_cast<RTCRay16*>(&packet));
 }
 
 RayPacket::Lanes Occluders::find_nearest(const RayPacket& packet) const {
   RTCRayHit16 hits;
-  alignas(64) int valid[RayPacket::kSize];
-  fill(hits.ray, valid, packet);
+  std::memcpy(&hits.ray, &packet, sizeof(hits.ray));
   std::fill(std::begin(hits.hit.geomID), std::end(hits.hit.geomID), RTC_INVALID_GEOMETRY_ID);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcIntersect16(valid, impl_->scene, &context, &hits);
+  rtcIntersect16(packet.active.data(), impl_->scene, &context, &hits);
   RayPacket::Lanes distances;
   for (std::size_t i = 0; i < distances.size(); ++i) {
-    const bool is_hit = valid[i] != 0 && hits.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+    const bool is_hit = packet.active[i] != 0 && hits.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
     distances[i] = is_hit ? hits.ray.tfar[i] : std::numeric_limits<float>::infinity();
   }
   return distances;

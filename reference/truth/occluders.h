@@ -46,9 +46,8 @@ class Occluders {
   Occluders(Occluders&&) noexcept;
   Occluders& operator=(Occluders&&) noexcept;
 
-  /// Says for each active ray of a packet whether anything blocks it, as bits: bit i belongs to ray i. Safe to call from
-  /// many threads.
-  std::uint32_t find_blocked(const RayPacket& packet) const;
+  /// Sets `reach` of each active ray that anything blocks to minus infinity. Safe to call from many threads.
+  void find_blocked(RayPacket& packet) const;
 
   /// Gives for each active ray how far it gets, in units of its direction's length; infinity where nothing is hit.
   RayPacket::Lanes find_nearest(const RayPacket& packet) const;

@@ -4,26 +4,42 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 namespace shadowbench::reference {
 
-/// Sixteen rays, traced together; world space.
-struct RayPacket {
+/// Sixteen rays, traced together; world space. The fields before `active` lie as Embree wants them.
+struct alignas(64) RayPacket {
   static constexpr int kSize = 16;
   using Lanes = std::array<float, kSize>;
+  using Words = std::array<std::uint32_t, kSize>;
 
-  alignas(64) std::array<Lanes, 3> origin;     ///< x, y, z
-  alignas(64) std::array<Lanes, 3> direction;  ///< x, y, z; need not be of unit length
-  float reach = 0.0f;                          ///< in units of a direction's length; infinity for lights at infinity
-  std::uint32_t active = 0;                    ///< bit i: ray i is traced
+  std::array<Lanes, 3> origin{};     ///< x, y, z
+  Lanes nearest{};                   ///< 0
+  std::array<Lanes, 3> direction{};  ///< x, y, z; need not be of unit length
+  Lanes time{};
+  Lanes reach{};  ///< in units of a direction's length; infinity for lights at infinity
+  Words mask = every(0xffffffffu);
+  Words id{};
+  Words flags{};
+  alignas(64) std::array<std::int32_t, kSize> active{};  ///< -1: traced, 0: not
+
+  template <class T>
+  static constexpr std::array<T, kSize> every(T value) {
+    std::array<T, kSize> lanes{};
+    lanes.fill(value);
+    return lanes;
+  }
 
   /// Sets a ray and makes it active.
-  void set(int lane, const glm::vec3& from, const glm::vec3& towards) {
+  void set(std::size_t lane, const glm::vec3& from, const glm::vec3& towards,
+           float length = std::numeric_limits<float>::infinity()) {
     for (int axis = 0; axis < 3; ++axis) {
-      origin[static_cast<std::size_t>(axis)][static_cast<std::size_t>(lane)] = from[axis];
-      direction[static_cast<std::size_t>(axis)][static_cast<std::size_t>(lane)] = towards[axis];
+      origin[static_cast<std::size_t>(axis)][lane] = from[axis];
+      direction[static_cast<std::size_t>(axis)][lane] = towards[axis];
     }
-    active |= 1u << lane;
+    reach[lane] = length;
+    active[lane] = -1;
   }
 };
 

@@ -28,6 +28,7 @@ RayFan make_kernel_fan(const Occluders& occluders, const ReceiverPoint& point, c
   fan.direction = grid.to_light;
   fan.normal = point.normal_ws;
   fan.reach = std::numeric_limits<float>::infinity();
+  fan.direction_moves = false;
   return fan;
 }
 
@@ -61,6 +62,7 @@ TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& rec
     fan.direction_y = light.half_v();
     fan.normal = point.normal_ws;
     fan.reach = light.reach();
+    fan.origin_moves = false;
     return fan;
   });
 }
@@ -89,15 +91,17 @@ std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& r
   std::vector<float> visibility(receivers.points.size(), 1.0f);
   for_each_group(receivers, [&](const std::vector<std::size_t>& group) {
     RayPacket packet;
-    packet.reach = light.reach();
     for (std::size_t lane = 0; lane < group.size(); ++lane) {
       const ReceiverPoint& point = receivers.points[group[lane]];
       const glm::vec3 origin = occluders.offset_origin(point.position_ws, point.normal_ws);
       const glm::vec3 direction = light.centre_direction(glm::dvec3(origin));
-      if (glm::dot(direction, point.normal_ws) > 0.0f) packet.set(static_cast<int>(lane), origin, direction);
+      packet.set(lane, origin, direction, light.reach());
+      if (!(glm::dot(direction, point.normal_ws) > 0.0f)) packet.active[lane] = 0;  // below the receiver's own plane
     }
-    const std::uint32_t seen = packet.active & ~occluders.find_blocked(packet);
-    for (std::size_t lane = 0; lane < group.size(); ++lane) visibility[group[lane]] = seen >> lane & 1u ? 1.0f : 0.0f;
+    occluders.find_blocked(packet);
+    for (std::size_t lane = 0; lane < group.size(); ++lane) {
+      visibility[group[lane]] = packet.active[lane] != 0 && packet.reach[lane] >= 0.0f ? 1.0f : 0.0f;
+    }
   });
   return visibility;
 }
@@ -107,7 +111,6 @@ std::vector<float> trace_first_blockers(const Occluders& occluders, const Receiv
   std::vector<float> distances(receivers.points.size(), std::numeric_limits<float>::infinity());
   for_each_group(receivers, [&](const std::vector<std::size_t>& group) {
     RayPacket packet;
-    packet.reach = 1.0f;
     RayPacket::Lanes lengths{};
     for (std::size_t lane = 0; lane < group.size(); ++lane) {
       const ReceiverPoint& point = receivers.points[group[lane]];
@@ -115,7 +118,7 @@ std::vector<float> trace_first_blockers(const Occluders& occluders, const Receiv
       // From beyond everything, back to the receiver.
       lengths[lane] = 1.01f * (glm::length(origin) + occluders.farthest());
       const glm::vec3 way = glm::vec3(glm::normalize(to_light)) * lengths[lane];
-      packet.set(static_cast<int>(lane), origin + way, -way);
+      packet.set(lane, origin + way, -way, 1.0f);
     }
     const RayPacket::Lanes hits = occluders.find_nearest(packet);
     for (std::size_t lane = 0; lane < group.size(); ++lane) {

@@ -24,6 +24,13 @@ TEST(ErrorScale, IsTheTopOfTheErrors_RoundedUp) {
   EXPECT_DOUBLE_EQ(choose_error_scale({&image}), 0.5);
 }
 
+TEST(ErrorScale, RoundingErrorsAllOverAnImage_HaveNoSay) {
+  Image image(100, 10, 1);
+  std::fill(image.texels.begin(), image.texels.end(), 1e-7f);
+  std::fill_n(image.texels.begin(), 10, 0.4f);
+  EXPECT_DOUBLE_EQ(choose_error_scale({&image}), 0.5);
+}
+
 TEST(ErrorScale, OfNoError_IsTheSmallest) {
   const Image image(4, 4, 1);
   EXPECT_DOUBLE_EQ(choose_error_scale({&image}), 0.01);

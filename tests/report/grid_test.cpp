@@ -12,6 +12,9 @@
 namespace shadowbench::report {
 namespace {
 
+using ::testing::HasSubstr;
+using ::testing::Not;
+
 constexpr int kFrameWidth = 2;
 
 bool overlaps(const Rect& a, const Rect& b) {
@@ -36,6 +39,15 @@ std::vector<Rect> list_boxes(const GridLayout& layout) {
     }
   }
   boxes.insert(boxes.end(), layout.message_boxes.begin(), layout.message_boxes.end());
+  for (const BarPlace& bar : layout.bars) {
+    boxes.push_back(bar.box);
+  }
+  for (const Swatch& swatch : layout.swatches) {
+    boxes.push_back(swatch.box);
+  }
+  if (layout.color_bar) {
+    boxes.push_back(grow(*layout.color_bar, 1));
+  }
   return boxes;
 }
 
@@ -79,6 +91,14 @@ std::vector<Panel> panels_of(const Grid& grid, PanelKind kind) {
   return panels;
 }
 
+Grid make_hard_attributed_grid() {
+  Grid grid = make_attributed_grid(7, 96, 54);
+  grid.tiles[5].no_attribution = std::string(300, 'x') + " and more";
+  grid.tiles[4] = {"mine", "radius 4", {}, {}, {}, "timed out after 10 s"};
+  grid.tiles[2].attribution = AttributionBar{{0.5, -0.25, -0.25, 0.5}};
+  return grid;
+}
+
 Grid make_hard_grid() {
   Grid grid = make_grid(7, 96, 54);
   grid.title = "A scene whose title is so long that it must be wrapped, because someone named it so and meant it so";
@@ -113,6 +133,35 @@ TEST(Grid, LongTextsAndFailedTile_NothingOverlapsAndNothingIsCut) {
   Grid failed;
   failed.tiles = {{"vsm", "radius 4", {}, {}, {}, "the filter crashed"}};
   expect_sound(failed);
+}
+
+TEST(Grid, AnyNumberOfBars_NothingOverlapsAndNothingIsCut) {
+  for (int tiles = 1; tiles <= 9; ++tiles) {
+    SCOPED_TRACE(tiles);
+    expect_sound(make_attributed_grid(tiles, 96, 54));
+  }
+}
+
+TEST(Grid, BarsBesideFailedTilesAndLongReasons_NothingOverlapsAndNothingIsCut) {
+  Grid grid = make_hard_attributed_grid();
+  expect_sound(grid);
+  for (const int columns : {1, 2, 4}) {
+    grid.columns = columns;
+    expect_sound(grid);
+  }
+}
+
+TEST(Grid, OnlyErrors_NothingOverlapsAndThereIsNoMessage) {
+  Grid grid = make_attributed_grid(5, 96, 54);
+  for (GridTile& tile : grid.tiles) {
+    tile.picture = Image();
+    tile.visibility = Image();
+  }
+  grid.tiles[0].error = grid.tiles[1].error;
+  expect_sound(grid);
+  EXPECT_TRUE(layout_grid(grid).message_boxes.empty());
+  EXPECT_EQ(panels_of(grid, PanelKind::kError).size(), 5u);
+  EXPECT_THAT(all_text(grid), Not(HasSubstr("shadedpicture")));
 }
 
 TEST(Grid, EveryText_IsShownWhole) {
@@ -219,14 +268,15 @@ TEST(Grid, TexelThatIsNotFinite_IsMagenta) {
 
 // The drawn picture, not the plan: ink outside the boxes would be text cut off or overlapping.
 TEST(Grid, OutsideTheBoxes_TheCanvasIsEmpty) {
-  const Grid grid = make_hard_grid();
-  Image canvas = draw_grid(grid);
-  for (const Rect& box : list_boxes(layout_grid(grid))) {
-    for (int y = box.y; y < box.y + box.height; ++y) {
-      std::fill_n(canvas.at(box.x, y), box.width * 3, 1.0f);
+  for (const Grid& grid : {make_hard_grid(), make_hard_attributed_grid()}) {
+    Image canvas = draw_grid(grid);
+    for (const Rect& box : list_boxes(layout_grid(grid))) {
+      for (int y = box.y; y < box.y + box.height; ++y) {
+        std::fill_n(canvas.at(box.x, y), box.width * 3, 1.0f);
+      }
     }
+    EXPECT_THAT(canvas.texels, ::testing::Each(1.0f));
   }
-  EXPECT_THAT(canvas.texels, ::testing::Each(1.0f));
 }
 
 TEST(Grid, CropIsOutlinedOnThePicture) {
@@ -272,6 +322,88 @@ TEST(Grid, TilesWithErrors_GetAHeatMapAndOneColourBar) {
   const float* right = drawn.at(bar.x + bar.width - 3, bar.y + 2);
   EXPECT_GT(left[2], left[0] + 0.3f);
   EXPECT_GT(right[0], right[2] + 0.3f);
+}
+
+// How many pixels of a row have a colour.
+int count_in_row(const Image& canvas, const Rect& row, const Rgb& color) {
+  int count = 0;
+  for (int x = row.x; x < row.x + row.width; ++x) {
+    count += std::equal(color.begin(), color.end(), canvas.at(x, row.y)) ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(Grid, BarsLengths_AreInPixelsOfOneScale) {
+  Grid grid = make_grid(3, 96, 54);
+  grid.tiles[1].attribution = AttributionBar{{0.0, 0.03, 0.0, 0.01}};
+  grid.tiles[2].attribution = AttributionBar{{0.0, 0.015, -0.02, 0.02}};
+  const GridLayout layout = layout_grid(grid);
+  const Image canvas = draw_grid(grid);
+  ASSERT_EQ(layout.bars.size(), 2u);
+  EXPECT_DOUBLE_EQ(layout.bar_scale->length, 0.06);
+  for (const BarPlace& bar : layout.bars) {
+    const PartValues& lengths = grid.tiles[bar.tile].attribution->lengths;
+    const Rect row{bar.track.x, bar.track.y + bar.track.height / 2, bar.track.width, 1};
+    for (std::size_t part = 0; part < kErrorParts; ++part) {
+      const double expected = std::abs(lengths[part]) / layout.bar_scale->length * bar.track.width;
+      EXPECT_NEAR(count_in_row(canvas, row, list_error_parts()[part].color), expected, 3.5)
+          << part;  // the tick hides 3
+    }
+    EXPECT_NEAR(bar.zero_line.x, bar.track.x + bar.track.width / 3.0, 1.0);
+    EXPECT_EQ(count_in_row(canvas, bar.net_tick, Rgb{0.0f, 0.0f, 0.0f}), bar.net_tick.width);
+  }
+}
+
+TEST(Grid, Bars_LieBetweenTheErrorAndTheCrop) {
+  const Grid grid = make_attributed_grid(3, 96, 54);
+  const GridLayout layout = layout_grid(grid);
+  ASSERT_FALSE(layout.bars.empty());
+  for (const BarPlace& bar : layout.bars) {
+    for (const Panel& panel : layout.panels) {
+      const bool is_crop = panel.kind == PanelKind::kPictureCrop || panel.kind == PanelKind::kVisibilityCrop;
+      EXPECT_EQ(panel.box.y > bar.box.y, is_crop);
+    }
+  }
+}
+
+TEST(Grid, BarsLegend_NamesThePartsBesideTheirColoursAndTheLength) {
+  const Grid grid = make_attributed_grid(4, 96, 54);
+  const std::string text = all_text(grid);
+  EXPECT_THAT(text, HasSubstr("thefullwidth0.06"));
+  EXPECT_THAT(text, HasSubstr("estimator83%,model28%"));
+  const GridLayout layout = layout_grid(grid);
+  const Image canvas = draw_grid(grid);
+  ASSERT_EQ(layout.swatches.size(), kErrorParts);
+  for (const Swatch& swatch : layout.swatches) {
+    const Rgb& color = list_error_parts()[swatch.part].color;
+    EXPECT_EQ(count_in_row(canvas, swatch.box, color), swatch.box.width);
+    EXPECT_TRUE(std::any_of(layout.texts.begin(), layout.texts.end(), [&](const TextLine& line) {
+      return line.text == list_error_parts()[swatch.part].name && line.box.y == swatch.box.y;
+    }));
+  }
+}
+
+TEST(Grid, BarsLength_IsWrittenWithoutRoundingErrors) {
+  Grid grid = make_grid(1, 96, 54);
+  grid.tiles[0].attribution = AttributionBar{{0.0, 0.3, 0.0, 0.0}};
+  EXPECT_THAT(all_text(grid), HasSubstr("thefullwidth0.3."));
+}
+
+TEST(Grid, ReasonForNoBar_IsSaidOnlyWhereThereAreBars) {
+  Grid grid = make_attributed_grid(4, 96, 54);
+  EXPECT_THAT(all_text(grid), HasSubstr("noattribution:thisfilterhasnoscalarmodel"));
+  for (GridTile& tile : grid.tiles) {
+    tile.attribution.reset();
+  }
+  EXPECT_THAT(all_text(grid), Not(HasSubstr("noattribution")));
+  EXPECT_TRUE(layout_grid(grid).swatches.empty());
+}
+
+TEST(Grid, GivenErrorScale_IsTaken) {
+  Grid grid = make_attributed_grid(3, 96, 54);
+  grid.error_scale = 0.7;
+  EXPECT_DOUBLE_EQ(layout_grid(grid).error_scale, 0.7);
+  EXPECT_THAT(all_text(grid), HasSubstr("-0.7(toodark,blue)to+0.7"));
 }
 
 }  // namespace

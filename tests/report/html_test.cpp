@@ -61,8 +61,12 @@ void expect_balanced(const std::string& page) {
 
 CellRecord make_illustrated_cell(const std::string& scene, const std::string& filter) {
   CellRecord cell = make_cell(scene, filter, 4.0);
-  cell.images = {scene + "." + filter + ".png", scene + "." + filter + ".visibility.png", scene + ".depth.png",
-                 scene + ".grid.png", scene + ".exr"};
+  cell.images = {scene + "." + filter + ".png",
+                 scene + "." + filter + ".visibility.png",
+                 scene + ".depth.png",
+                 scene + ".grid.png",
+                 scene + ".exr",
+                 scene + "." + filter + ".attribution.png"};
   return cell;
 }
 
@@ -82,6 +86,42 @@ TEST(Html, HostileNames_AreEscaped) {
   expect_balanced(page);
 }
 
+TEST(Html, Bars_HaveTheirNumbersAsText) {
+  const std::string page = make_index_html(make_run(), {make_attributed_cell("vsm", 0.04, {0.0, 0.75, -0.25, 0.5}),
+                                                        make_attributed_cell("esm", 0.04, {0.0, 0.0, 1.0, 0.0})});
+  EXPECT_THAT(page, HasSubstr("role=\"img\" aria-label=\"vsm: numeric 0 %, estimator 75 %, discretisation -25 %, "
+                              "model 50 %\""));
+  EXPECT_THAT(page, HasSubstr("the full width 0.06"));  // 0.01 to the left, 0.05 to the right of the zero line
+  EXPECT_THAT(page, HasSubstr("<rect x=\"167\" y=\"4\" width=\"500\" height=\"16\" fill=\"#f0bf30\">"));
+  EXPECT_THAT(page, HasSubstr("discretisation and bias"));
+  expect_balanced(page);
+}
+
+TEST(Html, BarsLength_IsWrittenWithoutRoundingErrors) {
+  const CellRecord cell = make_attributed_cell("vsm", 0.3, {0.0, 1.0, 0.0, 0.0});
+  EXPECT_THAT(make_index_html(make_run(), {cell}), HasSubstr("the full width 0.3.<"));
+}
+
+TEST(Html, WithoutAttribution_ThereAreNoBarsOrAReason) {
+  EXPECT_THAT(make_index_html(make_run(), {make_cell("cubes", "vsm", 4.0)}), Not(HasSubstr("<figure class=\"bars\"")));
+  CellRecord without = make_attributed_cell("mine", 0.03, {});
+  without.attribution = {};
+  without.absent["attribution"] = "<no> model";
+  const CellRecord with = make_attributed_cell("vsm", 0.04, {0.0, 0.75, -0.25, 0.5});
+  const std::string page = make_index_html(make_run(), {with, without});
+  EXPECT_THAT(page, HasSubstr("RMSE 0.03 · no attribution: &lt;no&gt; model"));
+  expect_balanced(page);
+}
+
+TEST(Html, HostileNamesInBarsAndPictures_AreEscaped) {
+  CellRecord cell = make_attributed_cell("\"><script>", 0.04, {0.0, 0.75, -0.25, 0.5});
+  cell.images.attribution = "images/\"><script>.png";
+  const std::string page = make_index_html(make_run(), {cell});
+  EXPECT_THAT(page, Not(HasSubstr("<script")));
+  EXPECT_THAT(page, HasSubstr("&quot;&gt;&lt;script&gt;: the error and its four parts"));
+  expect_balanced(page);
+}
+
 TEST(Html, Page_LoadsNothingFromElsewhere) {
   const std::string page = make_index_html(make_run(), {make_illustrated_cell("cubes", "vsm")});
   for (const std::string& url : list_links(page)) {
@@ -98,7 +138,8 @@ TEST(Html, EveryLink_LeadsToAFileOfTheReport) {
   std::vector<std::string> keys;
   for (const std::string scene : {"cubes", "we ird#%<scene>?"}) {
     const CellRecord cell = make_illustrated_cell(scene, "vsm");
-    for (const auto& path : {cell.images.picture, cell.images.visibility, cell.images.depth_map, cell.images.grid}) {
+    for (const auto& path : {cell.images.picture, cell.images.visibility, cell.images.depth_map, cell.images.grid,
+                             cell.images.attribution}) {
       write_grey_png(folder.path() / *path, Image(2, 2, 1));
     }
     write_exr(folder.path() / *cell.images.exr, {{"a", {"Y"}, Image(2, 2, 1)}}, {});
@@ -116,7 +157,7 @@ TEST(Html, EveryLink_LeadsToAFileOfTheReport) {
       ++files;
     }
   }
-  EXPECT_EQ(files, 15u);
+  EXPECT_EQ(files, 17u);
 }
 
 TEST(Html, Page_HoldsWhatTheReportIsOf) {
@@ -126,9 +167,10 @@ TEST(Html, Page_HoldsWhatTheReportIsOf) {
   failed.status = CellStatus::kCrashed;
   failed.message = "signal 11";
   const std::string page = make_index_html(run, {make_illustrated_cell("cubes", "vsm"), failed});
-  for (const char* text : {"cubes: Three cubes on a floor", "Some CPU", "something is odd", "crashed: signal 11",
-                           "CPU time (software rasteriser)", "cubes.grid.png", "cubes.depth.png", "cubes.exr",
-                           "timings.csv", "results.json", "no truth in this run", "class=\"scroll\""}) {
+  for (const char* text :
+       {"cubes: Three cubes on a floor", "Some CPU", "something is odd", "crashed: signal 11",
+        "CPU time (software rasteriser)", "cubes.grid.png", "cubes.depth.png", "cubes.exr", "cubes.vsm.attribution.png",
+        "timings.csv", "results.json", "no truth in this run", "class=\"scroll\""}) {
     EXPECT_THAT(page, HasSubstr(text));
   }
 }

@@ -53,7 +53,7 @@ CellRecord make_full_cell() {
   cell.truth = {0.001, 0.9};
   cell.artefact = {0.1, 0.2, 0.3, 0.4};
   cell.attribution = {{0.1, 0.5}, {0.2, -0.1}, {0.3, 0.2}, {0.4, 0.4}};
-  cell.images = {"a.png", "b.png", "c.png", "d.png", "e.exr"};
+  cell.images = {"a.png", "b.png", "c.png", "d.png", "e.exr", "f.png"};
   cell.absent.clear();
   return cell;
 }
@@ -79,6 +79,7 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   EXPECT_EQ(back.ratio_to_none.moving->ci95.high, 2.75);
   EXPECT_EQ(back.time_ms.prefilter->n, 3);
   EXPECT_EQ(back.images.exr, "e.exr");
+  EXPECT_EQ(back.images.attribution, "f.png");
   EXPECT_EQ(std::get<std::string>(back.params.at("store")), "rg32f");
 }
 
@@ -174,6 +175,10 @@ TEST(JsonIo, BrokenRecords_AreRefusedByTheSchema) {
       json::parse(R"([{"op": "replace", "path": "/cells/0/params/radius", "value": null}])"),
       json::parse(R"([{"op": "replace", "path": "/cells/0/key", "value": "../../x"}])"),
       json::parse(R"([{"op": "replace", "path": "/cells/0/images/picture", "value": "/etc/passwd"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/images/attribution", "value": "/etc/passwd"}])"),
+      json::parse(R"([{"op": "remove", "path": "/cells/0/images/attribution"}])"),
+      json::parse(R"([{"op": "remove", "path": "/work/truths_cached"}])"),
+      json::parse(R"([{"op": "replace", "path": "/work/truths_traced", "value": -1}])"),
       json::parse(R"([{"op": "replace", "path": "/schema_version", "value": 2}])"),
       json::parse(R"([{"op": "add", "path": "/extra", "value": 1}])"),
       json::parse(R"([{"op": "remove", "path": "/gl/timer"}])"),
@@ -197,6 +202,8 @@ TEST(JsonIo, Results_HoldTheNamedCellsInTheGivenOrder) {
   EXPECT_EQ(results.cells[0].filter, "vsm");
   EXPECT_EQ(results.cells[1].filter, "none");
   EXPECT_EQ(to_json(results.run), to_json(make_run()));
+  EXPECT_EQ(results.run.work.truths_traced, 5);
+  EXPECT_EQ(results.run.work.truths_cached, 2);
 }
 
 TEST(JsonIo, CutOffFile_IsAnInputErrorThatNamesItAndSaysWhatToDo) {

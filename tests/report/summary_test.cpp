@@ -8,10 +8,8 @@ namespace shadowbench::report {
 namespace {
 
 using ::testing::Contains;
-using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Not;
 using ::testing::SizeIs;
 
 CellRecord make_ranked(const std::string& filter, double low, double median, double high) {
@@ -97,19 +95,16 @@ TEST(Summary, Groups_HoldOnlyWhatMayBeCompared) {
   EXPECT_EQ(groups[2].cells[0].map_size, 2048);
 }
 
-TEST(Summary, TableRows_AreAsLongAsTheHeader) {
-  CellRecord empty;
-  empty.filter = "mine";
-  const TextTable table = make_table({"cubes", {make_cell("cubes", "vsm", 4.0), empty}}, make_run().gl);
-  EXPECT_THAT(table.rows, Each(SizeIs(table.header.size())));
-  EXPECT_THAT(table.header, Contains("lookup, ms (CPU), median [quartiles]"));
-  EXPECT_THAT(table.rows[0], Contains("4 [3.92, 4.08]"));
-  EXPECT_THAT(table.rows[1], Not(Contains(HasSubstr("nan"))));
-}
-
 TEST(Summary, Absences_AreCounted) {
   const auto counts = count_absences({make_cell("cubes", "a", 1.0), make_cell("cubes", "b", 1.0)});
   EXPECT_EQ(counts.at("error: no truth in this run"), 2);
+}
+
+TEST(Summary, WorkLine_CountsTruthsTracedAndReadFromTheCache) {
+  EXPECT_THAT(list_run_facts(make_run()),
+              Contains(::testing::Pair("work",
+                                       "12 shader variants compiled, 40 passes run, 3 passes skipped because no "
+                                       "filter needed them, 5 truths ray traced, 2 truths read from the cache")));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "report/cell_key.h"
+#include "report/error_parts.h"
 #include "report/grid.h"
 #include "report/records.h"
 
@@ -121,6 +122,36 @@ inline CellRecord make_cell(const std::string& scene, const std::string& filter,
   return cell;
 }
 
+/// That cell with an RMSE of `rmse` to a truth whose standard error is 0.001, and with the shares of its parts.
+inline CellRecord make_attributed_cell(const std::string& filter, double rmse, const PartValues& shares) {
+  CellRecord cell = make_cell("cubes", filter, 4.0);
+  cell.absent.erase("error");
+  cell.error = {rmse, rmse / 4.0, 2.0 * rmse, 1.0, -rmse / 8.0, 0.02, rmse / 2.0};
+  cell.truth = {0.001, 0.9};
+  for (std::size_t i = 0; i < kErrorParts; ++i) {
+    cell.attribution.*list_error_parts()[i].record = {std::abs(shares[i]) * rmse, shares[i]};
+  }
+  return cell;
+}
+
+/// A grid whose first tile is a truth, with neither bar nor reason, and whose others have errors and bars, the last but
+/// one a reason instead, where there are that many.
+inline Grid make_attributed_grid(int tiles, int width, int height) {
+  Grid grid = make_grid(tiles, width, height);
+  const int without = tiles - 2;
+  for (int i = 1; i < tiles; ++i) {
+    GridTile& tile = grid.tiles[static_cast<std::size_t>(i)];
+    tile.error = make_visibility(width, height, 9.0f);
+    for (float& value : tile.error.texels) value = 0.3f * (value - 0.5f);
+    if (i == without && without > 1) {
+      tile.no_attribution = "this filter has no scalar model, so nothing says what it should have computed";
+    } else {
+      tile.attribution = AttributionBar{{0.0001, 0.03, -0.004 * i, 0.01}};
+    }
+  }
+  return grid;
+}
+
 inline RunRecord make_run() {
   RunRecord run;
   run.commit = "0123abc";
@@ -129,7 +160,7 @@ inline RunRecord make_run() {
   run.gl = {"osmesa", "llvmpipe (LLVM 15.0.6, 256 bits)", "4.5 (Core Profile) Mesa 22.3.6", true,
             TimerKind::kWallClock};
   run.machine = {"Some CPU", 2, 0.25, "GCC 12.2.0", "Debian GNU/Linux 12"};
-  run.work = {12, 40, 3};
+  run.work = {12, 40, 3, 5, 2};
   run.scenes = {{"cubes", "Three cubes on a floor"}};
   return run;
 }

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "report/record_fields.h"
 #include "synthetic.h"
 
 namespace shadowbench::report {
@@ -121,6 +122,55 @@ TEST(AccuracyCsv, HoldsTheErrors_AndEmptyFieldsWhereThereAreNone) {
   EXPECT_EQ(rows[1][column("mean")], "-0.125");
   EXPECT_EQ(rows[1][column("truth_se")], "0.0009765625");
   EXPECT_EQ(rows[1][column("max")], "");
+}
+
+TEST(AccuracyCsv, HoldsArtefactsAndAttribution) {
+  CellRecord cell = make_attributed_cell("vsm", 0.5, {0.125, 0.75, -0.25, 0.375});
+  cell.artefact = {0.1, 0.2, 0.3, 0.4};
+  const auto rows = parse_csv(make_csv(CsvTable::kAccuracy, make_run(), {cell}));
+  EXPECT_EQ(field(rows, 1, "kernel_rmse"), "0.25");
+  EXPECT_EQ(field(rows, 1, "acne"), "0.1");
+  EXPECT_EQ(field(rows, 1, "leak"), "0.2");
+  EXPECT_EQ(field(rows, 1, "contact_gap"), "0.3");
+  EXPECT_EQ(field(rows, 1, "noise"), "0.4");
+  EXPECT_EQ(field(rows, 1, "numeric_rms"), "0.0625");
+  EXPECT_EQ(field(rows, 1, "estimator_share"), "0.75");
+  EXPECT_EQ(field(rows, 1, "discretisation_share"), "-0.25");
+  EXPECT_EQ(field(rows, 1, "model_rms"), "0.1875");
+}
+
+// The column of a record's field: "error.rmse" is rmse, "truth.se" is truth_se, "attribution.model.rms" is model_rms.
+std::string column_of(std::string path) {
+  for (const char* group : {"error.", "artefact.", "attribution."}) {
+    if (path.rfind(group, 0) == 0) path.erase(0, std::string(group).size());
+  }
+  std::replace(path.begin(), path.end(), '.', '_');
+  return path;
+}
+
+TEST(AccuracyCsv, EveryFieldOfTheRecord_HasItsColumnAndItsMeaning) {
+  std::vector<std::string> names;
+  for (const CsvColumn& column : list_csv_columns(CsvTable::kAccuracy)) {
+    EXPECT_FALSE(column.meaning.empty()) << column.name;
+    EXPECT_THAT(names, ::testing::Not(::testing::Contains(column.name)));
+    names.push_back(column.name);
+  }
+  const CellRecord empty;
+  visit_cell_fields(empty, [&](const std::string& path, const auto&) {
+    for (const char* group : {"error.", "truth.", "artefact.", "attribution."}) {
+      if (path.rfind(group, 0) == 0) {
+        EXPECT_THAT(names, ::testing::Contains(column_of(path)));
+      }
+    }
+  });
+}
+
+TEST(SummaryMd, HasATableOfCostsAndOneOfErrors) {
+  const std::string summary = make_summary(make_run(), {make_attributed_cell("vsm", 0.04, {0.001, 0.71, 0.089, 0.2})});
+  for (const char* text : {"### What it costs", "### How wrong it is, and why", "| estimator 71 % |",
+                           "`estimator_share`:", "5 truths ray traced", "Most of the error of vsm"}) {
+    EXPECT_THAT(summary, HasSubstr(text));
+  }
 }
 
 }  // namespace

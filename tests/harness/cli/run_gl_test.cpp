@@ -112,6 +112,44 @@ TEST_F(Command, EveryCell_IsScoredAgainstTheTruth) {
   EXPECT_GT(wide["flip"], none["flip"]);
 }
 
+TEST_F(Command, ASecondRun_TakesItsTruthFromTheCache) {
+  const std::string arguments = "run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none,pcf2x2";
+  ASSERT_EQ(run(arguments).exit_code, 0);
+  const nlohmann::json first = results(folder());
+  EXPECT_EQ(first["work"]["truths_traced"], 4) << "the view, its surroundings, two kernels";
+  EXPECT_EQ(first["work"]["truths_cached"], 0);
+  ASSERT_EQ(run(arguments).exit_code, 0);
+  const nlohmann::json second = results(folder());
+  EXPECT_EQ(second["work"]["truths_traced"], 0);
+  EXPECT_EQ(second["work"]["truths_cached"], 4);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(first["cells"][i]["error"], second["cells"][i]["error"]);
+    EXPECT_EQ(first["cells"][i]["attribution"], second["cells"][i]["attribution"]);
+  }
+  ASSERT_EQ(run(arguments + " --no-cache").exit_code, 0);
+  EXPECT_EQ(results(folder())["work"]["truths_traced"], 4);
+}
+
+TEST_F(Command, ACacheThatCannotBeWritten_IsWarnedOf_AndTheRunGoesOn) {
+  write("taken", "a file");
+  const Outcome outcome = run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --cache taken");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("--cache"), std::string::npos) << outcome.err;
+  EXPECT_EQ(results(folder())["warnings"].size(), 1u);
+}
+
+TEST_F(Command, AUsersFilter_HasArtefactsButNoAttribution) {
+  const Outcome outcome = run("run --out out --size 128x72 --map-size 64 --rounds 1 --scene cubes --filters none,nine_compares --filter-file " +
+                              user_filter("nine_compares.glsl"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json cell = results(folder())["cells"][1];
+  EXPECT_EQ(cell["filter"], "nine_compares");
+  EXPECT_TRUE(cell["attribution"]["model"]["share"].is_null());
+  EXPECT_EQ(cell["absent"]["attribution"], "the filter has no scalar model");
+  EXPECT_FALSE(cell["artefact"]["acne"].is_null());
+  EXPECT_FALSE(cell["error"]["rmse"].is_null());
+}
+
 TEST_F(Command, WithoutTruth_SaysSo) {
   ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --no-truth").exit_code, 0);
   const nlohmann::json json = results(folder());

@@ -31,19 +31,19 @@ TEST(ArtefactRates, CountFaultsOverTheMask) {
   for (std::size_t i = 0; i < 200; ++i) mask[i] = 1;
   for (std::size_t i = 0; i < 10; ++i) image[i] = 0.2f;
   for (std::size_t i = 300; i < 350; ++i) image[i] = 0.0f;  // outside the mask
-  EXPECT_EQ(rate_below(image, mask, kAcneBelow), 10.0 / 200.0);
-  EXPECT_EQ(rate_above(image, mask, kLeakAbove), 1.0);
+  EXPECT_EQ(rate_below(image, mask, kArtefactLimits.acne_below), 10.0 / 200.0);
+  EXPECT_EQ(rate_above(image, mask, kArtefactLimits.leak_above), 1.0);
   image[20] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(rate_below(image, mask, kAcneBelow), 11.0 / 200.0) << "what is not finite is at fault";
+  EXPECT_EQ(rate_below(image, mask, kArtefactLimits.acne_below), 11.0 / 200.0) << "what is not finite is at fault";
 }
 
 TEST(ArtefactRates, OverTooFewReceivers_AreAbsent) {
   std::vector<std::uint8_t> mask(400, 0);
-  EXPECT_FALSE(rate_below(std::vector<float>(400), mask, kAcneBelow));
+  EXPECT_FALSE(rate_below(std::vector<float>(400), mask, kArtefactLimits.acne_below));
   for (std::size_t i = 0; i + 1 < kFewestReceivers; ++i) mask[i] = 1;
-  EXPECT_FALSE(rate_below(std::vector<float>(400), mask, kAcneBelow));
+  EXPECT_FALSE(rate_below(std::vector<float>(400), mask, kArtefactLimits.acne_below));
   mask[399] = 1;
-  EXPECT_TRUE(rate_below(std::vector<float>(400), mask, kAcneBelow));
+  EXPECT_TRUE(rate_below(std::vector<float>(400), mask, kArtefactLimits.acne_below));
 }
 
 /// A penumbra of 40 x 40 pixels whose percentage-closer filter is a ramp, and an image that differs by `noise(x, y)`.

@@ -1,0 +1,149 @@
+// Whole runs: every cell's error taken apart, and the parts add up in every pixel of the float images.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "harness/run/run_experiment.h"
+#include "report/error_parts.h"
+#include "report/picture_io.h"
+
+namespace shadowbench::test {
+namespace {
+
+class Silent final : public run::Progress {
+  void begin(int) override {}
+  void show(int, const std::string&) override {}
+  void note(const std::string&) override {}
+};
+
+class Attributed : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::temp_directory_path() / ("shadowbench." + std::string(info->name()) + "." + std::to_string(getpid()));
+    options_.resources = run::find_resources();
+    options_.width = 240;
+    options_.height = 135;
+    options_.rounds = 1;
+    options_.out = folder_;
+    options_.command = {"test"};
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  /// Runs filters on a built-in scene and gives its cells.
+  nlohmann::json run(const std::string& scene, const std::string& filters, int map_size = 1024) {
+    options_.scenes = {scene};
+    options_.filters = filters::Catalogue(options_.resources.filters).parse_requests(filters);
+    options_.map_sizes = {map_size};
+    Silent progress;
+    run::run_experiment(options_, progress);
+    std::ifstream file(folder_ / "results.json");
+    return nlohmann::json::parse(file)["cells"];
+  }
+
+  std::vector<float> part(const std::string& name) const {
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      if (entry.path().extension() != ".exr") continue;
+      for (const report::Part& part : report::read_exr(entry.path()).parts) {
+        if (part.name == name) return part.image.texels;
+      }
+    }
+    ADD_FAILURE() << "no part " << name;
+    return {};
+  }
+
+  std::filesystem::path folder_;
+  run::RunOptions options_;
+};
+
+TEST_F(Attributed, PartsAddUp_InEveryPixel_OfEveryFilter) {
+  const nlohmann::json cells = run("cubes", "none,pcf2x2,tent3x3,poisson,vsm,esm");
+  ASSERT_EQ(cells.size(), 6u);
+  const std::vector<float> area = part("truth.area");
+  for (const auto& cell : cells) {
+    const std::string filter = cell["filter"];
+    SCOPED_TRACE(filter);
+    const std::vector<float> image = part(filter + ".visibility");
+    std::vector<double> sum(image.size(), 0.0);
+    for (const report::ErrorPart& error_part : report::list_error_parts()) {
+      const std::vector<float> values = part(filter + ".error." + error_part.id);
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += static_cast<double>(values[i]);
+    }
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      // Where a pixel does not count, image and truth are equal: dark, or background.
+      ASSERT_NEAR(sum[i], static_cast<double>(image[i]) - static_cast<double>(area[i]), 1e-6);
+    }
+    double shares = 0.0;
+    for (const auto& [name, values] : cell["attribution"].items()) shares += values["share"].get<double>();
+    EXPECT_NEAR(shares, 1.0, 1e-9);
+    EXPECT_LT(cell["attribution"]["numeric"]["rms"], 1e-3);
+    EXPECT_GT(cell["attribution"]["model"]["rms"], 0.001);
+    EXPECT_GT(cell["error"]["kernel_rmse"], 0.0);
+    EXPECT_TRUE(std::filesystem::exists(folder_ / cell["images"]["attribution"].get<std::string>()));
+  }
+}
+
+TEST_F(Attributed, FiltersThatCompareTheirKernel_HaveNoEstimatorError) {
+  for (const auto& cell : run("steps", "none,pcf2x2,tent3x3,poisson")) {
+    const double rms = cell["attribution"]["estimator"]["rms"];
+    if (cell["filter"] == "poisson") {
+      EXPECT_GT(rms, 1e-3) << "16 taps are not a disk";
+    } else {
+      EXPECT_LT(rms, 1e-12) << cell["filter"];
+    }
+  }
+}
+
+TEST_F(Attributed, MoreTaps_HaveLessNoise) {
+  const nlohmann::json cells = run("ball", "poisson:taps=4,poisson:taps=32");
+  EXPECT_GT(cells[0]["artefact"]["noise"], 4.0 * cells[1]["artefact"]["noise"].get<double>());
+  EXPECT_GT(cells[0]["attribution"]["estimator"]["rms"], 2.0 * cells[1]["attribution"]["estimator"]["rms"].get<double>());
+}
+
+TEST_F(Attributed, OnStack_VsmFailsByItsEstimator_AndLeaks) {
+  options_.width = 480;
+  options_.height = 270;
+  const nlohmann::json cells = run("stack", "none,vsm");
+  EXPECT_GT(cells[1]["attribution"]["estimator"]["share"], 0.5);
+  EXPECT_GT(cells[1]["artefact"]["leak"], 0.1);
+  EXPECT_EQ(cells[0]["artefact"]["leak"], 0.0);
+}
+
+TEST_F(Attributed, OnFence_WithASmallMap_NoneFailsByItsResolution) {
+  const nlohmann::json cells = run("fence", "none", 256);
+  EXPECT_GT(cells[0]["attribution"]["discretisation"]["share"], 0.5);
+}
+
+TEST_F(Attributed, WithoutBias_AcneIsSeen_AndIsDiscretisation) {
+  options_.bias = {0.0, 0.0, 0.0, 0.0};
+  const nlohmann::json cells = run("steps", "none,pcf2x2");
+  for (const auto& cell : cells) {
+    EXPECT_GT(cell["artefact"]["acne"], 0.05) << cell["filter"];
+    EXPECT_GT(cell["attribution"]["discretisation"]["share"], 0.9) << cell["filter"];
+  }
+  options_.bias = {};
+  for (const auto& cell : run("steps", "none,pcf2x2")) EXPECT_EQ(cell["artefact"]["acne"], 0.0) << cell["filter"];
+}
+
+TEST_F(Attributed, TooMuchBias_OpensContactGaps) {
+  options_.width = 480;
+  options_.height = 270;
+  EXPECT_LT(run("fence", "none")[0]["artefact"]["contact_gap"], 0.5);
+  options_.bias.constant_depth = 0.02;
+  EXPECT_GT(run("fence", "none")[0]["artefact"]["contact_gap"], 0.95);
+}
+
+TEST_F(Attributed, WithoutAttribution_ArtefactsAreStillCounted) {
+  options_.attribution = false;
+  const nlohmann::json cells = run("cubes", "none");
+  EXPECT_TRUE(cells[0]["attribution"]["model"]["share"].is_null());
+  EXPECT_EQ(cells[0]["absent"]["attribution"], "the run was made with --no-attribution");
+  EXPECT_EQ(cells[0]["artefact"]["acne"], 0.0);
+}
+
+}  // namespace
+}  // namespace shadowbench::test
