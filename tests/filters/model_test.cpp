@@ -104,6 +104,45 @@ TEST(EsmModel, LogSpace_DoesNotOverflow) {
   EXPECT_LT(v, 0.5);
 }
 
+/// ESM in log space, whose exponent has no limit but the parameter's; `c` may exceed that here.
+double look_up_esm(const DepthMap& map, int radius, double c, float depth) {
+  static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
+  FilterRequest request = catalogue.parse_requests("esm:combine=log").front();
+  request.values["c"] = c;
+  request.values["radius"] = static_cast<double>(radius);
+  const ModelInput input{request.spec, request.values, map, {}, 0};
+  Receiver r;
+  r.uv = {0.5f + 0.5f / static_cast<float>(map.size), 0.5f + 0.5f / static_cast<float>(map.size)};
+  r.depth = depth;
+  return make_model("esm")->prepare(input, Precision::kDouble)->at(r).visibility;
+}
+
+TEST(EsmModel, OfASingleTexel_TendsToTheHardComparison) {
+  const DepthMap map = make_edge(16, 16, 0.5f, 0.5f);
+  double previous = 1.0;
+  for (const double c : {10.0, 100.0, 1000.0, 10000.0}) {
+    const double blocked = look_up_esm(map, 0, c, 0.502f);
+    EXPECT_NEAR(blocked, std::exp(-c * (static_cast<double>(0.502f) - 0.5)), 1e-12) << c;
+    EXPECT_LT(blocked, previous);
+    EXPECT_EQ(look_up_esm(map, 0, c, 0.4999f), 1.0) << c;
+    previous = blocked;
+  }
+  EXPECT_LT(previous, 1e-8);
+}
+
+TEST(EsmModel, OfAWideKernel_GoesToOne_AsSoonAsATexelIsDeeper) {
+  // All block the receiver but one texel, which lies 0.0005 behind it: the percentage-closer filter is that texel's weight.
+  DepthMap map = make_edge(16, 16, 0.3f, 0.3f);
+  map.depth[8 * 16 + 9] = 0.7005f;
+  const double weight = Kernel::make_gaussian(2, Reconstruction::kNearest).atoms()[2].weight * Kernel::make_gaussian(2, Reconstruction::kNearest).atoms()[3].weight;
+  for (const double c : {100.0, 1000.0, 3000.0}) {
+    const double gap = static_cast<double>(0.7005f) - static_cast<double>(0.7f);
+    EXPECT_NEAR(look_up_esm(map, 2, c, 0.7f), std::min(1.0, weight * std::exp(c * gap)), 1e-9) << c;
+  }
+  EXPECT_LT(weight, 0.2);
+  EXPECT_EQ(look_up_esm(map, 2, 10000.0, 0.7f), 1.0) << "lit, although a fifth of the kernel at most is";
+}
+
 TEST(Prefilter, OutsideTheMap_HoldsDepthOne) {
   const DepthMap map = make_edge(16, 16, 0.25f, 0.25f);
   EXPECT_LT(look_up("vsm:radius=4", map, 8.0, 8.0, 0.5f), 0.01);
