@@ -13,14 +13,14 @@ namespace shadowbench::reference {
 /// The number of independent scrambles; a standard error over them has one degree of freedom less.
 inline constexpr int kScrambles = RayPacket::kSize;
 
-/// Low-discrepancy points, mapped once to where rays go: 64 randomisations, of which neighbouring pixels take different
+/// Low-discrepancy points, mapped once to where rays go: 16 randomisations, of which neighbouring pixels take different
 /// ones, each with 16 independent scrambles side by side as the lanes of a packet.
 ///
 /// Each scramble is a Sobol sequence of its own Owen scrambling; the randomisations differ by digital shifts, which keep
 /// it uniform. The first 4^k points of a scramble are evenly spread.
 class SampleSets {
  public:
-  static constexpr int kSets = 64;
+  static constexpr int kSets = 16;
 
   /// Maps two independent points of [0,1)^2 to an offset.
   using Mapping = std::function<glm::dvec2(const glm::dvec2& first, const glm::dvec2& second)>;
@@ -31,7 +31,7 @@ class SampleSets {
     alignas(64) RayPacket::Lanes y;
   };
 
-  /// Cost: 16 * 64 * `max_points` mappings, 128 bytes for every 16 of them.
+  /// Cost: 16 * 16 * `max_points` mappings, 128 bytes for every 16 of them.
   SampleSets(int max_points, std::uint32_t seed, const Mapping& mapping);
 
   const Lanes& at(int set, int point) const {

@@ -111,7 +111,7 @@ struct Recording {
 
 /// The same rays, traced by the truth and by a bare loop in turns: few enough of them to stay near the cores.
 void occlusion_rays(benchmark::State& state, const char* scene) {
-  const View view(scene, 96, 54);
+  const View view(scene, 160, 90);
   const reference::Occluders occluders = run::make_occluders(view.scene);
   const BareEmbree bare(view.scene);
   const auto light = reference::AreaLight::make_sun(-glm::dvec3(view.scene.light.direction_ws),
