@@ -16,6 +16,9 @@
 namespace shadowbench::filters {
 namespace {
 
+/// A report's pictures are named for filters, and these names are its own.
+constexpr std::string_view kReservedIds[] = {"truth"};
+
 [[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
 
 std::string suggest(const std::string& name, const std::vector<std::string>& known) {
@@ -132,6 +135,9 @@ const FilterSpec& Catalogue::find(const std::string& id) const {
 
 void Catalogue::add_user_file(const std::filesystem::path& path) {
   FilterSpec spec = load_filter(path);
+  if (std::ranges::find(kReservedIds, spec.id) != std::end(kReservedIds)) {
+    fail(fmt::format("filter id '{}' of {} is taken by the report's own pictures: rename the file", spec.id, spec.path));
+  }
   for (const FilterSpec& known : filters_) {
     if (known.id == spec.id) fail(fmt::format("filter id '{}' of {} is taken by {}: rename the file", spec.id, spec.path, known.path));
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdint>
 
 #include "filters/error.h"
 #include "report/atomic_file.h"
@@ -114,6 +115,15 @@ Metadata read_metadata(const OIIO::ImageSpec& spec) {
 }
 
 }  // namespace
+
+Image round_to_half(const Image& image) {
+  Image rounded = image;
+  std::vector<std::uint16_t> halves(image.texels.size());
+  const int count = static_cast<int>(image.texels.size());
+  OIIO::convert_pixel_values(OIIO::TypeDesc::FLOAT, image.texels.data(), OIIO::TypeDesc::HALF, halves.data(), count);
+  OIIO::convert_pixel_values(OIIO::TypeDesc::HALF, halves.data(), OIIO::TypeDesc::FLOAT, rounded.texels.data(), count);
+  return rounded;
+}
 
 void write_exr(const std::filesystem::path& path, const std::vector<Part>& parts, const Metadata& metadata) {
   assert(!parts.empty());

@@ -10,6 +10,7 @@
 
 #include "filters/error.h"
 #include "report/atomic_file.h"
+#include "report/stored_picture.h"
 
 namespace shadowbench::report {
 namespace {
@@ -94,17 +95,10 @@ void write_grey_png(const std::filesystem::path& path, const Image& image, GreyR
             encode_texels(image, finite ? 1 : 3, [&](float value) { return (value - range.black) * scale; }));
 }
 
-Image read_picture(const std::filesystem::path& path) {
-  const auto input = OIIO::ImageInput::open(path.string());
-  if (!input) {
-    throw Error(ErrorKind::kInput, fmt::format("the picture cannot be read ({})", OIIO::geterror()), path.string());
-  }
-  const OIIO::ImageSpec spec = input->spec();
-  Image image(spec.width, spec.height, spec.nchannels);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.texels.data())) {
-    throw Error(ErrorKind::kInput, fmt::format("the picture is damaged ({})", input->geterror()), path.string());
-  }
-  return image;
+float decode_srgb(float code) {
+  return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f);
 }
+
+Image read_picture(const std::filesystem::path& path) { return read_stored_picture(path.string()).image; }
 
 }  // namespace shadowbench::report

@@ -14,6 +14,10 @@ namespace shadowbench::report {
 /// Source: IEC 61966-2-1 (sRGB).
 float encode_srgb(float linear);
 
+/// Decodes one sRGB value in [0,1] to linear; the inverse of encode_srgb().
+/// Source: IEC 61966-2-1 (sRGB).
+float decode_srgb(float code);
+
 /// Writes a linear RGB picture as an 8-bit sRGB PNG.
 /// Requires 3 channels. Values outside [0,1] are clamped; a texel that is not finite becomes magenta.
 /// Throws Error(kOutput).
@@ -48,6 +52,9 @@ struct Part {
 
 /// Holds a file's attributes, by name.
 using Metadata = std::map<std::string, std::variant<double, std::string>>;
+
+/// Rounds a picture to 16-bit floats, as a half part keeps it. Values above 65504 become infinite.
+Image round_to_half(const Image& image);
 
 /// Writes a multi-part OpenEXR file, losslessly compressed; parts may differ in size. Metadata go into every part.
 /// Requires at least one part. Throws Error(kOutput), also where names are not unique.

@@ -13,7 +13,10 @@ using Action = std::function<int()>;
 /// Adds `run`; on parsing, `action` is set to what it does. `words` is the whole command line, for the record.
 void add_run_command(CLI::App& app, Action& action, const std::vector<std::string>& words);
 
-/// Adds `list filters|scenes|gl`.
+/// Adds `list filters|scenes|metrics|gl`.
 void add_list_command(CLI::App& app, Action& action);
+
+/// Adds `diff`.
+void add_diff_command(CLI::App& app, Action& action);
 
 }  // namespace shadowbench::cli

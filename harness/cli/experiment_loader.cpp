@@ -8,14 +8,29 @@
 #include "filters/error.h"
 
 namespace shadowbench::cli {
+namespace {
+
+/// Gives an entry of the module, which is never closed: exceptions and GL drivers keep pointers into it.
+template <class Function>
+Function* load_entry(const char* name) {
+  const auto module = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "shadowbench_experiment.so";
+  void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* entry = handle ? dlsym(handle, name) : nullptr;
+  if (!entry)
+    throw Error(ErrorKind::kUsage, fmt::format("cannot load a part of the program: {}; build it again", dlerror()));
+  return reinterpret_cast<Function*>(entry);
+}
+
+}  // namespace
 
 void load_and_run_experiment(const run::RunOptions& options, run::Progress& progress) {
-  const auto module = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "shadowbench_experiment.so";
-  // Never closed: exceptions and GL drivers keep pointers into it.
-  void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
-  void* entry = handle ? dlsym(handle, "shadowbench_run_experiment") : nullptr;
-  if (!entry) throw Error(ErrorKind::kUsage, fmt::format("cannot load a part of the program: {}; build it again", dlerror()));
-  reinterpret_cast<void (*)(const run::RunOptions&, run::Progress&)>(entry)(options, progress);
+  load_entry<void(const run::RunOptions&, run::Progress&)>("shadowbench_run_experiment")(options, progress);
+}
+
+run::Comparison load_and_compare_pictures(const run::ComparisonOptions& options) {
+  run::Comparison result;
+  load_entry<void(const run::ComparisonOptions&, run::Comparison&)>("shadowbench_compare_pictures")(options, result);
+  return result;
 }
 
 }  // namespace shadowbench::cli

@@ -1,12 +1,18 @@
 #pragma once
 
+#include "harness/run/compare_pictures.h"
 #include "harness/run/options.h"
 #include "harness/run/progress.h"
 
 namespace shadowbench::cli {
 
-/// Loads the module with everything that draws and writes, which lies beside the program, and runs an experiment in it.
-/// Throws Error as run::run_experiment, and Error(kUsage) when the module is missing.
+// Both load the module with everything that draws, reads and writes pictures, which lies beside the program, and throw
+// Error(kUsage) when it is missing.
+
+/// Runs an experiment. Throws Error as run::run_experiment.
 void load_and_run_experiment(const run::RunOptions& options, run::Progress& progress);
+
+/// Compares two pictures. Throws Error as run::compare_pictures.
+run::Comparison load_and_compare_pictures(const run::ComparisonOptions& options);
 
 }  // namespace shadowbench::cli

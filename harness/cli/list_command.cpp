@@ -11,6 +11,7 @@
 #include "harness/gl/timer.h"
 #include "harness/run/options.h"
 #include "harness/scene/load.h"
+#include "reference/metrics/metric_table.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -87,6 +88,35 @@ int list_scenes(const ListArguments& arguments) {
   return 0;
 }
 
+std::string describe_range(const reference::Metric& metric) {
+  const auto& [min, max] = metric.range;
+  if (min && max) return fmt::format("{} .. {}", *min, *max);
+  return min ? fmt::format("{} or more", *min) : "any number";
+}
+
+nlohmann::json to_json(const reference::Metric& metric) {
+  nlohmann::json json = {{"path", metric.path},
+                         {"name", metric.name()},
+                         {"unit", metric.unit},
+                         {"min", nullptr},
+                         {"max", nullptr},
+                         {"definition", metric.definition},
+                         {"diff", metric.source != reference::MetricSource::kRun}};
+  if (metric.range.min) json["min"] = *metric.range.min;
+  if (metric.range.max) json["max"] = *metric.range.max;
+  return json;
+}
+
+int list_metrics(const ListArguments& arguments) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const reference::Metric& metric : reference::metric_table()) {
+    if (arguments.json) json.push_back(to_json(metric));
+    else fmt::print("{}  {}, {}\n  {}\n", metric.path, metric.unit, describe_range(metric), metric.definition);
+  }
+  if (arguments.json) fmt::print("{}\n", json.dump(2));
+  return 0;
+}
+
 int list_gl(const ListArguments& arguments) {
   const gl::ContextChoice choice = gl::create_context(gl::parse_backend(arguments.backend));
   for (const std::string& reason : choice.refused) fmt::print("not used: {}\n", reason);
@@ -103,7 +133,7 @@ int list_gl(const ListArguments& arguments) {
 }  // namespace
 
 void add_list_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("list", "Show what there is: filters, scenes, or the OpenGL underneath");
+  CLI::App* command = app.add_subcommand("list", "Show what there is: filters, scenes, metrics, or the OpenGL underneath");
   command->require_subcommand(1);
   auto a = std::make_shared<ListArguments>();
   CLI::App* filters = command->add_subcommand("filters", "Filters with parameters, ranges, units and source");
@@ -112,6 +142,9 @@ void add_list_command(CLI::App& app, Action& action) {
   CLI::App* scenes = command->add_subcommand("scenes", "Built-in scenes");
   scenes->add_flag("--json", a->json, "as JSON");
   scenes->callback([&action, a] { action = [a] { return list_scenes(*a); }; });
+  CLI::App* metrics = command->add_subcommand("metrics", "Numbers that a run reports, with unit, range and definition");
+  metrics->add_flag("--json", a->json, "as JSON");
+  metrics->callback([&action, a] { action = [a] { return list_metrics(*a); }; });
   CLI::App* gl = command->add_subcommand("gl", "The OpenGL context that a run would use");
   gl->add_flag("--measure", a->measure, "what this GL really does, by experiment");
   gl->add_option("--gl", a->backend, "auto, osmesa, egl or glfw")->capture_default_str();

@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   shadowbench::cli::Action action;
   shadowbench::cli::add_run_command(app, action, {argv, argv + argc});
   shadowbench::cli::add_list_command(app, action);
+  shadowbench::cli::add_diff_command(app, action);
   try {
     app.parse(argc, argv);
     return action();

@@ -1,9 +1,15 @@
-// The one entry of the module that the command line loads when a run begins: the image libraries behind it take 0.2 s
-// to load, which `list` and `--help` should not pay.
+// The entries of the module that the command line loads when there is work to do: the image libraries behind it take
+// 0.2 s to load, which `list` and `--help` should not pay.
 
+#include "harness/run/compare_pictures.h"
 #include "harness/run/run_experiment.h"
 
 extern "C" void shadowbench_run_experiment(const shadowbench::run::RunOptions& options,
                                            shadowbench::run::Progress& progress) {
   shadowbench::run::run_experiment(options, progress);
+}
+
+extern "C" void shadowbench_compare_pictures(const shadowbench::run::ComparisonOptions& options,
+                                             shadowbench::run::Comparison& result) {
+  result = shadowbench::run::compare_pictures(options);
 }

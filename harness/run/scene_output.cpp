@@ -106,6 +106,12 @@ report::Grid make_grid(const RunOptions& options, const SceneTask& task, const S
   return grid;
 }
 
+report::Image make_mask_image(const SceneTruth& truth) {
+  report::Image mask(truth.area.width, truth.area.height, 1);
+  std::copy(truth.mask.begin(), truth.mask.end(), mask.texels.begin());
+  return mask;
+}
+
 /// Writes a cell's own pictures; no two labels share a file.
 void write_cell_pictures(const RunOptions& options, const std::string& stem, MeasuredCell& cell) {
   if (cell.picture.empty()) return;
@@ -162,6 +168,8 @@ void write_float_images(const RunOptions& options, const SceneTask& task, const 
   if (truth.absent.empty()) {
     parts.push_back({"truth.hard", {"Y"}, truth.hard, false});
     parts.push_back({"truth.area", {"Y"}, truth.area, false});
+    parts.push_back({"truth.mask", {"Y"}, make_mask_image(truth), false});
+    parts.push_back({"truth.picture", {"R", "G", "B"}, truth.area_picture, true});
   }
   parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});
   report::write_exr(options.out / exr_name(options, task), parts, describe(options, task, info));

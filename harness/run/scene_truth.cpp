@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
+#include "harness/run/mean_flip.h"
 #include "reference/metrics/error_stats.h"
-#include "reference/metrics/flip.h"
+#include "report/picture_io.h"
 
 namespace shadowbench::run {
 namespace {
@@ -21,23 +21,6 @@ void summarise_errors(SceneTruth& truth, const reference::TracedVisibility& area
   }
   truth.standard_error = std::sqrt(squares / count);
   truth.unanimous = unanimous / count;
-}
-
-/// A display shows 0 to 1.
-reference::LinearPicture to_picture(const report::Image& image) {
-  reference::LinearPicture picture{image.width, image.height, {}};
-  for (std::size_t i = 0; i + 2 < image.texels.size(); i += 3) {
-    picture.pixels.push_back(glm::clamp(glm::vec3(image.texels[i], image.texels[i + 1], image.texels[i + 2]), 0.0f, 1.0f));
-  }
-  return picture;
-}
-
-/// Gives nothing where a pixel is not finite: it would spread over its neighbours.
-std::optional<double> mean_flip(const report::Image& picture, const report::Image& truth) {
-  const auto is_finite = [](float value) { return std::isfinite(value); };
-  if (!std::all_of(picture.texels.begin(), picture.texels.end(), is_finite)) return std::nullopt;
-  const std::vector<float> flip = reference::measure_flip(to_picture(picture), to_picture(truth));
-  return std::accumulate(flip.begin(), flip.end(), 0.0) / static_cast<double>(flip.size());
 }
 
 }  // namespace
@@ -79,8 +62,9 @@ void score(report::CellRecord& record, const report::Image& visibility, const re
     record.absent["truth"] = reason;
     return;
   }
-  record.error = {stats->rmse, stats->mae, stats->p95, stats->max, stats->mean, mean_flip(picture, truth.area_picture),
-                  std::nullopt};
+  // Of the pictures as they are saved, so that `diff` finds the same.
+  const auto flip = measure_mean_flip(report::round_to_half(picture), report::round_to_half(truth.area_picture));
+  record.error = {stats->rmse, stats->mae, stats->p95, stats->max, stats->mean, flip, std::nullopt};
   if (!record.error.flip) record.absent["error.flip"] = "the picture has pixels that are not finite";
   record.truth = {truth.standard_error, truth.unanimous};
 }

@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
 
 #include "filters/error.h"
 #include "filters/model.h"
@@ -69,6 +72,15 @@ TEST(Requests, Mistakes_AreNamed) {
 TEST(UserFile, WithATakenId_IsRefused) {
   Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
   EXPECT_THROW(catalogue.add_user_file(SHADOWBENCH_SOURCE_DIR "/filters/vsm.glsl"), Error);
+}
+
+TEST(UserFile, NamedAsTheReportsOwnPictures_IsRefused) {
+  const auto copy = std::filesystem::path(::testing::TempDir()) / std::to_string(getpid()) / "truth.glsl";
+  std::filesystem::create_directories(copy.parent_path());
+  std::filesystem::copy_file(SHADOWBENCH_SOURCE_DIR "/filters/none.glsl", copy);
+  Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
+  EXPECT_THROW(catalogue.add_user_file(copy), Error);
+  std::filesystem::remove_all(copy.parent_path());
 }
 
 }  // namespace

@@ -42,6 +42,15 @@ TEST(PictureIo, Srgb_EqualsTheStandardsValues) {
   EXPECT_TRUE(std::isnan(encode_srgb(std::numeric_limits<float>::quiet_NaN())));
 }
 
+TEST(PictureIo, DecodingSrgb_UndoesEncodingIt) {
+  EXPECT_FLOAT_EQ(decode_srgb(0.04045f), 0.04045f / 12.92f);
+  EXPECT_NEAR(decode_srgb(0.5f), 0.214041f, 1e-6f);
+  for (int code = 0; code < 256; ++code) {
+    const float value = static_cast<float>(code) / 255.0f;
+    EXPECT_NEAR(encode_srgb(decode_srgb(value)), value, 1e-6f) << code;
+  }
+}
+
 TEST(PictureIo, PicturePng_IsEncodedForADisplay) {
   const TemporaryFolder folder("png_picture");
   Image picture(2, 1, 3);
@@ -131,6 +140,18 @@ TEST(PictureIo, HalfPart_IsRoundedToHalf) {
   EXPECT_TRUE(part.half);
   EXPECT_EQ(part.image.texels[0], 0.5f);
   EXPECT_EQ(part.image.texels[1], 0.0999755859375f);
+}
+
+TEST(PictureIo, RoundingToHalf_GivesWhatAHalfPartKeeps) {
+  const TemporaryFolder folder("exr_round");
+  Image image = make_noise(31, 17, 3);
+  image.texels[0] = 1e-7f;                                // below the smallest normal half
+  image.texels[1] = 1e6f;                                 // above the largest
+  image.texels[2] = 1.0f + 1.0f / 2048.0f;                // halfway between two
+  image.texels[3] = std::numeric_limits<float>::infinity();
+  write_exr(folder.path() / "a.exr", {{"picture", {"R", "G", "B"}, image, true}}, {});
+  EXPECT_TRUE(has_same_bits(round_to_half(image), read_exr(folder.path() / "a.exr").parts.at(0).image));
+  EXPECT_FALSE(has_same_bits(round_to_half(image), image));
 }
 
 TEST(PictureIo, PartsOfOneName_AreAnOutputError) {

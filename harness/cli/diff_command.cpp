@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "filters/error.h"
+#include "filters/nearest_name.h"
+#include "harness/cli/commands.h"
+#include "harness/cli/experiment_loader.h"
+#include "reference/metrics/flip.h"
+
+namespace shadowbench::cli {
+namespace {
+
+constexpr const char* kAllMetrics = "all";
+constexpr double kLeastPixelsPerDegree = 0.1;    // below, no feature is left
+constexpr double kMostPixelsPerDegree = 1000.0;  // FLIP's time grows with it
+
+struct DiffArguments {
+  run::ComparisonOptions options;
+  std::string metric = kAllMetrics;
+  bool json = false;
+};
+
+std::vector<std::string> metric_names() {
+  std::vector<std::string> names = {kAllMetrics};
+  for (const reference::Metric& metric : reference::picture_metrics()) names.emplace_back(metric.name());
+  return names;
+}
+
+std::vector<reference::Metric> choose_metrics(const std::string& chosen) {
+  std::vector<reference::Metric> metrics = reference::picture_metrics();
+  if (chosen == kAllMetrics) return metrics;
+  std::erase_if(metrics, [&](const reference::Metric& metric) { return metric.name() != chosen; });
+  if (!metrics.empty()) return metrics;
+  const auto near = nearest_name(chosen, metric_names());
+  throw Error(ErrorKind::kUsage,
+              fmt::format("--metric: there is no '{}'{}; known: {}", chosen,
+                          near ? fmt::format("; did you mean '{}'?", *near) : "", fmt::join(metric_names(), ", ")));
+}
+
+void check_pixels_per_degree(double value) {
+  if (value >= kLeastPixelsPerDegree && value <= kMostPixelsPerDegree) return;
+  throw Error(ErrorKind::kUsage, fmt::format("--pixels-per-degree: {} is out of range: choose {} .. {}", value,
+                                             kLeastPixelsPerDegree, kMostPixelsPerDegree));
+}
+
+void print_text(const run::ComparisonOptions& options, const run::Comparison& result) {
+  const auto print = [](std::string_view name, const std::string& value) { fmt::print("{:<11} {}\n", name, value); };
+  for (const reference::Metric& metric : options.metrics) {
+    const std::string name(metric.name());
+    const auto value = result.values.find(name);
+    print(name, value != result.values.end() ? fmt::format("{}", value->second) : "absent: " + result.absent.at(name));
+  }
+  print("compared", fmt::format("{}", result.compared));
+  print("not_finite", fmt::format("{}", result.not_finite));
+}
+
+void print_json(const run::ComparisonOptions& options, const run::Comparison& result) {
+  nlohmann::ordered_json json = {{"image", options.image},
+                                 {"truth", options.truth},
+                                 {"mask", nullptr},
+                                 {"width", result.width},
+                                 {"height", result.height},
+                                 {"channels", result.channels},
+                                 {"pixels_per_degree", options.pixels_per_degree}};
+  if (options.mask) json["mask"] = *options.mask;
+  for (const reference::Metric& metric : options.metrics) {
+    const std::string name(metric.name());
+    const auto value = result.values.find(name);
+    json[name] = value != result.values.end() ? nlohmann::ordered_json(value->second) : nullptr;
+  }
+  json["compared"] = result.compared;
+  json["not_finite"] = result.not_finite;
+  json["absent"] = result.absent;
+  json["warnings"] = result.warnings;
+  // File names need not be UTF-8.
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+int diff(DiffArguments arguments) {
+  run::ComparisonOptions& options = arguments.options;
+  options.metrics = choose_metrics(arguments.metric);
+  check_pixels_per_degree(options.pixels_per_degree);
+  const run::Comparison result = load_and_compare_pictures(options);
+  for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  if (arguments.json) print_json(options, result);
+  if (result.values.empty()) {
+    throw Error(ErrorKind::kInput, fmt::format("nothing can be compared: {}", result.absent.begin()->second),
+                options.image + " and " + options.truth);
+  }
+  if (!arguments.json) print_text(options, result);
+  return 0;
+}
+
+}  // namespace
+
+void add_diff_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("diff", "Compare two pictures as a run compares its own");
+  command->footer(
+      "A and B are pictures in any format that OpenImageIO reads; FILE#PART is one part of a multi-part EXR file, such "
+      "as\n"
+      "report/out/cubes.exr#vsm.visibility. All numbers are of A less B, over all channels but alpha, of the values "
+      "as\n"
+      "stored (8-bit codes as code/255). FLIP alone sees linear RGB clamped to [0,1], and the whole picture: sRGB "
+      "codes are\n"
+      "decoded, one channel is grey. Pixels that are NaN or infinite are counted and left out.");
+  auto a = std::make_shared<DiffArguments>();
+  a->options.pixels_per_degree = reference::kDefaultPixelsPerDegree;
+  command->add_option("A", a->options.image, "the picture")->required();
+  command->add_option("B", a->options.truth, "what it should look like")->required();
+  command->add_option("--metric", a->metric, fmt::format("{} (see 'list metrics')", fmt::join(metric_names(), ", ")))
+      ->capture_default_str();
+  command->add_option("--mask", a->options.mask, "a picture of one channel: pixels count where it is not 0");
+  command->add_option("--pixels-per-degree", a->options.pixels_per_degree, "how large FLIP's observer sees the pixels")
+      ->capture_default_str();
+  command->add_flag("--json", a->json, "as JSON");
+  command->callback([&action, a] { action = [a] { return diff(*a); }; });
+}
+
+}  // namespace shadowbench::cli

@@ -1,0 +1,183 @@
+// `shadowbench diff` and `list metrics`, as a user calls them.
+
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "report/picture_io.h"
+#include "tests/harness/cli/program.h"
+
+namespace shadowbench::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+report::Image make_grey(std::vector<float> values) {
+  report::Image image(static_cast<int>(values.size()), 1, 1);
+  image.texels = std::move(values);
+  return image;
+}
+
+/// A folder with "a.exr", of several parts, and two pictures as text that OpenImageIO reads.
+class Diff : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    report::write_exr(folder() / "a.exr",
+                      {{"image", {"Y"}, make_grey({0.5f, 1.0f, 0.0f, 0.25f}), false},
+                       {"truth", {"Y"}, make_grey({0.0f, 1.0f, 0.5f, 0.0f}), false},
+                       {"broken", {"Y"}, make_grey({kNan, 1.0f, 0.5f, 0.0f}), false},
+                       {"nothing", {"Y"}, make_grey({kNan, kNan, kNan, kNan}), false},
+                       {"mask", {"Y"}, make_grey({1.0f, 1.0f, 0.0f, 0.0f}), false},
+                       {"empty", {"Y"}, make_grey({0.0f, 0.0f, 0.0f, 0.0f}), false},
+                       {"nanmask", {"Y"}, make_grey({1.0f, kNan, 0.0f, 0.0f}), false},
+                       {"short", {"Y"}, make_grey({0.0f, 0.0f}), false},
+                       {"two", {"U", "V"}, report::Image(4, 1, 2), false},
+                       {"rgb", {"R", "G", "B"}, report::Image(4, 1, 3), false}},
+                      {});
+    write("a.pgm", "P2\n2 1\n255\n51 255\n");
+    write("b.pgm", "P2\n2 1\n255\n0 204\n");
+  }
+
+  nlohmann::json diff_json(const std::string& arguments) const {
+    const Outcome outcome = run("diff --json " + arguments);
+    return outcome.out.empty() ? nlohmann::json(outcome.err) : nlohmann::json::parse(outcome.out);
+  }
+};
+
+TEST_F(Diff, PrintsOneNumberALine) {
+  const Outcome outcome = run("diff 'a.exr#image' 'a.exr#truth'");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, MatchesRegex("rmse        0.375\nmae         0.3125\np95         0.5\nmax         0.5\n"
+                                        "mean        0.0625\nflip        0.[0-9]+\n"
+                                        "compared    4\nnot_finite  0\n"));
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST_F(Diff, Json_HoldsTheSameNumbers) {
+  const nlohmann::json json = diff_json("'a.exr#image' 'a.exr#truth'");
+  EXPECT_EQ(json["rmse"], 0.375);
+  EXPECT_EQ(json["mae"], 0.3125);
+  EXPECT_EQ(json["p95"], 0.5);
+  EXPECT_EQ(json["max"], 0.5);
+  EXPECT_EQ(json["mean"], 0.0625);
+  EXPECT_GT(json["flip"], 0.0);
+  EXPECT_EQ(json["compared"], 4);
+  EXPECT_EQ(json["not_finite"], 0);
+  EXPECT_TRUE(json["absent"].empty());
+}
+
+TEST_F(Diff, CodesOfEightBits_AreSharesOf255) { EXPECT_NEAR(diff_json("a.pgm b.pgm")["mae"].get<double>(), 0.2, 1e-7); }
+
+TEST_F(Diff, FileAlone_IsItsFirstPart) { EXPECT_EQ(diff_json("a.exr 'a.exr#image'")["max"], 0.0); }
+
+TEST_F(Diff, OneMetric_IsPrintedAlone) {
+  EXPECT_EQ(run("diff 'a.exr#image' 'a.exr#truth' --metric mae").out,
+            "mae         0.3125\ncompared    4\nnot_finite  0\n");
+  const nlohmann::json json = diff_json("'a.exr#image' 'a.exr#truth' --metric mae");
+  EXPECT_TRUE(json.contains("mae"));
+  EXPECT_FALSE(json.contains("rmse"));
+}
+
+TEST_F(Diff, EveryPictureMetricOfTheList_IsAccepted) {
+  for (const auto& metric : nlohmann::json::parse(run("list metrics --json").out)) {
+    const auto name = metric["name"].get<std::string>();
+    EXPECT_EQ(run("diff 'a.exr#image' 'a.exr#truth' --metric " + name).exit_code, metric["diff"] ? 0 : 2) << name;
+  }
+}
+
+TEST_F(Diff, Mask_ChoosesThePixels) {
+  const nlohmann::json json = diff_json("'a.exr#image' 'a.exr#truth' --mask 'a.exr#mask'");
+  EXPECT_EQ(json["compared"], 2);
+  EXPECT_EQ(json["mae"], 0.25);
+}
+
+TEST_F(Diff, PixelsThatAreNotFinite_AreReported) {
+  const Outcome outcome = run("diff 'a.exr#broken' 'a.exr#truth'");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("rmse        0\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("flip        absent: a pixel is NaN or infinite"));
+  EXPECT_THAT(outcome.out, HasSubstr("compared    3\nnot_finite  1\n"));
+  const nlohmann::json json = diff_json("'a.exr#broken' 'a.exr#truth'");
+  EXPECT_TRUE(json["flip"].is_null());
+  EXPECT_THAT(json["absent"]["flip"].get<std::string>(), HasSubstr("NaN"));
+}
+
+TEST_F(Diff, NothingToCompare_IsAnInputError) {
+  expect_refusal("diff 'a.exr#image' 'a.exr#truth' --mask 'a.exr#empty'", 3, {"nothing can be compared", "mask is 0"});
+  expect_refusal("diff 'a.exr#nothing' 'a.exr#truth'", 3, {"nothing can be compared", "finite"});
+  expect_refusal("diff 'a.exr#two' 'a.exr#two' --metric flip", 3, {"nothing can be compared", "these have 2"});
+  EXPECT_EQ(run("diff 'a.exr#nothing' 'a.exr#truth'").out, "");
+  EXPECT_EQ(run("diff --json 'a.exr#nothing' 'a.exr#truth'").exit_code, 3);
+  const nlohmann::json json = diff_json("'a.exr#nothing' 'a.exr#truth'");
+  EXPECT_TRUE(json["rmse"].is_null());
+  EXPECT_THAT(json["absent"]["rmse"].get<std::string>(), HasSubstr("finite"));
+  EXPECT_EQ(json["not_finite"], 4);
+}
+
+TEST_F(Diff, BadPictures_AreInputErrors) {
+  write("text.png", "not a picture");
+  expect_refusal("diff no/such.png a.exr", 3, {"no/such.png", "no such file"});
+  expect_refusal("diff a.exr no/such.exr#part", 3, {"no/such.exr", "no such file"});
+  expect_refusal("diff a.exr text.png", 3, {"text.png", "cannot be read"});
+  expect_refusal("diff a.exr .", 3, {"folder"});
+  expect_refusal("diff a.exr ''", 3, {"no such file"});
+  expect_refusal("diff a.exr 'a.exr#trut'", 3, {"'trut'", "did you mean 'truth'", "parts: image, truth, broken"});
+  expect_refusal("diff a.exr 'a.exr#short'", 3, {"4 x 1", "2 x 1"});
+  expect_refusal("diff a.exr 'a.exr#rgb'", 3, {"has 1 channels", "has 3"});
+}
+
+TEST_F(Diff, BadMasks_AreInputErrors) {
+  const std::string pair = "diff 'a.exr#image' 'a.exr#truth' --mask ";
+  expect_refusal(pair + "'a.exr#short'", 3, {"2 x 1", "4 x 1"});
+  expect_refusal(pair + "'a.exr#rgb'", 3, {"the mask", "3 channels"});
+  expect_refusal(pair + "'a.exr#nanmask'", 3, {"the mask", "NaN"});
+  expect_refusal(pair + "no/such.exr", 3, {"no/such.exr", "no such file"});
+  expect_refusal(pair + "''", 3, {"no such file"});
+}
+
+TEST_F(Diff, BadOptions_AreUsageErrors) {
+  expect_refusal("diff a.exr", 2, {"B"});
+  expect_refusal("diff a.exr a.exr --metric rsme", 2,
+                 {"'rsme'", "did you mean 'rmse'", "known: all, rmse, mae, p95, max, mean, flip"});
+  expect_refusal("diff a.exr a.exr --metric acne", 2, {"'acne'", "known: all, rmse"});
+  for (const char* value : {"0", "-1", "nan", "inf", "1e9"}) {
+    expect_refusal(std::string("diff a.exr a.exr --pixels-per-degree ") + value, 2,
+                   {"--pixels-per-degree", "0.1 .. 1000"});
+  }
+  expect_refusal("diff a.exr a.exr --pixels-per-degree wide", 2, {"--pixels-per-degree", "wide"});
+}
+
+TEST_F(Diff, PixelsPerDegree_ReachFlip) {
+  write("c.pgm", "P2\n4 1\n255\n0 255 0 255\n");
+  write("d.pgm", "P2\n4 1\n255\n255 0 255 0\n");
+  const double near = diff_json("c.pgm d.pgm --pixels-per-degree 0.1")["flip"];
+  EXPECT_GT(near, diff_json("c.pgm d.pgm --pixels-per-degree 1000")["flip"]);
+  EXPECT_LE(near, 1.0);
+}
+
+TEST_F(Diff, Help_DoesNotLoadTheImageLibraries) {
+  const std::string count = "ldd '" SHADOWBENCH_PROGRAM "' | grep -c -i -E 'openimageio|openexr|embree'";
+  EXPECT_NE(std::system(count.c_str()), 0) << "the program links one itself";
+  EXPECT_EQ(run("diff --help").exit_code, 0);
+}
+
+TEST_F(Diff, ListMetrics_DefinesWhatARunReports) {
+  const Outcome outcome = run("list metrics");
+  EXPECT_EQ(outcome.exit_code, 0);
+  for (const char* word : {"error.rmse", "truth.se", "artefact.contact_gap", "attribution.model.share", "0 .. 1"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(word));
+  }
+  const nlohmann::json json = nlohmann::json::parse(run("list metrics --json").out);
+  for (const auto& metric : json) {
+    EXPECT_FALSE(metric["definition"].get<std::string>().empty()) << metric;
+    EXPECT_NE(outcome.out.find(metric["path"].get<std::string>()), std::string::npos) << metric;
+  }
+}
+
+}  // namespace
+}  // namespace shadowbench::test

@@ -1,0 +1,68 @@
+#include "reference/metrics/metric_table.h"
+
+#include <gmock/gmock.h>
+
+#include <set>
+#include <string>
+
+#include "reference/metrics/artefacts.h"
+
+namespace shadowbench::reference {
+namespace {
+
+using ::testing::ElementsAre;
+
+TEST(MetricTable, EveryMetric_IsDescribedOnce) {
+  std::set<std::string_view> paths;
+  for (const Metric& metric : metric_table()) {
+    EXPECT_TRUE(paths.insert(metric.path).second) << metric.path;
+    EXPECT_FALSE(metric.unit.empty()) << metric.path;
+    EXPECT_FALSE(metric.definition.empty()) << metric.path;
+    EXPECT_EQ(metric.statistic != nullptr, metric.source == MetricSource::kValues) << metric.path;
+    EXPECT_EQ(std::string(metric.path).substr(metric.path.size() - metric.name().size()), metric.name());
+  }
+}
+
+TEST(MetricTable, TwoPictures_GiveTheErrorsThatNeedNoRays) {
+  std::vector<std::string> names;
+  for (const Metric& metric : picture_metrics()) names.emplace_back(metric.name());
+  EXPECT_THAT(names, ElementsAre("rmse", "mae", "p95", "max", "mean", "flip"));
+}
+
+TEST(MetricTable, Statistics_AreTheOnesOfTheirNames) {
+  ErrorStats stats;
+  stats.rmse = 1.0;
+  stats.mae = 2.0;
+  stats.p95 = 3.0;
+  stats.max = 4.0;
+  stats.mean = 5.0;
+  std::vector<double> values;
+  for (const Metric& metric : picture_metrics()) {
+    if (metric.statistic) values.push_back(stats.*metric.statistic);
+  }
+  EXPECT_THAT(values, ElementsAre(1.0, 2.0, 3.0, 4.0, 5.0));
+}
+
+/// The definitions state the limits that artefacts are counted with.
+TEST(MetricTable, ArtefactLimits_AreTheOnesInUse) {
+  const std::pair<std::string_view, double> limits[] = {{"artefact.acne", kArtefactLimits.acne_below},
+                                                        {"artefact.acne", kArtefactLimits.guard_texels},
+                                                        {"artefact.leak", kArtefactLimits.leak_above},
+                                                        {"artefact.leak", kArtefactLimits.contact_texels},
+                                                        {"artefact.contact_gap", kArtefactLimits.contact_gap_above},
+                                                        {"artefact.contact_gap", kArtefactLimits.contact_texels},
+                                                        {"artefact.noise", kArtefactLimits.noise_above}};
+  for (const auto& [path, limit] : limits) {
+    std::string number = std::to_string(limit);
+    number.erase(number.find_last_not_of('0') + 1);
+    if (number.back() == '.') number.pop_back();
+    for (const Metric& metric : metric_table()) {
+      if (metric.path == path) {
+        EXPECT_THAT(std::string(metric.definition), ::testing::HasSubstr(" " + number)) << path;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace shadowbench::reference
