@@ -6,13 +6,12 @@
 #include <limits>
 #include <vector>
 
+#include "filters/model_input.h"
 #include "filters/receiver.h"
 #include "filters/scalar.h"
 #include "filters/store_format.h"
 
 namespace shadowbench::filters {
-
-struct DepthMap;
 
 /// Notes what happened while one receiver was looked up.
 struct Tally {
@@ -59,21 +58,45 @@ class TexelGrid {
   int size_;
 };
 
+/// Receiver-plane bias: the receiver plane's depth where texels are read, instead of at the receiver. The same in
+/// shaders/lib/map_access.glsl.
+class PlaneBias {
+ public:
+  /// `max_tangent` 0 switches it off.
+  explicit PlaneBias(double max_tangent) : max_tangent_(max_tangent) {}
+
+  /// `at` in texels of the map; the lowest depth within `reach_texels` of it per axis. `z` is the receiver's biased depth.
+  float depth(const Receiver& r, int map_size, glm::dvec2 at, double reach_texels, float z) const {
+    if (max_tangent_ <= 0.0) return z;
+    const double steepest = max_tangent_ * static_cast<double>(r.texel_size_ws) / static_cast<double>(r.depth_range_ws);
+    const glm::dvec2 slope = glm::clamp(glm::dvec2(r.depth_per_texel), -steepest, steepest);
+    const double lowest = (reach_texels + kSlackTexels) * (std::abs(slope.x) + std::abs(slope.y));
+    const glm::dvec2 way = at - glm::dvec2(r.uv) * static_cast<double>(map_size);
+    return static_cast<float>(std::min(static_cast<double>(z) + glm::dot(slope, way) - lowest, 1.0));
+  }
+
+ private:
+  /// A rasteriser snaps vertices to fractions of a texel, which tilts planes a little.
+  static constexpr double kSlackTexels = 1.0 / 128.0;
+  double max_tangent_;
+};
+
 /// Reads a depth map as `compare_nearest`, `compare_2x2` and `fetch_depth` of shaders/lib/map_access.glsl do.
 /// Outside the map the depth is 1.
 template <class T>
 class DepthReader {
  public:
   using P = Position<T>;
-  DepthReader(int size, const std::vector<float>& depth, const GlAccuracy& accuracy)
-      : grid_(size), depth_(&depth), accuracy_(accuracy) {}
+  explicit DepthReader(const ModelInput& input)
+      : grid_(input.map.size), depth_(&input.map.depth), accuracy_(input.accuracy), plane_(input.plane_max_tangent) {}
 
   const TexelGrid<T>& grid() const { return grid_; }
 
   T compare_nearest(const Receiver& r, Offset<T> offset, float z, Tally& tally) const {
     const int x = grid_.nearest(grid_.position(r.uv.x, offset.x), tally);
     const int y = grid_.nearest(grid_.position(r.uv.y, offset.y), tally);
-    return T(static_cast<P>(compare(x, y, z, tally)));
+    const float at = plane_.depth(r, grid_.size(), {x + 0.5, y + 0.5}, 0.0, z);
+    return T(static_cast<P>(compare(x, y, at, tally)));
   }
 
   T compare_2x2(const Receiver& r, Offset<T> offset, float z, Tally& tally) const {
@@ -83,7 +106,8 @@ class DepthReader {
     const int x = static_cast<int>(bx), y = static_cast<int>(by);
     const T sx = sampler_weight<T>(px, bx, accuracy_, grid_.size());
     const T sy = sampler_weight<T>(py, by, accuracy_, grid_.size());
-    const auto tap = [&](int dx, int dy) { return T(static_cast<P>(compare(x + dx, y + dy, z, tally))); };
+    const float at = plane_.depth(r, grid_.size(), {x + 1.0, y + 1.0}, 0.5, z);
+    const auto tap = [&](int dx, int dy) { return T(static_cast<P>(compare(x + dx, y + dy, at, tally))); };
     const T low = mix(tap(0, 0), tap(1, 0), sx);
     const T high = mix(tap(0, 1), tap(1, 1), sx);
     return mix(low, high, sy);
@@ -101,6 +125,7 @@ class DepthReader {
   TexelGrid<T> grid_;
   const std::vector<float>* depth_;
   GlAccuracy accuracy_;
+  PlaneBias plane_;
 
   float stored(int x, int y) const { return grid_.inside(x, y) ? (*depth_)[grid_.index(x, y)] : 1.0f; }
 

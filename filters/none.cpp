@@ -6,7 +6,7 @@ namespace {
 template <class T>
 class NoFilter {
  public:
-  explicit NoFilter(const ModelInput& input) : map_(input.map.size, input.map.depth, input.accuracy) {}
+  explicit NoFilter(const ModelInput& input) : map_(input) {}
 
   static Kernel kernel(const ParamValues&) { return Kernel::make_point(Reconstruction::kNearest); }
 

@@ -6,7 +6,7 @@ namespace {
 template <class T>
 class Pcf2x2 {
  public:
-  explicit Pcf2x2(const ModelInput& input) : map_(input.map.size, input.map.depth, input.accuracy) {}
+  explicit Pcf2x2(const ModelInput& input) : map_(input) {}
 
   static Kernel kernel(const ParamValues&) { return Kernel::make_point(Reconstruction::kBilinear); }
 

@@ -74,12 +74,13 @@ double DiskWeights::at(double dx, double dy) const {
   return low + sy * (high - low);
 }
 
-PercentageCloser::PercentageCloser(const Kernel& kernel, const DepthMap& map) : kernel_(kernel), grid_(map.size), map_(map) {
+PercentageCloser::PercentageCloser(const Kernel& kernel, const DepthMap& map, double plane_max_tangent)
+    : kernel_(kernel), grid_(map.size), map_(map), plane_(plane_max_tangent) {
   if (kernel.atoms().empty()) disk_.emplace(kernel.disk_radius());
 }
 
-bool PercentageCloser::is_lit(int x, int y, float depth) const {
-  return depth <= (grid_.inside(x, y) ? map_.depth[grid_.index(x, y)] : 1.0f);
+bool PercentageCloser::is_lit(int x, int y, const Receiver& receiver) const {
+  return plane_.depth(receiver, grid_.size(), {x + 0.5, y + 0.5}, 0.0, receiver.depth) <= (grid_.inside(x, y) ? map_.depth[grid_.index(x, y)] : 1.0f);
 }
 
 /// `position` in texels, texel centres at .5.
@@ -100,27 +101,27 @@ PercentageCloser::Span PercentageCloser::spread(double position) const {
   return span;
 }
 
-double PercentageCloser::gather_grid(double px, double py, float depth) const {
+double PercentageCloser::gather_grid(double px, double py, const Receiver& receiver) const {
   const Span columns = spread(px), rows = spread(py);
   double sum = 0.0;
   for (std::size_t y = 0; y < rows.weights.size(); ++y) {
     double row = 0.0;
     for (std::size_t x = 0; x < columns.weights.size(); ++x) {
-      if (is_lit(columns.first + static_cast<int>(x), rows.first + static_cast<int>(y), depth)) row += columns.weights[x];
+      if (is_lit(columns.first + static_cast<int>(x), rows.first + static_cast<int>(y), receiver)) row += columns.weights[x];
     }
     sum += rows.weights[y] * row;
   }
   return sum;
 }
 
-double PercentageCloser::gather_disk(double px, double py, float depth) const {
+double PercentageCloser::gather_disk(double px, double py, const Receiver& receiver) const {
   const double reach = kernel_.half_width();
   double lit = 0.0, all = 0.0;
   for (int y = static_cast<int>(std::floor(py - reach)); y <= static_cast<int>(std::ceil(py + reach)); ++y) {
     for (int x = static_cast<int>(std::floor(px - reach)); x <= static_cast<int>(std::ceil(px + reach)); ++x) {
       const double weight = disk_->at(x + 0.5 - px, y + 0.5 - py);
       all += weight;
-      if (is_lit(x, y, depth)) lit += weight;
+      if (is_lit(x, y, receiver)) lit += weight;
     }
   }
   return lit / all;
@@ -128,7 +129,7 @@ double PercentageCloser::gather_disk(double px, double py, float depth) const {
 
 double PercentageCloser::at(const Receiver& receiver) const {
   const double px = grid_.position(receiver.uv.x, 0.0), py = grid_.position(receiver.uv.y, 0.0);
-  return disk_ ? gather_disk(px, py, receiver.depth) : gather_grid(px, py, receiver.depth);
+  return disk_ ? gather_disk(px, py, receiver) : gather_grid(px, py, receiver);
 }
 
 }  // namespace shadowbench::filters

@@ -31,8 +31,9 @@ class DiskWeights {
 /// Source: Reeves, Salesin and Cook 1987, Rendering Antialiased Shadows with Depth Maps, SIGGRAPH.
 class PercentageCloser {
  public:
-  /// `map` must outlive this object.
-  PercentageCloser(const Kernel& kernel, const DepthMap& map);
+  /// `map` must outlive this object. With a `plane_max_tangent` every texel is compared with the receiver plane's depth
+  /// there; see ModelInput.
+  PercentageCloser(const Kernel& kernel, const DepthMap& map, double plane_max_tangent = 0.0);
 
   /// Gives the weight of the texels that do not block the receiver's biased depth, in [0,1].
   /// Cost: one comparison per texel of the kernel. Safe to call from many threads.
@@ -48,12 +49,13 @@ class PercentageCloser {
   Kernel kernel_;
   TexelGrid<double> grid_;
   const DepthMap& map_;
+  PlaneBias plane_;
   std::optional<DiskWeights> disk_;  ///< none for grids
 
   Span spread(double position) const;
-  bool is_lit(int x, int y, float depth) const;
-  double gather_grid(double px, double py, float depth) const;
-  double gather_disk(double px, double py, float depth) const;
+  bool is_lit(int x, int y, const Receiver& receiver) const;
+  double gather_grid(double px, double py, const Receiver& receiver) const;
+  double gather_disk(double px, double py, const Receiver& receiver) const;
 };
 
 }  // namespace shadowbench::filters

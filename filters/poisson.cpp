@@ -14,7 +14,7 @@ class Poisson {
 
  public:
   explicit Poisson(const ModelInput& input)
-      : map_(input.map.size, input.map.depth, input.accuracy),
+      : map_(input),
         points_(generate_disk_points(input.spec, input.values, "disk_points")),
         radius_(static_cast<P>(number(input.values, "radius"))),
         rotation_(text_or(input.values, "rotation", "none")),

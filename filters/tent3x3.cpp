@@ -6,7 +6,7 @@ namespace {
 template <class T>
 class Tent3x3 {
  public:
-  explicit Tent3x3(const ModelInput& input) : map_(input.map.size, input.map.depth, input.accuracy) {}
+  explicit Tent3x3(const ModelInput& input) : map_(input) {}
 
   static Kernel kernel(const ParamValues&) { return Kernel::make_grid({{-0.5, 0.5}, {0.5, 0.5}}, Reconstruction::kBilinear); }
 

@@ -3,6 +3,9 @@
 #include <cassert>
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
+
+#include "report/record_fields.h"
 
 namespace shadowbench::report {
 namespace {
@@ -63,10 +66,9 @@ json value_json(const ParamMap& value) {
 }
 
 json value_json(const BiasRecord& value) {
-  return {{"constant_depth", number_json(value.constant_depth)},
-          {"slope_texels", number_json(value.slope_texels)},
-          {"slope_kernels", number_json(value.slope_kernels)},
-          {"normal_offset_texels", number_json(value.normal_offset_texels)}};
+  json result;
+  visit_bias_fields(value, [&](const char* name, const auto& field) { result[name] = value_json(field); });
+  return result;
 }
 
 json value_json(const std::map<std::string, std::string>& value) { return json(value); }
@@ -159,8 +161,11 @@ ParamMap read_value(const json& json) {
 
 template <>
 BiasRecord read_value(const json& json) {
-  return {read_value<double>(json.at("constant_depth")), read_value<double>(json.at("slope_texels")),
-          read_value<double>(json.at("slope_kernels")), read_value<double>(json.at("normal_offset_texels"))};
+  BiasRecord bias;
+  visit_bias_fields(bias, [&](const char* name, auto& field) {
+    field = read_value<std::remove_reference_t<decltype(field)>>(json.at(name));
+  });
+  return bias;
 }
 
 template <>

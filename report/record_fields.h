@@ -4,6 +4,26 @@
 
 namespace shadowbench::report {
 
+/// Calls `visit(name, value)` for every field of a bias.
+template <class Bias, class Visitor>
+void visit_bias_fields(Bias& bias, Visitor&& visit) {
+  visit("constant_depth", bias.constant.depth);
+  visit("constant_texels", bias.constant.texels);
+  visit("constant_world", bias.constant.world);
+  visit("slope_depth", bias.slope.depth);
+  visit("slope_texels", bias.slope.texels);
+  visit("slope_world", bias.slope.world);
+  visit("plane_texels", bias.plane_texels);
+  visit("plane_kernels", bias.plane_kernels);
+  visit("normal_offset_texels", bias.normal_offset.texels);
+  visit("normal_offset_world", bias.normal_offset.world);
+  visit("receiver_plane", bias.receiver_plane);
+  visit("polygon_factor", bias.polygon_factor);
+  visit("polygon_units", bias.polygon_units);
+  visit("front_cull", bias.front_cull);
+  visit("midpoint", bias.midpoint);
+}
+
 /// Calls `visit(path, value)` for every field of a cell: the one list that writing, reading and `absent` follow.
 /// A dot in the path is a group; optional values may be null in the JSON.
 template <class Cell, class Visitor>
@@ -18,6 +38,8 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("map_size", cell.map_size);
   visit("map_format", cell.map_format);
   visit("bias", cell.bias);
+  visit("map_scale.texel_m", cell.map_scale.texel_m);
+  visit("map_scale.depth_range_m", cell.map_scale.depth_range_m);
   visit("size.width", cell.width);
   visit("size.height", cell.height);
   visit("receivers", cell.receivers);

@@ -39,12 +39,31 @@ enum class CellStatus { kOk, kTimeout, kCrashed, kError };
 using ParamValue = std::variant<double, std::string, bool>;
 using ParamMap = std::map<std::string, ParamValue>;
 
-/// Holds the depth bias that every filter of the run was given.
+/// Holds a length along the light in three units, whose parts add up.
+struct BiasAmountRecord {
+  double depth = 0.0;   ///< [0,1] over the light's range
+  double texels = 0.0;  ///< as long as so many shadow-map texels are wide
+  double world = 0.0;   ///< metres
+};
+
+/// Holds the depth bias that every filter of the run was given, as it was asked for.
 struct BiasRecord {
-  double constant_depth = 0.0;        ///< added in the light's depth, [0,1]
-  double slope_texels = 0.0;          ///< slope-scaled: depth change over this many shadow-map texels
-  double slope_kernels = 0.0;         ///< the same, in units of the filter's kernel half-width plus one texel
-  double normal_offset_texels = 0.0;  ///< receiver moved along its normal, in shadow-map texels
+  BiasAmountRecord constant;
+  BiasAmountRecord slope;          ///< times 1 - n.l; the larger of this and `constant` holds
+  double plane_texels = 0.0;       ///< depth change of the receiver's plane over this many shadow-map texels
+  double plane_kernels = 0.0;      ///< the same, in units of the filter's kernel half-width plus one texel
+  BiasAmountRecord normal_offset;  ///< receiver moved along its normal; `depth` is 0
+  bool receiver_plane = false;     ///< the plane's gradient is added for every tap
+  double polygon_factor = 0.0;     ///< glPolygonOffset in the depth pass
+  double polygon_units = 0.0;
+  bool front_cull = false;         ///< faces towards the light are not drawn into the map
+  bool midpoint = false;           ///< the map lies half-way between the first and the second surface
+};
+
+/// Holds what the units of lengths along the light are worth in a map.
+struct MapScaleRecord {
+  std::optional<double> texel_m;        ///< side of a texel, metres
+  std::optional<double> depth_range_m;  ///< between depth 0 and depth 1, metres
 };
 
 /// Holds what a cell's passes cost in time, in milliseconds of the clock that the run names.
@@ -135,6 +154,7 @@ struct CellRecord {
   int map_size = 0;        ///< texels along a side
   std::string map_format;  ///< "d32f"
   BiasRecord bias;
+  MapScaleRecord map_scale;
   int width = 0;  ///< pixels
   int height = 0;
   std::optional<std::int64_t> receivers;  ///< pixels that count

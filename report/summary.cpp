@@ -112,17 +112,37 @@ std::string describe_work(const WorkRecord& work) {
       work.shader_variants_compiled, work.passes_run, work.passes_skipped, work.truths_traced, work.truths_cached);
 }
 
-/// Lists the parts of a bias that are there: "2e-05 depth + slope over 1 x (kernel half-width + 1) texels".
-std::string describe_bias(const BiasRecord& bias) {
+/// Writes a length in the units it was given in, then in all three where the map's scale is known.
+std::string describe_amount(const BiasAmountRecord& amount, const MapScaleRecord& scale) {
+  std::vector<std::string> given;
+  if (amount.depth > 0.0) given.push_back(format_number(amount.depth) + " depth");
+  if (amount.texels > 0.0) given.push_back(format_number(amount.texels) + " texels");
+  if (amount.world > 0.0) given.push_back(format_number(amount.world) + " m");
+  std::string text = fmt::format("{}", fmt::join(given, " + "));
+  if (!scale.texel_m || !scale.depth_range_m) return text;
+  const double metres = amount.depth * *scale.depth_range_m + amount.texels * *scale.texel_m + amount.world;
+  return text + fmt::format(" (depth {}, {} texels, {} m)", format_number(metres / *scale.depth_range_m),
+                            format_number(metres / *scale.texel_m), format_number(metres));
+}
+
+bool any(const BiasAmountRecord& amount) { return amount.depth > 0.0 || amount.texels > 0.0 || amount.world > 0.0; }
+
+/// Lists the parts of a bias that are there.
+std::string describe_bias(const BiasRecord& bias, const MapScaleRecord& scale) {
   std::vector<std::string> parts;
-  if (bias.constant_depth > 0.0) parts.push_back(format_number(bias.constant_depth) + " depth");
-  if (bias.slope_texels > 0.0) parts.push_back(fmt::format("slope over {} texels", format_number(bias.slope_texels)));
-  if (bias.slope_kernels > 0.0) {
-    parts.push_back(fmt::format("slope over {} × (kernel half-width + 1) texels", format_number(bias.slope_kernels)));
+  if (any(bias.constant)) parts.push_back(describe_amount(bias.constant, scale));
+  if (any(bias.slope)) parts.push_back("(1 − n·l) × " + describe_amount(bias.slope, scale));
+  if (bias.plane_texels > 0.0) parts.push_back(fmt::format("plane over {} texels", format_number(bias.plane_texels)));
+  if (bias.plane_kernels > 0.0) {
+    parts.push_back(fmt::format("plane over {} × (kernel half-width + 1) texels", format_number(bias.plane_kernels)));
   }
-  if (bias.normal_offset_texels > 0.0) {
-    parts.push_back(fmt::format("normal offset of {} texels", format_number(bias.normal_offset_texels)));
+  if (any(bias.normal_offset)) parts.push_back("normal offset of " + describe_amount(bias.normal_offset, scale));
+  if (bias.receiver_plane) parts.push_back("receiver plane, per tap");
+  if (bias.polygon_factor > 0.0 || bias.polygon_units > 0.0) {
+    parts.push_back(fmt::format("polygon offset {}, {}", format_number(bias.polygon_factor), format_number(bias.polygon_units)));
   }
+  if (bias.front_cull) parts.push_back("front faces culled");
+  if (bias.midpoint) parts.push_back("midpoint map");
   return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, " + "));
 }
 
@@ -181,7 +201,7 @@ std::string describe_params(const ParamMap& params) {
 
 std::string describe_settings(const CellRecord& cell) {
   return fmt::format("view {} · map {} × {} {} · picture {} × {} · bias: {}", cell.view, cell.map_size, cell.map_size,
-                     cell.map_format, cell.width, cell.height, describe_bias(cell.bias));
+                     cell.map_format, cell.width, cell.height, describe_bias(cell.bias, cell.map_scale));
 }
 
 std::vector<CellGroup> group_cells(const std::vector<CellRecord>& cells) {

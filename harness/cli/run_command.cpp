@@ -111,6 +111,7 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   options.fit = arguments.fit == "sphere" ? scene::FitMode::kSphere : scene::FitMode::kTight;
   options.bias = run::parse_bias(arguments.bias);
   options.bias_texts = arguments.bias;
+  for (const filters::FilterRequest& request : options.filters) run::require_usable(options.bias, request.spec);
   options.rounds = arguments.rounds;
   options.seed = arguments.seed;
   options.backend = gl::parse_backend(arguments.backend);
@@ -150,9 +151,12 @@ void add_filter_options(CLI::App& command, RunArguments& a) {
   command.add_option("--filters", a.filters, "filters with parameters, such as none,vsm:radius=6,min_variance=1e-4,esm (default: all; see 'list filters')");
   command.add_option("--filter-file", a.filter_files, "a filter of your own, one GLSL file; may be repeated")->allow_extra_args(false);
   command.add_option("--bias", a.bias,
-                     "depth bias; repeat to add up: none | constant:depth=D | slope:kernels=K,texels=T,depth=D | normal-offset:texels=T. "
-                     "D in depth (0..1 over the light's range), T in shadow-map texels, K in kernel half-widths plus one texel "
-                     "(default slope:kernels=1,depth=2e-5). Planes steeper than 10:1 towards the light are biased as 10:1")->allow_extra_args(false);
+                     "bias, MODE:KEY=X,...; repeat to add up: " + run::list_bias_modes() +
+                     ". Units: depth (0..1 over the light's range), texels (their width), world (metres), kernels (half-width of "
+                     "the filter's kernel plus one texel). plane: what the receiver's plane gains over so many texels; slope: times "
+                     "1 - n.l, or constant where that is more; receiver-plane: the plane's depth at every tap; front-cull, midpoint: "
+                     "what the map holds (default plane:kernels=1,depth=2e-5). Planes steeper than 10:1 towards the light are "
+                     "biased as 10:1")->allow_extra_args(false);
 }
 
 }  // namespace

@@ -11,8 +11,9 @@ FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest&
 }
 
 gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, const Defines& defines) const {
-  gl::Program program =
-      shaders.compile_filter(request_.spec.id + " lookup", "lookup.frag", defines, filter_pieces(request_));
+  Defines all = defines;
+  if (light_.bias.receiver_plane) all.emplace_back("RECEIVER_PLANE", "1");
+  gl::Program program = shaders.compile_filter(request_.spec.id + " lookup", "lookup.frag", all, filter_pieces(request_));
   set_light(program, light_);
   program.set("run_seed", light_.seed);
   program.set("map_texel_uv", 1.0f / static_cast<float>(map_size_));

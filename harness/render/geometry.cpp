@@ -51,7 +51,8 @@ Geometry::Geometry(const scene::Scene& scene) : materials_(scene.materials) {
   for (const scene::Mesh& mesh : scene.meshes) {
     const int first = static_cast<int>(vertices.size());
     append_mesh(vertices, mesh);
-    ranges_.push_back({first, static_cast<int>(vertices.size()) - first, mesh.material, mesh.casts_shadow});
+    ranges_.push_back({first, static_cast<int>(vertices.size()) - first, mesh.material, mesh.casts_shadow,
+                       mesh.may_cull_front});
   }
   triangles_ = static_cast<std::int64_t>(vertices.size() / 3);
   for (const scene::Texture& texture : scene.textures) textures_.push_back(upload(texture));
@@ -76,6 +77,16 @@ void Geometry::set_material(gl::Program& program, const scene::Material& materia
   if (material.base_color_texture < 0) return;
   gl::Sampler::unbind(kBaseColorUnit);
   textures_[static_cast<std::size_t>(material.base_color_texture)].bind(kBaseColorUnit);
+}
+
+bool Geometry::is_in(DrawSet set, const Range& range) {
+  switch (set) {
+    case DrawSet::kAll: return true;
+    case DrawSet::kCasters: return range.casts;
+    case DrawSet::kCullableCasters: return range.casts && range.may_cull_front;
+    case DrawSet::kUncullableCasters: return range.casts && !range.may_cull_front;
+  }
+  return false;
 }
 
 void Geometry::draw_range(const Range& range) const { glDrawArrays(GL_TRIANGLES, range.first, range.count); }

@@ -10,17 +10,22 @@
 namespace shadowbench::render {
 
 /// Says which of a scene's meshes a pass draws.
-enum class DrawSet { kAll, kCasters };
+enum class DrawSet {
+  kAll,
+  kCasters,
+  kCullableCasters,    ///< those whose front faces may be left out of the map
+  kUncullableCasters,  ///< the other casters
+};
 
 /// A scene's triangles and textures in GL memory; corners are not shared, so that each carries its face's normal.
 class Geometry {
  public:
   explicit Geometry(const scene::Scene& scene);
 
-  /// Draws with the variants of `<shader>.vert/.frag` that the materials need; `prepare` sets a variant's own uniforms.
-  /// Requires the framebuffer and all other state to be set.
+  /// Draws with the variants of `<shader>.vert/.frag` that the materials need, and `more` defines; `prepare` sets a
+  /// variant's own uniforms. Requires the framebuffer and all other state to be set.
   template <class Prepare>
-  void draw(ShaderLibrary& shaders, const std::string& shader, DrawSet set, Prepare prepare) const;
+  void draw(ShaderLibrary& shaders, const std::string& shader, DrawSet set, Prepare prepare, const Defines& more = {}) const;
 
   std::int64_t triangle_count() const { return triangles_; }
 
@@ -30,6 +35,7 @@ class Geometry {
     int count = 0;
     int material = 0;
     bool casts = true;
+    bool may_cull_front = true;
   };
   std::vector<Range> ranges_;
   std::vector<scene::Material> materials_;
@@ -41,15 +47,19 @@ class Geometry {
   Defines variant(const scene::Material& material) const;
   void set_material(gl::Program& program, const scene::Material& material) const;
   void draw_range(const Range& range) const;
+  static bool is_in(DrawSet set, const Range& range);
 };
 
 template <class Prepare>
-void Geometry::draw(ShaderLibrary& shaders, const std::string& shader, DrawSet set, Prepare prepare) const {
+void Geometry::draw(ShaderLibrary& shaders, const std::string& shader, DrawSet set, Prepare prepare,
+                    const Defines& more) const {
   array_.bind();
   for (const Range& range : ranges_) {
-    if (set == DrawSet::kCasters && !range.casts) continue;
+    if (!is_in(set, range)) continue;
     const scene::Material& material = materials_[static_cast<std::size_t>(range.material)];
-    gl::Program& program = shaders.geometry(shader, variant(material));
+    Defines defines = variant(material);
+    defines.insert(defines.end(), more.begin(), more.end());
+    gl::Program& program = shaders.geometry(shader, defines);
     prepare(program);
     set_material(program, material);
     program.use();

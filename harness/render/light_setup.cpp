@@ -25,7 +25,8 @@ void set_light(gl::Program& program, const LightSetup& light) {
   program.set("depth_range_ws", static_cast<float>(frustum.depth_range_ws));
   program.set("light_size", static_cast<float>(light.light_size));
   program.set("bias_constant", static_cast<float>(light.bias.constant_depth));
-  program.set("bias_slope_texels", static_cast<float>(light.bias.slope_texels));
+  program.set("bias_slope", static_cast<float>(light.bias.slope_depth));
+  program.set("bias_plane_texels", static_cast<float>(light.bias.plane_texels));
   program.set("bias_normal_texels", static_cast<float>(light.bias.normal_offset_texels));
   program.set("bias_max_tangent", static_cast<float>(light.bias.max_tangent));
 }

@@ -101,9 +101,12 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
     return;
   }
   if (!map_) map_ = light_.map.read();
-  const ModelReceivers receivers = {read_receivers(resolve_bias(options_.bias, request.spec, request.values)),
-                                    read_receivers(resolve_comparison_bias(options_.bias, request.spec, request.values))};
-  const ModelImages images = evaluate_model(request, *map_, receivers, options_.seed, options_.width, options_.height);
+  const ModelReceivers receivers = {
+      read_receivers(resolve_bias(options_.bias, light_.frustum, request.spec, request.values)),
+      read_receivers(resolve_comparison_bias(options_.bias, light_.frustum, request.spec, request.values))};
+  const double plane_max_tangent = options_.bias.receiver_plane ? options_.bias.max_tangent : 0.0;
+  const ModelImages images = evaluate_model(request, *map_, receivers, plane_max_tangent, options_.seed, options_.width,
+                                             options_.height);
   const std::vector<float>& kernel = kernel_truth(model->kernel(request.values)).visibility;
   const std::vector<float>& image = cell.visibility.texels;
   reference::Attribution attribution = reference::attribute_error(

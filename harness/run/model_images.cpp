@@ -11,11 +11,12 @@
 namespace shadowbench::run {
 
 ModelImages evaluate_model(const filters::FilterRequest& request, const filters::DepthMap& map,
-                           const ModelReceivers& receivers, std::uint32_t seed, int width, int height) {
+                           const ModelReceivers& receivers, double plane_max_tangent, std::uint32_t seed, int width,
+                           int height) {
   const std::unique_ptr<filters::Model> model = filters::make_model(request.spec.id);
-  const filters::ModelInput input{request.spec, request.values, map, {}, seed};
+  const filters::ModelInput input{request.spec, request.values, map, {}, seed, plane_max_tangent};
   const std::unique_ptr<filters::Lookup> lookup = model->prepare(input, filters::Precision::kDouble);
-  const filters::PercentageCloser closer(model->kernel(request.values), map);
+  const filters::PercentageCloser closer(model->kernel(request.values), map, plane_max_tangent);
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   ModelImages images{std::vector<double>(pixels, 1.0), std::vector<double>(pixels, 1.0), 0};
   const auto evaluate = [&](const tbb::blocked_range<std::size_t>& range, std::int64_t excused) {

@@ -21,9 +21,10 @@ struct ModelReceivers {
   std::vector<filters::Receiver> closer;  ///< the same pixels in the same order
 };
 
-/// Evaluates a model for receivers that the GPU handed out, in parallel.
+/// Evaluates a model for receivers that the GPU handed out, in parallel; `plane_max_tangent` as in ModelInput.
 /// Requires a filter that has a model.
 ModelImages evaluate_model(const filters::FilterRequest& request, const filters::DepthMap& map,
-                           const ModelReceivers& receivers, std::uint32_t seed, int width, int height);
+                           const ModelReceivers& receivers, double plane_max_tangent, std::uint32_t seed, int width,
+                           int height);
 
 }  // namespace shadowbench::run

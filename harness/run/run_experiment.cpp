@@ -12,6 +12,7 @@
 #include "harness/run/scene_measurement.h"
 #include "harness/run/scene_output.h"
 #include "harness/run/user_filter.h"
+#include "harness/scene/closed_mesh.h"
 #include "harness/scene/load.h"
 #include "report/atomic_file.h"
 #include "report/json_io.h"
@@ -95,9 +96,20 @@ class Experiment {
     progress_.note("warning: " + message);
   }
 
+  /// Culling front faces leaves nothing, or less than a shadow, of a mesh that encloses no volume.
+  void warn_of_open_meshes(const scene::Scene& scene) {
+    if (!options_.bias.map.cull_front) return;
+    for (const scene::Mesh& mesh : scene.meshes) {
+      if (!mesh.casts_shadow || !mesh.may_cull_front || scene::is_closed(mesh)) continue;
+      warn(fmt::format("{}: '{}' is open or single-sided: with front-cull it vanishes from the shadow map where it faces the "
+                       "light; set may_cull_front = false on it", scene.name, mesh.name));
+    }
+  }
+
   void run_scene(const NamedScene& each) {
     run_.scenes.push_back({each.scene.name, each.scene.title});
     for (const std::string& warning : each.scene.warnings) warn(each.scene.name + ": " + warning);
+    warn_of_open_meshes(each.scene);
     SceneAssets assets(renderer_, options_, each.scene, cache_,
                        options_.pad_texels.value_or(largest_padding_texels(options_.filters)));
     for (const scene::Camera& camera : each.scene.cameras) {

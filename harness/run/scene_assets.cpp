@@ -1,8 +1,11 @@
 #include "harness/run/scene_assets.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "filters/error.h"
 #include "harness/render/shade_pass.h"
 
 namespace shadowbench::run {
@@ -23,10 +26,20 @@ LightMap& SceneAssets::light_map(int map_size) {
   LightMap light{scene::fit_light(scene_, options_.fit, map_size, pad_texels), render::ShadowMap(map_size)};
   LightMap& kept = maps_.emplace(map_size, std::move(light)).first->second;
   redraw(kept);
+  require_casters(kept);
   return kept;
 }
 
-void SceneAssets::redraw(LightMap& light) { light.map.draw(renderer_.shaders, geometry_, light.frustum); }
+void SceneAssets::redraw(LightMap& light) { light.map.draw(renderer_.shaders, geometry_, light.frustum, options_.bias.map); }
+
+void SceneAssets::require_casters(const LightMap& light) const {
+  if (!options_.bias.map.cull_front) return;
+  const std::vector<float> depth = light.map.read().depth;
+  if (std::any_of(depth.begin(), depth.end(), [](float d) { return d < 1.0f; })) return;
+  throw Error(ErrorKind::kUsage, fmt::format("--bias front-cull leaves nothing of the scene '{}' in its shadow map: all its "
+                                             "casters are open meshes; choose another bias, or set may_cull_front = false on "
+                                             "some objects", scene_.name));
+}
 
 render::GBuffer& SceneAssets::gbuffer(const scene::Camera& camera) {
   const auto found = gbuffers_.find(&camera);

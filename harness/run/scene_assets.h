@@ -50,6 +50,8 @@ class SceneAssets {
   std::map<const scene::Camera*, render::GBuffer> gbuffers_;
   std::map<const scene::Camera*, SceneTruth> truths_;
 
+  /// Throws Error(kUsage) where culling left the map empty.
+  void require_casters(const LightMap& light) const;
   SceneTruth make_truth(const scene::Camera& camera);
 };
 

@@ -64,7 +64,7 @@ class SceneBench {
   std::int64_t receivers_ = -1;
 
   std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request) {
-    const render::Bias bias = resolve_bias(options_.bias, request.spec, request.values);
+    const render::Bias bias = resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
     const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed);
     return std::make_unique<render::FilterPasses>(renderer_.shaders, request, task_.map_size, light);
   }
@@ -72,6 +72,7 @@ class SceneBench {
   MeasuredCell draw(render::FilterPasses& filter) {
     MeasuredCell cell;
     cell.record = make_record(options_, task_, filter.request());
+    cell.record.map_scale = {light_.frustum.texel_size_ws, light_.frustum.depth_range_ws};
     cell.request = filter.request();
     cell.label = filter.request().label();
     filter.prefilter(light_.map);
@@ -162,7 +163,10 @@ report::CellRecord make_record(const RunOptions& options, const SceneTask& task,
   record.map_size = task.map_size;
   record.map_format = "d32f";
   const BiasRule& bias = options.bias;
-  record.bias = {bias.constant_depth, bias.slope_texels, bias.slope_kernels, bias.normal_offset_texels};
+  const auto amount = [](const BiasAmount& a) { return report::BiasAmountRecord{a.depth, a.texels, a.world}; };
+  record.bias = {amount(bias.constant),      amount(bias.slope),      bias.plane_texels,   bias.plane_kernels,
+                 amount(bias.normal_offset), bias.receiver_plane,     bias.map.polygon_factor, bias.map.polygon_units,
+                 bias.map.cull_front,        bias.map.midpoint};
   record.width = options.width;
   record.height = options.height;
   record.key = report::cell_key(record);

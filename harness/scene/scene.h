@@ -40,6 +40,7 @@ struct Mesh {
   std::vector<std::uint32_t> indices;  ///< three per triangle, all < vertices.size()
   int material = 0;                    ///< index into Scene::materials
   bool casts_shadow = true;            ///< drawn into the shadow map
+  bool may_cull_front = true;          ///< with front-face culling: only its back faces are drawn into the shadow map
 };
 
 /// A place to look from. Perspective, unless `orthographic_height_m` is positive.

@@ -110,6 +110,7 @@ class SceneBuilder {
     for (Mesh& mesh : model.meshes) {
       mesh = transform_mesh(std::move(mesh), world);
       mesh.casts_shadow = table.boolean("casts_shadow", true);
+      mesh.may_cull_front = table.boolean("may_cull_front", true);
       if (!is_model || table.has("name")) mesh.name = table.string("name", table.title());
     }
     if (is_model && !table.has("material")) {

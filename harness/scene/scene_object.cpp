@@ -78,7 +78,7 @@ glm::dvec3 read_scale(const TomlTable& object) {
 }  // namespace
 
 const std::vector<std::string>& common_object_keys() {
-  static const std::vector<std::string> keys{"shape",  "name",         "material", "casts_shadow",
+  static const std::vector<std::string> keys{"shape",  "name",         "material", "casts_shadow", "may_cull_front",
                                              "center", "rotation_deg", "scale"};
   return keys;
 }

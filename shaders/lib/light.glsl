@@ -6,7 +6,8 @@ uniform vec3 light_up_ws;          // world direction of +v
 uniform float texel_size_ws;
 uniform float depth_range_ws;
 uniform float light_size;
-uniform float bias_constant;       // depth
-uniform float bias_slope_texels;
+uniform float bias_constant;       // depth; the larger of this and the next holds
+uniform float bias_slope;          // depth, times 1 - n.l
+uniform float bias_plane_texels;
 uniform float bias_normal_texels;
 uniform float bias_max_tangent;    // steeper planes are treated as this steep

@@ -12,14 +12,41 @@ int fetch_count = 0;
 #define COUNT_ONE_FETCH
 #endif
 
+#ifdef RECEIVER_PLANE
+// The plane's depth at the texels that a fetch reads, instead of at the receiver; the same in filters/map_reader.h.
+// A rasteriser snaps vertices to fractions of a texel, which tilts planes a little.
+const float plane_slack_texels = 1.0 / 128.0;
+
+float plane_depth(Receiver r, vec2 from_receiver_texels, float reach_texels, float z) {
+  float steepest = bias_max_tangent * texel_size_ws / depth_range_ws;
+  vec2 slope = clamp(r.depth_per_texel, vec2(-steepest), vec2(steepest));
+  float lowest = (reach_texels + plane_slack_texels) * (abs(slope.x) + abs(slope.y));
+  return min(z + dot(slope, from_receiver_texels) - lowest, 1.0);
+}
+
+float nearest_depth(Receiver r, vec2 offset_texels, float z) {
+  vec2 own = r.uv / map_texel_uv;
+  return plane_depth(r, floor(own + offset_texels) + 0.5 - own, 0.0, z);
+}
+
+// One depth for four texels: the plane's lowest among their centres, half a texel from the corner that they share.
+float corner_depth(Receiver r, vec2 offset_texels, float z) {
+  vec2 own = r.uv / map_texel_uv;
+  return plane_depth(r, floor(own + offset_texels - 0.5) + 1.0 - own, 0.5, z);
+}
+#else
+#define nearest_depth(r, offset_texels, z) (z)
+#define corner_depth(r, offset_texels, z) (z)
+#endif
+
 float compare_nearest(Receiver r, vec2 offset_texels, float z) {
   COUNT_ONE_FETCH;
-  return texture(map_compare_nearest, vec3(r.uv + offset_texels * map_texel_uv, z));
+  return texture(map_compare_nearest, vec3(r.uv + offset_texels * map_texel_uv, nearest_depth(r, offset_texels, z)));
 }
 
 float compare_2x2(Receiver r, vec2 offset_texels, float z) {
   COUNT_ONE_FETCH;
-  return texture(map_compare, vec3(r.uv + offset_texels * map_texel_uv, z));
+  return texture(map_compare, vec3(r.uv + offset_texels * map_texel_uv, corner_depth(r, offset_texels, z)));
 }
 
 float fetch_depth(Receiver r, vec2 offset_texels) {

@@ -32,7 +32,8 @@ Receiver make_receiver(vec3 position_ws, vec3 normal_ws, float view_depth, ivec2
   r.layer = 0;
   r.depth_per_texel = plane_depth_per_texel(normal_ws, r.n_dot_l);
   vec2 steepness = min(abs(r.depth_per_texel), vec2(bias_max_tangent * texel_size_ws / depth_range_ws));
-  precise float biased = lookup_point.z - (bias_constant + bias_slope_texels * (steepness.x + steepness.y));
+  float flat_part = max(bias_constant, bias_slope * (1.0 - r.n_dot_l));
+  precise float biased = lookup_point.z - (flat_part + bias_plane_texels * (steepness.x + steepness.y));
   r.depth = biased;
   r.depth_unbiased = own_point.z;
   r.texel_size_ws = texel_size_ws;

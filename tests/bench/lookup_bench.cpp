@@ -33,7 +33,7 @@ class LookupBench {
     filters::Catalogue catalogue(resources_.filters);
     catalogue.add_user_file(SHADOWBENCH_SOURCE_DIR "/tests/user_filters/nine_compares.glsl");
     for (const auto& request : catalogue.parse_requests(filters)) {
-      const auto bias = run::resolve_bias({}, request.spec, request.values);
+      const auto bias = run::resolve_bias({}, frustum_, request.spec, request.values);
       const auto light = render::make_light_setup(frustum_, scene_.light, bias, 1);
       filters_.push_back(std::make_unique<render::FilterPasses>(shaders_, request, kMapSize, light));
     }

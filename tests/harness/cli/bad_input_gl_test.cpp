@@ -61,7 +61,7 @@ TEST_F(BadInput, MapSizeZero) { expect_refusal("run --out out --map-size 0", 2, 
 TEST_F(BadInput, SameMapSizeTwice) { expect_refusal("run --out out --map-size 64,64", 2, {"64 twice"}); }
 TEST_F(BadInput, PictureSizeMalformed) { expect_refusal("run --out out --size 64", 2, {"--size", "WIDTHxHEIGHT"}); }
 TEST_F(BadInput, PictureLargerThanTheGl) { expect_refusal("run --out out --size 100000x10", 2, {"100000"}); }
-TEST_F(BadInput, NegativeBias) { expect_refusal(small("--bias slope:kernels=-1"), 2, {"--bias", "'-1'"}); }
+TEST_F(BadInput, NegativeBias) { expect_refusal(small("--bias plane:kernels=-1"), 2, {"--bias", "'-1'"}); }
 TEST_F(BadInput, UnknownBias) { expect_refusal(small("--bias slop:kernels=1"), 2, {"did you mean 'slope'"}); }
 TEST_F(BadInput, NoRounds) { expect_refusal(small("--rounds 0"), 2, {"--rounds"}); }
 TEST_F(BadInput, UnknownContext) { expect_refusal(small("--gl vulkan"), 2, {"vulkan"}); }

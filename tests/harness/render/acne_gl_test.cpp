@@ -121,7 +121,7 @@ TEST_P(DefaultBias, LeavesNoVisibleAcne) {
 INSTANTIATE_TEST_SUITE_P(BuiltIn, DefaultBias, ::testing::ValuesIn(builtin_scenes()),
                          [](const auto& each) { return each.param; });
 
-TEST(NoBias, GivesAcne) { EXPECT_GT(Traced("steps").measure("none", {0.0, 0.0, 0.0, 0.0}).acne, 0.05); }
+TEST(NoBias, GivesAcne) { EXPECT_GT(Traced("steps").measure("none", run::BiasRule::none()).acne, 0.05); }
 
 }  // namespace
 }  // namespace shadowbench::test

@@ -34,7 +34,7 @@ class Bench {
   }
 
   render::LightSetup light(const filters::FilterRequest& request, const run::BiasRule& rule = {}) const {
-    const render::Bias bias = run::resolve_bias(rule, request.spec, request.values);
+    const render::Bias bias = run::resolve_bias(rule, frustum_, request.spec, request.values);
     return render::make_light_setup(frustum_, scene_.light, bias, 7);
   }
 

@@ -119,7 +119,7 @@ TEST_F(Attributed, OnFence_WithASmallMap_NoneFailsByItsResolution) {
 }
 
 TEST_F(Attributed, WithoutBias_AcneIsSeen_AndIsDiscretisation) {
-  options_.bias = {0.0, 0.0, 0.0, 0.0};
+  options_.bias = run::BiasRule::none();
   const nlohmann::json cells = run("steps", "none,pcf2x2");
   for (const auto& cell : cells) {
     EXPECT_GT(cell["artefact"]["acne"], 0.05) << cell["filter"];
@@ -133,7 +133,7 @@ TEST_F(Attributed, TooMuchBias_OpensContactGaps) {
   options_.width = 480;
   options_.height = 270;
   EXPECT_LT(run("fence", "none")[0]["artefact"]["contact_gap"], 0.5);
-  options_.bias.constant_depth = 0.02;
+  options_.bias.constant.depth = 0.02;
   EXPECT_GT(run("fence", "none")[0]["artefact"]["contact_gap"], 0.95);
 }
 
