@@ -48,6 +48,13 @@ T logarithm(T x) {
   }
 }
 
+/// Gives zero, and lets single precision be off by `bound`: errors of positions, which are not tracked themselves.
+template <class T>
+T make_uncertain_zero([[maybe_unused]] double bound) {
+  if constexpr (std::is_same_v<T, Tracked>) return Tracked(0.0, bound);
+  else return T{};
+}
+
 /// Gives the fraction of a texel position as the filtering weight that the sampler would use.
 template <class T>
 T sampler_weight(Position<T> position, Position<T> base, [[maybe_unused]] const GlAccuracy& accuracy,

@@ -41,7 +41,7 @@ Receiver make_receiver(double x, double y, int size, float depth) {
 
 TEST(KernelNames, TellKernelsApart) {
   std::set<std::string> names;
-  for (const char* text : {"none", "pcf2x2", "tent3x3", "poisson", "poisson:radius=2", "vsm", "vsm:radius=6", "esm:combine=log"}) {
+  for (const char* text : {"none", "pcf2x2", "box3x3", "tent3x3", "teach4x4", "box4x4", "poisson", "poisson:radius=2", "vsm", "vsm:radius=6", "esm:combine=log"}) {
     EXPECT_TRUE(names.insert(kernel_of(text).name()).second) << text;
   }
   EXPECT_EQ(kernel_of("vsm").name(), kernel_of("esm").name()) << "one prefilter, one kernel";
@@ -51,6 +51,9 @@ TEST(KernelWidths, AreTheShapeAndItsReconstruction) {
   EXPECT_TRUE(kernel_of("none").is_point());
   EXPECT_EQ(kernel_of("pcf2x2").half_width(), 1.0);
   EXPECT_EQ(kernel_of("tent3x3").half_width(), 1.5);
+  EXPECT_EQ(kernel_of("box3x3").half_width(), 1.0) << "texels, as points";
+  EXPECT_EQ(kernel_of("teach4x4").half_width(), 2.0);
+  EXPECT_EQ(kernel_of("box4x4").half_width(), 2.0);
   EXPECT_EQ(kernel_of("poisson:radius=3").half_width(), 4.0);
   EXPECT_EQ(kernel_of("vsm:radius=4").half_width(), 5.0);
   EXPECT_EQ(kernel_of("esm:radius=4,combine=log").half_width(), 4.0);
@@ -71,9 +74,12 @@ double second_moment(const Kernel& kernel) {
 }
 
 TEST(KernelSamples, HaveTheShapesSpread) {
-  // Variances add under convolution: tent 1/6, box of width 2 from two atoms 1/4, disk R^2/4.
+  // Variances add under convolution: tent 1/6, two atoms at +-a a^2, three at -1, 0, 1 2/3, disk R^2/4.
   EXPECT_NEAR(second_moment(kernel_of("pcf2x2")), 1.0 / 6.0, 1e-3);
   EXPECT_NEAR(second_moment(kernel_of("tent3x3")), 1.0 / 4.0 + 1.0 / 6.0, 1e-3);
+  EXPECT_NEAR(second_moment(kernel_of("box3x3")), 2.0 / 3.0, 2e-3);
+  EXPECT_NEAR(second_moment(kernel_of("teach4x4")), 1.0 + 1.0 / 6.0, 1e-3);
+  EXPECT_NEAR(second_moment(kernel_of("box4x4")), 2.0 / 3.0 + 1.0 / 6.0, 2e-3);
   EXPECT_NEAR(second_moment(kernel_of("poisson:radius=3")), 9.0 / 4.0 + 1.0 / 6.0, 0.01);
   double gaussian = 0.0;
   const Kernel vsm = kernel_of("vsm:radius=4");
@@ -86,7 +92,7 @@ TEST(KernelSamples, HaveTheShapesSpread) {
 TEST(PercentageCloser, EqualsTheModelsThatCompare) {
   const DepthMap map = make_random_map(32, 5);
   std::mt19937 random(6);
-  for (const char* text : {"none", "pcf2x2", "tent3x3"}) {
+  for (const char* text : {"none", "pcf2x2", "box3x3", "tent3x3", "teach4x4", "box4x4"}) {
     const FilterRequest request = catalogue().parse_requests(text).front();
     const ModelInput input{request.spec, request.values, map, {}, 0};
     const auto lookup = make_model(request.spec.id)->prepare(input, Precision::kDouble);

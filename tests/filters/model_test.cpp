@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "filters/catalogue.h"
 
@@ -15,6 +17,13 @@ namespace {
 DepthMap make_edge(int size, int edge, float near, float far) {
   DepthMap map{size, {}};
   for (int i = 0; i < size * size; ++i) map.depth.push_back(i % size < edge ? near : far);
+  return map;
+}
+
+/// A map of near texels with a single far one at (8, 8).
+DepthMap make_gap() {
+  DepthMap map = make_edge(16, 16, 0.25f, 1.0f);
+  map.depth[8 * 16 + 8] = 1.0f;
   return map;
 }
 
@@ -53,6 +62,87 @@ TEST(Tent3x3Model, WeighsThreeTexelsPerAxis) {
   for (const double s : {0.1, 0.4, 0.9}) {
     EXPECT_NEAR(look_up("tent3x3", map, 7.0 + s, 4.5, 0.5f), 0.5 * s, 1e-6);
     EXPECT_NEAR(look_up("tent3x3", map, 8.0 + s, 4.5, 0.5f), 0.5 * s + 0.5, 1e-6);
+  }
+}
+
+TEST(Box3x3Model, HasStepsOfAThird) {
+  const DepthMap map = make_edge(16, 8, 0.25f, 1.0f);
+  for (const double s : {0.01, 0.4, 0.99}) {
+    EXPECT_EQ(look_up("box3x3", map, 6.0 + s, 4.5, 0.5f), 0.0) << s;
+    EXPECT_DOUBLE_EQ(look_up("box3x3", map, 7.0 + s, 4.5, 0.5f), 1.0 / 3.0) << s;
+    EXPECT_DOUBLE_EQ(look_up("box3x3", map, 8.0 + s, 4.5, 0.5f), 2.0 / 3.0) << s;
+    EXPECT_EQ(look_up("box3x3", map, 9.0 + s, 4.5, 0.5f), 1.0) << s;
+  }
+}
+
+TEST(Box3x3Model, WeighsItsTexelsAlike) {
+  const DepthMap map = make_gap();
+  for (const double x : {7.1, 8.5, 9.9}) {
+    for (const double y : {7.9, 8.3, 9.2}) EXPECT_DOUBLE_EQ(look_up("box3x3", map, x, y, 0.5f), 1.0 / 9.0) << x << " " << y;
+  }
+  EXPECT_EQ(look_up("box3x3", map, 6.9, 8.5, 0.5f), 0.0);
+  EXPECT_EQ(look_up("box3x3", map, 8.5, 10.1, 0.5f), 0.0);
+}
+
+TEST(Teach4x4Model, StaysAtAHalf_ForAWholeTexel) {
+  const DepthMap map = make_edge(16, 8, 0.25f, 1.0f);
+  for (int i = 0; i <= 64; ++i) {
+    const double s = i / 64.0;
+    EXPECT_DOUBLE_EQ(look_up("teach4x4", map, 6.5 + s, 4.25, 0.5f), 0.5 * s);
+    EXPECT_EQ(look_up("teach4x4", map, 7.5 + s, 4.25, 0.5f), 0.5) << s;
+    EXPECT_DOUBLE_EQ(look_up("teach4x4", map, 8.5 + s, 4.25, 0.5f), 0.5 + 0.5 * s);
+  }
+}
+
+TEST(Teach4x4Model, HasAHoleBetweenTwoHumps) {
+  // Per axis, s past a texel's centre: (1-s)/2, s/2, (1-s)/2, s/2. At a centre the texel of the receiver does not count.
+  const DepthMap map = make_gap();
+  EXPECT_EQ(look_up("teach4x4", map, 8.5, 8.5, 0.5f), 0.0);
+  for (const double x : {7.5, 9.5}) {
+    for (const double y : {7.5, 9.5}) EXPECT_DOUBLE_EQ(look_up("teach4x4", map, x, y, 0.5f), 0.25) << x << " " << y;
+  }
+  EXPECT_DOUBLE_EQ(look_up("teach4x4", map, 8.75, 7.5, 0.5f), 0.5 * 0.125);
+  EXPECT_DOUBLE_EQ(look_up("teach4x4", map, 7.75, 7.5, 0.5f), 0.5 * 0.375);
+}
+
+TEST(Box4x4Model, IsAStraightRamp) {
+  // A box of three texels around the receiver, less its part left of the edge.
+  const DepthMap map = make_edge(16, 8, 0.25f, 1.0f);
+  for (int i = 0; i <= 1024; ++i) {
+    const double x = 6.0 + i / 256.0;
+    EXPECT_NEAR(look_up("box4x4", map, x, 4.3, 0.5f), std::clamp((x - 6.5) / 3.0, 0.0, 1.0), 1e-12) << x;
+  }
+}
+
+TEST(Box4x4Model, WeighsATexel_AsItsPartUnderTheBox) {
+  const DepthMap map = make_gap();
+  const auto part = [](double at) { return std::clamp(std::min(9.0, at + 1.5) - std::max(8.0, at - 1.5), 0.0, 1.0) / 3.0; };
+  for (int i = 0; i <= 160; ++i) {
+    const double x = 6.0 + i / 32.0, y = 10.5 - i / 64.0;
+    EXPECT_NEAR(look_up("box4x4", map, x, y, 0.5f), part(x) * part(y), 1e-12) << x << " " << y;
+  }
+}
+
+TEST(Box4x4Model, InSinglePrecision_KeepsItsBound) {
+  static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
+  const FilterRequest request = catalogue.parse_requests("box4x4").front();
+  std::mt19937 random(3);
+  const auto number = [&] { return static_cast<float>(random()) * 0x1p-32f; };
+  for (const int size : {1, 3, 100, 1000, 1024}) {
+    DepthMap map{size, {}};
+    for (int i = 0; i < size * size; ++i) map.depth.push_back(number());
+    const ModelInput input{request.spec, request.values, map, {}, 0};
+    const auto model = make_model("box4x4");
+    const auto single = model->prepare(input, Precision::kFloat), tracked = model->prepare(input, Precision::kTracked);
+    for (int i = 0; i < 20000; ++i) {
+      Receiver r;
+      r.uv = {number(), number()};
+      r.depth = number();
+      const ModelResult exact = tracked->at(r);
+      if (exact.excused) continue;
+      ASSERT_LE(std::abs(single->at(r).visibility - exact.visibility), exact.bound) << size;
+      ASSERT_LT(exact.bound, 5e-6 * (size + 1)) << "a bound this wide says nothing";
+    }
   }
 }
 

@@ -45,6 +45,8 @@ CellRecord make_timed_out_cell() {
 // A cell in which everything that later issues bring exists.
 CellRecord make_full_cell() {
   CellRecord cell = make_cell("cubes", "full", 4.0);
+  cell.map_scale = {0.02, 10.0};
+  cell.bias = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, 0.7, 0.8, {0.0, 0.9, 1.0}, true, 1.1, 1.2, true, true};
   cell.time_ms.prefilter = Quartiles{1.5, 1.25, 1.75, 3};
   cell.ratio_to_none.static_map = Ratio{1.5, {1.25, 1.75}};
   cell.ratio_to_none.moving = Ratio{2.5, {2.25, 2.75}};
@@ -78,6 +80,8 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   EXPECT_EQ(back.error.kernel_rmse, 0.04);
   EXPECT_EQ(back.ratio_to_none.moving->ci95.high, 2.75);
   EXPECT_EQ(back.time_ms.prefilter->n, 3);
+  EXPECT_EQ(back.bias.normal_offset.world, 1.0);
+  EXPECT_TRUE(back.bias.midpoint);
   EXPECT_EQ(back.images.exr, "e.exr");
   EXPECT_EQ(back.images.attribution, "f.png");
   EXPECT_EQ(std::get<std::string>(back.params.at("store")), "rg32f");

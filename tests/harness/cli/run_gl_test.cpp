@@ -17,7 +17,7 @@ TEST_F(Command, AllScenesAndFilters_WriteAValidReport) {
   const Outcome outcome = run("run --out out --size 128x72 --map-size 128 --rounds 2");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json json = results(folder());
-  EXPECT_EQ(json["cells"].size(), 30u);
+  EXPECT_EQ(json["cells"].size(), 45u);
   for (const auto& cell : json["cells"]) EXPECT_EQ(cell["nan"], 0);
   for (const char* scene : {"cubes", "stack", "fence", "ball", "steps"}) {
     EXPECT_TRUE(std::filesystem::exists(folder() / "out" / (std::string(scene) + ".grid.png")));
@@ -177,7 +177,7 @@ TEST_F(Command, ListFilters_ShowsWhatTheFrontMatterSays) {
     EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
   }
   const nlohmann::json json = nlohmann::json::parse(run("list filters --json").out);
-  EXPECT_EQ(json.size(), 6u);
+  EXPECT_EQ(json.size(), 9u);
 }
 
 TEST_F(Command, ListScenes_NamesAllFive) {

@@ -38,6 +38,9 @@ class Bench {
     return render::make_light_setup(frustum_, scene_.light, bias, 7);
   }
 
+  /// Draws the map again, with another bias in it.
+  void redraw(const render::MapBias& bias) { map_.draw(shaders_, geometry_, frustum_, bias); }
+
   /// Gives visibility as the GL wrote it: rows bottom to top, like Receiver::pixel.
   std::vector<float> draw(const filters::FilterRequest& request, const run::BiasRule& rule = {}) {
     render::FilterPasses filter(shaders_, request, map_.size(), light(request, rule));

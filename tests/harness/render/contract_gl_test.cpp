@@ -138,7 +138,10 @@ double fetches_of(const std::string& text) {
 
 TEST(FetchCount, EqualsTheFetchesInTheGlsl) {
   EXPECT_DOUBLE_EQ(fetches_of("none"), 1.0);
+  EXPECT_DOUBLE_EQ(fetches_of("box3x3"), 9.0);
   EXPECT_DOUBLE_EQ(fetches_of("tent3x3"), 4.0);
+  EXPECT_DOUBLE_EQ(fetches_of("teach4x4"), 4.0);
+  EXPECT_DOUBLE_EQ(fetches_of("box4x4"), 4.0);
   EXPECT_DOUBLE_EQ(fetches_of("poisson:taps=32"), 32.0);
   EXPECT_DOUBLE_EQ(fetches_of("nine_compares"), 9.0);
   EXPECT_DOUBLE_EQ(fetches_of("vsm"), 1.0);
