@@ -99,6 +99,8 @@ struct FieldReader {
   }
 };
 
+constexpr const char* kNotMeasured = "not measured";
+
 // A path's group, its group's group and so on, itself first.
 std::vector<std::string> list_path_and_groups(std::string path) {
   std::vector<std::string> names{path};
@@ -127,12 +129,14 @@ bool has_value(const json& value) {
 
 std::map<std::string, std::string> explain_nulls(const json& root, std::map<std::string, std::string> absent,
                                                  const std::vector<std::string>& nulls) {
+  // A record that was read again says so of what has been measured since.
+  std::erase_if(absent, [](const auto& entry) { return entry.second == kNotMeasured; });
   for (const std::string& path : nulls) {
     if (is_explained(absent, path)) {
       continue;
     }
     const std::string group = list_path_and_groups(path).back();
-    absent[has_value(root.at(group)) ? path : group] = "not measured";
+    absent[has_value(root.at(group)) ? path : group] = kNotMeasured;
   }
   return absent;
 }

@@ -36,6 +36,9 @@ Target constant_depth() {
   return [](BiasRule& r) -> double& { return r.constant.depth; };
 }
 
+/// The tangent of 89.99 degrees.
+constexpr double kAnySlope = 5730.0;
+
 /// The slack that rounding needs, unless the user gives one.
 constexpr double kRoundingDepth = 2e-5;
 
@@ -172,7 +175,11 @@ render::Bias resolve_bias(const BiasRule& rule, const scene::LightFrustum& frust
 
 render::Bias resolve_comparison_bias(const BiasRule& rule, const scene::LightFrustum& frustum,
                                      const filters::FilterSpec& spec, const filters::ParamValues& values) {
-  return resolve(rule, frustum, std::max(filters::bias_texels(spec, values), filters::radius_texels(spec, values)));
+  const double own = filters::bias_texels(spec, values), radius = filters::radius_texels(spec, values);
+  if (own >= radius) return resolve(rule, frustum, own);
+  render::Bias bias = resolve(rule, frustum, radius);
+  bias.max_tangent = kAnySlope;  // the filter itself has no acne on steep planes either
+  return bias;
 }
 
 }  // namespace shadowbench::run

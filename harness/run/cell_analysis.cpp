@@ -34,7 +34,8 @@ void note_parts(report::CellRecord& record, const reference::Attribution& attrib
   for (std::size_t p = 0; p < parts.size(); ++p) {
     if (attribution.stats[p]) *parts[p] = {attribution.stats[p]->rms, attribution.stats[p]->share};
   }
-  if (!attribution.stats.front()) record.absent["attribution"] = "there is no error to take apart";
+  if (attribution.stats.front()) return;
+  record.absent["attribution"] = attribution.not_finite > 0 ? "no pixel of the image is finite" : "there is no error to take apart";
 }
 
 }  // namespace
@@ -55,9 +56,10 @@ void CellAnalyser::make_masks() {
                                            reference::kArtefactLimits.contact_texels * light_.frustum.texel_size_ws});
 }
 
-const reference::TracedVisibility& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {
+const std::vector<float>& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {
+  if (kernel.is_point()) return truth_.rays.hard;
   const auto [place, is_new] = kernels_.try_emplace(kernel.name());
-  if (is_new) place->second = assets_.tracer().trace_kernel(truth_.receivers, kernel, light_.frustum);
+  if (is_new) place->second = assets_.tracer().trace_kernel(truth_.receivers, kernel, light_.frustum).visibility;
   return place->second;
 }
 
@@ -107,7 +109,7 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   const double plane_max_tangent = options_.bias.receiver_plane ? options_.bias.max_tangent : 0.0;
   const ModelImages images = evaluate_model(request, *map_, receivers, plane_max_tangent, options_.seed, options_.width,
                                              options_.height);
-  const std::vector<float>& kernel = kernel_truth(model->kernel(request.values)).visibility;
+  const std::vector<float>& kernel = kernel_truth(model->kernel(request.values));
   const std::vector<float>& image = cell.visibility.texels;
   reference::Attribution attribution = reference::attribute_error(
       {image, images.model, images.closer, kernel, truth_.area.texels, truth_.mask});

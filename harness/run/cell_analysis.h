@@ -36,10 +36,10 @@ class CellAnalyser {
   LightMap& light_;
   std::optional<filters::DepthMap> map_;
   std::optional<reference::ArtefactMasks> masks_;
-  std::map<std::string, reference::TracedVisibility> kernels_;  ///< by name
+  std::map<std::string, std::vector<float>> kernels_;  ///< by name
 
   void make_masks();
-  const reference::TracedVisibility& kernel_truth(const filters::Kernel& kernel);
+  const std::vector<float>& kernel_truth(const filters::Kernel& kernel);
   std::vector<filters::Receiver> read_receivers(const render::Bias& bias) const;
   void count_artefacts(MeasuredCell& cell) const;
   void attribute(MeasuredCell& cell);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for_each.h>
 
+#include <algorithm>
 #include <set>
 
 #include "filters/error.h"
@@ -14,6 +15,7 @@
 #include "harness/run/user_filter.h"
 #include "harness/scene/closed_mesh.h"
 #include "harness/scene/load.h"
+#include "reference/truth/occluders.h"
 #include "report/atomic_file.h"
 #include "report/json_io.h"
 #include "report/report.h"
@@ -96,6 +98,17 @@ class Experiment {
     progress_.note("warning: " + message);
   }
 
+  /// Single precision is spent on the distance from the origin: rays then start far off their surfaces, and miss contacts.
+  void warn_of_distance(const scene::Scene& scene) {
+    const scene::Bounds bounds = scene.bounds();
+    const glm::vec3 largest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max)), size = bounds.max - bounds.min;
+    const float farthest = std::max({largest.x, largest.y, largest.z});
+    const float offset = reference::origin_offset(farthest, farthest);
+    if (offset < 1e-4f * std::max({size.x, size.y, size.z})) return;
+    warn(fmt::format("{}: {} m from the origin, single precision leaves positions uncertain, and rays start {} m off their "
+                     "surfaces: what is smaller is not seen; move the scene to the origin", scene.name, farthest, offset));
+  }
+
   /// Culling front faces leaves nothing, or less than a shadow, of a mesh that encloses no volume.
   void warn_of_open_meshes(const scene::Scene& scene) {
     if (!options_.bias.map.cull_front) return;
@@ -110,6 +123,7 @@ class Experiment {
     run_.scenes.push_back({each.scene.name, each.scene.title});
     for (const std::string& warning : each.scene.warnings) warn(each.scene.name + ": " + warning);
     warn_of_open_meshes(each.scene);
+    if (options_.truth && !options_.worker) warn_of_distance(each.scene);
     SceneAssets assets(renderer_, options_, each.scene, cache_,
                        options_.pad_texels.value_or(largest_padding_texels(options_.filters)));
     for (const scene::Camera& camera : each.scene.cameras) {
@@ -161,6 +175,7 @@ class Experiment {
     show(task, "attribution");
     CellAnalyser analyser(renderer_, options_, task, assets, truth);
     for (MeasuredCell& cell : measured.cells) analyser.analyse(cell);
+    measured.masks = analyser.masks();
   }
 
   void show(const SceneTask& task, const std::string& what) {

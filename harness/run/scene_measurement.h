@@ -1,11 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "harness/run/renderer.h"
 #include "harness/run/scene_assets.h"
 #include "harness/scene/scene.h"
+#include "reference/metrics/artefacts.h"
 #include "report/image.h"
 #include "report/records.h"
 
@@ -25,6 +27,7 @@ struct MeasuredCell {
 struct SceneMeasurement {
   std::vector<MeasuredCell> cells;
   report::Image depth_map;  ///< [0,1], row 0 is v = 1
+  std::optional<reference::ArtefactMasks> masks;  ///< where artefacts can occur; nothing without truth
   std::vector<std::string> warnings;
   int passes_run = 0;
   int passes_skipped = 0;  ///< encode and blur passes that no chosen filter needed

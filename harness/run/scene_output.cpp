@@ -106,10 +106,26 @@ report::Grid make_grid(const RunOptions& options, const SceneTask& task, const S
   return grid;
 }
 
-report::Image make_mask_image(const SceneTruth& truth) {
-  report::Image mask(truth.area.width, truth.area.height, 1);
-  std::copy(truth.mask.begin(), truth.mask.end(), mask.texels.begin());
-  return mask;
+/// Turns values of the view's pixels into a part of one channel.
+template <class T>
+report::Part make_part(const std::string& name, const SceneTruth& truth, const std::vector<T>& values) {
+  report::Image image(truth.area.width, truth.area.height, 1);
+  std::copy(values.begin(), values.end(), image.texels.begin());
+  return {name, {"Y"}, std::move(image), false};
+}
+
+/// The truth, how sure it is, and which pixels count for what.
+void add_truth_parts(std::vector<report::Part>& parts, const SceneTruth& truth,
+                     const std::optional<reference::ArtefactMasks>& masks) {
+  parts.push_back({"truth.hard", {"Y"}, truth.hard, false});
+  parts.push_back({"truth.area", {"Y"}, truth.area, false});
+  parts.push_back(make_part("truth.standard_error", truth, truth.rays.area.standard_error));
+  parts.push_back(make_part("truth.mask", truth, truth.mask));
+  parts.push_back({"truth.picture", {"R", "G", "B"}, truth.area_picture, true});
+  if (!masks) return;
+  parts.push_back(make_part("truth.mask.acne", truth, masks->acne));
+  parts.push_back(make_part("truth.mask.leak", truth, masks->leak));
+  parts.push_back(make_part("truth.mask.contact_gap", truth, masks->contact_gap));
 }
 
 /// Writes a cell's own pictures; no two labels share a file.
@@ -165,12 +181,7 @@ void write_float_images(const RunOptions& options, const SceneTask& task, const 
       parts.push_back({fmt::format("{}.error.{}", cell.label, report::list_error_parts()[p].id), {"Y"}, cell.error_parts[p], false});
     }
   }
-  if (truth.absent.empty()) {
-    parts.push_back({"truth.hard", {"Y"}, truth.hard, false});
-    parts.push_back({"truth.area", {"Y"}, truth.area, false});
-    parts.push_back({"truth.mask", {"Y"}, make_mask_image(truth), false});
-    parts.push_back({"truth.picture", {"R", "G", "B"}, truth.area_picture, true});
-  }
+  if (truth.absent.empty()) add_truth_parts(parts, truth, measured.masks);
   parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});
   report::write_exr(options.out / exr_name(options, task), parts, describe(options, task, info));
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "harness/run/content_hash.h"
 #include "reference/truth/version.h"
 
@@ -37,6 +39,7 @@ std::vector<reference::OccluderMesh> list_occluders(const scene::Scene& scene) {
 std::string name_geometry(const std::vector<reference::OccluderMesh>& meshes) {
   ContentHash hash;
   hash.add(reference::truth_version());
+  hash.add(SHADOWBENCH_TRACER_SOURCES);
   for (const reference::OccluderMesh& mesh : meshes) {
     hash.add_values(std::span<const glm::vec3>(mesh.positions));
     hash.add_values(std::span<const std::uint32_t>(mesh.indices));
@@ -74,6 +77,15 @@ std::vector<report::Part> to_parts(const reference::ReceiverImage& size, const r
           make_part("unanimous", size, traced.unanimous), make_part("rays", size, traced.rays)};
 }
 
+const std::vector<std::string> kTracedParts = {"visibility", "standard_error", "unanimous", "rays"};
+const std::vector<std::string> kViewParts = {"visibility", "standard_error", "unanimous", "rays", "hard", "first_blockers"};
+
+bool fits(const std::vector<report::Part>& parts, const std::vector<std::string>& names, const reference::ReceiverImage& size) {
+  return std::equal(parts.begin(), parts.end(), names.begin(), names.end(), [&](const report::Part& part, const std::string& name) {
+    return part.name == name && part.image.width == size.width && part.image.height == size.height && part.image.channels == 1;
+  });
+}
+
 template <class T>
 std::vector<T> convert(const report::Part& part) {
   return {part.image.texels.begin(), part.image.texels.end()};
@@ -102,6 +114,7 @@ reference::TraceSettings SceneTracer::settings() const {
 }
 
 std::vector<report::Part> SceneTracer::find_or_trace(const ViewReceivers& receivers, const std::string& what,
+                                                     const std::vector<std::string>& part_names,
                                                      const std::function<std::vector<report::Part>()>& trace) {
   ContentHash hash;
   const reference::TraceSettings s = settings();
@@ -110,7 +123,8 @@ std::vector<report::Part> SceneTracer::find_or_trace(const ViewReceivers& receiv
     hash.add(text);
   }
   const std::string name = hash.name();
-  if (auto kept = cache_.load(name)) return std::move(*kept);
+  const auto is_whole = [&](const std::vector<report::Part>& parts) { return fits(parts, part_names, receivers.image); };
+  if (auto kept = cache_.load(name, is_whole)) return std::move(*kept);
   std::vector<report::Part> parts = trace();
   cache_.store(name, parts);
   return parts;
@@ -119,7 +133,7 @@ std::vector<report::Part> SceneTracer::find_or_trace(const ViewReceivers& receiv
 ViewRays SceneTracer::trace_view(const ViewReceivers& receivers) {
   const glm::dvec3 to_light = -glm::dvec3(scene_.light.direction_ws);
   const double diameter = static_cast<double>(scene_.light.angular_diameter_deg);
-  const auto parts = find_or_trace(receivers, fmt::format("sun of {} degrees", diameter), [&] {
+  const auto parts = find_or_trace(receivers, fmt::format("sun of {} degrees", diameter), kViewParts, [&] {
     const auto light = reference::AreaLight::make_sun(to_light, diameter);
     auto traced = to_parts(receivers.image, reference::trace_area(occluders(), receivers.image, light, settings()));
     traced.push_back(make_part("hard", receivers.image, reference::trace_hard(occluders(), receivers.image, light)));
@@ -133,7 +147,7 @@ ViewRays SceneTracer::trace_view(const ViewReceivers& receivers) {
 reference::TracedVisibility SceneTracer::trace_kernel(const ViewReceivers& receivers, const filters::Kernel& kernel,
                                                       const scene::LightFrustum& frustum) {
   const reference::MapGrid grid = make_grid(frustum);
-  return from_parts(find_or_trace(receivers, fmt::format("kernel {} {}", kernel.name(), name_grid(grid)), [&] {
+  return from_parts(find_or_trace(receivers, fmt::format("kernel {} {}", kernel.name(), name_grid(grid)), kTracedParts, [&] {
     return to_parts(receivers.image, reference::trace_kernel(occluders(), receivers.image, kernel, grid, settings()));
   }));
 }
@@ -141,7 +155,7 @@ reference::TracedVisibility SceneTracer::trace_kernel(const ViewReceivers& recei
 reference::TracedVisibility SceneTracer::trace_surroundings(const ViewReceivers& receivers, double half_width_texels,
                                                             const scene::LightFrustum& frustum) {
   const reference::MapGrid grid = make_grid(frustum);
-  return from_parts(find_or_trace(receivers, fmt::format("square {} {}", half_width_texels, name_grid(grid)), [&] {
+  return from_parts(find_or_trace(receivers, fmt::format("square {} {}", half_width_texels, name_grid(grid)), kTracedParts, [&] {
     reference::TraceSettings rough = settings();
     rough.standard_error = 1.0;
     return to_parts(receivers.image, reference::trace_square(occluders(), receivers.image, half_width_texels, grid, rough));

@@ -51,8 +51,9 @@ class SceneTracer {
   const reference::Occluders& occluders();
   reference::TraceSettings settings() const;
 
-  /// Takes from the cache what `what` names, or traces and keeps it.
+  /// Takes from the cache what `what` names, or traces and keeps it: parts of these names and of the receivers' size.
   std::vector<report::Part> find_or_trace(const ViewReceivers& receivers, const std::string& what,
+                                          const std::vector<std::string>& part_names,
                                           const std::function<std::vector<report::Part>()>& trace);
 };
 

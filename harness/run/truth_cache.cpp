@@ -35,12 +35,13 @@ bool holds(const report::ExrFile& file, const char* attribute, const std::string
 TruthCache::TruthCache(std::filesystem::path folder, std::function<void(const std::string&)> note)
     : folder_(std::move(folder)), note_(std::move(note)) {}
 
-std::optional<std::vector<report::Part>> TruthCache::load(const std::string& name) {
+std::optional<std::vector<report::Part>> TruthCache::load(
+    const std::string& name, const std::function<bool(const std::vector<report::Part>&)>& is_wanted) {
   std::error_code error;
   if (!folder_.empty() && std::filesystem::exists(path_of(name), error)) {
     try {
       report::ExrFile file = report::read_exr(path_of(name));
-      if (holds(file, kName, name) && holds(file, kChecksum, checksum(file.parts))) {
+      if (holds(file, kName, name) && holds(file, kChecksum, checksum(file.parts)) && is_wanted(file.parts)) {
         std::filesystem::last_write_time(path_of(name), std::filesystem::file_time_type::clock::now(), error);
         ++loaded_;
         return std::move(file.parts);
@@ -72,10 +73,14 @@ void TruthCache::prune(std::uintmax_t max_bytes) const {
   std::vector<Entry> entries;
   std::uintmax_t total = 0;
   std::error_code error;
-  for (const auto& file : std::filesystem::directory_iterator(folder_, error)) {
-    if (file.path().extension() != ".exr") continue;
-    entries.push_back({file.path(), file.last_write_time(error), file.file_size(error)});
-    total += entries.back().bytes;
+  std::filesystem::directory_iterator file(folder_, error);
+  for (; !error && file != std::filesystem::directory_iterator(); file.increment(error)) {
+    if (file->path().extension() != ".exr") continue;
+    std::error_code gone;
+    const Entry entry{file->path(), file->last_write_time(gone), file->file_size(gone)};
+    if (gone) continue;
+    total += entry.bytes;
+    entries.push_back(entry);
   }
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
   for (const Entry& entry : entries) {

@@ -17,8 +17,10 @@ class TruthCache {
   /// An empty folder name keeps nothing. `note` hears, once, of a folder that cannot be written.
   TruthCache(std::filesystem::path folder, std::function<void(const std::string&)> note);
 
-  /// Gives what was kept under a name; nothing where there is none, or where the file is damaged or of another content.
-  std::optional<std::vector<report::Part>> load(const std::string& name);
+  /// Gives what was kept under a name; nothing where there is none, or where the file is damaged, of another content, or not
+  /// what `is_wanted` says is wanted.
+  std::optional<std::vector<report::Part>> load(
+      const std::string& name, const std::function<bool(const std::vector<report::Part>&)>& is_wanted = [](const auto&) { return true; });
 
   /// Keeps parts of one channel under a name.
   void store(const std::string& name, const std::vector<report::Part>& parts);

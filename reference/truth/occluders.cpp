@@ -38,6 +38,10 @@ static_assert(offsetof(RTCRay16, mask) == offsetof(RayPacket, mask));
 
 }  // namespace
 
+float origin_offset(float largest_coordinate, float largest_of_scene) {
+  return kRoundings * 0x1p-24f * (largest_coordinate + largest_of_scene);
+}
+
 struct Occluders::Impl {
   RTCDevice device = rtcNewDevice(nullptr);
   RTCScene scene = rtcNewScene(device);
@@ -115,7 +119,7 @@ RayPacket::Lanes Occluders::find_nearest(const RayPacket& packet) const {
 glm::vec3 Occluders::offset_origin(const glm::vec3& position, const glm::vec3& normal, float extent) const {
   // One bound for all axes: a coordinate that is 0 everywhere would leave the point on its surface.
   const auto largest = [](const glm::vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
-  const float error = kRoundings * 0x1p-24f * (largest(position) + largest(impl_->largest) + extent);
+  const float error = origin_offset(largest(position) + extent, largest(impl_->largest));
   glm::vec3 moved = position + normal * error;
   // The sum itself is rounded: one step further, away from the surface.
   for (int axis = 0; axis < 3; ++axis) {

@@ -47,6 +47,14 @@ TEST(KernelNames, TellKernelsApart) {
   EXPECT_EQ(kernel_of("vsm").name(), kernel_of("esm").name()) << "one prefilter, one kernel";
 }
 
+TEST(KernelNames, TellWeightsAndRadiiApart) {
+  const auto name_of = [](double side) {
+    return Kernel::make_grid({{-1.0, side}, {0.0, 1.0 - 2.0 * side}, {1.0, side}}, Reconstruction::kBilinear).name();
+  };
+  EXPECT_NE(name_of(0.25), name_of(0.125)) << "the same offsets";
+  EXPECT_NE(Kernel::make_disk(3.0).name(), Kernel::make_disk(std::nextafter(3.0, 4.0)).name());
+}
+
 TEST(KernelWidths, AreTheShapeAndItsReconstruction) {
   EXPECT_TRUE(kernel_of("none").is_point());
   EXPECT_EQ(kernel_of("pcf2x2").half_width(), 1.0);
@@ -86,6 +94,29 @@ TEST(KernelSamples, HaveTheShapesSpread) {
   for (const Kernel::Atom& atom : vsm.atoms()) gaussian += atom.weight * atom.offset * atom.offset;
   EXPECT_NEAR(second_moment(vsm), gaussian + 1.0 / 6.0, 0.01);
   EXPECT_EQ(second_moment(kernel_of("none")), 0.0);
+}
+
+TEST(KernelSamples, AreCentred_AndTheirAxesAreIndependent) {
+  for (const char* text : {"pcf2x2", "tent3x3", "poisson:radius=3", "vsm:radius=2", "esm:radius=2,combine=log"}) {
+    const Kernel kernel = kernel_of(text);
+    constexpr int kSteps = 24;
+    glm::dvec2 mean(0.0), squares(0.0);
+    double product = 0.0;
+    for (int i = 0; i < kSteps * kSteps * kSteps * kSteps; ++i) {
+      const auto coordinate = [&](int divisor) { return (i / divisor % kSteps + 0.5) / kSteps; };
+      const glm::dvec2 offset = kernel.sample({coordinate(1), coordinate(kSteps)},
+                                              {coordinate(kSteps * kSteps), coordinate(kSteps * kSteps * kSteps)});
+      mean += offset;
+      squares += offset * offset;
+      product += offset.x * offset.y;
+    }
+    constexpr double kCount = 1.0 * kSteps * kSteps * kSteps * kSteps;
+    const double deviation = 0.01 * std::sqrt(squares.x / kCount);
+    EXPECT_NEAR(mean.x / kCount, 0.0, deviation) << text;
+    EXPECT_NEAR(mean.y / kCount, 0.0, deviation) << text;
+    EXPECT_NEAR(product / squares.x, 0.0, 0.01) << text;
+    EXPECT_NEAR(squares.y / squares.x, 1.0, 0.01) << text;
+  }
 }
 
 /// Filters that compare are their own brute-force percentage-closer filter.
@@ -142,6 +173,16 @@ TEST(PercentageCloser, OfADisk_IsTheMeanOfManyTaps) {
     worst = std::max(worst, std::abs(closer.at(make_receiver(px, py, 32, 0.5f)) - sum / inside));
   }
   EXPECT_LT(worst, 5e-4);
+}
+
+TEST(PercentageCloser, OfADisk_IsExactlyLit_WhereNothingBlocks) {
+  const DepthMap map{32, std::vector<float>(32 * 32, 0.5f)};
+  const PercentageCloser closer(kernel_of("poisson:radius=3"), map);
+  for (int i = 0; i < 50; ++i) {
+    const double x = 16.0 + 0.13 * i, y = 15.0 - 0.07 * i;
+    ASSERT_EQ(closer.at(make_receiver(x, y, 32, 0.5f)), 1.0) << "a tie is lit";
+    ASSERT_EQ(closer.at(make_receiver(x, y, 32, 0.75f)) > 0.0, x + 4.5 > 32.0) << "outside the map the depth is 1";
+  }
 }
 
 TEST(DiskWeights, InsideTheDisk_AreItsDensity_AndSumToOne) {

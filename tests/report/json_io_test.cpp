@@ -126,6 +126,19 @@ TEST(JsonIo, EveryNull_HasAReason) {
   EXPECT_FALSE(absent.contains("cost"));
 }
 
+TEST(JsonIo, WhatWasMeasuredAfterReadingAgain_IsNoLongerAbsent) {
+  CellRecord cell = make_full_cell();
+  cell.error = {};
+  cell.truth = {};
+  CellRecord again = cell_from_json(to_json(cell), "test");
+  ASSERT_EQ(again.absent.at("error"), "not measured");
+  again.error.rmse = 0.5;
+  const json absent = to_json(again).at("absent");
+  EXPECT_FALSE(absent.contains("error"));
+  EXPECT_EQ(absent.at("error.mae"), "not measured");
+  EXPECT_EQ(absent.at("truth"), "not measured");
+}
+
 TEST(JsonIo, TextThatIsNotUtf8_IsWrittenAllTheSame) {
   const TemporaryFolder folder("json_utf8");
   CellRecord cell = make_cell("bad\xff", "vsm", 4.0);

@@ -116,18 +116,18 @@ TEST_F(Command, ASecondRun_TakesItsTruthFromTheCache) {
   const std::string arguments = "run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none,pcf2x2";
   ASSERT_EQ(run(arguments).exit_code, 0);
   const nlohmann::json first = results(folder());
-  EXPECT_EQ(first["work"]["truths_traced"], 4) << "the view, its surroundings, two kernels";
+  EXPECT_EQ(first["work"]["truths_traced"], 3) << "the view, its surroundings, a kernel; the other is a point";
   EXPECT_EQ(first["work"]["truths_cached"], 0);
   ASSERT_EQ(run(arguments).exit_code, 0);
   const nlohmann::json second = results(folder());
   EXPECT_EQ(second["work"]["truths_traced"], 0);
-  EXPECT_EQ(second["work"]["truths_cached"], 4);
+  EXPECT_EQ(second["work"]["truths_cached"], 3);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(first["cells"][i]["error"], second["cells"][i]["error"]);
     EXPECT_EQ(first["cells"][i]["attribution"], second["cells"][i]["attribution"]);
   }
   ASSERT_EQ(run(arguments + " --no-cache").exit_code, 0);
-  EXPECT_EQ(results(folder())["work"]["truths_traced"], 4);
+  EXPECT_EQ(results(folder())["work"]["truths_traced"], 3);
 }
 
 TEST_F(Command, ACacheThatCannotBeWritten_IsWarnedOf_AndTheRunGoesOn) {
@@ -136,6 +136,16 @@ TEST_F(Command, ACacheThatCannotBeWritten_IsWarnedOf_AndTheRunGoesOn) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("--cache"), std::string::npos) << outcome.err;
   EXPECT_EQ(results(folder())["warnings"].size(), 1u);
+}
+
+TEST_F(Command, ASceneFarFromTheOrigin_IsWarnedOf) {
+  write("far.toml",
+        "[camera]\nposition = [1000000, 5, 5]\ntarget = [1000000, 0, 0]\n[light]\nazimuth_deg = 40\nelevation_deg = 50\n"
+        "[[object]]\nshape = \"plane\"\nsize = [8, 8]\ncenter = [1000000, 0, 0]\n"
+        "[[object]]\nshape = \"box\"\nsize = [1, 1, 1]\ncenter = [1000000, 0.5, 0]\n");
+  const Outcome outcome = run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene far.toml --filters none");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("move the scene to the origin"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Command, AUsersFilter_HasArtefactsButNoAttribution) {

@@ -83,6 +83,8 @@ TEST_F(Attributed, PartsAddUp_InEveryPixel_OfEveryFilter) {
     EXPECT_LT(cell["attribution"]["numeric"]["rms"], 1e-3);
     EXPECT_GT(cell["attribution"]["model"]["rms"], 0.001);
     EXPECT_GT(cell["error"]["kernel_rmse"], 0.0);
+    const bool is_bound = filter == "vsm" || filter == "esm";
+    EXPECT_TRUE(!is_bound || cell["artefact"]["noise"].is_null()) << "bounds have no noise";
     EXPECT_TRUE(std::filesystem::exists(folder_ / cell["images"]["attribution"].get<std::string>()));
   }
 }
@@ -135,6 +137,23 @@ TEST_F(Attributed, TooMuchBias_OpensContactGaps) {
   EXPECT_LT(run("fence", "none")[0]["artefact"]["contact_gap"], 0.5);
   options_.bias.constant.depth = 0.02;
   EXPECT_GT(run("fence", "none")[0]["artefact"]["contact_gap"], 0.95);
+}
+
+TEST_F(Attributed, InACoarseMap_FiltersThatCompareDoNotLeak_BesideAnEdge) {
+  // The surroundings follow from the run's widest kernel, the tent's.
+  const nlohmann::json cells = run("steps", "none,pcf2x2,tent3x3", 128);
+  EXPECT_EQ(cells[0]["artefact"]["leak"], 0.0);
+  EXPECT_EQ(cells[1]["artefact"]["leak"], 0.0);
+}
+
+TEST_F(Attributed, PixelsBesideAnEdge_AreInNoMask) {
+  // So few pixels that most blocked ones have a neighbour that is not.
+  options_.width = 60;
+  options_.height = 34;
+  for (const auto& cell : run("stack", "none,vsm")) {
+    EXPECT_TRUE(cell["artefact"]["leak"].is_null()) << cell["filter"];
+    EXPECT_TRUE(cell["absent"].contains("artefact.leak")) << cell["filter"];
+  }
 }
 
 TEST_F(Attributed, WithoutAttribution_ArtefactsAreStillCounted) {

@@ -93,6 +93,16 @@ TEST_F(Tracer, WhatTheTruthFollowsFrom_TracesAgain) {
   EXPECT_EQ(count_traced(changed, view), 1) << "holes";
   changed.materials[0].alpha_cutoff = 0.25f;
   EXPECT_EQ(count_traced(changed, view), 1) << "other holes";
+  changed.materials[0].base_color_texture = 0;
+  changed.textures.push_back({"holes", 2, 1, {255, 255, 255, 255, 255, 255, 255, 0}});
+  EXPECT_EQ(count_traced(changed, view), 1) << "a texture";
+  changed.textures[0].rgba[7] = 1;
+  EXPECT_EQ(count_traced(changed, view), 1) << "another alpha";
+  changed.meshes[0].vertices[3].uv.x += 0.25f;
+  EXPECT_EQ(count_traced(changed, view), 1) << "the texture elsewhere";
+  changed = make_scene();
+  changed.meshes[0].casts_shadow = false;
+  EXPECT_EQ(count_traced(changed, view), 1) << "no caster";
   ViewReceivers other = make_receivers();
   other.content = "other receivers";
   EXPECT_EQ(count_traced(make_scene(), [&](SceneTracer& t) { t.trace_view(other); }), 1);
@@ -122,6 +132,35 @@ TEST_F(Tracer, Kernels_AreKeptByKernelAndTexelSize) {
   };
   EXPECT_EQ(count_traced(make_scene(), trace_all), 4);
   EXPECT_EQ(count_traced(make_scene(), trace_all), 0);
+}
+
+TEST_F(Tracer, MeshesThatCastNoShadow_BlockNothing) {
+  scene::Scene scene = make_scene();
+  scene.meshes[0].casts_shadow = false;
+  EXPECT_EQ(make_occluders(scene).triangle_count(), 0);
+  ViewRays rays;
+  count_traced(scene, [&](SceneTracer& t) { rays = t.trace_view(make_receivers()); });
+  for (const float v : rays.hard) EXPECT_EQ(v, 1.0f);
+}
+
+TEST_F(Tracer, Kernels_LieInTheMapsGrid) {
+  // A slanted light whose map is turned about it.
+  const glm::dvec3 to_light = glm::normalize(glm::dvec3(0.5, 1.0, 0.25));
+  const glm::dvec3 right = glm::normalize(glm::cross(to_light, glm::dvec3(1.0, 0.1, 0.7))), up = glm::cross(to_light, right);
+  scene::LightFrustum frustum = make_frustum();
+  frustum.direction_ws = -to_light;
+  for (int i = 0; i < 3; ++i) frustum.light_from_world[i] = {right[i], up[i], to_light[i], 0.0};
+  const auto kernel = filters::Kernel::make_grid({{-2.0, 0.5}, {2.0, 0.5}}, filters::Reconstruction::kNearest);
+  const reference::MapGrid grid = {-glm::dvec3(frustum.direction_ws), right, up, frustum.texel_size_ws};
+  const ViewReceivers receivers = make_receivers();
+  reference::TracedVisibility traced, turned;
+  EXPECT_EQ(count_traced(make_scene(), [&](SceneTracer& t) {
+    traced = t.trace_kernel(receivers, kernel, frustum);
+    for (int i = 0; i < 3; ++i) frustum.light_from_world[i] = {up[i], -right[i], to_light[i], 0.0};
+    turned = t.trace_kernel(receivers, kernel, frustum);
+  }), 2) << "a map turned about the light is another map";
+  EXPECT_EQ(traced.visibility, reference::trace_kernel(make_occluders(make_scene()), receivers.image, kernel, grid, {.seed = 1}).visibility);
+  EXPECT_NE(traced.visibility, std::vector<float>(traced.visibility.size(), 1.0f));
 }
 
 TEST_F(Tracer, HolesOfAMaterial_LetRaysThrough) {

@@ -25,6 +25,20 @@ TEST(ArtefactMasks, FollowTheRays) {
   EXPECT_EQ(masks.contact_gap, (std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0}));
 }
 
+TEST(ArtefactMasks, LeaveOutWhatIsNotSettled) {
+  // Lit and blocked receivers, far from any blocker; in turn: all agree, a neighbour differs, the surroundings' neighbours
+  // differ, the surroundings themselves do.
+  const std::vector<std::uint8_t> counts(8, 1);
+  const std::vector<float> area = {1, 1, 1, 1, 0, 0, 0, 0};
+  const std::vector<std::uint8_t> area_settled = {1, 0, 1, 1, 1, 0, 1, 1};
+  const std::vector<float> around = {1, 1, 1, 0, 0, 0, 0, 1};
+  const std::vector<std::uint8_t> around_settled = {1, 1, 0, 1, 1, 1, 0, 1};
+  const std::vector<float> blocker(8, 3.0f);
+  const ArtefactMasks masks = make_artefact_masks({counts, area, area_settled, around, around_settled, blocker, 0.2});
+  EXPECT_EQ(masks.acne, (std::vector<std::uint8_t>{1, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(masks.leak, (std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0}));
+}
+
 TEST(ArtefactRates, CountFaultsOverTheMask) {
   std::vector<float> image(400, 1.0f);
   std::vector<std::uint8_t> mask(400, 0);
@@ -62,6 +76,7 @@ std::optional<double> measure_noise(Noise noise) {
 TEST(NoiseRate, IsZero_WhereTheImageIsItsPercentageCloserFilter) {
   EXPECT_EQ(measure_noise([](int, int) { return 0.0; }), 0.0);
   EXPECT_EQ(measure_noise([](int x, int) { return 0.01 * x; }), 0.0) << "a smooth difference is not noise";
+  EXPECT_EQ(measure_noise([](int, int) { return 0.6; }), 0.0) << "nor is the same one everywhere";
 }
 
 TEST(NoiseRate, CountsWhatDiffersFromItsNeighbours) {
@@ -69,6 +84,18 @@ TEST(NoiseRate, CountsWhatDiffersFromItsNeighbours) {
   const auto rate = measure_noise([](int x, int y) { return x % 4 == 1 && y % 4 == 1 ? 0.09 : 0.0; });
   ASSERT_TRUE(rate);
   EXPECT_NEAR(*rate, 100.0 / (38.0 * 38.0), 1e-12);
+}
+
+TEST(NoiseRate, LeavesOutPixelsBesideOnesThatDoNotCount) {
+  constexpr std::size_t kSide = 40;
+  std::vector<float> image(kSide * kSide, 0.5f);
+  std::vector<std::uint8_t> counts(image.size(), 1);
+  for (std::size_t i = 0; i < image.size(); i += kSide) {
+    image[i + 20] = 1.0f;  // the filter is not asked there
+    counts[i + 20] = 0;
+  }
+  const std::vector<double> closer(image.size(), 0.5);
+  EXPECT_EQ(rate_noise(image, closer, std::vector<float>(image.size(), 0.5f), counts, kSide), 0.0);
 }
 
 TEST(NoiseRate, WithoutPenumbra_IsAbsent) {

@@ -47,7 +47,7 @@ void expect_kernel(const Kernel& kernel, Exact exact) {
   const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight), make_sheet(-40.0, 40.0, -40.0, 40.0, 0.0)};
   const Occluders occluders(meshes);
   const ReceiverImage image = make_receivers(0.9 * kernel.half_width());
-  expect_agreement(score(trace_kernel(occluders, image, kernel, tilted_grid(), {.seed = 3}), image,
+  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_kernel(occluders, image, kernel, tilted_grid(), {.seed = seed}); }, image,
                          [&](const glm::dvec3& p) { return exact(texels_from_edge(p)); }));
 }
 
@@ -101,11 +101,39 @@ TEST(KernelTruth, AnEmptySlantedPlane_IsLit_AtEveryAngle) {
   }
 }
 
+TEST(KernelTruth, IsAsWideAsTheTexelsAre) {
+  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
+  const Occluders occluders(meshes);
+  MapGrid grid = tilted_grid();
+  grid.texel_size_ws = 3.0 * kTexel;
+  const ReceiverImage image = make_receivers(2.7);
+  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_kernel(occluders, image, Kernel::make_point(Reconstruction::kBilinear), grid, {.seed = seed}); }, image,
+                         [](const glm::dvec3& p) { return tent_below(texels_from_edge(p) / 3.0); }));
+}
+
+TEST(KernelTruth, AnEmptyPlane_IsLit_UnderALargeKernelOfGrazingLight) {
+  // A step along u and one along v are metres long each and nearly cancel: their roundings do not.
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(-0.37, 1.0, 0.21));
+  const glm::dvec3 along = glm::normalize(glm::cross(normal, glm::dvec3(0.3, 0.1, 1.0)));
+  const glm::dvec3 to_light = glm::normalize(along + 3e-3 * normal), across = glm::normalize(glm::cross(to_light, along));
+  const glm::dvec3 back = glm::cross(across, to_light);
+  const MapGrid grid = {to_light, glm::normalize(across + back), glm::normalize(across - back), kTexel};
+  OccluderMesh plane = make_sheet(-1.0, 1.0, -1.0, 1.0, 0.0, 16);
+  const auto place = [&](float x, float z) {
+    return glm::vec3(x, (0.37 * static_cast<double>(x) - 0.21 * static_cast<double>(z)), z);
+  };
+  for (glm::vec3& p : plane.positions) p = place(p.x, p.z);
+  const Occluders occluders(std::vector<OccluderMesh>{plane});
+  ReceiverImage image = make_line(-0.9, 0.9, 100);
+  for (ReceiverPoint& point : image.points) point = {place(point.position_ws.x, point.position_ws.z), normal, true};
+  for (const float v : trace_kernel(occluders, image, Kernel::make_disk(64.0), grid, {}).visibility) ASSERT_EQ(v, 1.0f);
+}
+
 TEST(SquareTruth, IsALinearRamp) {
   const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
   const Occluders occluders(meshes);
   const ReceiverImage image = make_receivers(2.5);
-  expect_agreement(score(trace_square(occluders, image, 2.5, tilted_grid(), {.seed = 4}), image, [](const glm::dvec3& p) {
+  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_square(occluders, image, 2.5, tilted_grid(), {.seed = seed}); }, image, [](const glm::dvec3& p) {
     return std::clamp(0.5 + texels_from_edge(p) / 5.0, 0.0, 1.0);
   }));
 }

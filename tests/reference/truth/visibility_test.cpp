@@ -11,6 +11,7 @@
 #include <numeric>
 #include <random>
 
+#include "reference/truth/cut_out.h"
 #include "tests/reference/truth/shapes.h"
 
 namespace shadowbench::reference {
@@ -42,6 +43,32 @@ TEST(AreaTruth, DoesNotDependOnTheOrderOfPixels) {
   }
 }
 
+TEST(AreaTruth, SettledPixels_GetFewRays_WhateverDoesNotCountBesideThem) {
+  const Occluders occluders(half_plane());
+  ReceiverImage image = make_line(-1.0, 1.0, 64);
+  for (std::size_t i = 0; i < image.points.size(); i += 4) image.points[i].counts = false;
+  const TracedVisibility truth = trace_area(occluders, image, AreaLight::make_sun({0.0, 1.0, 0.0}, 0.1), {});
+  for (std::size_t i = 0; i < image.points.size(); ++i) {
+    const bool at_edge = i % 64 >= 30 && i % 64 < 34;
+    ASSERT_EQ(truth.visibility[i], image.points[i].counts && i % 64 < 32 ? 0.0f : 1.0f) << i;
+    ASSERT_EQ(truth.unanimous[i], 1) << i;
+    ASSERT_EQ(truth.standard_error[i], 0.0f) << i;
+    const std::uint32_t few = image.points[i].counts ? kRaysOfSettledPixel : 0u;
+    ASSERT_TRUE(at_edge || truth.rays[i] == few) << i << ": " << truth.rays[i];
+  }
+}
+
+TEST(AreaTruth, LightBelowTheReceiversPlane_IsBlocked) {
+  // A sun on the horizon: the plane cuts its disk in two, and nothing else is there.
+  const Occluders nothing(std::vector<OccluderMesh>{});
+  const ReceiverImage image = make_line(-1.0, 1.0, 16);
+  const TracedVisibility truth = trace_area(nothing, image, AreaLight::make_sun({1.0, 1e-9, 0.0}, 3.0), {});
+  for (std::size_t i = 0; i < image.points.size(); ++i) {
+    ASSERT_NEAR(truth.visibility[i], 0.5, 8.0 * static_cast<double>(truth.standard_error[i])) << i;
+    ASSERT_FALSE(truth.unanimous[i]);
+  }
+}
+
 /// A floor seen by a sun through a sheet of this cut-out.
 std::vector<float> trace_through(const CutOut& cut_out) {
   OccluderMesh sheet = make_sheet(-1.0, 1.0, -1.0, 1.0, 1.0, 4);
@@ -59,6 +86,18 @@ TEST(CutOut, RaysPassWhereTheTextureIsTransparent) {
     const double u = (static_cast<double>(i) + 0.5) / 400.0 * 0.99 + 0.005;
     if (std::abs(u - 0.5) < 0.01 || u < 0.01 || u > 0.99) continue;  // the texture repeats: its other edge
     ASSERT_EQ(lit[i], u < 0.5 ? 0.0f : 1.0f) << u;
+  }
+}
+
+TEST(CutOut, TheFirstRowIsAtVZero_AndTheTextureRepeatsBothWays) {
+  // Four columns and two rows; all opaque but the second column of the first row.
+  HoleTest test{{{}, 4, 2, {255, 0, 255, 255, 255, 255, 255, 255}, 1.0f, 0.5f}, {0, 1, 2}};
+  for (const int shift : {-3, 0, 2}) {
+    const glm::vec2 corner(0.375f + static_cast<float>(shift), 0.25f + static_cast<float>(shift));
+    test.cut_out.uvs = {corner, corner + glm::vec2(0.25f, 0.0f), corner + glm::vec2(0.0f, 0.5f)};
+    EXPECT_TRUE(test.is_hole(0, 0.0f, 0.0f)) << shift;
+    EXPECT_FALSE(test.is_hole(0, 1.0f, 0.0f)) << shift << ": the next column";
+    EXPECT_FALSE(test.is_hole(0, 0.0f, 1.0f)) << shift << ": the other row";
   }
 }
 
@@ -125,6 +164,22 @@ TEST(Occluders, APlaneAtCoordinateZero_DoesNotShadowItself) {
     const AreaLight light = AreaLight::make_sun({std::cos(angle), std::sin(angle), 0.0}, 0.53);
     for (const float v : trace_hard(occluders, make_line(-4.0, 4.0, 200), light)) ASSERT_EQ(v, 1.0f) << elevation;
   }
+}
+
+TEST(Occluders, ReceiversNearTheOriginOfALargeScene_DoNotHitTheirOwnSurface) {
+  // Interpolation mixes the corners' coordinates: a point at the origin carries the roundings of a kilometre.
+  const glm::vec3 normal = glm::normalize(glm::vec3(-0.37f, 1.0f, 0.21f));
+  OccluderMesh plane = make_sheet(-1000.0, 1000.0, -1000.0, 1000.0, 0.0, 8);
+  for (glm::vec3& p : plane.positions) p.y = 0.37f * p.x - 0.21f * p.z;
+  const Occluders occluders(std::vector<OccluderMesh>{plane});
+  ReceiverImage image = make_line(-1.0, 1.0, 200);
+  for (std::size_t i = 0; i < image.points.size(); ++i) {
+    ReceiverPoint& point = image.points[i];
+    point.position_ws.y = 0.37f * point.position_ws.x - 0.21f * point.position_ws.z;
+    point.position_ws -= static_cast<float>(i % 5) * 1000.0f * 0x1p-24f * normal;
+    point.normal_ws = normal;
+  }
+  for (const float v : trace_hard(occluders, image, AreaLight::make_sun({0.1, 1.0, 0.3}, 0.0))) ASSERT_EQ(v, 1.0f);
 }
 
 TEST(Occluders, NeitherSelfHitsNorLeaks_AtAnyScale) {
