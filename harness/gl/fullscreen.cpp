@@ -6,7 +6,7 @@ namespace shadowbench::gl {
 
 FullscreenTriangle::FullscreenTriangle() : empty_("fullscreen triangle") {}
 
-void FullscreenTriangle::draw() const {
+void FullscreenTriangle::set_state() const {
   for (const GLenum capability : {GL_DEPTH_TEST, GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_BLEND, GL_CULL_FACE,
                                   GL_POLYGON_OFFSET_FILL, GL_RASTERIZER_DISCARD, GL_COLOR_LOGIC_OP}) {
     glDisable(capability);
@@ -14,6 +14,18 @@ void FullscreenTriangle::draw() const {
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   empty_.bind();
+}
+
+void FullscreenTriangle::draw() const {
+  set_state();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void FullscreenTriangle::draw_depth() const {
+  set_state();
+  glEnable(GL_DEPTH_TEST);  // without the test there is no writing either
+  glDepthFunc(GL_ALWAYS);
+  glDepthMask(GL_TRUE);
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 

@@ -14,11 +14,16 @@ class FullscreenTriangle {
   /// culling and polygon offset, opened the colour mask, and set polygon mode to fill.
   void draw() const;
 
+  /// The same for a program that writes gl_FragDepth into a framebuffer's depth, whatever is there.
+  void draw_depth() const;
+
   /// Returns the vertex shader that goes with it. Its output `vec2 v_uv` is (0,0) at the lower left of the viewport.
   static ShaderSource vertex_source();
 
  private:
   VertexArray empty_;
+
+  void set_state() const;
 };
 
 }  // namespace shadowbench::gl

@@ -70,11 +70,8 @@ void ShadowMap::draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, 
   gl::Sampler::unbind(1);
   surfaces_[1].depth.bind(1);
   map_.framebuffer.bind();
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_ALWAYS);
-  glDepthMask(GL_TRUE);
   shaders.fullscreen("midpoint.frag").use();
-  gl::FullscreenTriangle().draw();
+  gl::FullscreenTriangle().draw_depth();
 }
 
 void ShadowMap::bind() const {

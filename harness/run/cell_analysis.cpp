@@ -119,11 +119,10 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   const auto to_kernel = reference::measure_error(image, kernel, truth_.mask);
   note(record, "error.kernel_rmse", record.error.kernel_rmse, to_kernel ? std::optional(to_kernel->rmse) : std::nullopt,
        "no pixel of the image is finite");
-  const bool bound = request.spec.kind == filters::FilterKind::kBound;
+  const bool random = request.spec.kind == filters::FilterKind::kStochastic;
   note(record, "artefact.noise", record.artefact.noise,
-       bound ? std::nullopt : reference::rate_noise(image, images.closer, kernel, truth_.mask, options_.width),
-       bound ? "a bound differs from the percentage-closer filter of its kernel by more than noise"
-             : too_few("lie in the kernel's penumbra"));
+       random ? reference::rate_noise(image, images.closer, kernel, truth_.mask, options_.width) : std::nullopt,
+       random ? too_few("lie in the kernel's penumbra") : "the filter takes no random taps");
   for (std::vector<float>& part : attribution.parts) {
     report::Image& to = cell.error_parts.emplace_back(options_.width, options_.height, 1);
     to.texels = std::move(part);

@@ -54,8 +54,8 @@ std::optional<double> rate_above(std::span<const float> image, std::span<const s
 /// The share of a filter's penumbra that is noisy: the image less the brute-force percentage-closer filter of its kernel
 /// deviates from its own mean over 3 x 3 pixels by more than noise_above. The penumbra is where the ray-traced kernel lies
 /// strictly between 0 and 1 and all nine pixels count. Edges that the map draws as stairs are in image and percentage-closer
-/// filter alike, and cancel. Meant for filters that compare; a bound differs from its percentage-closer filter by more than
-/// noise. Gives nothing where the penumbra has fewer than kFewestReceivers.
+/// filter alike, and cancel. Meant for filters with random taps; others differ from their percentage-closer filter by more
+/// than noise. Gives nothing where the penumbra has fewer than kFewestReceivers.
 std::optional<double> rate_noise(std::span<const float> image, std::span<const double> closer,
                                  std::span<const float> kernel, std::span<const std::uint8_t> counts, int width);
 

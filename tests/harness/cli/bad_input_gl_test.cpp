@@ -62,6 +62,18 @@ TEST_F(BadInput, SameMapSizeTwice) { expect_refusal("run --out out --map-size 64
 TEST_F(BadInput, PictureSizeMalformed) { expect_refusal("run --out out --size 64", 2, {"--size", "WIDTHxHEIGHT"}); }
 TEST_F(BadInput, PictureLargerThanTheGl) { expect_refusal("run --out out --size 100000x10", 2, {"100000"}); }
 TEST_F(BadInput, NegativeBias) { expect_refusal(small("--bias plane:kernels=-1"), 2, {"--bias", "'-1'"}); }
+TEST_F(BadInput, BiasThatAFilterCannotUse) {
+  expect_refusal(small("--bias receiver-plane --filters none,vsm"), 2, {"receiver-plane", "'vsm'"});
+}
+
+TEST_F(BadInput, CullingThatEmptiesTheMap) {
+  write("open.toml",
+        "title = \"open\"\n[camera]\nposition = [3, 5, 5]\ntarget = [0, 0, 0]\n[light]\nazimuth_deg = 40\nelevation_deg = 50\n"
+        "[[object]]\nshape = \"plane\"\nsize = [8, 8]\n");
+  expect_refusal("run --out out --size 64x36 --map-size 64 --rounds 1 --filters none --scene open.toml --bias front-cull", 2,
+                 {"front-cull", "'open'", "may_cull_front"});
+}
+
 TEST_F(BadInput, UnknownBias) { expect_refusal(small("--bias slop:kernels=1"), 2, {"did you mean 'slope'"}); }
 TEST_F(BadInput, NoRounds) { expect_refusal(small("--rounds 0"), 2, {"--rounds"}); }
 TEST_F(BadInput, UnknownContext) { expect_refusal(small("--gl vulkan"), 2, {"vulkan"}); }

@@ -148,6 +148,24 @@ TEST_F(Command, ASceneFarFromTheOrigin_IsWarnedOf) {
   EXPECT_NE(outcome.err.find("move the scene to the origin"), std::string::npos) << outcome.err;
 }
 
+TEST_F(Command, FrontCull_NamesTheOpenMeshes) {
+  const Outcome outcome = run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --bias front-cull");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json warnings = results(folder())["warnings"];
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].get<std::string>().find("'floor' is open"), std::string::npos) << warnings[0];
+}
+
+TEST_F(Command, BiasAmounts_AreStatedInAllUnits) {
+  ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --bias constant:texels=2").exit_code, 0);
+  const nlohmann::json cell = results(folder())["cells"][0];
+  EXPECT_EQ(cell["bias"]["constant_texels"], 2.0);
+  EXPECT_GT(cell["map_scale"]["texel_m"], 0.01);
+  EXPECT_GT(cell["map_scale"]["depth_range_m"], 1.0);
+  const std::string summary = read_text(folder() / "out" / "summary.md");
+  EXPECT_NE(summary.find("2 texels (depth 0.0"), std::string::npos) << summary;
+}
+
 TEST_F(Command, AUsersFilter_HasArtefactsButNoAttribution) {
   const Outcome outcome = run("run --out out --size 128x72 --map-size 64 --rounds 1 --scene cubes --filters none,nine_compares --filter-file " +
                               user_filter("nine_compares.glsl"));
