@@ -18,7 +18,8 @@ constexpr int kMapSize = 1024;
 /// The `cubes` scene at the default run's size, with the filters of a request list.
 class LookupBench {
  public:
-  explicit LookupBench(const std::string& filters)
+  /// Each filter with each bias.
+  explicit LookupBench(const std::string& filters, const std::vector<run::BiasRule>& rules = {{}})
       : resources_(run::find_resources()),
         choice_(gl::create_context(gl::Backend::kAuto)),
         timer_(gl::choose_timer(*choice_.context)),
@@ -33,9 +34,11 @@ class LookupBench {
     filters::Catalogue catalogue(resources_.filters);
     catalogue.add_user_file(SHADOWBENCH_SOURCE_DIR "/tests/user_filters/nine_compares.glsl");
     for (const auto& request : catalogue.parse_requests(filters)) {
-      const auto bias = run::resolve_bias({}, frustum_, request.spec, request.values);
-      const auto light = render::make_light_setup(frustum_, scene_.light, bias, 1);
-      filters_.push_back(std::make_unique<render::FilterPasses>(shaders_, request, kMapSize, light));
+      for (const run::BiasRule& rule : rules) {
+        const auto bias = run::resolve_bias(rule, frustum_, request.spec, request.values);
+        const auto light = render::make_light_setup(frustum_, scene_.light, bias, 1);
+        filters_.push_back(std::make_unique<render::FilterPasses>(shaders_, request, kMapSize, light));
+      }
     }
   }
 
@@ -58,9 +61,8 @@ class LookupBench {
   std::vector<std::unique_ptr<render::FilterPasses>> filters_;
 };
 
-/// Compares the first filter with the second: the ratio of their lookups with its interval, and both medians.
-void compare_lookups(benchmark::State& state, const std::string& filters) {
-  LookupBench bench(filters);
+/// Compares the first lookup with the second: their ratio with its interval, and both medians.
+void compare(benchmark::State& state, LookupBench& bench) {
   run::RoundTimes times;
   for (auto _ : state) times = bench.time(41);
   const report::Ratio ratio = run::bootstrap_ratio(times.filters[0].lookup, times.filters[1].lookup, 1);
@@ -71,6 +73,22 @@ void compare_lookups(benchmark::State& state, const std::string& filters) {
   state.counters["second_ms"] = run::summarise(times.filters[1].lookup).median;
 }
 
+void compare_lookups(benchmark::State& state, const std::string& filters) {
+  LookupBench bench(filters);
+  compare(state, bench);
+}
+
+/// A filter with the receiver plane's depth at every tap, to the same filter with the default bias.
+void receiver_plane(benchmark::State& state, const std::string& filter) {
+  LookupBench bench(filter, {run::parse_bias({"receiver-plane"}), {}});
+  compare(state, bench);
+}
+
+BENCHMARK_CAPTURE(receiver_plane, none, "none")->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(receiver_plane, pcf2x2, "pcf2x2")->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(receiver_plane, tent3x3, "tent3x3")->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(receiver_plane, box3x3, "box3x3")->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(receiver_plane, poisson, "poisson")->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(compare_lookups, pcf2x2_to_none, "pcf2x2,none")->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(compare_lookups, tent3x3_to_nine_compares, "tent3x3,nine_compares")
     ->Iterations(1)

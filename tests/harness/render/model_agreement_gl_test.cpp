@@ -32,16 +32,16 @@ double pcf_tolerance() {
   return bits >= 22 ? 1e-4 : 1.0 / 128.0;
 }
 
-Agreement compare(Bench& bench, const filters::FilterRequest& request) {
-  const std::vector<float> image = bench.draw(request);
+Agreement compare(Bench& bench, const filters::FilterRequest& request, const run::BiasRule& rule = {}) {
+  const std::vector<float> image = bench.draw(request, rule);
   const filters::DepthMap map = bench.map().read();
-  const filters::ModelInput input{request.spec, request.values, map, measured_accuracy(), 7};
+  const filters::ModelInput input{request.spec, request.values, map, measured_accuracy(), 7, rule.receiver_plane ? rule.max_tangent : 0.0};
   const auto model = filters::make_model(request.spec.id);
   const auto in_float = model->prepare(input, filters::Precision::kFloat);
   const auto tracked = model->prepare(input, filters::Precision::kTracked);
   Agreement result;
   std::vector<double> bounds;
-  for (const filters::Receiver& r : bench.receivers(request)) {
+  for (const filters::Receiver& r : bench.receivers(request, rule)) {
     const double gpu = static_cast<double>(image[bench.index(r)]);
     const filters::ModelResult single = in_float->at(r), reference = tracked->at(r);
     ++result.compared;
@@ -133,6 +133,25 @@ INSTANTIATE_TEST_SUITE_P(Parameters, ModelVariants,
                            for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
                            return name;
                          });
+
+/// Filters that compare tap by tap, with the receiver plane's depth at each tap.
+class ReceiverPlaneModel : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {};
+
+TEST_P(ReceiverPlaneModel, GlImageEqualsModel) {
+  const auto& [scene_name, filter] = GetParam();
+  const scene::Scene scene = load_builtin(scene_name);
+  Bench bench(shared_context(), scene, 512);
+  const Agreement a = compare(bench, catalogue().parse_requests(filter).front(), run::parse_bias({"receiver-plane"}));
+  EXPECT_GT(a.compared, 20000u);
+  EXPECT_GT(a.shadowed, 0.01);
+  EXPECT_LT(static_cast<double>(a.excused), 0.005 * static_cast<double>(a.compared));
+  EXPECT_LE(a.worst_float, pcf_tolerance());
+}
+
+INSTANTIATE_TEST_SUITE_P(Filters, ReceiverPlaneModel,
+                         ::testing::Combine(::testing::Values("cubes", "steps"),
+                                            ::testing::Values("none", "pcf2x2", "tent3x3", "box3x3", "teach4x4", "box4x4", "poisson")),
+                         [](const auto& each) { return std::get<0>(each.param) + "_" + std::get<1>(each.param); });
 
 }  // namespace
 }  // namespace shadowbench::test
