@@ -94,6 +94,46 @@ TEST(MapBias, PolygonOffset_MovesByFactorTimesSlope_AndUnitsOfTheFormat) {
   EXPECT_NEAR(plain - height_in_map(bench, 3.0), 4096.0 * 0x1p-24 * bench.frustum().depth_range_ws, 1e-5 * bench.frustum().depth_range_ws);
 }
 
+/// A wall on a floor, as thin as paper, under a sun that is `tilt` away from the zenith; seen from above.
+scene::Scene make_wall(double tilt) {
+  scene::Scene scene;
+  scene.materials.emplace_back();
+  scene::Mesh wall;
+  for (const glm::vec2 p : {glm::vec2(-2, 0), glm::vec2(2, 0), glm::vec2(-2, 3), glm::vec2(2, 3)}) wall.vertices.push_back({{0.0f, p.y, p.x}, {1, 0, 0}, {0, 0}});
+  wall.indices = {0, 1, 2, 2, 1, 3};
+  scene.meshes = {make_quad(4.0f, 0.0f), wall};
+  scene.light.direction_ws = glm::vec3(-std::sin(tilt), -std::cos(tilt), 0.0);
+  scene::Camera camera;
+  camera.position_ws = {-0.5f, 6.0f, 0.0f};
+  camera.forward_ws = {0, -1, 0};
+  camera.up_ws = {0, 0, -1};
+  camera.orthographic_height_m = 1.1f;
+  scene.cameras = {camera};
+  return scene;
+}
+
+/// A depth bias b, along the light, lights a strip of b sin(tilt) behind a wall that stands on the floor.
+TEST(ContactGap, IsTheBiasTimesTheSineOfTheTilt_WithinATexel) {
+  for (const double tilt_deg : {20.0, 45.0, 70.0}) {
+    const double tilt = glm::radians(tilt_deg);
+    const scene::Scene scene = make_wall(tilt);
+    Bench bench(shared_context(), scene, 1024, 960, 540);
+    const filters::FilterRequest request = catalogue().parse_requests("none").front();
+    for (const double bias_m : {0.1, 0.3, 0.6}) {
+      run::BiasRule rule = run::BiasRule::none();
+      rule.constant.world = bias_m;
+      const std::vector<float> image = bench.draw(request, rule);
+      double gap = 0.0;
+      for (const filters::Receiver& r : bench.receivers(request, rule)) {
+        const double behind = -static_cast<double>(r.position_ws.x);
+        if (behind > 0.0 && behind < 1.0 && r.position_ws.y < 1e-3f && image[bench.index(r)] == 1.0f) gap = std::max(gap, behind);
+      }
+      const double texel_on_floor = bench.frustum().texel_size_ws / std::cos(tilt);
+      EXPECT_NEAR(gap, bias_m * std::sin(tilt), texel_on_floor) << tilt_deg << " degrees, bias " << bias_m;
+    }
+  }
+}
+
 TEST(ClosedMesh, IsOneThatEnclosesAVolume) {
   EXPECT_TRUE(scene::is_closed(make_box(1.0f, 0.0f, 1.0f)));
   EXPECT_FALSE(scene::is_closed(make_quad(1.0f, 0.0f)));
