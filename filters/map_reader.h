@@ -88,7 +88,12 @@ class DepthReader {
  public:
   using P = Position<T>;
   explicit DepthReader(const ModelInput& input)
-      : grid_(input.map.size), depth_(&input.map.depth), accuracy_(input.accuracy), plane_(input.plane_max_tangent) {}
+      : grid_(input.map.size),
+        depth_(&input.map.depth),
+        accuracy_(input.accuracy),
+        plane_(input.plane_max_tangent),
+        clamps_(input.map.clamps_reference),
+        tie_(input.map.tie) {}
 
   const TexelGrid<T>& grid() const { return grid_; }
 
@@ -126,14 +131,17 @@ class DepthReader {
   const std::vector<float>* depth_;
   GlAccuracy accuracy_;
   PlaneBias plane_;
+  bool clamps_;
+  float tie_;
 
   float stored(int x, int y) const { return grid_.inside(x, y) ? (*depth_)[grid_.index(x, y)] : 1.0f; }
 
   /// Ties are lit (LEQUAL).
   int compare(int x, int y, float z, Tally& tally) const {
     const float depth = stored(x, y);
+    if (clamps_) z = std::clamp(z, 0.0f, 1.0f);
     const float ulp = std::nextafter(std::abs(z), 2.0f * std::abs(z) + 1.0f) - std::abs(z);
-    if (std::abs(z - depth) <= ulp) tally.excused = true;
+    if (std::abs(z - depth) <= std::max(ulp, tie_)) tally.excused = true;
     return z <= depth ? 1 : 0;
   }
 };

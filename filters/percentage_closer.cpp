@@ -80,7 +80,8 @@ PercentageCloser::PercentageCloser(const Kernel& kernel, const DepthMap& map, do
 }
 
 bool PercentageCloser::is_lit(int x, int y, const Receiver& receiver) const {
-  return plane_.depth(receiver, grid_.size(), {x + 0.5, y + 0.5}, 0.0, receiver.depth) <= (grid_.inside(x, y) ? map_.depth[grid_.index(x, y)] : 1.0f);
+  const float depth = plane_.depth(receiver, grid_.size(), {x + 0.5, y + 0.5}, 0.0, receiver.depth);
+  return map_.reference(depth) <= (grid_.inside(x, y) ? map_.depth[grid_.index(x, y)] : 1.0f);
 }
 
 /// `position` in texels, texel centres at .5.

@@ -106,10 +106,19 @@ std::string html_single_pictures(const CellGroup& group) {
       figures += figure(*cell.images.visibility, cell.filter + params + ": visibility", "single");
     }
   }
-  if (const auto map = find_path(group, &ImagesRecord::depth_map)) {
-    figures += figure(*map, "depth map, as the light sees the scene", "single");
+  return html_gallery("Single pictures", figures, "gallery");
+}
+
+std::string html_map_pictures(const CellGroup& group) {
+  std::string figures;
+  const std::pair<OptionalPath ImagesRecord::*, const char*> pictures[] = {
+      {&ImagesRecord::depth_map, "depth map, as the light sees the scene, with its histogram"},
+      {&ImagesRecord::texel_density, "how many map texels fall on each pixel"},
+      {&ImagesRecord::texel_grid, "the map's texels on the surfaces"}};
+  for (const auto& [member, caption] : pictures) {
+    if (const auto path = find_path(group, member)) figures += figure(*path, caption, "single");
   }
-  return html_gallery("Single pictures and depth map", figures, "gallery");
+  return html_gallery("The shadow map: its depths, and where its texels fall", figures, "gallery");
 }
 
 std::string html_group(const RunRecord& run, const CellGroup& group, std::size_t number) {
@@ -126,6 +135,7 @@ std::string html_group(const RunRecord& run, const CellGroup& group, std::size_t
   }
   text += html_attribution_pictures(group);
   text += html_single_pictures(group);
+  text += html_map_pictures(group);
   if (const auto exr = find_path(group, &ImagesRecord::exr)) {
     text += "<p>" + link(*exr, *exr) + " holds the float images of all filters.</p>\n";
   }

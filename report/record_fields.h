@@ -37,6 +37,8 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("params", cell.params);
   visit("map_size", cell.map_size);
   visit("map_format", cell.map_format);
+  visit("fit", cell.fit);
+  visit("light", cell.light);
   visit("bias", cell.bias);
   visit("map_scale.texel_m", cell.map_scale.texel_m);
   visit("map_scale.depth_range_m", cell.map_scale.depth_range_m);
@@ -65,6 +67,10 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("error.kernel_rmse", cell.error.kernel_rmse);
   visit("truth.se", cell.truth.se);
   visit("truth.unanimous", cell.truth.unanimous);
+  visit("coverage.texels_per_pixel", cell.coverage.texels_per_pixel);
+  visit("coverage.fewest_texels_per_pixel", cell.coverage.fewest_texels_per_pixel);
+  visit("coverage.map_used", cell.coverage.map_used);
+  visit("coverage.map_filled", cell.coverage.map_filled);
   visit("artefact.acne", cell.artefact.acne);
   visit("artefact.leak", cell.artefact.leak);
   visit("artefact.contact_gap", cell.artefact.contact_gap);
@@ -83,6 +89,8 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("images.grid", cell.images.grid);
   visit("images.exr", cell.images.exr);
   visit("images.attribution", cell.images.attribution);
+  visit("images.texel_density", cell.images.texel_density);
+  visit("images.texel_grid", cell.images.texel_grid);
   visit("absent", cell.absent);
 }
 

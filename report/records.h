@@ -129,6 +129,14 @@ struct AttributionRecord {
   AttributionPart model;
 };
 
+/// Says how well the map's texels are spent on the view; over receivers: pixels whose surface faces the light.
+struct CoverageRecord {
+  std::optional<double> texels_per_pixel;         ///< map texels under a pixel's footprint on its surface: the median
+  std::optional<double> fewest_texels_per_pixel;  ///< the same of the worst pixel
+  std::optional<double> map_used;                 ///< share of the map's area on which a pixel's footprint falls
+  std::optional<double> map_filled;               ///< share of the map's texels that hold a caster
+};
+
 /// Holds paths relative to the report folder, with '/' between folders.
 struct ImagesRecord {
   std::optional<std::string> picture;
@@ -137,6 +145,8 @@ struct ImagesRecord {
   std::optional<std::string> grid;       ///< one per scene, view and map settings
   std::optional<std::string> exr;        ///< one per scene
   std::optional<std::string> attribution = std::nullopt;  ///< the error and its four parts, as heat maps
+  std::optional<std::string> texel_density = std::nullopt;  ///< texels per pixel; one per scene, view and map settings
+  std::optional<std::string> texel_grid = std::nullopt;     ///< the map's texels on the surfaces; one per the same
 };
 
 /// Holds everything measured of one scene x view x filter x parameters x map settings.
@@ -152,7 +162,9 @@ struct CellRecord {
   std::string filter;
   ParamMap params;
   int map_size = 0;        ///< texels along a side
-  std::string map_format;  ///< "d32f"
+  std::string map_format;  ///< "d32f", "d16 reversed"
+  std::string fit = "tight";    ///< of the light's frustum: "sphere", "tight" or "view"; with " snapped" behind it
+  std::string light = "scene";  ///< where the light stands: as the scene says, or "AZIMUTH,ELEVATION" in degrees
   BiasRecord bias;
   MapScaleRecord map_scale;
   int width = 0;  ///< pixels
@@ -165,6 +177,7 @@ struct CellRecord {
   CostRecord cost;
   ErrorRecord error;
   TruthRecord truth;
+  CoverageRecord coverage;
   ArtefactRecord artefact;
   AttributionRecord attribution;
   ImagesRecord images;

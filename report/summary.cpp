@@ -146,7 +146,22 @@ std::string describe_bias(const BiasRecord& bias, const MapScaleRecord& scale) {
   return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, " + "));
 }
 
+/// Says what differs from the default.
+std::string describe_fit_and_light(const CellRecord& cell) {
+  const CellRecord usual;
+  std::string text;
+  if (cell.fit != usual.fit) text += " · fit " + cell.fit;
+  if (cell.light != usual.light) text += fmt::format(" · light at {}° (azimuth, elevation)", cell.light);
+  return text;
+}
+
 }  // namespace
+
+std::string describe_coverage(const CoverageRecord& coverage) {
+  if (!coverage.texels_per_pixel || !coverage.fewest_texels_per_pixel || !coverage.map_used) return {};
+  return fmt::format("{} map texels per pixel (worst {}), {:.0f} % of the map used", format_number(*coverage.texels_per_pixel),
+                     format_number(*coverage.fewest_texels_per_pixel), 100.0 * *coverage.map_used);
+}
 
 std::string format_number(double value) {
   if (!std::isfinite(value)) {
@@ -200,8 +215,9 @@ std::string describe_params(const ParamMap& params) {
 }
 
 std::string describe_settings(const CellRecord& cell) {
-  return fmt::format("view {} · map {} × {} {} · picture {} × {} · bias: {}", cell.view, cell.map_size, cell.map_size,
-                     cell.map_format, cell.width, cell.height, describe_bias(cell.bias, cell.map_scale));
+  return fmt::format("view {} · map {} × {} {}{} · picture {} × {} · bias: {}", cell.view, cell.map_size, cell.map_size,
+                     cell.map_format, describe_fit_and_light(cell), cell.width, cell.height,
+                     describe_bias(cell.bias, cell.map_scale));
 }
 
 std::vector<CellGroup> group_cells(const std::vector<CellRecord>& cells) {
@@ -252,6 +268,8 @@ std::vector<std::string> describe_group(const CellGroup& group, const GlRecord& 
     sentences.push_back(
         describe_extremes(group, group.cells[ranks.front().front()], group.cells[ranks.back().back()], gl));
   }
+  const std::string coverage = describe_coverage(group.cells.front().coverage);
+  if (!coverage.empty()) sentences.push_back("Over the receivers in view: " + coverage + ".");
   for (const auto& more : {describe_prefilters(group, gl), describe_accuracy(group), describe_troubles(group)}) {
     sentences.insert(sentences.end(), more.begin(), more.end());
   }

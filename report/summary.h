@@ -29,6 +29,10 @@ std::string time_unit(const GlRecord& gl);
 /// Lists parameters: "radius 4, store rg32f".
 std::string describe_params(const ParamMap& params);
 
+/// Says how well the map's texels are spent: "3.2 map texels per pixel (worst 0.4), 61 % of the map used"; empty where
+/// that was not measured.
+std::string describe_coverage(const CoverageRecord& coverage);
+
 /// Lists what all cells of one table share: view, map, picture size, bias.
 std::string describe_settings(const CellRecord& cell);
 

@@ -45,6 +45,9 @@ std::vector<Column> setting_columns() {
                   [](const CellRecord& c) { return dump_line(value_json(c.params)); }),
       cell_column("map_size", "shadow map, texels along a side", [](const CellRecord& c) { return plain(c.map_size); }),
       cell_column("map_format", "the shadow map's format", [](const CellRecord& c) { return c.map_format; }),
+      cell_column("fit", "of the light's frustum; snapped: to whole texels", [](const CellRecord& c) { return c.fit; }),
+      cell_column("light", "where the light stands: as the scene says, or azimuth and elevation in degrees",
+                  [](const CellRecord& c) { return c.light; }),
       cell_column("bias_constant_depth", "constant bias, depth in [0,1]",
                   [](const CellRecord& c) { return plain(c.bias.constant.depth); }),
       cell_column("bias_constant_texels", "constant bias, texels; adds to the one before",
@@ -160,6 +163,17 @@ std::vector<Column> error_columns() {
   };
 }
 
+std::vector<Column> coverage_columns() {
+  const auto column = [](const char* name, const char* meaning, std::optional<double> CoverageRecord::*member) {
+    return cell_column(name, meaning, [member](const CellRecord& c) { return plain(c.coverage.*member); });
+  };
+  return {column("texels_per_pixel", "map texels under a pixel's footprint, median over the pixels that count",
+                 &CoverageRecord::texels_per_pixel),
+          column("fewest_texels_per_pixel", "the same of the pixel with the fewest", &CoverageRecord::fewest_texels_per_pixel),
+          column("map_used", "share in [0,1] of the map's area under the pixels' footprints", &CoverageRecord::map_used),
+          column("map_filled", "share in [0,1] of the map's texels that hold a caster", &CoverageRecord::map_filled)};
+}
+
 std::vector<Column> artefact_columns() {
   const reference::ArtefactLimits& limits = reference::kArtefactLimits;
   const auto column = [](const char* name, const std::string& meaning, std::optional<double> ArtefactRecord::*member) {
@@ -212,6 +226,7 @@ std::vector<Column> columns_of(CsvTable table) {
   const auto append = [&](const std::vector<Column>& more) { columns.insert(columns.end(), more.begin(), more.end()); };
   if (table == CsvTable::kAccuracy) {
     append(error_columns());
+    append(coverage_columns());
     append(artefact_columns());
     append(attribution_columns());
     columns.push_back(key_column());
@@ -225,6 +240,7 @@ std::vector<Column> columns_of(CsvTable table) {
   append(ratio_columns("ratio_static", "frame with a cached map against none", &RatioRecord::static_map));
   append(ratio_columns("ratio_moving", "frame with a new map against none", &RatioRecord::moving));
   append(cost_columns());
+  append(coverage_columns());
   columns.push_back(key_column());
   return columns;
 }

@@ -8,7 +8,11 @@ const float same_surface = 1e-6;  // two triangles that share an edge differ by 
 
 void main() {
 #ifdef BEHIND_FIRST
-  if (gl_FragCoord.z <= texelFetch(first_surface, ivec2(gl_FragCoord.xy), 0).r + same_surface) discard;
+  float behind = gl_FragCoord.z - texelFetch(first_surface, ivec2(gl_FragCoord.xy), 0).r;
+#ifdef REVERSED_DEPTH
+  behind = -behind;
+#endif
+  if (behind <= same_surface) discard;
 #endif
 #ifdef ALPHA_MASK
   surface_color(v_surface_uv);

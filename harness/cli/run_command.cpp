@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <csignal>
 #include <memory>
 #include <optional>
 
 #include "filters/error.h"
+#include "harness/gl/pixel_format.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/experiment_loader.h"
 #include "harness/cli/progress_bar.h"
@@ -26,6 +28,10 @@ struct RunArguments {
   std::string size = "960x540";
   std::vector<std::string> bias;
   std::string fit = "tight";
+  std::string snap = "off";
+  std::string map_format = "d32f";
+  bool reversed_depth = false;
+  std::string light;
   int rounds = 11;
   std::uint32_t seed = 1;
   std::string backend = "auto";
@@ -96,6 +102,28 @@ void check(const RunArguments& arguments) {
   }
 }
 
+double parse_angle(const std::string& text, const char* name, double limit_deg) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(std::abs(value) <= limit_deg)) {
+    fail(fmt::format("--light: the {} '{}' must be a number of degrees, {} .. {}", name, text, -limit_deg, limit_deg));
+  }
+  return value;
+}
+
+run::LightAngles parse_light(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) fail(fmt::format("--light: '{}' must be AZIMUTH,ELEVATION in degrees, such as 120,35", text));
+  return {parse_angle(text.substr(0, comma), "azimuth", 360.0), parse_angle(text.substr(comma + 1), "elevation", 90.0)};
+}
+
+void set_map_and_light(run::RunOptions& options, const RunArguments& arguments) {
+  options.map = {gl::parse_depth_format(arguments.map_format).internal_format, arguments.reversed_depth};
+  options.fit = scene::parse_fit_mode(arguments.fit);
+  options.snap = arguments.snap == "on";
+  if (!arguments.light.empty()) options.light = parse_light(arguments.light);
+}
+
 run::RunOptions make_options(const RunArguments& arguments, std::vector<std::string> command) {
   check(arguments);
   run::RunOptions options;
@@ -108,7 +136,7 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   if (cross == std::string::npos) fail(fmt::format("--size: '{}' must be WIDTHxHEIGHT, such as 960x540", arguments.size));
   options.width = parse_size(arguments.size.substr(0, cross), "--size");
   options.height = parse_size(arguments.size.substr(cross + 1), "--size");
-  options.fit = arguments.fit == "sphere" ? scene::FitMode::kSphere : scene::FitMode::kTight;
+  set_map_and_light(options, arguments);
   options.bias = run::parse_bias(arguments.bias);
   options.bias_texts = arguments.bias;
   for (const filters::FilterRequest& request : options.filters) run::require_usable(options.bias, request.spec);
@@ -143,8 +171,14 @@ void add_scene_options(CLI::App& command, RunArguments& a) {
   command.add_flag("--ground", a.ground, "put a floor under a bare model");
   command.add_option("--map-size", a.map_sizes, "texels along a side of the shadow map; several with commas")->capture_default_str();
   command.add_option("--size", a.size, "picture size in pixels, WIDTHxHEIGHT")->capture_default_str();
-  command.add_option("--fit", a.fit, "light frustum: 'tight' around casters and receivers, or 'sphere', stable under rotation")
-      ->check(CLI::IsMember({"tight", "sphere"}))->capture_default_str();
+  command.add_option("--map-format", a.map_format, "how the map stores depth: d16, d24 or d32f")->capture_default_str();
+  command.add_flag("--reversed-depth", a.reversed_depth, "store 1 - depth; filters see depth as ever");
+  command.add_option("--fit", a.fit, "light frustum: 'tight' around casters and receivers, 'sphere', stable under rotation, or 'view', "
+                     "what the camera sees and the casters before it")->capture_default_str();
+  command.add_option("--snap", a.snap, "keep the map's texels fixed in the world while a 'view' moves: on or off")
+      ->check(CLI::IsMember({"on", "off"}))->capture_default_str();
+  command.add_option("--light", a.light, "AZIMUTH,ELEVATION in degrees, where the light stands in every scene: azimuth 0 is +z, 90 is +x")
+      ->check([](const std::string& text) { return text.empty() ? std::string("AZIMUTH,ELEVATION in degrees are missing") : std::string(); });
 }
 
 void add_filter_options(CLI::App& command, RunArguments& a) {

@@ -57,4 +57,14 @@ const PixelFormat& parse_pixel_format(std::string_view name) {
   throw Error(ErrorKind::kUsage, fmt::format("unknown texture format '{}'; there are {}", name, known));
 }
 
+const PixelFormat& parse_depth_format(std::string_view name) {
+  const auto found = std::ranges::find_if(kFormats, [&](const PixelFormat& format) { return format.depth && format.name == name; });
+  if (found != kFormats.end()) return *found;
+  std::string known;
+  for (const auto& format : kFormats) {
+    if (format.depth) known += fmt::format("{}{}", known.empty() ? "" : ", ", format.name);
+  }
+  throw Error(ErrorKind::kUsage, fmt::format("unknown depth format '{}'; there are {}", name, known));
+}
+
 }  // namespace shadowbench::gl

@@ -25,4 +25,7 @@ const PixelFormat& pixel_format(GLenum internal_format);
 /// Looks a format up by its name. Throws Error(kUsage) with the names there are.
 const PixelFormat& parse_pixel_format(std::string_view name);
 
+/// Looks a depth format up by its name. Throws Error(kUsage) with the depth formats there are.
+const PixelFormat& parse_depth_format(std::string_view name);
+
 }  // namespace shadowbench::gl

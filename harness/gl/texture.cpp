@@ -105,6 +105,12 @@ std::vector<float> Texture::read_floats(int channels) const {
   return texels;
 }
 
+int Texture::depth_bits() const {
+  GLint bits = 0;
+  glGetTextureLevelParameteriv(id(), 0, GL_TEXTURE_DEPTH_SIZE, &bits);
+  return bits;
+}
+
 void Texture::bind(GLuint unit) const { glBindTextureUnit(unit, id()); }
 
 std::size_t Texture::bytes() const {

@@ -1,17 +1,34 @@
 #include "harness/render/filter_passes.h"
 
+#include <fmt/format.h>
+
+#include "filters/error.h"
 #include "harness/render/filter_glsl.h"
 
 namespace shadowbench::render {
+namespace {
+
+Defines map_defines(const filters::FilterRequest& request, const MapSettings& map) {
+  if (!map.reversed) return {};
+  if (request.spec.uses_samplers) {
+    throw Error(ErrorKind::kUsage, fmt::format("--reversed-depth: the filter '{}' reads the map's samplers itself, which "
+                                               "hold 1 - depth then; let it use compare_nearest, compare_2x2 or fetch_depth",
+                                               request.spec.id));
+  }
+  return {{"REVERSED_DEPTH", "1"}};
+}
+
+}  // namespace
 
 FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
-                           const LightSetup& light)
-    : request_(request), light_(light), map_size_(map_size), lookup_(compile_lookup(shaders, {})) {
-  if (request.spec.has_encode) prefilter_.emplace(shaders, request, map_size, light);
+                           const LightSetup& light, const MapSettings& map)
+    : request_(request), light_(light), map_size_(map_size), map_defines_(map_defines(request, map)), lookup_(compile_lookup(shaders, {})) {
+  if (request.spec.has_encode) prefilter_.emplace(shaders, request, map_size, light, map_defines_);
 }
 
 gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, const Defines& defines) const {
-  Defines all = defines;
+  Defines all = map_defines_;
+  all.insert(all.end(), defines.begin(), defines.end());
   if (light_.bias.receiver_plane) all.emplace_back("RECEIVER_PLANE", "1");
   gl::Program program = shaders.compile_filter(request_.spec.id + " lookup", "lookup.frag", all, filter_pieces(request_));
   set_light(program, light_);

@@ -22,8 +22,11 @@ struct FilterCost {
 class FilterPasses {
  public:
   /// Compiles what this filter needs, and nothing else.
-  /// Throws Error(kFilter) with the line of the filter's file.
-  FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size, const LightSetup& light);
+  /// `map` says how the depth maps that it will read store depth.
+  /// Throws Error(kFilter) with the line of the filter's file, Error(kUsage) where it reads the samplers of a reversed map
+  /// itself and would take depth for its opposite.
+  FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size, const LightSetup& light,
+               const MapSettings& map = {});
 
   bool has_prefilter() const { return prefilter_.has_value(); }
   int prefilter_passes() const { return prefilter_ ? prefilter_->passes() : 0; }  ///< encode and blur
@@ -47,6 +50,7 @@ class FilterPasses {
   filters::FilterRequest request_;
   LightSetup light_;
   int map_size_;
+  Defines map_defines_;
   std::optional<Prefilter> prefilter_;
   gl::Program lookup_;
   gl::FullscreenTriangle triangle_;

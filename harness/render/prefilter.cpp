@@ -26,10 +26,10 @@ bool combines_logs(const filters::FilterRequest& request) {
 }  // namespace
 
 Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
-                     const LightSetup& light)
+                     const LightSetup& light, const Defines& map_defines)
     : radius_(filters::prefilter_radius_texels(request.spec, request.values)),
       stored_(request.spec.id + " map", store_format(request.values), map_size, map_size),
-      encode_(shaders.compile_filter(request.spec.id + " encode", "encode.frag", {}, filter_pieces(request))),
+      encode_(shaders.compile_filter(request.spec.id + " encode", "encode.frag", map_defines, filter_pieces(request))),
       weights_(filters::gaussian_weights(radius_)) {
   set_light(encode_, light);
   encode_.set("run_seed", light.seed);

@@ -17,7 +17,8 @@ namespace shadowbench::render {
 class Prefilter {
  public:
   /// Throws Error(kFilter) with the line of the filter's file, Error(kUsage) when the GL cannot give the map's size.
-  Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size, const LightSetup& light);
+  Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size, const LightSetup& light,
+            const Defines& map_defines = {});
 
   /// Encodes and blurs the depth map.
   void run(const ShadowMap& map);

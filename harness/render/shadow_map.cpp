@@ -1,22 +1,71 @@
 #include "harness/render/shadow_map.h"
 
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "filters/error.h"
 #include "harness/gl/fullscreen.h"
+#include "harness/gl/pixel_format.h"
 #include "harness/render/gbuffer.h"
+#include "harness/render/image_target.h"
 
 namespace shadowbench::render {
 namespace {
 
-/// Draws casters as the light sees them; both faces, but front faces of cullable ones where the bias says so.
-void draw_casters(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum, const MapBias& bias,
-                  gl::Framebuffer& framebuffer, const Defines& defines) {
+/// Turns clip z around: w - z. In double: a float projection has already lost what a reversed depth would keep.
+glm::dmat4 reverse_depth(glm::dmat4 clip) {
+  for (int column = 0; column < 4; ++column) clip[column][2] = clip[column][3] - clip[column][2];
+  return clip;
+}
+
+}  // namespace
+
+std::string describe_map(const MapSettings& settings) {
+  return fmt::format("{}{}", gl::pixel_format(settings.format).name, settings.reversed ? " reversed" : "");
+}
+
+void require_depth_bits(GLenum format, int bits) {
+  const int wanted = format == GL_DEPTH_COMPONENT16 ? 16 : format == GL_DEPTH_COMPONENT24 ? 24 : 32;
+  if (bits == wanted) return;
+  throw Error(ErrorKind::kUsage, fmt::format("this GL stores {} in {} bits; choose another --map-format or --gl",
+                                             gl::pixel_format(format).name, bits));
+}
+
+ShadowMap::Layer::Layer(const char* label, GLenum format, int size) : depth(label, format, size, size), framebuffer(label) {
+  framebuffer.attach_depth(depth);
+}
+
+ShadowMap::ShadowMap(int size, const MapSettings& settings) : settings_(settings), map_("shadow map", settings.format, size) {
+  require_depth_bits(settings.format, map_.depth.depth_bits());
+  const GLenum compare = settings.reversed ? GL_GEQUAL : GL_LEQUAL;
+  for (gl::Sampler* sampler : {&plain_, &compare_linear_, &compare_nearest_}) {
+    sampler->set_filter(GL_NEAREST, GL_NEAREST);
+    sampler->set_wrap(GL_CLAMP_TO_BORDER);
+    sampler->set_border(glm::vec4(far_depth()));  // nothing in the way
+  }
+  compare_linear_.set_filter(GL_LINEAR, GL_LINEAR);
+  compare_linear_.set_compare(compare);
+  compare_nearest_.set_compare(compare);
+}
+
+void ShadowMap::draw_casters(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
+                             const MapBias& bias, gl::Framebuffer& framebuffer, Defines defines) const {
   framebuffer.bind();
   set_geometry_state();
-  framebuffer.clear_depth(1.0f);
+  framebuffer.clear_depth(far_depth());
+  const float away = settings_.reversed ? -1.0f : 1.0f;
+  if (settings_.reversed) {
+    glDepthFunc(GL_GREATER);
+    if (!defines.empty()) defines.emplace_back("REVERSED_DEPTH", "1");
+  }
   if (bias.polygon_factor != 0.0 || bias.polygon_units != 0.0) {
     glEnable(GL_POLYGON_OFFSET_FILL);
-    glPolygonOffset(static_cast<float>(bias.polygon_factor), static_cast<float>(bias.polygon_units));
+    glPolygonOffset(away * static_cast<float>(bias.polygon_factor), away * static_cast<float>(bias.polygon_units));
   }
-  const auto prepare = [&](gl::Program& program) { program.set("clip_from_world", frustum.clip_from_world); };
+  const glm::mat4 clip_from_world = settings_.reversed ? glm::mat4(reverse_depth(frustum.clip_from_light) * frustum.light_from_world)
+                                                       : frustum.clip_from_world;
+  const auto prepare = [&](gl::Program& program) { program.set("clip_from_world", clip_from_world); };
   if (bias.cull_front) {
     geometry.draw(shaders, "depth", DrawSet::kUncullableCasters, prepare, defines);
     glEnable(GL_CULL_FACE);
@@ -28,24 +77,6 @@ void draw_casters(ShaderLibrary& shaders, const Geometry& geometry, const scene:
   set_geometry_state();
 }
 
-}  // namespace
-
-ShadowMap::Layer::Layer(const char* label, int size)
-    : depth(label, GL_DEPTH_COMPONENT32F, size, size), framebuffer(label) {
-  framebuffer.attach_depth(depth);
-}
-
-ShadowMap::ShadowMap(int size) : map_("shadow map", size) {
-  for (gl::Sampler* sampler : {&plain_, &compare_linear_, &compare_nearest_}) {
-    sampler->set_filter(GL_NEAREST, GL_NEAREST);
-    sampler->set_wrap(GL_CLAMP_TO_BORDER);
-    sampler->set_border(glm::vec4(1.0f));  // depth 1: nothing in the way
-  }
-  compare_linear_.set_filter(GL_LINEAR, GL_LINEAR);
-  compare_linear_.set_compare(GL_LEQUAL);
-  compare_nearest_.set_compare(GL_LEQUAL);
-}
-
 void ShadowMap::draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum, const MapBias& bias) {
   if (bias.midpoint) {
     draw_midpoint(shaders, geometry, frustum, bias);
@@ -55,14 +86,13 @@ void ShadowMap::draw(ShaderLibrary& shaders, const Geometry& geometry, const sce
 }
 
 /// Woo 1992, The Shadow Depth Map Revisited, Graphics Gems III: the map lies between the first and the second surface, so
-/// that neither shadows itself. Where there is no second one it counts as depth 1.
+/// that neither shadows itself. Where there is no second one it counts as the far plane.
 void ShadowMap::draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
                               const MapBias& bias) {
   if (surfaces_.empty()) {
-    surfaces_.emplace_back("first surface", size());
-    surfaces_.emplace_back("second surface", size());
+    surfaces_.emplace_back("first surface", settings_.format, size());
+    surfaces_.emplace_back("second surface", settings_.format, size());
   }
-  for (gl::Texture* texture : {&surfaces_[0].depth, &surfaces_[1].depth}) texture->set_filter(GL_NEAREST, GL_NEAREST);
   draw_casters(shaders, geometry, frustum, bias, surfaces_[0].framebuffer, {});
   gl::Sampler::unbind(0);
   surfaces_[0].depth.bind(0);
@@ -82,6 +112,20 @@ void ShadowMap::bind() const {
   }
 }
 
-filters::DepthMap ShadowMap::read() const { return {size(), map_.depth.read_floats(1)}; }
+filters::DepthMap ShadowMap::read() const {
+  filters::DepthMap map{size(), map_.depth.read_floats(1), settings_.format != GL_DEPTH_COMPONENT32F, 0.0f};
+  if (!settings_.reversed) return map;
+  for (float& depth : map.depth) depth = 1.0f - depth;
+  map.tie = 2.0f * std::numeric_limits<float>::epsilon();  // 1 - depth and 1 - reference are rounded
+  return map;
+}
+
+report::Image ShadowMap::read_picture() const {
+  report::Image picture = read_image(map_.depth, 1);
+  if (settings_.reversed) {
+    for (float& depth : picture.texels) depth = 1.0f - depth;
+  }
+  return picture;
+}
 
 }  // namespace shadowbench::render

@@ -1,21 +1,31 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "filters/model.h"
 #include "harness/gl/objects.h"
 #include "harness/render/bias.h"
 #include "harness/render/geometry.h"
+#include "harness/render/map_settings.h"
 #include "harness/scene/light_fit.h"
+#include "report/image.h"
 
 namespace shadowbench::render {
 
-/// The depth map of one light: 32-bit float, depth in [0,1], 0 near.
+/// Names map settings as records do: "d32f", "d16 reversed".
+std::string describe_map(const MapSettings& settings);
+
+/// Requires that a GL stores a format as it was asked to; `bits` is GL_TEXTURE_DEPTH_SIZE of the texture.
+/// Throws Error(kUsage): the precision that is to be studied would be another one.
+void require_depth_bits(GLenum format, int bits);
+
+/// The depth map of one light; depth in [0,1], 0 near, whatever the format and the direction it is stored in.
 class ShadowMap {
  public:
-  /// Throws Error(kUsage) when the GL cannot give this size.
-  explicit ShadowMap(int size);
+  /// Throws Error(kUsage) when the GL cannot give this size or format.
+  explicit ShadowMap(int size, const MapSettings& settings = {});
 
   /// Draws the casters as the light sees them; by default nothing is culled, nothing is biased.
   /// Cost: one pass over the casters, two and a full-screen pass for a midpoint map.
@@ -24,28 +34,39 @@ class ShadowMap {
   /// Binds the map to the three units of lib/map_access.glsl that read depth.
   void bind() const;
 
-  /// Reads the map back for the models.
+  /// Reads the map back for the models: depth, turned around where it is stored reversed.
   filters::DepthMap read() const;
+
+  /// Reads the map back as a picture of depth, rows top to bottom: row 0 is v = 1.
+  report::Image read_picture() const;
 
   const gl::Texture& texture() const { return map_.depth; }
   int size() const { return map_.depth.width(); }
+  const MapSettings& settings() const { return settings_; }
   std::int64_t bytes() const { return static_cast<std::int64_t>(map_.depth.bytes()); }
 
  private:
   /// A depth texture that is drawn into.
   struct Layer {
-    Layer(const char* label, int size);
+    Layer(const char* label, GLenum format, int size);
     gl::Texture depth;
     gl::Framebuffer framebuffer;
   };
 
+  MapSettings settings_;
   Layer map_;
   std::vector<Layer> surfaces_;  ///< first and second, only for midpoint maps
-  void draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum, const MapBias& bias);
-
   gl::Sampler plain_{"depth, plain"};
   gl::Sampler compare_linear_{"depth, compared, 2x2"};
   gl::Sampler compare_nearest_{"depth, compared, nearest"};
+
+  /// What a cleared texel holds.
+  float far_depth() const { return settings_.reversed ? 0.0f : 1.0f; }
+
+  /// Draws casters into a layer; both faces, but front faces of cullable ones where the bias says so.
+  void draw_casters(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum, const MapBias& bias,
+                    gl::Framebuffer& framebuffer, Defines defines) const;
+  void draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum, const MapBias& bias);
 };
 
 }  // namespace shadowbench::render

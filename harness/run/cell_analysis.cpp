@@ -42,7 +42,7 @@ void note_parts(report::CellRecord& record, const reference::Attribution& attrib
 
 CellAnalyser::CellAnalyser(Renderer& renderer, const RunOptions& options, const SceneTask& task, SceneAssets& assets,
                            const SceneTruth& truth)
-    : renderer_(renderer), options_(options), task_(task), assets_(assets), truth_(truth), light_(assets.light_map(task.map_size)) {
+    : renderer_(renderer), options_(options), task_(task), assets_(assets), truth_(truth), light_(assets.light_map(*task.camera, task.map_size)) {
   if (truth_.absent.empty()) make_masks();
 }
 

@@ -8,6 +8,7 @@
 
 #include "filters/catalogue.h"
 #include "harness/gl/context.h"
+#include "harness/render/map_settings.h"
 #include "harness/run/bias_rule.h"
 #include "harness/scene/light_fit.h"
 
@@ -28,6 +29,12 @@ Resources find_resources();
 /// Source: XDG Base Directory Specification 0.8.
 std::filesystem::path default_cache_folder();
 
+/// Where a light stands in the sky: azimuth 0 is +z, 90 is +x; degrees.
+struct LightAngles {
+  double azimuth_deg = 0.0;
+  double elevation_deg = 0.0;
+};
+
 /// Everything that `shadowbench run` is told.
 struct RunOptions {
   Resources resources;
@@ -37,7 +44,10 @@ struct RunOptions {
   std::vector<int> map_sizes = {1024};
   int width = 960;
   int height = 540;
+  render::MapSettings map;
   scene::FitMode fit = scene::FitMode::kTight;
+  bool snap = false;                 ///< keep the map's texel grid fixed in the world
+  std::optional<LightAngles> light;  ///< in place of every scene's own; empty: as the scenes say
   BiasRule bias;
   std::optional<double> pad_texels;  ///< around the scene in the map; empty: what the widest kernel needs
   int rounds = 11;

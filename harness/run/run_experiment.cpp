@@ -8,12 +8,15 @@
 
 #include "filters/error.h"
 #include "harness/run/cell_analysis.h"
+#include "harness/run/map_coverage.h"
+#include "harness/run/map_output.h"
 #include "harness/run/run_facts.h"
 #include "harness/run/scene_assets.h"
 #include "harness/run/scene_measurement.h"
 #include "harness/run/scene_output.h"
 #include "harness/run/user_filter.h"
 #include "harness/scene/closed_mesh.h"
+#include "harness/scene/framing.h"
 #include "harness/scene/load.h"
 #include "reference/truth/occluders.h"
 #include "report/atomic_file.h"
@@ -29,6 +32,10 @@ struct NamedScene {
   scene::Scene scene;
 };
 
+void turn_light(scene::Scene& scene, const LightAngles& light) {
+  scene.light.direction_ws = glm::vec3(scene::light_direction(light.azimuth_deg, light.elevation_deg));
+}
+
 std::vector<NamedScene> load_scenes(const RunOptions& options) {
   scene::LoadOptions load;
   load.scenes_folder = options.resources.scenes;
@@ -38,6 +45,7 @@ std::vector<NamedScene> load_scenes(const RunOptions& options) {
   std::set<std::string> names;
   for (const std::string& argument : options.scenes) {
     scenes.push_back({argument, scene::load(argument, load)});
+    if (options.light) turn_light(scenes.back().scene, *options.light);
     const std::string& name = scenes.back().scene.name;
     if (names.insert(name).second) continue;
     throw Error(ErrorKind::kUsage, fmt::format("two scenes are called '{}': rename one file, or run them apart", name));
@@ -156,7 +164,10 @@ class Experiment {
     const SceneTruth& truth = assets.truth(*task.camera);
     if (!options_.worker) explain(measured, task, assets, truth);
     show(task, "pictures");
-    if (!options_.worker) write_pictures(options_, all, measured, truth, run_.gl);
+    if (!options_.worker) {
+      cover(measured, task, assets, truth);
+      write_pictures(options_, all, measured, truth, run_.gl);
+    }
     write_float_images(options_, all, measured, truth, renderer_.context->info());
     for (const MeasuredCell& cell : measured.cells) {
       report::write_cell(options_.out, cell.record);
@@ -165,6 +176,20 @@ class Experiment {
     done_ += static_cast<int>(measured.cells.size());
     run_.work.passes_run += measured.passes_run;
     run_.work.passes_skipped += measured.passes_skipped;
+  }
+
+  /// Says how the map's texels are spent on the view: numbers in every cell, and pictures.
+  void cover(SceneMeasurement& measured, const SceneTask& task, SceneAssets& assets, const SceneTruth& truth) {
+    const scene::LightFrustum& frustum = assets.light_map(*task.camera, task.map_size).frustum;
+    std::optional<ViewReceivers> untraced;
+    if (truth.receivers.image.points.empty()) untraced = read_view_receivers(assets.gbuffer(*task.camera), -task.scene->light.direction_ws);
+    const MapCoverage coverage =
+        measure_coverage(untraced ? *untraced : truth.receivers, *task.camera, frustum, measured.depth_map);
+    for (MeasuredCell& cell : measured.cells) {
+      cell.record.coverage = coverage.record;
+      if (!coverage.record.texels_per_pixel) cell.record.absent["coverage"] = "no surface in view faces the light";
+    }
+    write_map_pictures(options_, task, measured, coverage, frustum);
   }
 
   /// Says how wrong each cell is, and why.

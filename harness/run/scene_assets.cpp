@@ -18,13 +18,16 @@ SceneAssets::SceneAssets(Renderer& renderer, const RunOptions& options, const sc
       geometry_(scene),
       tracer_(scene, cache, options.seed) {}
 
-LightMap& SceneAssets::light_map(int map_size) {
-  const auto found = maps_.find(map_size);
+LightMap& SceneAssets::light_map(const scene::Camera& camera, int map_size) {
+  const std::pair key(options_.fit == scene::FitMode::kView ? &camera : nullptr, map_size);
+  const auto found = maps_.find(key);
   if (found != maps_.end()) return found->second;
   // A map smaller than the padding keeps half of its texels for the scene.
   const double pad_texels = std::min(pad_texels_, 0.25 * (map_size - 1));
-  LightMap light{scene::fit_light(scene_, options_.fit, map_size, pad_texels), render::ShadowMap(map_size)};
-  LightMap& kept = maps_.emplace(map_size, std::move(light)).first->second;
+  const double aspect = static_cast<double>(options_.width) / options_.height;
+  LightMap light{scene::fit_light(scene_, {options_.fit, map_size, pad_texels, options_.snap, &camera, aspect}),
+                 render::ShadowMap(map_size, options_.map)};
+  LightMap& kept = maps_.emplace(key, std::move(light)).first->second;
   redraw(kept);
   require_casters(kept);
   return kept;

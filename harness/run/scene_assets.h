@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "harness/render/gbuffer.h"
@@ -25,8 +26,9 @@ class SceneAssets {
   /// `pad_texels` is the half-width of the run's widest kernel: every filter sees the same map.
   SceneAssets(Renderer& renderer, const RunOptions& options, const scene::Scene& scene, TruthCache& cache, double pad_texels);
 
+  /// Gives the light's map; one for all cameras, unless the light is fitted to what each sees.
   /// Throws Error(kUsage) when the GL cannot give a map of this size.
-  LightMap& light_map(int map_size);
+  LightMap& light_map(const scene::Camera& camera, int map_size);
 
   render::GBuffer& gbuffer(const scene::Camera& camera);
 
@@ -46,7 +48,7 @@ class SceneAssets {
   double pad_texels_;
   render::Geometry geometry_;
   SceneTracer tracer_;
-  std::map<int, LightMap> maps_;
+  std::map<std::pair<const scene::Camera*, int>, LightMap> maps_;  ///< the camera is null where all share a map
   std::map<const scene::Camera*, render::GBuffer> gbuffers_;
   std::map<const scene::Camera*, SceneTruth> truths_;
 

@@ -33,7 +33,7 @@ class SceneBench {
         options_(options),
         task_(task),
         assets_(assets),
-        light_(assets.light_map(task.map_size)),
+        light_(assets.light_map(*task.camera, task.map_size)),
         gbuffer_(assets.gbuffer(*task.camera)),
         target_("visibility", GL_R32F, options.width, options.height) {}
 
@@ -48,7 +48,7 @@ class SceneBench {
       warn_of_overflow(result, *filters.back());
     }
     time(result, filters);
-    result.depth_map = render::read_image(light_.map.texture(), 1);
+    result.depth_map = light_.map.read_picture();
     renderer_.context->require_no_gl_errors();
     return result;
   }
@@ -66,7 +66,7 @@ class SceneBench {
   std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request) {
     const render::Bias bias = resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
     const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed);
-    return std::make_unique<render::FilterPasses>(renderer_.shaders, request, task_.map_size, light);
+    return std::make_unique<render::FilterPasses>(renderer_.shaders, request, task_.map_size, light, options_.map);
   }
 
   MeasuredCell draw(render::FilterPasses& filter) {
@@ -154,6 +154,8 @@ report::ParamMap record_params(const filters::FilterRequest& request) {
 
 }  // namespace
 
+std::string describe_light(const LightAngles& light) { return fmt::format("{},{}", light.azimuth_deg, light.elevation_deg); }
+
 report::CellRecord make_record(const RunOptions& options, const SceneTask& task, const filters::FilterRequest& request) {
   report::CellRecord record;
   record.scene = task.scene->name;
@@ -161,7 +163,9 @@ report::CellRecord make_record(const RunOptions& options, const SceneTask& task,
   record.filter = request.spec.id;
   record.params = record_params(request);
   record.map_size = task.map_size;
-  record.map_format = "d32f";
+  record.map_format = render::describe_map(options.map);
+  record.fit = std::string(scene::name_of(options.fit)) + (options.snap ? " snapped" : "");
+  if (options.light) record.light = describe_light(*options.light);
   const BiasRule& bias = options.bias;
   const auto amount = [](const BiasAmount& a) { return report::BiasAmountRecord{a.depth, a.texels, a.world}; };
   record.bias = {amount(bias.constant),      amount(bias.slope),      bias.plane_texels,   bias.plane_kernels,

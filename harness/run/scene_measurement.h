@@ -46,6 +46,9 @@ struct SceneTask {
 SceneMeasurement measure_scene(Renderer& renderer, const RunOptions& options, const SceneTask& task, SceneAssets& assets,
                                const std::function<void(const std::string&)>& on_cell);
 
+/// Writes a light's place as the command line reads it.
+std::string describe_light(const LightAngles& light);
+
 /// Gives the record of a cell with its settings and key, nothing measured yet.
 report::CellRecord make_record(const RunOptions& options, const SceneTask& task, const filters::FilterRequest& request);
 

@@ -35,18 +35,6 @@ report::Metadata describe(const RunOptions& options, const SceneTask& task, cons
   return metadata;
 }
 
-/// Empty dark borders say nothing: the picture spans the depths that occur.
-report::GreyRange depth_picture_range(const report::Image& depth) {
-  float nearest = 1.0f, farthest = 0.0f;
-  for (const float d : depth.texels) {
-    if (d >= 1.0f) continue;
-    nearest = std::min(nearest, d);
-    farthest = std::max(farthest, d);
-  }
-  if (nearest >= farthest) return {0.0f, 1.0f};
-  return {nearest, farthest};
-}
-
 std::string caption(const report::CellRecord& cell, const report::GlRecord& gl) {
   std::string text = report::describe_params(cell.params);
   if (!cell.time_ms.lookup) return text;
@@ -93,6 +81,8 @@ report::Grid make_grid(const RunOptions& options, const SceneTask& task, const S
   report::Grid grid;
   grid.title = task.scene->title.empty() ? task.scene->name : fmt::format("{}: {}", task.scene->name, task.scene->title);
   grid.subtitle = report::describe_settings(measured.cells.front().record) + " · times: " + report::describe_clock(gl);
+  const std::string coverage = report::describe_coverage(measured.cells.front().record.coverage);
+  if (!coverage.empty()) grid.subtitle += " · " + coverage;
   grid.tiles = make_truth_tiles(task, truth);
   for (const MeasuredCell& cell : measured.cells) {
     grid.tiles.push_back({cell.label, caption(cell.record, gl), cell.picture, cell.visibility,
@@ -190,15 +180,12 @@ void write_pictures(const RunOptions& options, const SceneTask& task, SceneMeasu
                     const SceneTruth& truth, const report::GlRecord& gl) {
   const std::string stem = task_stem(options, task);
   const std::string grid_name = stem + ".grid.png";
-  const std::string depth_name = "images/" + stem + ".depth_map.png";
   const report::Grid grid = make_grid(options, task, measured, truth, gl);
   report::write_grid(options.out / grid_name, grid);
-  report::write_grey_png(options.out / depth_name, measured.depth_map, depth_picture_range(measured.depth_map));
   for (MeasuredCell& cell : measured.cells) {
     write_cell_pictures(options, stem, cell);
     write_attribution(options, stem, cell, truth, grid);
     cell.record.images.grid = grid_name;
-    cell.record.images.depth_map = depth_name;
     cell.record.images.exr = exr_name(options, task);
   }
 }

@@ -24,7 +24,7 @@ std::string picture_part(const std::string& label);
 void write_float_images(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
                         const SceneTruth& truth, const gl::GlInfo& info);
 
-/// Writes what people look at: grid, single pictures, depth map; notes their paths in the records.
+/// Writes what people look at: grid and single pictures; notes their paths in the records.
 /// Throws Error(kOutput).
 void write_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured,
                     const SceneTruth& truth, const report::GlRecord& gl);

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "filters/error.h"
+#include "harness/gl/pixel_format.h"
 #include "harness/run/scene_output.h"
 #include "harness/run/worker_process.h"
 #include "report/json_io.h"
@@ -51,10 +52,17 @@ std::vector<std::string> worker_arguments(const RunOptions& options, const Scene
                                         "--size", fmt::format("{}x{}", options.width, options.height),
                                         "--rounds", fmt::format("{}", options.rounds),
                                         "--seed", fmt::format("{}", options.seed),
-                                        "--fit", options.fit == scene::FitMode::kSphere ? "sphere" : "tight",
+                                        "--fit", std::string(scene::name_of(options.fit)),
+                                        "--snap", options.snap ? "on" : "off",
+                                        "--map-format", std::string(gl::pixel_format(options.map.format).name),
                                         "--pad-texels", fmt::format("{}", largest_padding_texels(options.filters)),
                                         "--gl", backend, "--out", folder.string()};
   if (options.ground) arguments.push_back("--ground");
+  if (options.map.reversed) arguments.push_back("--reversed-depth");
+  if (options.light) {
+    arguments.push_back("--light");
+    arguments.push_back(describe_light(*options.light));
+  }
   for (const std::string& bias : options.bias_texts) {
     arguments.push_back("--bias");
     arguments.push_back(bias);

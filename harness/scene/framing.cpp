@@ -72,6 +72,8 @@ struct Slab {
 
 }  // namespace
 
+glm::dvec3 light_direction(double azimuth_deg, double elevation_deg) { return -direction_to(azimuth_deg, elevation_deg); }
+
 Camera frame_camera(const Scene& scene, double aspect, std::optional<float> ground_y) {
   const Bounds bounds = scene.bounds();
   const glm::dvec3 forward = -direction_to(camera_azimuth_deg(bounds), kCameraElevationDeg);
@@ -99,7 +101,7 @@ Camera frame_camera(const Scene& scene, double aspect, std::optional<float> grou
 Light make_default_sun(const Bounds& bounds) {
   Light sun;
   const double azimuth = camera_azimuth_deg(bounds) + kSunFromCameraDeg;
-  sun.direction_ws = glm::vec3(-direction_to(azimuth, kSunElevationDeg));
+  sun.direction_ws = glm::vec3(light_direction(azimuth, kSunElevationDeg));
   return sun;
 }
 

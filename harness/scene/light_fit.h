@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <string_view>
 
 #include "harness/scene/scene.h"
 
@@ -10,12 +11,29 @@ namespace shadowbench::scene {
 enum class FitMode {
   kSphere,  ///< a sphere around the scene: its size does not change when the light turns
   kTight,   ///< casters and receivers, as the light sees them
+  kView,    ///< what the camera sees of the scene, with the casters between that and the light
+};
+
+/// Give a fit's name on the command line and in records, and the fit of a name.
+std::string_view name_of(FitMode mode);
+/// Throws Error(kUsage) with the names there are.
+FitMode parse_fit_mode(std::string_view name);
+
+/// What a light's frustum is fitted to, and how.
+struct FitRequest {
+  FitMode mode = FitMode::kTight;
+  int map_size = 1024;        ///< texels along a side
+  double pad_texels = 0.0;    ///< stay free on every side
+  bool snap = false;          ///< keep the texel grid fixed in the world while the camera or the scene's extent moves
+  const Camera* camera = nullptr;  ///< FitMode::kView only
+  double aspect = 1.0;             ///< of its picture, width / height
 };
 
 /// The orthographic frustum of a directional light: a square map over casters and receivers.
 struct LightFrustum {
   glm::dmat4 light_from_world{1.0};     ///< rigid; looks along -z
-  glm::mat4 clip_from_world{1.0f};      ///< orthographic; depth in [0,1], 0 near
+  glm::dmat4 clip_from_light{1.0};      ///< orthographic; depth in [0,1], 0 near
+  glm::mat4 clip_from_world{1.0f};      ///< the product of both
   glm::mat4 uv_depth_from_world{1.0f};  ///< to (u, v, depth) in [0,1]; v = 0 is the map's first row, as in GL
   double width_ws = 0.0;                ///< side of the map, padding included
   double texel_size_ws = 0.0;
@@ -31,5 +49,15 @@ struct LightFrustum {
 /// receiver's depth lies inside (0,1), in 16 bits too; a scene without depth gets a thousandth of the map's width.
 /// Throws kUsage where the padding leaves no texel for the scene. Cost: one or two passes over the vertices, in double.
 LightFrustum fit_light(const Scene& scene, FitMode mode, int map_size, double pad_texels);
+
+/// Fits as the other; FitMode::kView encloses every point that the camera sees, in front of others or behind them. Its
+/// depth runs from the caster nearest to the light that can reach the map to the farthest point in view: what lies beyond
+/// throws no shadow on anything in view. A camera that sees nothing gets the tight fit.
+///
+/// With `snap`, the map's origin lies a whole number of texels from the world's origin, as the light sees it, and the
+/// texel's size is rounded up to a power of 2^(1/8), at most 9 % larger: a camera that moves by less than a texel leaves
+/// the grid where it was, and shadows' edges do not crawl. One texel of the map's side is spent on that.
+/// Requires a camera for FitMode::kView.
+LightFrustum fit_light(const Scene& scene, const FitRequest& request);
 
 }  // namespace shadowbench::scene

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <utility>
 
 #include "filters/nearest_name.h"
@@ -62,9 +61,8 @@ class SceneBuilder {
                         "[light] needs a direction: either 'direction', or 'azimuth_deg' and 'elevation_deg'");
     }
     if (by_angles) {
-      const double azimuth = glm::radians(table.number("azimuth_deg", {-360.0, 360.0}));
-      const double elevation = glm::radians(table.number("elevation_deg", {-90.0, 90.0}));
-      return {-std::cos(elevation) * std::sin(azimuth), -std::sin(elevation), -std::cos(elevation) * std::cos(azimuth)};
+      const double azimuth = table.number("azimuth_deg", {-360.0, 360.0});
+      return light_direction(azimuth, table.number("elevation_deg", {-90.0, 90.0}));
     }
     const glm::dvec3 direction = table.vec3("direction", kAnyNumber);
     if (glm::length(direction) > 0.0) return direction;

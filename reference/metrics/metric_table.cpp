@@ -34,6 +34,14 @@ constexpr Metric kTable[] = {
      "standard error of the truth, root mean square over receivers"},
     {"truth.unanimous", "share", kZeroToOne, kRun, nullptr,
      "receivers whose rays all agree, and which therefore have no standard error"},
+    {"coverage.texels_per_pixel", "texels", kPositive, kRun, nullptr,
+     "texels of the shadow map under a pixel's footprint on its receiver's tangent plane, seen along the light: median "
+     "over receivers"},
+    {"coverage.fewest_texels_per_pixel", "texels", kPositive, kRun, nullptr,
+     "the same, of the receiver with the fewest"},
+    {"coverage.map_used", "share", kZeroToOne, kRun, nullptr,
+     "of the map's area: what lies under the footprint of a receiver"},
+    {"coverage.map_filled", "share", kZeroToOne, kRun, nullptr, "of the map's texels: those that hold a caster"},
     {"artefact.acne", "share", kZeroToOne, kRun, nullptr,
      "of the receivers whose whole area light and whole guard is lit: those that the image shows darker than 0.9. "
      "Guard: a square on the receiver's tangent plane, of half-width (widest kernel of the run + 1 texel), every ray "

@@ -45,6 +45,22 @@ TEST(NoneModel, ComparesTheTexelThatHoldsThePoint) {
   EXPECT_EQ(look_up("none", map, 4.5, 4.5, 0.25f), 1.0) << "ties are lit";
 }
 
+TEST(NoneModel, ReferencesWithinTheMapsTie_AreExcused_OthersAreNot) {
+  static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
+  const FilterRequest request = catalogue.parse_requests("none").front();
+  const auto is_excused = [&](float tie, float depth) {
+    DepthMap map = make_edge(16, 16, 0.25f, 0.25f);
+    map.tie = tie;
+    Receiver r;
+    r.uv = {4.5f / 16.0f, 4.5f / 16.0f};
+    r.depth = depth;
+    return make_model("none")->prepare({request.spec, request.values, map, {}, 0}, Precision::kDouble)->at(r).excused;
+  };
+  EXPECT_TRUE(is_excused(1e-3f, 0.2505f));
+  EXPECT_FALSE(is_excused(1e-3f, 0.252f));
+  EXPECT_FALSE(is_excused(0.0f, 0.2505f));
+}
+
 TEST(NoneModel, OutsideTheMap_IsLit) {
   const DepthMap map = make_edge(16, 16, 0.0f, 0.0f);
   EXPECT_EQ(look_up("none", map, -0.5, 8.0, 1.0f), 1.0);

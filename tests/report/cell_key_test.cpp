@@ -33,6 +33,8 @@ TEST(CellKey, EverySetting_ChangesTheKey) {
       [](CellRecord& c) { c.params["more"] = true; },
       [](CellRecord& c) { c.map_size = 2048; },
       [](CellRecord& c) { c.map_format += "x"; },
+      [](CellRecord& c) { c.fit = "view"; },
+      [](CellRecord& c) { c.light = "120,35"; },
       [](CellRecord& c) { c.bias.constant.depth = 1e-4; },
       [](CellRecord& c) { c.bias.plane_texels = 1.0; },
       [](CellRecord& c) { c.bias.plane_kernels = 1.0; },

@@ -55,7 +55,10 @@ CellRecord make_full_cell() {
   cell.truth = {0.001, 0.9};
   cell.artefact = {0.1, 0.2, 0.3, 0.4};
   cell.attribution = {{0.1, 0.5}, {0.2, -0.1}, {0.3, 0.2}, {0.4, 0.4}};
-  cell.images = {"a.png", "b.png", "c.png", "d.png", "e.exr", "f.png"};
+  cell.images = {"a.png", "b.png", "c.png", "d.png", "e.exr", "f.png", "g.png", "h.png"};
+  cell.coverage = {3.5, 0.25, 0.75, 0.5};
+  cell.fit = "view snapped";
+  cell.light = "120,-35.5";
   cell.absent.clear();
   return cell;
 }
@@ -84,6 +87,14 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   EXPECT_TRUE(back.bias.midpoint);
   EXPECT_EQ(back.images.exr, "e.exr");
   EXPECT_EQ(back.images.attribution, "f.png");
+  EXPECT_EQ(back.images.texel_density, "g.png");
+  EXPECT_EQ(back.images.texel_grid, "h.png");
+  EXPECT_EQ(back.coverage.texels_per_pixel, 3.5);
+  EXPECT_EQ(back.coverage.fewest_texels_per_pixel, 0.25);
+  EXPECT_EQ(back.coverage.map_used, 0.75);
+  EXPECT_EQ(back.coverage.map_filled, 0.5);
+  EXPECT_EQ(back.fit, "view snapped");
+  EXPECT_EQ(back.light, "120,-35.5");
   EXPECT_EQ(std::get<std::string>(back.params.at("store")), "rg32f");
 }
 
@@ -194,6 +205,12 @@ TEST(JsonIo, BrokenRecords_AreRefusedByTheSchema) {
       json::parse(R"([{"op": "replace", "path": "/cells/0/images/picture", "value": "/etc/passwd"}])"),
       json::parse(R"([{"op": "replace", "path": "/cells/0/images/attribution", "value": "/etc/passwd"}])"),
       json::parse(R"([{"op": "remove", "path": "/cells/0/images/attribution"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/map_format", "value": "d8"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/fit", "value": "box"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/light", "value": "noon"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/coverage/map_used", "value": 2}])"),
+      json::parse(R"([{"op": "remove", "path": "/cells/0/coverage/map_filled"}])"),
+      json::parse(R"([{"op": "remove", "path": "/cells/0/images/texel_grid"}])"),
       json::parse(R"([{"op": "remove", "path": "/work/truths_cached"}])"),
       json::parse(R"([{"op": "replace", "path": "/work/truths_traced", "value": -1}])"),
       json::parse(R"([{"op": "replace", "path": "/schema_version", "value": 2}])"),

@@ -61,6 +61,22 @@ TEST_F(BadInput, MapSizeZero) { expect_refusal("run --out out --map-size 0", 2, 
 TEST_F(BadInput, SameMapSizeTwice) { expect_refusal("run --out out --map-size 64,64", 2, {"64 twice"}); }
 TEST_F(BadInput, PictureSizeMalformed) { expect_refusal("run --out out --size 64", 2, {"--size", "WIDTHxHEIGHT"}); }
 TEST_F(BadInput, PictureLargerThanTheGl) { expect_refusal("run --out out --size 100000x10", 2, {"100000"}); }
+TEST_F(BadInput, UnknownMapFormat) { expect_refusal(small("--map-format d32"), 2, {"'d32'", "d16, d24, d32f"}); }
+TEST_F(BadInput, ColourFormatForTheMap) { expect_refusal(small("--map-format r32f"), 2, {"unknown depth format 'r32f'"}); }
+TEST_F(BadInput, UnknownFit) { expect_refusal(small("--fit box"), 2, {"'box'", "sphere, tight, view"}); }
+TEST_F(BadInput, SnapWithNothing) { expect_refusal(small("--snap"), 2, {"--snap"}); }
+TEST_F(BadInput, SnapUnknown) { expect_refusal(small("--snap perhaps"), 2, {"--snap", "perhaps"}); }
+TEST_F(BadInput, LightWithoutElevation) { expect_refusal(small("--light 120"), 2, {"'120'", "AZIMUTH,ELEVATION"}); }
+TEST_F(BadInput, LightThatIsEmpty) { expect_refusal(small("--light ''"), 2, {"--light", "AZIMUTH,ELEVATION"}); }
+TEST_F(BadInput, LightUnderfoot) { expect_refusal(small("--light 120,91"), 2, {"elevation", "'91'", "-90 .. 90"}); }
+TEST_F(BadInput, LightNotANumber) { expect_refusal(small("--light 120,nan"), 2, {"elevation", "'nan'"}); }
+TEST_F(BadInput, LightThatTurnsTooFar) { expect_refusal(small("--light 1e9,10"), 2, {"azimuth", "'1e9'"}); }
+TEST_F(BadInput, SamplersOfAReversedMap) {
+  std::string text = read_text(user_filter("nine_compares.glsl"));
+  text.insert(text.find("float visibility"), "float raw(Receiver r) { return texture(map_depth, r.uv).r; }\n");
+  write("raw.glsl", text);
+  expect_refusal(small("--reversed-depth --filter-file raw.glsl"), 2, {"--reversed-depth", "'raw'", "compare_nearest"});
+}
 TEST_F(BadInput, NegativeBias) { expect_refusal(small("--bias plane:kernels=-1"), 2, {"--bias", "'-1'"}); }
 TEST_F(BadInput, BiasThatAFilterCannotUse) {
   expect_refusal(small("--bias receiver-plane --filters none,vsm"), 2, {"receiver-plane", "'vsm'"});

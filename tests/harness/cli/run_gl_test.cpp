@@ -63,6 +63,38 @@ TEST_F(Command, UserFilter_SeesTheSameMapAsTheOthers_AtEverySize) {
   }
 }
 
+/// The settings reach the worker: a copy of a built-in filter sees the same map, and its cell the same key's settings.
+TEST_F(Command, MapAndLightSettings_AreRecordedAndReachUserFilters) {
+  write("copied.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/pcf2x2.glsl"));
+  const std::string common = "run --size 96x54 --map-size 64 --rounds 1 --scene cubes --no-truth --filters none,pcf2x2,copied --filter-file copied.glsl ";
+  ASSERT_EQ(run(common + "--out plain").exit_code, 0);
+  const Outcome outcome = run(common + "--out out --map-format d16 --reversed-depth --fit view --snap on --light 60,30.5");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json json = results(folder());
+  for (const auto& cell : json["cells"]) {
+    EXPECT_EQ(cell["map_format"], "d16 reversed");
+    EXPECT_EQ(cell["fit"], "view snapped");
+    EXPECT_EQ(cell["light"], "60,30.5");
+    EXPECT_EQ(cell["cost"]["map_bytes"], 64 * 64 * 2);
+    EXPECT_GT(cell["coverage"]["texels_per_pixel"], 0.0);
+    EXPECT_LT(cell["coverage"]["fewest_texels_per_pixel"], cell["coverage"]["texels_per_pixel"]);
+    EXPECT_GT(cell["coverage"]["map_used"], 0.05);
+    EXPECT_LE(cell["coverage"]["map_filled"], 1.0);
+    for (const char* image : {"depth_map", "texel_density", "texel_grid"}) {
+      EXPECT_TRUE(std::filesystem::exists(folder() / "out" / cell["images"][image].get<std::string>())) << image;
+      EXPECT_NE(read_text(folder() / "out" / "index.html").find(cell["images"][image].get<std::string>()), std::string::npos) << image;
+    }
+  }
+  const auto picture = [&](const char* out, const char* filter) {
+    return read_text(folder() / out / "images" / (std::string("cubes.") + filter + ".visibility.png"));
+  };
+  EXPECT_EQ(picture("out", "copied"), picture("out", "pcf2x2"));
+  EXPECT_NE(picture("out", "pcf2x2"), picture("plain", "pcf2x2"));
+  const std::string check = "/usr/bin/python3 -m jsonschema -i '" + (folder() / "out" / "results.json").string() + "' '" +
+                            (folder() / "out" / "results.schema.json").string() + "'";
+  EXPECT_EQ(std::system(check.c_str()), 0);
+}
+
 TEST_F(Command, EndlessUserFilter_TimesOutAndTheRunGoesOn) {
   const Outcome outcome = run("run --out out --size 320x180 --map-size 64 --rounds 2 --scene cubes --filters none,endless --cell-timeout 3 --filter-file " +
                               user_filter("endless.glsl"));

@@ -94,9 +94,9 @@ struct Traced {
   Bench bench;
   std::vector<int> lit;
 
-  explicit Traced(const std::string& name)
+  explicit Traced(const std::string& name, const render::MapSettings& map = {})
       : scene(load_builtin(name)),
-        bench(shared_context(), scene, 1024, kWidth, kHeight),
+        bench(shared_context(), scene, 1024, kWidth, kHeight, map),
         lit(trace(bench, scene, bench.receivers(catalogue().parse_requests("none").front()))) {}
 
   Rates measure(const std::string& filter, const run::BiasRule& rule) {
@@ -120,6 +120,22 @@ TEST_P(DefaultBias, LeavesNoVisibleAcne) {
 
 INSTANTIATE_TEST_SUITE_P(BuiltIn, DefaultBias, ::testing::ValuesIn(builtin_scenes()),
                          [](const auto& each) { return each.param; });
+
+/// The default constant covers half a step of the coarsest format.
+TEST(DefaultBias, LeavesNoVisibleAcne_InAnyFormat) {
+  for (const GLenum format : {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT32F}) {
+    for (const bool reversed : {false, true}) {
+      Traced traced("steps", {format, reversed});
+      for (const std::string& filter : filter_ids()) {
+        const Rates rates = traced.measure(filter, {});
+        std::printf("%s %s: acne %.5f of %d, gap %.5f\n", render::describe_map({format, reversed}).c_str(), filter.c_str(),
+                    rates.acne, rates.lit, rates.gap);
+        EXPECT_LE(rates.acne, 0.001) << filter;
+        EXPECT_LE(rates.gap, 0.05) << filter;
+      }
+    }
+  }
+}
 
 TEST(NoBias, GivesAcne) { EXPECT_GT(Traced("steps").measure("none", run::BiasRule::none()).acne, 0.05); }
 

@@ -20,13 +20,14 @@ namespace shadowbench::test {
 /// A scene drawn with one filter, everything at hand that the harness itself uses.
 class Bench {
  public:
-  Bench(gl::Context& context, const scene::Scene& scene, int map_size = 1024, int width = 480, int height = 270)
+  Bench(gl::Context& context, const scene::Scene& scene, int map_size = 1024, int width = 480, int height = 270,
+        const render::MapSettings& map = {})
       : context_(context),
         scene_(scene),
         shaders_(run::find_resources().shaders),
         geometry_(scene),
         frustum_(scene::fit_light(scene, scene::FitMode::kTight, map_size, 6.0)),
-        map_(map_size),
+        map_(map_size, map),
         gbuffer_(width, height),
         target_("visibility", GL_R32F, width, height) {
     map_.draw(shaders_, geometry_, frustum_);
@@ -43,7 +44,7 @@ class Bench {
 
   /// Gives visibility as the GL wrote it: rows bottom to top, like Receiver::pixel.
   std::vector<float> draw(const filters::FilterRequest& request, const run::BiasRule& rule = {}) {
-    render::FilterPasses filter(shaders_, request, map_.size(), light(request, rule));
+    render::FilterPasses filter(shaders_, request, map_.size(), light(request, rule), map_.settings());
     filter.prefilter(map_);
     filter.lookup(gbuffer_, map_, target_);
     std::vector<float> visibility = target_.texture().read_floats(1);

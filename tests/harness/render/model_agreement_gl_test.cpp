@@ -103,6 +103,60 @@ INSTANTIATE_TEST_SUITE_P(AllFilters, ModelAgreement,
                          ::testing::Combine(::testing::ValuesIn(builtin_scenes()), ::testing::ValuesIn(filter_ids())),
                          [](const auto& each) { return std::get<0>(each.param) + "_" + std::get<1>(each.param); });
 
+/// Each format, stored either way round.
+class ModelFormats : public ::testing::TestWithParam<std::tuple<std::string, GLenum, bool>> {};
+
+TEST_P(ModelFormats, GlImageEqualsModel) {
+  const auto& [scene_name, format, reversed] = GetParam();
+  const scene::Scene scene = load_builtin(scene_name);
+  Bench bench(shared_context(), scene, 512, 480, 270, {format, reversed});
+  for (const std::string& id : filter_ids()) {
+    const filters::FilterRequest request = catalogue().parse_requests(id).front();
+    const Agreement a = compare(bench, request);
+    EXPECT_GT(a.shadowed, 0.01) << id;
+    EXPECT_LT(static_cast<double>(a.excused), 0.01 * static_cast<double>(a.compared)) << id;
+    if (request.spec.has_encode) {
+      EXPECT_LE(a.worst_bound_ratio, 1.0) << id;
+      EXPECT_LE(a.worst_float, 2e-3) << id;
+    } else {
+      EXPECT_LE(a.worst_float, pcf_tolerance()) << id;
+      EXPECT_LE(a.worst_double, pcf_tolerance()) << id;
+    }
+  }
+}
+
+std::string name_format_case(const std::tuple<std::string, GLenum, bool>& values) {
+  const auto& [scene, format, reversed] = values;
+  std::string name = scene + "_" + render::describe_map({format, reversed});
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(AllFormats, ModelFormats,
+                         ::testing::Combine(::testing::Values("steps", "fence"),
+                                            ::testing::Values(GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT32F),
+                                            ::testing::Bool()),
+                         [](const auto& each) { return name_format_case(each.param); });
+
+/// A fixed-point map clamps the reference, so that a point beyond the far plane ties with what was cleared.
+TEST(FixedPointMap, ReferenceBeyondOne_IsLitInFixedPointAlone_InModelAndGl) {
+  const scene::Scene scene = load_builtin("cubes");
+  filters::Catalogue filters(run::find_resources().filters);
+  filters.add_user_file(std::string(SHADOWBENCH_SOURCE_DIR) + "/tests/user_filters/beyond_far.glsl");
+  for (const bool reversed : {false, true}) {
+    for (const GLenum format : {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT32F}) {
+      Bench bench(shared_context(), scene, 64, 64, 36, {format, reversed});
+      const filters::FilterRequest request = filters.parse_requests("beyond_far").front();
+      const std::vector<float> image = bench.draw(request);
+      const float in_model = bench.map().read().reference(1.5f) <= 1.0f ? 1.0f : 0.0f;
+      const filters::Receiver r = bench.receivers(request).front();
+      EXPECT_EQ(image[bench.index(r)], in_model) << render::describe_map({format, reversed});
+      EXPECT_EQ(bench.map().read().tie > 0.0f, reversed) << "1 - depth is rounded";
+      EXPECT_EQ(in_model, format == GL_DEPTH_COMPONENT32F ? 0.0f : 1.0f);
+    }
+  }
+}
+
 /// Parameters that take another path through a filter.
 class ModelVariants : public ::testing::TestWithParam<std::string> {};
 

@@ -276,7 +276,7 @@ TEST(MetricTable, NamesEveryNumberOfACellsErrorGroups) {
   for (const reference::Metric& metric : reference::metric_table()) listed.emplace_back(metric.path);
   const report::CellRecord cell;
   report::visit_cell_fields(cell, [&](const std::string& path, const auto&) {
-    for (const char* group : {"error.", "truth.", "artefact.", "attribution."}) {
+    for (const char* group : {"error.", "truth.", "coverage.", "artefact.", "attribution."}) {
       if (path.rfind(group, 0) == 0) recorded.push_back(path);
     }
   });

@@ -138,5 +138,110 @@ TEST(LightFitTest, PaddingThatLeavesNoTexel_IsAUsageError) {
   EXPECT_EQ(error.kind(), ErrorKind::kUsage);
 }
 
+Camera make_camera(glm::vec3 position, glm::vec3 forward) {
+  Camera camera;
+  camera.position_ws = position;
+  camera.forward_ws = glm::normalize(forward);
+  camera.vertical_fov_rad = 0.5f;
+  return camera;
+}
+
+LightFrustum fit_view(const Scene& scene, const Camera& camera, bool snap = false) {
+  return fit_light(scene, {FitMode::kView, 256, 3.0, snap, &camera, 1.5});
+}
+
+/// The place of a world point in the map, in texels.
+glm::dvec2 texel_of(const LightFrustum& fit, const glm::dvec3& p) {
+  return glm::dvec2(fit.light_from_world * glm::dvec4(p, 1.0)) / fit.texel_size_ws;
+}
+
+bool sees(const Camera& camera, const glm::dvec3& p) {
+  const glm::dvec3 d = p - glm::dvec3(camera.position_ws), forward(camera.forward_ws);
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(camera.up_ws))), up = glm::cross(right, forward);
+  const double ahead = glm::dot(d, forward), tangent = std::tan(0.25);
+  return ahead > 0.0 && std::abs(glm::dot(d, right)) <= 1.5 * tangent * ahead && std::abs(glm::dot(d, up)) <= tangent * ahead;
+}
+
+TEST(LightFitView, HoldsEveryVisiblePointWithItsPadding_AndIsSmallerThanTight) {
+  const Camera camera = make_camera({-3.0f, 2.0f, 4.0f}, {0.2f, -0.9f, -0.5f});
+  for (const glm::vec3& direction : kDirections) {
+    const Scene scene = make_scene(direction);
+    for (const bool snap : {false, true}) {
+      const LightFrustum fit = fit_view(scene, camera, snap);
+      int seen = 0;
+      for (double x = -5.0; x <= 5.0; x += 0.05) {
+        for (double z = -4.0; z <= 4.0; z += 0.05) {
+          if (!sees(camera, {x, 0.0, z})) continue;
+          ++seen;
+          const glm::dvec4 p = glm::dvec4(fit.uv_depth_from_world * glm::vec4(x, 0.0, z, 1.0));
+          for (int i = 0; i < 2; ++i) {
+            ASSERT_GE(p[i] * 256.0, 3.0 - 0.01);
+            ASSERT_LE(p[i] * 256.0, 253.0 + 0.01);
+          }
+          ASSERT_GT(p.z, 0.0);
+          ASSERT_LT(p.z, 1.0);
+        }
+      }
+      EXPECT_GT(seen, 500);
+      if (!snap) {
+        EXPECT_LT(fit.texel_size_ws, fit_light(scene, FitMode::kTight, 256, 3.0).texel_size_ws);
+      }
+    }
+  }
+}
+
+/// The box stands out of view, between the light and what is seen.
+TEST(LightFitView, CasterOutOfView_LiesInsideTheDepthRange) {
+  Scene scene = make_scene({0, -1, 0});
+  const Camera camera = make_camera({1.0f, 1.0f, -1.0f}, {0.0f, -0.9f, -0.5f});
+  const LightFrustum fit = fit_view(scene, camera);
+  const glm::vec4 top = fit.uv_depth_from_world * glm::vec4(1.0f, 2.5f, -2.0f, 1.0f);
+  EXPECT_FALSE(sees(camera, {1.0, 2.5, -2.0}));
+  EXPECT_GT(top.z, 0.0f);
+  EXPECT_GT(fit.depth_range_ws, 2.4);
+  // Far from everything seen, it would only cost precision.
+  for (Vertex& vertex : scene.meshes[1].vertices) vertex.position_ws.x += 100.0f;
+  EXPECT_LT(fit_view(scene, camera).depth_range_ws, 0.1);
+}
+
+TEST(LightFitView, CameraThatSeesNothing_GetsTheTightFit) {
+  const Scene scene = make_scene({1, -2, 0.5f});
+  const Camera camera = make_camera({0.0f, 10.0f, 0.0f}, {0.1f, 1.0f, 0.0f});
+  EXPECT_EQ(fit_view(scene, camera).width_ws, fit_light(scene, FitMode::kTight, 256, 3.0).width_ws);
+}
+
+TEST(LightFitSnap, CameraMovedByLessThanATexel_LeavesTheGridWhereItWas) {
+  const Scene scene = make_scene({1, -2, 0.5f});
+  const glm::dvec3 mark(0.3, 0.0, -0.7);
+  const auto camera_at = [](int step) { return make_camera({-2.0f + 0.0031f * static_cast<float>(step), 3.0f, 4.0f}, {0.3f, -0.9f, -0.7f}); };
+  const LightFrustum first = fit_view(scene, camera_at(0), true), loose = fit_view(scene, camera_at(0), false);
+  ASSERT_LT(0.0031, 0.5 * first.texel_size_ws);
+  double moved = 0.0;
+  for (int step = 1; step <= 40; ++step) {
+    const LightFrustum snapped = fit_view(scene, camera_at(step), true);
+    ASSERT_EQ(snapped.texel_size_ws, first.texel_size_ws);
+    const glm::dvec2 shift = texel_of(snapped, mark) - texel_of(first, mark);
+    EXPECT_NEAR(shift.x, std::round(shift.x), 1e-6);
+    EXPECT_NEAR(shift.y, std::round(shift.y), 1e-6);
+    const glm::dvec2 drift = texel_of(fit_view(scene, camera_at(step), false), mark) - texel_of(loose, mark);
+    moved = std::max(moved, std::max(std::abs(drift.x - std::round(drift.x)), std::abs(drift.y - std::round(drift.y))));
+  }
+  EXPECT_GT(moved, 0.3) << "without snapping the grid follows the camera";
+}
+
+TEST_P(LightFitTest, Snapped_StillHoldsEveryVertexWithItsPadding) {
+  for (const glm::vec3& direction : kDirections) {
+    const Scene scene = make_scene(direction, {0.37f, 0.1f, -0.21f});
+    expect_inside(scene, fit_light(scene, FitRequest{.mode = GetParam(), .map_size = 256, .pad_texels = 5.5, .snap = true}), 5.5 / 256.0);
+  }
+}
+
+TEST(FitNames, GoBothWays_AndAnUnknownOneIsRefused) {
+  for (const FitMode mode : {FitMode::kSphere, FitMode::kTight, FitMode::kView}) EXPECT_EQ(parse_fit_mode(name_of(mode)), mode);
+  EXPECT_EQ(name_of(FitMode::kView), "view");
+  const Error error = error_of([] { parse_fit_mode("box"); });
+  EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+}
+
 }  // namespace
 }  // namespace shadowbench::scene

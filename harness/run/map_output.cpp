@@ -1,0 +1,59 @@
+#include "harness/run/map_output.h"
+
+#include <fmt/format.h>
+
+#include "harness/run/scene_output.h"
+#include "report/depth_picture.h"
+#include "report/summary.h"
+#include "report/texel_pictures.h"
+
+namespace shadowbench::run {
+namespace {
+
+/// The picture to lay the texels over: unfiltered where there is one, so that aliasing shows; null where nothing was drawn.
+const MeasuredCell* choose_background(const std::vector<MeasuredCell>& cells) {
+  const MeasuredCell* chosen = nullptr;
+  for (const MeasuredCell& cell : cells) {
+    if (cell.picture.empty()) continue;
+    if (!chosen || cell.record.filter == "none") chosen = &cell;
+  }
+  return chosen;
+}
+
+void write_depth(const std::filesystem::path& path, const std::string& scene, const std::string& settings,
+                 const SceneMeasurement& measured, const scene::LightFrustum& frustum) {
+  report::DepthPicture picture;
+  picture.title = scene + ": the depth map, as the light sees the scene";
+  picture.note = fmt::format("{} · orthographic light: depth as stored is linear, so the raw and the linearised map are one "
+                             "picture; depth 1 is {} m from depth 0",
+                             settings, report::format_number(frustum.depth_range_ws));
+  picture.depth = measured.depth_map;
+  picture.range_m = frustum.depth_range_ws;
+  report::write_depth_picture(path, picture);
+}
+
+}  // namespace
+
+void write_map_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured,
+                        const MapCoverage& coverage, const scene::LightFrustum& frustum) {
+  const std::string base = "images/" + task_stem(options, task);
+  const std::string depth = base + ".depth_map.png", density = base + ".texel_density.png", grid = base + ".texel_grid.png";
+  const std::string& scene = task.scene->name;
+  const std::string settings = report::describe_settings(measured.cells.front().record);
+  const std::string note = settings + " · " + report::describe_coverage(coverage.record);
+  write_depth(options.out / depth, scene, settings, measured, frustum);
+  report::write_density_picture(options.out / density, {scene + ": map texels per pixel", note, coverage.density});
+  const MeasuredCell* background = choose_background(measured.cells);
+  if (background) {
+    report::write_texel_grid_picture(options.out / grid, {fmt::format("{}: the map's texels on the surfaces, over {}", scene, background->label),
+                                                          note,
+                                                          background->picture, coverage.texel, coverage.density});
+  }
+  for (MeasuredCell& cell : measured.cells) {
+    cell.record.images.depth_map = depth;
+    cell.record.images.texel_density = density;
+    if (background) cell.record.images.texel_grid = grid;
+  }
+}
+
+}  // namespace shadowbench::run

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "harness/run/map_coverage.h"
+#include "harness/run/scene_measurement.h"
+
+namespace shadowbench::run {
+
+/// Writes what shows how a light's map lies on the scene, one file each for all cells of the task: the depth map with its
+/// histogram, the texels per pixel, and the texels on the surfaces; notes their paths in the records. The light is
+/// orthographic, so depth as stored is linear in metres already and one depth picture shows both.
+/// Throws Error(kOutput).
+void write_map_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured,
+                        const MapCoverage& coverage, const scene::LightFrustum& frustum);
+
+}  // namespace shadowbench::run
