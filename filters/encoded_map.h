@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "filters/gaussian.h"
@@ -12,7 +13,8 @@ namespace shadowbench::filters {
 
 /// A map that a filter's encode() wrote, prefiltered: what the `encode` and `blur` passes make, as a model.
 ///
-/// `N` channels of type T; outside the map it holds the encoding of depth 1.
+/// `N` channels of type T; outside the map it holds what the map's border says, where that
+/// is depth 1 the encoding of it.
 template <class T, std::size_t N>
 class EncodedMap {
  public:
@@ -21,7 +23,7 @@ class EncodedMap {
   /// `encode` maps a depth of type T to a Texel. Reads `store`, `combine` and `sample` from the parameter values.
   template <class Encode>
   EncodedMap(const ModelInput& input, int radius_texels, Encode encode)
-      : grid_(input.map.size),
+      : grid_(input.map.size, input.map.border),
         accuracy_(input.accuracy),
         store_(store_precision(text_or(input.values, "store", "r32f"))),
         log_(is_log(input.values)),
@@ -75,7 +77,10 @@ class EncodedMap {
     return texel;
   }
 
-  const Texel& texel(int x, int y) const { return grid_.inside(x, y) ? texels_[grid_.index(x, y)] : border_; }
+  const Texel& texel(int x, int y) const {
+    const std::optional<std::size_t> found = grid_.find(x, y);
+    return found ? texels_[*found] : border_;
+  }
 
   static Texel mix(const Texel& a, const Texel& b, T s) {
     Texel result;

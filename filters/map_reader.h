@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "filters/model_input.h"
@@ -30,12 +31,19 @@ template <class T>
 class TexelGrid {
  public:
   using P = Position<T>;
-  explicit TexelGrid(int size) : size_(size) {}
+  explicit TexelGrid(int size, Border border = Border::kBorder) : size_(size), border_(border) {}
 
   int size() const { return size_; }
-  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < size_ && y < size_; }
-  std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(x);
+
+  /// Gives the index of the texel that a lookup at (x, y) reads; nothing where it reads the border's value.
+  std::optional<std::size_t> find(int x, int y) const {
+    if (inside(x, y)) return index(x, y);
+    switch (border_) {
+      case Border::kBorder: return std::nullopt;
+      case Border::kEdge: return index(std::clamp(x, 0, size_ - 1), std::clamp(y, 0, size_ - 1));
+      case Border::kRepeat: return index(wrap(x), wrap(y));
+    }
+    return std::nullopt;
   }
 
   P position(float uv, P offset) const {
@@ -56,6 +64,13 @@ class TexelGrid {
 
  private:
   int size_;
+  Border border_;
+
+  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < size_ && y < size_; }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(x);
+  }
+  int wrap(int i) const { return ((i % size_) + size_) % size_; }
 };
 
 /// Receiver-plane bias: the receiver plane's depth where texels are read, instead of at the receiver. The same in
@@ -82,13 +97,13 @@ class PlaneBias {
 };
 
 /// Reads a depth map as `compare_nearest`, `compare_2x2` and `fetch_depth` of shaders/lib/map_access.glsl do.
-/// Outside the map the depth is 1.
+/// Outside the map the depth is what its border says: 1, unless the run wants to see an artefact.
 template <class T>
 class DepthReader {
  public:
   using P = Position<T>;
   explicit DepthReader(const ModelInput& input)
-      : grid_(input.map.size),
+      : grid_(input.map.size, input.map.border),
         depth_(&input.map.depth),
         accuracy_(input.accuracy),
         plane_(input.plane_max_tangent),
@@ -134,7 +149,10 @@ class DepthReader {
   bool clamps_;
   float tie_;
 
-  float stored(int x, int y) const { return grid_.inside(x, y) ? (*depth_)[grid_.index(x, y)] : 1.0f; }
+  float stored(int x, int y) const {
+    const std::optional<std::size_t> texel = grid_.find(x, y);
+    return texel ? (*depth_)[*texel] : 1.0f;
+  }
 
   /// Ties are lit (LEQUAL).
   int compare(int x, int y, float z, Tally& tally) const {

@@ -75,13 +75,14 @@ double DiskWeights::at(double dx, double dy) const {
 }
 
 PercentageCloser::PercentageCloser(const Kernel& kernel, const DepthMap& map, double plane_max_tangent)
-    : kernel_(kernel), grid_(map.size), map_(map), plane_(plane_max_tangent) {
+    : kernel_(kernel), grid_(map.size, map.border), map_(map), plane_(plane_max_tangent) {
   if (kernel.atoms().empty()) disk_.emplace(kernel.disk_radius());
 }
 
 bool PercentageCloser::is_lit(int x, int y, const Receiver& receiver) const {
   const float depth = plane_.depth(receiver, grid_.size(), {x + 0.5, y + 0.5}, 0.0, receiver.depth);
-  return map_.reference(depth) <= (grid_.inside(x, y) ? map_.depth[grid_.index(x, y)] : 1.0f);
+  const std::optional<std::size_t> texel = grid_.find(x, y);
+  return map_.reference(depth) <= (texel ? map_.depth[*texel] : 1.0f);
 }
 
 /// `position` in texels, texel centres at .5.

@@ -27,7 +27,7 @@ class DiskWeights {
 };
 
 /// The brute-force percentage-closer filter: every texel of a kernel compared with one depth, in double precision.
-/// Outside the map the depth is 1; ties are lit.
+/// Outside the map the depth is what its border says, 1 by default; ties are lit.
 /// Source: Reeves, Salesin and Cook 1987, Rendering Antialiased Shadows with Depth Maps, SIGGRAPH.
 class PercentageCloser {
  public:

@@ -41,7 +41,8 @@ json cell_settings(const CellRecord& cell) {
               {"filter", cell.filter},         {"params", value_json(cell.params)},
               {"map_size", cell.map_size},     {"map_format", cell.map_format},
               {"bias", value_json(cell.bias)}, {"size", {cell.width, cell.height}},
-              {"fit", cell.fit},               {"light", cell.light}};
+              {"fit", cell.fit},               {"light", cell.light},
+              {"range", {cell.range.border, cell.range.far_test, cell.range.behind_test}}};
 }
 
 std::string cell_key(const json& settings) { return fmt::format("{:016x}", hash_text(dump_line(canonical(settings)))); }

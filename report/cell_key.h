@@ -13,7 +13,8 @@ namespace shadowbench::report {
 /// Source: Fowler, Noll and Vo, FNV-1a, 64 bits.
 std::uint64_t hash_text(std::string_view text);
 
-/// Returns what identifies a cell: scene, view, filter, parameters, map settings, bias, fit, light and picture size; no results.
+/// Returns what identifies a cell: scene, view, filter, parameters, map settings, bias, fit, light, range rule and
+/// picture size; no results.
 nlohmann::json cell_settings(const CellRecord& cell);
 
 /// Returns the key of settings: 16 hexadecimal digits, the hash of their canonical JSON (sorted keys, no white space,

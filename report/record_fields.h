@@ -42,6 +42,9 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("bias", cell.bias);
   visit("map_scale.texel_m", cell.map_scale.texel_m);
   visit("map_scale.depth_range_m", cell.map_scale.depth_range_m);
+  visit("range.border", cell.range.border);
+  visit("range.far_test", cell.range.far_test);
+  visit("range.behind_test", cell.range.behind_test);
   visit("size.width", cell.width);
   visit("size.height", cell.height);
   visit("receivers", cell.receivers);

@@ -66,6 +66,13 @@ struct MapScaleRecord {
   std::optional<double> depth_range_m;  ///< between depth 0 and depth 1, metres
 };
 
+/// Holds what lookups did outside the map; the defaults are right, everything else shows an artefact.
+struct RangeRecord {
+  std::string border = "border";  ///< outside the map: border (lit), edge or repeat
+  bool far_test = true;           ///< beyond the far plane is lit
+  bool behind_test = true;        ///< behind the light of a projective map is lit
+};
+
 /// Holds what a cell's passes cost in time, in milliseconds of the clock that the run names.
 struct TimeRecord {
   std::optional<Quartiles> map;
@@ -167,6 +174,7 @@ struct CellRecord {
   std::string light = "scene";  ///< where the light stands: as the scene says, or "AZIMUTH,ELEVATION" in degrees
   BiasRecord bias;
   MapScaleRecord map_scale;
+  RangeRecord range;
   int width = 0;  ///< pixels
   int height = 0;
   std::optional<std::int64_t> receivers;  ///< pixels that count

@@ -155,6 +155,15 @@ std::string describe_fit_and_light(const CellRecord& cell) {
   return text;
 }
 
+/// Names what is not as it should be, each with a separator before it; nothing for the right rule.
+std::string describe_wrong_range(const RangeRecord& range) {
+  std::string text;
+  if (range.border != RangeRecord().border) text += " · outside the map: " + range.border;
+  if (!range.far_test) text += " · far-plane test off";
+  if (!range.behind_test) text += " · behind-the-light test off";
+  return text;
+}
+
 }  // namespace
 
 std::string describe_coverage(const CoverageRecord& coverage) {
@@ -215,9 +224,9 @@ std::string describe_params(const ParamMap& params) {
 }
 
 std::string describe_settings(const CellRecord& cell) {
-  return fmt::format("view {} · map {} × {} {}{} · picture {} × {} · bias: {}", cell.view, cell.map_size, cell.map_size,
+  return fmt::format("view {} · map {} × {} {}{} · picture {} × {} · bias: {}{}", cell.view, cell.map_size, cell.map_size,
                      cell.map_format, describe_fit_and_light(cell), cell.width, cell.height,
-                     describe_bias(cell.bias, cell.map_scale));
+                     describe_bias(cell.bias, cell.map_scale), describe_wrong_range(cell.range));
 }
 
 std::vector<CellGroup> group_cells(const std::vector<CellRecord>& cells) {

@@ -36,6 +36,8 @@ Column cell_column(std::string name, std::string meaning, Get get) {
           [get](const RunRecord&, const CellRecord& cell) -> std::string { return get(cell); }};
 }
 
+std::string name_switch(bool on) { return on ? "on" : "off"; }
+
 std::vector<Column> setting_columns() {
   return {
       cell_column("scene", "the scene's name", [](const CellRecord& c) { return c.scene; }),
@@ -78,6 +80,10 @@ std::vector<Column> setting_columns() {
                   [](const CellRecord& c) { return plain(c.bias.front_cull ? 1.0 : 0.0); }),
       cell_column("bias_midpoint", "1: the depth map lies half-way between first and second surface",
                   [](const CellRecord& c) { return plain(c.bias.midpoint ? 1.0 : 0.0); }),
+      cell_column("border", "what lookups read outside the map", [](const CellRecord& c) { return c.range.border; }),
+      cell_column("far_test", "beyond the map's far plane is lit", [](const CellRecord& c) { return name_switch(c.range.far_test); }),
+      cell_column("behind_test", "behind the light of a projective map is lit",
+                  [](const CellRecord& c) { return name_switch(c.range.behind_test); }),
       cell_column("width", "picture, pixels", [](const CellRecord& c) { return plain(c.width); }),
       cell_column("height", "picture, pixels", [](const CellRecord& c) { return plain(c.height); }),
       cell_column("status", "ok, timeout, crashed or error",

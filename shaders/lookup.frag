@@ -25,7 +25,7 @@ void main() {
     out_visibility = 0.0;  // the surface shadows itself: there is nothing to filter
     return;
   }
-  if (r.depth_unbiased <= 1.0) out_visibility = visibility(r);
+  if (map_reaches(r)) out_visibility = visibility(r);
 #ifdef COUNT_FETCHES
   out_fetches = float(fetch_count);
 #endif

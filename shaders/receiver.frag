@@ -3,7 +3,7 @@
 #include "lib/gbuffer.glsl"
 
 layout(location = 0) out vec4 out_map;    // uv, depth, depth_unbiased
-layout(location = 1) out vec4 out_plane;  // depth_per_texel, n_dot_l, view_depth (0: no receiver)
+layout(location = 1) out vec4 out_plane;  // depth_per_texel, n_dot_l, view_depth (0: no receiver, negative: beyond the map's reach)
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -13,5 +13,5 @@ void main() {
   if (position.w == 0.0) return;
   Receiver r = make_receiver(position.xyz, texelFetch(gbuffer_normal, pixel, 0).xyz, position.w, pixel);
   out_map = vec4(r.uv, r.depth, r.depth_unbiased);
-  out_plane = vec4(r.depth_per_texel, r.n_dot_l, r.view_depth);
+  out_plane = vec4(r.depth_per_texel, r.n_dot_l, map_reaches(r) ? r.view_depth : -r.view_depth);
 }

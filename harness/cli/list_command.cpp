@@ -79,11 +79,17 @@ int list_filters(const ListArguments& arguments) {
 }
 
 int list_scenes(const ListArguments& arguments) {
+  const std::filesystem::path folder = run::find_resources().scenes;
   nlohmann::json json = nlohmann::json::array();
-  for (const scene::SceneInfo& info : scene::list_scenes(run::find_resources().scenes)) {
-    if (arguments.json) json.push_back({{"name", info.name}, {"title", info.title}});
-    else fmt::print("{:<8} {}\n", info.name, info.title);
-  }
+  const auto show = [&](const std::vector<scene::SceneInfo>& scenes, bool teaching) {
+    for (const scene::SceneInfo& info : scenes) {
+      if (arguments.json) json.push_back({{"name", info.name}, {"title", info.title}, {"teaching", teaching}});
+      else fmt::print("{:<8} {}\n", info.name, info.title);
+    }
+  };
+  show(scene::list_scenes(folder), false);
+  if (!arguments.json) fmt::print("\nFor teaching, run only where --scene names them:\n");
+  show(scene::list_teaching_scenes(folder), true);
   if (arguments.json) fmt::print("{}\n", json.dump(2));
   return 0;
 }

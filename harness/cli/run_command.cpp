@@ -32,6 +32,10 @@ struct RunArguments {
   std::string map_format = "d32f";
   bool reversed_depth = false;
   std::string light;
+  std::string border = "border";
+  std::string far_test = "on";
+  std::string behind_test = "on";
+  bool border_page = false;
   int rounds = 11;
   std::uint32_t seed = 1;
   std::string backend = "auto";
@@ -140,6 +144,8 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   options.bias = run::parse_bias(arguments.bias);
   options.bias_texts = arguments.bias;
   for (const filters::FilterRequest& request : options.filters) run::require_usable(options.bias, request.spec);
+  options.range = {filters::parse_border(arguments.border), arguments.far_test == "on", arguments.behind_test == "on"};
+  options.border_page = arguments.border_page;
   options.rounds = arguments.rounds;
   options.seed = arguments.seed;
   options.backend = gl::parse_backend(arguments.backend);
@@ -181,6 +187,17 @@ void add_scene_options(CLI::App& command, RunArguments& a) {
       ->check([](const std::string& text) { return text.empty() ? std::string("AZIMUTH,ELEVATION in degrees are missing") : std::string(); });
 }
 
+void add_range_options(CLI::App& command, RunArguments& a) {
+  const CLI::IsMember switch_words({"on", "off"});
+  command.add_option("--border", a.border, "what lookups read outside the map: 'border', depth 1, which is right; to see what goes wrong, 'edge', which smears casters at the map's edge outwards, or 'repeat', which tiles the map's shadows. See it on --scene edge")
+      ->check(CLI::IsMember(filters::border_names()))->capture_default_str();
+  command.add_option("--far-test", a.far_test, "whether what lies beyond the map's far plane is lit; 'off' compares it, and all of it is dark")
+      ->check(switch_words)->capture_default_str();
+  command.add_option("--behind-test", a.behind_test, "whether what lies behind the light is lit; 'off' mirrors the map through the light. Only projective maps have a behind, and no light of this version has such a map")
+      ->check(switch_words)->capture_default_str();
+  command.add_flag("--border-page", a.border_page, "also draw SCENE.borders.png: every filter with the right border, with each wrong one, and without the far-plane test");
+}
+
 void add_filter_options(CLI::App& command, RunArguments& a) {
   command.add_option("--filters", a.filters, "filters with parameters, such as none,vsm:radius=6,min_variance=1e-4,esm (default: all; see 'list filters')");
   command.add_option("--filter-file", a.filter_files, "a filter of your own, one GLSL file; may be repeated")->allow_extra_args(false);
@@ -199,6 +216,7 @@ void add_run_command(CLI::App& app, Action& action, const std::vector<std::strin
   CLI::App* command = app.add_subcommand("run", "Render scenes with filters and write a report");
   auto a = std::make_shared<RunArguments>();
   add_scene_options(*command, *a);
+  add_range_options(*command, *a);
   add_filter_options(*command, *a);
   command->add_option("--rounds", a->rounds, "how often each filter is timed")->capture_default_str();
   command->add_option("--seed", a->seed, "of random rotations and of the order of timing")->capture_default_str();

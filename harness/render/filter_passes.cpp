@@ -26,11 +26,11 @@ FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest&
   if (request.spec.has_encode) prefilter_.emplace(shaders, request, map_size, light, map_defines_);
 }
 
-gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, const Defines& defines) const {
-  Defines all = map_defines_;
-  all.insert(all.end(), defines.begin(), defines.end());
-  if (light_.bias.receiver_plane) all.emplace_back("RECEIVER_PLANE", "1");
-  gl::Program program = shaders.compile_filter(request_.spec.id + " lookup", "lookup.frag", all, filter_pieces(request_));
+gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, Defines defines) const {
+  for (const Defines& more : {map_defines_, range_defines(light_)}) defines.insert(defines.end(), more.begin(), more.end());
+  if (light_.bias.receiver_plane) defines.emplace_back("RECEIVER_PLANE", "1");
+  gl::Program program =
+      shaders.compile_filter(request_.spec.id + " lookup", "lookup.frag", defines, filter_pieces(request_));
   set_light(program, light_);
   program.set("run_seed", light_.seed);
   program.set("map_texel_uv", 1.0f / static_cast<float>(map_size_));

@@ -55,7 +55,7 @@ class FilterPasses {
   gl::Program lookup_;
   gl::FullscreenTriangle triangle_;
 
-  gl::Program compile_lookup(ShaderLibrary& shaders, const Defines& defines) const;
+  gl::Program compile_lookup(ShaderLibrary& shaders, Defines defines) const;
   void draw_lookup(gl::Program& program, const GBuffer& gbuffer, const ShadowMap& map);
   double count_fetches(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
 };

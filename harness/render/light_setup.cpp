@@ -10,9 +10,9 @@ glm::vec3 row(const glm::dmat4& m, int r) { return glm::vec3(glm::dvec3(m[0][r],
 }  // namespace
 
 LightSetup make_light_setup(const scene::LightFrustum& frustum, const scene::Light& light, const Bias& bias,
-                            std::uint32_t seed) {
+                            std::uint32_t seed, const filters::RangeRule& range) {
   const double half_angle = 0.5 * glm::radians(static_cast<double>(light.angular_diameter_deg));
-  return {frustum, 2.0 * std::tan(half_angle), bias, seed};
+  return {frustum, 2.0 * std::tan(half_angle), bias, seed, range};
 }
 
 void set_light(gl::Program& program, const LightSetup& light) {
@@ -29,6 +29,14 @@ void set_light(gl::Program& program, const LightSetup& light) {
   program.set("bias_plane_texels", static_cast<float>(light.bias.plane_texels));
   program.set("bias_normal_texels", static_cast<float>(light.bias.normal_offset_texels));
   program.set("bias_max_tangent", static_cast<float>(light.bias.max_tangent));
+}
+
+Defines range_defines(const LightSetup& light) {
+  Defines defines;
+  if (light.frustum.projective) defines.emplace_back("PROJECTIVE_MAP", "1");
+  if (!light.range.far_test) defines.emplace_back("NO_FAR_TEST", "1");
+  if (light.frustum.projective && !light.range.behind_test) defines.emplace_back("NO_BEHIND_TEST", "1");
+  return defines;
 }
 
 }  // namespace shadowbench::render

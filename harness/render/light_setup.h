@@ -2,8 +2,10 @@
 
 #include <cstdint>
 
+#include "filters/map_range.h"
 #include "harness/gl/program.h"
 #include "harness/render/bias.h"
+#include "harness/render/shader_library.h"
 #include "harness/scene/light_fit.h"
 #include "harness/scene/scene.h"
 
@@ -15,14 +17,18 @@ struct LightSetup {
   double light_size = 0.0;  ///< penumbra width per metre of distance to the occluder
   Bias bias;
   std::uint32_t seed = 0;  ///< of the run: random rotations
+  filters::RangeRule range = {};  ///< what becomes of receivers that the map does not hold
 };
 
 /// Describes a directional light; `light_size` follows from its angular diameter.
 LightSetup make_light_setup(const scene::LightFrustum& frustum, const scene::Light& light, const Bias& bias,
-                            std::uint32_t seed);
+                            std::uint32_t seed, const filters::RangeRule& range = {});
 
 /// Sets the uniforms of lib/light.glsl.
 void set_light(gl::Program& program, const LightSetup& light);
 
+/// Gives what programs that include lib/receiver.glsl need for this light; nothing for an orthographic map with the right
+/// range rule.
+Defines range_defines(const LightSetup& light);
 
 }  // namespace shadowbench::render

@@ -23,6 +23,15 @@ bool combines_logs(const filters::FilterRequest& request) {
   return filters::text_or(request.values, "combine", "linear") == "log";
 }
 
+/// What the blur reads outside the map, it reads as the lookup does.
+Defines blur_defines(const filters::FilterRequest& request, filters::Border border) {
+  Defines defines;
+  if (combines_logs(request)) defines.emplace_back("COMBINE_LOGS", "1");
+  if (border == filters::Border::kEdge) defines.emplace_back("BORDER_EDGE", "1");
+  if (border == filters::Border::kRepeat) defines.emplace_back("BORDER_REPEAT", "1");
+  return defines;
+}
+
 }  // namespace
 
 Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
@@ -38,11 +47,11 @@ Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& reque
   border_ = encode_border(store_format(request.values));
   const bool nearest = combines_logs(request) || filters::text_or(request.values, "sample", "linear") == "nearest";
   sampler_.set_filter(nearest ? GL_NEAREST : GL_LINEAR, nearest ? GL_NEAREST : GL_LINEAR);
-  sampler_.set_wrap(GL_CLAMP_TO_BORDER);
+  sampler_.set_wrap(wrap_mode(light.range.border));
   sampler_.set_border(border_);
   if (radius_ == 0) return;
   scratch_.emplace(request.spec.id + " blur", store_format(request.values), map_size, map_size);
-  blur_ = &shaders.fullscreen("blur.frag", combines_logs(request) ? Defines{{"COMBINE_LOGS", "1"}} : Defines{});
+  blur_ = &shaders.fullscreen("blur.frag", blur_defines(request, light.range.border));
 }
 
 /// What lies outside the map is the encoding of depth 1, stored in the map's own format.

@@ -9,12 +9,11 @@ namespace {
 struct ReceiverTexels {
   int width;
   std::vector<float> map;    // uv, depth, depth_unbiased
-  std::vector<float> plane;  // depth_per_texel, n_dot_l, view_depth (0: no receiver)
+  std::vector<float> plane;  // depth_per_texel, n_dot_l, view_depth (0: no receiver, negative: beyond the map's reach)
 
   std::size_t pixels() const { return map.size() / 4; }
-  bool is_receiver(std::size_t i) const {
-    return plane[4 * i + 3] != 0.0f && plane[4 * i + 2] > filters::kFacesLight && map[4 * i + 3] <= 1.0f;
-  }
+  bool counts(std::size_t i) const { return plane[4 * i + 3] != 0.0f && plane[4 * i + 2] > filters::kFacesLight; }
+  bool is_asked_about(std::size_t i) const { return counts(i) && plane[4 * i + 3] > 0.0f; }
 };
 
 ReceiverTexels draw_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light) {
@@ -23,7 +22,7 @@ ReceiverTexels draw_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, co
   gl::Framebuffer framebuffer("receivers");
   framebuffer.attach_color(0, map);
   framebuffer.attach_color(1, plane);
-  gl::Program& program = shaders.fullscreen("receiver.frag");
+  gl::Program& program = shaders.fullscreen("receiver.frag", range_defines(light));
   set_light(program, light);
   framebuffer.bind();
   gbuffer.bind();
@@ -54,7 +53,7 @@ filters::Receiver make_receiver(const ReceiverTexels& texels, std::size_t i, con
 std::int64_t count_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light) {
   const ReceiverTexels texels = draw_receivers(shaders, gbuffer, light);
   std::int64_t count = 0;
-  for (std::size_t i = 0; i < texels.pixels(); ++i) count += texels.is_receiver(i) ? 1 : 0;
+  for (std::size_t i = 0; i < texels.pixels(); ++i) count += texels.counts(i) ? 1 : 0;
   return count;
 }
 
@@ -63,7 +62,7 @@ std::vector<filters::Receiver> read_receivers(ShaderLibrary& shaders, const GBuf
   const std::vector<float> positions = gbuffer.position().read_floats(4), normals = gbuffer.normal().read_floats(4);
   std::vector<filters::Receiver> receivers;
   for (std::size_t i = 0; i < texels.pixels(); ++i) {
-    if (!texels.is_receiver(i)) continue;
+    if (!texels.is_asked_about(i)) continue;
     receivers.push_back(make_receiver(texels, i, light));
     receivers.back().position_ws = {positions[4 * i], positions[4 * i + 1], positions[4 * i + 2]};
     receivers.back().normal_ws = {normals[4 * i], normals[4 * i + 1], normals[4 * i + 2]};

@@ -25,6 +25,15 @@ std::string describe_map(const MapSettings& settings) {
   return fmt::format("{}{}", gl::pixel_format(settings.format).name, settings.reversed ? " reversed" : "");
 }
 
+GLenum wrap_mode(filters::Border border) {
+  switch (border) {
+    case filters::Border::kBorder: return GL_CLAMP_TO_BORDER;
+    case filters::Border::kEdge: return GL_CLAMP_TO_EDGE;
+    case filters::Border::kRepeat: return GL_REPEAT;
+  }
+  return GL_CLAMP_TO_BORDER;
+}
+
 void require_depth_bits(GLenum format, int bits) {
   const int wanted = format == GL_DEPTH_COMPONENT16 ? 16 : format == GL_DEPTH_COMPONENT24 ? 24 : 32;
   if (bits == wanted) return;
@@ -41,12 +50,17 @@ ShadowMap::ShadowMap(int size, const MapSettings& settings) : settings_(settings
   const GLenum compare = settings.reversed ? GL_GEQUAL : GL_LEQUAL;
   for (gl::Sampler* sampler : {&plain_, &compare_linear_, &compare_nearest_}) {
     sampler->set_filter(GL_NEAREST, GL_NEAREST);
-    sampler->set_wrap(GL_CLAMP_TO_BORDER);
+    sampler->set_wrap(wrap_mode(border_));
     sampler->set_border(glm::vec4(far_depth()));  // nothing in the way
   }
   compare_linear_.set_filter(GL_LINEAR, GL_LINEAR);
   compare_linear_.set_compare(compare);
   compare_nearest_.set_compare(compare);
+}
+
+void ShadowMap::set_border(filters::Border border) {
+  border_ = border;
+  for (gl::Sampler* sampler : {&plain_, &compare_linear_, &compare_nearest_}) sampler->set_wrap(wrap_mode(border));
 }
 
 void ShadowMap::draw_casters(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
@@ -113,7 +127,7 @@ void ShadowMap::bind() const {
 }
 
 filters::DepthMap ShadowMap::read() const {
-  filters::DepthMap map{size(), map_.depth.read_floats(1), settings_.format != GL_DEPTH_COMPONENT32F, 0.0f};
+  filters::DepthMap map{size(), map_.depth.read_floats(1), settings_.format != GL_DEPTH_COMPONENT32F, 0.0f, border_};
   if (!settings_.reversed) return map;
   for (float& depth : map.depth) depth = 1.0f - depth;
   map.tie = 2.0f * std::numeric_limits<float>::epsilon();  // 1 - depth and 1 - reference are rounded

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/model.h"
+#include "filters/depth_map.h"
 #include "harness/gl/objects.h"
 #include "harness/render/bias.h"
 #include "harness/render/geometry.h"
@@ -13,6 +13,9 @@
 #include "report/image.h"
 
 namespace shadowbench::render {
+
+/// Gives the wrap mode of samplers that reads outside a map as `border` says, e.g. GL_CLAMP_TO_BORDER.
+GLenum wrap_mode(filters::Border border);
 
 /// Names map settings as records do: "d32f", "d16 reversed".
 std::string describe_map(const MapSettings& settings);
@@ -26,6 +29,9 @@ class ShadowMap {
  public:
   /// Throws Error(kUsage) when the GL cannot give this size or format.
   explicit ShadowMap(int size, const MapSettings& settings = {});
+
+  /// Chooses what lookups read outside; a new map has depth 1 there.
+  void set_border(filters::Border border);
 
   /// Draws the casters as the light sees them; by default nothing is culled, nothing is biased.
   /// Cost: one pass over the casters, two and a full-screen pass for a midpoint map.
@@ -59,6 +65,7 @@ class ShadowMap {
   gl::Sampler plain_{"depth, plain"};
   gl::Sampler compare_linear_{"depth, compared, 2x2"};
   gl::Sampler compare_nearest_{"depth, compared, nearest"};
+  filters::Border border_ = filters::Border::kBorder;
 
   /// What a cleared texel holds.
   float far_depth() const { return settings_.reversed ? 0.0f : 1.0f; }

@@ -88,7 +88,7 @@ void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
 }
 
 std::vector<filters::Receiver> CellAnalyser::read_receivers(const render::Bias& bias) const {
-  const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed);
+  const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed, options_.range);
   return render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera), light);
 }
 

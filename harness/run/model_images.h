@@ -8,7 +8,8 @@
 
 namespace shadowbench::run {
 
-/// What a filter's scalar model makes of a view, rows top to bottom; 1 where there is no receiver, as outside the map.
+/// What a filter's scalar model makes of a view, rows top to bottom; 1 where there is no receiver, and where the map
+/// does not reach: lit by convention.
 struct ModelImages {
   std::vector<double> model;   ///< the filter in double precision
   std::vector<double> closer;  ///< brute-force percentage-closer filter with its kernel

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "filters/catalogue.h"
+#include "filters/map_range.h"
 #include "harness/gl/context.h"
 #include "harness/render/map_settings.h"
 #include "harness/run/bias_rule.h"
@@ -49,6 +50,8 @@ struct RunOptions {
   bool snap = false;                 ///< keep the map's texel grid fixed in the world
   std::optional<LightAngles> light;  ///< in place of every scene's own; empty: as the scenes say
   BiasRule bias;
+  filters::RangeRule range;          ///< outside the map, beyond its far plane, behind the light
+  bool border_page = false;          ///< also draw every rule for what lies outside the map, side by side
   std::optional<double> pad_texels;  ///< around the scene in the map; empty: what the widest kernel needs
   int rounds = 11;
   std::uint32_t seed = 1;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "filters/error.h"
+#include "harness/run/border_page.h"
 #include "harness/run/cell_analysis.h"
 #include "harness/run/map_coverage.h"
 #include "harness/run/map_output.h"
@@ -127,11 +128,18 @@ class Experiment {
     }
   }
 
+  void warn_of_tests_without_effect(const scene::Scene& scene) {
+    if (options_.range.behind_test || options_.worker) return;
+    warn(scene.name + ": --behind-test off changes nothing: the light is directional, and only the map of a light that "
+                      "stands in the scene has a behind");
+  }
+
   void run_scene(const NamedScene& each) {
     run_.scenes.push_back({each.scene.name, each.scene.title});
     for (const std::string& warning : each.scene.warnings) warn(each.scene.name + ": " + warning);
     warn_of_open_meshes(each.scene);
     if (options_.truth && !options_.worker) warn_of_distance(each.scene);
+    warn_of_tests_without_effect(each.scene);
     SceneAssets assets(renderer_, options_, each.scene, cache_,
                        options_.pad_texels.value_or(largest_padding_texels(options_.filters)));
     for (const scene::Camera& camera : each.scene.cameras) {
@@ -168,6 +176,7 @@ class Experiment {
       cover(measured, task, assets, truth);
       write_pictures(options_, all, measured, truth, run_.gl);
     }
+    if (options_.border_page) draw_border_page(task, assets);
     write_float_images(options_, all, measured, truth, renderer_.context->info());
     for (const MeasuredCell& cell : measured.cells) {
       report::write_cell(options_.out, cell.record);
@@ -190,6 +199,12 @@ class Experiment {
       if (!coverage.record.texels_per_pixel) cell.record.absent["coverage"] = "no surface in view faces the light";
     }
     write_map_pictures(options_, task, measured, coverage, frustum);
+  }
+
+  void draw_border_page(const SceneTask& task, SceneAssets& assets) {
+    const std::filesystem::path file = options_.out / (task_stem(options_, task) + ".borders.png");
+    write_border_page(file, renderer_, options_, task, assets);
+    progress_.note("border page: " + file.string());
   }
 
   /// Says how wrong each cell is, and why.

@@ -27,6 +27,7 @@ LightMap& SceneAssets::light_map(const scene::Camera& camera, int map_size) {
   const double aspect = static_cast<double>(options_.width) / options_.height;
   LightMap light{scene::fit_light(scene_, {options_.fit, map_size, pad_texels, options_.snap, &camera, aspect}),
                  render::ShadowMap(map_size, options_.map)};
+  light.map.set_border(options_.range.border);
   LightMap& kept = maps_.emplace(key, std::move(light)).first->second;
   redraw(kept);
   require_casters(kept);

@@ -65,7 +65,7 @@ class SceneBench {
 
   std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request) {
     const render::Bias bias = resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
-    const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed);
+    const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed, options_.range);
     return std::make_unique<render::FilterPasses>(renderer_.shaders, request, task_.map_size, light, options_.map);
   }
 
@@ -171,6 +171,7 @@ report::CellRecord make_record(const RunOptions& options, const SceneTask& task,
   record.bias = {amount(bias.constant),      amount(bias.slope),      bias.plane_texels,   bias.plane_kernels,
                  amount(bias.normal_offset), bias.receiver_plane,     bias.map.polygon_factor, bias.map.polygon_units,
                  bias.map.cull_front,        bias.map.midpoint};
+  record.range = {filters::to_string(options.range.border), options.range.far_test, options.range.behind_test};
   record.width = options.width;
   record.height = options.height;
   record.key = report::cell_key(record);

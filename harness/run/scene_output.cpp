@@ -26,6 +26,9 @@ report::Metadata describe(const RunOptions& options, const SceneTask& task, cons
   metadata["shadowbench:scene"] = task.scene->name;
   metadata["shadowbench:view"] = camera.name;
   metadata["shadowbench:map_size"] = static_cast<double>(task.map_size);
+  metadata["shadowbench:border"] = filters::to_string(options.range.border);
+  metadata["shadowbench:far_test"] = options.range.far_test ? "on" : "off";
+  metadata["shadowbench:behind_test"] = options.range.behind_test ? "on" : "off";
   metadata["shadowbench:seed"] = static_cast<double>(options.seed);
   metadata["shadowbench:renderer"] = info.renderer;
   metadata["shadowbench:camera_position_ws"] = text(camera.position_ws);

@@ -56,6 +56,9 @@ std::vector<std::string> worker_arguments(const RunOptions& options, const Scene
                                         "--snap", options.snap ? "on" : "off",
                                         "--map-format", std::string(gl::pixel_format(options.map.format).name),
                                         "--pad-texels", fmt::format("{}", largest_padding_texels(options.filters)),
+                                        "--border", filters::to_string(options.range.border),
+                                        "--far-test", options.range.far_test ? "on" : "off",
+                                        "--behind-test", options.range.behind_test ? "on" : "off",
                                         "--gl", backend, "--out", folder.string()};
   if (options.ground) arguments.push_back("--ground");
   if (options.map.reversed) arguments.push_back("--reversed-depth");

@@ -159,6 +159,19 @@ void set_matrices(LightFrustum& fit) {
   fit.uv_depth_from_world = glm::mat4(uv_from_clip * fit.clip_from_light * fit.light_from_world);
 }
 
+/// Replaces what was fitted by what the window says; the light's direction stays.
+void set_window(LightFrustum& fit, const MapWindow& window, int map_size) {
+  const glm::dvec3 center(fit.light_from_world * glm::dvec4(window.center_ws, 1.0));
+  glm::dvec3 eye(center.x, center.y, 0.0);
+  if (window.planes) {
+    eye.z = center.z - window.planes->near_m;
+    fit.depth_range_ws = window.planes->far_m - window.planes->near_m;
+  }
+  fit.light_from_world[3] -= glm::dvec4(eye, 0.0);
+  fit.width_ws = window.width_m;
+  fit.texel_size_ws = window.width_m / map_size;
+}
+
 }  // namespace
 
 std::string_view name_of(FitMode mode) { return kFitNames[static_cast<std::size_t>(mode)]; }
@@ -196,6 +209,7 @@ LightFrustum fit_light(const Scene& scene, const FitRequest& request) {
   if (request.snap) eye = snap_to_texels(eye, -(rotation * center), fit.texel_size_ws);
   fit.light_from_world = glm::dmat4(rotation);
   fit.light_from_world[3] = glm::dvec4(-(rotation * center) - eye, 1.0);
+  if (scene.light.map_window) set_window(fit, *scene.light.map_window, request.map_size);
   set_matrices(fit);
   return fit;
 }

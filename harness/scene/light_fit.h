@@ -38,6 +38,7 @@ struct LightFrustum {
   double width_ws = 0.0;                ///< side of the map, padding included
   double texel_size_ws = 0.0;
   double depth_range_ws = 0.0;   ///< from depth 0 to depth 1
+  bool projective = false;       ///< uv_depth_from_world ends with a division by w, which is negative behind the light
   glm::vec3 direction_ws{0.0f};  ///< the way the light travels, unit length
 };
 
@@ -47,6 +48,7 @@ struct LightFrustum {
 /// half-width around any point of the scene stays inside the map. Texels are square.
 /// Depth runs from the vertex nearest to the light to the farthest one, whether it casts or not, so that every
 /// receiver's depth lies inside (0,1), in 16 bits too; a scene without depth gets a thousandth of the map's width.
+/// A light with a map window gets exactly that: no padding, and receivers may lie outside and beyond the far plane.
 /// Throws kUsage where the padding leaves no texel for the scene. Cost: one or two passes over the vertices, in double.
 LightFrustum fit_light(const Scene& scene, FitMode mode, int map_size, double pad_texels);
 

@@ -35,9 +35,17 @@ std::vector<fs::path> scene_files(const fs::path& folder) {
   return files;
 }
 
+std::vector<fs::path> teaching_files(const fs::path& folder) {
+  const fs::path teaching = folder / "teaching";
+  std::error_code ignored;
+  return fs::is_directory(teaching, ignored) ? scene_files(teaching) : std::vector<fs::path>();
+}
+
 fs::path find_built_in(const std::string& name, const fs::path& folder) {
   std::vector<std::string> names;
-  for (const fs::path& file : scene_files(folder)) {
+  std::vector<fs::path> files = scene_files(folder);
+  for (fs::path& file : teaching_files(folder)) files.push_back(std::move(file));
+  for (const fs::path& file : files) {
     if (file.stem() == name) return file;
     names.push_back(file.stem().string());
   }
@@ -93,15 +101,17 @@ Scene load_file(const fs::path& file, const LoadOptions& options) {
   return scene;
 }
 
-}  // namespace
-
-std::vector<SceneInfo> list_scenes(const fs::path& folder) {
+std::vector<SceneInfo> with_titles(const std::vector<fs::path>& files) {
   std::vector<SceneInfo> scenes;
-  for (const fs::path& file : scene_files(folder)) {
-    scenes.push_back({file.stem().string(), read_scene_title(file), file});
-  }
+  for (const fs::path& file : files) scenes.push_back({file.stem().string(), read_scene_title(file), file});
   return scenes;
 }
+
+}  // namespace
+
+std::vector<SceneInfo> list_scenes(const fs::path& folder) { return with_titles(scene_files(folder)); }
+
+std::vector<SceneInfo> list_teaching_scenes(const fs::path& folder) { return with_titles(teaching_files(folder)); }
 
 Scene load(const std::string& name_or_path, const LoadOptions& options) {
   if (is_path(name_or_path)) return load_file(name_or_path, options);

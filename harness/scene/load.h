@@ -25,7 +25,11 @@ struct SceneInfo {
 /// Lists the built-in scenes by name. Throws kInput where the folder or a title cannot be read.
 std::vector<SceneInfo> list_scenes(const std::filesystem::path& folder);
 
-/// Loads a built-in scene by its name, or a .toml, .gltf, .glb or .obj file by its path, and validates it.
+/// Lists the scenes of the folder `teaching` below: each is made for one mistake, and is run only where it is named.
+/// Throws kInput where the folder or a title cannot be read; a folder that is not there has no scenes.
+std::vector<SceneInfo> list_teaching_scenes(const std::filesystem::path& folder);
+
+/// Loads a built-in scene, or a teaching scene, by its name, or a .toml, .gltf, .glb or .obj file by its path, and validates it.
 ///
 /// A bare model uses its own cameras and its first directional light; what it lacks is completed by frame_camera and
 /// make_default_sun. `ground` adds a floor in a material of its own; scene files have their own objects, and ignore it

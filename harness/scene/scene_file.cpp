@@ -44,14 +44,36 @@ class SceneBuilder {
     const std::optional<TomlTable> table = root_.table("light");
     if (!table) throw root_.error("light", "the scene has no [light]");
     table->require_known_keys(
-        {"type", "direction", "azimuth_deg", "elevation_deg", "color", "intensity", "angular_diameter_deg"});
+        {"type", "direction", "azimuth_deg", "elevation_deg", "color", "intensity", "angular_diameter_deg",
+         "map_center", "map_width", "map_near", "map_far"});
     table->choice("type", {"directional"}, "directional");
     Light light;
     light.direction_ws = glm::vec3(read_direction(*table));
     light.color = glm::vec3(table->vec3("color", kColor, glm::dvec3(1.0)));
     light.intensity = table->number_f("intensity", {0.0, 1000.0}, 1.0);
     light.angular_diameter_deg = table->number_f("angular_diameter_deg", {0.0, 90.0}, 0.53);
+    light.map_window = read_map_window(*table);
     return light;
+  }
+
+  static std::optional<MapWindow> read_map_window(const TomlTable& table) {
+    if (!table.has("map_width")) {
+      for (const char* key : {"map_center", "map_near", "map_far"}) {
+        if (table.has(key)) throw table.error(key, fmt::format("'{}' in [light] needs 'map_width'", key));
+      }
+      return std::nullopt;
+    }
+    MapWindow window;
+    window.center_ws = table.vec3("map_center", kAnyNumber);
+    window.width_m = table.number("map_width", kPositive);
+    if (!table.has("map_near") && !table.has("map_far")) return window;
+    const MapWindow::Planes planes{table.number("map_near", kAnyNumber), table.number("map_far", kAnyNumber)};
+    if (!(planes.far_m - planes.near_m >= kPositive.min)) {
+      throw table.error("map_far", fmt::format("'map_far' in [light] is {}: it must lie beyond 'map_near', which is {}",
+                                               planes.far_m, planes.near_m));
+    }
+    window.planes = planes;
+    return window;
   }
 
   static glm::dvec3 read_direction(const TomlTable& table) {

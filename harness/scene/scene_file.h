@@ -13,6 +13,9 @@ namespace shadowbench::scene {
 /// - `title` (required), `background` = [r, g, b], `model` = "file.gltf": a model as it is
 /// - `[light]` (required): `type` = "directional", `direction` = [x, y, z] (the way the light travels), or
 ///   `azimuth_deg` and `elevation_deg` (where it stands); `color`, `intensity`, `angular_diameter_deg`
+///   - `map_width` and `map_center` = [x, y, z]: the square that the light's map shows, instead of the whole scene;
+///     `map_near` and `map_far`: where depth is 0 and 1, metres from that centre along the light (negative: before it).
+///     For scenes that show what happens outside a map
 /// - `[camera]`, or several `[[camera]]`: `name`, `position`, `target`, `up`, `vertical_fov_deg`; without one, the
 ///   scene is framed by frame_camera
 /// - `[[material]]`: `name`, `color`

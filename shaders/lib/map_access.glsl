@@ -1,4 +1,4 @@
-// How filters read the map. Offsets are in texels. Outside the map everything is lit.
+// How filters read the map. Offsets are in texels. Outside the map everything is lit, unless --border says otherwise.
 layout(binding = 0) uniform sampler2D map_depth;                 // nearest
 layout(binding = 1) uniform sampler2DShadow map_compare;         // hardware 2x2 PCF, LEQUAL (reversed: GEQUAL)
 layout(binding = 2) uniform sampler2DShadow map_compare_nearest; // one texel, LEQUAL (reversed: GEQUAL)

@@ -28,6 +28,11 @@ Receiver make_receiver(vec3 position_ws, vec3 normal_ws, float view_depth, ivec2
   precise vec3 offset_ws = position_ws + normal_ws * (bias_normal_texels * texel_size_ws * sin_theta);
   precise vec4 lookup_point = uv_depth_from_world * vec4(offset_ws, 1.0);
   precise vec4 own_point = uv_depth_from_world * vec4(position_ws, 1.0);
+#ifdef PROJECTIVE_MAP
+  // Behind the light, where w < 0, this mirrors the map: see map_reaches().
+  lookup_point.xyz /= lookup_point.w;
+  own_point.xyz /= own_point.w;
+#endif
   r.uv = lookup_point.xy;
   r.layer = 0;
   r.depth_per_texel = plane_depth_per_texel(normal_ws, r.n_dot_l);
@@ -42,4 +47,16 @@ Receiver make_receiver(vec3 position_ws, vec3 normal_ws, float view_depth, ivec2
   r.view_depth = view_depth;
   r.pixel = pixel;
   return r;
+}
+
+// Whether the map can know anything of a receiver; where it cannot, the receiver is lit. The NO_ variants are there to
+// show what goes wrong without: see filters/map_range.h.
+bool map_reaches(Receiver r) {
+#ifndef NO_FAR_TEST
+  if (!(r.depth_unbiased <= 1.0)) return false;
+#endif
+#if defined(PROJECTIVE_MAP) && !defined(NO_BEHIND_TEST)
+  if ((uv_depth_from_world * vec4(r.position_ws, 1.0)).w <= 0.0) return false;
+#endif
+  return true;
 }

@@ -204,5 +204,21 @@ TEST(DiskWeights, InsideTheDisk_AreItsDensity_AndSumToOne) {
   }
 }
 
+TEST(PercentageCloser, Border_SaysWhatLiesOutside) {
+  // All blocked inside; a point that reads one texel beyond each side.
+  DepthMap map{8, std::vector<float>(64, 0.25f)};
+  Receiver r;
+  r.uv = {-0.06f, 1.06f};
+  r.depth = 0.5f;
+  const Kernel point = Kernel::make_point(Reconstruction::kNearest), disk = Kernel::make_disk(2.0);
+  EXPECT_EQ(PercentageCloser(point, map).at(r), 1.0);
+  EXPECT_GT(PercentageCloser(disk, map).at(r), 0.5);
+  for (const Border border : {Border::kEdge, Border::kRepeat}) {
+    map.border = border;
+    EXPECT_EQ(PercentageCloser(point, map).at(r), 0.0);
+    EXPECT_NEAR(PercentageCloser(disk, map).at(r), 0.0, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace shadowbench::filters

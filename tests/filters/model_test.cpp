@@ -67,6 +67,28 @@ TEST(NoneModel, OutsideTheMap_IsLit) {
   EXPECT_EQ(look_up("none", map, 8.0, 16.5, 1.0f), 1.0);
 }
 
+TEST(NoneModel, Border_SaysWhatLiesOutside) {
+  DepthMap map = make_edge(16, 8, 0.25f, 1.0f);  // dark left, lit right
+  map.border = Border::kEdge;
+  EXPECT_EQ(look_up("none", map, -20.5, 4.5, 0.5f), 0.0);
+  EXPECT_EQ(look_up("none", map, 36.5, -4.5, 0.5f), 1.0);
+  map.border = Border::kRepeat;
+  EXPECT_EQ(look_up("none", map, 16.5 + 3, 4.5, 0.5f), 0.0);
+  EXPECT_EQ(look_up("none", map, 16.5 + 9, 4.5, 0.5f), 1.0);
+  EXPECT_EQ(look_up("none", map, -0.5, -20.5, 0.5f), 1.0) << "the last column, one map to the left";
+  EXPECT_EQ(look_up("none", map, -31.5, 4.5, 0.5f), 0.0) << "the first column, two maps to the left";
+}
+
+TEST(VsmModel, Border_ReachesThroughTheBlur) {
+  // All dark: only what lies outside can light the map's edge.
+  DepthMap map = make_edge(32, 32, 0.25f, 1.0f);
+  EXPECT_GT(look_up("vsm:radius=4", map, 0.5, 16.5, 0.5f), 0.3);
+  for (const Border border : {Border::kEdge, Border::kRepeat}) {
+    map.border = border;
+    EXPECT_LT(look_up("vsm:radius=4", map, 0.5, 16.5, 0.5f), 0.001);
+  }
+}
+
 TEST(Pcf2x2Model, IsATentAcrossAnEdge) {
   const DepthMap map = make_edge(16, 8, 0.25f, 1.0f);
   for (const double s : {0.0, 0.25, 0.5, 0.75}) EXPECT_NEAR(look_up("pcf2x2", map, 7.5 + s, 4.5, 0.5f), s, 1e-6);

@@ -41,6 +41,9 @@ TEST(CellKey, EverySetting_ChangesTheKey) {
       [](CellRecord& c) { c.bias.normal_offset.texels = 1.0; },
       [](CellRecord& c) { c.bias.receiver_plane = true; },
       [](CellRecord& c) { c.bias.front_cull = true; },
+      [](CellRecord& c) { c.range.border = "repeat"; },
+      [](CellRecord& c) { c.range.far_test = false; },
+      [](CellRecord& c) { c.range.behind_test = false; },
       [](CellRecord& c) { c.width = 540; },
       [](CellRecord& c) { c.height = 960; },
   };

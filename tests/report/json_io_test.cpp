@@ -51,6 +51,7 @@ CellRecord make_full_cell() {
   cell.ratio_to_none.static_map = Ratio{1.5, {1.25, 1.75}};
   cell.ratio_to_none.moving = Ratio{2.5, {2.25, 2.75}};
   cell.cost.prefilter_texels = 2097152;
+  cell.range = {"edge", false, false};
   cell.error = {0.1, 0.05, 0.2, 1.0, -0.01, 0.3, 0.04};
   cell.truth = {0.001, 0.9};
   cell.artefact = {0.1, 0.2, 0.3, 0.4};
@@ -85,6 +86,9 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   EXPECT_EQ(back.time_ms.prefilter->n, 3);
   EXPECT_EQ(back.bias.normal_offset.world, 1.0);
   EXPECT_TRUE(back.bias.midpoint);
+  EXPECT_EQ(back.range.border, "edge");
+  EXPECT_FALSE(back.range.far_test);
+  EXPECT_FALSE(back.range.behind_test);
   EXPECT_EQ(back.images.exr, "e.exr");
   EXPECT_EQ(back.images.attribution, "f.png");
   EXPECT_EQ(back.images.texel_density, "g.png");
@@ -211,6 +215,9 @@ TEST(JsonIo, BrokenRecords_AreRefusedByTheSchema) {
       json::parse(R"([{"op": "replace", "path": "/cells/0/coverage/map_used", "value": 2}])"),
       json::parse(R"([{"op": "remove", "path": "/cells/0/coverage/map_filled"}])"),
       json::parse(R"([{"op": "remove", "path": "/cells/0/images/texel_grid"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/range/border", "value": "mirror"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/range/far_test", "value": "on"}])"),
+      json::parse(R"([{"op": "remove", "path": "/cells/0/range/behind_test"}])"),
       json::parse(R"([{"op": "remove", "path": "/work/truths_cached"}])"),
       json::parse(R"([{"op": "replace", "path": "/work/truths_traced", "value": -1}])"),
       json::parse(R"([{"op": "replace", "path": "/schema_version", "value": 2}])"),

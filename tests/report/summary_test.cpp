@@ -95,6 +95,14 @@ TEST(Summary, Groups_HoldOnlyWhatMayBeCompared) {
   EXPECT_EQ(groups[2].cells[0].map_size, 2048);
 }
 
+TEST(Summary, OnlyAWrongRange_IsNamedInTheSettings) {
+  CellRecord cell = make_cell("cubes", "none", 4.0);
+  EXPECT_THAT(describe_settings(cell), Not(AnyOf(HasSubstr("outside"), HasSubstr("test off"))));
+  cell.range = {"repeat", false, false};
+  EXPECT_THAT(describe_settings(cell), AllOf(HasSubstr("outside the map: repeat"), HasSubstr("far-plane test off"),
+                                             HasSubstr("behind-the-light test off")));
+}
+
 TEST(Summary, Absences_AreCounted) {
   const auto counts = count_absences({make_cell("cubes", "a", 1.0), make_cell("cubes", "b", 1.0)});
   EXPECT_EQ(counts.at("error: no truth in this run"), 2);

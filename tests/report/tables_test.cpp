@@ -64,12 +64,16 @@ TEST(TimingsCsv, OnlyFieldsThatNeedIt_AreQuoted) {
 TEST(TimingsCsv, Fields_HoldTheirColumnsValues) {
   CellRecord cell = make_cell("cubes", "vsm", 4.5);
   cell.time_ms.prefilter = Quartiles{12.5, 12.25, 12.75, 8};
+  cell.range = {"repeat", true, false};
   cell.ratio_to_none.static_map = Ratio{1.5, {1.25, 1.75}};
   cell.ratio_to_none.moving = Ratio{2.5, {2.25, 2.75}};
   const auto rows = parse_csv(make_csv(CsvTable::kTimings, make_run(), {cell}));
   EXPECT_EQ(field(rows, 1, "clock"), "CPU time (software rasteriser)");
   EXPECT_EQ(field(rows, 1, "params"), R"({"radius":4,"store":"rg32f"})");
   EXPECT_EQ(field(rows, 1, "lookup_median_ms"), "4.5");
+  EXPECT_EQ(field(rows, 1, "border"), "repeat");
+  EXPECT_EQ(field(rows, 1, "far_test"), "on");
+  EXPECT_EQ(field(rows, 1, "behind_test"), "off");
   EXPECT_EQ(field(rows, 1, "prefilter_q1_ms"), "12.25");
   EXPECT_EQ(field(rows, 1, "prefilter_n"), "8");
   EXPECT_EQ(field(rows, 1, "map_q3_ms"), "3.75");

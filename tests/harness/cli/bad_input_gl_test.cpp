@@ -91,6 +91,9 @@ TEST_F(BadInput, CullingThatEmptiesTheMap) {
 }
 
 TEST_F(BadInput, UnknownBias) { expect_refusal(small("--bias slop:kernels=1"), 2, {"did you mean 'slope'"}); }
+TEST_F(BadInput, UnknownBorder) { expect_refusal(small("--border mirror"), 2, {"--border", "mirror", "border", "edge", "repeat"}); }
+TEST_F(BadInput, UnknownFarTest) { expect_refusal(small("--far-test yes"), 2, {"--far-test", "yes", "on", "off"}); }
+TEST_F(BadInput, UnknownBehindTest) { expect_refusal(small("--behind-test 0"), 2, {"--behind-test", "0", "on", "off"}); }
 TEST_F(BadInput, NoRounds) { expect_refusal(small("--rounds 0"), 2, {"--rounds"}); }
 TEST_F(BadInput, UnknownContext) { expect_refusal(small("--gl vulkan"), 2, {"vulkan"}); }
 TEST_F(BadInput, NoContext) {

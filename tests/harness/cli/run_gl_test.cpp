@@ -1,6 +1,7 @@
 // `shadowbench run` and `list`, as a user calls them.
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tests/harness/cli/program.h"
 
@@ -238,6 +239,70 @@ TEST_F(Command, ListFilters_ShowsWhatTheFrontMatterSays) {
   }
   const nlohmann::json json = nlohmann::json::parse(run("list filters --json").out);
   EXPECT_EQ(json.size(), 9u);
+}
+
+TEST_F(Command, BorderSettings_ReachCellsPicturesAndUsersFilters) {
+  // A user's copy of a built-in filter, in its own process, shows the same artefact.
+  write("copied.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/pcf2x2.glsl"));
+  const std::string arguments = "run --size 64x36 --map-size 64 --rounds 1 --scene edge --filters pcf2x2,copied --filter-file copied.glsl ";
+  const std::vector<std::string> settings = {"--out out", "--out repeat --border repeat", "--out edge --border edge", "--out far --far-test off"};
+  std::set<std::string> keys, pictures;
+  for (const std::string& setting : settings) {
+    const Outcome outcome = run(arguments + setting);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const auto out = folder() / setting.substr(6, setting.find(' ', 6) - 6);
+    const nlohmann::json json = nlohmann::json::parse(read_text(out / "results.json"));
+    for (const auto& cell : json["cells"]) keys.insert(cell["key"].get<std::string>());
+    EXPECT_EQ(json["cells"][0]["receivers"], json["cells"][1]["receivers"]);
+    const std::string picture = read_text(out / "images" / "edge.pcf2x2.visibility.png");
+    EXPECT_EQ(picture, read_text(out / "images" / "edge.copied.visibility.png")) << setting;
+    pictures.insert(picture);
+  }
+  EXPECT_EQ(keys.size(), 8u);
+  EXPECT_EQ(pictures.size(), 4u);
+  const nlohmann::json range = nlohmann::json::parse(read_text(folder() / "repeat" / "results.json"))["cells"][0]["range"];
+  EXPECT_EQ(range, nlohmann::json::parse(R"({"border": "repeat", "far_test": true, "behind_test": true})"));
+}
+
+TEST_F(Command, OnlyTheRightRule_LeavesNoErrorBeyondTheFarPlane) {
+  const std::string arguments = "run --out out --size 128x72 --map-size 256 --rounds 1 --scene edge --filters none ";
+  ASSERT_EQ(run(arguments).exit_code, 0);
+  const double right = results(folder())["cells"][0]["error"]["rmse"];
+  ASSERT_EQ(run(arguments + "--far-test off").exit_code, 0);
+  EXPECT_GT(results(folder())["cells"][0]["error"]["rmse"], 3.0 * right);
+}
+
+TEST_F(Command, BehindTestOff_SaysThatItChangesNothing) {
+  const Outcome outcome = run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene edge --filters none --behind-test off");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_EQ(results(folder())["warnings"].size(), 1u);
+  EXPECT_NE(results(folder())["warnings"][0].get<std::string>().find("--behind-test off changes nothing"), std::string::npos);
+}
+
+TEST_F(Command, BorderPage_IsDrawnWhereAskedFor_AndLeavesTheNextViewAsItWas) {
+  std::string text = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/harness/scenes/teaching/edge.toml");
+  text.replace(text.find("[camera]"), 8, "[[camera]]");
+  write("views.toml", text + "[[camera]]\nname = \"second\"\nposition = [0, 12, 0.1]\ntarget = [0, 0, 0]\n");
+  const std::string arguments =
+      "run --out out --size 64x36 --map-size 64 --rounds 1 --scene views.toml --filters none,vsm --border repeat ";
+  const auto picture = [&] { return read_text(folder() / "out" / "images" / "views.second.none.visibility.png"); };
+  ASSERT_EQ(run(arguments).exit_code, 0);
+  const std::string without = picture();
+  EXPECT_FALSE(std::filesystem::exists(folder() / "out" / "views.main.borders.png"));
+  const Outcome outcome = run(arguments + "--border-page");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "views.main.borders.png"));
+  EXPECT_FALSE(without.empty());
+  EXPECT_EQ(picture(), without);
+}
+
+TEST_F(Command, ListScenes_NamesTeachingScenesApart) {
+  const std::string out = run("list scenes").out;
+  const std::size_t heading = out.find("For teaching");
+  ASSERT_NE(heading, std::string::npos);
+  EXPECT_GT(out.find("\nedge "), heading);
+  EXPECT_LT(out.find("\nsteps "), heading);
+  for (const auto& scene : nlohmann::json::parse(run("list scenes --json").out)) EXPECT_EQ(scene["teaching"], scene["name"] == "edge");
 }
 
 TEST_F(Command, ListScenes_NamesAllFive) {

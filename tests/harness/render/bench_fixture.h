@@ -34,9 +34,15 @@ class Bench {
     gbuffer_.draw(shaders_, geometry_, scene_, scene_.cameras.front());
   }
 
+  /// Sets what lies outside the map, for everything drawn from now on.
+  void set_range(const filters::RangeRule& range) {
+    range_ = range;
+    map_.set_border(range.border);
+  }
+
   render::LightSetup light(const filters::FilterRequest& request, const run::BiasRule& rule = {}) const {
     const render::Bias bias = run::resolve_bias(rule, frustum_, request.spec, request.values);
-    return render::make_light_setup(frustum_, scene_.light, bias, 7);
+    return render::make_light_setup(frustum_, scene_.light, bias, 7, range_);
   }
 
   /// Draws the map again, with another bias in it.
@@ -72,6 +78,7 @@ class Bench {
   render::ShaderLibrary shaders_;
   render::Geometry geometry_;
   scene::LightFrustum frustum_;
+  filters::RangeRule range_;
   render::ShadowMap map_;
   render::GBuffer gbuffer_;
   render::ImageTarget target_;

@@ -207,5 +207,43 @@ INSTANTIATE_TEST_SUITE_P(Filters, ReceiverPlaneModel,
                                             ::testing::Values("none", "pcf2x2", "tent3x3", "box3x3", "teach4x4", "box4x4", "poisson")),
                          [](const auto& each) { return std::get<0>(each.param) + "_" + std::get<1>(each.param); });
 
+/// What lies outside the map, on a scene with many receivers there.
+class BorderAgreement : public ::testing::TestWithParam<std::tuple<filters::Border, std::string>> {};
+
+TEST_P(BorderAgreement, GlImageEqualsModel) {
+  const auto& [border, filter] = GetParam();
+  const scene::Scene scene = load_builtin("edge");
+  Bench bench(shared_context(), scene, 250);  // no power of two: nothing wraps by accident
+  bench.set_range({border, false, true});
+  const filters::FilterRequest request = catalogue().parse_requests(filter).front();
+  const Agreement a = compare(bench, request);
+  EXPECT_GT(a.compared, 20000u);
+  EXPECT_GT(a.shadowed, 0.1);
+  EXPECT_LT(static_cast<double>(a.excused), 0.02 * static_cast<double>(a.compared));
+  if (request.spec.has_encode) {
+    EXPECT_LE(a.worst_bound_ratio, 1.0);
+    EXPECT_LE(a.worst_float, 2e-3);
+  } else {
+    EXPECT_LE(a.worst_float, pcf_tolerance());
+    EXPECT_LE(a.worst_double, pcf_tolerance());
+  }
+}
+
+std::vector<std::string> filters_of_borders() {
+  std::vector<std::string> requests = filter_ids();
+  requests.insert(requests.end(), {"vsm:radius=0", "vsm:radius=20", "esm:combine=log"});
+  return requests;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    AllFilters, BorderAgreement,
+    ::testing::Combine(::testing::Values(filters::Border::kBorder, filters::Border::kEdge, filters::Border::kRepeat),
+                       ::testing::ValuesIn(filters_of_borders())),
+    [](const auto& each) {
+      std::string name = filters::to_string(std::get<0>(each.param)) + "_" + std::get<1>(each.param);
+      for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+      return name;
+    });
+
 }  // namespace
 }  // namespace shadowbench::test

@@ -133,6 +133,38 @@ TEST(LightFitTest, ReceiversThatCastNothing_AreInsideTheMap) {
   EXPECT_GT(fit_light(scene, FitMode::kTight, 256, 0.0).width_ws, 9.9);
 }
 
+/// Where the frustum puts a point: u, v, depth.
+glm::dvec3 seen(const LightFrustum& fit, const glm::dvec3& p) {
+  return glm::dvec3(fit.uv_depth_from_world * glm::vec4(glm::vec3(p), 1.0f));
+}
+
+TEST_P(LightFitTest, Window_IsTheMap) {
+  for (const glm::vec3& direction : kDirections) {
+    Scene scene = make_scene(direction);
+    const glm::dvec3 center(1.0, 0.5, -2.0), along(scene.light.direction_ws);
+    scene.light.map_window = MapWindow{center, 3.0, MapWindow::Planes{-1.0, 4.0}};
+    const LightFrustum fit = fit_light(scene, GetParam(), 256, 20.0);
+    EXPECT_EQ(fit.width_ws, 3.0) << "no padding";
+    EXPECT_EQ(fit.texel_size_ws, 3.0 / 256.0);
+    EXPECT_EQ(fit.depth_range_ws, 5.0);
+    EXPECT_LT(glm::length(seen(fit, center) - glm::dvec3(0.5, 0.5, 0.2)), 1e-5);
+    EXPECT_NEAR(seen(fit, center + 4.0 * along).z, 1.0, 1e-5);
+    EXPECT_NEAR(seen(fit, center - 1.0 * along).z, 0.0, 1e-5);
+    const glm::dvec3 right = glm::transpose(glm::dmat3(fit.light_from_world))[0];
+    EXPECT_NEAR(seen(fit, center + 1.5 * right).x, 1.0, 1e-5);
+    EXPECT_NEAR((fit.clip_from_world * glm::vec4(glm::vec3(center + 1.5 * right), 1.0f)).x, 1.0f, 1e-5f);
+  }
+}
+
+TEST_P(LightFitTest, WindowWithoutPlanes_KeepsTheFittedDepth) {
+  Scene scene = make_scene({1, -2, 0.5f});
+  const LightFrustum fitted = fit_light(scene, GetParam(), 256, 2.0);
+  scene.light.map_window = MapWindow{glm::dvec3(1.0, 0.5, -2.0), 3.0, std::nullopt};
+  const LightFrustum fit = fit_light(scene, GetParam(), 256, 2.0);
+  EXPECT_EQ(fit.depth_range_ws, fitted.depth_range_ws);
+  for (const glm::dvec3& p : {glm::dvec3(0.0), glm::dvec3(3.0, -1.0, 2.0)}) EXPECT_NEAR(seen(fit, p).z, seen(fitted, p).z, 1e-6);
+}
+
 TEST(LightFitTest, PaddingThatLeavesNoTexel_IsAUsageError) {
   const Error error = error_of([] { fit_light(make_scene({0, -1, 0}), FitMode::kTight, 16, 8.0); });
   EXPECT_EQ(error.kind(), ErrorKind::kUsage);

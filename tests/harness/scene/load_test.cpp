@@ -47,6 +47,19 @@ TEST(LoadTest, BuiltInScenes_AreFive) {
   EXPECT_THAT(names, testing::ElementsAre("ball", "cubes", "fence", "stack", "steps"));
 }
 
+TEST(LoadTest, TeachingScenes_AreFoundByNameAndNotAmongTheOthers) {
+  std::vector<std::string> names;
+  for (const SceneInfo& info : list_teaching_scenes(kScenes)) {
+    names.push_back(info.name);
+    EXPECT_FALSE(info.title.empty());
+    EXPECT_TRUE(load(info.name, make_options()).warnings.empty());
+  }
+  EXPECT_THAT(names, testing::ElementsAre("edge"));
+  EXPECT_TRUE(list_teaching_scenes(kScenes / "nowhere").empty());
+  LoadOptions options = make_options();
+  EXPECT_THAT(error_of([&] { load("edges", options); }).message(), testing::HasSubstr("did you mean 'edge'"));
+}
+
 TEST(LoadTest, BuiltInScenes_LoadWithoutWarningsOnASmallFloor) {
   for (const SceneInfo& info : list_scenes(kScenes)) {
     SCOPED_TRACE(info.name);

@@ -76,6 +76,37 @@ TEST(SceneFileTest, KeyOfAnotherShape_IsUnknown) {
   EXPECT_THAT(complaint_about(std::string(kBase) + "radius = 2\n").message, HasSubstr("unknown key 'radius'"));
 }
 
+TEST(SceneFileTest, MapWindow_IsReadWithItsPlanes) {
+  EXPECT_FALSE(load_text(kBase).light.map_window.has_value());
+  const std::string light = "direction = [0, -1, 0]\nmap_center = [1, 2, 3]\nmap_width = 4\n";
+  const auto free = load_text(replaced(kBase, "direction = [0, -1, 0]\n", light)).light.map_window;
+  ASSERT_TRUE(free.has_value());
+  EXPECT_EQ(free->center_ws, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(free->width_m, 4.0);
+  EXPECT_FALSE(free->planes.has_value());
+  const std::string planes = light + "map_near = -1.5\nmap_far = 2\n";
+  const auto fixed = load_text(replaced(kBase, "direction = [0, -1, 0]\n", planes)).light.map_window;
+  ASSERT_TRUE(fixed && fixed->planes);
+  EXPECT_EQ(fixed->planes->near_m, -1.5);
+  EXPECT_EQ(fixed->planes->far_m, 2.0);
+}
+
+TEST(SceneFileTest, MapWindowThatIsNone_NamesItsLine) {
+  const auto complain = [](const std::string& lines) {
+    return complaint_about(replaced(kBase, "direction = [0, -1, 0]\n", "direction = [0, -1, 0]\n" + lines));
+  };
+  EXPECT_THAT(complain("map_width = 0\nmap_center = [0, 0, 0]\n").message, HasSubstr("'map_width'"));
+  EXPECT_THAT(complain("map_width = nan\nmap_center = [0, 0, 0]\n").message, HasSubstr("'map_width'"));
+  EXPECT_THAT(complain("map_width = 1\nmap_center = [0, inf, 0]\n").message, HasSubstr("'map_center'"));
+  EXPECT_THAT(complain("map_width = 1\n").message, HasSubstr("lacks 'map_center'"));
+  EXPECT_THAT(complain("map_center = [0, 0, 0]\n").message, HasSubstr("'map_center' in [light] needs 'map_width'"));
+  EXPECT_THAT(complain("map_far = 1\n").message, HasSubstr("'map_far' in [light] needs 'map_width'"));
+  EXPECT_THAT(complain("map_width = 1\nmap_center = [0, 0, 0]\nmap_far = 1\n").message, HasSubstr("lacks 'map_near'"));
+  const Complaint order = complain("map_width = 1\nmap_center = [0, 0, 0]\nmap_near = 2\nmap_far = 2\n");
+  EXPECT_THAT(order.message, HasSubstr("must lie beyond 'map_near', which is 2"));
+  EXPECT_EQ(order.line, "7");
+}
+
 TEST(SceneFileTest, MissingValue_SaysWhatIsExpected) {
   const Complaint c = complaint_about(replaced(kBase, "size = [1, 2, 3]\n", ""));
   EXPECT_THAT(c.message, AllOf(HasSubstr("lacks 'size'"), HasSubstr("3 numbers")));

@@ -1,0 +1,87 @@
+#include "harness/run/border_page.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "harness/render/filter_passes.h"
+#include "harness/render/shade_pass.h"
+#include "report/grid.h"
+
+namespace shadowbench::run {
+namespace {
+
+/// A way to treat what lies outside the map.
+struct Variant {
+  const char* caption;
+  filters::RangeRule rule;
+};
+
+const std::array<Variant, 4>& list_variants() {
+  using filters::Border;
+  static const std::array<Variant, 4> variants = {{
+      {"right: outside the map and beyond its far plane is lit", {}},
+      {"--border edge: the map's edge is smeared outwards", {Border::kEdge, true, true}},
+      {"--border repeat: the map is tiled", {Border::kRepeat, true, true}},
+      {"--far-test off: beyond the far plane is compared", {Border::kBorder, false, true}},
+  }};
+  return variants;
+}
+
+/// Draws tiles of one task.
+class TilePainter {
+ public:
+  TilePainter(Renderer& renderer, const RunOptions& options, const SceneTask& task, SceneAssets& assets)
+      : renderer_(renderer),
+        options_(options),
+        task_(task),
+        light_(assets.light_map(*task.camera, task.map_size)),
+        gbuffer_(assets.gbuffer(*task.camera)),
+        target_("visibility", GL_R32F, options.width, options.height) {}
+
+  ~TilePainter() { light_.map.set_border(options_.range.border); }
+  TilePainter(const TilePainter&) = delete;
+  TilePainter& operator=(const TilePainter&) = delete;
+
+  report::GridTile draw(const filters::FilterRequest& request, const Variant& variant) {
+    const render::Bias bias = resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
+    const auto light =
+        render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed, variant.rule);
+    light_.map.set_border(variant.rule.border);
+    render::FilterPasses passes(renderer_.shaders, request, task_.map_size, light);
+    passes.prefilter(light_.map);
+    passes.lookup(gbuffer_, light_.map, target_);
+    report::GridTile tile;
+    tile.label = request.label();
+    tile.caption = variant.caption;
+    tile.picture = render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera);
+    tile.visibility = render::read_image(target_.texture(), 1);
+    return tile;
+  }
+
+ private:
+  Renderer& renderer_;
+  const RunOptions& options_;
+  const SceneTask& task_;
+  LightMap& light_;
+  render::GBuffer& gbuffer_;
+  render::ImageTarget target_;
+};
+
+}  // namespace
+
+void write_border_page(const std::filesystem::path& file, Renderer& renderer, const RunOptions& options,
+                       const SceneTask& task, SceneAssets& assets) {
+  TilePainter painter(renderer, options, task, assets);
+  report::Grid grid;
+  grid.title = fmt::format("{}: what lies outside the map", task.scene->name);
+  grid.subtitle = fmt::format("{} · view {} · map {} × {}", task.scene->title, task.camera->name, task.map_size, task.map_size);
+  grid.columns = static_cast<int>(list_variants().size());
+  for (const filters::FilterRequest& request : task.filters) {
+    if (request.user_file) continue;
+    for (const Variant& variant : list_variants()) grid.tiles.push_back(painter.draw(request, variant));
+  }
+  if (!grid.tiles.empty()) report::write_grid(file, grid);
+}
+
+}  // namespace shadowbench::run
