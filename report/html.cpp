@@ -6,7 +6,7 @@
 
 #include "report/attribution_html.h"
 #include "report/embedded.h"
-#include "report/file_name.h"
+#include "report/html_parts.h"
 #include "report/json_values.h"
 #include "report/summary.h"
 #include "report/text_tables.h"
@@ -15,45 +15,6 @@ namespace shadowbench::report {
 namespace {
 
 using OptionalPath = std::optional<std::string>;
-
-std::string link(const std::string& path, const std::string& text) {
-  return fmt::format("<a href=\"{}\">{}</a>", encode_url_path(path), escape_html(text));
-}
-
-std::string figure(const std::string& path, const std::string& caption, std::string_view style) {
-  return fmt::format(
-      "<figure class=\"{2}\"><a href=\"{0}\"><img src=\"{0}\" alt=\"{1}\" loading=\"lazy\"></a>"
-      "<figcaption>{1}</figcaption></figure>\n",
-      encode_url_path(path), escape_html(caption), style);
-}
-
-std::string html_list(const std::vector<std::string>& items) {
-  std::string text = "<ul>\n";
-  for (const std::string& item : items) {
-    text += fmt::format("<li>{}</li>\n", escape_html(item));
-  }
-  return text + "</ul>\n";
-}
-
-std::string html_row(const std::vector<std::string>& fields, std::string_view element) {
-  std::string text = "<tr>";
-  for (const std::string& field : fields) {
-    text += fmt::format("<{0}>{1}</{0}>", element, escape_html(field));
-  }
-  return text + "</tr>\n";
-}
-
-std::string html_table(const TextTable& table, const std::string& name, std::string_view style) {
-  std::string text = fmt::format(
-      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\">"
-      "<table class=\"{2}\">\n<caption>{0}</caption>\n"
-      "<thead>{1}</thead>\n<tbody>\n",
-      escape_html(name), html_row(table.header, "th"), style);
-  for (const auto& row : table.rows) {
-    text += html_row(row, "td");
-  }
-  return text + "</tbody></table></div>\n";
-}
 
 std::string html_facts(const RunRecord& run) {
   std::string text = "<dl>\n";
@@ -159,15 +120,6 @@ std::string html_absences(const std::vector<CellRecord>& cells) {
                        : "<section>\n<h2>What is not there, and why</h2>\n" + html_list(items) + "</section>\n";
 }
 
-std::string html_head() {
-  return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n"
-      "<title>Shadow filters compared</title>\n<style>\n{}</style>\n</head>\n",
-      page_style());
-}
-
 }  // namespace
 
 std::string escape_html(std::string_view text) {
@@ -199,7 +151,7 @@ std::string escape_html(std::string_view text) {
 
 std::string make_index_html(const RunRecord& run, const std::vector<CellRecord>& cells) {
   const std::vector<CellGroup> groups = group_cells(cells);
-  std::string page = html_head() + "<body>\n<main>\n<h1>Shadow filters compared</h1>\n" + html_navigation(groups);
+  std::string page = html_head("Shadow filters compared", page_style()) + "<body>\n<main>\n<h1>Shadow filters compared</h1>\n" + html_navigation(groups);
   page += html_facts(run);
   page += "<p>Data: " + link("summary.md", "summary.md") + ", " + link("timings.csv", "timings.csv") + ", " + link("accuracy.csv", "accuracy.csv") + ", " +
           link("results.json", "results.json") + " (" + link("results.schema.json", "its schema") + ").</p>\n";

@@ -19,4 +19,7 @@ void add_list_command(CLI::App& app, Action& action);
 /// Adds `diff`.
 void add_diff_command(CLI::App& app, Action& action);
 
+/// Adds `bias`.
+void add_bias_command(CLI::App& app, Action& action);
+
 }  // namespace shadowbench::cli

@@ -27,6 +27,10 @@ void load_and_run_experiment(const run::RunOptions& options, run::Progress& prog
   load_entry<void(const run::RunOptions&, run::Progress&)>("shadowbench_run_experiment")(options, progress);
 }
 
+void load_and_run_bias_sweep(const run::RunOptions& options, run::Progress& progress) {
+  load_entry<void(const run::RunOptions&, run::Progress&)>("shadowbench_run_bias_sweep")(options, progress);
+}
+
 run::Comparison load_and_compare_pictures(const run::ComparisonOptions& options) {
   run::Comparison result;
   load_entry<void(const run::ComparisonOptions&, run::Comparison&)>("shadowbench_compare_pictures")(options, result);

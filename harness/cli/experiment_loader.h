@@ -6,11 +6,14 @@
 
 namespace shadowbench::cli {
 
-// Both load the module with everything that draws, reads and writes pictures, which lies beside the program, and throw
+// All load the module with everything that draws, reads and writes pictures, which lies beside the program, and throw
 // Error(kUsage) when it is missing.
 
 /// Runs an experiment. Throws Error as run::run_experiment.
 void load_and_run_experiment(const run::RunOptions& options, run::Progress& progress);
+
+/// Sweeps the modes of bias. Throws Error as run::run_bias_sweep.
+void load_and_run_bias_sweep(const run::RunOptions& options, run::Progress& progress);
 
 /// Compares two pictures. Throws Error as run::compare_pictures.
 run::Comparison load_and_compare_pictures(const run::ComparisonOptions& options);

@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   shadowbench::cli::add_run_command(app, action, {argv, argv + argc});
   shadowbench::cli::add_list_command(app, action);
   shadowbench::cli::add_diff_command(app, action);
+  shadowbench::cli::add_bias_command(app, action);
   try {
     app.parse(argc, argv);
     return action();

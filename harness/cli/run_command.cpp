@@ -7,12 +7,14 @@
 #include <csignal>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include "filters/error.h"
-#include "harness/gl/pixel_format.h"
+#include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/experiment_loader.h"
 #include "harness/cli/progress_bar.h"
+#include "harness/gl/pixel_format.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::cli {
@@ -51,20 +53,11 @@ struct RunArguments {
 
 [[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
 
-int parse_size(const std::string& text, const char* option) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < 1) {
-    fail(fmt::format("{}: '{}' must be a whole number, 1 or more", option, text));
-  }
-  return value;
-}
-
 std::vector<int> parse_map_sizes(const std::string& text) {
   std::vector<int> sizes;
   for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
     end = text.find(',', begin);
-    const int size = parse_size(text.substr(begin, end == std::string::npos ? end : end - begin), "--map-size");
+    const int size = parse_count(text.substr(begin, end == std::string::npos ? end : end - begin), "--map-size");
     if (std::find(sizes.begin(), sizes.end(), size) != sizes.end()) fail(fmt::format("--map-size names {} twice", size));
     sizes.push_back(size);
   }
@@ -87,14 +80,7 @@ void add_filters(run::RunOptions& options, const RunArguments& arguments) {
     if (std::any_of(options.filters.begin(), options.filters.end(), is_it)) continue;
     options.filters.push_back(catalogue.parse_requests(id).front());
   }
-  for (std::size_t i = 0; i < options.filters.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const filters::FilterRequest &a = options.filters[i], &b = options.filters[j];
-      if (a.spec.id == b.spec.id && a.values == b.values) {
-        fail(fmt::format("--filters names '{}' twice: '{}' has the same parameters", a.label(), b.label()));
-      }
-    }
-  }
+  require_distinct(options.filters);
 }
 
 void check(const RunArguments& arguments) {
@@ -136,10 +122,7 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   options.ground = arguments.ground;
   add_filters(options, arguments);
   options.map_sizes = parse_map_sizes(arguments.map_sizes);
-  const std::size_t cross = arguments.size.find('x');
-  if (cross == std::string::npos) fail(fmt::format("--size: '{}' must be WIDTHxHEIGHT, such as 960x540", arguments.size));
-  options.width = parse_size(arguments.size.substr(0, cross), "--size");
-  options.height = parse_size(arguments.size.substr(cross + 1), "--size");
+  std::tie(options.width, options.height) = parse_picture_size(arguments.size);
   set_map_and_light(options, arguments);
   options.bias = run::parse_bias(arguments.bias);
   options.bias_texts = arguments.bias;
@@ -154,7 +137,7 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   options.command = std::move(command);
   options.truth = !arguments.no_truth && !arguments.worker;
   options.attribution = !arguments.no_attribution;
-  if (!arguments.no_cache) options.cache = arguments.cache.empty() ? run::default_cache_folder() : std::filesystem::path(arguments.cache);
+  options.cache = choose_cache(arguments.cache, arguments.no_cache);
   options.worker = arguments.worker;
   options.pad_texels = arguments.pad_texels;
   return options;

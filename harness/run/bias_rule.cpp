@@ -161,9 +161,14 @@ std::string list_bias_modes() {
   return fmt::format("{}", fmt::join(texts, " | "));
 }
 
+std::string explain_unusable(const BiasRule& rule, const filters::FilterSpec& spec) {
+  if (!rule.receiver_plane || (!spec.has_encode && !spec.uses_samplers)) return {};
+  return spec.has_encode ? "reads a prefiltered map, not one depth per tap" : "reads the map's samplers itself";
+}
+
 void require_usable(const BiasRule& rule, const filters::FilterSpec& spec) {
-  if (!rule.receiver_plane || (!spec.has_encode && !spec.uses_samplers)) return;
-  const char* why = spec.has_encode ? "reads a prefiltered map, not one depth per tap" : "reads the map's samplers itself";
+  const std::string why = explain_unusable(rule, spec);
+  if (why.empty()) return;
   throw Error(ErrorKind::kUsage, fmt::format("--bias receiver-plane cannot be used by the filter '{}', which {}; leave that "
                                              "filter out of --filters, or choose another bias", spec.id, why));
 }

@@ -43,6 +43,9 @@ BiasRule parse_bias(const std::vector<std::string>& texts);
 /// Lists the modes with their keys, for help texts.
 std::string list_bias_modes();
 
+/// Says why a filter cannot do what a rule asks for; empty where it can.
+std::string explain_unusable(const BiasRule& rule, const filters::FilterSpec& spec);
+
 /// Throws Error(kUsage), naming the filter, where a rule asks for something that a filter cannot do.
 void require_usable(const BiasRule& rule, const filters::FilterSpec& spec);
 

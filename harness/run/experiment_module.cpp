@@ -1,6 +1,7 @@
 // The entries of the module that the command line loads when there is work to do: the image libraries behind it take
 // 0.2 s to load, which `list` and `--help` should not pay.
 
+#include "harness/run/bias_sweep.h"
 #include "harness/run/compare_pictures.h"
 #include "harness/run/run_experiment.h"
 
@@ -12,4 +13,9 @@ extern "C" void shadowbench_run_experiment(const shadowbench::run::RunOptions& o
 extern "C" void shadowbench_compare_pictures(const shadowbench::run::ComparisonOptions& options,
                                              shadowbench::run::Comparison& result) {
   result = shadowbench::run::compare_pictures(options);
+}
+
+extern "C" void shadowbench_run_bias_sweep(const shadowbench::run::RunOptions& options,
+                                           shadowbench::run::Progress& progress) {
+  shadowbench::run::run_bias_sweep(options, progress);
 }

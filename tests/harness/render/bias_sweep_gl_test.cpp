@@ -1,12 +1,11 @@
 // Every bias mode on an empty plane, over angles and map sizes: at the amount that theory asks for there is no acne, at half
 // of it there is.
 
+#include <algorithm>
 #include <cmath>
-#include <functional>
-#include <map>
 #include <tuple>
 
-#include "filters/model.h"
+#include "harness/run/bias_theory.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {
@@ -41,66 +40,24 @@ scene::Scene make_plane(double tilt_deg, double azimuth_deg) {
   return scene;
 }
 
-/// What theory asks of a kernel that reaches so many texels, on a plane.
-struct Theory {
-  double reach_texels;     ///< from the receiver to the centre of the farthest texel that counts, per axis
-  double slope_per_texel;  ///< |dz/du| + |dz/dv|, in depth
-  double larger_slope;     ///< the larger of the two
-  double n_dot_l;
-
-  double depth() const { return reach_texels * slope_per_texel; }
-};
-
-/// Gives the rule of a mode at `factor` times the theoretical amount.
-using MakeRule = std::function<run::BiasRule(const Theory&, double factor)>;
-
-run::BiasRule start() {
-  run::BiasRule rule = run::BiasRule::none();
-  rule.max_tangent = 1e4;  // also planes that the light grazes
+/// Gives the rule of a mode at `factor` times the theoretical amount, also for planes that the light grazes.
+run::BiasRule make_rule(const run::SweptMode& mode, const run::BiasTheory& theory, double factor) {
+  run::BiasRule rule = mode.make_rule(factor * mode.amount(theory));
+  rule.max_tangent = 1e4;
   return rule;
 }
 
-const std::map<std::string, MakeRule>& modes() {
-  static const std::map<std::string, MakeRule> table = {
-      {"constant", [](const Theory& t, double factor) {
-         run::BiasRule rule = start();
-         rule.constant.depth = factor * t.depth();
-         return rule;
-       }},
-      {"slope", [](const Theory& t, double factor) {
-         run::BiasRule rule = start();
-         rule.slope.depth = factor * t.depth() / (1.0 - t.n_dot_l);
-         return rule;
-       }},
-      {"plane", [](const Theory& t, double factor) {
-         run::BiasRule rule = start();
-         rule.plane_texels = factor * t.reach_texels;
-         return rule;
-       }},
-      {"normal_offset", [](const Theory& t, double factor) {
-         // Moved along the normal by s r sin(theta), a point lies s r tan(theta) above the plane, measured along the light.
-         run::BiasRule rule = start();
-         rule.normal_offset.texels = factor * t.reach_texels * t.slope_per_texel / std::hypot(t.larger_slope, t.slope_per_texel - t.larger_slope);
-         return rule;
-       }},
-      {"polygon_offset", [](const Theory& t, double factor) {
-         run::BiasRule rule = start();
-         rule.map.polygon_factor = factor * t.reach_texels * t.slope_per_texel / t.larger_slope;
-         return rule;
-       }}};
-  return table;
+const run::SweptMode& find_mode(const std::string& name) {
+  const auto& modes = run::swept_modes();
+  return *std::find_if(modes.begin(), modes.end(), [&](const run::SweptMode& mode) { return mode.name == name; });
 }
 
 struct Sweep {
   Sweep(double tilt, double azimuth, int map_size)
       : scene(make_plane(tilt, azimuth)), bench(shared_context(), scene, map_size, 96, 96), size(map_size) {}
 
-  Theory theory(const filters::FilterRequest& request) {
-    const filters::Kernel kernel = filters::make_model(request.spec.id)->kernel(request.values);
-    const bool nearest = kernel.reconstruction() == filters::Reconstruction::kNearest;
-    const filters::Receiver r = bench.receivers(request, run::BiasRule::none()).front();
-    const double u = std::abs(static_cast<double>(r.depth_per_texel.x)), v = std::abs(static_cast<double>(r.depth_per_texel.y));
-    return {kernel.half_width() + (nearest ? 0.5 : 0.0), u + v, std::max(u, v), static_cast<double>(r.n_dot_l)};
+  run::BiasTheory theory(const filters::FilterRequest& request) {
+    return run::make_theory(run::reach_texels(request), bench.receivers(request, run::BiasRule::none()).front());
   }
 
   /// The share of receivers that are darker than all but one part in 500.
@@ -132,9 +89,9 @@ TEST_P(PlaneSweep, NoAcneAtTheTheoreticalAmount_AcneAtHalfOfIt) {
     for (const double azimuth : {0.0, 45.0}) {
       for (const int size : kSizes) {
         Sweep sweep(tilt, azimuth, size);
-        const Theory theory = sweep.theory(request);
+        const run::BiasTheory theory = sweep.theory(request);
         // Rounding of depths and of rasterised vertices: a fiftieth of the amount, and some steps of single precision.
-        run::BiasRule enough = modes().at(mode)(theory, 1.02), half = modes().at(mode)(theory, 0.5);
+        run::BiasRule enough = make_rule(find_mode(mode), theory, 1.02), half = make_rule(find_mode(mode), theory, 0.5);
         enough.constant.depth += 1e-6;
         SCOPED_TRACE(mode + " " + filter + " at " + std::to_string(tilt) + " towards " + std::to_string(azimuth) + ", map " + std::to_string(size));
         EXPECT_EQ(sweep.acne(request, enough), 0.0);
@@ -149,7 +106,10 @@ TEST_P(PlaneSweep, NoAcneAtTheTheoreticalAmount_AcneAtHalfOfIt) {
 
 std::vector<std::string> mode_names() {
   std::vector<std::string> names;
-  for (const auto& [name, make] : modes()) names.push_back(name);
+  // Receiver-plane needs no amount but what rounding asks for.
+  for (const run::SweptMode& mode : run::swept_modes()) {
+    if (!mode.key.empty() && mode.name != "receiver-plane") names.push_back(mode.name);
+  }
   return names;
 }
 
@@ -169,7 +129,8 @@ class ReceiverPlane : public ::testing::TestWithParam<std::string> {};
 /// Needs no amount but what rounding asks for, whatever the kernel: up to 15 texels.
 TEST_P(ReceiverPlane, NeedsNoAmount_OnPlanes) {
   const filters::FilterRequest request = catalogue().parse_requests(GetParam()).front();
-  run::BiasRule rule = start();
+  run::BiasRule rule = run::BiasRule::none();
+  rule.max_tangent = 1e4;
   rule.receiver_plane = true;
   rule.constant.depth = 2e-5;
   for (const double tilt : {0.0, 1.0, 20.0, 60.0, 85.0, 89.0}) {

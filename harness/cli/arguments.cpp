@@ -1,0 +1,48 @@
+#include "harness/cli/arguments.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "filters/error.h"
+#include "harness/run/options.h"
+
+namespace shadowbench::cli {
+namespace {
+
+[[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
+
+}  // namespace
+
+int parse_count(const std::string& text, const char* option) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < 1) {
+    fail(fmt::format("{}: '{}' must be a whole number, 1 or more", option, text));
+  }
+  return value;
+}
+
+std::pair<int, int> parse_picture_size(const std::string& text) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string::npos) fail(fmt::format("--size: '{}' must be WIDTHxHEIGHT, such as 960x540", text));
+  return {parse_count(text.substr(0, cross), "--size"), parse_count(text.substr(cross + 1), "--size")};
+}
+
+void require_distinct(const std::vector<filters::FilterRequest>& requests) {
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const filters::FilterRequest &a = requests[i], &b = requests[j];
+      if (a.spec.id == b.spec.id && a.values == b.values) {
+        fail(fmt::format("--filters names '{}' twice: '{}' has the same parameters", a.label(), b.label()));
+      }
+    }
+  }
+}
+
+std::filesystem::path choose_cache(const std::string& folder, bool no_cache) {
+  if (no_cache) return {};
+  return folder.empty() ? run::default_cache_folder() : std::filesystem::path(folder);
+}
+
+}  // namespace shadowbench::cli

@@ -1,0 +1,77 @@
+// `shadowbench bias`, as a user calls it.
+
+#include <gmock/gmock.h>
+
+#include "report/picture_io.h"
+#include "tests/harness/cli/program.h"
+
+namespace shadowbench::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+class BiasCommand : public ProgramTest {
+ protected:
+  std::vector<std::vector<std::string>> read_csv() const {
+    std::stringstream text(read_text(folder() / "out" / "bias.csv"));
+    std::vector<std::vector<std::string>> rows;
+    for (std::string line; std::getline(text, line, '\r'); text.get()) {
+      std::stringstream fields(line + ",");
+      rows.emplace_back();
+      for (std::string field; std::getline(fields, field, ',');) rows.back().push_back(field);
+    }
+    return rows;
+  }
+
+  /// The acne of a mode and filter at a factor; "" where it is absent.
+  std::string acne(const std::string& mode, const std::string& filter, const std::string& factor) const {
+    for (const auto& row : read_csv()) {
+      if (row.at(3) == mode && row.at(5) == filter && row.at(6) == factor) return row.at(11);
+    }
+    return "no row";
+  }
+};
+
+TEST_F(BiasCommand, WritesPageTableAndPictures_ForEveryMode) {
+  const Outcome outcome = run("bias --out out --size 160x90 --map-size 128 --filters none,tent3x3,vsm");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("out/bias.html"));
+  std::map<std::string, int> rows;
+  for (const auto& row : read_csv()) ++rows[row.at(3)];
+  for (const char* mode : {"constant", "slope", "plane", "normal-offset", "polygon-offset"}) EXPECT_EQ(rows[mode], 3 * 8) << mode;
+  EXPECT_EQ(rows["receiver-plane"], 2 * 8);  // VSM reads a prefiltered map
+  for (const char* mode : {"front-cull", "midpoint"}) EXPECT_EQ(rows[mode], 3) << mode;
+  const std::string page = read_text(folder() / "out" / "bias.html");
+  EXPECT_THAT(page, HasSubstr("Left out: vsm"));
+  for (const auto& [mode, count] : rows) {
+    if (mode == "mode") continue;
+    EXPECT_THAT(page, HasSubstr("bias." + mode + ".png"));
+    EXPECT_GT(report::read_picture(folder() / "out" / ("bias." + mode + ".png")).width, 160) << mode;
+  }
+}
+
+TEST_F(BiasCommand, Acne_IsThereWithoutBias_AndGoesWithTheTheoreticalAmount) {
+  ASSERT_EQ(run("bias --out out --size 160x90 --map-size 128 --filters none,tent3x3").exit_code, 0);
+  for (const char* mode : {"constant", "slope", "plane", "normal-offset", "polygon-offset"}) {
+    for (const char* filter : {"none", "tent3x3"}) {
+      SCOPED_TRACE(std::string(mode) + " " + filter);
+      EXPECT_GT(std::stod(acne(mode, filter, "0")), 0.1);
+      EXPECT_LT(std::stod(acne(mode, filter, "1")), 0.05);  // the 95th percentile's amount
+    }
+  }
+}
+
+TEST_F(BiasCommand, BadInput_IsRefused) {
+  expect_refusal("bias --out out --scene stepz", 2, {"'stepz'", "steps"});
+  expect_refusal("bias --out out --scene no/such.toml", 3, {"no/such.toml"});
+  expect_refusal("bias --out out --filters tent3", 2, {"'tent3'", "tent3x3"});
+  expect_refusal("bias --out out --filters none,none", 2, {"names 'none' twice"});
+  expect_refusal("bias --out out --map-size 0", 2, {"--map-size", "'0'"});
+  expect_refusal("bias --out out --size 12", 2, {"--size", "'12'"});
+  expect_refusal("bias --out out --size 8x8 --map-size 64 --filters none", 3, {"wholly lit", "100 are needed", "--size"});
+  write("file", "");
+  expect_refusal("bias --out file/out --size 64x36 --map-size 64", 6, {"file"});
+}
+
+}  // namespace
+}  // namespace shadowbench::test
