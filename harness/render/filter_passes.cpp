@@ -20,10 +20,14 @@ Defines map_defines(const filters::FilterRequest& request, const MapSettings& ma
 
 }  // namespace
 
-FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
-                           const LightSetup& light, const MapSettings& map)
-    : request_(request), light_(light), map_size_(map_size), map_defines_(map_defines(request, map)), lookup_(compile_lookup(shaders, {})) {
-  if (request.spec.has_encode) prefilter_.emplace(shaders, request, map_size, light, map_defines_);
+FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, const ShadowMap& map,
+                           const LightSetup& light)
+    : request_(request),
+      light_(light),
+      map_size_(map.size()),
+      map_defines_(map_defines(request, map.settings())),
+      lookup_(compile_lookup(shaders, {})) {
+  if (request.spec.has_encode) prefilter_.emplace(shaders, request, map_size_, light, map_defines_);
 }
 
 gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, Defines defines) const {

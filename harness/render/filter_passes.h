@@ -22,11 +22,11 @@ struct FilterCost {
 class FilterPasses {
  public:
   /// Compiles what this filter needs, and nothing else.
-  /// `map` says how the depth maps that it will read store depth.
+  /// `map` says how large the maps are that it will read, and how they store depth; it need not outlive this object.
   /// Throws Error(kFilter) with the line of the filter's file, Error(kUsage) where it reads the samplers of a reversed map
   /// itself and would take depth for its opposite.
-  FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size, const LightSetup& light,
-               const MapSettings& map = {});
+  FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, const ShadowMap& map,
+               const LightSetup& light);
 
   bool has_prefilter() const { return prefilter_.has_value(); }
   int prefilter_passes() const { return prefilter_ ? prefilter_->passes() : 0; }  ///< encode and blur

@@ -143,7 +143,7 @@ class BiasSweep {
       assets_.redraw(light_);
     }
     const render::Bias bias = resolve_bias(rule, light_.frustum, request.spec, request.values);
-    render::FilterPasses filter(renderer_.shaders, request, options_.map_sizes.front(), make_light(bias));
+    render::FilterPasses filter(renderer_.shaders, request, light_.map, make_light(bias));
     filter.prefilter(light_.map);
     filter.lookup(assets_.gbuffer(camera()), light_.map, target_);
     return render::read_image(target_.texture(), 1);

@@ -48,7 +48,7 @@ class TilePainter {
     const auto light =
         render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed, variant.rule);
     light_.map.set_border(variant.rule.border);
-    render::FilterPasses passes(renderer_.shaders, request, task_.map_size, light);
+    render::FilterPasses passes(renderer_.shaders, request, light_.map, light);
     passes.prefilter(light_.map);
     passes.lookup(gbuffer_, light_.map, target_);
     report::GridTile tile;

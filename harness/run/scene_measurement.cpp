@@ -66,7 +66,7 @@ class SceneBench {
   std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request) {
     const render::Bias bias = resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
     const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed, options_.range);
-    return std::make_unique<render::FilterPasses>(renderer_.shaders, request, task_.map_size, light, options_.map);
+    return std::make_unique<render::FilterPasses>(renderer_.shaders, request, light_.map, light);
   }
 
   MeasuredCell draw(render::FilterPasses& filter) {

@@ -37,7 +37,7 @@ class LookupBench {
       for (const run::BiasRule& rule : rules) {
         const auto bias = run::resolve_bias(rule, frustum_, request.spec, request.values);
         const auto light = render::make_light_setup(frustum_, scene_.light, bias, 1);
-        filters_.push_back(std::make_unique<render::FilterPasses>(shaders_, request, kMapSize, light));
+        filters_.push_back(std::make_unique<render::FilterPasses>(shaders_, request, map_, light));
       }
     }
   }

@@ -296,6 +296,15 @@ TEST_F(Command, BorderPage_IsDrawnWhereAskedFor_AndLeavesTheNextViewAsItWas) {
   EXPECT_EQ(picture(), without);
 }
 
+TEST_F(Command, BorderPage_OfAReversedMap_IsTheSame) {
+  const std::string arguments = " --size 160x90 --map-size 128 --rounds 1 --scene edge --filters none --no-truth --border-page";
+  ASSERT_EQ(run("run --out usual" + arguments).exit_code, 0);
+  ASSERT_EQ(run("run --out reversed --reversed-depth" + arguments).exit_code, 0);
+  const Outcome outcome = run("diff usual/edge.borders.png reversed/edge.borders.png --metric rmse --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_LT(nlohmann::json::parse(outcome.out)["rmse"], 0.01);
+}
+
 TEST_F(Command, ListScenes_NamesTeachingScenesApart) {
   const std::string out = run("list scenes").out;
   const std::size_t heading = out.find("For teaching");

@@ -50,7 +50,7 @@ class Bench {
 
   /// Gives visibility as the GL wrote it: rows bottom to top, like Receiver::pixel.
   std::vector<float> draw(const filters::FilterRequest& request, const run::BiasRule& rule = {}) {
-    render::FilterPasses filter(shaders_, request, map_.size(), light(request, rule), map_.settings());
+    render::FilterPasses filter(shaders_, request, map_, light(request, rule));
     filter.prefilter(map_);
     filter.lookup(gbuffer_, map_, target_);
     std::vector<float> visibility = target_.texture().read_floats(1);

@@ -116,7 +116,7 @@ TEST_P(Contract, FetchCount_IsKnownUnlessTheFilterReadsSamplers) {
   const scene::Scene scene = load_builtin("cubes");
   Bench bench(shared_context(), scene, 64, 64, 36);
   const FilterRequest request = request_of(GetParam());
-  render::FilterPasses passes(bench.shaders(), request, 64, bench.light(request));
+  render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
   const render::FilterCost cost = passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map());
   EXPECT_EQ(cost.fetches.has_value(), !request.spec.uses_samplers);
@@ -131,7 +131,7 @@ double fetches_of(const std::string& text) {
   const scene::Scene scene = load_builtin("cubes");
   Bench bench(shared_context(), scene, 64, 64, 36);
   const FilterRequest request = request_of(text);
-  render::FilterPasses passes(bench.shaders(), request, 64, bench.light(request));
+  render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
   return *passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map()).fetches;
 }
@@ -152,7 +152,7 @@ TEST(Prefilter, WithoutEncode_CompilesAndRunsNothing) {
   Bench bench(shared_context(), scene, 64, 64, 36);
   const int before = bench.shaders().compiled();
   const FilterRequest request = request_of("none");
-  const render::FilterPasses passes(bench.shaders(), request, 64, bench.light(request));
+  const render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   EXPECT_EQ(bench.shaders().compiled() - before, 1);
   EXPECT_FALSE(passes.has_prefilter());
 }

@@ -16,7 +16,7 @@ double mib_with_mips(const std::string& filter, int size) {
   const scene::Scene scene = load_builtin("cubes");
   Bench bench(shared_context(), scene, size, 16, 9);
   const filters::FilterRequest request = catalogue().parse_requests(filter).front();
-  render::FilterPasses passes(bench.shaders(), request, size, bench.light(request));
+  render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
   const std::int64_t bytes_per_texel = passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map()).bytes_per_texel;
   std::int64_t bytes = 0;

@@ -69,7 +69,7 @@ class ProjectiveRange : public ::testing::Test {
     filters::Catalogue catalogue(run::find_resources().filters);
     catalogue.add_user_file(SHADOWBENCH_SOURCE_DIR "/tests/user_filters/clamped_reference.glsl");
     map_.set_border(rule.border);
-    render::FilterPasses passes(shaders_, catalogue.parse_requests(filter).front(), 256, light(rule));
+    render::FilterPasses passes(shaders_, catalogue.parse_requests(filter).front(), map_, light(rule));
     render::ImageTarget target("visibility", GL_R32F, kSide, kSide);
     passes.lookup(gbuffer_, map_, target);
     context_.require_no_gl_errors();
@@ -77,7 +77,7 @@ class ProjectiveRange : public ::testing::Test {
   }
 
   render::LightSetup light(const RangeRule& rule) const {
-    return render::make_light_setup(make_frustum(), scene_.light, {1e-4, 0.0, 0.0, 10.0}, 7, rule);
+    return render::make_light_setup(make_frustum(), scene_.light, {.constant_depth = 1e-4}, 7, rule);
   }
 
   /// Visibility at a point of the picture, in metres.

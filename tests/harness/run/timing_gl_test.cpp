@@ -13,7 +13,7 @@ TEST(Timing, TwiceTheTaps_TakeLonger) {
   std::vector<std::unique_ptr<render::FilterPasses>> filters;
   std::vector<render::FilterPasses*> pointers;
   for (const auto& request : requests) {
-    filters.push_back(std::make_unique<render::FilterPasses>(bench.shaders(), request, 512, bench.light(request)));
+    filters.push_back(std::make_unique<render::FilterPasses>(bench.shaders(), request, bench.map(), bench.light(request)));
     pointers.push_back(filters.back().get());
   }
   const gl::TimerKind timer = gl::choose_timer(shared_context());
