@@ -5,7 +5,6 @@
 
 #include "filters/kernel.h"
 #include "filters/map_reader.h"
-#include "filters/model.h"
 
 namespace shadowbench::filters {
 

@@ -1,4 +1,3 @@
-#include "reference/metrics/artefacts.h"
 #include "report/accuracy_words.h"
 
 #include <fmt/format.h>
@@ -9,6 +8,8 @@
 #include <map>
 #include <numeric>
 #include <utility>
+
+#include "reference/metrics/artefacts.h"
 
 namespace shadowbench::report {
 namespace {

@@ -5,13 +5,13 @@
 #include <optional>
 #include <string>
 
+#include "reference/metrics/attribution.h"
 #include "report/records.h"
 #include "report/text.h"
 
 namespace shadowbench::report {
 
-/// How many parts an error is the sum of.
-inline constexpr std::size_t kErrorParts = 4;
+using reference::kErrorParts;
 
 /// Describes one of the parts that an error is the sum of.
 struct ErrorPart {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <functional>
 
+#include "reference/metrics/artefacts.h"
 #include "report/error_parts.h"
 #include "report/json_values.h"
 #include "report/summary.h"
-#include "reference/metrics/artefacts.h"
 #include "report/text_tables.h"
 
 namespace shadowbench::report {

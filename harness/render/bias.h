@@ -11,6 +11,8 @@ struct Bias {
   double normal_offset_texels = 0.0;  ///< along the normal, texels times the sine of the angle to the light
   bool receiver_plane = false;        ///< every tap is compared with the receiver plane's depth there, not here
   double max_tangent = 10.0;          ///< planes steeper than this towards the light are biased as this one
+
+  bool operator==(const Bias&) const = default;
 };
 
 /// Says what is drawn into the depth map instead of the surfaces that light meets first.

@@ -44,9 +44,7 @@ class BiasSweep {
         cache_(options.cache, [&progress](const std::string& message) { progress.note("warning: " + message); }),
         assets_(renderer_, options_, scene_, cache_, largest_padding_texels(options.filters)),
         light_(assets_.light_map(scene_.cameras.front(), options.map_sizes.front())),
-        target_("visibility", GL_R32F, options.width, options.height) {
-    options_.bias = BiasRule::none();
-  }
+        target_("visibility", GL_R32F, options.width, options.height) {}
 
   void run() {
     report::AtomicFile(options_.out / "bias.csv").write("");  // a folder that cannot be written is better found now
@@ -63,7 +61,7 @@ class BiasSweep {
   }
 
  private:
-  RunOptions options_;  ///< whose bias is that of the image being drawn: the assets draw their map with it
+  const RunOptions& options_;
   Progress& progress_;
   scene::Scene scene_;
   Renderer renderer_;
@@ -71,6 +69,7 @@ class BiasSweep {
   SceneAssets assets_;
   LightMap& light_;
   render::ImageTarget target_;
+  render::MapBias drawn_;  ///< what the map holds
   reference::ArtefactMasks masks_;
   std::vector<filters::Receiver> lit_;  ///< those of the acne mask
   report::BiasSweepRecord record_;
@@ -138,9 +137,9 @@ class BiasSweep {
   }
 
   report::Image draw(const filters::FilterRequest& request, const BiasRule& rule) {
-    if (options_.bias.map != rule.map) {
-      options_.bias = rule;
-      assets_.redraw(light_);
+    if (drawn_ != rule.map) {
+      drawn_ = rule.map;
+      assets_.redraw(light_, drawn_);
     }
     const render::Bias bias = resolve_bias(rule, light_.frustum, request.spec, request.values);
     render::FilterPasses filter(renderer_.shaders, request, light_.map, make_light(bias));

@@ -9,6 +9,7 @@
 #include "harness/run/model_images.h"
 #include "reference/metrics/attribution.h"
 #include "reference/metrics/error_stats.h"
+#include "report/error_parts.h"
 
 namespace shadowbench::run {
 namespace {
@@ -29,10 +30,9 @@ void note(report::CellRecord& record, const char* field, std::optional<double>& 
 std::string too_few(const char* which) { return fmt::format("fewer than {} receivers {}", reference::kFewestReceivers, which); }
 
 void note_parts(report::CellRecord& record, const reference::Attribution& attribution) {
-  report::AttributionRecord& to = record.attribution;
-  const std::array<report::AttributionPart*, reference::kErrorParts> parts = {&to.numeric, &to.estimator, &to.discretisation, &to.model};
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    if (attribution.stats[p]) *parts[p] = {attribution.stats[p]->rms, attribution.stats[p]->share};
+  for (std::size_t p = 0; p < reference::kErrorParts; ++p) {
+    if (!attribution.stats[p]) continue;
+    record.attribution.*report::list_error_parts()[p].record = {attribution.stats[p]->rms, attribution.stats[p]->share};
   }
   if (attribution.stats.front()) return;
   record.absent["attribution"] = attribution.not_finite > 0 ? "no pixel of the image is finite" : "there is no error to take apart";
@@ -103,9 +103,10 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
     return;
   }
   if (!map_) map_ = light_.map.read();
-  const ModelReceivers receivers = {
-      read_receivers(resolve_bias(options_.bias, light_.frustum, request.spec, request.values)),
-      read_receivers(resolve_comparison_bias(options_.bias, light_.frustum, request.spec, request.values))};
+  const render::Bias own = resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
+  const render::Bias comparison = resolve_comparison_bias(options_.bias, light_.frustum, request.spec, request.values);
+  ModelReceivers receivers{read_receivers(own), {}};
+  receivers.closer = own == comparison ? receivers.filter : read_receivers(comparison);
   const double plane_max_tangent = options_.bias.receiver_plane ? options_.bias.max_tangent : 0.0;
   const ModelImages images = evaluate_model(request, *map_, receivers, plane_max_tangent, options_.seed, options_.width,
                                              options_.height);

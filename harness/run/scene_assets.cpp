@@ -34,7 +34,9 @@ LightMap& SceneAssets::light_map(const scene::Camera& camera, int map_size) {
   return kept;
 }
 
-void SceneAssets::redraw(LightMap& light) { light.map.draw(renderer_.shaders, geometry_, light.frustum, options_.bias.map); }
+void SceneAssets::redraw(LightMap& light, const render::MapBias& bias) {
+  light.map.draw(renderer_.shaders, geometry_, light.frustum, bias);
+}
 
 void SceneAssets::require_casters(const LightMap& light) const {
   if (!options_.bias.map.cull_front) return;

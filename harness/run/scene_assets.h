@@ -39,7 +39,10 @@ class SceneAssets {
   SceneTracer& tracer() { return tracer_; }
 
   /// Draws a map again, as a moving light would; for timing.
-  void redraw(LightMap& light);
+  void redraw(LightMap& light) { redraw(light, options_.bias.map); }
+
+  /// Draws a map again with another bias in it.
+  void redraw(LightMap& light, const render::MapBias& bias);
 
  private:
   Renderer& renderer_;

@@ -100,7 +100,12 @@ reference::TracedVisibility from_parts(const std::vector<report::Part>& parts) {
 reference::Occluders make_occluders(const scene::Scene& scene) { return reference::Occluders(list_occluders(scene)); }
 
 SceneTracer::SceneTracer(const scene::Scene& scene, TruthCache& cache, std::uint32_t seed)
-    : scene_(scene), cache_(cache), seed_(seed), geometry_(name_geometry(list_occluders(scene))) {}
+    : scene_(scene), cache_(cache), seed_(seed) {}
+
+const std::string& SceneTracer::geometry() {
+  if (geometry_.empty()) geometry_ = name_geometry(list_occluders(scene_));
+  return geometry_;
+}
 
 const reference::Occluders& SceneTracer::occluders() {
   if (!occluders_) occluders_.emplace(make_occluders(scene_));
@@ -118,7 +123,7 @@ std::vector<report::Part> SceneTracer::find_or_trace(const ViewReceivers& receiv
                                                      const std::function<std::vector<report::Part>()>& trace) {
   ContentHash hash;
   const reference::TraceSettings s = settings();
-  for (const std::string& text : {geometry_, receivers.content, what,
+  for (const std::string& text : {geometry(), receivers.content, what,
                                   fmt::format("{} {} {}", s.standard_error, s.max_points, s.seed)}) {
     hash.add(text);
   }
@@ -158,6 +163,7 @@ reference::TracedVisibility SceneTracer::trace_surroundings(const ViewReceivers&
   return from_parts(find_or_trace(receivers, fmt::format("square {} {}", half_width_texels, name_grid(grid)), kTracedParts, [&] {
     reference::TraceSettings rough = settings();
     rough.standard_error = 1.0;
+    rough.max_points = 16;  // none is asked for more
     return to_parts(receivers.image, reference::trace_square(occluders(), receivers.image, half_width_texels, grid, rough));
   }));
 }

@@ -45,9 +45,10 @@ class SceneTracer {
   const scene::Scene& scene_;
   TruthCache& cache_;
   std::uint32_t seed_;
-  std::string geometry_;  ///< names all occluders and the code that traces
+  std::string geometry_;  ///< names all occluders and the code that traces; empty until something is traced
   std::optional<reference::Occluders> occluders_;
 
+  const std::string& geometry();
   const reference::Occluders& occluders();
   reference::TraceSettings settings() const;
 

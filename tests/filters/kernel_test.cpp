@@ -10,6 +10,7 @@
 #include <set>
 
 #include "filters/catalogue.h"
+#include "filters/model.h"
 #include "filters/percentage_closer.h"
 
 namespace shadowbench::filters {
