@@ -23,7 +23,7 @@ class Box4x4 {
       return map_.mix(map_.compare_2x2(r, {x.low, offset}, r.depth, tally),
                       map_.compare_2x2(r, {x.high, offset}, r.depth, tally), x.share);
     };
-    return map_.mix(row(y.low), row(y.high), y.share) + make_uncertain_zero<T>(bound_placement());
+    return map_.mix(row(y.low), row(y.high), y.share) + make_uncertain<T>(0, bound_placement());
   }
 
  private:

@@ -7,13 +7,12 @@
 namespace shadowbench::filters {
 
 double depth_of_distance(double distance_m, const DepthPlanes& planes, bool reversed) {
-  const double n = planes.near_m, f = planes.far_m;
-  return (reversed ? n * (f - distance_m) : f * (distance_m - n)) / ((f - n) * distance_m);
+  return DepthCurve{reversed, planes.far_m / planes.near_m}.store((distance_m - planes.near_m) / (planes.far_m - planes.near_m));
 }
 
 double distance_of_depth(double depth, const DepthPlanes& planes, bool reversed) {
-  const double n = planes.near_m, f = planes.far_m;
-  return n * f / (reversed ? n + depth * (f - n) : f - depth * (f - n));
+  const double z = DepthCurve{reversed, planes.far_m / planes.near_m}.linear(depth);
+  return planes.near_m + z * (planes.far_m - planes.near_m);
 }
 
 double depth_quantum(double depth, const DepthFormat& format) {
@@ -23,10 +22,14 @@ double depth_quantum(double depth, const DepthFormat& format) {
   return std::exp2(std::floor(std::log2(size)) - 23.0);
 }
 
+double depth_step(double depth, const DepthCurve& curve, const DepthFormat& format) {
+  const double ratio = curve.far_over_near, distance = 1.0 + (ratio - 1.0) * depth;  // in units of the near plane's
+  return distance * distance / ratio * depth_quantum(curve.store(depth), format);
+}
+
 double distance_step(double distance_m, const DepthPlanes& planes, const DepthFormat& format, bool reversed) {
-  const double n = planes.near_m, f = planes.far_m;
-  const double depth = depth_of_distance(distance_m, planes, reversed);
-  return distance_m * distance_m * (f - n) / (n * f) * depth_quantum(depth, format);
+  const double range_m = planes.far_m - planes.near_m;
+  return range_m * depth_step((distance_m - planes.near_m) / range_m, {reversed, planes.far_m / planes.near_m}, format);
 }
 
 }  // namespace shadowbench::filters

@@ -2,6 +2,40 @@
 
 namespace shadowbench::filters {
 
+/// How a map stores depth. Filters see linear depth z in [0,1], 0 near; the map may hold what a perspective projection
+/// whose far plane is `far_over_near` = R times as far as its near plane makes of the same distances,
+/// R z / (1 + (R - 1) z), and may hold one less that. The same in shaders/lib/depth_curve.glsl.
+struct DepthCurve {
+  bool reversed = false;
+  double far_over_near = 1.0;  ///< 1: linear
+
+  bool is_linear() const { return far_over_near == 1.0; }
+
+  /// Gives what a map stores for a depth. Depth before the near plane counts as on it where the curve is not linear.
+  template <class T>
+  T store(T z) const {
+    if (is_linear()) return reversed ? T(1) - z : z;
+    const T ratio = static_cast<T>(far_over_near);
+    if (z < T(0)) z = T(0);
+    return (reversed ? T(1) - z : ratio * z) / (T(1) + (ratio - T(1)) * z);
+  }
+
+  /// Gives the depth that a stored value stands for; the inverse of store().
+  template <class T>
+  T linear(T stored) const {
+    if (is_linear()) return reversed ? T(1) - stored : stored;
+    const T ratio = static_cast<T>(far_over_near);
+    const T away = reversed ? stored : T(1) - stored;
+    return (T(1) - away) / (T(1) + (ratio - T(1)) * away);
+  }
+
+  /// Gives what a cleared map holds: the far plane.
+  float far_plane() const { return reversed ? 0.0f : 1.0f; }
+
+  /// Says whether a stored reference is lit by a stored depth; ties are.
+  bool is_lit(float reference, float stored) const { return reversed ? reference >= stored : reference <= stored; }
+};
+
 /// The planes between which a perspective projection has depth; metres, 0 < near < far.
 struct DepthPlanes {
   double near_m = 0.1;
@@ -26,8 +60,11 @@ struct DepthFormat {
 /// significant bits.
 double depth_quantum(double depth, const DepthFormat& format);
 
-/// Gives by how much two points at a distance must differ for a format to tell them apart:
-/// d^2 (f - n) / (n f) times the format's quantum at the depth that is stored.
+/// Gives by how much two depths must differ at a depth for a format to tell them apart: (1 + (R - 1) z)^2 / R times the
+/// format's quantum at what is stored.
+double depth_step(double depth, const DepthCurve& curve, const DepthFormat& format);
+
+/// Gives the same in metres at a distance: d^2 (f - n) / (n f) times the quantum.
 double distance_step(double distance_m, const DepthPlanes& planes, const DepthFormat& format, bool reversed);
 
 }  // namespace shadowbench::filters

@@ -29,8 +29,11 @@ class EncodedMap {
         log_(is_log(input.values)),
         nearest_(is_nearest(input.values)) {
     border_ = stored(encode(T(Position<T>(1))));
-    texels_.reserve(input.map.depth.size());
-    for (const float depth : input.map.depth) texels_.push_back(stored(encode(T(static_cast<Position<T>>(depth)))));
+    texels_.reserve(input.map.stored.size());
+    for (const float in_map : input.map.stored) {
+      const float depth = input.map.curve.linear(in_map);
+      texels_.push_back(stored(encode(make_uncertain<T>(static_cast<Position<T>>(depth), linear_rounding(depth, input.map.curve)))));
+    }
     if (radius_texels == 0) return;
     texels_ = blurred(gaussian_weights(radius_texels), 1, 0);
     texels_ = blurred(gaussian_weights(radius_texels), 0, 1);
@@ -59,6 +62,13 @@ class EncodedMap {
   }
 
  private:
+  /// How far off single precision may be that linearises a depth: a stored value that is read one ULP off, and the division.
+  static double linear_rounding(float depth, const DepthCurve& curve) {
+    if (std::is_same_v<T, float> || curve.is_linear()) return 0.0;
+    const auto z = static_cast<double>(depth);
+    return depth_step(z, curve, {}) + 4.0 * kUnitRoundoff * z;
+  }
+
   TexelGrid<T> grid_;
   GlAccuracy accuracy_;
   StorePrecision store_;

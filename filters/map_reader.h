@@ -104,11 +104,9 @@ class DepthReader {
   using P = Position<T>;
   explicit DepthReader(const ModelInput& input)
       : grid_(input.map.size, input.map.border),
-        depth_(&input.map.depth),
+        map_(&input.map),
         accuracy_(input.accuracy),
-        plane_(input.plane_max_tangent),
-        clamps_(input.map.clamps_reference),
-        tie_(input.map.tie) {}
+        plane_(input.plane_max_tangent) {}
 
   const TexelGrid<T>& grid() const { return grid_; }
 
@@ -136,31 +134,21 @@ class DepthReader {
   float fetch_depth(const Receiver& r, Offset<T> offset, Tally& tally) const {
     const int x = grid_.nearest(grid_.position(r.uv.x, offset.x), tally);
     const int y = grid_.nearest(grid_.position(r.uv.y, offset.y), tally);
-    return stored(x, y);
+    return map_->curve.linear(map_->at(grid_.find(x, y)));
   }
 
   static T mix(T a, T b, T s) { return a + s * (b - a); }
 
  private:
   TexelGrid<T> grid_;
-  const std::vector<float>* depth_;
+  const DepthMap* map_;
   GlAccuracy accuracy_;
   PlaneBias plane_;
-  bool clamps_;
-  float tie_;
 
-  float stored(int x, int y) const {
-    const std::optional<std::size_t> texel = grid_.find(x, y);
-    return texel ? (*depth_)[*texel] : 1.0f;
-  }
-
-  /// Ties are lit (LEQUAL).
   int compare(int x, int y, float z, Tally& tally) const {
-    const float depth = stored(x, y);
-    if (clamps_) z = std::clamp(z, 0.0f, 1.0f);
-    const float ulp = std::nextafter(std::abs(z), 2.0f * std::abs(z) + 1.0f) - std::abs(z);
-    if (std::abs(z - depth) <= std::max(ulp, tie_)) tally.excused = true;
-    return z <= depth ? 1 : 0;
+    const float stored = map_->at(grid_.find(x, y));
+    if (map_->is_tie(z, stored)) tally.excused = true;
+    return map_->is_lit(z, stored) ? 1 : 0;
   }
 };
 

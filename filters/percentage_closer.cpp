@@ -81,8 +81,7 @@ PercentageCloser::PercentageCloser(const Kernel& kernel, const DepthMap& map, do
 
 bool PercentageCloser::is_lit(int x, int y, const Receiver& receiver) const {
   const float depth = plane_.depth(receiver, grid_.size(), {x + 0.5, y + 0.5}, 0.0, receiver.depth);
-  const std::optional<std::size_t> texel = grid_.find(x, y);
-  return map_.reference(depth) <= (texel ? map_.depth[*texel] : 1.0f);
+  return map_.is_lit(depth, map_.at(grid_.find(x, y)));
 }
 
 /// `position` in texels, texel centres at .5.

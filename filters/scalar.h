@@ -48,11 +48,11 @@ T logarithm(T x) {
   }
 }
 
-/// Gives zero, and lets single precision be off by `bound`: errors of positions, which are not tracked themselves.
+/// Gives a value, and lets single precision be off by `bound`: errors of what is not tracked itself, such as positions.
 template <class T>
-T make_uncertain_zero([[maybe_unused]] double bound) {
-  if constexpr (std::is_same_v<T, Tracked>) return Tracked(0.0, bound);
-  else return T{};
+T make_uncertain(Position<T> value, [[maybe_unused]] double bound) {
+  if constexpr (std::is_same_v<T, Tracked>) return Tracked(value, bound);
+  else return value;
 }
 
 /// Gives the fraction of a texel position as the filtering weight that the sampler would use.

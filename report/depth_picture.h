@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "filters/depth_curve.h"
 #include "report/image.h"
 
 namespace shadowbench::report {
@@ -13,21 +14,22 @@ namespace shadowbench::report {
 struct DepthPicture {
   std::string title;
   std::string note;
-  Image depth;                ///< one channel, [0,1], 0 near, row 0 on top; 1: nothing was drawn
-  double range_m = 0.0;       ///< metres from depth 0 to depth 1, where depth is linear
+  Image stored;                ///< one channel, [0,1], row 0 on top; the curve's far plane: nothing was drawn
+  filters::DepthCurve curve;   ///< says what depth a stored value stands for
+  double range_m = 0.0;        ///< metres from depth 0 to depth 1
 };
 
 /// How often depths occur.
 struct DepthHistogram {
   std::vector<std::int64_t> counts;  ///< of texels, in equal bins over [0,1]
-  std::int64_t empty = 0;            ///< texels of depth 1, in no bin
+  std::int64_t empty = 0;            ///< texels that hold `far_plane`, in no bin
 };
 
 /// Counts depths. Requires one channel and at least one bin; depths outside [0,1] go to the nearest bin.
-DepthHistogram count_depths(const Image& depth, int bins);
+DepthHistogram count_depths(const Image& depth, int bins, float far_plane = 1.0f);
 
-/// Draws a linear depth map, stretched over the depths that occur, with its histogram below: texels per bin on a
-/// logarithmic axis, over depth and over metres. Display values.
+/// Draws a depth map as it is stored and, where that is not linear depth, linearised beside it: each stretched over the
+/// values that occur, with its histogram below, texels per bin on a logarithmic axis over value and metres. Display values.
 /// Throws Error(kOutput) where the font is not installed.
 Image draw_depth_picture(const DepthPicture& picture);
 

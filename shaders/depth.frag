@@ -1,20 +1,30 @@
 // Depth only; cut-out surfaces leave holes.
 #include "lib/material.glsl"
+#include "lib/depth_curve.glsl"
 in vec2 v_surface_uv;
 #ifdef BEHIND_FIRST
 layout(binding = 0) uniform sampler2D first_surface;
 const float same_surface = 1e-6;  // two triangles that share an edge differ by rounding
 #endif
 
+// A perspective map is drawn with linear depth, which is bent here; a reversed one is reversed by the projection.
+float own_depth() {
+#ifdef PERSPECTIVE_DEPTH
+  return gl_FragCoord.z;
+#else
+  return linear_depth(gl_FragCoord.z);
+#endif
+}
+
 void main() {
 #ifdef BEHIND_FIRST
-  float behind = gl_FragCoord.z - texelFetch(first_surface, ivec2(gl_FragCoord.xy), 0).r;
-#ifdef REVERSED_DEPTH
-  behind = -behind;
-#endif
+  float behind = own_depth() - linear_depth(texelFetch(first_surface, ivec2(gl_FragCoord.xy), 0).r);
   if (behind <= same_surface) discard;
 #endif
 #ifdef ALPHA_MASK
   surface_color(v_surface_uv);
+#endif
+#ifdef PERSPECTIVE_DEPTH
+  gl_FragDepth = store_depth(own_depth());
 #endif
 }

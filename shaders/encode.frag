@@ -13,7 +13,7 @@ layout(location = 0) out vec4 out_stored;
 // One-sided differences meet silhouettes on one side only: the smaller one stays on the surface.
 float smaller(float a, float b) { return abs(a) < abs(b) ? a : b; }
 
-float depth_at(ivec2 texel) { return turn_depth(texelFetch(map_depth, texel, 0).r); }
+float depth_at(ivec2 texel) { return linear_depth(texelFetch(map_depth, texel, 0).r); }
 
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);

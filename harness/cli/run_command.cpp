@@ -20,6 +20,8 @@
 namespace shadowbench::cli {
 namespace {
 
+constexpr double kLargestDepthRatio = 1e7;
+
 /// The command line as text; parsed and checked before anything is made.
 struct RunArguments {
   std::vector<std::string> scenes;
@@ -33,6 +35,7 @@ struct RunArguments {
   std::string snap = "off";
   std::string map_format = "d32f";
   bool reversed_depth = false;
+  std::optional<double> perspective_depth;
   std::string light;
   std::string border = "border";
   std::string far_test = "on";
@@ -90,6 +93,11 @@ void check(const RunArguments& arguments) {
   if (!(arguments.cell_timeout_s > 0.0 && arguments.cell_timeout_s <= 86400.0)) {
     fail(fmt::format("--cell-timeout: {} is out of range: choose more than 0, at most 86400 seconds", arguments.cell_timeout_s));
   }
+  // Above, single precision cannot tell the ratio from the ratio less 1, by which depth is linearised.
+  const double ratio = arguments.perspective_depth.value_or(2.0);
+  if (!(ratio > 1.0 && ratio <= kLargestDepthRatio)) {
+    fail(fmt::format("--perspective-depth: {} is out of range: choose far over near, more than 1, at most {:g}", ratio, kLargestDepthRatio));
+  }
 }
 
 double parse_angle(const std::string& text, const char* name, double limit_deg) {
@@ -108,7 +116,7 @@ run::LightAngles parse_light(const std::string& text) {
 }
 
 void set_map_and_light(run::RunOptions& options, const RunArguments& arguments) {
-  options.map = {gl::parse_depth_format(arguments.map_format).internal_format, arguments.reversed_depth};
+  options.map = {gl::parse_depth_format(arguments.map_format).internal_format, {arguments.reversed_depth, arguments.perspective_depth.value_or(1.0)}};
   options.fit = scene::parse_fit_mode(arguments.fit);
   options.snap = arguments.snap == "on";
   if (!arguments.light.empty()) options.light = parse_light(arguments.light);
@@ -126,6 +134,7 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   set_map_and_light(options, arguments);
   options.bias = run::parse_bias(arguments.bias);
   options.bias_texts = arguments.bias;
+  run::require_drawable(options.bias, options.map);
   for (const filters::FilterRequest& request : options.filters) run::require_usable(options.bias, request.spec);
   options.range = {filters::parse_border(arguments.border), arguments.far_test == "on", arguments.behind_test == "on"};
   options.border_page = arguments.border_page;
@@ -162,6 +171,7 @@ void add_scene_options(CLI::App& command, RunArguments& a) {
   command.add_option("--size", a.size, "picture size in pixels, WIDTHxHEIGHT")->capture_default_str();
   command.add_option("--map-format", a.map_format, "how the map stores depth: d16, d24 or d32f")->capture_default_str();
   command.add_flag("--reversed-depth", a.reversed_depth, "store 1 - depth; filters see depth as ever");
+  command.add_option("--perspective-depth", a.perspective_depth, "store depth as a perspective projection does whose far plane is so many times as far as its near plane; filters see linear depth as ever");
   command.add_option("--fit", a.fit, "light frustum: 'tight' around casters and receivers, 'sphere', stable under rotation, or 'view', "
                      "what the camera sees and the casters before it")->capture_default_str();
   command.add_option("--snap", a.snap, "keep the map's texels fixed in the world while a 'view' moves: on or off")

@@ -9,13 +9,11 @@ namespace shadowbench::render {
 namespace {
 
 Defines map_defines(const filters::FilterRequest& request, const MapSettings& map) {
-  if (!map.reversed) return {};
-  if (request.spec.uses_samplers) {
-    throw Error(ErrorKind::kUsage, fmt::format("--reversed-depth: the filter '{}' reads the map's samplers itself, which "
-                                               "hold 1 - depth then; let it use compare_nearest, compare_2x2 or fetch_depth",
-                                               request.spec.id));
-  }
-  return {{"REVERSED_DEPTH", "1"}};
+  Defines defines = curve_defines(map.curve);
+  if (defines.empty() || !request.spec.uses_samplers) return defines;
+  throw Error(ErrorKind::kUsage, fmt::format("{}: the filter '{}' reads the map's samplers itself, which do not hold "
+                                             "linear depth then; let it use compare_nearest, compare_2x2 or fetch_depth",
+                                             map.curve.reversed ? "--reversed-depth" : "--perspective-depth", request.spec.id));
 }
 
 }  // namespace

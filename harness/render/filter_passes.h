@@ -23,8 +23,8 @@ class FilterPasses {
  public:
   /// Compiles what this filter needs, and nothing else.
   /// `map` says how large the maps are that it will read, and how they store depth; it need not outlive this object.
-  /// Throws Error(kFilter) with the line of the filter's file, Error(kUsage) where it reads the samplers of a reversed map
-  /// itself and would take depth for its opposite.
+  /// Throws Error(kFilter) with the line of the filter's file, Error(kUsage) where it reads the samplers itself
+  /// and would take what the map's curve makes of depth for depth.
   FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, const ShadowMap& map,
                const LightSetup& light);
 

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <limits>
+#include <algorithm>
+#include <cassert>
 
 #include "filters/error.h"
 #include "harness/gl/fullscreen.h"
@@ -22,7 +23,27 @@ glm::dmat4 reverse_depth(glm::dmat4 clip) {
 }  // namespace
 
 std::string describe_map(const MapSettings& settings) {
-  return fmt::format("{}{}", gl::pixel_format(settings.format).name, settings.reversed ? " reversed" : "");
+  std::string text(gl::pixel_format(settings.format).name);
+  if (!settings.curve.is_linear()) text += fmt::format(" perspective {}", settings.curve.far_over_near);
+  return settings.curve.reversed ? text + " reversed" : text;
+}
+
+double find_coarsest_step(const MapSettings& settings, double farthest) {
+  const bool is_float = settings.format == GL_DEPTH_COMPONENT32F;
+  const filters::DepthFormat format{is_float ? 32 : settings.format == GL_DEPTH_COMPONENT24 ? 24 : 16, is_float};
+  constexpr int kSamples = 256;
+  double coarsest = 0.0;
+  for (int i = 0; i <= kSamples; ++i) {
+    coarsest = std::max(coarsest, filters::depth_step(farthest * i / kSamples, settings.curve, format));
+  }
+  return coarsest;
+}
+
+Defines curve_defines(const filters::DepthCurve& curve) {
+  Defines defines;
+  if (!curve.is_linear()) defines.emplace_back("PERSPECTIVE_DEPTH", fmt::format("{:.9e}", curve.far_over_near));
+  if (curve.reversed) defines.emplace_back("REVERSED_DEPTH", "1");
+  return defines;
 }
 
 GLenum wrap_mode(filters::Border border) {
@@ -47,11 +68,11 @@ ShadowMap::Layer::Layer(const char* label, GLenum format, int size) : depth(labe
 
 ShadowMap::ShadowMap(int size, const MapSettings& settings) : settings_(settings), map_("shadow map", settings.format, size) {
   require_depth_bits(settings.format, map_.depth.depth_bits());
-  const GLenum compare = settings.reversed ? GL_GEQUAL : GL_LEQUAL;
+  const GLenum compare = settings.curve.reversed ? GL_GEQUAL : GL_LEQUAL;
   for (gl::Sampler* sampler : {&plain_, &compare_linear_, &compare_nearest_}) {
     sampler->set_filter(GL_NEAREST, GL_NEAREST);
     sampler->set_wrap(wrap_mode(border_));
-    sampler->set_border(glm::vec4(far_depth()));  // nothing in the way
+    sampler->set_border(glm::vec4(settings.curve.far_plane()));  // nothing in the way
   }
   compare_linear_.set_filter(GL_LINEAR, GL_LINEAR);
   compare_linear_.set_compare(compare);
@@ -67,18 +88,19 @@ void ShadowMap::draw_casters(ShaderLibrary& shaders, const Geometry& geometry, c
                              const MapBias& bias, gl::Framebuffer& framebuffer, Defines defines) const {
   framebuffer.bind();
   set_geometry_state();
-  framebuffer.clear_depth(far_depth());
-  const float away = settings_.reversed ? -1.0f : 1.0f;
-  if (settings_.reversed) {
-    glDepthFunc(GL_GREATER);
-    if (!defines.empty()) defines.emplace_back("REVERSED_DEPTH", "1");
-  }
+  framebuffer.clear_depth(settings_.curve.far_plane());
+  const filters::DepthCurve& curve = settings_.curve;
+  for (auto& define : curve_defines(curve)) defines.push_back(std::move(define));
+  const float away = curve.reversed ? -1.0f : 1.0f;
+  if (curve.reversed) glDepthFunc(GL_GREATER);
   if (bias.polygon_factor != 0.0 || bias.polygon_units != 0.0) {
+    assert(curve.is_linear());
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(away * static_cast<float>(bias.polygon_factor), away * static_cast<float>(bias.polygon_units));
   }
-  const glm::mat4 clip_from_world = settings_.reversed ? glm::mat4(reverse_depth(frustum.clip_from_light) * frustum.light_from_world)
-                                                       : frustum.clip_from_world;
+  const glm::mat4 clip_from_world = curve.reversed && curve.is_linear()
+                                        ? glm::mat4(reverse_depth(frustum.clip_from_light) * frustum.light_from_world)
+                                        : frustum.clip_from_world;
   const auto prepare = [&](gl::Program& program) { program.set("clip_from_world", clip_from_world); };
   if (bias.cull_front) {
     geometry.draw(shaders, "depth", DrawSet::kUncullableCasters, prepare, defines);
@@ -114,7 +136,7 @@ void ShadowMap::draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, 
   gl::Sampler::unbind(1);
   surfaces_[1].depth.bind(1);
   map_.framebuffer.bind();
-  shaders.fullscreen("midpoint.frag").use();
+  shaders.fullscreen("midpoint.frag", curve_defines(settings_.curve)).use();
   gl::FullscreenTriangle().draw_depth();
 }
 
@@ -127,19 +149,9 @@ void ShadowMap::bind() const {
 }
 
 filters::DepthMap ShadowMap::read() const {
-  filters::DepthMap map{size(), map_.depth.read_floats(1), settings_.format != GL_DEPTH_COMPONENT32F, 0.0f, border_};
-  if (!settings_.reversed) return map;
-  for (float& depth : map.depth) depth = 1.0f - depth;
-  map.tie = 2.0f * std::numeric_limits<float>::epsilon();  // 1 - depth and 1 - reference are rounded
-  return map;
+  return {size(), map_.depth.read_floats(1), settings_.curve, settings_.format != GL_DEPTH_COMPONENT32F, border_};
 }
 
-report::Image ShadowMap::read_picture() const {
-  report::Image picture = read_image(map_.depth, 1);
-  if (settings_.reversed) {
-    for (float& depth : picture.texels) depth = 1.0f - depth;
-  }
-  return picture;
-}
+report::Image ShadowMap::read_picture() const { return read_image(map_.depth, 1); }
 
 }  // namespace shadowbench::render

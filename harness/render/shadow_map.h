@@ -17,14 +17,20 @@ namespace shadowbench::render {
 /// Gives the wrap mode of samplers that reads outside a map as `border` says, e.g. GL_CLAMP_TO_BORDER.
 GLenum wrap_mode(filters::Border border);
 
-/// Names map settings as records do: "d32f", "d16 reversed".
+/// Names map settings as records do: "d32f", "d16 reversed", "d24 perspective 1000".
 std::string describe_map(const MapSettings& settings);
+
+/// Gives the coarsest of the steps in which a map holds depths of 0 .. `farthest`: closer ones may be stored as one.
+double find_coarsest_step(const MapSettings& settings, double farthest = 1.0);
+
+/// Gives what lib/depth_curve.glsl has to be told; nothing for a map that holds linear depth, 0 near.
+Defines curve_defines(const filters::DepthCurve& curve);
 
 /// Requires that a GL stores a format as it was asked to; `bits` is GL_TEXTURE_DEPTH_SIZE of the texture.
 /// Throws Error(kUsage): the precision that is to be studied would be another one.
 void require_depth_bits(GLenum format, int bits);
 
-/// The depth map of one light; depth in [0,1], 0 near, whatever the format and the direction it is stored in.
+/// The depth map of one light; depth in [0,1], 0 near, whatever the format and the curve it is stored by.
 class ShadowMap {
  public:
   /// Throws Error(kUsage) when the GL cannot give this size or format.
@@ -35,15 +41,16 @@ class ShadowMap {
 
   /// Draws the casters as the light sees them; by default nothing is culled, nothing is biased.
   /// Cost: one pass over the casters, two and a full-screen pass for a midpoint map.
+  /// Requires linear depth where the bias has a polygon offset, which the GL adds to depth as it is drawn.
   void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum, const MapBias& bias = {});
 
   /// Binds the map to the three units of lib/map_access.glsl that read depth.
   void bind() const;
 
-  /// Reads the map back for the models: depth, turned around where it is stored reversed.
+  /// Reads the map back for the models, as it is stored.
   filters::DepthMap read() const;
 
-  /// Reads the map back as a picture of depth, rows top to bottom: row 0 is v = 1.
+  /// Reads the map back as a picture, rows top to bottom: row 0 is v = 1. As it is stored; see settings().curve.
   report::Image read_picture() const;
 
   const gl::Texture& texture() const { return map_.depth; }
@@ -66,9 +73,6 @@ class ShadowMap {
   gl::Sampler compare_linear_{"depth, compared, 2x2"};
   gl::Sampler compare_nearest_{"depth, compared, nearest"};
   filters::Border border_ = filters::Border::kBorder;
-
-  /// What a cleared texel holds.
-  float far_depth() const { return settings_.reversed ? 0.0f : 1.0f; }
 
   /// Draws casters into a layer; both faces, but front faces of cullable ones where the bias says so.
   void draw_casters(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum, const MapBias& bias,

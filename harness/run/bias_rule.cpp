@@ -173,6 +173,12 @@ void require_usable(const BiasRule& rule, const filters::FilterSpec& spec) {
                                              "filter out of --filters, or choose another bias", spec.id, why));
 }
 
+void require_drawable(const BiasRule& rule, const render::MapSettings& map) {
+  if (map.curve.is_linear() || (rule.map.polygon_factor == 0.0 && rule.map.polygon_units == 0.0)) return;
+  throw Error(ErrorKind::kUsage, "--bias polygon-offset cannot be drawn with --perspective-depth: the GL would add it to linear depth, before "
+                                 "the map bends it; leave one of the two out");
+}
+
 render::Bias resolve_bias(const BiasRule& rule, const scene::LightFrustum& frustum, const filters::FilterSpec& spec,
                           const filters::ParamValues& values) {
   return resolve(rule, frustum, filters::bias_texels(spec, values));

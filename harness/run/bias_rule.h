@@ -5,6 +5,7 @@
 
 #include "filters/filter_spec.h"
 #include "harness/render/bias.h"
+#include "harness/render/map_settings.h"
 #include "harness/scene/light_fit.h"
 
 namespace shadowbench::run {
@@ -48,6 +49,9 @@ std::string explain_unusable(const BiasRule& rule, const filters::FilterSpec& sp
 
 /// Throws Error(kUsage), naming the filter, where a rule asks for something that a filter cannot do.
 void require_usable(const BiasRule& rule, const filters::FilterSpec& spec);
+
+/// Throws Error(kUsage) where a rule asks for something that cannot be drawn into a map of those settings.
+void require_drawable(const BiasRule& rule, const render::MapSettings& map);
 
 /// Gives the bias of one filter under a rule.
 render::Bias resolve_bias(const BiasRule& rule, const scene::LightFrustum& frustum, const filters::FilterSpec& spec,

@@ -21,13 +21,14 @@ const MeasuredCell* choose_background(const std::vector<MeasuredCell>& cells) {
 }
 
 void write_depth(const std::filesystem::path& path, const std::string& scene, const std::string& settings,
-                 const SceneMeasurement& measured, const scene::LightFrustum& frustum) {
+                 const render::MapSettings& map, const SceneMeasurement& measured, const scene::LightFrustum& frustum) {
   report::DepthPicture picture;
   picture.title = scene + ": the depth map, as the light sees the scene";
-  picture.note = fmt::format("{} · orthographic light: depth as stored is linear, so the raw and the linearised map are one "
-                             "picture; depth 1 is {} m from depth 0",
-                             settings, report::format_number(frustum.depth_range_ws));
-  picture.depth = measured.depth_map;
+  picture.note = fmt::format("{} · depth 1 is {} m from depth 0; the format holds depth in steps of {} m at most", settings,
+                             report::format_number(frustum.depth_range_ws),
+                             report::format_number(render::find_coarsest_step(map) * frustum.depth_range_ws));
+  picture.stored = measured.stored_map;
+  picture.curve = map.curve;
   picture.range_m = frustum.depth_range_ws;
   report::write_depth_picture(path, picture);
 }
@@ -41,7 +42,7 @@ void write_map_pictures(const RunOptions& options, const SceneTask& task, SceneM
   const std::string& scene = task.scene->name;
   const std::string settings = report::describe_settings(measured.cells.front().record);
   const std::string note = settings + " · " + report::describe_coverage(coverage.record);
-  write_depth(options.out / depth, scene, settings, measured, frustum);
+  write_depth(options.out / depth, scene, settings, options.map, measured, frustum);
   report::write_density_picture(options.out / density, {scene + ": map texels per pixel", note, coverage.density});
   const MeasuredCell* background = choose_background(measured.cells);
   if (background) {

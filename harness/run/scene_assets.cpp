@@ -40,8 +40,8 @@ void SceneAssets::redraw(LightMap& light, const render::MapBias& bias) {
 
 void SceneAssets::require_casters(const LightMap& light) const {
   if (!options_.bias.map.cull_front) return;
-  const std::vector<float> depth = light.map.read().depth;
-  if (std::any_of(depth.begin(), depth.end(), [](float d) { return d < 1.0f; })) return;
+  const filters::DepthMap map = light.map.read();
+  if (std::any_of(map.stored.begin(), map.stored.end(), [&](float d) { return d != map.curve.far_plane(); })) return;
   throw Error(ErrorKind::kUsage, fmt::format("--bias front-cull leaves nothing of the scene '{}' in its shadow map: all its "
                                              "casters are open meshes; choose another bias, or set may_cull_front = false on "
                                              "some objects", scene_.name));

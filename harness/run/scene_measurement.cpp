@@ -12,6 +12,7 @@
 #include "harness/run/statistics.h"
 #include "harness/run/timing.h"
 #include "report/cell_key.h"
+#include "report/summary.h"
 
 namespace shadowbench::run {
 namespace {
@@ -48,7 +49,10 @@ class SceneBench {
       warn_of_overflow(result, *filters.back());
     }
     time(result, filters);
-    result.depth_map = light_.map.read_picture();
+    result.stored_map = light_.map.read_picture();
+    result.depth_map = result.stored_map;
+    for (float& depth : result.depth_map.texels) depth = options_.map.curve.linear(depth);
+    warn_of_coarse_depth(result);
     renderer_.context->require_no_gl_errors();
     return result;
   }
@@ -92,6 +96,19 @@ class SceneBench {
   }
 
   /// An overflow in the map is often invisible in the image, which is then wrong without a NaN.
+  /// A map that holds depth in steps shadows surfaces by up to half a step, in the light's face as on a slope.
+  void warn_of_coarse_depth(SceneMeasurement& result) const {
+    float farthest = 0.0f;
+    for (const float depth : result.depth_map.texels) farthest = depth < 1.0f ? std::max(farthest, depth) : farthest;
+    const double step_m = render::find_coarsest_step(options_.map, static_cast<double>(farthest)) * light_.frustum.depth_range_ws;
+    const double bias_m = options_.bias.constant.in_world(light_.frustum);
+    if (bias_m == 0.0 || bias_m >= 0.5 * step_m) return;
+    result.warnings.push_back(fmt::format("{}: a map stored as {} holds depth in steps of up to {} m, but the constant bias is {} m: expect "
+                                          "acne on what faces the light; choose --bias with a constant of {} m or more, --reversed-depth with d32f, or a "
+                                          "smaller --perspective-depth", task_.scene->name, render::describe_map(options_.map),
+                                          report::format_number(step_m), report::format_number(bias_m), report::format_number(0.5 * step_m)));
+  }
+
   void warn_of_overflow(SceneMeasurement& result, const render::FilterPasses& filter) const {
     const std::string name = fmt::format("{}: {}", task_.scene->name, filter.request().label());
     const std::int64_t broken = filter.count_broken_texels();

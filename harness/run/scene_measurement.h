@@ -26,7 +26,8 @@ struct MeasuredCell {
 /// One scene seen by one camera through one shadow map, with every filter.
 struct SceneMeasurement {
   std::vector<MeasuredCell> cells;
-  report::Image depth_map;  ///< [0,1], row 0 is v = 1
+  report::Image stored_map;  ///< [0,1], row 0 is v = 1
+  report::Image depth_map;   ///< the same, linearised
   std::optional<reference::ArtefactMasks> masks;  ///< where artefacts can occur; nothing without truth
   std::vector<std::string> warnings;
   int passes_run = 0;

@@ -61,7 +61,11 @@ std::vector<std::string> worker_arguments(const RunOptions& options, const Scene
                                         "--behind-test", options.range.behind_test ? "on" : "off",
                                         "--gl", backend, "--out", folder.string()};
   if (options.ground) arguments.push_back("--ground");
-  if (options.map.reversed) arguments.push_back("--reversed-depth");
+  if (options.map.curve.reversed) arguments.push_back("--reversed-depth");
+  if (!options.map.curve.is_linear()) {
+    arguments.push_back("--perspective-depth");
+    arguments.push_back(fmt::format("{}", options.map.curve.far_over_near));
+  }
   if (options.light) {
     arguments.push_back("--light");
     arguments.push_back(describe_light(*options.light));

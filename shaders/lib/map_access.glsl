@@ -1,16 +1,11 @@
+#include "lib/depth_curve.glsl"
+
 // How filters read the map. Offsets are in texels. Outside the map everything is lit, unless --border says otherwise.
 layout(binding = 0) uniform sampler2D map_depth;                 // nearest
 layout(binding = 1) uniform sampler2DShadow map_compare;         // hardware 2x2 PCF, LEQUAL (reversed: GEQUAL)
 layout(binding = 2) uniform sampler2DShadow map_compare_nearest; // one texel, LEQUAL (reversed: GEQUAL)
 layout(binding = 3) uniform sampler2D map_stored;                // what encode() wrote, prefiltered
 uniform float map_texel_uv;                                      // 1 / map size
-
-// A reversed map holds 1 - depth. It is turned around here and nowhere else: filters see depth, 0 near.
-#ifdef REVERSED_DEPTH
-float turn_depth(float z) { return 1.0 - z; }
-#else
-float turn_depth(float z) { return z; }
-#endif
 
 #ifdef COUNT_FETCHES
 int fetch_count = 0;
@@ -48,19 +43,19 @@ float corner_depth(Receiver r, vec2 offset_texels, float z) {
 
 float compare_nearest(Receiver r, vec2 offset_texels, float z) {
   COUNT_ONE_FETCH;
-  float reference = turn_depth(nearest_depth(r, offset_texels, z));
+  float reference = store_depth(nearest_depth(r, offset_texels, z));
   return texture(map_compare_nearest, vec3(r.uv + offset_texels * map_texel_uv, reference));
 }
 
 float compare_2x2(Receiver r, vec2 offset_texels, float z) {
   COUNT_ONE_FETCH;
-  float reference = turn_depth(corner_depth(r, offset_texels, z));
+  float reference = store_depth(corner_depth(r, offset_texels, z));
   return texture(map_compare, vec3(r.uv + offset_texels * map_texel_uv, reference));
 }
 
 float fetch_depth(Receiver r, vec2 offset_texels) {
   COUNT_ONE_FETCH;
-  return turn_depth(texture(map_depth, r.uv + offset_texels * map_texel_uv).r);
+  return linear_depth(texture(map_depth, r.uv + offset_texels * map_texel_uv).r);
 }
 
 vec4 fetch_map(Receiver r, vec2 offset_texels) {

@@ -9,6 +9,31 @@ namespace {
 
 constexpr DepthPlanes kPlanes{0.01, 1e4};
 
+/// Every curve is exact at its ends, so that what was cleared is the far plane and nothing else is.
+TEST(DepthCurve, InSinglePrecision_IsExactAtItsEnds_Rises_AndGoesBack) {
+  for (const double ratio : {1.0, 1.3, 7.7, 1234.567, 1e5, 1e7}) {
+    for (const bool reversed : {false, true}) {
+      const DepthCurve curve{reversed, ratio};
+      EXPECT_EQ(curve.linear(curve.far_plane()), 1.0f) << ratio << reversed;
+      EXPECT_EQ(curve.linear(1.0f - curve.far_plane()), 0.0f) << ratio << reversed;
+      EXPECT_NEAR(curve.store(1.0f), curve.far_plane(), 2e-7f) << ratio << reversed;
+      EXPECT_EQ(curve.store(0.0f), 1.0f - curve.far_plane()) << ratio << reversed;
+      for (const float z : {0.001f, 0.2f, 0.5f, 0.93f}) {
+        EXPECT_TRUE(curve.is_lit(curve.store(z), curve.store(1.5f * z)));
+        const double step = depth_step(static_cast<double>(z), curve, {});
+        EXPECT_NEAR(static_cast<double>(curve.linear(curve.store(z))), static_cast<double>(z), 4.0 * step + 2e-7) << ratio << reversed << z;
+      }
+    }
+  }
+}
+
+TEST(DepthCurve, BeforeTheNearPlane_IsLitByAllThatThereIs) {
+  for (const bool reversed : {false, true}) {
+    const DepthCurve curve{reversed, 1000.0};
+    for (const float z : {-1e-4f, -0.001f, -5.0f}) EXPECT_TRUE(curve.is_lit(curve.store(z), curve.store(0.0f))) << z;
+  }
+}
+
 TEST(DepthCurve, EndsAtThePlanes) {
   EXPECT_NEAR(depth_of_distance(0.01, kPlanes, false), 0.0, 1e-15);
   EXPECT_NEAR(depth_of_distance(1e4, kPlanes, false), 1.0, 1e-15);

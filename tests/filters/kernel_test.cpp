@@ -29,7 +29,7 @@ Kernel kernel_of(const std::string& text) {
 DepthMap make_random_map(int size, unsigned seed) {
   std::mt19937 random(seed);
   DepthMap map{size, {}};
-  for (int i = 0; i < size * size; ++i) map.depth.push_back(static_cast<float>(random()) * 0x1p-32f);
+  for (int i = 0; i < size * size; ++i) map.stored.push_back(static_cast<float>(random()) * 0x1p-32f);
   return map;
 }
 
@@ -142,7 +142,7 @@ TEST(PercentageCloser, EqualsTheModelsThatCompare) {
 /// On a map of depths 0 and 1 the mean depth is the share that is lit: VSM's first moment, ESM's mean of exponentials.
 TEST(PercentageCloser, HasTheWeightsOfThePrefilter) {
   DepthMap map = make_random_map(48, 7);
-  for (float& depth : map.depth) depth = depth < 0.5f ? 0.0f : 1.0f;
+  for (float& depth : map.stored) depth = depth < 0.5f ? 0.0f : 1.0f;
   for (const char* text : {"esm:c=20,radius=3", "esm:c=20,radius=6", "esm:c=20,radius=0", "esm:c=20,radius=3,combine=log"}) {
     const FilterRequest request = catalogue().parse_requests(text).front();
     const ModelInput input{request.spec, request.values, map, {}, 0};

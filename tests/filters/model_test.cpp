@@ -16,14 +16,14 @@ namespace {
 /// A map whose texels left of `edge` hold `near`, the others `far`.
 DepthMap make_edge(int size, int edge, float near, float far) {
   DepthMap map{size, {}};
-  for (int i = 0; i < size * size; ++i) map.depth.push_back(i % size < edge ? near : far);
+  for (int i = 0; i < size * size; ++i) map.stored.push_back(i % size < edge ? near : far);
   return map;
 }
 
 /// A map of near texels with a single far one at (8, 8).
 DepthMap make_gap() {
   DepthMap map = make_edge(16, 16, 0.25f, 1.0f);
-  map.depth[8 * 16 + 8] = 1.0f;
+  map.stored[8 * 16 + 8] = 1.0f;
   return map;
 }
 
@@ -45,20 +45,43 @@ TEST(NoneModel, ComparesTheTexelThatHoldsThePoint) {
   EXPECT_EQ(look_up("none", map, 4.5, 4.5, 0.25f), 1.0) << "ties are lit";
 }
 
-TEST(NoneModel, ReferencesWithinTheMapsTie_AreExcused_OthersAreNot) {
+/// One ULP of depth is a long way on a perspective curve's flat end, and on a reversed map's fine one.
+TEST(NoneModel, DepthsOneUlpApart_AreExcused_WhateverTheCurve_OthersAreNot) {
   static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
   const FilterRequest request = catalogue.parse_requests("none").front();
-  const auto is_excused = [&](float tie, float depth) {
-    DepthMap map = make_edge(16, 16, 0.25f, 0.25f);
-    map.tie = tie;
+  const auto is_excused = [&](const DepthCurve& curve, float in_map, float depth) {
+    const float stored = curve.store(in_map);
+    DepthMap map = make_edge(16, 16, stored, stored);
+    map.curve = curve;
     Receiver r;
     r.uv = {4.5f / 16.0f, 4.5f / 16.0f};
     r.depth = depth;
     return make_model("none")->prepare({request.spec, request.values, map, {}, 0}, Precision::kDouble)->at(r).excused;
   };
-  EXPECT_TRUE(is_excused(1e-3f, 0.2505f));
-  EXPECT_FALSE(is_excused(1e-3f, 0.252f));
-  EXPECT_FALSE(is_excused(0.0f, 0.2505f));
+  for (const double ratio : {1.0, 1e3}) {
+    for (const bool reversed : {false, true}) {
+      const DepthCurve curve{reversed, ratio};
+      EXPECT_TRUE(is_excused(curve, 0.9f, std::nextafter(0.9f, 1.0f))) << reversed << ratio;
+      EXPECT_TRUE(is_excused(curve, 0.9f, std::nextafter(0.9f, 0.0f))) << reversed << ratio;
+      EXPECT_FALSE(is_excused(curve, 0.9f, 0.901f)) << reversed << ratio;
+      EXPECT_FALSE(is_excused(curve, 0.9f, 0.899f)) << reversed << ratio;
+    }
+  }
+  EXPECT_TRUE(is_excused({false, 1e6}, 0.9f, 0.91f)) << "single precision cannot tell them apart there";
+  EXPECT_FALSE(is_excused({true, 1e6}, 0.9f, 0.91f));
+}
+
+TEST(NoneModel, CurveOfTheMap_ChangesNoComparison) {
+  for (const DepthCurve& curve : {DepthCurve{}, DepthCurve{true}, DepthCurve{false, 100.0}, DepthCurve{true, 100.0}}) {
+    DepthMap map = make_edge(16, 8, curve.store(0.25f), curve.far_plane());
+    map.curve = curve;
+    EXPECT_EQ(look_up("none", map, 4.5, 4.5, 0.249f), 1.0);
+    EXPECT_EQ(look_up("none", map, 4.5, 4.5, 0.251f), 0.0);
+    EXPECT_EQ(look_up("none", map, 12.5, 4.5, 0.999f), 1.0);
+    EXPECT_EQ(look_up("none", map, -3.0, 4.5, 0.999f), 1.0) << "outside";
+    EXPECT_NEAR(look_up("vsm:radius=0", map, 3.5, 4.5, 0.75f), look_up("vsm:radius=0", make_edge(16, 8, 0.25f, 1.0f), 3.5, 4.5, 0.75f), 1e-5)
+        << "moments are of linear depth";
+  }
 }
 
 TEST(NoneModel, OutsideTheMap_IsLit) {
@@ -168,7 +191,7 @@ TEST(Box4x4Model, InSinglePrecision_KeepsItsBound) {
   const auto number = [&] { return static_cast<float>(random()) * 0x1p-32f; };
   for (const int size : {1, 3, 100, 1000, 1024}) {
     DepthMap map{size, {}};
-    for (int i = 0; i < size * size; ++i) map.depth.push_back(number());
+    for (int i = 0; i < size * size; ++i) map.stored.push_back(number());
     const ModelInput input{request.spec, request.values, map, {}, 0};
     const auto model = make_model("box4x4");
     const auto single = model->prepare(input, Precision::kFloat), tracked = model->prepare(input, Precision::kTracked);
@@ -261,7 +284,7 @@ TEST(EsmModel, OfASingleTexel_TendsToTheHardComparison) {
 TEST(EsmModel, OfAWideKernel_GoesToOne_AsSoonAsATexelIsDeeper) {
   // All block the receiver but one texel, which lies 0.0005 behind it: the percentage-closer filter is that texel's weight.
   DepthMap map = make_edge(16, 16, 0.3f, 0.3f);
-  map.depth[8 * 16 + 9] = 0.7005f;
+  map.stored[8 * 16 + 9] = 0.7005f;
   const double weight = Kernel::make_gaussian(2, Reconstruction::kNearest).atoms()[2].weight * Kernel::make_gaussian(2, Reconstruction::kNearest).atoms()[3].weight;
   for (const double c : {100.0, 1000.0, 3000.0}) {
     const double gap = static_cast<double>(0.7005f) - static_cast<double>(0.7f);

@@ -44,14 +44,37 @@ TEST(DepthHistogram, DepthsOutsideTheRange_GoToTheNearestBin) {
 }
 
 TEST(DepthPicture, ShowsTheMapAndABarForEveryFilledBin) {
-  const DepthPicture picture{"map", "note", make_depth_map(256), 12.0};
+  const DepthPicture picture{"map", "note", make_depth_map(256), {}, 12.0};
   const Image drawn = draw_depth_picture(picture);
   EXPECT_EQ(count_color(drawn, 0.80f, 0.87f, 0.95f), 768u * 384u) << "the empty half";
   const std::size_t bars = count_color(drawn, 0.20f, 0.36f, 0.60f);
   EXPECT_GT(bars, 5000u);
   DepthPicture flat = picture;
-  for (float& depth : flat.depth.texels) depth = depth < 1.0f ? 0.4f : 1.0f;
+  for (float& depth : flat.stored.texels) depth = depth < 1.0f ? 0.4f : 1.0f;
   EXPECT_LT(count_color(draw_depth_picture(flat), 0.20f, 0.36f, 0.60f), bars / 20) << "one bin instead of many";
+}
+
+TEST(DepthPicture, MapThatDoesNotHoldLinearDepth_IsShownTwice_AsStoredAndLinearised) {
+  const Image depth = make_depth_map(256);
+  for (const filters::DepthCurve& curve : {filters::DepthCurve{true}, filters::DepthCurve{false, 50.0}, filters::DepthCurve{true, 50.0}}) {
+    DepthPicture stored{"map", "note", depth, curve, 12.0};
+    for (float& d : stored.stored.texels) d = curve.store(d);
+    const Image drawn = draw_depth_picture(stored);
+    const Image once = draw_depth_picture({"map", "note", depth, {}, 12.0});
+    EXPECT_EQ(drawn.height, once.height);
+    EXPECT_GT(drawn.width, 3 * once.width / 2);
+    EXPECT_EQ(count_color(drawn, 0.80f, 0.87f, 0.95f), 2 * 768u * 384u) << "the empty half, twice";
+    // The linearised map is that of the linear map, at the right.
+    constexpr int kSide = 700;
+    int different = 0;
+    for (int y = 120; y < 120 + kSide; ++y) {
+      for (int x = 0; x < 300; ++x) {
+        const float* right = drawn.at(drawn.width - once.width + 30 + x, y);
+        different += std::abs(right[0] - once.at(30 + x, y)[0]) > 0.01f ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(different, 0) << curve.reversed << curve.far_over_near;
+  }
 }
 
 TEST(DensityPicture, MoreTexels_AnotherColour_AndSurfacesWithoutAreGrey) {

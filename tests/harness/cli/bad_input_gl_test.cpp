@@ -76,6 +76,16 @@ TEST_F(BadInput, SamplersOfAReversedMap) {
   text.insert(text.find("float visibility"), "float raw(Receiver r) { return texture(map_depth, r.uv).r; }\n");
   write("raw.glsl", text);
   expect_refusal(small("--reversed-depth --filter-file raw.glsl"), 2, {"--reversed-depth", "'raw'", "compare_nearest"});
+  expect_refusal(small("--perspective-depth 9 --filter-file raw.glsl"), 2, {"--perspective-depth", "'raw'", "compare_nearest"});
+}
+TEST_F(BadInput, PerspectiveDepthOutOfRange) {
+  for (const char* ratio : {"1", "0.5", "-3", "nan", "inf", "1e8"}) {
+    expect_refusal(small(std::string("--perspective-depth ") + ratio), 2, {"--perspective-depth", "more than 1, at most 1e+07"});
+  }
+  expect_refusal(small("--perspective-depth far"), 2, {"--perspective-depth", "far"});
+}
+TEST_F(BadInput, PolygonOffsetOnPerspectiveDepth) {
+  expect_refusal(small("--perspective-depth 9 --bias polygon-offset:factor=1"), 2, {"polygon-offset", "--perspective-depth"});
 }
 TEST_F(BadInput, NegativeBias) { expect_refusal(small("--bias plane:kernels=-1"), 2, {"--bias", "'-1'"}); }
 TEST_F(BadInput, BiasThatAFilterCannotUse) {

@@ -64,16 +64,29 @@ TEST_F(Command, UserFilter_SeesTheSameMapAsTheOthers_AtEverySize) {
   }
 }
 
+/// Said where it can do harm: the step is of the depths that are drawn, and reversed floats have none to speak of.
+TEST_F(Command, PerspectiveDepthCoarserThanTheBias_IsWarnedOf) {
+  const std::string common = "run --size 96x54 --map-size 64 --rounds 1 --scene cubes --no-truth --filters none --out out ";
+  const auto warnings = [&](const std::string& more) {
+    EXPECT_EQ(run(common + more).exit_code, 0);
+    return results(folder())["warnings"].dump();
+  };
+  const std::string coarse = warnings("--perspective-depth 1e5");
+  for (const char* part : {"d32f perspective 100000", "holds depth in steps", "--reversed-depth"}) EXPECT_NE(coarse.find(part), std::string::npos) << coarse;
+  EXPECT_EQ(warnings("--perspective-depth 1e5 --reversed-depth"), "[]");
+  EXPECT_EQ(warnings(""), "[]");
+}
+
 /// The settings reach the worker: a copy of a built-in filter sees the same map, and its cell the same key's settings.
 TEST_F(Command, MapAndLightSettings_AreRecordedAndReachUserFilters) {
   write("copied.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/pcf2x2.glsl"));
   const std::string common = "run --size 96x54 --map-size 64 --rounds 1 --scene cubes --no-truth --filters none,pcf2x2,copied --filter-file copied.glsl ";
   ASSERT_EQ(run(common + "--out plain").exit_code, 0);
-  const Outcome outcome = run(common + "--out out --map-format d16 --reversed-depth --fit view --snap on --light 60,30.5");
+  const Outcome outcome = run(common + "--out out --map-format d16 --perspective-depth 30.5 --reversed-depth --fit view --snap on --light 60,30.5");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json json = results(folder());
   for (const auto& cell : json["cells"]) {
-    EXPECT_EQ(cell["map_format"], "d16 reversed");
+    EXPECT_EQ(cell["map_format"], "d16 perspective 30.5 reversed");
     EXPECT_EQ(cell["fit"], "view snapped");
     EXPECT_EQ(cell["light"], "60,30.5");
     EXPECT_EQ(cell["cost"]["map_bytes"], 64 * 64 * 2);

@@ -125,16 +125,24 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, DefaultBias, ::testing::ValuesIn(builtin_scene
 TEST(DefaultBias, LeavesNoVisibleAcne_InAnyFormat) {
   for (const GLenum format : {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT32F}) {
     for (const bool reversed : {false, true}) {
-      Traced traced("steps", {format, reversed});
+      Traced traced("steps", {format, {reversed}});
       for (const std::string& filter : filter_ids()) {
         const Rates rates = traced.measure(filter, {});
-        std::printf("%s %s: acne %.5f of %d, gap %.5f\n", render::describe_map({format, reversed}).c_str(), filter.c_str(),
+        std::printf("%s %s: acne %.5f of %d, gap %.5f\n", render::describe_map({format, {reversed}}).c_str(), filter.c_str(),
                     rates.acne, rates.lit, rates.gap);
         EXPECT_LE(rates.acne, 0.001) << filter;
         EXPECT_LE(rates.gap, 0.05) << filter;
       }
     }
   }
+}
+
+/// Perspective depth spends nearly all of a float on the first metres; stored reversed, the float gives them back.
+TEST(PerspectiveDepth, AtAMillion_GivesAcneThatReversedFloatsDoNot) {
+  const auto acne = [](const render::MapSettings& map) { return Traced("steps", map).measure("none", {}).acne; };
+  EXPECT_GT(acne({GL_DEPTH_COMPONENT32F, {false, 1e6}}), 0.02);
+  EXPECT_GT(acne({GL_DEPTH_COMPONENT24, {true, 1e6}}), 0.02) << "fixed-point steps are the same either way round";
+  EXPECT_LE(acne({GL_DEPTH_COMPONENT32F, {true, 1e6}}), 0.001);
 }
 
 TEST(NoBias, GivesAcne) { EXPECT_GT(Traced("steps").measure("none", run::BiasRule::none()).acne, 0.05); }

@@ -47,7 +47,7 @@ double measure_error(render::ShaderLibrary& shaders, render::ShadowMap& map, con
   map.draw(shaders, render::Geometry(scene), make_perspective(planes));
   double worst = 0.0;
   for (const float stored : map.texture().read_floats(1)) {
-    const double seen = filters::distance_of_depth(static_cast<double>(stored), planes, map.settings().reversed);
+    const double seen = filters::distance_of_depth(static_cast<double>(stored), planes, map.settings().curve.reversed);
     worst = std::max(worst, std::abs(seen - static_cast<double>(distance)));
   }
   return worst;
@@ -92,7 +92,7 @@ TEST(DepthPrecision, EveryFormat_KeepsWhatTheoryAllows) {
   for (const double ratio : {1e1, 1e2, 1e4, 1e6}) {
     const filters::DepthPlanes planes{0.01, 0.01 * ratio};
     for (const Case& c : cases()) {
-      render::ShadowMap map(kSize, {c.format, c.reversed});
+      render::ShadowMap map(kSize, {c.format, {c.reversed}});
       double worst = 0.0;
       for (const double d : spread_distances(planes)) {
         const double allowed = theoretical_error(d, planes, c);
@@ -112,7 +112,7 @@ TEST(DepthPrecision, ReversedFloatAtAMillion_IsExactToRounding_TheOthersAreNot) 
   render::ShaderLibrary shaders(run::find_resources().shaders);
   const filters::DepthPlanes planes{0.01, 1e4};
   for (const Case& c : cases()) {
-    render::ShadowMap map(kSize, {c.format, c.reversed});
+    render::ShadowMap map(kSize, {c.format, {c.reversed}});
     double worst = 0.0;
     for (const double d : spread_distances(planes)) worst = std::max(worst, measure_error(shaders, map, planes, d) / d);
     const std::string name = render::describe_map(map.settings());
@@ -138,10 +138,10 @@ TEST(DepthPrecision, FormatOfOtherBits_IsRefused) {
 
 TEST(DepthMapSize, EightThousand_IsDrawnWhole) {
   const scene::Scene scene = load_builtin("cubes");
-  Bench bench(shared_context(), scene, 8192, 32, 18, {GL_DEPTH_COMPONENT16, false});
+  Bench bench(shared_context(), scene, 8192, 32, 18, {GL_DEPTH_COMPONENT16});
   EXPECT_EQ(bench.map().bytes(), std::int64_t{8192} * 8192 * 2);
   const filters::DepthMap map = bench.map().read();
-  const auto filled = std::count_if(map.depth.begin(), map.depth.end(), [](float d) { return d < 1.0f; });
+  const auto filled = std::count_if(map.stored.begin(), map.stored.end(), [](float d) { return d < 1.0f; });
   EXPECT_GT(static_cast<double>(filled), 0.1 * 8192 * 8192);
 }
 

@@ -47,7 +47,7 @@ double height_in_map(Bench& bench, double x) {
   const scene::LightFrustum& frustum = bench.frustum();
   const glm::vec4 uv = frustum.uv_depth_from_world * glm::vec4(static_cast<float>(x), 0.0f, 0.3f, 1.0f);
   const auto column = static_cast<std::size_t>(uv.x * static_cast<float>(map.size)), row = static_cast<std::size_t>(uv.y * static_cast<float>(map.size));
-  const double depth = static_cast<double>(map.depth[row * static_cast<std::size_t>(map.size) + column]);
+  const double depth = static_cast<double>(map.curve.linear(map.stored[row * static_cast<std::size_t>(map.size) + column]));
   return (static_cast<double>(uv.z) - depth) * frustum.depth_range_ws;
 }
 
@@ -69,15 +69,18 @@ TEST(MapBias, FrontCull_KeepsBackFaces_AndWhatMayNotBeCulled) {
 
 TEST(MapBias, Midpoint_LiesBetweenFirstAndSecondSurface) {
   const scene::Scene scene = make_scene();
-  Bench bench(shared_context(), scene, 128, 16, 16);
-  bench.redraw({.midpoint = true});
-  EXPECT_NEAR(height_in_map(bench, 0.0), 1.5, 1e-4);
-  // No second surface below the floor: half-way to depth 1.
-  const scene::LightFrustum& frustum = bench.frustum();
-  const double floor = static_cast<double>((frustum.uv_depth_from_world * glm::vec4(3.0f, 0.0f, 0.3f, 1.0f)).z);
-  EXPECT_NEAR(height_in_map(bench, 3.0), -0.5 * (1.0 - floor) * frustum.depth_range_ws, 1e-4);
-  bench.redraw({});
-  EXPECT_NEAR(height_in_map(bench, 0.0), 2.0, 1e-4) << "the next map is an ordinary one";
+  for (const filters::DepthCurve& curve : {filters::DepthCurve{}, filters::DepthCurve{true}, filters::DepthCurve{false, 20.0}, filters::DepthCurve{true, 20.0}}) {
+    SCOPED_TRACE(render::describe_map({GL_DEPTH_COMPONENT32F, curve}));
+    Bench bench(shared_context(), scene, 128, 16, 16, {GL_DEPTH_COMPONENT32F, curve});
+    bench.redraw({.midpoint = true});
+    EXPECT_NEAR(height_in_map(bench, 0.0), 1.5, 1e-4);
+    // No second surface below the floor: half-way to depth 1.
+    const scene::LightFrustum& frustum = bench.frustum();
+    const double floor = static_cast<double>((frustum.uv_depth_from_world * glm::vec4(3.0f, 0.0f, 0.3f, 1.0f)).z);
+    EXPECT_NEAR(height_in_map(bench, 3.0), -0.5 * (1.0 - floor) * frustum.depth_range_ws, 1e-4);
+    bench.redraw({});
+    EXPECT_NEAR(height_in_map(bench, 0.0), 2.0, 1e-4) << "the next map is an ordinary one";
+  }
 }
 
 TEST(MapBias, PolygonOffset_MovesByFactorTimesSlope_AndUnitsOfTheFormat) {

@@ -103,13 +103,14 @@ INSTANTIATE_TEST_SUITE_P(AllFilters, ModelAgreement,
                          ::testing::Combine(::testing::ValuesIn(builtin_scenes()), ::testing::ValuesIn(filter_ids())),
                          [](const auto& each) { return std::get<0>(each.param) + "_" + std::get<1>(each.param); });
 
-/// Each format, stored either way round.
-class ModelFormats : public ::testing::TestWithParam<std::tuple<std::string, GLenum, bool>> {};
+/// Each format, with linear and perspective depth, stored either way round.
+using FormatCase = std::tuple<std::string, GLenum, bool, double>;
+class ModelFormats : public ::testing::TestWithParam<FormatCase> {};
 
 TEST_P(ModelFormats, GlImageEqualsModel) {
-  const auto& [scene_name, format, reversed] = GetParam();
+  const auto& [scene_name, format, reversed, ratio] = GetParam();
   const scene::Scene scene = load_builtin(scene_name);
-  Bench bench(shared_context(), scene, 512, 480, 270, {format, reversed});
+  Bench bench(shared_context(), scene, 512, 480, 270, {format, {reversed, ratio}});
   for (const std::string& id : filter_ids()) {
     const filters::FilterRequest request = catalogue().parse_requests(id).front();
     const Agreement a = compare(bench, request);
@@ -125,9 +126,9 @@ TEST_P(ModelFormats, GlImageEqualsModel) {
   }
 }
 
-std::string name_format_case(const std::tuple<std::string, GLenum, bool>& values) {
-  const auto& [scene, format, reversed] = values;
-  std::string name = scene + "_" + render::describe_map({format, reversed});
+std::string name_format_case(const FormatCase& values) {
+  const auto& [scene, format, reversed, ratio] = values;
+  std::string name = scene + "_" + render::describe_map({format, {reversed, ratio}});
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
 }
@@ -135,7 +136,7 @@ std::string name_format_case(const std::tuple<std::string, GLenum, bool>& values
 INSTANTIATE_TEST_SUITE_P(AllFormats, ModelFormats,
                          ::testing::Combine(::testing::Values("steps", "fence"),
                                             ::testing::Values(GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT32F),
-                                            ::testing::Bool()),
+                                            ::testing::Bool(), ::testing::Values(1.0, 100.0)),
                          [](const auto& each) { return name_format_case(each.param); });
 
 /// A fixed-point map clamps the reference, so that a point beyond the far plane ties with what was cleared.
@@ -145,13 +146,13 @@ TEST(FixedPointMap, ReferenceBeyondOne_IsLitInFixedPointAlone_InModelAndGl) {
   filters.add_user_file(std::string(SHADOWBENCH_SOURCE_DIR) + "/tests/user_filters/beyond_far.glsl");
   for (const bool reversed : {false, true}) {
     for (const GLenum format : {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT32F}) {
-      Bench bench(shared_context(), scene, 64, 64, 36, {format, reversed});
+      Bench bench(shared_context(), scene, 64, 64, 36, {format, {reversed}});
       const filters::FilterRequest request = filters.parse_requests("beyond_far").front();
       const std::vector<float> image = bench.draw(request);
-      const float in_model = bench.map().read().reference(1.5f) <= 1.0f ? 1.0f : 0.0f;
+      const filters::DepthMap map = bench.map().read();
+      const float in_model = map.is_lit(1.5f, map.curve.far_plane()) ? 1.0f : 0.0f;
       const filters::Receiver r = bench.receivers(request).front();
-      EXPECT_EQ(image[bench.index(r)], in_model) << render::describe_map({format, reversed});
-      EXPECT_EQ(bench.map().read().tie > 0.0f, reversed) << "1 - depth is rounded";
+      EXPECT_EQ(image[bench.index(r)], in_model) << render::describe_map({format, {reversed}});
       EXPECT_EQ(in_model, format == GL_DEPTH_COMPONENT32F ? 0.0f : 1.0f);
     }
   }

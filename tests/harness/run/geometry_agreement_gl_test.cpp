@@ -65,7 +65,7 @@ TEST_P(Geometry, RaysHitWhatTheDepthMapSees) {
   const DepthRays rays(occluders, bench.frustum());
   int seen = 0, different = 0;
   for (int i = 0; i < kSize * kSize; ++i) {
-    const double depth = static_cast<double>(map.depth[static_cast<std::size_t>(i)]);
+    const double depth = static_cast<double>(map.stored[static_cast<std::size_t>(i)]);
     seen += depth < 1.0 ? 1 : 0;
     // Steep faces gain this depth within a hundredth of a texel; rasterisers snap vertices to fractions of one.
     if (!rays.matches_nearby(i % kSize + 0.5, i / kSize + 0.5, depth, 5e-5)) ++different;
