@@ -124,9 +124,11 @@ std::string make_bias_chart(const BiasModeRecord& mode, const std::vector<std::s
   return svg + "</svg>";
 }
 
-std::string make_bias_legend(const std::vector<std::string>& filters) {
+std::string make_bias_legend(const BiasModeRecord& mode, const std::vector<std::string>& filters) {
   std::string html = "<p class=\"legend\">";
   for (std::size_t i = 0; i < filters.size(); ++i) {
+    const auto is_it = [&](const BiasCurve& curve) { return curve.filter == filters[i]; };
+    if (std::none_of(mode.curves.begin(), mode.curves.end(), is_it)) continue;
     html += fmt::format("<span><svg class=\"c{}\" viewBox=\"0 0 32 16\" aria-hidden=\"true\"><path class=\"curve\" d=\"M1 8H31\"></path>{}</svg>{}</span> ",
                         i % kColors, mark({16, 8}, i), escape_html(filters[i]));
   }

@@ -29,7 +29,7 @@ std::string name_factor(double factor);
 /// said where a whole kind is. Colours are classes c0 .. c9 by the filter's place in `filters`, marks change with it too.
 std::string make_bias_chart(const BiasModeRecord& mode, const std::vector<std::string>& filters);
 
-/// Makes the list of colours and marks of all filters.
-std::string make_bias_legend(const std::vector<std::string>& filters);
+/// Makes the list of colours and marks of the filters that a mode was swept for; `filters` as for make_bias_chart().
+std::string make_bias_legend(const BiasModeRecord& mode, const std::vector<std::string>& filters);
 
 }  // namespace shadowbench::report

@@ -82,7 +82,8 @@ std::string html_mode(const BiasModeRecord& mode, const BiasSweepRecord& sweep) 
   std::vector<std::string> words = describe_bias_mode(mode);
   words.insert(words.end(), mode.left_out.begin(), mode.left_out.end());
   page += html_list(words) + "<div class=\"mode\">\n";
-  if (swept) page += "<figure>" + make_bias_chart(mode, sweep.filters) + "<figcaption>" + make_bias_legend(sweep.filters) + "</figcaption></figure>\n";
+  if (swept) page += "<figure>" + make_bias_chart(mode, sweep.filters) + "<figcaption>" + make_bias_legend(mode, sweep.filters) + "</figcaption></figure>\n";
+  if (mode.curves.empty()) return page + "</div>\n</section>\n";
   page += swept ? html_table(make_amount_table(mode), "At theory: amount, move towards the light, rates", "sweep")
                 : html_table(make_fixed_table(mode), "Takes no amount", "sweep");
   page += "</div>\n";

@@ -83,7 +83,7 @@ Image draw_density_picture(const DensityPicture& picture) {
   const Rect& body = figure.body();
   figure.place(body.x, body.y, color_densities(picture.density));
   int y = body.y + picture.density.height + line / 2;
-  figure.write(body.x, y, "map texels per pixel · grey: turned away from the light · white: background");
+  figure.write(body.x, y, "map texels per pixel · grey: turned away from the light, or outside the map · white: background");
   y += line + line / 2;
   draw_color_bar(figure, {body.x + 40, y, width - 80, kBarHeight});
   return figure.canvas();

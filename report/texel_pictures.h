@@ -11,7 +11,7 @@ namespace shadowbench::report {
 struct DensityPicture {
   std::string title;
   std::string note;
-  Image density;  ///< texels per pixel, one channel; 0: turned away from the light, -1: background
+  Image density;  ///< texels per pixel, one channel; 0: turned away from the light or outside the map, -1: background
 };
 
 /// Draws texels per pixel as colours on a logarithmic scale, 1/64 to 64, with a colour bar; display values.

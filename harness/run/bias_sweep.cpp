@@ -136,11 +136,21 @@ class BiasSweep {
     record_.fewest_receivers = reference::kFewestReceivers;
   }
 
+  void draw_map(const render::MapBias& bias) {
+    if (drawn_ == bias) return;
+    drawn_ = bias;
+    assets_.redraw(light_, drawn_);
+  }
+
+  /// Says why a filter has no say under a mode; empty where it has.
+  std::string explain_left_out(const BiasRule& rule, const filters::FilterSpec& spec) {
+    draw_map(rule.map);
+    if (rule.map.cull_front && !SceneAssets::has_casters(light_)) return "would read an empty map: all casters are open meshes, of which nothing stays";
+    return explain_unusable(rule, spec);
+  }
+
   report::Image draw(const filters::FilterRequest& request, const BiasRule& rule) {
-    if (drawn_ != rule.map) {
-      drawn_ = rule.map;
-      assets_.redraw(light_, drawn_);
-    }
+    draw_map(rule.map);
     const render::Bias bias = resolve_bias(rule, light_.frustum, request.spec, request.values);
     render::FilterPasses filter(renderer_.shaders, request, light_.map, make_light(bias));
     filter.prefilter(light_.map);
@@ -181,7 +191,7 @@ class BiasSweep {
     report::BiasModeRecord record{mode.name, mode.key, mode.meaning, {}, {}, {}, {}};
     std::vector<const filters::FilterRequest*> usable;
     for (const filters::FilterRequest& request : options_.filters) {
-      const std::string reason = explain_unusable(mode.make_rule(0.0), request.spec);
+      const std::string reason = explain_left_out(mode.make_rule(0.0), request.spec);
       if (reason.empty()) usable.push_back(&request);
       else record.left_out.push_back(fmt::format("Left out: {}, which {}.", request.label(), reason));
     }

@@ -45,6 +45,11 @@ class PixelProjector {
     return {seen * texels_per_metre_ + half_map_, edge(right_), edge(up_)};
   }
 
+  bool is_in_map(const Footprint& texels) const {
+    return glm::all(glm::greaterThanEqual(texels.centre, glm::dvec2(0.0))) &&
+           glm::all(glm::lessThanEqual(texels.centre, glm::dvec2(2.0 * half_map_)));
+  }
+
  private:
   glm::dvec3 eye_, forward_, right_, up_;
   bool orthographic_;
@@ -128,6 +133,7 @@ MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera
       continue;
     }
     const Footprint footprint = projector.project(point);
+    if (!projector.is_in_map(footprint)) continue;
     cells.mark(footprint);
     coverage.density.texels[i] = static_cast<float>(footprint.area());
     coverage.texel.texels[2 * i] = static_cast<float>(footprint.centre.x);

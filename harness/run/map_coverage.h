@@ -10,11 +10,12 @@ namespace shadowbench::run {
 
 /// Where the pixels of a view fall in a light's map; rows top to bottom.
 struct MapCoverage {
-  /// Map texels under each pixel's footprint; 0 on a surface turned away from the light, -1 on the background.
+  /// Map texels under each pixel's footprint; 0 on a surface turned away from the light or outside the
+  /// map, -1 on the background.
   report::Image density;
   /// Place of each receiver in the map, two channels, in texels from its first row and column; 0 elsewhere.
   report::Image texel;
-  report::CoverageRecord record;  ///< empty fields where no receiver faces the light
+  report::CoverageRecord record;  ///< empty fields where no receiver in the map faces the light
 };
 
 /// Lays the pixels of a view out in the map.

@@ -38,10 +38,14 @@ void SceneAssets::redraw(LightMap& light, const render::MapBias& bias) {
   light.map.draw(renderer_.shaders, geometry_, light.frustum, bias);
 }
 
+bool SceneAssets::has_casters(const LightMap& light) {
+  const filters::DepthMap map = light.map.read();
+  return std::any_of(map.stored.begin(), map.stored.end(), [&](float d) { return d != map.curve.far_plane(); });
+}
+
 void SceneAssets::require_casters(const LightMap& light) const {
   if (!options_.bias.map.cull_front) return;
-  const filters::DepthMap map = light.map.read();
-  if (std::any_of(map.stored.begin(), map.stored.end(), [&](float d) { return d != map.curve.far_plane(); })) return;
+  if (has_casters(light)) return;
   throw Error(ErrorKind::kUsage, fmt::format("--bias front-cull leaves nothing of the scene '{}' in its shadow map: all its "
                                              "casters are open meshes; choose another bias, or set may_cull_front = false on "
                                              "some objects", scene_.name));

@@ -44,6 +44,9 @@ class SceneAssets {
   /// Draws a map again with another bias in it.
   void redraw(LightMap& light, const render::MapBias& bias);
 
+  /// Says whether anything stands in a map. Reads it back.
+  static bool has_casters(const LightMap& light);
+
  private:
   Renderer& renderer_;
   const RunOptions& options_;

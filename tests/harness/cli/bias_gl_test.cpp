@@ -50,6 +50,22 @@ TEST_F(BiasCommand, WritesPageTableAndPictures_ForEveryMode) {
   }
 }
 
+/// The legend names the filters that are drawn; nothing is said of a map that culling emptied.
+TEST_F(BiasCommand, FiltersThatAreLeftOut_HaveNoCurve) {
+  write("open.toml",
+        "title = \"open\"\n[camera]\nposition = [3, 5, 5]\ntarget = [0, 0, 0]\n[light]\nazimuth_deg = 40\nelevation_deg = 50\n"
+        "[[object]]\nshape = \"plane\"\nsize = [8, 8]\n");
+  ASSERT_EQ(run("bias --out out --scene open.toml --size 160x90 --map-size 128 --filters none,vsm").exit_code, 0);
+  for (const auto& row : read_csv()) EXPECT_NE(row.at(3), "front-cull");
+  const std::string page = read_text(folder() / "out" / "bias.html");
+  EXPECT_THAT(page, HasSubstr("Left out: none, which would read an empty map"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "out" / "bias.front-cull.png"));
+  const std::size_t mode = page.find("<section id=\"receiver-plane\">"), legend = page.find("class=\"legend\"", mode);
+  const std::string names = page.substr(legend, page.find("</p>", legend) - legend);
+  EXPECT_THAT(names, HasSubstr("none"));
+  EXPECT_THAT(names, ::testing::Not(HasSubstr("vsm")));
+}
+
 TEST_F(BiasCommand, Acne_IsThereWithoutBias_AndGoesWithTheTheoreticalAmount) {
   ASSERT_EQ(run("bias --out out --size 160x90 --map-size 128 --filters none,tent3x3").exit_code, 0);
   for (const char* mode : {"constant", "slope", "plane", "normal-offset", "polygon-offset"}) {

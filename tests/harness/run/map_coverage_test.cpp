@@ -122,5 +122,14 @@ TEST(MapCoverage, SurfacesTurnedAwayAndBackground_HaveNoSay) {
   EXPECT_EQ(c.density.texels[1], -1.0f);
 }
 
+/// The view is 4 m wide, the map 2 m: half of the columns and two thirds of the rows lie in it.
+TEST(MapCoverage, ReceiversOutsideTheMap_HaveNoSay) {
+  const scene::Camera camera = camera_above(5.0f, 3.0f);
+  const MapCoverage c = measure_coverage(look_at_floor(camera), camera, light_from_above(2.0, 64), half_filled_map(64));
+  EXPECT_NEAR(*c.record.map_used, 1.0, 1e-9);
+  EXPECT_EQ(std::count_if(c.density.texels.begin(), c.density.texels.end(), [](float d) { return d > 0.0f; }), 20 * 20);
+  EXPECT_EQ(c.density.texels[0], 0.0f);
+}
+
 }  // namespace
 }  // namespace shadowbench::run
