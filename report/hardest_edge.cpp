@@ -9,6 +9,8 @@ namespace {
 
 // Small against any disagreement that can be seen, and enough to follow the edge where there is none.
 constexpr double kVarianceFloor = 1e-9;
+// Likewise small against any edge, and enough to follow the disagreement where there is none.
+constexpr double kEdgeFloor = 1e-6;
 
 // Sums of all pixels above and left of each corner: any rectangle's sum is four look-ups.
 class SummedArea {
@@ -62,7 +64,7 @@ Rect find_best(const SummedArea& variance, const SummedArea& lit, Size image, Si
     for (int x = 0; x + size.width <= image.width; ++x) {
       const Rect here{x, y, size.width, size.height};
       const double m = lit.mean(here);
-      const double score = (variance.mean(here) + kVarianceFloor) * 4.0 * m * (1.0 - m);
+      const double score = (variance.mean(here) + kVarianceFloor) * (4.0 * m * (1.0 - m) + kEdgeFloor);
       if (score > best_score) {
         best_score = score;
         best = here;

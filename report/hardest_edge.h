@@ -14,7 +14,8 @@ Size choose_crop_size(Size picture);
 ///
 /// The score of a rectangle is the mean over its pixels of the variance of visibility across the filters, times
 /// 4 m (1 - m), m the mean visibility of the reference in it: 1 where the reference is half lit and half blocked, 0
-/// where it has no edge. Where no filter disagrees, the rectangle that the edge divides most evenly is taken. Ties go
+/// where it has no edge. Where no filter disagrees, the rectangle that the edge divides most evenly is taken; where
+/// there is no edge, the one in which filters disagree most. Ties go
 /// to the topmost, then leftmost rectangle; a pixel that is not finite in any image counts as agreed upon and blocked.
 ///
 /// `visibility`: 1 channel each, of one size; null or empty images are left out. `reference` is an index into it.

@@ -50,6 +50,14 @@ TEST(HardestEdge, DisagreementWithoutAnEdge_IsPassedOver) {
   EXPECT_TRUE(contains(find_hardest_edge({&reference, &other}, 0, {5, 5}), 20, 30));
 }
 
+TEST(HardestEdge, WithoutAnyEdge_HoldsTheDisagreement) {
+  Image lit(80, 40, 1);
+  std::fill(lit.texels.begin(), lit.texels.end(), 1.0f);
+  Image other = lit;
+  *other.at(55, 20) = 0.0f;
+  EXPECT_TRUE(contains(find_hardest_edge({&lit, &other}, 0, {5, 5}), 55, 20));
+}
+
 TEST(HardestEdge, WithOneFilter_HoldsAnEdge) {
   const Image reference = make_two_edges();
   const Rect crop = find_hardest_edge({&reference}, 0, {12, 9});
