@@ -95,7 +95,6 @@ class SceneBench {
     if (!cost.fetches) record.absent["cost.fetches"] = "the filter reads the map's samplers itself";
   }
 
-  /// An overflow in the map is often invisible in the image, which is then wrong without a NaN.
   /// A map that holds depth in steps shadows surfaces by up to half a step, in the light's face as on a slope.
   void warn_of_coarse_depth(SceneMeasurement& result) const {
     float farthest = 0.0f;
@@ -109,6 +108,7 @@ class SceneBench {
                                           report::format_number(step_m), report::format_number(bias_m), report::format_number(0.5 * step_m)));
   }
 
+  /// An overflow in the map is often invisible in the image, which is then wrong without a NaN.
   void warn_of_overflow(SceneMeasurement& result, const render::FilterPasses& filter) const {
     const std::string name = fmt::format("{}: {}", task_.scene->name, filter.request().label());
     const std::int64_t broken = filter.count_broken_texels();
