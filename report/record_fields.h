@@ -53,6 +53,7 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("time_ms.map", cell.time_ms.map);
   visit("time_ms.prefilter", cell.time_ms.prefilter);
   visit("time_ms.lookup", cell.time_ms.lookup);
+  visit("time_ms.stopped", cell.time_ms.stopped);
   visit("ratio_to_none.lookup", cell.ratio_to_none.lookup);
   visit("ratio_to_none.static", cell.ratio_to_none.static_map);
   visit("ratio_to_none.moving", cell.ratio_to_none.moving);

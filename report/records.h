@@ -78,6 +78,7 @@ struct TimeRecord {
   std::optional<Quartiles> map;
   std::optional<Quartiles> prefilter;
   std::optional<Quartiles> lookup;
+  std::optional<std::string> stopped = std::nullopt;  ///< why no more rounds were timed: "rounds", "precise" or "budget"
 };
 
 /// Holds per-round ratios to the filter `none`; `none` itself carries 1 [1, 1].

@@ -242,6 +242,7 @@ std::vector<Column> columns_of(CsvTable table) {
   append(time_columns("lookup", "filtered lookup of all pixels", &TimeRecord::lookup));
   append(time_columns("prefilter", "encoding and blurring the map", &TimeRecord::prefilter));
   append(time_columns("map", "drawing the depth map", &TimeRecord::map));
+  append({cell_column("stopped", "why no more rounds were timed: rounds, precise or budget", [](const CellRecord& c) { return c.time_ms.stopped.value_or(""); })});
   append(ratio_columns("ratio_lookup", "lookup against none", &RatioRecord::lookup));
   append(ratio_columns("ratio_static", "frame with a cached map against none", &RatioRecord::static_map));
   append(ratio_columns("ratio_moving", "frame with a new map against none", &RatioRecord::moving));

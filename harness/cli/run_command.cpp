@@ -21,6 +21,8 @@ namespace shadowbench::cli {
 namespace {
 
 constexpr double kLargestDepthRatio = 1e7;
+constexpr int kMostRounds = 10000;
+constexpr const char* kReferenceFilter = "none";  // what the others' times are ratios to
 
 /// The command line as text; parsed and checked before anything is made.
 struct RunArguments {
@@ -41,7 +43,9 @@ struct RunArguments {
   std::string far_test = "on";
   std::string behind_test = "on";
   bool border_page = false;
-  int rounds = 11;
+  std::string rounds = "auto";
+  double precision = 0.05;
+  double budget_s = 1.0;
   std::uint32_t seed = 1;
   std::string backend = "auto";
   double cell_timeout_s = 60.0;
@@ -87,9 +91,6 @@ void add_filters(run::RunOptions& options, const RunArguments& arguments) {
 }
 
 void check(const RunArguments& arguments) {
-  if (arguments.rounds < 1 || arguments.rounds > 10000) {
-    fail(fmt::format("--rounds: {} is out of range: choose 1 .. 10000", arguments.rounds));
-  }
   if (!(arguments.cell_timeout_s > 0.0 && arguments.cell_timeout_s <= 86400.0)) {
     fail(fmt::format("--cell-timeout: {} is out of range: choose more than 0, at most 86400 seconds", arguments.cell_timeout_s));
   }
@@ -122,6 +123,24 @@ void set_map_and_light(run::RunOptions& options, const RunArguments& arguments) 
   if (!arguments.light.empty()) options.light = parse_light(arguments.light);
 }
 
+run::RoundLimits parse_rounds(const RunArguments& arguments) {
+  if (!(arguments.precision > 0.0 && arguments.precision <= 1.0)) {
+    fail(fmt::format("--precision: {} is out of range: choose more than 0, at most 1", arguments.precision));
+  }
+  if (!(arguments.budget_s > 0.0 && arguments.budget_s <= 3600.0)) {
+    fail(fmt::format("--budget: {} is out of range: choose more than 0, at most 3600 seconds", arguments.budget_s));
+  }
+  if (arguments.rounds != "auto") {
+    const int rounds = parse_count(arguments.rounds, "--rounds");
+    if (rounds > kMostRounds) fail(fmt::format("--rounds: {} is out of range: choose 1 .. {}, or auto", rounds, kMostRounds));
+    return run::RoundLimits::exactly(rounds);
+  }
+  run::RoundLimits limits;
+  limits.precision = arguments.precision;
+  limits.budget_ms = 1e3 * arguments.budget_s;
+  return limits;
+}
+
 run::RunOptions make_options(const RunArguments& arguments, std::vector<std::string> command) {
   check(arguments);
   run::RunOptions options;
@@ -138,7 +157,8 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   for (const filters::FilterRequest& request : options.filters) run::require_usable(options.bias, request.spec);
   options.range = {filters::parse_border(arguments.border), arguments.far_test == "on", arguments.behind_test == "on"};
   options.border_page = arguments.border_page;
-  options.rounds = arguments.rounds;
+  options.rounds = parse_rounds(arguments);
+  options.reference = filters::Catalogue(options.resources.filters).parse_requests(kReferenceFilter).front();
   options.seed = arguments.seed;
   options.backend = gl::parse_backend(arguments.backend);
   options.cell_timeout_s = arguments.cell_timeout_s;
@@ -211,7 +231,9 @@ void add_run_command(CLI::App& app, Action& action, const std::vector<std::strin
   add_scene_options(*command, *a);
   add_range_options(*command, *a);
   add_filter_options(*command, *a);
-  command->add_option("--rounds", a->rounds, "how often each filter is timed")->capture_default_str();
+  command->add_option("--rounds", a->rounds, "how often each filter is timed: a number, or 'auto', until its ratio to the unfiltered lookup is precise enough or the budget is spent")->capture_default_str();
+  command->add_option("--precision", a->precision, "of 'auto' rounds: width of the ratio's 95 % interval, over the ratio")->capture_default_str();
+  command->add_option("--budget", a->budget_s, "of 'auto' rounds: seconds of timed work for each filter on each map")->capture_default_str();
   command->add_option("--seed", a->seed, "of random rotations and of the order of timing")->capture_default_str();
   command->add_option("--gl", a->backend, "OpenGL context: auto, osmesa, egl or glfw")->capture_default_str();
   command->add_option("--cell-timeout", a->cell_timeout_s, "seconds that a filter of your own may take on one scene")->capture_default_str();

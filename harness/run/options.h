@@ -11,6 +11,7 @@
 #include "harness/gl/context.h"
 #include "harness/render/map_settings.h"
 #include "harness/run/bias_rule.h"
+#include "harness/run/round_limits.h"
 #include "harness/scene/light_fit.h"
 
 namespace shadowbench::run {
@@ -53,7 +54,8 @@ struct RunOptions {
   filters::RangeRule range;          ///< outside the map, beyond its far plane, behind the light
   bool border_page = false;          ///< also draw every rule for what lies outside the map, side by side
   std::optional<double> pad_texels;  ///< around the scene in the map; empty: what the widest kernel needs
-  int rounds = 11;
+  RoundLimits rounds;
+  filters::FilterRequest reference;  ///< what the others are timed against
   std::uint32_t seed = 1;
   gl::Backend backend = gl::Backend::kAuto;
   bool truth = true;        ///< trace visibility and score every filter against it

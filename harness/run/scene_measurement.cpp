@@ -21,11 +21,6 @@ std::int64_t count_not_finite(const report::Image& image) {
   return std::count_if(image.texels.begin(), image.texels.end(), [](float v) { return !std::isfinite(v); });
 }
 
-std::vector<double> add(std::vector<double> a, const std::vector<double>& b) {
-  for (std::size_t i = 0; i < b.size(); ++i) a[i] += b[i];
-  return a;
-}
-
 /// Everything that one task draws with.
 class SceneBench {
  public:
@@ -129,35 +124,32 @@ class SceneBench {
   void time(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
     std::vector<render::FilterPasses*> pointers;
     for (const auto& filter : filters) pointers.push_back(filter.get());
-    const auto draw_map = [&] { assets_.redraw(light_); };
-    const RoundTimes times =
-        time_rounds(pointers, draw_map, light_.map, gbuffer_, {renderer_.timer, options_.rounds, options_.seed});
-    const FilterTimes* none = nullptr;
+    const auto asked = std::find_if(task_.filters.begin(), task_.filters.end(), [&](const filters::FilterRequest& request) {
+      return request.spec.id == options_.reference.spec.id && request.values == options_.reference.values;
+    });
+    const auto reference = static_cast<std::size_t>(asked - task_.filters.begin());
+    std::unique_ptr<render::FilterPasses> added;
+    if (asked == task_.filters.end()) pointers.push_back((added = make_passes(options_.reference)).get());
+    const RoundTimes times = time_rounds(pointers, reference, [&] { assets_.redraw(light_); }, light_.map, gbuffer_,
+                                         renderer_.timer, options_.rounds, options_.seed);
     for (std::size_t i = 0; i < filters.size(); ++i) {
-      if (task_.filters[i].spec.id == "none") none = &times.filters[i];
-    }
-    for (std::size_t i = 0; i < filters.size(); ++i) {
-      set_times(result.cells[i].record, times.map, times.filters[i], none);
+      set_times(result.cells[i].record, times.map, times.filters[i], times.filters[reference]);
     }
   }
 
   void set_times(report::CellRecord& record, const std::vector<double>& map, const FilterTimes& times,
-                 const FilterTimes* none) const {
-    record.time_ms.map = summarise(map);
+                 const FilterTimes& reference) const {
+    record.time_ms.map = summarise({map.begin(), map.begin() + static_cast<std::ptrdiff_t>(times.lookup.size())});
     record.time_ms.lookup = summarise(times.lookup);
+    record.time_ms.stopped = name_of(times.stopped);
     if (times.prefilter.empty()) {
       record.absent["time_ms.prefilter"] = "the filter reads the depth map itself";
     } else {
       record.time_ms.prefilter = summarise(times.prefilter);
     }
-    if (!none) {
-      record.absent["ratio_to_none"] = "'none' was not in the run";
-      return;
-    }
-    const std::vector<double> moving = add(add(times.lookup, times.prefilter), map);
-    record.ratio_to_none.lookup = bootstrap_ratio(times.lookup, none->lookup, options_.seed);
+    record.ratio_to_none.lookup = bootstrap_ratio(times.lookup, reference.lookup, options_.seed);
     record.ratio_to_none.static_map = record.ratio_to_none.lookup;
-    record.ratio_to_none.moving = bootstrap_ratio(moving, add(none->lookup, map), options_.seed);
+    record.ratio_to_none.moving = bootstrap_ratio(add_moving(map, times), add_moving(map, reference), options_.seed);
   }
 };
 

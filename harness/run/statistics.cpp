@@ -23,6 +23,26 @@ double median_of(std::vector<double> values) {
   return quantile(values, 0.5);
 }
 
+std::vector<double> divide(const std::vector<double>& numerator, const std::vector<double>& denominator) {
+  assert(!numerator.empty() && numerator.size() <= denominator.size());
+  std::vector<double> ratios(numerator.size());
+  for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = numerator[i] / denominator[i];
+  return ratios;
+}
+
+/// Gives how many of `count` values may lie on one side of the interval: the most that fewer than 2.5 % of the throws of
+/// as many fair coins do not exceed.
+std::size_t count_outside(std::size_t count) {
+  double term = std::exp2(-static_cast<double>(count)), sum = term;  // no coin shows heads
+  std::size_t outside = 0;
+  while (sum <= 0.025) {
+    ++outside;
+    term *= static_cast<double>(count - outside + 1) / static_cast<double>(outside);
+    sum += term;
+  }
+  return outside;
+}
+
 }  // namespace
 
 report::Quartiles summarise(std::vector<double> values) {
@@ -33,9 +53,7 @@ report::Quartiles summarise(std::vector<double> values) {
 
 report::Ratio bootstrap_ratio(const std::vector<double>& numerator, const std::vector<double>& denominator,
                               std::uint64_t seed) {
-  assert(!numerator.empty() && numerator.size() == denominator.size());
-  std::vector<double> ratios(numerator.size());
-  for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = numerator[i] / denominator[i];
+  const std::vector<double> ratios = divide(numerator, denominator);
   std::mt19937_64 generator(seed);
   std::vector<double> medians;
   std::vector<double> sample(ratios.size());
@@ -45,6 +63,14 @@ report::Ratio bootstrap_ratio(const std::vector<double>& numerator, const std::v
   }
   std::sort(medians.begin(), medians.end());
   return {median_of(ratios), {quantile(medians, 0.025), quantile(medians, 0.975)}};
+}
+
+report::Ratio order_ratio(const std::vector<double>& numerator, const std::vector<double>& denominator) {
+  std::vector<double> ratios = divide(numerator, denominator);
+  std::sort(ratios.begin(), ratios.end());
+  // With l values outside, the interval runs from the l-th smallest to the l-th largest value.
+  const std::size_t outside = std::max<std::size_t>(count_outside(ratios.size()), 1);
+  return {quantile(ratios, 0.5), {ratios[outside - 1], ratios[ratios.size() - outside]}};
 }
 
 }  // namespace shadowbench::run

@@ -1,45 +1,137 @@
 #include "harness/run/timing.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 #include <random>
+
+#include "harness/run/statistics.h"
 
 namespace shadowbench::run {
 namespace {
 
 constexpr int kWarmUpRounds = 2;
+constexpr int kFewestOfAnyBudget = 3;
 
 /// Fisher and Yates; std::shuffle differs between standard libraries.
 void shuffle(std::vector<std::size_t>& order, std::mt19937_64& generator) {
   for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[generator() % i]);
 }
 
-}  // namespace
+class Rounds {
+ public:
+  Rounds(const std::vector<TimedFilter>& filters, std::size_t reference, const std::function<double()>& draw_map,
+         const RoundLimits& limits, std::uint64_t seed)
+      : filters_(filters), reference_(reference), draw_map_(draw_map), limits_(limits), seed_(seed), generator_(seed),
+        active_(filters.size()) {
+    assert(!filters.empty() && reference < filters.size());
+    std::iota(active_.begin(), active_.end(), std::size_t{0});
+    times_.filters.resize(filters.size());
+  }
 
-RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, const std::function<void()>& draw_map,
-                       const render::ShadowMap& map, const render::GBuffer& gbuffer, const TimingOptions& options) {
-  RoundTimes times;
-  times.filters.resize(filters.size());
-  render::ImageTarget target("timed visibility", GL_R32F, gbuffer.width(), gbuffer.height());
-  std::mt19937_64 generator(options.seed);
-  std::vector<std::size_t> order(filters.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  for (int round = -kWarmUpRounds; round < options.rounds; ++round) {
-    const bool counted = round >= 0;
-    const double map_ms = gl::time_ms(options.timer, draw_map);
-    if (counted) times.map.push_back(map_ms);
-    shuffle(order, generator);
-    for (const std::size_t i : order) {
-      render::FilterPasses& filter = *filters[i];
-      const double prefilter_ms =
-          filter.has_prefilter() ? gl::time_ms(options.timer, [&] { filter.prefilter(map); }) : 0.0;
-      const double lookup_ms = gl::time_ms(options.timer, [&] { filter.lookup(gbuffer, map, target); });
+  RoundTimes run() {
+    for (int round = -kWarmUpRounds; round < limits_.most; ++round) {
+      run_round(round >= 0);
+      if (round >= 0 && is_enough(round + 1)) break;
+    }
+    return std::move(times_);
+  }
+
+ private:
+  const std::vector<TimedFilter>& filters_;
+  std::size_t reference_;
+  const std::function<double()>& draw_map_;
+  RoundLimits limits_;
+  std::uint64_t seed_;
+  std::mt19937_64 generator_;
+  std::vector<std::size_t> active_;
+  double spent_ms_ = 0.0;
+  RoundTimes times_;
+
+  void run_round(bool counted) {
+    const double map_ms = draw_map_();
+    spent_ms_ += map_ms;
+    if (counted) times_.map.push_back(map_ms);
+    shuffle(active_, generator_);
+    for (const std::size_t i : active_) {
+      const double prefilter_ms = filters_[i].prefilter ? filters_[i].prefilter() : 0.0;
+      const double lookup_ms = filters_[i].lookup();
+      spent_ms_ += prefilter_ms + lookup_ms;
       if (!counted) continue;
-      if (filter.has_prefilter()) times.filters[i].prefilter.push_back(prefilter_ms);
-      times.filters[i].lookup.push_back(lookup_ms);
+      if (filters_[i].prefilter) times_.filters[i].prefilter.push_back(prefilter_ms);
+      times_.filters[i].lookup.push_back(lookup_ms);
     }
   }
-  return times;
+
+  bool is_enough(int rounds) {
+    if (limits_.is_fixed()) return false;
+    if (rounds >= limits_.fewest) drop_precise();
+    if (active_.empty()) return true;
+    if (rounds < std::min(kFewestOfAnyBudget, limits_.most) || spent_ms_ < limits_.budget_ms * static_cast<double>(filters_.size())) {
+      return false;
+    }
+    for (const std::size_t i : active_) times_.filters[i].stopped = StopReason::kBudget;
+    return true;
+  }
+
+  /// The reference is as precise as can be: its ratio to itself is 1.
+  void drop_precise() {
+    std::erase_if(active_, [&](std::size_t i) {
+      if (i == reference_ || !is_precise(times_.filters[i])) return false;
+      times_.filters[i].stopped = StopReason::kPrecise;
+      return true;
+    });
+    if (active_.size() != 1 || active_.front() != reference_) return;
+    times_.filters[reference_].stopped = StopReason::kPrecise;
+    active_.clear();
+  }
+
+  bool is_precise(const FilterTimes& times) const {
+    const FilterTimes& reference = times_.filters[reference_];
+    return is_narrow(times.lookup, reference.lookup) && is_narrow(add_moving(times_.map, times), add_moving(times_.map, reference));
+  }
+
+  /// Order statistics are quick and sift out what the bootstrap, which is reported, would not call narrow.
+  bool is_narrow(const std::vector<double>& numerator, const std::vector<double>& denominator) const {
+    const auto width = [](const report::Ratio& r) { return (r.ci95.high - r.ci95.low) / r.median; };
+    return width(order_ratio(numerator, denominator)) <= 1.5 * limits_.precision &&
+           width(bootstrap_ratio(numerator, denominator, seed_)) <= limits_.precision;
+  }
+};
+
+}  // namespace
+
+std::string name_of(StopReason reason) {
+  switch (reason) {
+    case StopReason::kRounds: return "rounds";
+    case StopReason::kPrecise: return "precise";
+    case StopReason::kBudget: return "budget";
+  }
+  return {};
+}
+
+std::vector<double> add_moving(const std::vector<double>& map, const FilterTimes& times) {
+  std::vector<double> sum = times.lookup;
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += map[i] + (times.prefilter.empty() ? 0.0 : times.prefilter[i]);
+  return sum;
+}
+
+RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference, const std::function<double()>& draw_map,
+                      const RoundLimits& limits, std::uint64_t seed) {
+  return Rounds(filters, reference, draw_map, limits, seed).run();
+}
+
+RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::size_t reference,
+                       const std::function<void()>& draw_map, const render::ShadowMap& map, const render::GBuffer& gbuffer,
+                       gl::TimerKind timer, const RoundLimits& limits, std::uint64_t seed) {
+  render::ImageTarget target("timed visibility", GL_R32F, gbuffer.width(), gbuffer.height());
+  std::vector<TimedFilter> timed;
+  for (render::FilterPasses* filter : filters) {
+    TimedFilter& passes = timed.emplace_back();
+    if (filter->has_prefilter()) passes.prefilter = [&map, timer, filter] { return gl::time_ms(timer, [&] { filter->prefilter(map); }); };
+    passes.lookup = [&, filter] { return gl::time_ms(timer, [&] { filter->lookup(gbuffer, map, target); }); };
+  }
+  return run_rounds(timed, reference, [&] { return gl::time_ms(timer, draw_map); }, limits, seed);
 }
 
 }  // namespace shadowbench::run

@@ -2,36 +2,58 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "harness/gl/timer.h"
 #include "harness/render/filter_passes.h"
+#include "harness/run/round_limits.h"
 
 namespace shadowbench::run {
 
-/// Times of one filter, one entry per round; milliseconds.
+/// Says why no more rounds were timed.
+enum class StopReason {
+  kRounds,   ///< as many as were asked for, or as there may be
+  kPrecise,  ///< the ratio's interval is as narrow as was asked for
+  kBudget,   ///< the time is spent
+};
+
+/// Gives the name of a reason in records: "rounds", "precise" or "budget".
+std::string name_of(StopReason reason);
+
+/// Times of one filter, one entry per round it took part in, from the first on; milliseconds.
 struct FilterTimes {
   std::vector<double> prefilter;  ///< empty for filters that read depth
   std::vector<double> lookup;
+  StopReason stopped = StopReason::kRounds;
 };
 
 /// Times of a set of filters that took turns; entry i of every list comes from round i.
 struct RoundTimes {
-  std::vector<double> map;
+  std::vector<double> map;           ///< as many entries as there were rounds
   std::vector<FilterTimes> filters;  ///< in the order given
 };
 
-/// Says how to time.
-struct TimingOptions {
-  gl::TimerKind timer = gl::TimerKind::kWallClock;
-  int rounds = 11;
-  std::uint64_t seed = 0;  ///< of the order in which filters take turns
+/// Runs one filter's passes once and gives their times in milliseconds.
+struct TimedFilter {
+  std::function<double()> prefilter;  ///< empty for filters that read depth
+  std::function<double()> lookup;
 };
 
-/// Times the shadow map, prefilters and lookups in interleaved rounds: every round runs each filter once, in a shuffled
-/// order, so that drift of the machine's speed hits all of them alike. Two rounds warm up and are not counted.
-/// Cost: (rounds + 2) times the sum of all passes.
-RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, const std::function<void()>& draw_map,
-                       const render::ShadowMap& map, const render::GBuffer& gbuffer, const TimingOptions& options);
+/// Times interleaved rounds: every round draws the map and runs each filter once, in a shuffled order, so that drift of
+/// the machine's speed hits all of them alike. Two rounds warm up and are not counted. A filter drops out when its ratios
+/// to the filter `reference`, of the lookup and of map, prefilter and lookup, are precise enough; `reference` stays as
+/// long as any other. When the budget is spent, all stop, but not before three rounds, or one where no more may be.
+/// Requires at least one filter. Cost: (rounds + 2) times the sum of all passes.
+RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference, const std::function<double()>& draw_map,
+                      const RoundLimits& limits, std::uint64_t seed);
+
+/// Times the shadow map, prefilters and lookups of filters that are drawn, as run_rounds().
+RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::size_t reference,
+                       const std::function<void()>& draw_map, const render::ShadowMap& map, const render::GBuffer& gbuffer,
+                       gl::TimerKind timer, const RoundLimits& limits, std::uint64_t seed);
+
+/// Adds what a filter costs in a frame in which light or casters move: map, prefilter and lookup, round by round.
+std::vector<double> add_moving(const std::vector<double>& map, const FilterTimes& times);
 
 }  // namespace shadowbench::run

@@ -42,6 +42,11 @@ std::string request_text(const filters::FilterRequest& request) {
   return text;
 }
 
+std::vector<std::string> round_arguments(const RoundLimits& limits) {
+  if (limits.is_fixed()) return {"--rounds", fmt::format("{}", limits.most)};
+  return {"--precision", fmt::format("{}", limits.precision), "--budget", fmt::format("{}", 1e-3 * limits.budget_ms)};
+}
+
 std::vector<std::string> worker_arguments(const RunOptions& options, const SceneTask& task,
                                           const filters::FilterRequest& request, const std::string& scene_argument,
                                           const std::string& backend, const std::filesystem::path& folder) {
@@ -50,7 +55,6 @@ std::vector<std::string> worker_arguments(const RunOptions& options, const Scene
                                         "--filters", "none," + request_text(request),
                                         "--map-size", fmt::format("{}", task.map_size),
                                         "--size", fmt::format("{}x{}", options.width, options.height),
-                                        "--rounds", fmt::format("{}", options.rounds),
                                         "--seed", fmt::format("{}", options.seed),
                                         "--fit", std::string(scene::name_of(options.fit)),
                                         "--snap", options.snap ? "on" : "off",
@@ -60,6 +64,8 @@ std::vector<std::string> worker_arguments(const RunOptions& options, const Scene
                                         "--far-test", options.range.far_test ? "on" : "off",
                                         "--behind-test", options.range.behind_test ? "on" : "off",
                                         "--gl", backend, "--out", folder.string()};
+  const std::vector<std::string> rounds = round_arguments(options.rounds);
+  arguments.insert(arguments.end(), rounds.begin(), rounds.end());
   if (options.ground) arguments.push_back("--ground");
   if (options.map.curve.reversed) arguments.push_back("--reversed-depth");
   if (!options.map.curve.is_linear()) {

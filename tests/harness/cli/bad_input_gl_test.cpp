@@ -104,7 +104,15 @@ TEST_F(BadInput, UnknownBias) { expect_refusal(small("--bias slop:kernels=1"), 2
 TEST_F(BadInput, UnknownBorder) { expect_refusal(small("--border mirror"), 2, {"--border", "mirror", "border", "edge", "repeat"}); }
 TEST_F(BadInput, UnknownFarTest) { expect_refusal(small("--far-test yes"), 2, {"--far-test", "yes", "on", "off"}); }
 TEST_F(BadInput, UnknownBehindTest) { expect_refusal(small("--behind-test 0"), 2, {"--behind-test", "0", "on", "off"}); }
-TEST_F(BadInput, NoRounds) { expect_refusal(small("--rounds 0"), 2, {"--rounds"}); }
+TEST_F(BadInput, NoRounds) { expect_refusal("run --out out --scene cubes --rounds 0", 2, {"--rounds", "'0'"}); }
+TEST_F(BadInput, RoundsThatAreNoNumber) { expect_refusal("run --out out --scene cubes --rounds some", 2, {"--rounds", "some"}); }
+TEST_F(BadInput, TooManyRounds) { expect_refusal("run --out out --scene cubes --rounds 10001", 2, {"--rounds", "10001", "10000"}); }
+TEST_F(BadInput, PrecisionOutOfRange) {
+  for (const char* value : {"0", "-1", "nan", "1.5"}) expect_refusal(small(std::string("--precision ") + value), 2, {"--precision", "at most 1"});
+}
+TEST_F(BadInput, BudgetOutOfRange) {
+  for (const char* value : {"0", "-1", "nan", "inf"}) expect_refusal(small(std::string("--budget ") + value), 2, {"--budget", "3600"});
+}
 TEST_F(BadInput, UnknownContext) { expect_refusal(small("--gl vulkan"), 2, {"vulkan"}); }
 TEST_F(BadInput, NoContext) {
   unsetenv("DISPLAY");

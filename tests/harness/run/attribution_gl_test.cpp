@@ -28,7 +28,8 @@ class Attributed : public ::testing::Test {
     options_.resources = run::find_resources();
     options_.width = 240;
     options_.height = 135;
-    options_.rounds = 1;
+    options_.rounds = run::RoundLimits::exactly(1);
+    options_.reference = filters::Catalogue(options_.resources.filters).parse_requests("none").front();
     options_.out = folder_;
     options_.command = {"test"};
   }

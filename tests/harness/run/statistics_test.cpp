@@ -43,5 +43,30 @@ TEST(BootstrapRatio, CoversTheTrueMedian_AboutNinetyFiveTimesInAHundred) {
   EXPECT_LT(covered, 300);
 }
 
+TEST(BootstrapRatio, OfMoreDenominators_TheFirstAreUsed) {
+  EXPECT_DOUBLE_EQ(bootstrap_ratio({2.0, 4.0}, {1.0, 2.0, 1e9}, 1).median, 2.0);
+}
+
+/// 95 % and more, and not much more: the next narrower interval would cover less.
+TEST(OrderRatio, CoversTheTrueMedian_AtLeastNinetyFiveTimesInAHundred) {
+  std::mt19937 generator(5);
+  std::normal_distribution<double> noise(2.0, 0.1);
+  for (const std::size_t count : {6u, 9u, 15u, 100u}) {
+    int covered = 0;
+    constexpr int kTrials = 4000;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      std::vector<double> numerator(count), denominator(count, 1.0);
+      for (double& value : numerator) value = noise(generator);
+      const report::Ratio r = order_ratio(numerator, denominator);
+      covered += r.ci95.low <= 2.0 && 2.0 <= r.ci95.high ? 1 : 0;
+    }
+    EXPECT_GE(covered, 0.94 * kTrials) << count;  // three standard errors below 95 %
+    EXPECT_LE(covered, 0.985 * kTrials) << count;
+  }
+  const report::Ratio all = order_ratio({3.0, 1.0, 2.0}, {1.0, 1.0, 1.0});
+  EXPECT_EQ(all.ci95.low, 1.0);
+  EXPECT_EQ(all.ci95.high, 3.0);
+}
+
 }  // namespace
 }  // namespace shadowbench::run

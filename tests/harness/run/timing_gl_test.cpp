@@ -17,7 +17,7 @@ TEST(Timing, TwiceTheTaps_TakeLonger) {
     pointers.push_back(filters.back().get());
   }
   const gl::TimerKind timer = gl::choose_timer(shared_context());
-  const run::RoundTimes times = run::time_rounds(pointers, [] {}, bench.map(), bench.gbuffer(), {timer, 9, 1});
+  const run::RoundTimes times = run::time_rounds(pointers, 0, [] {}, bench.map(), bench.gbuffer(), timer, run::RoundLimits::exactly(9), 1);
   const report::Ratio ratio = run::bootstrap_ratio(times.filters[2].lookup, times.filters[1].lookup, 1);
   std::printf("32 taps / 16 taps: %.2f [%.2f, %.2f] by %s\n", ratio.median, ratio.ci95.low, ratio.ci95.high,
               gl::timer_name(timer));
