@@ -29,6 +29,7 @@ void visit_bias_fields(Bias& bias, Visitor&& visit) {
 template <class Cell, class Visitor>
 void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("key", cell.key);
+  visit("content", cell.content);
   visit("status", cell.status);
   visit("message", cell.message);
   visit("scene", cell.scene);
@@ -95,6 +96,7 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("images.attribution", cell.images.attribution);
   visit("images.texel_density", cell.images.texel_density);
   visit("images.texel_grid", cell.images.texel_grid);
+  visit("warnings", cell.warnings);
   visit("absent", cell.absent);
 }
 
@@ -119,6 +121,11 @@ void visit_run_fields(Run& run, Visitor&& visit) {
   visit("work.passes_skipped", run.work.passes_skipped);
   visit("work.truths_traced", run.work.truths_traced);
   visit("work.truths_cached", run.work.truths_cached);
+  visit("experiment.title", run.experiment.title);
+  visit("experiment.settings", run.experiment.settings);
+  visit("experiment.cells", run.experiment.cells);
+  visit("experiment.shard", run.experiment.shard);
+  visit("experiment.shards", run.experiment.shards);
   visit("scenes", run.scenes);
   visit("warnings", run.warnings);
 }

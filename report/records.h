@@ -10,7 +10,7 @@
 namespace shadowbench::report {
 
 /// Version of results.json and of the cell files; a reader refuses any other.
-inline constexpr int kSchemaVersion = 1;
+inline constexpr int kSchemaVersion = 2;
 
 /// Holds the spread of repeated measurements; `n` of them.
 struct Quartiles {
@@ -163,6 +163,7 @@ struct ImagesRecord {
 /// ("error"), to reason. A null that nobody explained is written as "not measured".
 struct CellRecord {
   std::string key;  ///< cell_key() of the settings below
+  std::string content;  ///< names what it was made from beside its settings: program, OpenGL, scene, filter, options
   CellStatus status = CellStatus::kOk;
   std::string message;  ///< why `status` is not ok; empty otherwise
   std::string scene;
@@ -190,6 +191,7 @@ struct CellRecord {
   ArtefactRecord artefact;
   AttributionRecord attribution;
   ImagesRecord images;
+  std::vector<std::string> warnings;  ///< for people: what makes this cell's numbers doubtful
   std::map<std::string, std::string> absent;
 };
 
@@ -229,6 +231,15 @@ struct SceneRecord {
   std::string title;
 };
 
+/// Says which cells of which experiment a run holds.
+struct ExperimentRecord {
+  std::string title;
+  std::string settings;  ///< names all cells of the experiment and what they are made from
+  int cells = 0;         ///< of the whole experiment
+  int shard = 1;         ///< 1 .. shards: every `shards`-th cell, from this one on
+  int shards = 1;
+};
+
 /// Holds what is common to all cells of a run.
 struct RunRecord {
   std::string commit;
@@ -237,6 +248,7 @@ struct RunRecord {
   GlRecord gl;
   MachineRecord machine;
   WorkRecord work;
+  ExperimentRecord experiment;
   std::vector<SceneRecord> scenes;
   std::vector<std::string> warnings;
 };

@@ -1,5 +1,7 @@
 #include "report/report.h"
 
+#include <algorithm>
+
 #include "report/atomic_file.h"
 #include "report/html.h"
 #include "report/json_io.h"
@@ -7,12 +9,26 @@
 
 namespace shadowbench::report {
 
-void write_report(const std::filesystem::path& dir, const RunRecord& run, const std::vector<std::string>& keys) {
-  write_results(dir, run, keys);
+namespace {
+
+/// What a run warns of is what concerns all of it, then what concerns its cells; each said once.
+void add_warnings(RunRecord& run, const std::vector<CellRecord>& cells) {
+  for (const CellRecord& cell : cells) {
+    for (const std::string& warning : cell.warnings) {
+      if (std::find(run.warnings.begin(), run.warnings.end(), warning) == run.warnings.end()) run.warnings.push_back(warning);
+    }
+  }
+}
+
+}  // namespace
+
+void write_report(const std::filesystem::path& dir, RunRecord run, const std::vector<std::string>& keys) {
   std::vector<CellRecord> cells;
   for (const std::string& key : keys) {
     cells.push_back(read_cell(dir, key));
   }
+  add_warnings(run, cells);
+  write_results(dir, run, keys);
   write_text_file(dir / "timings.csv", make_csv(CsvTable::kTimings, run, cells));
   write_text_file(dir / "accuracy.csv", make_csv(CsvTable::kAccuracy, run, cells));
   write_text_file(dir / "summary.md", make_summary(run, cells));

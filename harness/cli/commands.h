@@ -22,4 +22,7 @@ void add_diff_command(CLI::App& app, Action& action);
 /// Adds `bias`.
 void add_bias_command(CLI::App& app, Action& action);
 
+/// Adds `merge`.
+void add_merge_command(CLI::App& app, Action& action);
+
 }  // namespace shadowbench::cli

@@ -31,6 +31,10 @@ void load_and_run_bias_sweep(const run::RunOptions& options, run::Progress& prog
   load_entry<void(const run::RunOptions&, run::Progress&)>("shadowbench_run_bias_sweep")(options, progress);
 }
 
+void load_and_merge_runs(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out) {
+  load_entry<void(const std::vector<std::filesystem::path>&, const std::filesystem::path&)>("shadowbench_merge_runs")(folders, out);
+}
+
 run::Comparison load_and_compare_pictures(const run::ComparisonOptions& options) {
   run::Comparison result;
   load_entry<void(const run::ComparisonOptions&, run::Comparison&)>("shadowbench_compare_pictures")(options, result);

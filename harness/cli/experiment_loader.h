@@ -1,5 +1,8 @@
 #pragma once
 
+#include <filesystem>
+#include <vector>
+
 #include "harness/run/compare_pictures.h"
 #include "harness/run/options.h"
 #include "harness/run/progress.h"
@@ -14,6 +17,9 @@ void load_and_run_experiment(const run::RunOptions& options, run::Progress& prog
 
 /// Sweeps the modes of bias. Throws Error as run::run_bias_sweep.
 void load_and_run_bias_sweep(const run::RunOptions& options, run::Progress& progress);
+
+/// Joins shards. Throws Error as report::merge_runs.
+void load_and_merge_runs(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out);
 
 /// Compares two pictures. Throws Error as run::compare_pictures.
 run::Comparison load_and_compare_pictures(const run::ComparisonOptions& options);

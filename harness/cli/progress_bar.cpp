@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <cstdio>
 
 namespace shadowbench::cli {
@@ -12,18 +14,52 @@ namespace {
 
 constexpr int kBarCells = 24;
 
+/// Knows how long the cells took so far, and so how long the others will.
+class TimeLeft {
+ public:
+  void begin(int cells, int finished) {
+    cells_ = cells;
+    finished_ = finished;
+    start_ = Clock::now();
+  }
+
+  /// " · 3 min left"; empty until a cell is finished, and at the end.
+  std::string describe(int done) const {
+    if (done <= finished_ || done >= cells_) return {};
+    const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
+    const auto left = static_cast<long>(std::ceil(spent / (done - finished_) * (cells_ - done)));
+    return left < 100 ? fmt::format(" · {} s left", left) : fmt::format(" · {} min left", (left + 59) / 60);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  int cells_ = 0;
+  int finished_ = 0;
+  Clock::time_point start_;
+};
+
+/// Cuts a text to so many bytes, between characters.
+std::string cut(const std::string& text, std::size_t room) {
+  if (text.size() <= room) return text;
+  while (room > 0 && (static_cast<unsigned char>(text[room]) & 0xC0U) == 0x80U) --room;
+  return text.substr(0, room);
+}
+
 /// Redraws one line.
 class TerminalBar final : public run::Progress {
  public:
   ~TerminalBar() override { fmt::print(stderr, "\n"); }
 
-  void begin(int cells) override { cells_ = std::max(cells, 1); }
+  void begin(int cells, int finished) override {
+    cells_ = std::max(cells, 1);
+    left_.begin(cells, finished);
+  }
 
   void show(int done, const std::string& what) override {
     const int filled = std::min(kBarCells, kBarCells * done / cells_);
     const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
                             std::string(static_cast<std::size_t>(kBarCells - filled), '.');
-    fmt::print(stderr, "\r\033[K[{}] {}/{} {}", bar, done, cells_, what.substr(0, room()));
+    fmt::print(stderr, "\r\033[K[{}] {}/{}{}", bar, done, cells_, cut(left_.describe(done) + " " + what, room()));
     std::fflush(stderr);
   }
 
@@ -31,6 +67,7 @@ class TerminalBar final : public run::Progress {
 
  private:
   int cells_ = 1;
+  TimeLeft left_;
 
   /// Columns left beside the bar, so that the line never wraps.
   static std::size_t room() {
@@ -43,12 +80,16 @@ class TerminalBar final : public run::Progress {
 /// Prints a line per step, for logs.
 class PlainLines final : public run::Progress {
  public:
-  void begin(int cells) override { cells_ = cells; }
-  void show(int done, const std::string& what) override { fmt::print(stderr, "{}/{} {}\n", done, cells_, what); }
+  void begin(int cells, int finished) override {
+    cells_ = cells;
+    left_.begin(cells, finished);
+  }
+  void show(int done, const std::string& what) override { fmt::print(stderr, "{}/{} {}{}\n", done, cells_, what, left_.describe(done)); }
   void note(const std::string& message) override { fmt::print(stderr, "{}\n", message); }
 
  private:
   int cells_ = 0;
+  TimeLeft left_;
 };
 
 }  // namespace

@@ -48,7 +48,7 @@ class BiasSweep {
 
   void run() {
     report::AtomicFile(options_.out / "bias.csv").write("");  // a folder that cannot be written is better found now
-    progress_.begin(static_cast<int>(swept_modes().size() * options_.filters.size()));
+    progress_.begin(static_cast<int>(swept_modes().size() * options_.filters.size()), 0);
     progress_.show(0, "truth");
     make_masks();
     find_lit();

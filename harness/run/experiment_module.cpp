@@ -4,6 +4,7 @@
 #include "harness/run/bias_sweep.h"
 #include "harness/run/compare_pictures.h"
 #include "harness/run/run_experiment.h"
+#include "report/merge.h"
 
 extern "C" void shadowbench_run_experiment(const shadowbench::run::RunOptions& options,
                                            shadowbench::run::Progress& progress) {
@@ -18,4 +19,8 @@ extern "C" void shadowbench_compare_pictures(const shadowbench::run::ComparisonO
 extern "C" void shadowbench_run_bias_sweep(const shadowbench::run::RunOptions& options,
                                            shadowbench::run::Progress& progress) {
   shadowbench::run::run_bias_sweep(options, progress);
+}
+
+extern "C" void shadowbench_merge_runs(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out) {
+  shadowbench::report::merge_runs(folders, out);
 }

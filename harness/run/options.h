@@ -21,6 +21,7 @@ struct Resources {
   std::filesystem::path filters;
   std::filesystem::path shaders;
   std::filesystem::path scenes;
+  std::filesystem::path experiments;
 };
 
 /// Finds the program's folders: below $SHADOWBENCH_ROOT where that is set, else where the program was built from.
@@ -30,6 +31,19 @@ Resources find_resources();
 /// Gives the folder for traced images: $XDG_CACHE_HOME/shadowbench, else ~/.cache/shadowbench; empty where neither is set.
 /// Source: XDG Base Directory Specification 0.8.
 std::filesystem::path default_cache_folder();
+
+/// Of a picture, in pixels.
+struct PictureSize {
+  int width = 960;
+  int height = 540;
+  bool operator==(const PictureSize&) const = default;
+};
+
+/// Every `count`-th cell of an experiment, from the `index`-th on, counted from 0.
+struct Shard {
+  int index = 0;
+  int count = 1;
+};
 
 /// Where a light stands in the sky: azimuth 0 is +z, 90 is +x; degrees.
 struct LightAngles {
@@ -44,8 +58,10 @@ struct RunOptions {
   bool ground = false;
   std::vector<filters::FilterRequest> filters;
   std::vector<int> map_sizes = {1024};
+  std::vector<PictureSize> sizes = {{}};  ///< of a run; of what one size of it is told, width and height hold
   int width = 960;
   int height = 540;
+  std::vector<std::string> views;  ///< names of cameras; none: all that each scene has
   render::MapSettings map;
   scene::FitMode fit = scene::FitMode::kTight;
   bool snap = false;                 ///< keep the map's texel grid fixed in the world
@@ -60,6 +76,11 @@ struct RunOptions {
   gl::Backend backend = gl::Backend::kAuto;
   bool truth = true;        ///< trace visibility and score every filter against it
   bool attribution = true;  ///< take the errors apart; needs truth
+  bool grids = true;        ///< compare all filters of a view in one picture and keep their float images; else each cell's pictures alone
+  Shard shard;
+  std::string title;        ///< of the experiment
+  bool fresh = false;       ///< measure cells again that the report folder has
+  bool large_is_fine = false;  ///< run however many cells there are
   std::filesystem::path cache;   ///< keeps traced images between runs; empty: nothing is kept
   double cell_timeout_s = 60.0;  ///< for one user's filter on one scene
   std::filesystem::path out;

@@ -8,8 +8,8 @@ namespace shadowbench::run {
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// A run of `cells` cells begins.
-  virtual void begin(int cells) = 0;
+  /// A run of `cells` cells begins, of which `finished` were finished before.
+  virtual void begin(int cells, int finished) = 0;
   /// The cell named is under way, `done` cells are finished.
   virtual void show(int done, const std::string& what) = 0;
   /// Something the user should know, once.

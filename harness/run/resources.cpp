@@ -10,8 +10,8 @@ namespace shadowbench::run {
 Resources find_resources() {
   const char* chosen = std::getenv("SHADOWBENCH_ROOT");
   const std::filesystem::path root = chosen ? chosen : SHADOWBENCH_BUILT_FROM;
-  Resources resources{root / "filters", root / "shaders", root / "harness" / "scenes"};
-  for (const auto& folder : {resources.filters, resources.shaders, resources.scenes}) {
+  Resources resources{root / "filters", root / "shaders", root / "harness" / "scenes", root / "harness" / "experiments"};
+  for (const auto& folder : {resources.filters, resources.shaders, resources.scenes, resources.experiments}) {
     if (std::filesystem::is_directory(folder)) continue;
     throw Error(ErrorKind::kUsage,
                 "this folder of the program is missing: set SHADOWBENCH_ROOT to a checkout of the project", folder.string());

@@ -38,6 +38,12 @@ void SceneAssets::redraw(LightMap& light, const render::MapBias& bias) {
   light.map.draw(renderer_.shaders, geometry_, light.frustum, bias);
 }
 
+report::Image read_linear_depth(const render::ShadowMap& map) {
+  report::Image picture = map.read_picture();
+  for (float& depth : picture.texels) depth = map.settings().curve.linear(depth);
+  return picture;
+}
+
 bool SceneAssets::has_casters(const LightMap& light) {
   const filters::DepthMap map = light.map.read();
   return std::any_of(map.stored.begin(), map.stored.end(), [&](float d) { return d != map.curve.far_plane(); });

@@ -63,6 +63,9 @@ class SceneAssets {
   SceneTruth make_truth(const scene::Camera& camera);
 };
 
+/// Reads a map back as a picture of linear depth, rows top to bottom.
+report::Image read_linear_depth(const render::ShadowMap& map);
+
 /// Gives the half-width in texels of the widest kernel of these filters.
 double largest_radius_texels(const std::vector<filters::FilterRequest>& requests);
 

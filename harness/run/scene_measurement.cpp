@@ -45,8 +45,7 @@ class SceneBench {
     }
     time(result, filters);
     result.stored_map = light_.map.read_picture();
-    result.depth_map = result.stored_map;
-    for (float& depth : result.depth_map.texels) depth = options_.map.curve.linear(depth);
+    result.depth_map = read_linear_depth(light_.map);
     warn_of_coarse_depth(result);
     renderer_.context->require_no_gl_errors();
     return result;
@@ -97,22 +96,24 @@ class SceneBench {
     const double step_m = render::find_coarsest_step(options_.map, static_cast<double>(farthest)) * light_.frustum.depth_range_ws;
     const double bias_m = options_.bias.constant.in_world(light_.frustum);
     if (bias_m == 0.0 || bias_m >= 0.5 * step_m) return;
-    result.warnings.push_back(fmt::format("{}: a map stored as {} holds depth in steps of up to {} m, but the constant bias is {} m: expect "
+    const std::string warning(fmt::format("{}: a map stored as {} holds depth in steps of up to {} m, but the constant bias is {} m: expect "
                                           "acne on what faces the light; choose --bias with a constant of {} m or more, --reversed-depth with d32f, or a "
                                           "smaller --perspective-depth", task_.scene->name, render::describe_map(options_.map),
                                           report::format_number(step_m), report::format_number(bias_m), report::format_number(0.5 * step_m)));
+    for (MeasuredCell& cell : result.cells) cell.record.warnings.push_back(warning);
   }
 
   /// An overflow in the map is often invisible in the image, which is then wrong without a NaN.
   void warn_of_overflow(SceneMeasurement& result, const render::FilterPasses& filter) const {
     const std::string name = fmt::format("{}: {}", task_.scene->name, filter.request().label());
+    report::CellRecord& record = result.cells.back().record;
     const std::int64_t broken = filter.count_broken_texels();
     if (broken > 0) {
-      result.warnings.push_back(fmt::format("{}: {} texels of its map are infinite or NaN, so its image is not to be "
+      record.warnings.push_back(fmt::format("{}: {} texels of its map are infinite or NaN, so its image is not to be "
                                             "trusted; choose a smaller exponent, a wider store, or combine=log", name, broken));
     }
-    const std::int64_t nan = result.cells.back().record.nan.value_or(0);
-    if (nan > 0) result.warnings.push_back(fmt::format("{}: {} pixels are not finite", name, nan));
+    const std::int64_t nan = record.nan.value_or(0);
+    if (nan > 0) record.warnings.push_back(fmt::format("{}: {} pixels are not finite", name, nan));
   }
 
   static void count_passes(SceneMeasurement& result, const render::FilterPasses& filter) {

@@ -155,6 +155,7 @@ std::string task_stem(const RunOptions& options, const SceneTask& task) {
   std::string name = task.scene->name;
   if (task.scene->cameras.size() > 1) name += "." + task.camera->name;
   if (options.map_sizes.size() > 1) name += fmt::format(".map{}", task.map_size);
+  if (options.sizes.size() > 1) name += fmt::format(".{}x{}", options.width, options.height);
   return report::make_file_stem(name);
 }
 
@@ -177,6 +178,13 @@ void write_float_images(const RunOptions& options, const SceneTask& task, const 
   if (truth.absent.empty()) add_truth_parts(parts, truth, measured.masks);
   parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});
   report::write_exr(options.out / exr_name(options, task), parts, describe(options, task, info));
+}
+
+void write_single_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured) {
+  for (MeasuredCell& cell : measured.cells) {
+    write_cell_pictures(options, task_stem(options, task), cell);
+    cell.record.absent["images"] = "the run was made with --no-grids";
+  }
 }
 
 void write_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured,

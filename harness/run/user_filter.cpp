@@ -121,6 +121,7 @@ MeasuredCell read_cell(const RunOptions& options, const SceneTask& task, const f
   cell.record.images = {};
   RunOptions of_worker = options;
   of_worker.map_sizes = {task.map_size};
+  of_worker.sizes = {{options.width, options.height}};
   const report::ExrFile file = report::read_exr(folder / exr_name(of_worker, task));
   for (const report::Part& part : file.parts) {
     if (part.name == visibility_part(cell.label)) cell.visibility = part.image;

@@ -60,6 +60,9 @@ CellRecord make_full_cell() {
   cell.coverage = {3.5, 0.25, 0.75, 0.5};
   cell.fit = "view snapped";
   cell.light = "120,-35.5";
+  cell.time_ms.stopped = "budget";
+  cell.content = "0123";
+  cell.warnings = {"one", "two"};
   cell.absent.clear();
   return cell;
 }
@@ -99,6 +102,9 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   EXPECT_EQ(back.coverage.map_filled, 0.5);
   EXPECT_EQ(back.fit, "view snapped");
   EXPECT_EQ(back.light, "120,-35.5");
+  EXPECT_EQ(back.time_ms.stopped, "budget");
+  EXPECT_EQ(back.content, "0123");
+  EXPECT_EQ(back.warnings, (std::vector<std::string>{"one", "two"}));
   EXPECT_EQ(std::get<std::string>(back.params.at("store")), "rg32f");
 }
 
@@ -220,7 +226,7 @@ TEST(JsonIo, BrokenRecords_AreRefusedByTheSchema) {
       json::parse(R"([{"op": "remove", "path": "/cells/0/range/behind_test"}])"),
       json::parse(R"([{"op": "remove", "path": "/work/truths_cached"}])"),
       json::parse(R"([{"op": "replace", "path": "/work/truths_traced", "value": -1}])"),
-      json::parse(R"([{"op": "replace", "path": "/schema_version", "value": 2}])"),
+      json::parse(R"([{"op": "replace", "path": "/schema_version", "value": 1}])"),
       json::parse(R"([{"op": "add", "path": "/extra", "value": 1}])"),
       json::parse(R"([{"op": "remove", "path": "/gl/timer"}])"),
       json::parse(R"([{"op": "add", "path": "/gl/extra", "value": 1}])"),
@@ -265,7 +271,7 @@ TEST(JsonIo, OtherSchemaVersion_IsAnInputError) {
   const TemporaryFolder folder("json_version");
   write_text_file(folder.path() / "results.json", R"({"schema_version": 99})");
   EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }),
-              HasSubstr("schema_version is 99, and this program reads 1"));
+              HasSubstr("schema_version is 99, and this program reads 2"));
   write_text_file(folder.path() / "results.json", "[]");
   EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }), HasSubstr("is missing"));
 }

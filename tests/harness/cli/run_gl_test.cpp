@@ -159,7 +159,7 @@ TEST_F(Command, EveryCell_IsScoredAgainstTheTruth) {
 }
 
 TEST_F(Command, ASecondRun_TakesItsTruthFromTheCache) {
-  const std::string arguments = "run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none,pcf2x2";
+  const std::string arguments = "run --out out --fresh --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none,pcf2x2";
   ASSERT_EQ(run(arguments).exit_code, 0);
   const nlohmann::json first = results(folder());
   EXPECT_EQ(first["work"]["truths_traced"], 3) << "the view, its surroundings, a kernel; the other is a point";

@@ -15,7 +15,7 @@ namespace shadowbench::test {
 namespace {
 
 class Silent final : public run::Progress {
-  void begin(int) override {}
+  void begin(int, int) override {}
   void show(int, const std::string&) override {}
   void note(const std::string&) override {}
 };
@@ -26,8 +26,7 @@ class Attributed : public ::testing::Test {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
     folder_ = std::filesystem::temp_directory_path() / ("shadowbench." + std::string(info->name()) + "." + std::to_string(getpid()));
     options_.resources = run::find_resources();
-    options_.width = 240;
-    options_.height = 135;
+    options_.sizes = {{240, 135}};
     options_.rounds = run::RoundLimits::exactly(1);
     options_.reference = filters::Catalogue(options_.resources.filters).parse_requests("none").front();
     options_.out = folder_;
@@ -107,8 +106,7 @@ TEST_F(Attributed, MoreTaps_HaveLessNoise) {
 }
 
 TEST_F(Attributed, OnStack_VsmFailsByItsEstimator_AndLeaks) {
-  options_.width = 480;
-  options_.height = 270;
+  options_.sizes = {{480, 270}};
   const nlohmann::json cells = run("stack", "none,vsm");
   EXPECT_GT(cells[1]["attribution"]["estimator"]["share"], 0.5);
   EXPECT_GT(cells[1]["artefact"]["leak"], 0.1);
@@ -132,8 +130,7 @@ TEST_F(Attributed, WithoutBias_AcneIsSeen_AndIsDiscretisation) {
 }
 
 TEST_F(Attributed, TooMuchBias_OpensContactGaps) {
-  options_.width = 480;
-  options_.height = 270;
+  options_.sizes = {{480, 270}};
   EXPECT_LT(run("fence", "none")[0]["artefact"]["contact_gap"], 0.5);
   options_.bias.constant.depth = 0.02;
   EXPECT_GT(run("fence", "none")[0]["artefact"]["contact_gap"], 0.95);
@@ -148,8 +145,7 @@ TEST_F(Attributed, InACoarseMap_FiltersThatCompareDoNotLeak_BesideAnEdge) {
 
 TEST_F(Attributed, PixelsBesideAnEdge_AreInNoMask) {
   // So few pixels that most blocked ones have a neighbour that is not.
-  options_.width = 60;
-  options_.height = 34;
+  options_.sizes = {{60, 34}};
   for (const auto& cell : run("stack", "none,vsm")) {
     EXPECT_TRUE(cell["artefact"]["leak"].is_null()) << cell["filter"];
     EXPECT_TRUE(cell["absent"].contains("artefact.leak")) << cell["filter"];

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace shadowbench::cli {
+
+/// A run of more filters has no grids, unless it is told to: nobody could read them.
+inline constexpr int kFiltersOfAGrid = 16;
+
+/// The command line as text; parsed and checked before anything is made.
+struct RunArguments {
+  std::string experiment = "default";
+  std::vector<std::string> scenes;
+  bool ground = false;
+  std::string filters;
+  std::vector<std::string> filter_files;
+  std::string map_sizes = "1024";
+  std::string sizes = "960x540";
+  std::vector<std::string> bias;
+  std::string fit = "tight";
+  std::string snap = "off";
+  std::string map_format = "d32f";
+  bool reversed_depth = false;
+  std::optional<double> perspective_depth;
+  std::string light;
+  std::string border = "border";
+  std::string far_test = "on";
+  std::string behind_test = "on";
+  bool border_page = false;
+  std::string rounds = "auto";
+  double precision = 0.05;
+  double budget_s = 0.4;
+  std::uint32_t seed = 1;
+  std::string backend = "auto";
+  double cell_timeout_s = 60.0;
+  std::string out = "report/out";
+  std::vector<std::string> views;
+  bool truth = true;
+  bool attribution = true;
+  int grids = 0;  ///< 1: yes, -1: no, 0: where there are few filters
+  std::string shard;
+  bool fresh = false;
+  bool yes = false;
+  std::string cache;
+  bool no_cache = false;
+  bool worker = false;
+  std::optional<double> pad_texels;  ///< workers see the same map as the run they belong to
+};
+
+/// Adds the options of `shadowbench run`; parsing fills `arguments`, which must outlive the application.
+void add_run_options(CLI::App& command, RunArguments& arguments);
+
+/// Takes what an experiment file says for every option that was not given on the command line.
+/// `command` must have been parsed. Gives the experiment's title.
+/// Throws Error as run::read_experiment and run::expand_filters, and Error(kInput) for a value that its option refuses.
+std::string apply_experiment(CLI::App& command, RunArguments& arguments);
+
+}  // namespace shadowbench::cli

@@ -1,0 +1,76 @@
+#include "harness/run/cell_content.h"
+
+#include <fmt/format.h>
+
+#include "harness/run/content_hash.h"
+#include "harness/run/run_facts.h"
+#include "harness/run/scene_assets.h"
+
+namespace shadowbench::run {
+namespace {
+
+void add_options(ContentHash& hash, const RunOptions& options) {
+  const RoundLimits& rounds = options.rounds;
+  hash.add(fmt::format("seed {} truth {} attribution {} grids {} pad {} rounds {} {} {} {}", options.seed, options.truth, options.attribution,
+                       options.grids, options.pad_texels.value_or(largest_padding_texels(options.filters)), rounds.fewest, rounds.most,
+                       rounds.precision, rounds.budget_ms));
+  // The masks of artefacts reach as far as the widest kernel of the run.
+  hash.add(fmt::format("radius {} reference {}", largest_radius_texels(options.filters), options.reference.label()));
+}
+
+void add_material(ContentHash& hash, const scene::Material& m) {
+  hash.add(fmt::format("{} {} {} {} {} {} {}", m.base_color.r, m.base_color.g, m.base_color.b, m.base_color.a, m.base_color_texture,
+                       static_cast<int>(m.alpha_mode), m.alpha_cutoff));
+}
+
+void add_camera(ContentHash& hash, const scene::Camera& c) {
+  hash.add(c.name);
+  for (const glm::vec3& v : {c.position_ws, c.forward_ws, c.up_ws}) hash.add(fmt::format("{} {} {}", v.x, v.y, v.z));
+  hash.add(fmt::format("{} {}", c.vertical_fov_rad, c.orthographic_height_m));
+}
+
+void add_light(ContentHash& hash, const scene::Light& l) {
+  hash.add(fmt::format("{} {} {} {} {} {} {} {} {}", static_cast<int>(l.kind), l.direction_ws.x, l.direction_ws.y, l.direction_ws.z, l.color.r,
+                       l.color.g, l.color.b, l.intensity, l.angular_diameter_deg));
+  if (!l.map_window) return;
+  const scene::MapWindow& w = *l.map_window;
+  hash.add(fmt::format("window {} {} {} {}", w.center_ws.x, w.center_ws.y, w.center_ws.z, w.width_m));
+  if (w.planes) hash.add(fmt::format("planes {} {}", w.planes->near_m, w.planes->far_m));
+}
+
+void add_scene(ContentHash& hash, const scene::Scene& scene) {
+  for (const scene::Mesh& mesh : scene.meshes) {
+    hash.add(fmt::format("mesh {} {} {}", mesh.material, mesh.casts_shadow, mesh.may_cull_front));
+    hash.add_values(std::span<const scene::Vertex>(mesh.vertices));
+    hash.add_values(std::span<const std::uint32_t>(mesh.indices));
+  }
+  for (const scene::Material& material : scene.materials) add_material(hash, material);
+  for (const scene::Texture& texture : scene.textures) {
+    hash.add(fmt::format("texture {} {}", texture.width, texture.height));
+    hash.add_values(std::span<const std::uint8_t>(texture.rgba));
+  }
+  for (const scene::Camera& camera : scene.cameras) add_camera(hash, camera);
+  add_light(hash, scene.light);
+  hash.add(fmt::format("{} {} {}", scene.background.r, scene.background.g, scene.background.b));
+}
+
+}  // namespace
+
+std::string name_scene_content(const RunOptions& options, const scene::Scene& scene, const std::string& renderer) {
+  ContentHash hash;
+  hash.add(build_commit());
+  hash.add(renderer);
+  add_options(hash, options);
+  add_scene(hash, scene);
+  return hash.name();
+}
+
+std::string name_cell_content(const std::string& scene_content, const filters::FilterRequest& request) {
+  ContentHash hash;
+  hash.add(scene_content);
+  hash.add(request.spec.body);
+  hash.add(fmt::format("{}", request.user_file));
+  return hash.name();
+}
+
+}  // namespace shadowbench::run

@@ -1,0 +1,148 @@
+#include "harness/run/run_plan.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+
+#include "filters/error.h"
+#include "harness/run/cell_content.h"
+#include "harness/run/content_hash.h"
+#include "harness/scene/framing.h"
+#include "harness/scene/load.h"
+#include "report/json_io.h"
+
+namespace shadowbench::run {
+namespace {
+
+PlannedScene load_scene(RunOptions options, const std::string& argument, const PictureSize& size) {
+  options.width = size.width;
+  options.height = size.height;
+  scene::LoadOptions load;
+  load.scenes_folder = options.resources.scenes;
+  load.ground = options.ground;
+  load.aspect = static_cast<double>(size.width) / size.height;
+  PlannedScene planned{std::move(options), argument, scene::load(argument, load)};
+  if (planned.options.light) {
+    const LightAngles& light = *planned.options.light;
+    planned.scene.light.direction_ws = glm::vec3(scene::light_direction(light.azimuth_deg, light.elevation_deg));
+  }
+  return planned;
+}
+
+std::vector<PlannedScene> load_scenes(const RunOptions& options) {
+  std::vector<PlannedScene> scenes;
+  for (const PictureSize& size : options.sizes) {
+    std::set<std::string> names;
+    for (const std::string& argument : options.scenes) {
+      scenes.push_back(load_scene(options, argument, size));
+      const std::string& name = scenes.back().scene.name;
+      if (names.insert(name).second) continue;
+      throw Error(ErrorKind::kUsage, fmt::format("two scenes are called '{}': rename one file, or run them apart", name));
+    }
+  }
+  return scenes;
+}
+
+/// The views that were asked for; all where none was.
+std::vector<const scene::Camera*> choose_views(const RunOptions& options, const scene::Scene& scene) {
+  std::vector<const scene::Camera*> views;
+  for (const scene::Camera& camera : scene.cameras) {
+    const bool wanted = options.views.empty() || std::find(options.views.begin(), options.views.end(), camera.name) != options.views.end();
+    if (wanted) views.push_back(&camera);
+  }
+  return views;
+}
+
+void require_views(const RunOptions& options, const std::vector<PlannedScene>& scenes) {
+  std::set<std::string> known;
+  for (const PlannedScene& each : scenes) {
+    for (const scene::Camera& camera : each.scene.cameras) known.insert(camera.name);
+  }
+  for (const std::string& view : options.views) {
+    if (known.count(view) > 0) continue;
+    throw Error(ErrorKind::kUsage, fmt::format("--view: no scene has a view '{}'; there are {}", view, fmt::join(known, ", ")));
+  }
+}
+
+class Planner {
+ public:
+  Planner(const RunOptions& options, const std::string& renderer) : options_(options), renderer_(renderer) {}
+
+  RunPlan plan() {
+    plan_.scenes = load_scenes(options_);
+    require_views(options_, plan_.scenes);
+    for (std::size_t i = 0; i < plan_.scenes.size(); ++i) add_scene(i);
+    plan_.settings = hash_.name();
+    require_cells();
+    return std::move(plan_);
+  }
+
+ private:
+  const RunOptions& options_;
+  const std::string& renderer_;
+  RunPlan plan_;
+  ContentHash hash_;
+
+  void add_scene(std::size_t index) {
+    const PlannedScene& scene = plan_.scenes[index];
+    const std::string content = name_scene_content(scene.options, scene.scene, renderer_);
+    for (const scene::Camera* camera : choose_views(options_, scene.scene)) {
+      for (const int map_size : options_.map_sizes) add_task(index, {&scene.scene, camera, map_size, {}}, content);
+    }
+  }
+
+  void add_task(std::size_t scene, SceneTask task, const std::string& scene_content) {
+    PlannedTask planned{scene, task, {}, {}};
+    std::vector<filters::FilterRequest> missing;
+    for (const filters::FilterRequest& request : options_.filters) {
+      const std::string key = make_record(plan_.scenes[scene].options, task, request).key;
+      const std::string content = name_cell_content(scene_content, request);
+      hash_.add(key);
+      hash_.add(content);
+      if (plan_.cells++ % options_.shard.count != options_.shard.index) continue;
+      planned.keys.push_back(key);
+      planned.task.filters.push_back(request);
+      planned.contents.push_back(content);
+    }
+    plan_.own_cells += static_cast<int>(planned.keys.size());
+    leave_out_finished(planned);
+    if (!planned.keys.empty()) plan_.tasks.push_back(std::move(planned));
+  }
+
+  void leave_out_finished(PlannedTask& planned) {
+    std::vector<char> finished;
+    for (std::size_t i = 0; i < planned.keys.size(); ++i) finished.push_back(is_finished(planned.keys[i], planned.contents[i]) ? 1 : 0);
+    const auto count = std::count(finished.begin(), finished.end(), 1);
+    if (options_.grids && count < static_cast<std::ptrdiff_t>(finished.size())) return;
+    plan_.finished += static_cast<int>(count);
+    std::size_t at = 0;
+    std::erase_if(planned.task.filters, [&](const auto&) { return finished[at++] != 0; });
+    at = 0;
+    std::erase_if(planned.contents, [&](const auto&) { return finished[at++] != 0; });
+  }
+
+  /// A file that cannot be read, or was made from something else, is measured anew.
+  bool is_finished(const std::string& key, const std::string& content) const {
+    if (options_.worker || options_.fresh || !std::filesystem::exists(report::cell_path(options_.out, key))) return false;
+    try {
+      return report::read_cell(options_.out, key).content == content;
+    } catch (const Error&) {
+      return false;
+    }
+  }
+
+  void require_cells() const {
+    if (plan_.cells == 0) throw Error(ErrorKind::kUsage, "there is nothing to run: no scene has one of these views");
+    if (plan_.own_cells > 0) return;
+    throw Error(ErrorKind::kUsage, fmt::format("--shard {}/{} is empty: the experiment has {} cells", options_.shard.index + 1,
+                                               options_.shard.count, plan_.cells));
+  }
+};
+
+}  // namespace
+
+RunPlan make_plan(const RunOptions& options, const std::string& renderer) { return Planner(options, renderer).plan(); }
+
+}  // namespace shadowbench::run

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "harness/run/options.h"
+#include "harness/run/scene_measurement.h"
+#include "harness/scene/scene.h"
+
+namespace shadowbench::run {
+
+/// A scene as one picture size frames it, with what the command line called it.
+struct PlannedScene {
+  RunOptions options;    ///< of the run, with one picture size
+  std::string argument;  ///< name or path
+  scene::Scene scene;
+};
+
+/// The cells of one view through one shadow map that this run is to hold.
+struct PlannedTask {
+  std::size_t scene = 0;          ///< index into RunPlan::scenes
+  SceneTask task;                 ///< its filters are those still to be measured
+  std::vector<std::string> keys;  ///< of all its cells, measured or not
+  std::vector<std::string> contents;  ///< of those still to be measured; see name_cell_content()
+};
+
+/// What a run is to measure, in the order of its records: picture size, scene, view, map size, filter.
+struct RunPlan {
+  std::vector<PlannedScene> scenes;
+  std::vector<PlannedTask> tasks;
+  int cells = 0;         ///< of the whole experiment, other shards' included
+  int own_cells = 0;     ///< of this shard
+  int finished = 0;      ///< of those, found in the report folder
+  std::string settings;  ///< names all cells of the experiment: shards of one experiment agree
+};
+
+/// Loads the scenes and lays out the run. A cell counts as finished where the report folder holds one of its key and its
+/// content; with grids, which need every image of their view, only where all of the view's cells are finished.
+/// Throws Error for a scene that cannot be loaded, a view that no scene has, scenes or cells of one name, a shard of
+/// nothing.
+RunPlan make_plan(const RunOptions& options, const std::string& renderer);
+
+}  // namespace shadowbench::run

@@ -1,0 +1,126 @@
+#include "harness/run/task_run.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for_each.h>
+
+#include <algorithm>
+
+#include "harness/run/border_page.h"
+#include "harness/run/map_output.h"
+#include "harness/run/scene_output.h"
+#include "harness/run/user_filter.h"
+#include "report/json_io.h"
+
+namespace shadowbench::run {
+namespace {
+
+/// Passes of so many filters are kept at once: a run's memory does not grow with its cells.
+constexpr std::size_t kFiltersAtOnce = 8;
+
+}  // namespace
+
+TaskRun::TaskRun(Renderer& renderer, const PlannedScene& planned, const PlannedTask& task, SceneAssets& assets,
+                 const report::GlRecord& gl, const TaskListener& listener)
+    : renderer_(renderer), options_(planned.options), planned_(planned), task_(task.task), assets_(assets), gl_(gl), listener_(listener) {
+  for (std::size_t i = 0; i < task_.filters.size(); ++i) contents_[make_record(options_, task_, task_.filters[i]).key] = task.contents[i];
+}
+
+void TaskRun::run() {
+  Requests built_in, of_users;
+  for (const filters::FilterRequest& request : task_.filters) (request.user_file && !options_.worker ? of_users : built_in).push_back(request);
+  if (options_.grids) {
+    run_group(built_in, of_users);
+    return;
+  }
+  for (const filters::FilterRequest& request : of_users) run_group({}, {request});
+  for (std::size_t begin = 0; begin < built_in.size(); begin += kFiltersAtOnce) {
+    const std::size_t end = std::min(begin + kFiltersAtOnce, built_in.size());
+    run_group({built_in.begin() + static_cast<std::ptrdiff_t>(begin), built_in.begin() + static_cast<std::ptrdiff_t>(end)}, {});
+  }
+}
+
+SceneTask TaskRun::task_of(const Requests& requests) const { return {task_.scene, task_.camera, task_.map_size, requests}; }
+
+void TaskRun::run_group(const Requests& built_in, const Requests& of_users) {
+  std::vector<MeasuredCell> user_cells;
+  for (const filters::FilterRequest& request : of_users) user_cells.push_back(measure_user_cell(request));
+  SceneMeasurement measured;
+  if (!built_in.empty()) measured = measure_scene(renderer_, options_, task_of(built_in), assets_, [&](const std::string& label) { show(label); });
+  for (MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
+  Requests all = built_in;
+  all.insert(all.end(), of_users.begin(), of_users.end());
+  if (!options_.worker) {
+    explain(measured);
+    cover(measured);
+  }
+  show("pictures");
+  write_images(task_of(all), measured);
+  write_cells(measured);
+}
+
+MeasuredCell TaskRun::measure_user_cell(const filters::FilterRequest& request) {
+  show(request.label());
+  return measure_user_filter(options_, task_, request, planned_.argument, renderer_.context->info().backend);
+}
+
+/// Says how wrong each cell is, and why.
+void TaskRun::explain(SceneMeasurement& measured) {
+  show("truth");
+  const SceneTruth& truth = assets_.truth(*task_.camera);
+  tbb::parallel_for_each(measured.cells, [&](MeasuredCell& cell) { score(cell.record, cell.visibility, cell.picture, truth); });
+  show("attribution");
+  if (!analyser_) analyser_.emplace(renderer_, options_, task_, assets_, truth);
+  for (MeasuredCell& cell : measured.cells) analyser_->analyse(cell);
+  measured.masks = analyser_->masks();
+}
+
+/// Says how the map's texels are spent on the view.
+void TaskRun::cover(SceneMeasurement& measured) {
+  if (!coverage_) {
+    LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
+    const SceneTruth& truth = assets_.truth(*task_.camera);
+    std::optional<ViewReceivers> untraced;
+    if (truth.receivers.image.points.empty()) untraced = read_view_receivers(assets_.gbuffer(*task_.camera), -task_.scene->light.direction_ws);
+    coverage_ = measure_coverage(untraced ? *untraced : truth.receivers, *task_.camera, light.frustum, read_linear_depth(light.map));
+  }
+  for (MeasuredCell& cell : measured.cells) {
+    cell.record.coverage = coverage_->record;
+    if (!coverage_->record.texels_per_pixel) cell.record.absent["coverage"] = "no surface in view faces the light";
+  }
+}
+
+void TaskRun::write_images(const SceneTask& task, SceneMeasurement& measured) {
+  if (!options_.grids && !options_.worker) {
+    write_single_pictures(options_, task, measured);
+    return;
+  }
+  const SceneTruth& truth = assets_.truth(*task.camera);
+  if (!options_.worker) {
+    write_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size).frustum);
+    write_pictures(options_, task, measured, truth, gl_);
+  }
+  if (options_.border_page) draw_border_page(task);
+  write_float_images(options_, task, measured, truth, renderer_.context->info());
+}
+
+void TaskRun::draw_border_page(const SceneTask& task) {
+  const std::filesystem::path file = options_.out / (task_stem(options_, task) + ".borders.png");
+  SceneTask built_in = task;
+  std::erase_if(built_in.filters, [&](const auto& request) { return request.user_file && !options_.worker; });
+  write_border_page(file, renderer_, options_, built_in, assets_);
+  listener_.note("border page: " + file.string());
+}
+
+void TaskRun::write_cells(SceneMeasurement& measured) {
+  for (MeasuredCell& cell : measured.cells) {
+    cell.record.content = contents_.at(cell.record.key);
+    report::write_cell(options_.out, cell.record);
+  }
+  listener_.finished(measured);
+}
+
+void TaskRun::show(const std::string& what) const {
+  listener_.show(fmt::format("{} · {} · {}", task_.scene->name, task_.map_size, what));
+}
+
+}  // namespace shadowbench::run

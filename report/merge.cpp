@@ -1,0 +1,127 @@
+#include "report/merge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "filters/error.h"
+#include "report/atomic_file.h"
+#include "report/json_io.h"
+#include "report/report.h"
+
+namespace shadowbench::report {
+namespace {
+
+struct ShardRun {
+  std::filesystem::path folder;
+  Results results;
+};
+
+std::vector<ShardRun> read_shards(const std::vector<std::filesystem::path>& folders) {
+  std::vector<ShardRun> shards;
+  for (const std::filesystem::path& folder : folders) shards.push_back({folder, read_results(folder / "results.json")});
+  std::sort(shards.begin(), shards.end(), [](const ShardRun& a, const ShardRun& b) {
+    return a.results.run.experiment.shard < b.results.run.experiment.shard;
+  });
+  return shards;
+}
+
+/// How many cells a shard of an experiment holds: every `shards`-th from its own on.
+std::size_t count_cells(const ExperimentRecord& experiment) {
+  const int first = experiment.shard - 1;
+  return first < experiment.cells ? static_cast<std::size_t>((experiment.cells - first - 1) / experiment.shards + 1) : 0;
+}
+
+void require_same(const ShardRun& first, const ShardRun& other) {
+  const ExperimentRecord &a = first.results.run.experiment, &b = other.results.run.experiment;
+  if (a.settings == b.settings && a.shards == b.shards) return;
+  throw Error(ErrorKind::kInput, fmt::format("this is no shard of the experiment in {}: scenes, filters, settings, program or OpenGL differ, "
+                                             "or it is one of {} shards and not of {}", first.folder.string(), b.shards, a.shards),
+              other.folder.string());
+}
+
+void require_complete(const std::vector<ShardRun>& shards) {
+  const int count = shards.front().results.run.experiment.shards;
+  for (std::size_t i = 0; i < shards.size(); ++i) {
+    const ExperimentRecord& own = shards[i].results.run.experiment;
+    if (i > 0 && own.shard == shards[i - 1].results.run.experiment.shard) {
+      throw Error(ErrorKind::kUsage, fmt::format("{} and {} are both shard {}/{}: name one of them", shards[i - 1].folder.string(),
+                                                 shards[i].folder.string(), own.shard, count));
+    }
+    if (own.shard != static_cast<int>(i) + 1) break;
+    if (shards[i].results.cells.size() == count_cells(own)) continue;
+    throw Error(ErrorKind::kInput, fmt::format("it holds {} cells, and shard {}/{} of {} cells has {}; run it again", shards[i].results.cells.size(),
+                                               own.shard, count, own.cells, count_cells(own)), shards[i].folder.string());
+  }
+  for (int shard = 1; shard <= count; ++shard) {
+    const auto is_it = [&](const ShardRun& each) { return each.results.run.experiment.shard == shard; };
+    if (std::any_of(shards.begin(), shards.end(), is_it)) continue;
+    throw Error(ErrorKind::kUsage, fmt::format("shard {}/{} is missing: run it with --shard {}/{}, and name its folder too", shard, count, shard, count));
+  }
+}
+
+/// A folder that has something else in it is not added to.
+void require_free(const std::filesystem::path& out) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(out / "results.json", ignored) && !std::filesystem::exists(out / "cells", ignored)) return;
+  throw Error(ErrorKind::kUsage, "--out: there is a report in this folder already; choose an empty or new one", out.string());
+}
+
+void copy_whole(const std::filesystem::path& from, const std::filesystem::path& to) {
+  PendingFile pending(to);
+  std::error_code error;
+  std::filesystem::copy_file(from, pending.temporary_path(), std::filesystem::copy_options::overwrite_existing, error);
+  if (error) throw Error(ErrorKind::kOutput, fmt::format("it cannot be copied to {}: {}", to.string(), error.message()), from.string());
+  pending.commit();
+}
+
+std::vector<std::string> list_files(const CellRecord& cell) {
+  std::vector<std::string> files;
+  for (const auto member : {&ImagesRecord::picture, &ImagesRecord::visibility, &ImagesRecord::depth_map, &ImagesRecord::grid, &ImagesRecord::exr,
+                            &ImagesRecord::attribution, &ImagesRecord::texel_density, &ImagesRecord::texel_grid}) {
+    if (cell.images.*member) files.push_back(*(cell.images.*member));
+  }
+  return files;
+}
+
+RunRecord join(const std::vector<ShardRun>& shards) {
+  RunRecord run = shards.front().results.run;
+  run.experiment.shard = run.experiment.shards = 1;
+  for (std::size_t i = 1; i < shards.size(); ++i) {
+    const RunRecord& other = shards[i].results.run;
+    run.work.shader_variants_compiled += other.work.shader_variants_compiled;
+    run.work.passes_run += other.work.passes_run;
+    run.work.passes_skipped += other.work.passes_skipped;
+    run.work.truths_traced += other.work.truths_traced;
+    run.work.truths_cached += other.work.truths_cached;
+    for (const std::string& warning : other.warnings) {
+      if (std::find(run.warnings.begin(), run.warnings.end(), warning) == run.warnings.end()) run.warnings.push_back(warning);
+    }
+    if (other.machine.cpu == run.machine.cpu && other.machine.cores == run.machine.cores) continue;
+    run.warnings.push_back(fmt::format("shards ran on different machines, so times of their cells do not compare: {} with {} cores, {} with {}",
+                                       run.machine.cpu, run.machine.cores, other.machine.cpu, other.machine.cores));
+  }
+  return run;
+}
+
+}  // namespace
+
+void merge_runs(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out) {
+  if (folders.empty()) throw Error(ErrorKind::kUsage, "merge: name the report folders of all shards");
+  const std::vector<ShardRun> shards = read_shards(folders);
+  for (const ShardRun& shard : shards) require_same(shards.front(), shard);
+  require_complete(shards);
+  require_free(out);
+  std::vector<std::string> keys;
+  for (int i = 0; i < shards.front().results.run.experiment.cells; ++i) {
+    const ShardRun& shard = shards[static_cast<std::size_t>(i) % shards.size()];
+    const CellRecord& cell = shard.results.cells[static_cast<std::size_t>(i) / shards.size()];
+    for (const std::string& file : list_files(cell)) copy_whole(shard.folder / file, out / file);
+    copy_whole(cell_path(shard.folder, cell.key), cell_path(out, cell.key));
+    keys.push_back(cell.key);
+  }
+  write_report(out, join(shards), keys);
+}
+
+}  // namespace shadowbench::report
