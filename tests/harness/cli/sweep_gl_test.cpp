@@ -1,0 +1,202 @@
+// Experiments of many cells: overridden, interrupted, continued, sharded and merged, as a user does it.
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/harness/cli/program.h"
+
+namespace shadowbench::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using nlohmann::json;
+
+constexpr const char* kExperiment =
+    "title = 'small'\nscene = ['cubes', 'stack']\nmap_size = [32, 64]\nsize = '64x36'\nrounds = 1\ngrids = false\nattribution = false\n"
+    "[[filter]]\nid = 'none'\n[[filter]]\nid = 'vsm'\nradius = [1, 2, 3]\n[[filter]]\nid = 'poisson'\ntaps = [8, 16]\n"
+    "radius = {linear = [1, 4], count = 4}\n";
+constexpr std::size_t kCells = 2 * 2 * (1 + 3 + 2 * 4);
+
+/// What a cell says but its times, and what a run says but what differs from run to run.
+json without_times(json cell) {
+  for (const char* name : {"time_ms", "ratio_to_none"}) cell.erase(name);
+  return cell;
+}
+
+class Sweep : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    write("e.toml", kExperiment);
+  }
+
+  json results(const std::string& out = "out") const { return json::parse(read_text(folder() / out / "results.json")); }
+
+  /// Whether two runs hold the same cells in the same order, but for times, and warn of the same.
+  void expect_same(const std::string& a, const std::string& b) const {
+    const json first = results(a), second = results(b);
+    ASSERT_EQ(first["cells"].size(), second["cells"].size());
+    for (std::size_t i = 0; i < first["cells"].size(); ++i) EXPECT_EQ(without_times(first["cells"][i]), without_times(second["cells"][i])) << i;
+    for (const char* name : {"experiment", "warnings", "scenes", "gl", "commit", "seed"}) EXPECT_EQ(first[name], second[name]) << name;
+  }
+
+  /// Runs the program until its folder `out` holds so many cells, and kills it.
+  void run_and_kill(const std::string& arguments, int cells) const {
+    const std::string script = "cd '" + folder().string() + "'\nXDG_CACHE_HOME='" + cache_folder().string() + "' '" SHADOWBENCH_PROGRAM "' " +
+                               arguments + " >/dev/null 2>&1 &\ni=0\nwhile [ $i -lt 3000 ] && [ $(ls out/cells 2>/dev/null | wc -l) -lt " +
+                               std::to_string(cells) + " ]; do sleep 0.02; i=$((i+1)); done\nkill -9 $!\nwait\n";
+    EXPECT_EQ(std::system(("sh '" + write("kill.sh", script).string() + "'").c_str()), 0);
+  }
+
+  std::map<std::string, std::filesystem::file_time_type> cell_times(const std::string& out = "out") const {
+    std::map<std::string, std::filesystem::file_time_type> times;
+    for (const auto& entry : std::filesystem::directory_iterator(folder() / out / "cells")) times[entry.path().filename().string()] = entry.last_write_time();
+    return times;
+  }
+};
+
+TEST_F(Sweep, MeasuresTheProduct_AndTheCommandLineHasTheLastWord) {
+  Outcome outcome = run("run e.toml --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr(std::to_string(kCells) + " cells"));
+  const json all = results();
+  EXPECT_EQ(all["cells"].size(), kCells);
+  EXPECT_EQ(all["experiment"]["title"], "small");
+  EXPECT_EQ(all["experiment"]["cells"], kCells);
+  for (const json& cell : all["cells"]) {
+    EXPECT_TRUE(std::filesystem::exists(folder() / "out" / cell["images"]["visibility"].get<std::string>()));
+    EXPECT_TRUE(cell["images"]["grid"].is_null());
+    EXPECT_FALSE(cell["error"]["rmse"].is_null());
+    EXPECT_FALSE(cell["ratio_to_none"]["moving"].is_null());
+    EXPECT_EQ(cell["time_ms"]["stopped"], "rounds");
+  }
+  outcome = run("run e.toml --out small --scene cubes --map-size 16 --filters pcf2x2 --size 32x18,16x9");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json one = results("small");
+  ASSERT_EQ(one["cells"].size(), 2u);
+  EXPECT_EQ(one["cells"][0]["map_size"], 16);
+  EXPECT_EQ(one["cells"][0]["size"]["width"], 32);
+  EXPECT_EQ(one["cells"][1]["size"]["width"], 16);
+  EXPECT_NE(one["cells"][0]["images"]["visibility"], one["cells"][1]["images"]["visibility"]);
+  EXPECT_FALSE(one["cells"][0]["ratio_to_none"]["lookup"].is_null()) << "timed beside the reference, which is not in the run";
+}
+
+TEST_F(Sweep, Continued_MeasuresNothingTwice_UnlessSomethingChanged) {
+  ASSERT_EQ(run("run e.toml --out out").exit_code, 0);
+  const auto before = cell_times();
+  const json first = results();
+  Outcome outcome = run("run e.toml --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr(std::to_string(kCells) + " of them finished before"));
+  EXPECT_EQ(cell_times(), before);
+  EXPECT_EQ(results()["cells"], first["cells"]);
+  EXPECT_EQ(results()["work"]["passes_run"], 0);
+  // One cell is gone, one is cut off.
+  std::filesystem::remove(folder() / "out" / "cells" / before.begin()->first);
+  write("out/cells/" + before.rbegin()->first, "{");
+  outcome = run("run e.toml --out out");
+  EXPECT_THAT(outcome.err, HasSubstr(std::to_string(kCells - 2) + " of them finished before"));
+  const auto after = cell_times();
+  std::size_t same = 0;
+  for (const auto& [name, time] : before) same += after.at(name) == time ? 1 : 0;
+  EXPECT_EQ(same, kCells - 2);
+  // Another seed is another measurement, and so is a fresh one.
+  EXPECT_THAT(run("run e.toml --out out --seed 2").err, Not(HasSubstr("finished before")));
+  EXPECT_THAT(run("run e.toml --out out --seed 2 --fresh").err, Not(HasSubstr("finished before")));
+}
+
+TEST_F(Sweep, KilledAndContinued_EqualsAnUninterruptedOne) {
+  ASSERT_EQ(run("run e.toml --out whole").exit_code, 0);
+  for (const int enough : {3, 20}) run_and_kill("run e.toml --out out", enough);
+  EXPECT_FALSE(std::filesystem::exists(folder() / "out" / "results.json"));
+  const auto before = cell_times();
+  EXPECT_GE(before.size(), 20u);
+  const Outcome outcome = run("run e.toml --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("finished before"));
+  expect_same("whole", "out");
+  const auto after = cell_times();
+  for (const auto& [name, time] : before) {
+    if (!name.ends_with(".json") || name.size() != 21) continue;  // a killed run's unfinished file
+    EXPECT_EQ(after.at(name), time) << name << " was measured twice";
+  }
+}
+
+TEST_F(Sweep, ShardsMerged_EqualTheWhole) {
+  ASSERT_EQ(run("run e.toml --out whole").exit_code, 0);
+  std::size_t cells = 0;
+  for (const char* shard : {"1", "2", "3"}) {
+    const Outcome outcome = run("run e.toml --shard " + std::string(shard) + "/3 --out s" + shard);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    cells += results(std::string("s") + shard)["cells"].size();
+  }
+  EXPECT_EQ(cells, kCells);
+  const Outcome outcome = run("merge s3 s1 s2 --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  expect_same("whole", "out");
+  for (const json& cell : results()["cells"]) {
+    const std::string image = cell["images"]["picture"];
+    EXPECT_EQ(read_text(folder() / "out" / image), read_text(folder() / "whole" / image)) << image;
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "index.html"));
+  // What was merged counts as finished.
+  EXPECT_THAT(run("run e.toml --out out").err, HasSubstr(std::to_string(kCells) + " of them finished before"));
+}
+
+TEST_F(Sweep, ShardsThatDoNotFit_AreRefused) {
+  const std::string few = "run e.toml --scene cubes --map-size 32 --filters none,vsm:radius=1,vsm:radius=2,pcf2x2,tent3x3 ";
+  for (const char* shard : {"1", "2"}) ASSERT_EQ(run(few + "--shard " + shard + "/2 --out s" + shard).exit_code, 0);
+  ASSERT_EQ(run(few + "--shard 1/3 --out other").exit_code, 0);
+  ASSERT_EQ(run(few + "--seed 5 --shard 2/2 --out seed").exit_code, 0);
+  expect_refusal("merge s1 s1 --out out", 2, {"both shard 1/2"});
+  expect_refusal("merge s1 --out out", 2, {"shard 2/2 is missing", "--shard 2/2"});
+  expect_refusal("merge s1 other --out out", 3, {"other", "no shard of the experiment"});
+  expect_refusal("merge s1 seed --out out", 3, {"no shard of the experiment"});
+  expect_refusal("merge s1 none --out out", 3, {"none/results.json"});
+  EXPECT_EQ(run("merge s1 s2 --out s2").exit_code, 2);
+  EXPECT_THAT(read_text(folder() / "stderr.txt"), HasSubstr("there is a report in this folder already"));
+  json cut = results("s2");
+  cut["cells"].erase(0);
+  write("s2/results.json", cut.dump());
+  expect_refusal("merge s1 s2 --out out", 3, {"s2", "holds 1 cells", "has 2"});
+  write("s2/results.json", "{\"cells\": [");
+  expect_refusal("merge s1 s2 --out out", 3, {"s2/results.json", "cut off"});
+  EXPECT_FALSE(std::filesystem::exists(folder() / "out"));
+}
+
+TEST_F(Sweep, BadExperiments_AreRefused) {
+  expect_refusal("run quik --out out", 2, {"did you mean 'quick'"});
+  expect_refusal("run none.toml --out out", 3, {"none.toml"});
+  write("bad.toml", "map_sise = 3\n");
+  expect_refusal("run bad.toml --out out", 3, {"bad.toml:1", "did you mean 'map_size'"});
+  write("bad.toml", "\nborder = 'mirror'\n");
+  expect_refusal("run bad.toml --out out", 3, {"bad.toml:2", "--border", "mirror"});
+  write("bad.toml", "scene = 'cubes'\nmap_size = 'many'\n");
+  expect_refusal("run bad.toml --out out", 2, {"--map-size", "many"});
+  expect_refusal("run e.toml --view top --out out", 2, {"no scene has a view 'top'", "main"});
+  expect_refusal("run e.toml --size 64x36,64x36 --out out", 2, {"--size", "twice"});
+}
+
+TEST_F(Sweep, BadShards_AreRefused) {
+  expect_refusal("run e.toml --shard 3 --out out", 2, {"--shard", "I/N"});
+  expect_refusal("run e.toml --shard 0/3 --out out", 2, {"--shard", "'0'"});
+  expect_refusal("run e.toml --shard 4/3 --out out", 2, {"--shard", "1 .. 3"});
+  expect_refusal("run e.toml --shard 999/999 --out out", 2, {"--shard 999/999 is empty", std::to_string(kCells)});
+  expect_refusal("run e.toml --grids --shard 1/3 --out out", 2, {"--shard", "--no-grids"});
+}
+
+/// What would take hours is counted and asked about, before anything is written.
+TEST_F(Sweep, TooManyCells_AskForYes) {
+  write("huge.toml",
+        "scene = 'cubes'\nsize = '16x9'\nmap_size = 16\nrounds = 1\ngrids = false\ntruth = false\n[[filter]]\nid = 'esm'\n"
+        "c = {linear = [1, 2000], count = 2001}\n");
+  expect_refusal("run huge.toml --out out", 2, {"2001 cells", "--yes"});
+  expect_refusal("run e.toml --rounds auto --budget 100 --out out", 2, {"48 cells", "1 h 20 min", "--yes"});
+  EXPECT_FALSE(std::filesystem::exists(folder() / "out"));
+  EXPECT_EQ(run("run e.toml --rounds auto --budget 100 --precision 1 --yes --out out").exit_code, 0);
+}
+
+}  // namespace
+}  // namespace shadowbench::test
