@@ -25,4 +25,7 @@ void add_bias_command(CLI::App& app, Action& action);
 /// Adds `merge`.
 void add_merge_command(CLI::App& app, Action& action);
 
+/// Adds `advise`.
+void add_advise_command(CLI::App& app, Action& action);
+
 }  // namespace shadowbench::cli

@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "filters/catalogue.h"
+#include "filters/error.h"
+#include "harness/cli/arguments.h"
+#include "harness/cli/commands.h"
+#include "harness/run/options.h"
+#include "report/advice.h"
+#include "report/advice_text.h"
+#include "report/advice_words.h"
+#include "report/json_io.h"
+
+namespace shadowbench::cli {
+namespace {
+
+using report::AdviceRequest;
+
+struct AdviseArguments {
+  std::string run;
+  std::vector<std::optional<std::string>> limits = std::vector<std::optional<std::string>>(report::limit_table().size());
+  std::vector<std::string> claims;
+  std::vector<std::string> scenes;
+  std::string size;
+  std::string light = "moving";
+  std::string cheapest = "time";
+  bool json = false;
+};
+
+double parse_limit(const std::string& text, const char* option) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc() && end == text.data() + text.size() && std::isfinite(value) && value >= 0.0) return value;
+  throw Error(ErrorKind::kUsage, fmt::format("{}: '{}' must be a number, 0 or more", option, text));
+}
+
+template <class T>
+T parse_choice(const std::string& text, const char* option, const std::vector<std::pair<const char*, T>>& choices) {
+  std::string known;
+  for (const auto& [name, value] : choices) {
+    if (text == name) return value;
+    known += (known.empty() ? "" : ", ") + std::string(name);
+  }
+  throw Error(ErrorKind::kUsage, fmt::format("{}: '{}' must be one of {}", option, text, known));
+}
+
+std::map<std::string, std::vector<std::string>> list_claims() {
+  std::map<std::string, std::vector<std::string>> claims;
+  const filters::Catalogue catalogue(run::find_resources().filters);
+  for (const filters::FilterSpec& spec : catalogue.filters()) claims[spec.id] = spec.claims;
+  return claims;
+}
+
+AdviceRequest make_request(const AdviseArguments& arguments) {
+  AdviceRequest request;
+  for (std::size_t i = 0; i < arguments.limits.size(); ++i) {
+    const report::LimitSpec& spec = report::limit_table()[i];
+    if (arguments.limits[i]) request.demands.push_back({&spec, parse_limit(*arguments.limits[i], spec.option), {}});
+  }
+  for (const std::string& claim : arguments.claims) request.demands.push_back({nullptr, 0.0, claim});
+  using report::CostKind, report::LightMotion;
+  request.light = parse_choice<LightMotion>(arguments.light, "--light",
+                                            {{"moving", LightMotion::kMoving}, {"static", LightMotion::kStatic}});
+  request.cheapest = parse_choice<CostKind>(
+      arguments.cheapest, "--cheapest",
+      {{"time", CostKind::kTime}, {"bytes", CostKind::kBytes}, {"fetches", CostKind::kFetches}});
+  request.scenes = arguments.scenes;
+  if (!arguments.size.empty()) request.size = parse_picture_size(arguments.size);
+  if (!arguments.claims.empty()) request.claims = list_claims();
+  return request;
+}
+
+std::filesystem::path find_results(const std::filesystem::path& run) {
+  if (std::filesystem::is_directory(run)) return run / "results.json";
+  if (std::filesystem::exists(run)) return run;
+  throw Error(ErrorKind::kInput, "there is no such folder or file; give a run's folder (its --out), or its results.json",
+              run.string());
+}
+
+int advise(const AdviseArguments& arguments) {
+  const AdviceRequest request = make_request(arguments);
+  const report::Results results = report::read_results(find_results(arguments.run));
+  const report::Advice advice = report::advise(results.cells, request);
+  if (arguments.json) {
+    const auto json = report::make_advice_json(results.run, advice);
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  } else {
+    fmt::print("{}", report::make_advice_text(results.run, advice));
+  }
+  if (advice.keeping.empty()) throw Error(ErrorKind::kLimit, report::describe_failure(advice));
+  return 0;
+}
+
+constexpr const char* kFooter =
+    "A configuration is all that makes a cell but scene and view: filter, parameters, map, picture size, bias. It keeps a\n"
+    "limit where its worst scene does. Its cost is the mean over all views of all scenes; --max-ms holds for each of them.\n"
+    "A frame with a moving light pays for map, prefilter and lookup, one with a static light for the lookup alone.\n"
+    "Costs are apart where their intervals are: the 95 % interval of the ratio to 'none' where both share map, bias and\n"
+    "picture size, else the quartiles of the times. Without any limit the cheapest of all is advised, which does least.\n"
+    "What was not measured on all the scenes, did not finish, or lacks a value that is asked for keeps no limit.\n"
+    "Exit code 1: nothing keeps the limits; the message names the ones in the way.";
+
+}  // namespace
+
+void add_advise_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("advise", "Find a run's cheapest filter and map that keep your limits");
+  command->footer(kFooter);
+  auto a = std::make_shared<AdviseArguments>();
+  command->add_option("RUN", a->run, "a run's folder, or its results.json")->required();
+  for (std::size_t i = 0; i < a->limits.size(); ++i) {
+    const report::LimitSpec& spec = report::limit_table()[i];
+    command->add_option(spec.option, a->limits[i], spec.text);
+  }
+  command->add_option("--requires", a->claims, "what the filter must claim, such as contact-hardening; may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--scene", a->scenes, "judge on this scene; may be repeated [all of the run]")
+      ->allow_extra_args(false);
+  command->add_option("--size", a->size, "judge pictures of WxH pixels [all of the run]");
+  command->add_option("--light", a->light, "moving or static: what a frame pays for")->capture_default_str();
+  command->add_option("--cheapest", a->cheapest, "time, bytes or fetches: what is to be cheap")->capture_default_str();
+  command->add_flag("--json", a->json, "as JSON");
+  command->callback([&action, a] { action = [a] { return advise(*a); }; });
+}
+
+}  // namespace shadowbench::cli

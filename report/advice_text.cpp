@@ -1,0 +1,200 @@
+#include "report/advice_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "report/advice_words.h"
+#include "report/summary.h"
+
+namespace shadowbench::report {
+namespace {
+
+constexpr std::size_t kColumns = 100;
+
+using Row = std::vector<std::string>;
+
+// Columns on a terminal: every code point of ours takes one.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+std::string align(const std::vector<Row>& rows) {
+  std::vector<std::size_t> widths;
+  for (const Row& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+  }
+  std::string text;
+  for (const Row& row : rows) {
+    std::string line = " ";
+    for (std::size_t i = 0; i < row.size(); ++i) line += fmt::format(" {}{} ", row[i], std::string(widths[i] - width_of(row[i]), ' '));
+    line.resize(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
+
+// Breaks a paragraph at spaces; all lines but the first are indented.
+std::string wrap(const std::string& text) {
+  std::string result, line;
+  std::size_t begin = 0;
+  while (begin < text.size()) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    if (!line.empty() && width_of(line) + 1 + width_of(word) > kColumns) {
+      result += line + "\n";
+      line.assign(1, ' ');
+    }
+    if (!line.empty()) line += ' ';
+    line += word;
+    begin = end + 1;
+  }
+  return result + line + "\n";
+}
+
+std::string place_name(const CellRecord& cell, const Advice& advice) {
+  return describe_place(place_of(cell), advice.places);
+}
+
+std::string remark(const Demand& demand, const Verdict& verdict, LightMotion light) {
+  if (verdict.lost_in_truth) {
+    return fmt::format("kept by less than the truth's own standard error, {}",
+                       format_number(*verdict.lost_in_truth->truth.se));
+  }
+  if (demand.spec == &cost_spec(CostKind::kTime)) {
+    const double q3 = frame_time(*verdict.where, light)->q3;
+    if (q3 > demand.most) return fmt::format("its upper quartile, {}, is over it", format_number(q3));
+  }
+  return "";
+}
+
+Row describe_limit(const Demand& demand, const Verdict& verdict, const RunRecord& run, const Advice& advice) {
+  if (!verdict.worst) return {describe_demand(demand), "claimed"};
+  const bool is_time = demand.spec == &cost_spec(CostKind::kTime);
+  const std::string worst = format_kept(*verdict.worst, demand.most);
+  return {describe_demand(demand), is_time ? fmt::format("{} {}", worst, time_unit(run.gl)) : worst,
+          place_name(*verdict.where, advice), remark(demand, verdict, advice.request.light)};
+}
+
+std::string list_limits(const RunRecord& run, const Advice& advice) {
+  if (advice.request.demands.empty()) return "";
+  std::vector<Row> rows = {{"limit", "worst", "on"}};
+  for (std::size_t i = 0; i < advice.request.demands.size(); ++i) {
+    rows.push_back(describe_limit(advice.request.demands[i], advice.keeping.front().verdicts[i], run, advice));
+  }
+  return align(rows);
+}
+
+template <class T>
+std::string format_optional(const std::optional<T>& value) {
+  return value ? format_number(static_cast<double>(*value)) : kNothing;
+}
+
+Row describe_cell(const CellRecord& cell, const Advice& advice) {
+  const auto time = frame_time(cell, advice.request.light);
+  return {place_name(cell, advice),
+          time ? format_number(time->median) : kNothing,
+          time ? fmt::format("{} .. {}", format_number(time->q1), format_number(time->q3)) : kNothing,
+          format_ratio(frame_ratio(cell, advice.request.light)),
+          format_optional(cell.error.rmse),
+          format_optional(cell.cost.map_bytes),
+          format_optional(cell.cost.fetches),
+          cell.key};
+}
+
+std::string list_cells(const RunRecord& run, const Advice& advice) {
+  std::vector<Row> rows = {{"scene", time_unit(run.gl), "quartiles", "/ none [95 %]", "RMSE", "bytes", "fetches", "cell"}};
+  for (const CellRecord* cell : advice.keeping.front().configuration.cells) rows.push_back(describe_cell(*cell, advice));
+  return align(rows);
+}
+
+std::string describe_second(const RunRecord& run, const Advice& advice) {
+  if (advice.keeping.size() < 2) return "Runner-up: no other configuration keeps the limits.\n";
+  const Candidate& second = advice.keeping[1];
+  return wrap(fmt::format("Runner-up: {}, {}; {}.", second.configuration.label,
+                                 format_cost(second.cost.mean, advice.request.cheapest, run.gl),
+                                 describe_runner_up(advice, run.gl)));
+}
+
+Row describe_relaxation(const RunRecord& run, const Advice& advice, const Relaxation& step) {
+  const Demand& demand = advice.request.demands[step.demand];
+  const Candidate& candidate = advice.failing[step.candidate];
+  const auto worst = candidate.verdicts[step.demand].worst;
+  const CostKind kind = advice.request.cheapest;
+  const double of = candidate.cost.mean + step.saving.difference;
+  const double share = of > 0.0 ? step.saving.difference / of : 0.0;
+  return {worst ? fmt::format("{} -> {}", describe_demand(demand), format_limit(*worst)) : "without " + describe_demand(demand),
+          fmt::format("saves {} ({:.0f} %)", format_cost(step.saving.difference, kind, run.gl), 100.0 * share),
+          candidate.configuration.label};
+}
+
+std::string list_relaxations(const RunRecord& run, const Advice& advice) {
+  if (advice.request.demands.empty()) return "";
+  if (advice.relaxations.empty()) return "Relaxing one limit alone buys nothing.\n";
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < advice.request.demands.size(); ++i) {
+    const std::size_t before = rows.size();
+    for (const Relaxation& step : advice.relaxations) {
+      if (step.demand == i) rows.push_back(describe_relaxation(run, advice, step));
+    }
+    if (rows.size() == before) rows.push_back({describe_demand(advice.request.demands[i]), "relaxing it alone buys nothing"});
+  }
+  return fmt::format("A relaxed limit buys:\n{}", align(rows));
+}
+
+std::string list_obstacles(const Advice& advice) {
+  std::vector<Row> rows = {{"limit", "fail it", "fail it alone", "no value", "would let through"}};
+  for (std::size_t i = 0; i < advice.obstacles.size(); ++i) {
+    const Obstacle& obstacle = advice.obstacles[i];
+    Row row = {describe_demand(advice.request.demands[i]), fmt::format("{}", obstacle.failing),
+               fmt::format("{}", obstacle.alone), fmt::format("{}", obstacle.unknown)};
+    if (obstacle.nearest) {
+      const Candidate& nearest = advice.failing[*obstacle.nearest];
+      const auto worst = nearest.verdicts[i].worst;
+      row.push_back((worst ? format_limit(*worst) : "none") + ": " + nearest.configuration.label);
+    }
+    rows.push_back(row);
+  }
+  return align(rows);
+}
+
+std::string list_remarks(const RunRecord& run, const Advice& advice) {
+  const std::size_t judged = advice.keeping.size() + advice.failing.size();
+  std::vector<std::string> places;
+  for (const Place& place : advice.places) places.push_back(describe_place(place, advice.places));
+  std::string text = wrap(fmt::format("{} of {} configurations judged, on {}.", judged, judged + advice.unjudged.size(),
+                                      fmt::join(places, ", ")));
+  for (const std::string& reason : count_unjudged(advice)) text += wrap("Not judged, " + reason + ".");
+  for (const std::string& note : list_advice_notes(advice, run.gl)) text += wrap(note);
+  return text;
+}
+
+std::string describe_answer(const RunRecord& run, const Advice& advice) {
+  const Candidate& best = advice.keeping.front();
+  const ParamMap& params = best.configuration.cells.front()->params;
+  const std::string with = params.empty() ? "" : wrap(fmt::format("with {}", describe_params(params)));
+  return fmt::format("{}: {}{}; cheapest of {}{}\n{}", best.configuration.label,
+                     format_cost(best.cost.mean, advice.request.cheapest, run.gl), describe_frame(advice.request),
+                     advice.keeping.size(), advice.request.demands.empty() ? "" : " that keep the limits", with);
+}
+
+std::string describe_nearest(const Advice& advice) { return advice.closest ? wrap(describe_closest(advice) + ".") : ""; }
+
+}  // namespace
+
+std::string make_advice_text(const RunRecord& run, const Advice& advice) {
+  std::vector<std::string> sections;
+  if (advice.keeping.empty()) {
+    sections = {"Nothing fits.\n", list_obstacles(advice), describe_nearest(advice)};
+  } else {
+    sections = {describe_answer(run, advice), list_limits(run, advice), list_cells(run, advice), describe_second(run, advice),
+                list_relaxations(run, advice)};
+  }
+  sections.push_back(list_remarks(run, advice));
+  std::erase(sections, "");
+  return fmt::format("{}", fmt::join(sections, "\n"));
+}
+
+}  // namespace shadowbench::report

@@ -1,0 +1,149 @@
+// `shadowbench advise`, as a user calls it, on runs that are written by hand.
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "report/json_io.h"
+#include "tests/harness/cli/program.h"
+#include "tests/report/synthetic.h"
+
+namespace shadowbench::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+/// A folder "run" with two filters on two scenes: "none" is fast and wrong, "tent3x3" slow and right.
+class Advise : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    std::vector<std::string> keys;
+    for (const char* scene : {"cubes", "stack"}) {
+      keys.push_back(write_cell(scene, "none", 1.0, 0.06));
+      keys.push_back(write_cell(scene, "tent3x3", 4.0, 0.02));
+    }
+    report::write_results(folder() / "run", report::make_run(), keys);
+  }
+
+  std::string write_cell(const std::string& scene, const std::string& filter, double ms, double rmse) const {
+    report::CellRecord cell = report::make_cell(scene, filter, ms);
+    cell.error.rmse = rmse;
+    cell.truth.se = 0.001;
+    cell.absent.erase("error");
+    report::write_cell(folder() / "run", cell);
+    return cell.key;
+  }
+
+  /// Points the program at filters of our own, of which `soft` claims something.
+  std::string with_claims() const {
+    const std::filesystem::path root = folder() / "root";
+    for (const char* name : {"filters", "shaders", "harness/scenes"}) std::filesystem::create_directories(root / name);
+    const std::string body = "kind = \"other\"\nradius_texels = 0\n+++*/\nfloat visibility(Receiver r) { return 1.0; }\n";
+    write("root/filters/none.glsl", "/*+++\ntitle = \"N\"\nsource = \"s\"\n" + body);
+    write("root/filters/tent3x3.glsl", "/*+++\ntitle = \"T\"\nsource = \"s\"\nclaims = [\"contact-hardening\"]\n" + body);
+    return root.string();
+  }
+};
+
+TEST_F(Advise, GivesTheCheapestThatKeepsTheLimits) {
+  const Outcome outcome = run("advise run --max-rmse 0.03");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, StartsWith("tent3x3, map 1024 × 1024 d32f: 7.5 ms (CPU) a frame"));
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(run("advise run/results.json --max-rmse 0.03").out, outcome.out);
+}
+
+TEST_F(Advise, Options_ReachTheRequest) {
+  EXPECT_THAT(run("advise run --light static").out, StartsWith("none, map 1024 × 1024 d32f: 1 ms (CPU) a frame, static"));
+  EXPECT_THAT(run("advise run --cheapest bytes").out, HasSubstr(": 4194304 bytes; cheapest of 2"));
+  EXPECT_THAT(run("advise run --scene cubes --scene stack").out, HasSubstr("on cubes, stack."));
+  EXPECT_THAT(run("advise --scene cubes run").out, HasSubstr("judged, on cubes."));
+  EXPECT_EQ(run("advise run --size 960x540").exit_code, 0);
+}
+
+TEST_F(Advise, EveryLimitOfTheTable_IsAnOption) {
+  for (const char* option : {"rmse", "leak", "acne", "contact-gap", "flip", "ms", "bytes", "fetches"}) {
+    const Outcome outcome = run("advise run --json --max-" + std::string(option) + " 1e9");
+    const nlohmann::json json = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(json["asked"]["limits"]["--max-" + std::string(option)], 1e9) << outcome.err;
+  }
+}
+
+TEST_F(Advise, NothingFits_ExitsWithOneAndNamesTheLimit) {
+  expect_refusal("advise run --max-rmse 0.001", 1, {"none of 2 configurations", "--max-rmse 0.001", "0.02 would let tent3x3"});
+  const Outcome outcome = run("advise run --max-rmse 0.001 --json");
+  EXPECT_EQ(outcome.exit_code, 1);
+  const nlohmann::json json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["fits"], false);
+  EXPECT_EQ(json["limits"][0]["fail_alone"], 2);
+  EXPECT_EQ(json["limits"][0]["nearest_worst"], 0.02);
+}
+
+TEST_F(Advise, Json_HoldsTheAnswer) {
+  const Outcome outcome = run("advise run --max-rmse 0.03 --json");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["advised"]["settings"]["filter"], "tent3x3");
+  EXPECT_EQ(json["relaxed"][0]["worst"], 0.06);
+  EXPECT_EQ(json["time_unit"], "ms (CPU)");
+}
+
+TEST_F(Advise, LimitsThatAreNotNumbers_AreUsageErrors) {
+  for (const char* value : {"abc", "nan", "inf", "-1", "-0.5", "1e999", "5ms", "' '", "0x10"}) {
+    expect_refusal(std::string("advise run --max-rmse=") + value, 2, {"--max-rmse", "must be a number, 0 or more"});
+  }
+  expect_refusal("advise run --max-bytes -1", 2, {"--max-bytes: '-1' must be a number, 0 or more"});
+  expect_refusal("advise run --max-rmse", 2, {"--max-rmse"});
+  expect_refusal("advise run --max-rmse ''", 2, {"--max-rmse"});
+  expect_refusal("advise run --max-rmse 1 --max-rmse 2", 2, {"--max-rmse"});
+}
+
+TEST_F(Advise, UnknownNames_AreUsageErrors) {
+  expect_refusal("advise run --light fast", 2, {"--light: 'fast' must be one of moving, static"});
+  expect_refusal("advise run --cheapest money", 2, {"--cheapest: 'money' must be one of time, bytes, fetches"});
+  expect_refusal("advise run --scene stick", 2, {"--scene: the run has no 'stick'; it has cubes, stack"});
+  expect_refusal("advise run --size 960", 2, {"--size", "'960'"});
+  expect_refusal("advise", 2, {"RUN"});
+}
+
+TEST_F(Advise, BadRuns_AreInputErrors) {
+  expect_refusal("advise nowhere", 3, {"nowhere", "no such folder or file"});
+  std::filesystem::create_directory(folder() / "empty");
+  expect_refusal("advise empty", 3, {"empty/results.json", "cannot be opened", "was the run finished?"});
+  const std::string results = read_text(folder() / "run" / "results.json");
+  write("cut.json", results.substr(0, results.size() / 2));
+  expect_refusal("advise cut.json", 3, {"cut.json", "cut off"});
+  nlohmann::json other = nlohmann::json::parse(results);
+  other["schema_version"] = 99;
+  write("other.json", other.dump());
+  expect_refusal("advise other.json", 3, {"other.json", "schema_version is 99"});
+  other["schema_version"] = report::kSchemaVersion;
+  other["cells"] = nlohmann::json::array();
+  write("none.json", other.dump());
+  expect_refusal("advise none.json", 3, {"holds no cell"});
+}
+
+TEST_F(Advise, Requires_ReadsTheClaimsOfTheBuiltInFilters) {
+  setenv("SHADOWBENCH_ROOT", with_claims().c_str(), 1);
+  const Outcome outcome = run("advise --requires contact-hardening run");
+  EXPECT_THAT(outcome.out, StartsWith("tent3x3,")) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("--requires contact-hardening  claimed"));
+  EXPECT_THAT(outcome.out, HasSubstr("without --requires contact-hardening  saves 3 ms (CPU)"));
+  expect_refusal("advise run --requires temporal", 2, {"no filter claims 'temporal'", "filters claim contact-hardening"});
+  unsetenv("SHADOWBENCH_ROOT");
+}
+
+TEST_F(Advise, DoesNotLoadTheImageLibraries) {
+  const std::string command = "cd '" + folder().string() + "' && LD_DEBUG=files '" SHADOWBENCH_PROGRAM "' advise run >out.txt 2>debug.txt";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const std::string files = read_text(folder() / "debug.txt");
+  EXPECT_THAT(files, HasSubstr("libfmt"));
+  for (const char* library : {"OpenImageIO", "OpenEXR", "embree"}) {
+    EXPECT_EQ(files.find(library), std::string::npos) << library;
+  }
+}
+
+}  // namespace
+}  // namespace shadowbench::test
