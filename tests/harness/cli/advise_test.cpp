@@ -39,7 +39,7 @@ class Advise : public ProgramTest {
   /// Points the program at filters of our own, of which `soft` claims something.
   std::string with_claims() const {
     const std::filesystem::path root = folder() / "root";
-    for (const char* name : {"filters", "shaders", "harness/scenes"}) std::filesystem::create_directories(root / name);
+    for (const char* name : {"filters", "shaders", "harness/scenes", "harness/experiments"}) std::filesystem::create_directories(root / name);
     const std::string body = "kind = \"other\"\nradius_texels = 0\n+++*/\nfloat visibility(Receiver r) { return 1.0; }\n";
     write("root/filters/none.glsl", "/*+++\ntitle = \"N\"\nsource = \"s\"\n" + body);
     write("root/filters/tent3x3.glsl", "/*+++\ntitle = \"T\"\nsource = \"s\"\nclaims = [\"contact-hardening\"]\n" + body);
