@@ -95,6 +95,8 @@ RunRecord join(const std::vector<ShardRun>& shards) {
     run.work.passes_skipped += other.work.passes_skipped;
     run.work.truths_traced += other.work.truths_traced;
     run.work.truths_cached += other.work.truths_cached;
+    run.work.timed_s += other.work.timed_s;
+    run.work.elapsed_s += other.work.elapsed_s;
     for (const std::string& warning : other.warnings) {
       if (std::find(run.warnings.begin(), run.warnings.end(), warning) == run.warnings.end()) run.warnings.push_back(warning);
     }

@@ -121,6 +121,8 @@ void visit_run_fields(Run& run, Visitor&& visit) {
   visit("work.passes_skipped", run.work.passes_skipped);
   visit("work.truths_traced", run.work.truths_traced);
   visit("work.truths_cached", run.work.truths_cached);
+  visit("work.timed_s", run.work.timed_s);
+  visit("work.elapsed_s", run.work.elapsed_s);
   visit("experiment.title", run.experiment.title);
   visit("experiment.settings", run.experiment.settings);
   visit("experiment.cells", run.experiment.cells);

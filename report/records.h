@@ -223,6 +223,8 @@ struct WorkRecord {
   std::int64_t passes_skipped = 0;
   std::int64_t truths_traced = 0;  ///< ray-traced images computed in this run
   std::int64_t truths_cached = 0;  ///< ray-traced images read from the cache
+  double timed_s = 0.0;            ///< of the passes that were timed, rounds that warm up included; seconds
+  double elapsed_s = 0.0;          ///< from the first cell to the last, the report not included; seconds
 };
 
 /// Names a scene for people.

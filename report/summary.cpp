@@ -108,8 +108,9 @@ std::vector<std::string> describe_troubles(const CellGroup& group) {
 std::string describe_work(const WorkRecord& work) {
   return fmt::format(
       "{} shader variants compiled, {} passes run, {} passes skipped because no filter needed them, "
-      "{} truths ray traced, {} truths read from the cache",
-      work.shader_variants_compiled, work.passes_run, work.passes_skipped, work.truths_traced, work.truths_cached);
+      "{} truths ray traced, {} truths read from the cache; {} s of timed passes in {} s",
+      work.shader_variants_compiled, work.passes_run, work.passes_skipped, work.truths_traced, work.truths_cached,
+      format_number(work.timed_s), format_number(work.elapsed_s));
 }
 
 /// Writes a length in the units it was given in, then in all three where the map's scale is known.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -61,7 +62,9 @@ class Experiment {
     remove_stale_worker_folders(options_.out);
     done_ = plan.finished;
     progress_.begin(plan.own_cells, plan.finished);
+    const auto start = std::chrono::steady_clock::now();
     for (std::size_t scene = 0; scene < plan.scenes.size(); ++scene) run_scene(plan, scene);
+    run_.work.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     run_.work.shader_variants_compiled = renderer_.shaders.compiled();
     run_.work.truths_traced = cache_.traced();
     run_.work.truths_cached = cache_.loaded();
@@ -85,6 +88,7 @@ class Experiment {
 
   void count(const SceneMeasurement& measured) {
     done_ += static_cast<int>(measured.cells.size());
+    run_.work.timed_s += 1e-3 * measured.timed_ms;
     run_.work.passes_run += measured.passes_run;
     run_.work.passes_skipped += measured.passes_skipped;
     for (const MeasuredCell& cell : measured.cells) {

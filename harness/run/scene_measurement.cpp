@@ -133,6 +133,7 @@ class SceneBench {
     if (asked == task_.filters.end()) pointers.push_back((added = make_passes(options_.reference)).get());
     const RoundTimes times = time_rounds(pointers, reference, [&] { assets_.redraw(light_); }, light_.map, gbuffer_,
                                          renderer_.timer, options_.rounds, options_.seed);
+    result.timed_ms = times.spent_ms;
     for (std::size_t i = 0; i < filters.size(); ++i) {
       set_times(result.cells[i].record, times.map, times.filters[i], times.filters[reference]);
     }

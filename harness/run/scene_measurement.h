@@ -29,6 +29,7 @@ struct SceneMeasurement {
   report::Image stored_map;  ///< [0,1], row 0 is v = 1
   report::Image depth_map;   ///< the same, linearised
   std::optional<reference::ArtefactMasks> masks;  ///< where artefacts can occur; nothing without truth
+  double timed_ms = 0.0;  ///< of the passes that were timed
   int passes_run = 0;
   int passes_skipped = 0;  ///< encode and blur passes that no chosen filter needed
 };

@@ -45,18 +45,17 @@ class Rounds {
   std::uint64_t seed_;
   std::mt19937_64 generator_;
   std::vector<std::size_t> active_;
-  double spent_ms_ = 0.0;
   RoundTimes times_;
 
   void run_round(bool counted) {
     const double map_ms = draw_map_();
-    spent_ms_ += map_ms;
+    times_.spent_ms += map_ms;
     if (counted) times_.map.push_back(map_ms);
     shuffle(active_, generator_);
     for (const std::size_t i : active_) {
       const double prefilter_ms = filters_[i].prefilter ? filters_[i].prefilter() : 0.0;
       const double lookup_ms = filters_[i].lookup();
-      spent_ms_ += prefilter_ms + lookup_ms;
+      times_.spent_ms += prefilter_ms + lookup_ms;
       if (!counted) continue;
       if (filters_[i].prefilter) times_.filters[i].prefilter.push_back(prefilter_ms);
       times_.filters[i].lookup.push_back(lookup_ms);
@@ -67,7 +66,7 @@ class Rounds {
     if (limits_.is_fixed()) return false;
     if (rounds >= limits_.fewest) drop_precise();
     if (active_.empty()) return true;
-    if (rounds < std::min(kFewestOfAnyBudget, limits_.most) || spent_ms_ < limits_.budget_ms * static_cast<double>(filters_.size())) {
+    if (rounds < std::min(kFewestOfAnyBudget, limits_.most) || times_.spent_ms < limits_.budget_ms * static_cast<double>(filters_.size())) {
       return false;
     }
     for (const std::size_t i : active_) times_.filters[i].stopped = StopReason::kBudget;

@@ -32,6 +32,7 @@ struct FilterTimes {
 struct RoundTimes {
   std::vector<double> map;           ///< as many entries as there were rounds
   std::vector<FilterTimes> filters;  ///< in the order given
+  double spent_ms = 0.0;             ///< of all passes, rounds that warm up included
 };
 
 /// Runs one filter's passes once and gives their times in milliseconds.

@@ -251,6 +251,8 @@ TEST(JsonIo, Results_HoldTheNamedCellsInTheGivenOrder) {
   EXPECT_EQ(to_json(results.run), to_json(make_run()));
   EXPECT_EQ(results.run.work.truths_traced, 5);
   EXPECT_EQ(results.run.work.truths_cached, 2);
+  EXPECT_EQ(results.run.work.timed_s, 1.5);
+  EXPECT_EQ(results.run.work.elapsed_s, 2.0);
 }
 
 TEST(JsonIo, CutOffFile_IsAnInputErrorThatNamesItAndSaysWhatToDo) {
