@@ -3,14 +3,24 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 
 #include "filters/error.h"
-#include "harness/run/options.h"
+#include "harness/scene/load.h"
 
 namespace shadowbench::cli {
 namespace {
 
 [[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
+
+double parse_angle(const std::string& text, const char* name, double limit_deg) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(std::abs(value) <= limit_deg)) {
+    fail(fmt::format("--light: the {} '{}' must be a number of degrees, {} .. {}", name, text, -limit_deg, limit_deg));
+  }
+  return value;
+}
 
 }  // namespace
 
@@ -38,6 +48,18 @@ void require_distinct(const std::vector<filters::FilterRequest>& requests) {
       }
     }
   }
+}
+
+run::LightAngles parse_light(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) fail(fmt::format("--light: '{}' must be AZIMUTH,ELEVATION in degrees, such as 120,35", text));
+  return {parse_angle(text.substr(0, comma), "azimuth", 360.0), parse_angle(text.substr(comma + 1), "elevation", 90.0)};
+}
+
+std::vector<std::string> list_builtin_scenes(const run::Resources& resources) {
+  std::vector<std::string> names;
+  for (const scene::SceneInfo& info : scene::list_scenes(resources.scenes)) names.push_back(info.name);
+  return names;
 }
 
 std::filesystem::path choose_cache(const std::string& folder, bool no_cache) {

@@ -28,4 +28,7 @@ void add_merge_command(CLI::App& app, Action& action);
 /// Adds `advise`.
 void add_advise_command(CLI::App& app, Action& action);
 
+/// Adds `tune`.
+void add_tune_command(CLI::App& app, Action& action);
+
 }  // namespace shadowbench::cli

@@ -35,6 +35,12 @@ void load_and_merge_runs(const std::vector<std::filesystem::path>& folders, cons
   load_entry<void(const std::vector<std::filesystem::path>&, const std::filesystem::path&)>("shadowbench_merge_runs")(folders, out);
 }
 
+std::string load_and_tune_filters(const run::TuneOptions& options, run::Progress& progress) {
+  std::string text;
+  load_entry<void(const run::TuneOptions&, run::Progress&, std::string&)>("shadowbench_tune_filters")(options, progress, text);
+  return text;
+}
+
 run::Comparison load_and_compare_pictures(const run::ComparisonOptions& options) {
   run::Comparison result;
   load_entry<void(const run::ComparisonOptions&, run::Comparison&)>("shadowbench_compare_pictures")(options, result);

@@ -6,6 +6,7 @@
 #include "harness/run/compare_pictures.h"
 #include "harness/run/options.h"
 #include "harness/run/progress.h"
+#include "harness/run/tune_filters.h"
 
 namespace shadowbench::cli {
 
@@ -20,6 +21,9 @@ void load_and_run_bias_sweep(const run::RunOptions& options, run::Progress& prog
 
 /// Joins shards. Throws Error as report::merge_runs.
 void load_and_merge_runs(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out);
+
+/// Tunes filters; gives the text of tune.md. Throws Error as run::tune_filters.
+std::string load_and_tune_filters(const run::TuneOptions& options, run::Progress& progress);
 
 /// Compares two pictures. Throws Error as run::compare_pictures.
 run::Comparison load_and_compare_pictures(const run::ComparisonOptions& options);

@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   shadowbench::cli::add_bias_command(app, action);
   shadowbench::cli::add_merge_command(app, action);
   shadowbench::cli::add_advise_command(app, action);
+  shadowbench::cli::add_tune_command(app, action);
   try {
     app.parse(argc, argv);
     return action();

@@ -15,7 +15,7 @@ namespace {
 const std::vector<std::string>& experiment_keys() {
   static const std::vector<std::string> keys = {
       "scene", "ground", "view", "filter_file", "map_size", "size", "bias", "map_format", "reversed_depth", "perspective_depth", "fit", "snap",
-      "light", "border", "far_test", "behind_test", "border_page", "rounds", "precision", "budget", "cell_timeout", "seed", "truth", "attribution",
+      "light", "tuned", "border", "far_test", "behind_test", "border_page", "rounds", "precision", "budget", "cell_timeout", "seed", "truth", "attribution",
       "grids"};
   return keys;
 }
@@ -66,6 +66,7 @@ void add_range_options(CLI::App& command, RunArguments& a) {
 void add_filter_options(CLI::App& command, RunArguments& a) {
   command.add_option("--filters", a.filters, "filters with parameters, such as none,vsm:radius=6,min_variance=1e-4,esm (default: all; see 'list filters')");
   command.add_option("--filter-file", a.filter_files, "a filter of your own, one GLSL file; may be repeated")->allow_extra_args(false);
+  command.add_option("--tuned", a.tuned, "a tuned.json of 'shadowbench tune': every filter it names takes its parameters, but for those that --filters sets");
   command.add_option("--bias", a.bias,
                      "bias, MODE:KEY=X,...; repeat to add up: " + run::list_bias_modes() +
                      ". Units: depth (0..1 over the light's range), texels (their width), world (metres), kernels (half-width of "

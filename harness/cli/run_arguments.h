@@ -45,6 +45,7 @@ struct RunArguments {
   std::string shard;
   bool fresh = false;
   bool yes = false;
+  std::string tuned;
   std::string cache;
   bool no_cache = false;
   bool worker = false;

@@ -2,8 +2,6 @@
 #include <sys/prctl.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <csignal>
 #include <memory>
 #include <optional>
@@ -16,7 +14,7 @@
 #include "harness/cli/progress_bar.h"
 #include "harness/cli/run_arguments.h"
 #include "harness/gl/pixel_format.h"
-#include "harness/scene/load.h"
+#include "harness/run/tuned_parameters.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -46,12 +44,6 @@ std::vector<int> parse_map_sizes(const std::string& text) {
   return sizes;
 }
 
-std::vector<std::string> builtin_scenes(const run::Resources& resources) {
-  std::vector<std::string> names;
-  for (const scene::SceneInfo& info : scene::list_scenes(resources.scenes)) names.push_back(info.name);
-  return names;
-}
-
 void add_filters(run::RunOptions& options, const RunArguments& arguments) {
   filters::Catalogue catalogue(options.resources.filters);
   for (const std::string& file : arguments.filter_files) catalogue.add_user_file(file);
@@ -62,6 +54,7 @@ void add_filters(run::RunOptions& options, const RunArguments& arguments) {
     if (std::any_of(options.filters.begin(), options.filters.end(), is_it)) continue;
     options.filters.push_back(catalogue.parse_requests(id).front());
   }
+  if (!arguments.tuned.empty()) options.notes = run::apply_tuned(options.filters, catalogue, arguments.tuned, options.map_sizes);
   require_distinct(options.filters);
 }
 
@@ -74,21 +67,6 @@ void check(const RunArguments& arguments) {
   if (!(ratio > 1.0 && ratio <= kLargestDepthRatio)) {
     fail(fmt::format("--perspective-depth: {} is out of range: choose far over near, more than 1, at most {:g}", ratio, kLargestDepthRatio));
   }
-}
-
-double parse_angle(const std::string& text, const char* name, double limit_deg) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(std::abs(value) <= limit_deg)) {
-    fail(fmt::format("--light: the {} '{}' must be a number of degrees, {} .. {}", name, text, -limit_deg, limit_deg));
-  }
-  return value;
-}
-
-run::LightAngles parse_light(const std::string& text) {
-  const std::size_t comma = text.find(',');
-  if (comma == std::string::npos) fail(fmt::format("--light: '{}' must be AZIMUTH,ELEVATION in degrees, such as 120,35", text));
-  return {parse_angle(text.substr(0, comma), "azimuth", 360.0), parse_angle(text.substr(comma + 1), "elevation", 90.0)};
 }
 
 void set_map_and_light(run::RunOptions& options, const RunArguments& arguments) {
@@ -140,10 +118,10 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   check(arguments);
   run::RunOptions options;
   options.resources = run::find_resources();
-  options.scenes = arguments.scenes.empty() ? builtin_scenes(options.resources) : arguments.scenes;
+  options.scenes = arguments.scenes.empty() ? list_builtin_scenes(options.resources) : arguments.scenes;
   options.ground = arguments.ground;
-  add_filters(options, arguments);
   options.map_sizes = parse_map_sizes(arguments.map_sizes);
+  add_filters(options, arguments);
   options.sizes = parse_sizes(arguments.sizes);
   options.views = arguments.views;
   set_map_and_light(options, arguments);
@@ -182,6 +160,7 @@ int run(CLI::App& command_line, RunArguments& arguments, std::vector<std::string
   options.title = title;
   {
     const std::unique_ptr<run::Progress> progress = make_progress();
+    for (const std::string& note : options.notes) progress->note("note: " + note);
     load_and_run_experiment(options, *progress);
   }
   if (!options.worker) fmt::print("report: {}\n", (options.out / "index.html").string());

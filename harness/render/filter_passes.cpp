@@ -33,11 +33,22 @@ gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, Defines defines
   if (light_.bias.receiver_plane) defines.emplace_back("RECEIVER_PLANE", "1");
   gl::Program program =
       shaders.compile_filter(request_.spec.id + " lookup", "lookup.frag", defines, filter_pieces(request_));
-  set_light(program, light_);
-  program.set("run_seed", light_.seed);
-  program.set("map_texel_uv", 1.0f / static_cast<float>(map_size_));
-  set_parameters(program, request_);
+  set_uniforms(program);
   return program;
+}
+
+void FilterPasses::set_uniforms(gl::Program& lookup) const {
+  set_light(lookup, light_);
+  lookup.set("run_seed", light_.seed);
+  lookup.set("map_texel_uv", 1.0f / static_cast<float>(map_size_));
+  set_parameters(lookup, request_);
+}
+
+void FilterPasses::retune(ShaderLibrary& shaders, const filters::ParamValues& values, const LightSetup& light) {
+  request_.values = values;
+  light_ = light;
+  set_uniforms(lookup_);
+  if (prefilter_) prefilter_->retune(shaders, request_, light_);
 }
 
 void FilterPasses::prefilter(const ShadowMap& map) {

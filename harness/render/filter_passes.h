@@ -28,6 +28,10 @@ class FilterPasses {
   FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, const ShadowMap& map,
                const LightSetup& light);
 
+  /// Takes other parameter values and another light, without compiling anything: what is drawn then equals what new passes draw.
+  /// Requires that only values change that are neither `const` nor texts, and a light with the same range rule and map size.
+  void retune(ShaderLibrary& shaders, const filters::ParamValues& values, const LightSetup& light);
+
   bool has_prefilter() const { return prefilter_.has_value(); }
   int prefilter_passes() const { return prefilter_ ? prefilter_->passes() : 0; }  ///< encode and blur
 
@@ -55,6 +59,7 @@ class FilterPasses {
   gl::Program lookup_;
   gl::FullscreenTriangle triangle_;
 
+  void set_uniforms(gl::Program& lookup) const;
   gl::Program compile_lookup(ShaderLibrary& shaders, Defines defines) const;
   void draw_lookup(gl::Program& program, const GBuffer& gbuffer, const ShadowMap& map);
   double count_fetches(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);

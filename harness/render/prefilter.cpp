@@ -36,21 +36,25 @@ Defines blur_defines(const filters::FilterRequest& request, filters::Border bord
 
 Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
                      const LightSetup& light, const Defines& map_defines)
-    : radius_(filters::prefilter_radius_texels(request.spec, request.values)),
-      stored_(request.spec.id + " map", store_format(request.values), map_size, map_size),
-      encode_(shaders.compile_filter(request.spec.id + " encode", "encode.frag", map_defines, filter_pieces(request))),
-      weights_(filters::gaussian_weights(radius_)) {
-  set_light(encode_, light);
-  encode_.set("run_seed", light.seed);
+    : stored_(request.spec.id + " map", store_format(request.values), map_size, map_size),
+      encode_(shaders.compile_filter(request.spec.id + " encode", "encode.frag", map_defines, filter_pieces(request))) {
   encode_.set("map_texel_uv", 1.0f / static_cast<float>(map_size));
-  set_parameters(encode_, request);
-  border_ = encode_border(store_format(request.values));
   const bool nearest = combines_logs(request) || filters::text_or(request.values, "sample", "linear") == "nearest";
   sampler_.set_filter(nearest ? GL_NEAREST : GL_LINEAR, nearest ? GL_NEAREST : GL_LINEAR);
   sampler_.set_wrap(wrap_mode(light.range.border));
+  retune(shaders, request, light);
+}
+
+void Prefilter::retune(ShaderLibrary& shaders, const filters::FilterRequest& request, const LightSetup& light) {
+  set_light(encode_, light);
+  encode_.set("run_seed", light.seed);
+  set_parameters(encode_, request);
+  border_ = encode_border(store_format(request.values));
   sampler_.set_border(border_);
-  if (radius_ == 0) return;
-  scratch_.emplace(request.spec.id + " blur", store_format(request.values), map_size, map_size);
+  radius_ = filters::prefilter_radius_texels(request.spec, request.values);
+  weights_ = filters::gaussian_weights(radius_);
+  if (radius_ == 0 || blur_) return;
+  scratch_.emplace(request.spec.id + " blur", store_format(request.values), stored_.texture().width(), stored_.texture().width());
   blur_ = &shaders.fullscreen("blur.frag", blur_defines(request, light.range.border));
 }
 
@@ -72,7 +76,7 @@ void Prefilter::run(const ShadowMap& map) {
   stored_.bind();
   encode_.use();
   triangle_.draw();
-  if (!blur_) return;
+  if (radius_ == 0) return;
   blur(stored_.texture(), *scratch_, {1, 0});
   blur(scratch_->texture(), stored_, {0, 1});
 }

@@ -20,6 +20,9 @@ class Prefilter {
   Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size, const LightSetup& light,
             const Defines& map_defines = {});
 
+  /// Takes other values of the parameters that are neither `const` nor texts, and another light with the same range rule.
+  void retune(ShaderLibrary& shaders, const filters::FilterRequest& request, const LightSetup& light);
+
   /// Encodes and blurs the depth map.
   void run(const ShadowMap& map);
 
@@ -35,11 +38,11 @@ class Prefilter {
   std::int64_t texels_written() const;
 
  private:
-  int radius_;
+  int radius_ = 0;
   ImageTarget stored_;
   std::optional<ImageTarget> scratch_;  ///< only with a blur
   gl::Program encode_;
-  gl::Program* blur_ = nullptr;  ///< only with a blur
+  gl::Program* blur_ = nullptr;  ///< likewise
   std::vector<float> weights_;
   glm::vec4 border_{0.0f};
   gl::FullscreenTriangle triangle_;

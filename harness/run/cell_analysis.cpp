@@ -40,20 +40,21 @@ void note_parts(report::CellRecord& record, const reference::Attribution& attrib
 
 }  // namespace
 
+reference::ArtefactMasks find_artefact_masks(SceneTracer& tracer, const scene::LightFrustum& frustum, const SceneTruth& truth,
+                                             double widest_kernel_texels) {
+  const double half_width = widest_kernel_texels + reference::kArtefactLimits.guard_texels;
+  const reference::TracedVisibility around = tracer.trace_surroundings(truth.receivers, half_width, frustum);
+  const std::vector<std::uint8_t> area_settled = find_settled(truth.rays.area), around_settled = find_settled(around);
+  return reference::make_artefact_masks({truth.mask, truth.rays.area.visibility, area_settled, around.visibility,
+                                         around_settled, truth.rays.first_blockers_ws,
+                                         reference::kArtefactLimits.contact_texels * frustum.texel_size_ws});
+}
+
 CellAnalyser::CellAnalyser(Renderer& renderer, const RunOptions& options, const SceneTask& task, SceneAssets& assets,
                            const SceneTruth& truth)
     : renderer_(renderer), options_(options), task_(task), assets_(assets), truth_(truth), light_(assets.light_map(*task.camera, task.map_size)) {
-  if (truth_.absent.empty()) make_masks();
-}
-
-void CellAnalyser::make_masks() {
-  const double half_width = largest_radius_texels(options_.filters) + reference::kArtefactLimits.guard_texels;
-  const reference::TracedVisibility around =
-      assets_.tracer().trace_surroundings(truth_.receivers, half_width, light_.frustum);
-  const std::vector<std::uint8_t> area_settled = find_settled(truth_.rays.area), around_settled = find_settled(around);
-  masks_ = reference::make_artefact_masks({truth_.mask, truth_.rays.area.visibility, area_settled, around.visibility,
-                                           around_settled, truth_.rays.first_blockers_ws,
-                                           reference::kArtefactLimits.contact_texels * light_.frustum.texel_size_ws});
+  if (!truth_.absent.empty()) return;
+  masks_ = find_artefact_masks(assets_.tracer(), light_.frustum, truth_, largest_radius_texels(options_.filters));
 }
 
 const std::vector<float>& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {

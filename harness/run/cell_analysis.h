@@ -12,6 +12,11 @@
 
 namespace shadowbench::run {
 
+/// Finds where artefacts can occur in a view: the guard around a receiver is `widest_kernel_texels` and a little more.
+/// Requires a truth. Cost: traces the receivers' surroundings, or takes them from the cache.
+reference::ArtefactMasks find_artefact_masks(SceneTracer& tracer, const scene::LightFrustum& frustum, const SceneTruth& truth,
+                                             double widest_kernel_texels);
+
 /// Says why the cells of one task are wrong: takes their errors apart, and counts the artefacts a person sees.
 class CellAnalyser {
  public:
@@ -38,7 +43,6 @@ class CellAnalyser {
   std::optional<reference::ArtefactMasks> masks_;
   std::map<std::string, std::vector<float>> kernels_;  ///< by name
 
-  void make_masks();
   const std::vector<float>& kernel_truth(const filters::Kernel& kernel);
   std::vector<filters::Receiver> read_receivers(const render::Bias& bias) const;
   void count_artefacts(MeasuredCell& cell) const;

@@ -4,6 +4,7 @@
 #include "harness/run/bias_sweep.h"
 #include "harness/run/compare_pictures.h"
 #include "harness/run/run_experiment.h"
+#include "harness/run/tune_filters.h"
 #include "report/merge.h"
 
 extern "C" void shadowbench_run_experiment(const shadowbench::run::RunOptions& options,
@@ -23,4 +24,9 @@ extern "C" void shadowbench_run_bias_sweep(const shadowbench::run::RunOptions& o
 
 extern "C" void shadowbench_merge_runs(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out) {
   shadowbench::report::merge_runs(folders, out);
+}
+
+extern "C" void shadowbench_tune_filters(const shadowbench::run::TuneOptions& options, shadowbench::run::Progress& progress,
+                                         std::string& text) {
+  text = shadowbench::run::tune_filters(options, progress);
 }

@@ -86,6 +86,7 @@ struct RunOptions {
   std::filesystem::path out;
   std::vector<std::string> command;      ///< the command line, for the record
   std::vector<std::string> bias_texts;   ///< as given, for worker processes
+  std::vector<std::string> notes;        ///< what reading the options found that the user should know
   bool worker = false;                   ///< runs user's filters itself and writes cells and float images only
 };
 

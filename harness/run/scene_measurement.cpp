@@ -155,15 +155,15 @@ class SceneBench {
   }
 };
 
-report::ParamMap record_params(const filters::FilterRequest& request) {
+}  // namespace
+
+report::ParamMap record_params(const filters::ParamValues& values) {
   report::ParamMap params;
-  for (const auto& [name, value] : request.values) {
+  for (const auto& [name, value] : values) {
     std::visit([&params, &key = name](const auto& v) { params[key] = v; }, value);
   }
   return params;
 }
-
-}  // namespace
 
 std::string describe_light(const LightAngles& light) { return fmt::format("{},{}", light.azimuth_deg, light.elevation_deg); }
 
@@ -172,7 +172,7 @@ report::CellRecord make_record(const RunOptions& options, const SceneTask& task,
   record.scene = task.scene->name;
   record.view = task.camera->name;
   record.filter = request.spec.id;
-  record.params = record_params(request);
+  record.params = record_params(request.values);
   record.map_size = task.map_size;
   record.map_format = render::describe_map(options.map);
   record.fit = std::string(scene::name_of(options.fit)) + (options.snap ? " snapped" : "");

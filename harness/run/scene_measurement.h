@@ -50,6 +50,9 @@ SceneMeasurement measure_scene(Renderer& renderer, const RunOptions& options, co
 /// Writes a light's place as the command line reads it.
 std::string describe_light(const LightAngles& light);
 
+/// Gives a filter's parameters as records hold them.
+report::ParamMap record_params(const filters::ParamValues& values);
+
 /// Gives the record of a cell with its settings and key, nothing measured yet.
 report::CellRecord make_record(const RunOptions& options, const SceneTask& task, const filters::FilterRequest& request);
 
