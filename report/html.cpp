@@ -149,7 +149,7 @@ std::string escape_html(std::string_view text) {
   return escaped;
 }
 
-std::string make_index_html(const RunRecord& run, const std::vector<CellRecord>& cells) {
+std::string make_index_html(const RunRecord& run, const std::vector<CellRecord>& cells, const std::string& trade) {
   const std::vector<CellGroup> groups = group_cells(cells);
   std::string page = html_head("Shadow filters compared", page_style()) + "<body>\n<main>\n<h1>Shadow filters compared</h1>\n" + html_navigation(groups);
   page += html_facts(run);
@@ -158,6 +158,7 @@ std::string make_index_html(const RunRecord& run, const std::vector<CellRecord>&
   if (!run.warnings.empty()) {
     page += "<section class=\"warnings\">\n<h2>Warnings</h2>\n" + html_list(run.warnings) + "</section>\n";
   }
+  page += trade;
   for (std::size_t i = 0; i < groups.size(); ++i) {
     page += html_group(run, groups[i], i);
   }

@@ -14,6 +14,7 @@ std::string escape_html(std::string_view text);
 /// Makes index.html: one page that opens from disk and loads nothing but the report's own pictures, by relative links.
 /// Holds the run's facts, warnings, per group of comparable cells its sentences, tables, bars of the error's parts,
 /// grid, pictures of these parts, single pictures and depth map, links to the data files, and what is absent and why.
-std::string make_index_html(const RunRecord& run, const std::vector<CellRecord>& cells);
+/// `trade` is a section that goes before the groups (make_trade_html()), or empty.
+std::string make_index_html(const RunRecord& run, const std::vector<CellRecord>& cells, const std::string& trade = {});
 
 }  // namespace shadowbench::report

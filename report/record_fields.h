@@ -36,6 +36,7 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("view", cell.view);
   visit("filter", cell.filter);
   visit("params", cell.params);
+  visit("kernel_radius_texels", cell.kernel_radius_texels);
   visit("map_size", cell.map_size);
   visit("map_format", cell.map_format);
   visit("fit", cell.fit);

@@ -170,6 +170,7 @@ struct CellRecord {
   std::string view;
   std::string filter;
   ParamMap params;
+  std::optional<double> kernel_radius_texels;  ///< half-width of the kernel; no setting, it follows from `params`
   int map_size = 0;        ///< texels along a side
   std::string map_format;  ///< "d32f", "d16 reversed"
   std::string fit = "tight";    ///< of the light's frustum: "sphere", "tight" or "view"; with " snapped" behind it

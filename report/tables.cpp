@@ -362,7 +362,7 @@ std::string markdown_columns(CsvTable table) {
 
 }  // namespace
 
-std::string make_summary(const RunRecord& run, const std::vector<CellRecord>& cells) {
+std::string make_summary(const RunRecord& run, const std::vector<CellRecord>& cells, const std::string& trade) {
   std::string text = "# Shadow filters compared\n\n";
   for (const auto& [name, value] : list_run_facts(run)) {
     text += fmt::format("- **{}**: {}\n", name, escape_markdown(value));
@@ -371,6 +371,7 @@ std::string make_summary(const RunRecord& run, const std::vector<CellRecord>& ce
   if (!run.warnings.empty()) {
     text += "## Warnings\n\n" + markdown_list(run.warnings) + "\n";
   }
+  text += trade;
   for (const CellGroup& group : group_cells(cells)) {
     text += markdown_group(group, run.gl);
   }

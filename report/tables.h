@@ -36,7 +36,7 @@ std::string make_csv(CsvTable table, const RunRecord& run, const std::vector<Cel
 std::string escape_markdown(std::string_view text);
 
 /// Makes summary.md: what was run, per group of comparable cells a table and sentences from its numbers, what is absent
-/// and why, and the meaning of the columns of the CSV files.
-std::string make_summary(const RunRecord& run, const std::vector<CellRecord>& cells);
+/// and why, and the meaning of the columns of the CSV files. `trade` is Markdown that goes before the groups.
+std::string make_summary(const RunRecord& run, const std::vector<CellRecord>& cells, const std::string& trade = {});
 
 }  // namespace shadowbench::report

@@ -207,7 +207,7 @@ class Tuner {
     SearchSettings search;
     search.budget = options_.budget;
     search.on_evaluation = [&](const Evaluation& evaluation) {
-      done_ = before + std::min(evaluation.number, options_.budget, 0);
+      done_ = before + std::min(evaluation.number, options_.budget);
       progress_.show(done_, fmt::format("{} · {} · {} {:.4g}", filter.request.spec.id, evaluation.stage, metric_.name, evaluation.error));
       note_evaluation(filter.request.spec.id, params, evaluation);
     };

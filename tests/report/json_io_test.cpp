@@ -45,6 +45,7 @@ CellRecord make_timed_out_cell() {
 // A cell in which everything that later issues bring exists.
 CellRecord make_full_cell() {
   CellRecord cell = make_cell("cubes", "full", 4.0);
+  cell.kernel_radius_texels = 4.0;
   cell.map_scale = {0.02, 10.0};
   cell.bias = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, 0.7, 0.8, {0.0, 0.9, 1.0}, true, 1.1, 1.2, true, true};
   cell.time_ms.prefilter = Quartiles{1.5, 1.25, 1.75, 3};

@@ -1,0 +1,118 @@
+#include "report/front_words.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "report/summary.h"
+
+namespace shadowbench::report {
+namespace {
+
+constexpr std::size_t kNamed = 4;  // cells that one sentence names; fronts.csv has all
+
+const std::string& label_of(const TradeScope& scope, const TradeFront& front, std::size_t point) {
+  return scope.configurations[front.configurations[point]].label;
+}
+
+std::string unit_of(const Measure& measure, const GlRecord& gl) { return measure.is_time ? fmt::format(" {}", time_unit(gl)) : std::string(); }
+
+std::string describe_member(const TradeScope& scope, const TradeFront& front, std::size_t point, const GlRecord& gl) {
+  const Measure& error = list_error_measures()[front.error];
+  const Measure& cost = list_cost_measures()[front.cost];
+  return fmt::format("{} ({} at {}{})", label_of(scope, front, point), format_estimate(error, front.points[point].error),
+                     format_estimate(cost, front.points[point].cost), unit_of(cost, gl));
+}
+
+std::vector<std::string> list_placed(const TradeScope& scope, const TradeFront& front, Standing standing, std::size_t by) {
+  std::vector<std::string> labels;
+  for (std::size_t i = 0; i < front.placements.size(); ++i) {
+    if (front.placements[i].standing == standing && front.placements[i].by == by) labels.push_back(label_of(scope, front, i));
+  }
+  return labels;
+}
+
+std::string join_some(const std::vector<std::string>& labels) {
+  if (labels.size() <= kNamed + 1) return fmt::format("{}", fmt::join(labels, ", "));
+  return fmt::format("{} and {} more", fmt::join(labels.begin(), labels.begin() + kNamed, ", "), labels.size() - kNamed);
+}
+
+std::string describe_placed(const TradeScope& scope, const TradeFront& front, Standing standing, const char* verb) {
+  std::vector<std::string> parts;
+  for (const std::size_t member : front.members) {
+    const auto labels = list_placed(scope, front, standing, member);
+    if (!labels.empty()) parts.push_back(fmt::format("{} {} {}", label_of(scope, front, member), verb, join_some(labels)));
+  }
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+// Neighbours on the front, whose errors differ clearly.
+std::string describe_uncertain_steps(const TradeScope& scope, const TradeFront& front) {
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i + 1 < front.members.size(); ++i) {
+    const std::size_t a = front.members[i], b = front.members[i + 1];
+    if (is_clearly_less_cost(front.points[a].cost, front.points[b].cost)) continue;
+    parts.push_back(fmt::format("{} and {}", label_of(scope, front, a), label_of(scope, front, b)));
+  }
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::size_t count_standing(const TradeFront& front, Standing standing) {
+  std::size_t count = 0;
+  for (const Placement& each : front.placements) count += each.standing == standing ? 1 : 0;
+  return count;
+}
+
+std::vector<std::string> describe_left_out(const TradeScope& scope, const TradeFront& front) {
+  std::vector<std::string> sentences;
+  for (const auto& [reason, count] : front.left_out) {
+    sentences.push_back(fmt::format("Left out: {} of {} ({}).", count, scope.configurations.size(), reason));
+  }
+  if (scope.incomplete > 0) {
+    sentences.push_back(fmt::format("Left out: {} that not every scene and view has a cell of.", scope.incomplete));
+  }
+  return sentences;
+}
+
+}  // namespace
+
+std::vector<std::string> describe_front(const TradeScope& scope, const TradeFront& front, const GlRecord& gl) {
+  std::vector<std::string> sentences;
+  if (!front.members.empty()) {
+    std::vector<std::string> members;
+    for (const std::size_t member : front.members) members.push_back(describe_member(scope, front, member, gl));
+    sentences.push_back(fmt::format("{} against {}, the front from the cheapest cell on: {}.", list_error_measures()[front.error].name,
+                                    list_cost_measures()[front.cost].name, fmt::join(members, "; ")));
+  } else {
+    sentences.push_back(fmt::format("No cell has both {} and {}.", list_error_measures()[front.error].name,
+                                    list_cost_measures()[front.cost].name));
+  }
+  const std::string steps = describe_uncertain_steps(scope, front);
+  if (!steps.empty()) sentences.push_back("Neighbours whose costs cannot be told apart, so that the smaller error may be free: " + steps + ".");
+  const std::string ties = describe_placed(scope, front, Standing::kTied, "is tied with");
+  if (!ties.empty()) sentences.push_back("Not to be told apart in error or cost: " + ties + ".");
+  const std::string dominated = describe_placed(scope, front, Standing::kDominated, "beats");
+  if (!dominated.empty()) {
+    sentences.push_back(fmt::format("Dominated are {} of {}: {}.", count_standing(front, Standing::kDominated),
+                                    front.points.size(), dominated));
+  }
+  const auto left_out = describe_left_out(scope, front);
+  sentences.insert(sentences.end(), left_out.begin(), left_out.end());
+  return sentences;
+}
+
+std::vector<std::string> explain_fronts() {
+  std::vector<std::string> sentences = {
+      "A cell of the front beats another, which is then dominated, where it costs no more, its error is not clearly larger, and "
+      "one of the two is clearly less. A cell is tied with one of the front where neither is clearly less. Clearly: errors "
+      "that differ by more than the truth's standard error, times whose 95 % intervals do not overlap, everything else where "
+      "the numbers differ. Of several that beat a cell, the cheapest is named."};
+  for (const Measure& measure : list_error_measures()) {
+    sentences.push_back(fmt::format("{}: {}. All scenes together: {}.", measure.name, measure.meaning, measure.over_scenes));
+  }
+  for (const Measure& measure : list_cost_measures()) {
+    sentences.push_back(fmt::format("{}: {}. All scenes together: {}.", measure.name, measure.meaning, measure.over_scenes));
+  }
+  return sentences;
+}
+
+}  // namespace shadowbench::report
