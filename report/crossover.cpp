@@ -15,14 +15,14 @@ namespace {
 
 // A configuration whose kernel radius and times are known.
 struct TimedConfiguration {
-  const Configuration* configuration;
+  const TradeConfiguration* configuration;
   double radius;
   RadiusPoint point;
   bool prefiltered;
   bool many_taps;
 };
 
-std::optional<TimedConfiguration> read_timed(const Configuration& configuration, const CellRecord& cell) {
+std::optional<TimedConfiguration> read_timed(const TradeConfiguration& configuration, const CellRecord& cell) {
   const auto& still = configuration.costs[0].estimate;
   const auto& moving = configuration.costs[1].estimate;
   if (!cell.kernel_radius_texels || !still || !moving) return std::nullopt;
@@ -93,7 +93,7 @@ std::vector<RadiusCurve> make_curves(const std::vector<TimedConfiguration>& time
 
 RadiusChart make_chart(const TradeScope& scope, int map_size, const std::vector<CellRecord>& cells) {
   std::vector<TimedConfiguration> timed;
-  for (const Configuration& each : scope.configurations) {
+  for (const TradeConfiguration& each : scope.configurations) {
     if (each.map_size != map_size) continue;
     if (const auto read = read_timed(each, cells[each.cells.front()])) timed.push_back(*read);
   }
@@ -152,7 +152,7 @@ std::vector<RadiusChart> make_radius_charts(const std::vector<CellRecord>& cells
   for (const TradeScope& scope : scopes) {
     if (scope.scene.empty()) continue;
     std::set<int> map_sizes;
-    for (const Configuration& each : scope.configurations) map_sizes.insert(each.map_size);
+    for (const TradeConfiguration& each : scope.configurations) map_sizes.insert(each.map_size);
     for (const int map_size : map_sizes) {
       RadiusChart chart = make_chart(scope, map_size, cells);
       const bool compared = !compare_curves(chart, LightState::kStill).empty();

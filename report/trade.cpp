@@ -58,9 +58,9 @@ class CellReader {
     }
   }
 
-  Configuration read(const std::vector<std::size_t>& indices) const {
+  TradeConfiguration read(const std::vector<std::size_t>& indices) const {
     const CellRecord& first = cells_[indices.front()];
-    Configuration result{first.filter, first.params, first.map_size, {}, indices, {}, {}};
+    TradeConfiguration result{first.filter, first.params, first.map_size, {}, indices, {}, {}};
     for (std::size_t i = 0; i < kErrorMeasures; ++i) result.errors[i] = combine(indices, i, true);
     for (std::size_t i = 0; i < kCostMeasures; ++i) result.costs[i] = combine(indices, i, false);
     return result;
@@ -88,14 +88,14 @@ class CellReader {
 };
 
 // Names only the parameters in which a filter's configurations differ, and the map where there are several.
-void label_configurations(std::vector<Configuration>& configurations) {
+void label_configurations(std::vector<TradeConfiguration>& configurations) {
   std::map<std::pair<std::string, std::string>, std::set<std::string>> values;
   std::set<int> map_sizes;
-  for (const Configuration& each : configurations) {
+  for (const TradeConfiguration& each : configurations) {
     map_sizes.insert(each.map_size);
     for (const auto& [name, value] : each.params) values[{each.filter, name}].insert(describe_params({{name, value}}));
   }
-  for (Configuration& each : configurations) {
+  for (TradeConfiguration& each : configurations) {
     ParamMap telling = each.params;
     std::erase_if(telling, [&](const auto& param) { return values[{each.filter, param.first}].size() < 2; });
     each.label = each.filter + (telling.empty() ? "" : " (" + describe_params(telling) + ")");
@@ -193,7 +193,7 @@ bool has_trade(const std::vector<TradeScope>& scopes) {
     return std::any_of(measured.begin(), measured.end(), [](const Measured& each) { return each.estimate.has_value(); });
   };
   return std::any_of(scopes.begin(), scopes.end(), [&](const TradeScope& scope) {
-    const auto count = std::count_if(scope.configurations.begin(), scope.configurations.end(), [&](const Configuration& each) {
+    const auto count = std::count_if(scope.configurations.begin(), scope.configurations.end(), [&](const TradeConfiguration& each) {
       return has_one(each.errors) && has_one(each.costs);
     });
     return static_cast<std::size_t>(count) >= kFewestCells;

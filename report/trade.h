@@ -13,7 +13,7 @@
 namespace shadowbench::report {
 
 /// Is a filter with its parameters and a map size, and what it got and paid in one scope.
-struct Configuration {
+struct TradeConfiguration {
   std::string filter;
   ParamMap params;
   int map_size = 0;
@@ -32,7 +32,7 @@ struct TradeScope {
   std::string view;
   int width = 0;
   int height = 0;
-  std::vector<Configuration> configurations;
+  std::vector<TradeConfiguration> configurations;
   std::size_t incomplete = 0;  ///< configurations left out because not every scene and view has a cell of them
 };
 

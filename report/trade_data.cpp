@@ -46,7 +46,7 @@ json filters_json(const std::vector<std::string>& filters) {
 
 json url_json(const std::optional<std::string>& path) { return path ? json(encode_url_path(*path)) : json(); }
 
-json pictures_json(const Configuration& configuration, const std::vector<CellRecord>& cells) {
+json pictures_json(const TradeConfiguration& configuration, const std::vector<CellRecord>& cells) {
   json list = json::array();
   for (const std::size_t i : configuration.cells) {
     list.push_back({{"scene", fmt::format("{} · {}", cells[i].scene, cells[i].view)},
@@ -56,7 +56,7 @@ json pictures_json(const Configuration& configuration, const std::vector<CellRec
   return list;
 }
 
-json configuration_json(const Configuration& configuration, const std::vector<CellRecord>& cells) {
+json configuration_json(const TradeConfiguration& configuration, const std::vector<CellRecord>& cells) {
   json errors = json::array(), costs = json::array();
   for (const Measured& each : configuration.errors) errors.push_back(measured_json(each));
   for (const Measured& each : configuration.costs) costs.push_back(measured_json(each));
@@ -81,7 +81,7 @@ json front_json(const TradeScope& scope, const TradeFront& front, const GlRecord
 
 json scope_json(const TradeScope& scope, const std::vector<CellRecord>& cells, const GlRecord& gl) {
   json configurations = json::array(), fronts = json::array(), error_axes = json::array(), cost_axes = json::array();
-  for (const Configuration& each : scope.configurations) configurations.push_back(configuration_json(each, cells));
+  for (const TradeConfiguration& each : scope.configurations) configurations.push_back(configuration_json(each, cells));
   for (std::size_t e = 0; e < kErrorMeasures; ++e) {
     error_axes.push_back(axis_json(choose_error_axis(scope, e)));
     fronts.push_back(json::array());

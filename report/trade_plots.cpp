@@ -133,13 +133,13 @@ Plot make_radius_plot(const RadiusChart& chart, LightState light, const std::vec
 
 PlotAxis choose_error_axis(const TradeScope& scope, std::size_t error) {
   std::vector<const Measured*> measured;
-  for (const Configuration& each : scope.configurations) measured.push_back(&each.errors[error]);
+  for (const TradeConfiguration& each : scope.configurations) measured.push_back(&each.errors[error]);
   return choose_measure_axis(measured, false);
 }
 
 PlotAxis choose_cost_axis(const TradeScope& scope, std::size_t cost) {
   std::vector<const Measured*> measured;
-  for (const Configuration& each : scope.configurations) measured.push_back(&each.costs[cost]);
+  for (const TradeConfiguration& each : scope.configurations) measured.push_back(&each.costs[cost]);
   return choose_measure_axis(measured, list_cost_measures()[cost].is_bytes);
 }
 

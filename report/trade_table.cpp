@@ -15,7 +15,7 @@ std::string join_row(std::vector<std::string> fields) {
   return fmt::format("{}\r\n", fmt::join(fields, ","));
 }
 
-std::string join_keys(const std::vector<CellRecord>& cells, const Configuration& configuration) {
+std::string join_keys(const std::vector<CellRecord>& cells, const TradeConfiguration& configuration) {
   std::vector<std::string> keys;
   for (const std::size_t i : configuration.cells) keys.push_back(cells[i].key);
   return fmt::format("{}", fmt::join(keys, "+"));
@@ -31,7 +31,7 @@ std::vector<std::string> describe_place(const std::vector<CellRecord>& cells, co
                                         std::size_t configuration) {
   const auto found = std::find(front.configurations.begin(), front.configurations.end(), configuration);
   if (found == front.configurations.end()) {
-    const Configuration& each = scope.configurations[configuration];
+    const TradeConfiguration& each = scope.configurations[configuration];
     const Measured& error = each.errors[front.error];
     return {"", "", "", error.estimate ? each.costs[front.cost].absent : error.absent};
   }
@@ -42,7 +42,7 @@ std::vector<std::string> describe_place(const std::vector<CellRecord>& cells, co
 }
 
 std::string make_row(const std::vector<CellRecord>& cells, const TradeScope& scope, const TradeFront& front, std::size_t i) {
-  const Configuration& each = scope.configurations[i];
+  const TradeConfiguration& each = scope.configurations[i];
   std::vector<std::string> fields = {scope.id, scope.scene, scope.view, fmt::format("{}", scope.width),
                                      fmt::format("{}", scope.height), list_error_measures()[front.error].id,
                                      list_cost_measures()[front.cost].id, join_keys(cells, each), each.filter,

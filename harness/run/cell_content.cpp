@@ -15,7 +15,7 @@ void add_options(ContentHash& hash, const RunOptions& options) {
                        options.grids, options.pad_texels.value_or(largest_padding_texels(options.filters)), rounds.fewest, rounds.most,
                        rounds.precision, rounds.budget_ms));
   // The masks of artefacts reach as far as the widest kernel of the run.
-  hash.add(fmt::format("radius {} reference {}", largest_radius_texels(options.filters), options.reference.label()));
+  hash.add(fmt::format("radius {} reference {} border page {}", largest_radius_texels(options.filters), options.reference.label(), options.border_page));
 }
 
 void add_material(ContentHash& hash, const scene::Material& m) {
