@@ -105,6 +105,12 @@ std::vector<std::string> describe_troubles(const CellGroup& group) {
   return sentences;
 }
 
+std::string describe_experiment(const ExperimentRecord& experiment) {
+  std::string text = fmt::format("{}{}{} cells", experiment.title, experiment.title.empty() ? "" : " · ", experiment.cells);
+  if (experiment.shards > 1) text += fmt::format(", shard {} of {}", experiment.shard, experiment.shards);
+  return text;
+}
+
 std::string describe_work(const WorkRecord& work) {
   return fmt::format(
       "{} shader variants compiled, {} passes run, {} passes skipped because no filter needed them, "
@@ -287,7 +293,8 @@ std::vector<std::string> describe_group(const CellGroup& group, const GlRecord& 
 }
 
 std::vector<std::pair<std::string, std::string>> list_run_facts(const RunRecord& run) {
-  return {{"command", fmt::format("{}", fmt::join(run.command, " "))},
+  return {{"experiment", describe_experiment(run.experiment)},
+          {"command", fmt::format("{}", fmt::join(run.command, " "))},
           {"commit", run.commit},
           {"seed", fmt::format("{}", run.seed)},
           {"times", describe_clock(run.gl)},

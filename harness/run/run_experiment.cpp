@@ -107,7 +107,7 @@ class Experiment {
     if (options_.shard.count > 1) text += fmt::format(" of {}, shard {}/{}", plan.cells, options_.shard.index + 1, options_.shard.count);
     if (plan.finished > 0) text += fmt::format(", {} of them finished before (--fresh measures them again)", plan.finished);
     const double seconds = options_.rounds.is_fixed() ? 0.0 : left * 1e-3 * options_.rounds.budget_ms;
-    if (seconds > 0.0) text += fmt::format("; {} of timed work at most", describe_duration(seconds));
+    if (seconds > 0.0) text += fmt::format("; {} of timed work at most, more where four rounds take longer", describe_duration(seconds));
     progress_.note(text);
     if ((left <= kManyCells && seconds <= kManySeconds) || options_.large_is_fine) return;
     throw Error(ErrorKind::kUsage, fmt::format("{}: add --yes to run them all, or name fewer values, or a smaller --budget", text));

@@ -31,6 +31,7 @@ class Rounds {
 
   RoundTimes run() {
     for (int round = -kWarmUpRounds; round < limits_.most; ++round) {
+      if (round < 0 && is_spent()) continue;  // passes this slow are warm
       run_round(round >= 0);
       if (round >= 0 && is_enough(round + 1)) break;
     }
@@ -62,13 +63,15 @@ class Rounds {
     }
   }
 
+  bool is_spent() const {
+    return !limits_.is_fixed() && times_.spent_ms >= limits_.budget_ms * static_cast<double>(filters_.size());
+  }
+
   bool is_enough(int rounds) {
     if (limits_.is_fixed()) return false;
     if (rounds >= limits_.fewest) drop_precise();
     if (active_.empty()) return true;
-    if (rounds < std::min(kFewestOfAnyBudget, limits_.most) || times_.spent_ms < limits_.budget_ms * static_cast<double>(filters_.size())) {
-      return false;
-    }
+    if (rounds < std::min(kFewestOfAnyBudget, limits_.most) || !is_spent()) return false;
     for (const std::size_t i : active_) times_.filters[i].stopped = StopReason::kBudget;
     return true;
   }

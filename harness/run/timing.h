@@ -42,7 +42,8 @@ struct TimedFilter {
 };
 
 /// Times interleaved rounds: every round draws the map and runs each filter once, in a shuffled order, so that drift of
-/// the machine's speed hits all of them alike. Two rounds warm up and are not counted. A filter drops out when its ratios
+/// the machine's speed hits all of them alike. Two rounds warm up and are not counted; one, where it spends
+/// the budget. A filter drops out when its ratios
 /// to the filter `reference`, of the lookup and of map, prefilter and lookup, are precise enough; `reference` stays as
 /// long as any other. When the budget is spent, all stop, but not before three rounds, or one where no more may be.
 /// Requires at least one filter. Cost: (rounds + 2) times the sum of all passes.

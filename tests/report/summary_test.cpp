@@ -108,6 +108,14 @@ TEST(Summary, Absences_AreCounted) {
   EXPECT_EQ(counts.at("error: no truth in this run"), 2);
 }
 
+TEST(Summary, ExperimentLine_SaysItsTitleAndWhichShardItIs) {
+  RunRecord run = make_run();
+  run.experiment = {"A sweep", "", 30, 1, 1};
+  EXPECT_THAT(list_run_facts(run), Contains(::testing::Pair("experiment", "A sweep · 30 cells")));
+  run.experiment = {"", "", 30, 2, 3};
+  EXPECT_THAT(list_run_facts(run), Contains(::testing::Pair("experiment", "30 cells, shard 2 of 3")));
+}
+
 TEST(Summary, WorkLine_CountsTruthsTracedAndReadFromTheCache) {
   EXPECT_THAT(list_run_facts(make_run()),
               Contains(::testing::Pair("work",

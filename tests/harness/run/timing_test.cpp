@@ -84,6 +84,17 @@ TEST(Rounds, BudgetOfNothing_StillLeavesThreeRounds) {
   EXPECT_EQ(filters.run({2, 2, 0.05, 1e-6}).map.size(), 2u);
 }
 
+/// Of passes that take seconds, one round is enough to warm up, and three are timed.
+TEST(Rounds, SlowFilters_WarmUpOnce) {
+  int lookups = 0;
+  const std::vector<TimedFilter> filters(2, TimedFilter{{}, [&] { return 1000.0 + lookups++; }});
+  EXPECT_EQ(run_rounds(filters, 0, [] { return 1.0; }, {9, 100, 0.05, 500.0}, 3).map.size(), 3u);
+  EXPECT_EQ(lookups, 2 * (1 + 3));
+  lookups = 0;
+  run_rounds(filters, 0, [] { return 1.0; }, RoundLimits::exactly(1), 3);
+  EXPECT_EQ(lookups, 2 * (2 + 1));
+}
+
 TEST(Rounds, AFixedNumber_IsKeptWhateverTheTimesSay) {
   FakeFilters filters;
   filters.add(1.0, 0.0);
