@@ -29,13 +29,13 @@ void write_report(const std::filesystem::path& dir, RunRecord run, const std::ve
     cells.push_back(read_cell(dir, key));
   }
   add_warnings(run, cells);
-  write_results(dir, run, keys);
   write_text_file(dir / "timings.csv", make_csv(CsvTable::kTimings, run, cells));
   write_text_file(dir / "accuracy.csv", make_csv(CsvTable::kAccuracy, run, cells));
   std::optional<Trade> trade = make_trade(run, cells);
   if (trade) trade = write_trade_files(dir, cells, std::move(*trade));
   write_text_file(dir / "summary.md", make_summary(run, cells, trade ? make_trade_markdown(run, cells, *trade) : ""));
   write_text_file(dir / "index.html", make_index_html(run, cells, trade ? make_trade_html(run, cells, *trade) : ""));
+  write_results(dir, run, keys);
 }
 
 }  // namespace shadowbench::report

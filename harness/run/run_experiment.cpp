@@ -17,6 +17,7 @@
 #include "harness/scene/closed_mesh.h"
 #include "reference/truth/occluders.h"
 #include "report/atomic_file.h"
+#include "report/json_io.h"
 #include "report/report.h"
 
 namespace shadowbench::run {
@@ -60,6 +61,10 @@ class Experiment {
     announce(plan);
     require_writable(options_.out);
     remove_stale_worker_folders(options_.out);
+    if (plan.finished == plan.own_cells && has_report(plan)) {
+      progress_.note("nothing is left to do");
+      return;
+    }
     done_ = plan.finished;
     progress_.begin(plan.own_cells, plan.finished);
     const auto start = std::chrono::steady_clock::now();
@@ -111,6 +116,22 @@ class Experiment {
     progress_.note(text);
     if ((left <= kManyCells && seconds <= kManySeconds) || options_.large_is_fine) return;
     throw Error(ErrorKind::kUsage, fmt::format("{}: add --yes to run them all, or name fewer values, or a smaller --budget", text));
+  }
+
+  /// Says whether the folder has the whole report of this very run already, of the very cells that lie there.
+  bool has_report(const RunPlan& plan) const {
+    const std::filesystem::path file = options_.out / "results.json";
+    if (options_.worker || !std::filesystem::exists(file)) return false;
+    const auto written = std::filesystem::last_write_time(file);
+    for (const std::string& key : list_keys(plan)) {
+      if (std::filesystem::last_write_time(report::cell_path(options_.out, key)) > written) return false;
+    }
+    try {
+      const report::ExperimentRecord known = report::read_results(file).run.experiment;
+      return known.settings == run_.experiment.settings && known.shard == run_.experiment.shard && known.shards == run_.experiment.shards;
+    } catch (const Error&) {
+      return false;
+    }
   }
 
   static std::vector<std::string> list_keys(const RunPlan& plan) {

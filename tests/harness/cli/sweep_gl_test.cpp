@@ -91,6 +91,12 @@ TEST_F(Sweep, Continued_MeasuresNothingTwice_UnlessSomethingChanged) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr(std::to_string(kCells) + " of them finished before"));
   EXPECT_EQ(cell_times(), before);
+  EXPECT_THAT(outcome.err, HasSubstr("nothing is left to do"));
+  EXPECT_EQ(results(), first);
+  // Without its results the report is made again, and nothing else.
+  std::filesystem::remove(folder() / "out" / "results.json");
+  ASSERT_EQ(run("run e.toml --out out").exit_code, 0);
+  EXPECT_EQ(cell_times(), before);
   EXPECT_EQ(results()["cells"], first["cells"]);
   EXPECT_EQ(results()["work"]["passes_run"], 0);
   // One cell is gone, one is cut off.
