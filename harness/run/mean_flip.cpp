@@ -22,11 +22,16 @@ bool is_finite(const report::Image& image) {
 
 }  // namespace
 
-std::optional<double> measure_mean_flip(const report::Image& a, const report::Image& b,
-                                        std::span<const std::uint8_t> mask, double pixels_per_degree) {
-  assert(a.channels == 3 && b.channels == 3 && a.width == b.width && a.height == b.height);
-  if (!is_finite(a) || !is_finite(b)) return std::nullopt;
-  const std::vector<float> flip = reference::measure_flip(to_picture(a), to_picture(b), pixels_per_degree);
+std::optional<reference::FlipView> view_picture(const report::Image& picture, double pixels_per_degree) {
+  assert(picture.channels == 3);
+  if (!is_finite(picture)) return std::nullopt;
+  return reference::view_for_flip(to_picture(picture), pixels_per_degree);
+}
+
+std::optional<double> measure_mean_flip(const std::optional<reference::FlipView>& a, const std::optional<reference::FlipView>& b,
+                                        std::span<const std::uint8_t> mask) {
+  if (!a || !b) return std::nullopt;
+  const std::vector<float> flip = reference::measure_flip(*a, *b);
   assert(mask.empty() || mask.size() == flip.size());
   double sum = 0.0, count = 0.0;
   for (std::size_t i = 0; i < flip.size(); ++i) {
@@ -36,6 +41,11 @@ std::optional<double> measure_mean_flip(const report::Image& a, const report::Im
   }
   if (count == 0.0) return std::nullopt;
   return sum / count;
+}
+
+std::optional<double> measure_mean_flip(const report::Image& a, const report::Image& b, std::span<const std::uint8_t> mask,
+                                        double pixels_per_degree) {
+  return measure_mean_flip(view_picture(a, pixels_per_degree), view_picture(b, pixels_per_degree), mask);
 }
 
 }  // namespace shadowbench::run

@@ -7,6 +7,8 @@
 
 #include "filters/error.h"
 #include "harness/render/shade_pass.h"
+#include "harness/run/mean_flip.h"
+#include "report/picture_io.h"
 
 namespace shadowbench::run {
 
@@ -85,6 +87,7 @@ SceneTruth SceneAssets::make_truth(const scene::Camera& camera) {
   };
   truth.hard_picture = shaded(truth.hard);
   truth.area_picture = shaded(truth.area);
+  truth.area_seen = view_picture(report::round_to_half(truth.area_picture));
   return truth;
 }
 

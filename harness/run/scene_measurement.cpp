@@ -60,6 +60,7 @@ class SceneBench {
   render::GBuffer& gbuffer_;
   render::ImageTarget target_;
   std::int64_t receivers_ = -1;
+  double drawn_ms_ = 0.0;  ///< of all filters' passes, once
 
   std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request) {
     const render::Bias bias = resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
@@ -73,8 +74,7 @@ class SceneBench {
     cell.record.map_scale = {light_.frustum.texel_size_ws, light_.frustum.depth_range_ws};
     cell.request = filter.request();
     cell.label = filter.request().label();
-    filter.prefilter(light_.map);
-    filter.lookup(gbuffer_, light_.map, target_);
+    drawn_ms_ += time_once(filter, light_.map, gbuffer_, target_, renderer_.timer);
     cell.visibility = render::read_image(target_.texture(), 1);
     cell.picture = render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera);
     cell.record.nan = count_not_finite(cell.visibility);
@@ -130,9 +130,12 @@ class SceneBench {
     });
     const auto reference = static_cast<std::size_t>(asked - task_.filters.begin());
     std::unique_ptr<render::FilterPasses> added;
-    if (asked == task_.filters.end()) pointers.push_back((added = make_passes(options_.reference)).get());
+    if (asked == task_.filters.end()) {
+      pointers.push_back((added = make_passes(options_.reference)).get());
+      drawn_ms_ += time_once(*added, light_.map, gbuffer_, target_, renderer_.timer);
+    }
     const RoundTimes times = time_rounds(pointers, reference, [&] { assets_.redraw(light_); }, light_.map, gbuffer_,
-                                         renderer_.timer, options_.rounds, options_.seed);
+                                         renderer_.timer, options_.rounds, options_.seed, drawn_ms_);
     result.timed_ms = times.spent_ms;
     for (std::size_t i = 0; i < filters.size(); ++i) {
       set_times(result.cells[i].record, times.map, times.filters[i], times.filters[reference]);

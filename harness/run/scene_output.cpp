@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <tbb/parallel_for_each.h>
 
 #include <algorithm>
 
@@ -181,10 +182,11 @@ void write_float_images(const RunOptions& options, const SceneTask& task, const 
 }
 
 void write_single_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured) {
-  for (MeasuredCell& cell : measured.cells) {
-    write_cell_pictures(options, task_stem(options, task), cell);
+  const std::string stem = task_stem(options, task);
+  tbb::parallel_for_each(measured.cells, [&](MeasuredCell& cell) {
+    write_cell_pictures(options, stem, cell);
     cell.record.absent["images"] = "the run was made with --no-grids";
-  }
+  });
 }
 
 void write_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured,
@@ -193,8 +195,8 @@ void write_pictures(const RunOptions& options, const SceneTask& task, SceneMeasu
   const std::string grid_name = stem + ".grid.png";
   const report::Grid grid = make_grid(options, task, measured, truth, gl);
   report::write_grid(options.out / grid_name, grid);
+  tbb::parallel_for_each(measured.cells, [&](MeasuredCell& cell) { write_cell_pictures(options, stem, cell); });
   for (MeasuredCell& cell : measured.cells) {
-    write_cell_pictures(options, stem, cell);
     write_attribution(options, stem, cell, truth, grid);
     cell.record.images.grid = grid_name;
     cell.record.images.exr = exr_name(options, task);

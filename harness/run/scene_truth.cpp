@@ -63,7 +63,7 @@ void score(report::CellRecord& record, const report::Image& visibility, const re
     return;
   }
   // Of the pictures as they are saved, so that `diff` finds the same.
-  const auto flip = measure_mean_flip(report::round_to_half(picture), report::round_to_half(truth.area_picture));
+  const auto flip = measure_mean_flip(view_picture(report::round_to_half(picture)), truth.area_seen);
   record.error = {stats->rmse, stats->mae, stats->p95, stats->max, stats->mean, flip, std::nullopt};
   if (!record.error.flip) record.absent["error.flip"] = "the picture has pixels that are not finite";
   record.truth = {truth.standard_error, truth.unanimous};

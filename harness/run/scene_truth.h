@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "harness/run/scene_tracer.h"
 #include "harness/run/view_receivers.h"
+#include "reference/metrics/flip.h"
 #include "report/image.h"
 #include "report/records.h"
 
@@ -20,6 +22,7 @@ struct SceneTruth {
   report::Image area;              ///< the fraction of the light that is seen
   report::Image hard_picture;      ///< shaded with `hard`, linear RGB
   report::Image area_picture;      ///< shaded with `area`, linear RGB
+  std::optional<reference::FlipView> area_seen;  ///< that picture, rounded to half as it is saved, as FLIP sees it
   std::vector<std::uint8_t> mask;  ///< 1 where a pixel counts: a surface that faces the light
   double standard_error = 0.0;     ///< root mean square over the pixels that count
   double unanimous = 0.0;          ///< share of them whose rays all agree, and which therefore have no standard error

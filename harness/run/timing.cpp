@@ -10,7 +10,6 @@
 namespace shadowbench::run {
 namespace {
 
-constexpr int kWarmUpRounds = 2;
 constexpr int kFewestOfAnyBudget = 3;
 
 /// Fisher and Yates; std::shuffle differs between standard libraries.
@@ -21,19 +20,20 @@ void shuffle(std::vector<std::size_t>& order, std::mt19937_64& generator) {
 class Rounds {
  public:
   Rounds(const std::vector<TimedFilter>& filters, std::size_t reference, const std::function<double()>& draw_map,
-         const RoundLimits& limits, std::uint64_t seed)
+         const RoundLimits& limits, std::uint64_t seed, double drawn_ms)
       : filters_(filters), reference_(reference), draw_map_(draw_map), limits_(limits), seed_(seed), generator_(seed),
         active_(filters.size()) {
     assert(!filters.empty() && reference < filters.size());
     std::iota(active_.begin(), active_.end(), std::size_t{0});
     times_.filters.resize(filters.size());
+    times_.spent_ms = drawn_ms;
   }
 
   RoundTimes run() {
-    for (int round = -kWarmUpRounds; round < limits_.most; ++round) {
-      if (round < 0 && is_spent()) continue;  // passes this slow are warm
-      run_round(round >= 0);
-      if (round >= 0 && is_enough(round + 1)) break;
+    if (!is_spent()) run_round(false);  // slower passes are warm
+    for (int round = 1; round <= limits_.most; ++round) {
+      run_round(true);
+      if (is_enough(round)) break;
     }
     return std::move(times_);
   }
@@ -119,13 +119,21 @@ std::vector<double> add_moving(const std::vector<double>& map, const FilterTimes
 }
 
 RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference, const std::function<double()>& draw_map,
-                      const RoundLimits& limits, std::uint64_t seed) {
-  return Rounds(filters, reference, draw_map, limits, seed).run();
+                      const RoundLimits& limits, std::uint64_t seed, double drawn_ms) {
+  return Rounds(filters, reference, draw_map, limits, seed, drawn_ms).run();
+}
+
+double time_once(render::FilterPasses& filter, const render::ShadowMap& map, const render::GBuffer& gbuffer, render::ImageTarget& target,
+                 gl::TimerKind timer) {
+  return gl::time_ms(timer, [&] {
+    filter.prefilter(map);
+    filter.lookup(gbuffer, map, target);
+  });
 }
 
 RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::size_t reference,
                        const std::function<void()>& draw_map, const render::ShadowMap& map, const render::GBuffer& gbuffer,
-                       gl::TimerKind timer, const RoundLimits& limits, std::uint64_t seed) {
+                       gl::TimerKind timer, const RoundLimits& limits, std::uint64_t seed, double drawn_ms) {
   render::ImageTarget target("timed visibility", GL_R32F, gbuffer.width(), gbuffer.height());
   std::vector<TimedFilter> timed;
   for (render::FilterPasses* filter : filters) {
@@ -133,7 +141,7 @@ RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::s
     if (filter->has_prefilter()) passes.prefilter = [&map, timer, filter] { return gl::time_ms(timer, [&] { filter->prefilter(map); }); };
     passes.lookup = [&, filter] { return gl::time_ms(timer, [&] { filter->lookup(gbuffer, map, target); }); };
   }
-  return run_rounds(timed, reference, [&] { return gl::time_ms(timer, draw_map); }, limits, seed);
+  return run_rounds(timed, reference, [&] { return gl::time_ms(timer, draw_map); }, limits, seed, drawn_ms);
 }
 
 }  // namespace shadowbench::run

@@ -36,7 +36,7 @@ double score_shot(const TuneMetric& metric, const Shot& shot, const TuneStage::V
   switch (metric.kind) {
     case TuneMetricKind::kStatistic: return score_statistic(metric, shot.visibility, *view.truth);
     case TuneMetricKind::kFlip:
-      return measure_mean_flip(report::round_to_half(shot.picture), report::round_to_half(view.truth->area_picture)).value_or(kWorst);
+      return measure_mean_flip(view_picture(report::round_to_half(shot.picture)), view.truth->area_seen).value_or(kWorst);
     case TuneMetricKind::kAcne: return reference::rate_below(image, view.masks->acne, limits.acne_below).value_or(kWorst);
     case TuneMetricKind::kLeak: return reference::rate_above(image, view.masks->leak, limits.leak_above).value_or(kWorst);
   }

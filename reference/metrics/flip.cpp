@@ -85,24 +85,41 @@ Weights sample_weights(int radius, const std::function<double(double)>& value) {
   return weights;
 }
 
-Plane filter_axis(const Plane& plane, int width, int height, const Weights& weights, glm::ivec2 axis) {
-  Plane result(plane.size());
-  const int radius = static_cast<int>(weights.size() / 2);
+/// Adds weight times one row of a plane to another; compilers make vectors of it.
+void add_row(double* sum, const double* row, double weight, int width) {
+  for (int x = 0; x < width; ++x) sum[x] += weight * row[x];
+}
+
+Plane filter_rows(const Plane& plane, int width, int height, const Weights& weights) {
+  Plane result(plane.size(), 0.0);
+  const int taps = static_cast<int>(weights.size()), radius = taps / 2;
+  Plane padded(static_cast<std::size_t>(width + 2 * radius));
   for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      double sum = 0.0;
-      for (int i = -radius; i <= radius; ++i) {
-        const int px = std::clamp(x + i * axis.x, 0, width - 1), py = std::clamp(y + i * axis.y, 0, height - 1);
-        sum += weights[static_cast<std::size_t>(i + radius)] * plane[static_cast<std::size_t>(py * width + px)];
-      }
-      result[static_cast<std::size_t>(y * width + x)] = sum;
+    const double* row = plane.data() + static_cast<std::ptrdiff_t>(y) * width;
+    std::fill_n(padded.begin(), radius, row[0]);
+    std::copy_n(row, width, padded.begin() + radius);
+    std::fill_n(padded.begin() + radius + width, radius, row[width - 1]);
+    for (int i = 0; i < taps; ++i) {
+      add_row(result.data() + static_cast<std::ptrdiff_t>(y) * width, padded.data() + i, weights[static_cast<std::size_t>(i)], width);
+    }
+  }
+  return result;
+}
+
+Plane filter_columns(const Plane& plane, int width, int height, const Weights& weights) {
+  Plane result(plane.size(), 0.0);
+  const int taps = static_cast<int>(weights.size()), radius = taps / 2;
+  for (int y = 0; y < height; ++y) {
+    for (int i = 0; i < taps; ++i) {
+      const std::ptrdiff_t from = std::clamp(y + i - radius, 0, height - 1);
+      add_row(result.data() + static_cast<std::ptrdiff_t>(y) * width, plane.data() + from * width, weights[static_cast<std::size_t>(i)], width);
     }
   }
   return result;
 }
 
 Plane filter_both(const Plane& plane, int width, int height, const Weights& along_x, const Weights& along_y) {
-  return filter_axis(filter_axis(plane, width, height, along_x, {1, 0}), width, height, along_y, {0, 1});
+  return filter_columns(filter_rows(plane, width, height, along_x), width, height, along_y);
 }
 
 /// Blurs a channel with a sum of Gaussians that weighs 1 in all.
@@ -172,19 +189,25 @@ Plane detect_features(const LinearPicture& picture, double ppd, int derivative) 
 
 }  // namespace
 
-std::vector<float> measure_flip(const LinearPicture& a, const LinearPicture& b, double pixels_per_degree) {
+FlipView view_for_flip(const LinearPicture& picture, double ppd) {
+  return {picture.width, picture.height, perceive(picture, ppd), detect_features(picture, ppd, 1), detect_features(picture, ppd, 2)};
+}
+
+std::vector<float> measure_flip(const FlipView& a, const FlipView& b) {
   assert(a.width == b.width && a.height == b.height);
-  const std::vector<Color> seen_a = perceive(a, pixels_per_degree), seen_b = perceive(b, pixels_per_degree);
-  const Plane edges_a = detect_features(a, pixels_per_degree, 1), edges_b = detect_features(b, pixels_per_degree, 1);
-  const Plane points_a = detect_features(a, pixels_per_degree, 2), points_b = detect_features(b, pixels_per_degree, 2);
   std::vector<float> flip;
-  for (std::size_t i = 0; i < seen_a.size(); ++i) {
-    const double color = compress_color_difference(hyab(seen_a[i], seen_b[i]));
-    const double feature = std::max(std::abs(edges_a[i] - edges_b[i]), std::abs(points_a[i] - points_b[i]));
+  flip.reserve(a.colors.size());
+  for (std::size_t i = 0; i < a.colors.size(); ++i) {
+    const double color = compress_color_difference(hyab(a.colors[i], b.colors[i]));
+    const double feature = std::max(std::abs(a.edges[i] - b.edges[i]), std::abs(a.points[i] - b.points[i]));
     const double weight = std::pow(feature / std::numbers::sqrt2, kFeatureExponent);
     flip.push_back(static_cast<float>(std::clamp(std::pow(color, 1.0 - weight), 0.0, 1.0)));
   }
   return flip;
+}
+
+std::vector<float> measure_flip(const LinearPicture& a, const LinearPicture& b, double pixels_per_degree) {
+  return measure_flip(view_for_flip(a, pixels_per_degree), view_for_flip(b, pixels_per_degree));
 }
 
 }  // namespace shadowbench::reference
