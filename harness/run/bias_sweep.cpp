@@ -13,7 +13,7 @@
 #include "harness/run/cell_analysis.h"
 #include "harness/run/run_facts.h"
 #include "harness/run/scene_assets.h"
-#include "harness/scene/load.h"
+#include "harness/run/scene_loading.h"
 #include "report/atomic_file.h"
 #include "report/bias_chart.h"
 #include "report/bias_page.h"
@@ -39,7 +39,7 @@ class BiasSweep {
   BiasSweep(const RunOptions& options, Progress& progress)
       : options_(options),
         progress_(progress),
-        scene_(load_scene(options)),
+        scene_(load_scene(options, options.scenes.front())),
         renderer_(make_renderer(options.backend, options.resources)),
         cache_(options.cache, [&progress](const std::string& message) { progress.note("warning: " + message); }),
         assets_(renderer_, options_, scene_, cache_, largest_padding_texels(options.filters)),
@@ -76,13 +76,6 @@ class BiasSweep {
   int done_ = 0;
 
   const scene::Camera& camera() const { return scene_.cameras.front(); }
-
-  static scene::Scene load_scene(const RunOptions& options) {
-    scene::LoadOptions load;
-    load.scenes_folder = options.resources.scenes;
-    load.aspect = static_cast<double>(options.width) / options.height;
-    return scene::load(options.scenes.front(), load);
-  }
 
   void make_masks() {
     const SceneTruth& truth = assets_.truth(camera());

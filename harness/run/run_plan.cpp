@@ -9,40 +9,23 @@
 #include "filters/error.h"
 #include "harness/run/cell_content.h"
 #include "harness/run/content_hash.h"
-#include "harness/scene/framing.h"
-#include "harness/scene/load.h"
+#include "harness/run/scene_loading.h"
 #include "report/json_io.h"
 
 namespace shadowbench::run {
 namespace {
 
-PlannedScene load_scene(RunOptions options, const std::string& argument, const PictureSize& size) {
-  options.width = size.width;
-  options.height = size.height;
-  scene::LoadOptions load;
-  load.scenes_folder = options.resources.scenes;
-  load.ground = options.ground;
-  load.aspect = static_cast<double>(size.width) / size.height;
-  PlannedScene planned{std::move(options), argument, scene::load(argument, load)};
-  if (planned.options.light) {
-    const LightAngles& light = *planned.options.light;
-    planned.scene.light.direction_ws = glm::vec3(scene::light_direction(light.azimuth_deg, light.elevation_deg));
+/// Every scene in every picture size.
+std::vector<PlannedScene> plan_scenes(const RunOptions& options) {
+  std::vector<PlannedScene> planned;
+  for (const PictureSize& size : options.sizes) {
+    RunOptions framed = options;
+    framed.width = size.width;
+    framed.height = size.height;
+    std::vector<scene::Scene> scenes = load_scenes(framed);
+    for (std::size_t i = 0; i < scenes.size(); ++i) planned.push_back({framed, options.scenes[i], std::move(scenes[i])});
   }
   return planned;
-}
-
-std::vector<PlannedScene> load_scenes(const RunOptions& options) {
-  std::vector<PlannedScene> scenes;
-  for (const PictureSize& size : options.sizes) {
-    std::set<std::string> names;
-    for (const std::string& argument : options.scenes) {
-      scenes.push_back(load_scene(options, argument, size));
-      const std::string& name = scenes.back().scene.name;
-      if (names.insert(name).second) continue;
-      throw Error(ErrorKind::kUsage, fmt::format("two scenes are called '{}': rename one file, or run them apart", name));
-    }
-  }
-  return scenes;
 }
 
 /// The views that were asked for; all where none was.
@@ -71,7 +54,7 @@ class Planner {
   Planner(const RunOptions& options, const std::string& renderer) : options_(options), renderer_(renderer) {}
 
   RunPlan plan() {
-    plan_.scenes = load_scenes(options_);
+    plan_.scenes = plan_scenes(options_);
     require_views(options_, plan_.scenes);
     for (std::size_t i = 0; i < plan_.scenes.size(); ++i) add_scene(i);
     plan_.settings = hash_.name();

@@ -9,10 +9,9 @@
 
 #include "filters/error.h"
 #include "harness/run/run_facts.h"
+#include "harness/run/scene_loading.h"
 #include "harness/run/scene_measurement.h"
 #include "harness/run/tune_stage.h"
-#include "harness/scene/framing.h"
-#include "harness/scene/load.h"
 #include "report/atomic_file.h"
 #include "report/tables.h"
 #include "report/tuned_json.h"
@@ -106,22 +105,6 @@ class Tuner {
       tuned.push_back({request, {}, {}});
     }
     return tuned;
-  }
-
-  static std::vector<scene::Scene> load_scenes(const RunOptions& options) {
-    scene::LoadOptions load;
-    load.scenes_folder = options.resources.scenes;
-    load.ground = options.ground;
-    load.aspect = static_cast<double>(options.width) / options.height;
-    std::vector<scene::Scene> scenes;
-    for (const std::string& argument : options.scenes) {
-      scene::Scene scene = scene::load(argument, load);
-      if (options.light) scene.light.direction_ws = glm::vec3(scene::light_direction(options.light->azimuth_deg, options.light->elevation_deg));
-      const auto same_name = [&](const scene::Scene& known) { return known.name == scene.name; };
-      if (std::ranges::any_of(scenes, same_name)) throw Error(ErrorKind::kUsage, fmt::format("two scenes are called '{}': name each once", scene.name));
-      scenes.push_back(std::move(scene));
-    }
-    return scenes;
   }
 
   void describe() {

@@ -1,0 +1,38 @@
+#include "harness/run/scene_loading.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "filters/error.h"
+#include "harness/scene/framing.h"
+#include "harness/scene/load.h"
+
+namespace shadowbench::run {
+
+scene::Scene load_scene(const RunOptions& options, const std::string& argument) {
+  scene::LoadOptions load;
+  load.scenes_folder = options.resources.scenes;
+  load.ground = options.ground;
+  load.aspect = static_cast<double>(options.width) / options.height;
+  scene::Scene scene = scene::load(argument, load);
+  if (options.light) {
+    scene.light.direction_ws = glm::vec3(scene::light_direction(options.light->azimuth_deg, options.light->elevation_deg));
+  }
+  return scene;
+}
+
+std::vector<scene::Scene> load_scenes(const RunOptions& options) {
+  std::vector<scene::Scene> scenes;
+  for (const std::string& argument : options.scenes) {
+    scene::Scene scene = load_scene(options, argument);
+    const auto same_name = [&](const scene::Scene& known) { return known.name == scene.name; };
+    if (std::any_of(scenes.begin(), scenes.end(), same_name)) {
+      throw Error(ErrorKind::kUsage, fmt::format("two scenes are called '{}': rename one file, or run them apart", scene.name));
+    }
+    scenes.push_back(std::move(scene));
+  }
+  return scenes;
+}
+
+}  // namespace shadowbench::run
