@@ -14,6 +14,8 @@ namespace shadowbench::filters {
 enum class Precision {
   kFloat,    ///< as the GL does it
   kDouble,   ///< the reference
+  kExtended, ///< the reference where differences of nearly equal numbers leave double little: long double, 64 bits of
+             ///< significand on x86
   kTracked,  ///< double, with a bound on what single precision can make of it
 };
 

@@ -11,6 +11,7 @@ namespace shadowbench::filters {
 
 inline double value_of(float x) { return static_cast<double>(x); }
 inline double value_of(double x) { return x; }
+inline double value_of(long double x) { return static_cast<double>(x); }
 inline double value_of(const Tracked& x) { return x.value; }
 template <class T>
 double bound_of(const T&) {
@@ -40,6 +41,7 @@ class TemplatedModel final : public Model {
     switch (precision) {
       case Precision::kFloat: return std::make_unique<TemplatedLookup<Filter<float>>>(input);
       case Precision::kDouble: return std::make_unique<TemplatedLookup<Filter<double>>>(input);
+      case Precision::kExtended: return std::make_unique<TemplatedLookup<Filter<long double>>>(input);
       case Precision::kTracked: return std::make_unique<TemplatedLookup<Filter<Tracked>>>(input);
     }
     return nullptr;

@@ -18,9 +18,10 @@ int store_channels(const std::string& format);
 /// Gives the bytes of one texel of a format.
 int store_bytes(const std::string& format);
 
-/// Rounds a value to what the store keeps; double stays as it is: it is the reference.
+/// Rounds a value to what the store keeps; double and wider types stay as they are: they are references.
 float round_to_store(float value, StorePrecision precision);
 inline double round_to_store(double value, StorePrecision) { return value; }
+inline long double round_to_store(long double value, StorePrecision) { return value; }
 Tracked round_to_store(Tracked value, StorePrecision precision);
 
 }  // namespace shadowbench::filters
