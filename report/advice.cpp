@@ -11,6 +11,7 @@
 
 #include "filters/error.h"
 #include "filters/nearest_name.h"
+#include "report/absence.h"
 #include "report/summary.h"
 
 namespace shadowbench::report {
@@ -40,9 +41,12 @@ void require_size(const std::vector<CellRecord>& cells, std::pair<int, int> want
                      fmt::join(known, ", ")));
 }
 
-void require_claim(const std::map<std::string, std::vector<std::string>>& claims, const std::string& wanted) {
+void require_claim(const std::vector<CellRecord>& cells, const AdviceRequest& request, const std::string& wanted) {
   std::set<std::string> known;
-  for (const auto& [filter, made] : claims) known.insert(made.begin(), made.end());
+  for (const auto& [filter, made] : request.claims) known.insert(made.begin(), made.end());
+  for (const CellRecord& cell : cells) {
+    if (cell.claims) known.insert(cell.claims->begin(), cell.claims->end());
+  }
   if (known.contains(wanted)) return;
   if (known.empty()) refuse(fmt::format("--requires: no filter claims '{}', nor anything else: leave it out", wanted));
   const auto near = nearest_name(wanted, {known.begin(), known.end()});
@@ -64,13 +68,33 @@ std::vector<const CellRecord*> choose_cells(const std::vector<CellRecord>& cells
 }
 
 // Says why a value cannot be had, or nothing where it can.
-std::optional<std::string> find_gap(const Configuration& configuration, const LimitSpec& spec, const Advice& advice) {
-  for (const CellRecord* cell : configuration.cells) {
+std::optional<std::string> find_gap(const std::vector<const CellRecord*>& cells, const LimitSpec& spec, const Advice& advice) {
+  for (const CellRecord* cell : cells) {
     if (spec.read(*cell, advice.request.light)) continue;
     return fmt::format("no {} on {}: {}", spec.field, describe_place(place_of(*cell), advice.places),
                        explain_absence(*cell, spec.field));
   }
   return std::nullopt;
+}
+
+bool has_nothing_to_see(const CellRecord& cell, const LimitSpec& spec, LightMotion light) {
+  return !spec.read(cell, light) && is_nothing_to_see(explain_absence(cell, spec.field));
+}
+
+// Says why a limit cannot be judged: a value is missing, or there is nothing to see anywhere.
+std::optional<std::string> find_limit_gap(const Configuration& configuration, const LimitSpec& spec, const Advice& advice) {
+  std::vector<const CellRecord*> telling = configuration.cells;
+  std::erase_if(telling, [&](const CellRecord* cell) { return has_nothing_to_see(*cell, spec, advice.request.light); });
+  if (!telling.empty()) return find_gap(telling, spec, advice);
+  return fmt::format("no {} anywhere: {}", spec.field, explain_absence(*configuration.cells.front(), spec.field));
+}
+
+// What the filter of a configuration claims; nothing where nobody knows.
+std::optional<std::vector<std::string>> find_claims(const Configuration& configuration, const AdviceRequest& request) {
+  const CellRecord& cell = *configuration.cells.front();
+  if (cell.claims) return cell.claims;
+  const auto known = request.claims.find(cell.filter);
+  return known != request.claims.end() ? std::optional(known->second) : std::nullopt;
 }
 
 std::optional<std::string> find_missing_cell(const Configuration& configuration, const std::vector<Place>& places) {
@@ -85,9 +109,13 @@ std::optional<std::string> find_missing_cell(const Configuration& configuration,
 }
 
 Verdict judge_limit(const std::vector<const CellRecord*>& cells, const Demand& demand, LightMotion light) {
-  Verdict verdict{true, -kInfinity, nullptr, nullptr};
+  Verdict verdict{true, -kInfinity};
   const bool is_rmse = demand.spec->field == std::string(kRmse);
   for (const CellRecord* cell : cells) {
+    if (!demand.spec->read(*cell, light)) {
+      verdict.nothing_to_see.push_back(cell);
+      continue;
+    }
     const double value = *demand.spec->read(*cell, light);
     if (value > *verdict.worst) {
       verdict.worst = value;
@@ -126,18 +154,17 @@ std::variant<Candidate, Unjudged> judge(const Configuration& configuration, cons
   for (std::size_t i = 0; i < request.demands.size(); ++i) {
     const Demand& demand = request.demands[i];
     if (demand.spec) {
-      if (const auto gap = find_gap(configuration, *demand.spec, advice)) return Unjudged{configuration, *gap, i};
+      if (const auto gap = find_limit_gap(configuration, *demand.spec, advice)) return Unjudged{configuration, *gap, i};
       candidate.verdicts.push_back(judge_limit(configuration.cells, demand, request.light));
       continue;
     }
-    const std::string& filter = configuration.cells.front()->filter;
-    const auto claims = request.claims.find(filter);
-    if (claims == request.claims.end()) {
-      return Unjudged{configuration, fmt::format("'{}' is no built-in filter: its claims are unknown", filter), i};
+    const auto claims = find_claims(configuration, request);
+    if (!claims) {
+      return Unjudged{configuration, fmt::format("the run does not say what '{}' claims, and it is no built-in filter", configuration.cells.front()->filter), i};
     }
-    candidate.verdicts.push_back({std::ranges::count(claims->second, demand.claim) > 0, {}, nullptr, nullptr});
+    candidate.verdicts.push_back({std::ranges::count(*claims, demand.claim) > 0, {}});
   }
-  if (const auto gap = find_gap(configuration, cost_spec(request.cheapest), advice)) return Unjudged{configuration, *gap, {}};
+  if (const auto gap = find_gap(configuration.cells, cost_spec(request.cheapest), advice)) return Unjudged{configuration, *gap, {}};
   candidate.cost = measure_cost(configuration.cells, request);
   return candidate;
 }
@@ -240,7 +267,7 @@ CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, CostKin
 
 Advice advise(const std::vector<CellRecord>& cells, const AdviceRequest& request) {
   for (const Demand& demand : request.demands) {
-    if (!demand.spec) require_claim(request.claims, demand.claim);
+    if (!demand.spec) require_claim(cells, request, demand.claim);
   }
   Advice advice;
   advice.request = request;

@@ -20,7 +20,7 @@ struct AdviceRequest {
   CostKind cheapest = CostKind::kTime;
   std::vector<std::string> scenes;                         ///< empty: all of the run
   std::optional<std::pair<int, int>> size;                 ///< of the picture, pixels; empty: all of the run
-  std::map<std::string, std::vector<std::string>> claims;  ///< of every known filter, by its id
+  std::map<std::string, std::vector<std::string>> claims;  ///< of known filters, by id: for cells that do not hold theirs
 };
 
 /// Says how a configuration stands to one demand.
@@ -28,6 +28,8 @@ struct Verdict {
   bool kept = false;
   std::optional<double> worst;        ///< over the places; empty for a claim
   const CellRecord* where = nullptr;  ///< the cell with the worst value
+  /// Cells that have nothing on which the limit could be broken; it counts as kept there.
+  std::vector<const CellRecord*> nothing_to_see = {};
   /// Keeps a limit on the RMSE by less than the standard error of the truth it is measured against; null: none does.
   const CellRecord* lost_in_truth = nullptr;
 };
@@ -100,7 +102,8 @@ struct Advice {
 
 /// Finds the cheapest configuration that keeps every demand in every place; the worst place decides. Configurations of
 /// the same cost are ordered by time, then RMSE.
-/// A configuration that was not measured in a place, did not finish there, or lacks a value there is not judged.
+/// A configuration that was not measured in a place, did not finish there, or lacks a value there is not judged. A value
+/// that has nothing to be measured on in some places, as is_nothing_to_see() says, is judged on the others, if there are any.
 /// Requires that `cells` outlive what is returned.
 /// Throws Error(kUsage) for a scene or picture size that the run does not have, or a claim that no filter makes;
 /// Error(kInput) where there is no cell.

@@ -70,6 +70,14 @@ Json demand_json(const Demand& demand) {
   return json;
 }
 
+Json nothing_to_see_json(const Demand& demand, const Verdict& verdict) {
+  Json list = Json::array();
+  for (const CellRecord* cell : verdict.nothing_to_see) {
+    list.push_back({{"scene", cell->scene}, {"view", cell->view}, {"reason", explain_absence(*cell, demand.spec->field)}});
+  }
+  return list;
+}
+
 Json verdict_json(const Demand& demand, const Verdict& verdict) {
   const CellRecord* cell = verdict.where;
   const auto of_cell = [&](std::string CellRecord::*field) { return cell ? std::optional(cell->*field) : std::nullopt; };
@@ -80,6 +88,7 @@ Json verdict_json(const Demand& demand, const Verdict& verdict) {
   set(json, "view", of_cell(&CellRecord::view), kClaim);
   set(json, "key", of_cell(&CellRecord::key), kClaim);
   json["within_truth_se"] = verdict.lost_in_truth != nullptr;
+  json["nothing_to_see"] = nothing_to_see_json(demand, verdict);
   return json;
 }
 

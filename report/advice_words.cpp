@@ -121,6 +121,27 @@ void add_time_notes(std::vector<std::string>& notes, const std::vector<const Cel
   if (once) notes.push_back("Times of a single round have no spread, so their order may be chance: raise --rounds.");
 }
 
+// Where a limit could not be broken: by the advised one, or, where there is none, by any that was judged.
+void add_notes_of_nothing_to_see(std::vector<std::string>& notes, const Advice& advice) {
+  const bool fits = !advice.keeping.empty();
+  const std::vector<Candidate>& judged = fits ? advice.keeping : advice.failing;
+  for (std::size_t i = 0; i < advice.request.demands.size(); ++i) {
+    std::vector<std::string> places;
+    std::string reason;
+    for (const Candidate& candidate : judged) {
+      for (const CellRecord* cell : candidate.verdicts[i].nothing_to_see) {
+        const std::string place = describe_place(place_of(*cell), advice.places);
+        if (std::ranges::count(places, place) == 0) places.push_back(place);
+        if (reason.empty()) reason = explain_absence(*cell, advice.request.demands[i].spec->field);
+      }
+      if (fits) break;
+    }
+    if (places.empty()) continue;
+    notes.push_back(fmt::format("{} could not be judged on {}, and cannot be broken there: {}.", describe_demand(advice.request.demands[i]),
+                                fmt::join(places, ", "), reason));
+  }
+}
+
 }  // namespace
 
 std::string format_cost(double value, CostKind kind, const GlRecord& gl) {
@@ -199,6 +220,7 @@ std::vector<std::string> list_advice_notes(const Advice& advice, const GlRecord&
   }
   const std::vector<const CellRecord*> cells = list_judged_cells(advice);
   if (uses_time(advice.request)) add_time_notes(notes, cells, gl);
+  add_notes_of_nothing_to_see(notes, advice);
   add_setting_notes(notes, cells);
   if (advice.keeping.empty()) return notes;
   for (const CellRecord* cell : advice.keeping.front().configuration.cells) {

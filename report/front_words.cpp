@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <functional>
+#include <utility>
+
 #include "report/summary.h"
 
 namespace shadowbench::report {
 namespace {
 
-constexpr std::size_t kNamed = 4;  // cells that one sentence names; fronts.csv has all
+constexpr std::size_t kNamed = 4;     // cells that one sentence names; fronts.csv has all
+constexpr std::size_t kEachNamed = 8;  // above, cells are counted by filter
+constexpr std::size_t kBeatersNamed = 2;
 
 const std::string& label_of(const TradeScope& scope, const TradeFront& front, std::size_t point) {
   return scope.configurations[front.configurations[point]].label;
@@ -36,13 +42,90 @@ std::string join_some(const std::vector<std::string>& labels) {
   return fmt::format("{} and {} more", fmt::join(labels.begin(), labels.begin() + kNamed, ", "), labels.size() - kNamed);
 }
 
-std::string describe_placed(const TradeScope& scope, const TradeFront& front, Standing standing, const char* verb) {
+std::string name_placed(const TradeScope& scope, const TradeFront& front, Standing standing, const char* verb) {
   std::vector<std::string> parts;
   for (const std::size_t member : front.members) {
     const auto labels = list_placed(scope, front, standing, member);
     if (!labels.empty()) parts.push_back(fmt::format("{} {} {}", label_of(scope, front, member), verb, join_some(labels)));
   }
   return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+const std::string& filter_of(const TradeScope& scope, const TradeFront& front, std::size_t point) {
+  return scope.configurations[front.configurations[point]].filter;
+}
+
+// "all 40 of esm, 12 of 15 of poisson, pcf2x2": a filter that has one cell is only named. Filters stand in the scope's order.
+std::string count_by_filter(const TradeScope& scope, const TradeFront& front, Standing standing) {
+  std::vector<std::string> parts, told;
+  for (std::size_t i = 0; i < front.points.size(); ++i) {
+    const std::string& filter = filter_of(scope, front, i);
+    if (std::ranges::count(told, filter) > 0) continue;
+    told.push_back(filter);
+    std::size_t all = 0, placed = 0;
+    for (std::size_t j = 0; j < front.points.size(); ++j) {
+      if (filter_of(scope, front, j) != filter) continue;
+      ++all;
+      placed += front.placements[j].standing == standing ? 1 : 0;
+    }
+    if (placed == 0) continue;
+    if (all == 1) parts.push_back(filter);
+    else parts.push_back(placed == all ? fmt::format("all {} of {}", all, filter) : fmt::format("{} of {} of {}", placed, all, filter));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+// Why the dominated are beaten: in which of the two they are clearly worse.
+std::string count_reasons(const TradeFront& front) {
+  std::size_t both = 0, cost = 0, error = 0;
+  for (std::size_t i = 0; i < front.points.size(); ++i) {
+    if (front.placements[i].standing != Standing::kDominated) continue;
+    const FrontPoint& beater = front.points[front.placements[i].by];
+    const bool dearer = is_clearly_less_cost(beater.cost, front.points[i].cost);
+    const bool worse = is_clearly_less_error(beater.error, front.points[i].error);
+    ++(dearer && worse ? both : dearer ? cost : error);
+  }
+  std::vector<std::string> parts;
+  if (both > 0) parts.push_back(fmt::format("{} cost more and err more", both));
+  if (cost > 0) parts.push_back(fmt::format("{} cost more for no less error", cost));
+  if (error > 0) parts.push_back(fmt::format("{} err more for no less cost", error));
+  return fmt::format("Of these, {}.", fmt::join(parts, ", "));
+}
+
+// The members that beat the most cells; the cheaper of two that beat as many comes first.
+std::string count_beaten(const TradeScope& scope, const TradeFront& front) {
+  std::vector<std::pair<std::size_t, std::size_t>> beaten;
+  for (const std::size_t member : front.members) beaten.emplace_back(member, list_placed(scope, front, Standing::kDominated, member).size());
+  std::ranges::stable_sort(beaten, std::greater(), &std::pair<std::size_t, std::size_t>::second);
+  std::erase_if(beaten, [](const auto& each) { return each.second == 0; });
+  beaten.resize(std::min(beaten.size(), kBeatersNamed));
+  std::vector<std::string> parts;
+  for (const auto& [member, count] : beaten) parts.push_back(fmt::format("{} beats {}", label_of(scope, front, member), count));
+  return fmt::format("{}; fronts.csv has each.", fmt::join(parts, ", "));
+}
+
+std::size_t count_standing(const TradeFront& front, Standing standing) {
+  std::size_t count = 0;
+  for (const Placement& each : front.placements) count += each.standing == standing ? 1 : 0;
+  return count;
+}
+
+void describe_ties(std::vector<std::string>& sentences, const TradeScope& scope, const TradeFront& front) {
+  const std::size_t tied = count_standing(front, Standing::kTied);
+  if (tied == 0) return;
+  sentences.push_back(tied <= kEachNamed
+                          ? fmt::format("Not to be told apart in error or cost: {}.", name_placed(scope, front, Standing::kTied, "is tied with"))
+                          : fmt::format("Not to be told apart in error or cost from a cell of the front are {} of {}: {}.", tied,
+                                        front.points.size(), count_by_filter(scope, front, Standing::kTied)));
+}
+
+void describe_dominated(std::vector<std::string>& sentences, const TradeScope& scope, const TradeFront& front) {
+  const std::size_t dominated = count_standing(front, Standing::kDominated);
+  if (dominated == 0) return;
+  const bool each = dominated <= kEachNamed;
+  const std::string who = each ? name_placed(scope, front, Standing::kDominated, "beats") : count_by_filter(scope, front, Standing::kDominated);
+  sentences.push_back(fmt::format("Dominated are {} of {}: {}.", dominated, front.points.size(), who));
+  if (!each) sentences.back() += fmt::format(" {} {}", count_reasons(front), count_beaten(scope, front));
 }
 
 // Neighbours on the front, whose errors differ clearly.
@@ -54,12 +137,6 @@ std::string describe_uncertain_steps(const TradeScope& scope, const TradeFront& 
     parts.push_back(fmt::format("{} and {}", label_of(scope, front, a), label_of(scope, front, b)));
   }
   return fmt::format("{}", fmt::join(parts, "; "));
-}
-
-std::size_t count_standing(const TradeFront& front, Standing standing) {
-  std::size_t count = 0;
-  for (const Placement& each : front.placements) count += each.standing == standing ? 1 : 0;
-  return count;
 }
 
 std::vector<std::string> describe_left_out(const TradeScope& scope, const TradeFront& front) {
@@ -88,13 +165,8 @@ std::vector<std::string> describe_front(const TradeScope& scope, const TradeFron
   }
   const std::string steps = describe_uncertain_steps(scope, front);
   if (!steps.empty()) sentences.push_back("Neighbours whose costs cannot be told apart, so that the smaller error may be free: " + steps + ".");
-  const std::string ties = describe_placed(scope, front, Standing::kTied, "is tied with");
-  if (!ties.empty()) sentences.push_back("Not to be told apart in error or cost: " + ties + ".");
-  const std::string dominated = describe_placed(scope, front, Standing::kDominated, "beats");
-  if (!dominated.empty()) {
-    sentences.push_back(fmt::format("Dominated are {} of {}: {}.", count_standing(front, Standing::kDominated),
-                                    front.points.size(), dominated));
-  }
+  describe_ties(sentences, scope, front);
+  describe_dominated(sentences, scope, front);
   const auto left_out = describe_left_out(scope, front);
   sentences.insert(sentences.end(), left_out.begin(), left_out.end());
   return sentences;

@@ -27,6 +27,7 @@ json::json_pointer make_pointer(std::string path) {
 bool is_finite(double value) { return std::isfinite(value); }
 bool is_finite(std::int64_t) { return true; }
 bool is_finite(const std::string&) { return true; }
+bool is_finite(const std::vector<std::string>&) { return true; }
 bool is_finite(const Quartiles& value) {
   return std::isfinite(value.median) && std::isfinite(value.q1) && std::isfinite(value.q3);
 }
@@ -71,8 +72,12 @@ struct FieldReader {
 
   template <class T>
   void operator()(const std::string& path, std::optional<T>& value) {
-    const bool is_null = at(path).is_null();
+    const bool is_null = lacks_later_field(path) || at(path).is_null();
     value = is_null ? std::nullopt : std::optional<T>(read<T>(path, root));
+  }
+
+  bool lacks_later_field(const std::string& path) const {
+    return std::ranges::count(kLaterFields, path) > 0 && root.is_object() && !root.contains(make_pointer(path));
   }
 
   const json& at(const std::string& path) const {

@@ -88,6 +88,7 @@ std::vector<std::string> list_files(const CellRecord& cell) {
 RunRecord join(const std::vector<ShardRun>& shards) {
   RunRecord run = shards.front().results.run;
   run.experiment.shard = run.experiment.shards = 1;
+  run.repeat = {};  // of one shard alone
   for (std::size_t i = 1; i < shards.size(); ++i) {
     const RunRecord& other = shards[i].results.run;
     run.work.shader_variants_compiled += other.work.shader_variants_compiled;

@@ -1,8 +1,14 @@
 #pragma once
 
+#include <array>
+#include <string_view>
+
 #include "report/records.h"
 
 namespace shadowbench::report {
+
+/// Names the fields that older files of this schema version lack; they are read as null there.
+inline constexpr std::array<std::string_view, 4> kLaterFields = {"claims", "repeat.cells", "repeat.overlapping", "repeat.of"};
 
 /// Calls `visit(name, value)` for every field of a bias.
 template <class Bias, class Visitor>
@@ -37,6 +43,7 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("filter", cell.filter);
   visit("params", cell.params);
   visit("kernel_radius_texels", cell.kernel_radius_texels);
+  visit("claims", cell.claims);
   visit("map_size", cell.map_size);
   visit("map_format", cell.map_format);
   visit("fit", cell.fit);
@@ -129,6 +136,9 @@ void visit_run_fields(Run& run, Visitor&& visit) {
   visit("experiment.cells", run.experiment.cells);
   visit("experiment.shard", run.experiment.shard);
   visit("experiment.shards", run.experiment.shards);
+  visit("repeat.cells", run.repeat.cells);
+  visit("repeat.overlapping", run.repeat.overlapping);
+  visit("repeat.of", run.repeat.of);
   visit("scenes", run.scenes);
   visit("warnings", run.warnings);
 }

@@ -171,6 +171,7 @@ struct CellRecord {
   std::string filter;
   ParamMap params;
   std::optional<double> kernel_radius_texels;  ///< half-width of the kernel; no setting, it follows from `params`
+  std::optional<std::vector<std::string>> claims;  ///< what the filter says of itself, such as "contact-hardening"
   int map_size = 0;        ///< texels along a side
   std::string map_format;  ///< "d32f", "d16 reversed"
   std::string fit = "tight";    ///< of the light's frustum: "sphere", "tight" or "view"; with " snapped" behind it
@@ -228,6 +229,13 @@ struct WorkRecord {
   double elapsed_s = 0.0;          ///< from the first cell to the last, the report not included; seconds
 };
 
+/// Says how the times of a run compare with those of the run that it replaced, which was told the very same.
+struct RepeatRecord {
+  std::optional<std::int64_t> cells;        ///< that both have
+  std::optional<std::int64_t> overlapping;  ///< ratios to `none` whose 95 % intervals overlap
+  std::optional<std::int64_t> of;           ///< so many
+};
+
 /// Names a scene for people.
 struct SceneRecord {
   std::string name;
@@ -252,6 +260,7 @@ struct RunRecord {
   MachineRecord machine;
   WorkRecord work;
   ExperimentRecord experiment;
+  RepeatRecord repeat = {};
   std::vector<SceneRecord> scenes;
   std::vector<std::string> warnings;
 };

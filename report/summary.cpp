@@ -10,6 +10,7 @@
 #include "report/accuracy_words.h"
 #include "report/cell_key.h"
 #include "report/json_values.h"
+#include "report/repeat.h"
 
 namespace shadowbench::report {
 namespace {
@@ -293,16 +294,22 @@ std::vector<std::string> describe_group(const CellGroup& group, const GlRecord& 
 }
 
 std::vector<std::pair<std::string, std::string>> list_run_facts(const RunRecord& run) {
-  return {{"experiment", describe_experiment(run.experiment)},
-          {"command", fmt::format("{}", fmt::join(run.command, " "))},
-          {"commit", run.commit},
-          {"seed", fmt::format("{}", run.seed)},
-          {"times", describe_clock(run.gl)},
-          {"GL", fmt::format("{} · {} · {}", run.gl.backend, run.gl.renderer, run.gl.version)},
-          {"machine", fmt::format("{} · {} cores · load {} at the start", run.machine.cpu, run.machine.cores,
-                                  run.machine.load_at_start ? format_number(*run.machine.load_at_start) : kNothing)},
-          {"system", fmt::format("{} · {}", run.machine.os, run.machine.compiler)},
-          {"work", describe_work(run.work)}};
+  std::vector<std::pair<std::string, std::string>> facts = {
+      {"experiment", describe_experiment(run.experiment)},
+      {"command", fmt::format("{}", fmt::join(run.command, " "))},
+      {"commit", run.commit},
+      {"seed", fmt::format("{}", run.seed)},
+      {"times", describe_clock(run.gl)},
+      {"GL", fmt::format("{} · {} · {}", run.gl.backend, run.gl.renderer, run.gl.version)},
+      {"machine", fmt::format("{} · {} cores · load {} at the start", run.machine.cpu, run.machine.cores,
+                              run.machine.load_at_start ? format_number(*run.machine.load_at_start) : kNothing)},
+      {"system", fmt::format("{} · {}", run.machine.os, run.machine.compiler)},
+      {"work", describe_work(run.work)}};
+  if (run.repeat.of.value_or(0) > 0) {
+    facts.emplace_back("repeat", fmt::format("{} those of the run that this one replaced ({} cells)", describe_overlap(run.repeat),
+                                             run.repeat.cells.value_or(0)));
+  }
+  return facts;
 }
 
 std::map<std::string, int> count_absences(const std::vector<CellRecord>& cells) {

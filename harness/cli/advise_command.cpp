@@ -75,13 +75,6 @@ AdviceRequest make_request(const AdviseArguments& arguments) {
   return request;
 }
 
-std::filesystem::path find_results(const std::filesystem::path& run) {
-  if (std::filesystem::is_directory(run)) return run / "results.json";
-  if (std::filesystem::exists(run)) return run;
-  throw Error(ErrorKind::kInput, "there is no such folder or file; give a run's folder (its --out), or its results.json",
-              run.string());
-}
-
 int advise(const AdviseArguments& arguments) {
   const AdviceRequest request = make_request(arguments);
   const report::Results results = report::read_results(find_results(arguments.run));
@@ -102,7 +95,8 @@ constexpr const char* kFooter =
     "A frame with a moving light pays for map, prefilter and lookup, one with a static light for the lookup alone.\n"
     "Costs are apart where their intervals are: the 95 % interval of the ratio to 'none' where both share map, bias and\n"
     "picture size, else the quartiles of the times. Without any limit the cheapest of all is advised, which does least.\n"
-    "What was not measured on all the scenes, did not finish, or lacks a value that is asked for keeps no limit.\n"
+    "What was not measured on all the scenes, did not finish, or lacks a value that is asked for keeps no limit. A limit on\n"
+    "a fault that has too few receivers to occur on in a scene is judged on the others; the answer names that scene.\n"
     "Exit code 1: nothing keeps the limits; the message names the ones in the way.";
 
 }  // namespace

@@ -62,6 +62,13 @@ std::vector<std::string> list_builtin_scenes(const run::Resources& resources) {
   return names;
 }
 
+std::filesystem::path find_results(const std::filesystem::path& run) {
+  if (std::filesystem::is_directory(run)) return run / "results.json";
+  if (std::filesystem::exists(run)) return run;
+  throw Error(ErrorKind::kInput, "there is no such folder or file; give a run's folder (its --out), or its results.json",
+              run.string());
+}
+
 std::filesystem::path choose_cache(const std::string& folder, bool no_cache) {
   if (no_cache) return {};
   return folder.empty() ? run::default_cache_folder() : std::filesystem::path(folder);

@@ -10,7 +10,7 @@
 
 namespace shadowbench::cli {
 
-// What commands share of reading their options. All throw Error(kUsage) with the option's name.
+// What commands share of reading their options. All but find_results() throw Error(kUsage) with the option's name.
 
 /// Parses a whole number, 1 or more.
 int parse_count(const std::string& text, const char* option);
@@ -26,6 +26,9 @@ std::vector<std::string> list_builtin_scenes(const run::Resources& resources);
 
 /// Refuses filters that are named twice with the same parameters.
 void require_distinct(const std::vector<filters::FilterRequest>& requests);
+
+/// Gives the results.json of a run, which is named by its folder or by that file. Throws Error(kInput) where there is neither.
+std::filesystem::path find_results(const std::filesystem::path& run);
 
 /// Gives the folder for traced images; empty: nothing is kept.
 std::filesystem::path choose_cache(const std::string& folder, bool no_cache);

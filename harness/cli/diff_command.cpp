@@ -8,6 +8,7 @@
 #include "filters/error.h"
 #include "filters/nearest_name.h"
 #include "harness/cli/commands.h"
+#include "harness/cli/diff_runs.h"
 #include "harness/cli/experiment_loader.h"
 #include "reference/metrics/flip.h"
 
@@ -80,8 +81,23 @@ void print_json(const run::ComparisonOptions& options, const run::Comparison& re
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-int diff(DiffArguments arguments) {
+/// Says whether two runs are meant, and not two pictures.
+bool name_runs(const CLI::App& command, const run::ComparisonOptions& options) {
+  const bool a = is_run(options.image), b = is_run(options.truth);
+  if (!a && !b) return false;
+  if (a != b) {
+    throw Error(ErrorKind::kInput, fmt::format("'{}' is a run's folder or results, and '{}' is not: name two pictures, or the report folders of two runs",
+                                               a ? options.image : options.truth, a ? options.truth : options.image));
+  }
+  for (const char* option : {"--metric", "--mask", "--pixels-per-degree"}) {
+    if (command.count(option) > 0) throw Error(ErrorKind::kUsage, fmt::format("{} is of pictures, and these are runs: leave it out", option));
+  }
+  return true;
+}
+
+int diff(const CLI::App& command, DiffArguments arguments) {
   run::ComparisonOptions& options = arguments.options;
+  if (name_runs(command, options)) return diff_runs(options.image, options.truth, arguments.json);
   options.metrics = choose_metrics(arguments.metric);
   check_pixels_per_degree(options.pixels_per_degree);
   const run::Comparison result = load_and_compare_pictures(options);
@@ -98,7 +114,7 @@ int diff(DiffArguments arguments) {
 }  // namespace
 
 void add_diff_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("diff", "Compare two pictures as a run compares its own");
+  CLI::App* command = app.add_subcommand("diff", "Compare two pictures as a run compares its own, or the times of two runs");
   command->footer(
       "A and B are pictures in any format that OpenImageIO reads; FILE#PART is one part of a multi-part EXR file, such "
       "as\n"
@@ -106,18 +122,20 @@ void add_diff_command(CLI::App& app, Action& action) {
       "as\n"
       "stored (8-bit codes as code/255). FLIP alone sees linear RGB clamped to [0,1], and the whole picture: sRGB "
       "codes are\n"
-      "decoded, one channel is grey. Pixels that are NaN or infinite are counted and left out.");
+      "decoded, one channel is grey. Pixels that are NaN or infinite are counted and left out.\n"
+      "Where A and B are report folders of runs (or their results.json), it is counted how many of their cells' ratios to\n"
+      "'none' repeat: 95 % intervals that overlap. Exit code 1: some do not.");
   auto a = std::make_shared<DiffArguments>();
   a->options.pixels_per_degree = reference::kDefaultPixelsPerDegree;
-  command->add_option("A", a->options.image, "the picture")->required();
-  command->add_option("B", a->options.truth, "what it should look like")->required();
+  command->add_option("A", a->options.image, "the picture, or a run's folder")->required();
+  command->add_option("B", a->options.truth, "what it should look like, or another run's folder")->required();
   command->add_option("--metric", a->metric, fmt::format("{} (see 'list metrics')", fmt::join(metric_names(), ", ")))
       ->capture_default_str();
   command->add_option("--mask", a->options.mask, "a picture of one channel: pixels count where it is not 0");
   command->add_option("--pixels-per-degree", a->options.pixels_per_degree, "how large FLIP's observer sees the pixels")
       ->capture_default_str();
   command->add_flag("--json", a->json, "as JSON");
-  command->callback([&action, a] { action = [a] { return diff(*a); }; });
+  command->callback([&action, command, a] { action = [command, a] { return diff(*command, *a); }; });
 }
 
 }  // namespace shadowbench::cli

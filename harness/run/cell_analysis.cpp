@@ -9,6 +9,7 @@
 #include "harness/run/model_images.h"
 #include "reference/metrics/attribution.h"
 #include "reference/metrics/error_stats.h"
+#include "report/absence.h"
 #include "report/error_parts.h"
 
 namespace shadowbench::run {
@@ -27,7 +28,9 @@ void note(report::CellRecord& record, const char* field, std::optional<double>& 
 }
 
 /// Says which receivers there are too few of for a rate.
-std::string too_few(const char* which) { return fmt::format("fewer than {} receivers {}", reference::kFewestReceivers, which); }
+std::string too_few(const char* which) {
+  return report::explain_nothing_to_see(fmt::format("fewer than {} receivers {}", reference::kFewestReceivers, which));
+}
 
 void note_parts(report::CellRecord& record, const reference::Attribution& attribution) {
   for (std::size_t p = 0; p < reference::kErrorParts; ++p) {

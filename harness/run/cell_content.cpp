@@ -1,6 +1,7 @@
 #include "harness/run/cell_content.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/run/content_hash.h"
 #include "harness/run/run_facts.h"
@@ -69,7 +70,7 @@ std::string name_cell_content(const std::string& scene_content, const filters::F
   ContentHash hash;
   hash.add(scene_content);
   hash.add(request.spec.body);
-  hash.add(fmt::format("{}", request.user_file));
+  hash.add(fmt::format("{} claims {}", request.user_file, fmt::join(request.spec.claims, " ")));
   return hash.name();
 }
 

@@ -137,16 +137,22 @@ std::vector<std::string> list_values(const SweptParam& param, const filters::Par
   return distinct;
 }
 
+void require_few(const SweptFilter& filter, const filters::FilterSpec& spec) {
+  double combinations = 1.0;
+  for (const SweptParam& param : filter.params) combinations *= static_cast<double>(list_values(param, spec.find_param(param.name)).size());
+  if (combinations <= kMostCombinations) return;
+  throw Error(ErrorKind::kUsage, fmt::format("the parameters of '{}' have {:.0f} combinations, and a run takes {:.0f} of one filter at most; name "
+                                             "fewer values", filter.id, combinations, kMostCombinations));
+}
+
 /// Every combination of one filter's values, as `--filters` has it.
 std::vector<std::string> combine(const SweptFilter& filter, const filters::Catalogue& catalogue) {
   const filters::FilterSpec& spec = catalogue.find(filter.id);
+  require_few(filter, spec);
   std::vector<std::string> requests{filter.id};
   char separator = ':';
   for (const SweptParam& param : filter.params) {
     const std::vector<std::string> values = list_values(param, spec.find_param(param.name));
-    if (static_cast<double>(requests.size()) * static_cast<double>(values.size()) > kMostCombinations) {
-      throw Error(ErrorKind::kUsage, fmt::format("the parameters of '{}' have more than {} combinations; name fewer values", filter.id, kMostCombinations));
-    }
     std::vector<std::string> longer;
     for (const std::string& request : requests) {
       for (const std::string& value : values) longer.push_back(fmt::format("{}{}{}={}", request, separator, param.name, value));

@@ -13,12 +13,15 @@
 #include "harness/run/scene_assets.h"
 #include "harness/run/run_plan.h"
 #include "harness/run/task_run.h"
+#include "harness/run/time_probe.h"
 #include "harness/run/user_filter.h"
 #include "harness/scene/closed_mesh.h"
 #include "reference/truth/occluders.h"
 #include "report/atomic_file.h"
 #include "report/json_io.h"
+#include "report/repeat.h"
 #include "report/report.h"
+#include "report/summary.h"
 
 namespace shadowbench::run {
 namespace {
@@ -27,6 +30,7 @@ namespace {
 constexpr std::uintmax_t kMaxCacheBytes = std::uintmax_t{1} << 30;
 
 std::string describe_duration(double seconds) {
+  if (seconds < 10.0) return report::format_number(seconds) + " s";
   const auto whole = static_cast<long>(std::ceil(seconds));
   if (whole < 60) return fmt::format("{} s", whole);
   if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
@@ -41,6 +45,12 @@ void require_writable(const std::filesystem::path& folder) {
 /// More than that many cells are asked about: they take hours.
 constexpr int kManyCells = 2000;
 constexpr double kManySeconds = 3600.0;
+
+/// What is known of a run's time before it begins.
+struct TimeForecast {
+  double seconds = 0.0;  ///< of timed work
+  std::string text;
+};
 
 class Experiment {
  public:
@@ -65,6 +75,7 @@ class Experiment {
       progress_.note("nothing is left to do");
       return;
     }
+    const std::vector<report::CellRecord> replaced = read_replaced();
     done_ = plan.finished;
     progress_.begin(plan.own_cells, plan.finished);
     const auto start = std::chrono::steady_clock::now();
@@ -74,6 +85,7 @@ class Experiment {
     run_.work.truths_traced = cache_.traced();
     run_.work.truths_cached = cache_.loaded();
     cache_.prune(kMaxCacheBytes);
+    if (!replaced.empty()) compare_with(replaced, list_keys(plan));
     progress_.show(done_, "writing the report");
     if (!options_.worker) report::write_report(options_.out, run_, list_keys(plan));
     progress_.show(done_, "done");
@@ -111,11 +123,50 @@ class Experiment {
     std::string text = fmt::format("{} cells", plan.own_cells);
     if (options_.shard.count > 1) text += fmt::format(" of {}, shard {}/{}", plan.cells, options_.shard.index + 1, options_.shard.count);
     if (plan.finished > 0) text += fmt::format(", {} of them finished before (--fresh measures them again)", plan.finished);
-    const double seconds = options_.rounds.is_fixed() ? 0.0 : left * 1e-3 * options_.rounds.budget_ms;
-    if (seconds > 0.0) text += fmt::format("; {} of timed work at most, more where four rounds take longer", describe_duration(seconds));
+    const TimeForecast forecast = left > 0 ? forecast_time(plan, left) : TimeForecast();
+    text += forecast.text;
     progress_.note(text);
-    if ((left <= kManyCells && seconds <= kManySeconds) || options_.large_is_fine) return;
-    throw Error(ErrorKind::kUsage, fmt::format("{}: add --yes to run them all, or name fewer values, or a smaller --budget", text));
+    if ((left <= kManyCells && forecast.seconds <= kManySeconds) || options_.large_is_fine) return;
+    throw Error(ErrorKind::kUsage, fmt::format("{}: add --yes to run them all, or name fewer values, or {}", text,
+                                               options_.rounds.is_fixed() ? "fewer --rounds" : "a smaller --budget"));
+  }
+
+  /// Nothing is known of rays and pictures before the first are made: the bar counts them in.
+  TimeForecast forecast_time(const RunPlan& plan, int left) {
+    const char* on_top = options_.truth ? "rays and pictures come on top" : "pictures come on top";
+    if (!options_.rounds.is_fixed()) {
+      const double seconds = left * 1e-3 * options_.rounds.budget_ms;
+      return {seconds, fmt::format("; {} of timed work at most, more where four rounds take longer; {}", describe_duration(seconds), on_top)};
+    }
+    const TimeFloor floor = probe_time_floor(renderer_, plan, cache_);
+    return {floor.seconds, fmt::format("; {} {} of timed work, what --rounds {} of the unfiltered lookup take; {}",
+                                       floor.whole ? "at least" : "about", describe_duration(floor.seconds), options_.rounds.most, on_top)};
+  }
+
+  bool is_same(const report::ExperimentRecord& known) const {
+    const report::ExperimentRecord& own = run_.experiment;
+    return known.settings == own.settings && known.shard == own.shard && known.shards == own.shards;
+  }
+
+  /// Gives the cells of the finished report of this very run that is measured anew; none where there is none.
+  std::vector<report::CellRecord> read_replaced() const {
+    const std::filesystem::path file = options_.out / "results.json";
+    if (!options_.fresh || options_.worker || !std::filesystem::exists(file)) return {};
+    try {
+      report::Results results = report::read_results(file);
+      if (is_same(results.run.experiment)) return std::move(results.cells);
+    } catch (const Error&) {
+      // What cannot be read cannot be compared with.
+    }
+    return {};
+  }
+
+  void compare_with(const std::vector<report::CellRecord>& replaced, const std::vector<std::string>& keys) {
+    std::vector<report::CellRecord> cells;
+    for (const std::string& key : keys) cells.push_back(report::read_cell(options_.out, key));
+    run_.repeat = report::compare_times(replaced, cells).record;
+    if (run_.repeat.of == 0) return;
+    progress_.note(report::describe_overlap(run_.repeat) + " those of the run that this one replaces");
   }
 
   /// Says whether the folder has the whole report of this very run already, of the very cells that lie there.
@@ -127,8 +178,7 @@ class Experiment {
       if (std::filesystem::last_write_time(report::cell_path(options_.out, key)) > written) return false;
     }
     try {
-      const report::ExperimentRecord known = report::read_results(file).run.experiment;
-      return known.settings == run_.experiment.settings && known.shard == run_.experiment.shard && known.shards == run_.experiment.shards;
+      return is_same(report::read_results(file).run.experiment);
     } catch (const Error&) {
       return false;
     }

@@ -177,6 +177,7 @@ report::CellRecord make_record(const RunOptions& options, const SceneTask& task,
   record.filter = request.spec.id;
   record.params = record_params(request.values);
   record.kernel_radius_texels = filters::radius_texels(request.spec, request.values);
+  record.claims = request.spec.claims;
   record.map_size = task.map_size;
   record.map_format = render::describe_map(options.map);
   record.fit = std::string(scene::name_of(options.fit)) + (options.snap ? " snapped" : "");

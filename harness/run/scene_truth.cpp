@@ -6,6 +6,7 @@
 
 #include "harness/run/mean_flip.h"
 #include "reference/metrics/error_stats.h"
+#include "report/absence.h"
 #include "report/picture_io.h"
 
 namespace shadowbench::run {
@@ -30,7 +31,7 @@ SceneTruth trace_scene(SceneTracer& tracer, ViewReceivers receivers) {
   truth.mask = receivers.mask();
   truth.receivers = std::move(receivers);
   if (!truth.receivers.any_counts()) {
-    truth.absent = "no surface in view faces the light";
+    truth.absent = report::explain_nothing_to_see("no surface in view faces the light");
     return truth;
   }
   truth.rays = tracer.trace_view(truth.receivers);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "filters/error.h"
+#include "report/absence.h"
 #include "report/advice_words.h"
 #include "synthetic.h"
 
@@ -279,12 +280,84 @@ TEST(Advice, RequiredClaim_IsReadFromTheKnownFilters) {
   request.claims = {{"hard", {}}, {"soft", {"contact-hardening"}}, {"other", {"temporal"}}};
   const Advice advice = advise(cells, request);
   EXPECT_THAT(labels(advice.keeping), ElementsAre("soft"));
-  EXPECT_THAT(reasons(advice), ElementsAre("'mine' is no built-in filter: its claims are unknown"));
+  EXPECT_THAT(reasons(advice), ElementsAre("the run does not say what 'mine' claims, and it is no built-in filter"));
   ASSERT_THAT(advice.relaxations, SizeIs(1));
   EXPECT_EQ(labels(advice.failing)[advice.relaxations[0].candidate], "hard");
   request.demands[0].claim = "temporal";
   EXPECT_THAT(describe_failure(advise(cells, request)),
               HasSubstr("--requires temporal (2 fail it alone; without it there is hard, map"));
+}
+
+TEST(Advice, ClaimsInTheRecord_CountBeforeThoseOfTheKnownFilters) {
+  std::vector<CellRecord> cells = {measure("cubes", "mine", 1.0, 0.01), measure("cubes", "soft", 4.0, 0.01)};
+  cells[0].claims = {{"contact-hardening", "own-claim"}};
+  cells[1].claims.emplace();
+  AdviceRequest request;
+  request.claims = {{"soft", {"contact-hardening"}}};
+  for (const char* claim : {"contact-hardening", "own-claim"}) {
+    request.demands = {{nullptr, 0.0, claim}};
+    const Advice advice = advise(cells, request);
+    EXPECT_THAT(labels(advice.keeping), ElementsAre("mine")) << claim;
+    EXPECT_THAT(labels(advice.failing), ElementsAre("soft")) << claim;
+  }
+}
+
+/// A cell with a leak rate on "cubes", and none on "fence", where too little is blocked.
+std::vector<CellRecord> measure_leak_on_one(const std::string& filter, double ms, double leak) {
+  std::vector<CellRecord> cells = {measure("cubes", filter, ms, 0.01), measure("fence", filter, ms, 0.01)};
+  cells[0].artefact.leak = leak;
+  cells[1].artefact.leak.reset();
+  cells[1].absent["artefact.leak"] = explain_nothing_to_see("fewer than 100 receivers are blocked");
+  return cells;
+}
+
+std::vector<CellRecord> join(std::vector<CellRecord> a, const std::vector<CellRecord>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+TEST(Advice, SceneWithNothingToSee_BarsNothingAndIsNamed) {
+  const auto cells = join(measure_leak_on_one("leaky", 1.0, 0.5), measure_leak_on_one("tight", 2.0, 0.01));
+  const Advice advice = advise_on(cells, {limit("--max-leak", 0.1)});
+  EXPECT_THAT(advice.unjudged, IsEmpty());
+  ASSERT_THAT(labels(advice.keeping), ElementsAre("tight"));
+  EXPECT_THAT(labels(advice.failing), ElementsAre("leaky"));
+  EXPECT_EQ(advice.keeping[0].verdicts[0].worst, 0.01);
+  EXPECT_EQ(advice.keeping[0].verdicts[0].where, &cells[2]);
+  EXPECT_THAT(advice.keeping[0].verdicts[0].nothing_to_see, ElementsAre(&cells[3]));
+  const std::string note = "--max-leak 0.1 could not be judged on fence, and cannot be broken there: nothing to see: fewer than 100 receivers "
+                           "are blocked.";
+  EXPECT_THAT(list_advice_notes(advice, make_run().gl), ::testing::Contains(note));
+  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-leak", 0.001)}), make_run().gl),
+              ::testing::Contains(HasSubstr("could not be judged on fence"))) << "nothing fits";
+  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-acne", 0.1)}), make_run().gl), ::testing::Each(::testing::Not(HasSubstr("fence"))));
+}
+
+TEST(Advice, EveryFaultWithoutReceivers_BarsNothing) {
+  for (const char* name : {"acne", "leak", "contact_gap"}) {
+    std::vector<CellRecord> cells = measure_leak_on_one("a", 1.0, 0.0);
+    cells[1].artefact = {};
+    cells[1].absent = {{std::string("artefact.") + name, explain_nothing_to_see("too few")}};
+    std::string option = "--max-" + std::string(name);
+    std::ranges::replace(option, '_', '-');
+    EXPECT_THAT(advise_on(cells, {limit(option, 0.1)}).keeping, SizeIs(1)) << name;
+  }
+}
+
+TEST(Advice, WhatWasNotMeasuredBesideNothingToSee_IsNotJudged) {
+  auto cells = measure_leak_on_one("a", 1.0, 0.0);
+  cells[0].artefact = {};
+  cells[0].absent["artefact"] = "the run was made with --no-truth";
+  EXPECT_THAT(reasons(advise_on(cells, {limit("--max-leak", 0.1)})),
+              ElementsAre("no artefact.leak on cubes: the run was made with --no-truth"));
+}
+
+TEST(Advice, NothingToSeeAnywhere_IsNotJudgedAndSaysSo) {
+  auto cells = measure_leak_on_one("a", 1.0, 0.0);
+  cells[0].artefact.leak.reset();
+  cells[0].absent = cells[1].absent;
+  EXPECT_EQ(describe_failure(advise_on(cells, {limit("--max-leak", 0.1)})),
+            "none of 1 configurations can be judged: 1: no artefact.leak anywhere: nothing to see: fewer than 100 receivers are blocked");
 }
 
 TEST(Advice, ClaimThatNoFilterMakes_IsRefused) {

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "report/absence.h"
 #include "report/advice_words.h"
 #include "report/configuration.h"
 #include "synthetic.h"
@@ -183,6 +184,18 @@ TEST(AdviceJson, Nulls_AreExplainedBesideThem) {
   request.demands = {{nullptr, 0.0, "soft"}};
   request.claims = {{"none", {"soft"}}, {"wide", {}}};
   expect_nulls_explained(make_advice_json(make_run(), advise(cells, request)), "");
+}
+
+TEST(AdviceJson, LimitThatHasNothingToSeeInAScene_NamesIt) {
+  auto cells = make_cells();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i % 2 == 0) cells[i].artefact.leak = 0.0;
+    else cells[i].absent["artefact.leak"] = explain_nothing_to_see("too few");
+  }
+  const Demand leak{&*std::ranges::find(limit_table(), std::string("artefact.leak"), &LimitSpec::field), 0.1, {}};
+  const auto limits = make_advice_json(make_run(), advise_on(cells, {max_rmse(0.03), leak}))["advised"]["limits"];
+  EXPECT_TRUE(limits[0]["nothing_to_see"].empty());
+  EXPECT_EQ(limits[1]["nothing_to_see"].dump(), R"([{"scene":"stack","view":"main","reason":"nothing to see: too few"}])");
 }
 
 TEST(AdviceJson, Numbers_AreThoseOfTheCells) {

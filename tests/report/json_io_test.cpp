@@ -46,6 +46,7 @@ CellRecord make_timed_out_cell() {
 CellRecord make_full_cell() {
   CellRecord cell = make_cell("cubes", "full", 4.0);
   cell.kernel_radius_texels = 4.0;
+  cell.claims = {{"contact-hardening"}};
   cell.map_scale = {0.02, 10.0};
   cell.bias = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, 0.7, 0.8, {0.0, 0.9, 1.0}, true, 1.1, 1.2, true, true};
   cell.time_ms.prefilter = Quartiles{1.5, 1.25, 1.75, 3};
@@ -85,6 +86,7 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   }
   const CellRecord back = cell_from_json(to_json(make_full_cell()), "here");
   EXPECT_EQ(back.attribution.estimator.share, -0.1);
+  EXPECT_EQ(back.claims, std::vector<std::string>{"contact-hardening"});
   EXPECT_EQ(back.error.kernel_rmse, 0.04);
   EXPECT_EQ(back.ratio_to_none.moving->ci95.high, 2.75);
   EXPECT_EQ(back.time_ms.prefilter->n, 3);
@@ -111,6 +113,22 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
 
 TEST(JsonIo, FullCell_HasNoNullButStability) {
   EXPECT_THAT(to_json(make_full_cell()).at("absent"), json({{"stability", "not measured"}}));
+}
+
+TEST(JsonIo, LaterFields_MayLack) {
+  json written = to_json(make_full_cell());
+  written.erase("claims");
+  EXPECT_FALSE(cell_from_json(written, "here").claims);
+  EXPECT_EQ(cell_from_json(written, "here").fit, "view snapped");
+  RunRecord run = make_run();
+  run.repeat = {40, 118, 120};
+  written = to_json(run);
+  EXPECT_EQ(run_from_json(written, "here").repeat.overlapping, 118);
+  written.erase("repeat");
+  EXPECT_FALSE(run_from_json(written, "here").repeat.of);
+  EXPECT_EQ(run_from_json(written, "here").seed, run.seed);
+  written.erase("seed");
+  EXPECT_THAT(message_of([&] { run_from_json(written, "here"); }), HasSubstr("'seed' is missing"));
 }
 
 TEST(JsonIo, NotFinite_IsNullWithItsReason) {
@@ -171,6 +189,7 @@ TEST(JsonIo, TextThatIsNotUtf8_IsWrittenAllTheSame) {
 TEST(JsonIo, Results_AreValidAgainstTheirSchema) {
   const TemporaryFolder folder("json_valid");
   RunRecord run = make_run();
+  run.repeat = {3, 5, 6};
   run.warnings = {"a \"warning\""};
   run.machine.load_at_start = std::nullopt;
   const auto keys =

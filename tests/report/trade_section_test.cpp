@@ -99,6 +99,17 @@ TEST(TradeSection, LoadsNothingFromElsewhere) {
   EXPECT_THAT(std::string(chart_library()), HasSubstr("Chart.js v3"));
 }
 
+/// In a dark page the ink is light, and cannot be read on paper that stays white.
+TEST(TradeSection, PaperOfAFixedColour_HasInkOfAFixedColour) {
+  const std::string style(trade_style());
+  const std::regex rules("[{][^{}]*background: #[^{}]*[}]");
+  int papers = 0;
+  for (std::sregex_iterator found(style.begin(), style.end(), rules), end; found != end; ++found, ++papers) {
+    EXPECT_THAT(found->str(), HasSubstr(" color: #"));
+  }
+  EXPECT_EQ(papers, 1);
+}
+
 TEST(TradeSection, OfAFewCells_IsNotThere) {
   const TemporaryFolder folder("trade_small");
   const std::string page = write_and_read(folder, {make_sweep_cell({}), make_sweep_cell({"cubes", "vsm"})}, "index.html");

@@ -150,6 +150,35 @@ TEST(FrontWords, SayMembersTiesAndWhatTheyBeat) {
   EXPECT_EQ(words[2], "Dominated are 1 of 4: vsm beats poisson.");
 }
 
+/// A sweep in which `none` and one `vsm` are the front and all else is dominated.
+std::vector<CellRecord> make_wide_sweep() {
+  std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}), make_sweep_cell({"cubes", "pcf2x2", 0.0, 1.5, 0.0, 0.1})};
+  for (int i = 0; i < 5; ++i) {
+    const double more = 0.1 * i;
+    cells.push_back(make_sweep_cell({"cubes", "vsm", 1.0 + i, 2.0 + more, 0.0, 0.05}));
+    cells.push_back(make_sweep_cell({"cubes", "esm", 1.0 + i, 1.2 + more, 0.0, 0.2 + more}));
+  }
+  cells.push_back(make_sweep_cell({"cubes", "poisson", 4.0, 1.0, 0.0, 0.3}));
+  return cells;
+}
+
+TEST(FrontWords, ManyDominated_AreCountedByFilterWithTheReason) {
+  const TradeScope scope = make_trade_scopes(make_wide_sweep())[0];
+  const auto words = describe_front(scope, make_trade_front(scope, 0, 0), make_run().gl);
+  ASSERT_THAT(words, SizeIs(2));
+  EXPECT_EQ(words[1],
+            "Dominated are 11 of 13: pcf2x2, 4 of 5 of vsm, all 5 of esm, poisson. Of these, 5 cost more and err more, 5 cost more for "
+            "no less error, 1 err more for no less cost. none beats 7, vsm (radius 1) beats 4; fronts.csv has each.");
+}
+
+TEST(FrontWords, ManyTied_AreCountedByFilter) {
+  std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1})};
+  for (int i = 0; i < 9; ++i) cells.push_back(make_sweep_cell({"cubes", i < 5 ? "vsm" : "esm", 1.0 + i, 1.0, 0.0, 0.1}));
+  const TradeScope scope = make_trade_scopes(cells)[0];
+  EXPECT_THAT(describe_front(scope, make_trade_front(scope, 0, 0), make_run().gl),
+              ::testing::Contains("Not to be told apart in error or cost from a cell of the front are 9 of 10: all 5 of vsm, all 4 of esm."));
+}
+
 TEST(FrontWords, NeighboursOfUncertainCost_AreNamed) {
   const std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}), make_sweep_cell({"cubes", "vsm", 4.0, 1.1, 0.2, 0.05})};
   const TradeScope scope = make_trade_scopes(cells)[0];

@@ -60,7 +60,8 @@ class Sweep : public ProgramTest {
 TEST_F(Sweep, MeasuresTheProduct_AndTheCommandLineHasTheLastWord) {
   Outcome outcome = run("run e.toml --out out");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr(std::to_string(kCells) + " cells"));
+  EXPECT_THAT(outcome.err, HasSubstr(std::to_string(kCells) + " cells; "));
+  EXPECT_THAT(outcome.err, HasSubstr("of timed work, what --rounds 1 of the unfiltered lookup take; rays and pictures come on top"));
   const json all = results();
   EXPECT_EQ(all["cells"].size(), kCells);
   EXPECT_EQ(all["experiment"]["title"], "small");
@@ -111,6 +112,36 @@ TEST_F(Sweep, Continued_MeasuresNothingTwice_UnlessSomethingChanged) {
   // Another seed is another measurement, and so is a fresh one.
   EXPECT_THAT(run("run e.toml --out out --seed 2").err, Not(HasSubstr("finished before")));
   EXPECT_THAT(run("run e.toml --out out --seed 2 --fresh").err, Not(HasSubstr("finished before")));
+}
+
+TEST_F(Sweep, FreshOverAFinishedReport_SaysHowManyTimesRepeat) {
+  const std::string few = "run e.toml --scene cubes --map-size 32 --filters none,pcf2x2,tent3x3 --out out ";
+  ASSERT_EQ(run(few + "--fresh").exit_code, 0);
+  EXPECT_TRUE(results()["repeat"]["of"].is_null()) << "nothing was replaced";
+  const Outcome outcome = run(few + "--fresh");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json repeat = results()["repeat"];
+  EXPECT_EQ(repeat["cells"], 3);
+  EXPECT_EQ(repeat["of"], 4);
+  const std::string said = std::to_string(repeat["overlapping"].get<int>()) + " of 4 ratio intervals overlap those of the run that this one replace";
+  EXPECT_THAT(outcome.err, HasSubstr(said));
+  for (const char* file : {"out/summary.md", "out/index.html"}) EXPECT_THAT(read_text(folder() / file), HasSubstr(said)) << file;
+  ASSERT_EQ(run(few + "--fresh --seed 2").exit_code, 0);
+  EXPECT_TRUE(results()["repeat"]["of"].is_null()) << "what was replaced was told something else";
+}
+
+TEST_F(Sweep, ClaimsOfAUsersFilter_AreInItsCellsAndCount) {
+  write("mine.glsl",
+        "/*+++\ntitle = \"M\"\nsource = \"s\"\nkind = \"other\"\nclaims = [\"own-claim\"]\nradius_texels = 0\n+++*/\n"
+        "float visibility(Receiver r) { return 1.0; }\n");
+  const Outcome outcome = run("run --scene cubes --map-size 32 --size 32x18 --rounds 1 --no-attribution --filters none,mine --filter-file mine.glsl --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(results()["cells"][0]["claims"], json::array());
+  EXPECT_EQ(results()["cells"][1]["claims"], json::array({"own-claim"}));
+  EXPECT_THAT(run("advise out --requires own-claim").out, ::testing::StartsWith("mine, map 32"));
+  // So small a picture has too few pixels for rates.
+  EXPECT_THAT(results()["cells"][0]["absent"]["artefact.leak"].get<std::string>(), ::testing::StartsWith("nothing to see: fewer than 100 receivers"));
+  EXPECT_EQ(run("advise out --max-leak 1").exit_code, 1);
 }
 
 TEST_F(Sweep, KilledAndContinued_EqualsAnUninterruptedOne) {
@@ -200,6 +231,7 @@ TEST_F(Sweep, TooManyCells_AskForYes) {
         "c = {linear = [1, 2000], count = 2001}\n");
   expect_refusal("run huge.toml --out out", 2, {"2001 cells", "--yes"});
   expect_refusal("run e.toml --rounds auto --budget 100 --out out", 2, {"48 cells", "1 h 20 min", "--yes"});
+  expect_refusal("run e.toml --rounds 10000 --size 1280x720 --out out", 2, {"48 cells", "of timed work", "--rounds 10000", "--yes", "fewer --rounds"});
   EXPECT_FALSE(std::filesystem::exists(folder() / "out"));
   EXPECT_EQ(run("run e.toml --rounds auto --budget 100 --precision 1 --yes --out out").exit_code, 0);
 }

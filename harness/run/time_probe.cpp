@@ -1,0 +1,99 @@
+#include "harness/run/time_probe.h"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include "harness/render/filter_passes.h"
+#include "harness/run/scene_assets.h"
+
+namespace shadowbench::run {
+namespace {
+
+constexpr double kMostProbe_s = 2.0;
+constexpr int kDrawn = 3;  // the first of them warms up
+
+/// What a round of one view through one map takes.
+struct RoundTime {
+  double map_ms = 0.0;
+  double lookup_ms = 0.0;
+
+  double of_cells_ms(std::size_t cells) const { return map_ms + static_cast<double>(cells) * lookup_ms; }
+};
+
+double find_quickest_ms(gl::TimerKind timer, const std::function<void()>& work) {
+  double quickest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kDrawn; ++i) quickest = std::min(quickest, gl::time_ms(timer, work));
+  return quickest;
+}
+
+RoundTime draw_round(Renderer& renderer, const PlannedScene& planned, const SceneTask& task, SceneAssets& assets) {
+  const RunOptions& options = planned.options;
+  LightMap& light = assets.light_map(*task.camera, task.map_size);
+  render::GBuffer& gbuffer = assets.gbuffer(*task.camera);
+  const render::Bias bias = resolve_bias(options.bias, light.frustum, options.reference.spec, options.reference.values);
+  const auto setup = render::make_light_setup(light.frustum, planned.scene.light, bias, options.seed, options.range);
+  render::FilterPasses reference(renderer.shaders, options.reference, light.map, setup);
+  render::ImageTarget target("probed visibility", GL_R32F, options.width, options.height);
+  return {find_quickest_ms(renderer.timer, [&] { assets.redraw(light); }),
+          find_quickest_ms(renderer.timer, [&] { reference.lookup(gbuffer, light.map, target); })};
+}
+
+/// Draws the planned tasks scene by scene until that has taken long enough.
+class Probe {
+ public:
+  Probe(Renderer& renderer, const RunPlan& plan, TruthCache& cache) : renderer_(renderer), plan_(plan), cache_(cache) {}
+
+  TimeFloor run() {
+    for (std::size_t scene = 0; scene < plan_.scenes.size(); ++scene) add_scene(scene);
+    TimeFloor floor{1e-3 * drawn_ms_, left_cells_ == 0};
+    if (!floor.whole) floor.seconds += 1e-3 * static_cast<double>(rounds()) * quickest_.of_cells_ms(left_cells_);
+    return floor;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Renderer& renderer_;
+  const RunPlan& plan_;
+  TruthCache& cache_;
+  Clock::time_point start_ = Clock::now();
+  double drawn_ms_ = 0.0;
+  std::size_t left_cells_ = 0;
+  RoundTime quickest_{0.0, std::numeric_limits<double>::infinity()};
+
+  int rounds() const { return plan_.scenes.front().options.rounds.most; }
+
+  bool is_time_left() const { return std::chrono::duration<double>(Clock::now() - start_).count() < kMostProbe_s || drawn_ms_ == 0.0; }
+
+  void add_scene(std::size_t scene) {
+    const PlannedScene& planned = plan_.scenes[scene];
+    const RunOptions& options = planned.options;
+    std::optional<SceneAssets> assets;
+    for (const PlannedTask& each : plan_.tasks) {
+      if (each.scene != scene || each.task.filters.empty()) continue;
+      if (!is_time_left()) {
+        left_cells_ += each.task.filters.size();
+        continue;
+      }
+      if (!assets) {
+        assets.emplace(renderer_, options, planned.scene, cache_, options.pad_texels.value_or(largest_padding_texels(options.filters)));
+      }
+      const RoundTime round = draw_round(renderer_, planned, each.task, *assets);
+      drawn_ms_ += rounds() * round.of_cells_ms(each.task.filters.size());
+      if (round.lookup_ms < quickest_.lookup_ms) quickest_ = {0.0, round.lookup_ms};
+    }
+  }
+};
+
+}  // namespace
+
+TimeFloor probe_time_floor(Renderer& renderer, const RunPlan& plan, TruthCache& cache) {
+  assert(!plan.scenes.empty() && plan.scenes.front().options.rounds.is_fixed());
+  return Probe(renderer, plan, cache).run();
+}
+
+}  // namespace shadowbench::run
