@@ -18,6 +18,7 @@ default = 80.0
 min = 1.0
 max = 2000.0
 unit = "1/depth"
+stress = "esm-exponent"
 text = "exponent; too small fades contact shadows, too large overflows: above 88 in r32f, above 11 in r16f. combine=log has no such limit"
 +++*/
 vec4 encode(EncodeInput e) { return vec4(combine == COMBINE_LOG ? c * e.depth : exp(c * e.depth)); }

@@ -31,6 +31,7 @@ struct ParamSpec {
   std::vector<ParamValue> choices;  ///< the only values allowed; empty: any
   std::string unit;
   std::string text;  ///< help: what too little and too much do
+  std::string stress;  ///< the axis of `shadowbench stress` that drives this parameter, or that it guards against; may be empty
 };
 
 /// Asks for a table of points in the unit disk, given to the GLSL as `const vec2 <name>[]`.

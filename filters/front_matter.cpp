@@ -163,7 +163,7 @@ ParamSpec read_param(const Reader& reader, const std::string& name, const toml::
   const toml::table* table = node.as_table();
   if (!table) reader.fail(&node, fmt::format("'param.{}' must be a table", name));
   if (!is_identifier(name)) reader.fail(&node, fmt::format("'{}' cannot be the name of a GLSL uniform", name));
-  reader.check_keys(*table, {"default", "min", "max", "choices", "unit", "text", "const"}, fmt::format("[param.{}]", name));
+  reader.check_keys(*table, {"default", "min", "max", "choices", "unit", "text", "stress", "const"}, fmt::format("[param.{}]", name));
   const toml::node* default_node = table->get("default");
   if (!default_node) reader.fail(table, fmt::format("[param.{}] lacks 'default'", name));
   ParamSpec param;
@@ -174,6 +174,7 @@ ParamSpec read_param(const Reader& reader, const std::string& name, const toml::
   param.max = reader.finite(*table, "max");
   param.unit = reader.text(*table, "unit", false);
   param.text = reader.text(*table, "text", true);
+  param.stress = reader.text(*table, "stress", false);
   if (const toml::node* choices = table->get("choices")) {
     if (!choices->as_array()) reader.fail(choices, "'choices' must be a list");
     for (const toml::node& item : *choices->as_array()) param.choices.push_back(reader.value(item, "a choice"));

@@ -18,6 +18,7 @@ default = 1e-5
 min = 0.0
 max = 1e-1
 unit = "depth^2"
+stress = "vsm-cancellation"
 text = "lower bound on the variance; too small gives acne, too large fades contact shadows"
 [param.bleed_reduction]
 default = 0.0

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include "report/markdown_table.h"
 #include "report/summary.h"
 #include "report/tables.h"
 #include "report/text_tables.h"
@@ -20,30 +21,6 @@ std::string format_percent(double share) { return fmt::format("{:.3g} %", 100.0 
 
 std::string format_gain(const TunedScore& score) {
   return score.at_default > 0.0 ? fmt::format("{:+.1f} %", 100.0 * score.gain() / score.at_default) : std::string(kNothing);
-}
-
-/// Counts characters as a terminal shows them: bytes of UTF-8 that begin one.
-std::size_t shown_width(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
-}
-
-/// Writes a Markdown table of escaped texts, whose columns line up, for terminals.
-std::string make_table(const TextTable& table) {
-  std::vector<std::size_t> widths(table.header.size(), 3);
-  std::vector<std::vector<std::string>> rows = {table.header};
-  rows.insert(rows.end(), table.rows.begin(), table.rows.end());
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], shown_width(row[i]));
-  }
-  std::string text;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    for (std::size_t i = 0; i < widths.size(); ++i) text += fmt::format("| {}{:{}}", rows[r][i], "", widths[i] - shown_width(rows[r][i]) + 1);
-    text += "|\n";
-    if (r > 0) continue;
-    for (const std::size_t width : widths) text += fmt::format("|{:-<{}}", "", width + 2);
-    text += "|\n";
-  }
-  return text + "\n";
 }
 
 std::string make_param_table(const TunedFilterRecord& filter, const std::string& metric) {
@@ -63,7 +40,7 @@ std::string make_param_table(const TunedFilterRecord& filter, const std::string&
   add("training", filter.training);
   add("unseen", filter.unseen);
   table.rows = {defaults, found};
-  return make_table(table);
+  return make_markdown_table(table);
 }
 
 std::string format_intervals(const TunedParamRecord& param) {
@@ -83,7 +60,7 @@ std::string make_range_table(const TunedFilterRecord& filter, double tolerance) 
     table.rows.push_back({param.name, fmt::format("{} .. {}", format_value(param.min), format_value(param.max)), param.scale,
                           format_intervals(param), format_percent(param.good_share)});
   }
-  return make_table(table);
+  return make_markdown_table(table);
 }
 
 /// One row per scene: means over its unseen views; and a sentence about scenes that lose by the parameters found.
@@ -108,8 +85,8 @@ std::string make_scene_table(const TunedFilterRecord& filter, const TunedRecord&
     table.rows.push_back({escape_markdown(scene), format_number(mean.at_default), format_number(mean.tuned), format_gain(mean),
                           fmt::format("{} of {} views", better, views), filter.unseen_truth_se ? format_number(truth_se / views) : std::string(kNothing)});
   }
-  if (losers.empty()) return make_table(table);
-  return make_table(table) + fmt::format("Worse by them: {}. Tune for such scenes apart (--scene).\n\n", fmt::join(losers, ", "));
+  if (losers.empty()) return make_markdown_table(table);
+  return make_markdown_table(table) + fmt::format("Worse by them: {}. Tune for such scenes apart (--scene).\n\n", fmt::join(losers, ", "));
 }
 
 std::string make_filter_text(const TunedFilterRecord& filter, const TunedRecord& record) {

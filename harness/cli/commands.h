@@ -31,4 +31,7 @@ void add_advise_command(CLI::App& app, Action& action);
 /// Adds `tune`.
 void add_tune_command(CLI::App& app, Action& action);
 
+/// Adds `stress`; `words` as for `run`.
+void add_stress_command(CLI::App& app, Action& action, const std::vector<std::string>& words);
+
 }  // namespace shadowbench::cli

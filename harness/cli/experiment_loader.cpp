@@ -41,6 +41,18 @@ std::string load_and_tune_filters(const run::TuneOptions& options, run::Progress
   return text;
 }
 
+stress::StressOutcome load_and_run_stress(const stress::StressOptions& options, run::Progress& progress) {
+  stress::StressOutcome outcome;
+  load_entry<void(const stress::StressOptions&, run::Progress&, stress::StressOutcome&)>("shadowbench_run_stress")(options, progress, outcome);
+  return outcome;
+}
+
+std::string load_and_describe_stress_axes(const std::vector<filters::FilterRequest>& filters) {
+  std::string text;
+  load_entry<void(const std::vector<filters::FilterRequest>&, std::string&)>("shadowbench_describe_stress_axes")(filters, text);
+  return text;
+}
+
 run::Comparison load_and_compare_pictures(const run::ComparisonOptions& options) {
   run::Comparison result;
   load_entry<void(const run::ComparisonOptions&, run::Comparison&)>("shadowbench_compare_pictures")(options, result);

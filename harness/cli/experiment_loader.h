@@ -7,6 +7,7 @@
 #include "harness/run/options.h"
 #include "harness/run/progress.h"
 #include "harness/run/tune_filters.h"
+#include "harness/stress/run_stress.h"
 
 namespace shadowbench::cli {
 
@@ -24,6 +25,12 @@ void load_and_merge_runs(const std::vector<std::filesystem::path>& folders, cons
 
 /// Tunes filters; gives the text of tune.md. Throws Error as run::tune_filters.
 std::string load_and_tune_filters(const run::TuneOptions& options, run::Progress& progress);
+
+/// Drives filters along the axes of `stress`. Throws Error as stress::run_stress.
+stress::StressOutcome load_and_run_stress(const stress::StressOptions& options, run::Progress& progress);
+
+/// Lists the axes of `stress`, for people.
+std::string load_and_describe_stress_axes(const std::vector<filters::FilterRequest>& filters);
 
 /// Compares two pictures. Throws Error as run::compare_pictures.
 run::Comparison load_and_compare_pictures(const run::ComparisonOptions& options);

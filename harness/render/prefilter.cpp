@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "filters/gaussian.h"
@@ -32,6 +33,17 @@ Defines blur_defines(const filters::FilterRequest& request, filters::Border bord
   return defines;
 }
 
+/// Gives the magnitude from which on a number of a format counts as overflown; fixed point has none.
+float overflow_limit(const gl::PixelFormat& format) {
+  constexpr float kNearLargest = 0.99f;
+  if (format.name.ends_with("16f")) return kNearLargest * 65504.0f;
+  return format.name.ends_with("32f") ? kNearLargest * std::numeric_limits<float>::max() : std::numeric_limits<float>::infinity();
+}
+
+bool is_overflown(const float* channels, int count, float limit) {
+  return !std::all_of(channels, channels + count, [limit](float v) { return std::abs(v) < limit; });
+}
+
 }  // namespace
 
 Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
@@ -42,6 +54,7 @@ Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& reque
   const bool nearest = combines_logs(request) || filters::text_or(request.values, "sample", "linear") == "nearest";
   sampler_.set_filter(nearest ? GL_NEAREST : GL_LINEAR, nearest ? GL_NEAREST : GL_LINEAR);
   sampler_.set_wrap(wrap_mode(light.range.border));
+  reads_border_ = light.range.border == filters::Border::kBorder;
   retune(shaders, request, light);
 }
 
@@ -98,13 +111,19 @@ void Prefilter::bind() const {
   sampler_.bind(kStoredUnit);
 }
 
-std::int64_t Prefilter::count_not_finite() const {
-  const int channels = stored_.texture().format().channels;
+std::int64_t Prefilter::count_overflown() const {
+  const int channels = stored_.texture().format().channels, size = stored_.texture().width();
+  const float limit = overflow_limit(stored_.texture().format());
+  const bool border = reads_border_ && is_overflown(&border_[0], channels, limit);
+  const int ring = border ? radius_ : 0;  // texels whose blur reads the border
   const std::vector<float> values = stored_.texture().read_floats(channels);
   std::int64_t count = 0;
-  for (std::size_t i = 0; i < values.size(); i += static_cast<std::size_t>(channels)) {
-    const auto texel = values.begin() + static_cast<std::ptrdiff_t>(i);
-    if (!std::all_of(texel, texel + channels, [](float v) { return std::isfinite(v); })) ++count;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const bool near_border = std::min({x, y, size - 1 - x, size - 1 - y}) < ring;
+      const auto first = static_cast<std::size_t>(y * size + x) * static_cast<std::size_t>(channels);
+      if (near_border || is_overflown(&values[first], channels, limit)) ++count;
+    }
   }
   return count;
 }

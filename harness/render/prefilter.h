@@ -29,9 +29,10 @@ class Prefilter {
   /// Binds the result to the unit of lib/map_access.glsl that fetch_map reads.
   void bind() const;
 
-  /// Counts texels of the result that hold infinity or NaN: an exponential overflowed. min() and clamp() in a lookup
-  /// would hide them in the image.
-  std::int64_t count_not_finite() const;
+  /// Counts texels of the result that an exponential overflowed in: infinity, NaN, or within 1 % of the largest number of a float
+  /// format, at which GLs stop that round towards zero (llvmpipe does, on its way to 16 bits). Where what lies outside the map
+  /// overflowed, texels whose blur reads it count too. min() and clamp() in a lookup would hide them in the image.
+  std::int64_t count_overflown() const;
 
   int passes() const { return radius_ > 0 ? 3 : 1; }
   std::int64_t bytes() const { return static_cast<std::int64_t>(stored_.texture().bytes()); }
@@ -45,6 +46,7 @@ class Prefilter {
   gl::Program* blur_ = nullptr;  ///< likewise
   std::vector<float> weights_;
   glm::vec4 border_{0.0f};
+  bool reads_border_ = true;  ///< what lies outside the map is border_
   gl::FullscreenTriangle triangle_;
   gl::Sampler sampler_{"encoded map"};
 

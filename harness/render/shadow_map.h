@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,10 @@ class ShadowMap {
   /// Cost: one pass over the casters, two and a full-screen pass for a midpoint map.
   /// Requires linear depth where the bias has a polygon offset, which the GL adds to depth as it is drawn.
   void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum, const MapBias& bias = {});
+
+  /// Overwrites the map with stored depths that nobody drew, row 0 at v = 0; what a fixed-point format cannot hold is clamped.
+  /// Requires size() * size() values.
+  void upload(std::span<const float> stored) { map_.depth.upload_floats(stored, 1); }
 
   /// Binds the map to the three units of lib/map_access.glsl that read depth.
   void bind() const;

@@ -5,6 +5,7 @@
 #include "harness/run/compare_pictures.h"
 #include "harness/run/run_experiment.h"
 #include "harness/run/tune_filters.h"
+#include "harness/stress/run_stress.h"
 #include "report/merge.h"
 
 extern "C" void shadowbench_run_experiment(const shadowbench::run::RunOptions& options,
@@ -29,4 +30,13 @@ extern "C" void shadowbench_merge_runs(const std::vector<std::filesystem::path>&
 extern "C" void shadowbench_tune_filters(const shadowbench::run::TuneOptions& options, shadowbench::run::Progress& progress,
                                          std::string& text) {
   text = shadowbench::run::tune_filters(options, progress);
+}
+
+extern "C" void shadowbench_run_stress(const shadowbench::stress::StressOptions& options, shadowbench::run::Progress& progress,
+                                       shadowbench::stress::StressOutcome& outcome) {
+  outcome = shadowbench::stress::run_stress(options, progress);
+}
+
+extern "C" void shadowbench_describe_stress_axes(const std::vector<shadowbench::filters::FilterRequest>& filters, std::string& text) {
+  text = shadowbench::stress::describe_axes(filters);
 }

@@ -109,8 +109,8 @@ class SceneBench {
     report::CellRecord& record = result.cells.back().record;
     const std::int64_t broken = filter.count_broken_texels();
     if (broken > 0) {
-      record.warnings.push_back(fmt::format("{}: {} texels of its map are infinite or NaN, so its image is not to be "
-                                            "trusted; choose a smaller exponent, a wider store, or combine=log", name, broken));
+      record.warnings.push_back(fmt::format("{}: {} texels of its map are infinite or NaN, or stopped at the largest number of their format, so "
+                                            "its image is not to be trusted; choose a smaller exponent, a wider store, or combine=log", name, broken));
     }
     const std::int64_t nan = record.nan.value_or(0);
     if (nan > 0) record.warnings.push_back(fmt::format("{}: {} pixels are not finite", name, nan));

@@ -31,13 +31,15 @@ TEST(FrontMatter, GivesEveryField) {
       "/*+++\ntitle = \"Title\"\nsource = \"Source\"\nkind = \"bound\"\nstore = [\"rg32f\", \"rg16f\"]\n"
       "combine = [\"linear\", \"log\"]\nsample = \"linear\"\nclaims = [\"contact-hardening\"]\nradius_texels = \"radius\"\n"
       "[param.radius]\ndefault = 3\nmin = 0\nmax = 9\nunit = \"texels\"\ntext = \"help\"\n"
-      "[param.amount]\ndefault = 0.5\nmin = 0.0\nmax = 1.0\ntext = \"help\"\nconst = true\n+++*/\n"
+      "[param.amount]\ndefault = 0.5\nmin = 0.0\nmax = 1.0\ntext = \"help\"\nstress = \"an-axis\"\nconst = true\n+++*/\n"
       "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n",
       "dir/mine.glsl");
   EXPECT_EQ(spec.id, "mine");
   EXPECT_EQ(spec.title, "Title");
   EXPECT_EQ(spec.source, "Source");
   EXPECT_EQ(spec.kind, FilterKind::kBound);
+  EXPECT_EQ(spec.find_param("radius")->stress, "");
+  EXPECT_EQ(spec.find_param("amount")->stress, "an-axis");
   EXPECT_EQ(spec.claims, std::vector<std::string>{"contact-hardening"});
   EXPECT_TRUE(spec.has_encode);
   EXPECT_TRUE(spec.has_prefilter);

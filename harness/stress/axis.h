@@ -1,0 +1,108 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/stress/context.h"
+#include "harness/stress/verdict.h"
+
+namespace shadowbench::stress {
+
+using Range = report::StressRange;
+using Exhibit = report::StressExhibit;
+using TheoryKind = report::StressTheoryKind;
+
+/// How an axis is sampled, and how values are drawn.
+enum class Scale { kLinear, kLog };
+
+/// From which end of the range the first change of a verdict is looked for.
+enum class SearchFrom { kLow, kHigh };
+
+/// What a case runs on.
+enum class Level {
+  kGl,         ///< the passes of harness/render
+  kModel,      ///< the filter's scalar model
+  kArithmetic  ///< the axis' own few lines, in the precision that is to be tested
+};
+
+/// A limit known beforehand.
+struct Theory {
+  std::optional<double> onset;  ///< value of the axis; empty: theory says that there is none
+  TheoryKind kind = TheoryKind::kOverflow;
+  std::string formula;          ///< with its numbers: "ln(65504) / 1 = 11.09"
+  std::string source;           ///< author, year, title, equation; or "derived"
+  Verdict predicts = Verdict::kBroken;  ///< the verdict that the case reaches at `onset`
+};
+
+/// What a theory was measured against: the first value with the verdict that it predicts.
+struct Disagreement {
+  const Theory& theory;
+  std::optional<double> measured;    ///< empty: nowhere in the range
+  const report::StressCase& record;  ///< everything that was observed
+};
+
+/// One filter in one variant on an axis.
+struct Case {
+  std::string filter;   ///< id; empty: arithmetic that no filter has yet
+  std::string variant;  ///< "r16f, linear"
+  Level level = Level::kGl;
+  filters::ParamValues params;
+  std::vector<Theory> theories;  ///< none: nothing is known
+  /// Tells why a theory is not met, from what was measured; empty where the reason that it knows does not apply. May be null.
+  std::function<std::string(const Disagreement&)> explain;
+  /// Says what else a record shows, and why, where its numbers bear that out; printed with the axis. May be null.
+  std::function<std::vector<std::string>(const report::StressCase&)> remark;
+  /// Null where `not_available` says why. An Error thrown at the first value makes the case not available; later ones
+  /// count as broken there.
+  std::function<Observation(double)> observe;
+  std::string not_available;
+};
+
+/// One way to drive filters to where their numbers break. Each lives in axes/<id>.cpp as `Axis make_<id>_axis()`, '-' in the id
+/// written '_'; CMake finds it there.
+struct Axis {
+  std::string id;        ///< file stem; given by axis_table()
+  std::string title;
+  std::string quantity;  ///< "exponent c"
+  std::string unit;      ///< empty: a pure number
+  Scale scale = Scale::kLog;
+  Range range;           ///< by default
+  Range limits;          ///< the widest that --range may ask for
+  int coarse_samples = 25;
+  bool whole = false;    ///< values are whole numbers
+  SearchFrom from = SearchFrom::kLow;
+
+  std::string measured;       ///< what observations measure: "largest error of visibility"
+  std::string measured_unit;  ///< empty: a pure number
+  Scale measured_scale = Scale::kLog;
+  double bound = 0.0;         ///< `degraded` is said where what is measured is over it
+  std::string broken_when;    ///< in words: "infinities in the map; NaN, all lit or all dark"
+
+  std::function<std::vector<Case>(const StressContext&)> make_cases;
+  std::function<std::vector<Exhibit>(const StressContext&)> make_exhibits;  ///< tables and pictures of its own; may be null
+};
+
+/// Makes a case that reports why it was not measured.
+Case make_absent_case(std::string filter, std::string variant, Level level, std::string reason);
+
+/// Makes a case that reports that no chosen filter names this axis in its front matter.
+Case make_undriven_case(const std::string& axis);
+
+/// Names a level: "GL", "model", "arithmetic".
+const char* name_of(Level level);
+
+/// Gives all axes, by id.
+const std::vector<Axis>& axis_table();
+
+/// Gives the axes of a comma-separated list, in that order; all for an empty text.
+/// Throws Error(kUsage) for an unknown one, with the nearest id, and for one that is named twice.
+std::vector<Axis> choose_axes(const std::string& text);
+
+/// Sets the range of one of `axes` from AXIS=LO,HI.
+/// Throws Error(kUsage) where the text is not that, the axis is unknown or not among `axes`, an end is not a finite number,
+/// the range is empty or reversed, or it reaches beyond the axis' limits.
+void apply_range(std::vector<Axis>& axes, const std::string& text);
+
+}  // namespace shadowbench::stress

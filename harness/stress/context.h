@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "filters/catalogue.h"
+#include "harness/run/options.h"
+#include "harness/run/progress.h"
+#include "harness/run/renderer.h"
+
+namespace shadowbench::stress {
+
+/// What axes make their cases from. Outlives all cases.
+struct StressContext {
+  run::Renderer* renderer = nullptr;  ///< null: no GL (tests of scalar cases); GL cases are reported as not available
+  run::Resources resources;
+  std::vector<filters::FilterRequest> filters;  ///< the chosen ones, each with its parameter values
+  std::uint32_t seed = 1;
+  std::filesystem::path cache;  ///< for traced truth; empty: nothing is kept
+  std::filesystem::path out;    ///< where exhibits write their pictures
+  run::Progress* progress = nullptr;  ///< for exhibits' notes; may be null
+};
+
+/// A chosen filter whose front matter names an axis at one of its parameters: `stress = "esm-exponent"`.
+struct DrivenFilter {
+  filters::FilterRequest request;
+  std::string param;
+};
+
+/// Finds the chosen filters that name an axis, in the order they were chosen.
+std::vector<DrivenFilter> find_driven(const StressContext& context, const std::string& axis);
+
+/// Gives the choices of a filter's text parameter, such as `store`, for a case each: the chosen value alone where the user
+/// set it, all otherwise; empty where the filter has no such parameter.
+std::vector<std::string> list_choices(const filters::FilterRequest& request, const std::string& param);
+
+}  // namespace shadowbench::stress

@@ -1,0 +1,181 @@
+#include "harness/stress/onset.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "filters/error.h"
+
+namespace shadowbench::stress {
+namespace {
+
+constexpr int kMostHalvings = 60;
+
+/// Gives the coarse samples, both ends among them, in the order of the search.
+std::vector<double> place_samples(const Axis& axis) {
+  const int count = std::max(axis.coarse_samples, 2);
+  const auto [low, high] = axis.range;
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / (count - 1);
+    double value = axis.scale == Scale::kLog ? low * std::pow(high / low, share) : low + (high - low) * share;
+    if (axis.whole) value = std::round(value);
+    if (i == 0) value = low;
+    if (i == count - 1) value = high;
+    if (values.empty() || value > values.back()) values.push_back(value);
+  }
+  if (axis.from == SearchFrom::kHigh) std::ranges::reverse(values);
+  return values;
+}
+
+/// Observes each value once, whoever asks for it.
+class Observer {
+ public:
+  explicit Observer(const Case& item) : item_(item) {}
+
+  const Observation& at(double value) {
+    const auto known = seen_.find(value);
+    if (known != seen_.end()) return known->second;
+    return seen_.emplace(value, observe(value)).first->second;
+  }
+
+  std::vector<report::StressSample> samples() const {
+    std::vector<report::StressSample> samples;
+    for (const auto& [value, seen] : seen_) samples.push_back({value, seen.verdict, seen.measured, seen.why});
+    return samples;
+  }
+
+ private:
+  const Case& item_;
+  std::map<double, Observation> seen_;
+
+  Observation observe(double value) const {
+    if (seen_.empty()) return tidy(item_.observe(value));  // an Error here makes the case not available
+    try {
+      return tidy(item_.observe(value));
+    } catch (const Error& error) {
+      return {Verdict::kBroken, std::nullopt, error.what()};
+    }
+  }
+
+  static Observation tidy(Observation seen) {
+    if (seen.measured && !std::isfinite(*seen.measured)) seen.measured.reset();
+    return seen;
+  }
+};
+
+class Search {
+ public:
+  Search(const Axis& axis, Observer& observer) : axis_(axis), observer_(observer), coarse_(place_samples(axis)) {
+    for (const double value : coarse_) observer_.at(value);
+  }
+
+  /// Finds the first value, in the direction of the search, with this verdict or a worse one.
+  std::optional<report::StressOnset> find_first(Verdict verdict) {
+    const auto first = std::ranges::find_if(coarse_, [&](double value) { return observer_.at(value).verdict >= verdict; });
+    if (first == coarse_.end()) return std::nullopt;
+    if (first == coarse_.begin()) return report::StressOnset{*first, std::nullopt, observer_.at(*first).why};
+    double before = *(first - 1), with = *first;
+    for (int i = 0; i < kMostHalvings && !is_narrow(before, with); ++i) {
+      const double middle = halve(before, with);
+      (observer_.at(middle).verdict >= verdict ? with : before) = middle;
+    }
+    return report::StressOnset{with, before, observer_.at(with).why};
+  }
+
+  /// Says where, on the coarse samples, a verdict got better again after `verdict` was met.
+  std::optional<std::string> find_recovery(Verdict verdict, const char* name) {
+    const auto first = std::ranges::find_if(coarse_, [&](double value) { return observer_.at(value).verdict >= verdict; });
+    const auto better = std::find_if(first, coarse_.end(), [&](double value) { return observer_.at(value).verdict < verdict; });
+    if (better == coarse_.end()) return std::nullopt;
+    return fmt::format("{} at {:.4g}, but {} again at {:.4g}", name, *first, report::name_of(observer_.at(*better).verdict), *better);
+  }
+
+ private:
+  const Axis& axis_;
+  Observer& observer_;
+  std::vector<double> coarse_;
+
+  bool is_narrow(double a, double b) const {
+    if (axis_.whole) return std::abs(a - b) <= 1.0;
+    return std::abs(a - b) <= kOnsetPrecision * std::min(std::abs(a), std::abs(b)) || halve(a, b) == a || halve(a, b) == b;
+  }
+
+  double halve(double a, double b) const {
+    const double middle = axis_.scale == Scale::kLog ? std::sqrt(a * b) : 0.5 * (a + b);
+    return axis_.whole ? std::clamp(std::round(middle), std::min(a, b) + 1.0, std::max(a, b) - 1.0) : middle;
+  }
+};
+
+report::ParamMap to_record(const filters::ParamValues& values) {
+  report::ParamMap params;
+  for (const auto& [name, value] : values) std::visit([&params, &key = name](const auto& v) { params[key] = v; }, value);
+  return params;
+}
+
+/// Says whether a theory that was met nowhere in the range, or right where the range begins, can be true: its onset, give
+/// or take the tolerance, lies beyond the range or before it.
+bool agrees_outside(double onset, double tolerance, bool met, const Axis& axis) {
+  const bool lies_above = met ? onset > axis.range.low * tolerance : onset * tolerance > axis.range.high;
+  const bool lies_below = met ? onset < axis.range.high / tolerance : onset / tolerance < axis.range.low;
+  const bool lies_after = axis.from == SearchFrom::kLow ? lies_above : lies_below;
+  return lies_after != met;
+}
+
+bool agrees(const report::StressLimit& limit, const report::StressOnset* met, const Axis& axis) {
+  if (!limit.onset) return met == nullptr;
+  const double tolerance = report::tolerance_of(limit.kind);
+  if (!met || !met->last_before) return agrees_outside(*limit.onset, tolerance, met != nullptr, axis);
+  return *limit.ratio <= tolerance && *limit.ratio >= 1.0 / tolerance;
+}
+
+}  // namespace
+
+report::StressCase find_onsets(const Case& item, const Axis& axis) {
+  report::StressCase record;
+  record.filter = item.filter;
+  record.variant = item.variant;
+  record.level = name_of(item.level);
+  record.params = to_record(item.params);
+  record.not_available = item.not_available;
+  if (!item.observe) return record;
+  Observer observer(item);
+  try {
+    observer.at(axis.from == SearchFrom::kLow ? axis.range.low : axis.range.high);
+  } catch (const Error& error) {
+    record.not_available = error.what();
+    return record;
+  }
+  Search search(axis, observer);
+  record.broken = search.find_first(Verdict::kBroken);
+  record.degraded = search.find_first(Verdict::kDegraded);
+  // A case that breaks at once was never merely degraded.
+  if (record.degraded && observer.at(record.degraded->value).verdict == Verdict::kBroken) record.degraded.reset();
+  const bool breaks = record.broken.has_value();
+  if (const auto note = search.find_recovery(breaks ? Verdict::kBroken : Verdict::kDegraded, breaks ? "broken" : "degraded")) record.notes.push_back(*note);
+  record.samples = observer.samples();
+  if (!item.remark) return record;
+  for (std::string& sentence : item.remark(record)) record.notes.push_back(std::move(sentence));
+  return record;
+}
+
+std::vector<report::StressLimit> compare(const Case& item, const report::StressCase& record, const Axis& axis) {
+  std::vector<report::StressLimit> limits;
+  if (!record.not_available.empty()) return limits;
+  for (const Theory& theory : item.theories) {
+    const report::StressOnset* met = report::find_onset(record, theory.predicts);
+    report::StressLimit limit{theory.onset, theory.kind, theory.predicts, theory.formula, theory.source, {}, {}, {}, {}};
+    if (met) limit.measured = met->value;
+    if (limit.onset && met && met->last_before) limit.ratio = met->value / *limit.onset;
+    if (!agrees(limit, met, axis)) {
+      limit.explanation = item.explain ? item.explain({theory, limit.measured, record}) : std::string();
+      limit.agreement = limit.explanation.empty() ? report::StressAgreement::kDisagrees : report::StressAgreement::kExplained;
+    }
+    limits.push_back(std::move(limit));
+  }
+  return limits;
+}
+
+}  // namespace shadowbench::stress

@@ -1,0 +1,142 @@
+#include "harness/stress/run_stress.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "filters/error.h"
+#include "harness/run/run_facts.h"
+#include "harness/stress/onset.h"
+#include "report/atomic_file.h"
+#include "report/stress_files.h"
+#include "report/stress_text.h"
+
+namespace shadowbench::stress {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+report::StressAxis make_record(const Axis& axis) {
+  report::StressAxis record;
+  record.id = axis.id;
+  record.title = axis.title;
+  record.quantity = axis.quantity;
+  record.unit = axis.unit;
+  record.log = axis.scale == Scale::kLog;
+  record.range = axis.range;
+  record.measured = axis.measured;
+  record.measured_unit = axis.measured_unit;
+  record.bound = axis.bound;
+  record.measured_log = axis.measured_scale == Scale::kLog;
+  record.broken_when = axis.broken_when;
+  return record;
+}
+
+std::vector<Axis> read_axes(const StressOptions& options) {
+  std::vector<Axis> axes = choose_axes(options.axes);
+  for (const std::string& range : options.ranges) apply_range(axes, range);
+  return axes;
+}
+
+class StressRun {
+ public:
+  StressRun(const StressOptions& options, run::Progress& progress)
+      : options_(options), progress_(progress), axes_(read_axes(options)), renderer_(run::make_renderer(options.backend, options.resources)) {
+    context_ = {&renderer_, options.resources, options.filters, options.seed, options.cache, options.out, &progress};
+  }
+
+  StressOutcome run() {
+    report::AtomicFile(options_.out / "stress.json").write("");  // a folder that cannot be written is better found now
+    const auto start = Clock::now();
+    describe_run();
+    make_all_cases();
+    for (std::size_t i = 0; i < axes_.size(); ++i) record_.axes.push_back(drive(axes_[i], cases_[i]));
+    record_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    warn();
+    progress_.show(done_, "writing");
+    report::write_stress_files(options_.out, record_);
+    return {report::make_limit_tables(record_), report::count_disagreements(record_)};
+  }
+
+ private:
+  const StressOptions& options_;
+  run::Progress& progress_;
+  std::vector<Axis> axes_;
+  run::Renderer renderer_;
+  StressContext context_;
+  std::vector<std::vector<Case>> cases_;  ///< of each axis; gone before the renderer
+  report::StressRecord record_;
+  int done_ = 0;
+
+  void describe_run() {
+    for (const std::string& reason : renderer_.refused) progress_.note("not used: " + reason);
+    record_.commit = run::build_commit();
+    record_.gl = run::describe_gl(renderer_);
+    record_.machine = run::describe_machine();
+    record_.seed = options_.seed;
+    record_.command = options_.command;
+    for (const filters::FilterRequest& request : options_.filters) record_.filters.push_back(request.label());
+  }
+
+  void make_all_cases() {
+    int count = 0;
+    for (const Axis& axis : axes_) {
+      cases_.push_back(axis.make_cases(context_));
+      count += static_cast<int>(cases_.back().size()) + (axis.make_exhibits ? 1 : 0);
+    }
+    progress_.begin(count, 0);
+  }
+
+  report::StressAxis drive(const Axis& axis, std::vector<Case>& cases) {
+    report::StressAxis record = make_record(axis);
+    for (const Case& item : cases) {
+      progress_.show(done_, fmt::format("{} · {}", axis.id, describe(item)));
+      report::StressCase found = find_onsets(item, axis);
+      found.limits = compare(item, found, axis);
+      record.cases.push_back(std::move(found));
+      renderer_.context->require_no_gl_errors();
+      ++done_;
+    }
+    cases.clear();  // and with them their maps
+    if (axis.make_exhibits) {
+      progress_.show(done_++, axis.id + " · exhibits");
+      record.exhibits = axis.make_exhibits(context_);
+    }
+    return record;
+  }
+
+  static std::string describe(const Case& item) {
+    return fmt::format("{}{} ({})", item.filter.empty() ? "" : item.filter + ": ", item.variant, name_of(item.level));
+  }
+
+  void warn() {
+    for (const report::StressAxis& axis : record_.axes) {
+      for (const std::string& sentence : report::describe_disagreements(axis)) progress_.note(fmt::format("warning: {}: {}", axis.id, sentence));
+      for (const std::string& sentence : report::describe_absences(axis)) progress_.note(fmt::format("{}: not available: {}", axis.id, sentence));
+    }
+  }
+};
+
+}  // namespace
+
+StressOutcome run_stress(const StressOptions& options, run::Progress& progress) { return StressRun(options, progress).run(); }
+
+std::string describe_axes(const std::vector<filters::FilterRequest>& filters) {
+  std::string text;
+  StressContext context;
+  context.filters = filters;
+  for (const Axis& axis : axis_table()) {
+    std::vector<std::string> driven;
+    for (const DrivenFilter& filter : find_driven(context, axis.id)) driven.push_back(fmt::format("{}:{}", filter.request.spec.id, filter.param));
+    text += fmt::format("{}  {}\n  {}{}, {:g} .. {:g} (--range: within {:g} .. {:g})\n  measures {}; degraded over {:g}\n  broken: {}\n", axis.id, axis.title, axis.quantity,
+                        axis.unit.empty() ? "" : ", " + axis.unit, axis.range.low, axis.range.high, axis.limits.low, axis.limits.high, axis.measured, axis.bound,
+                        axis.broken_when);
+    if (!driven.empty()) text += fmt::format("  parameters that name it: {}\n", fmt::join(driven, ", "));
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace shadowbench::stress

@@ -1,0 +1,142 @@
+#include "report/stress_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "report/markdown_table.h"
+#include "report/summary.h"
+#include "report/tables.h"
+
+namespace shadowbench::report {
+namespace {
+
+std::string format_value(const std::optional<double>& value, const char* nothing) { return value ? fmt::format("{:.4g}", *value) : std::string(nothing); }
+
+std::string format_onset(const std::optional<StressOnset>& onset) {
+  if (!onset) return kNothing;
+  return onset->last_before ? fmt::format("{:.4g}", onset->value) : fmt::format("{:.4g} (where the range begins)", onset->value);
+}
+
+/// Gives the last value before anything changed.
+std::string format_last_ok(const StressCase& item) {
+  if (!item.not_available.empty()) return kNothing;
+  const StressOnset* onset = find_onset(item, StressVerdict::kDegraded);
+  if (!onset) return "all of the range";
+  return onset->last_before ? fmt::format("{:.4g}", *onset->last_before) : "nowhere";
+}
+
+std::string format_reason(const StressCase& item) {
+  if (!item.not_available.empty()) return "not available: " + item.not_available;
+  const StressOnset* onset = find_onset(item, StressVerdict::kBroken);
+  if (!onset) onset = find_onset(item, StressVerdict::kDegraded);
+  return onset ? onset->why : std::string();
+}
+
+std::string format_agreement(const StressLimit& limit) { return limit.ratio || limit.agreement != StressAgreement::kAgrees ? name_of(limit.agreement) : "agrees, as far as the range goes"; }
+
+std::vector<std::string> make_limit_row(const StressAxis& axis, const StressCase& item, const StressLimit& limit) {
+  return {axis.id, label_of(item), name_of(limit.predicts), limit.formula, limit.onset ? fmt::format("{:.4g}", *limit.onset) : "none",
+          format_value(limit.measured, "not in the range"), limit.ratio ? fmt::format("{:.3f}", *limit.ratio) : std::string(kNothing),
+          limit.kind == StressTheoryKind::kRounding ? "rounding, factor 8" : fmt::format("{}, 10 %", name_of(limit.kind)), format_agreement(limit)};
+}
+
+std::vector<std::string> list_limits(const StressAxis& axis, StressAgreement agreement) {
+  std::vector<std::string> sentences;
+  for (const StressCase& item : axis.cases) {
+    for (const StressLimit& limit : item.limits) {
+      if (limit.agreement != agreement) continue;
+      sentences.push_back(fmt::format("{}: {} at {}, where theory says {} ({}){}{}.", label_of(item), name_of(limit.predicts),
+                                      format_value(limit.measured, "no value of the range"), limit.onset ? fmt::format("{:.4g}", *limit.onset) : "none",
+                                      limit.formula, limit.explanation.empty() ? ", and nothing explains it" : ": ", limit.explanation));
+    }
+  }
+  return sentences;
+}
+
+TextTable escape(TextTable table) {
+  for (std::string& field : table.header) field = escape_markdown(field);
+  for (auto& row : table.rows) {
+    for (std::string& field : row) field = escape_markdown(field);
+  }
+  return table;
+}
+
+std::string list_markdown(const std::string& title, const std::vector<std::string>& sentences) {
+  if (sentences.empty()) return {};
+  std::string text = title.empty() ? std::string() : title + "\n\n";
+  for (const std::string& sentence : sentences) text += "- " + escape_markdown(sentence) + "\n";
+  return text + "\n";
+}
+
+std::string make_axis_text(const StressAxis& axis) {
+  std::string text = fmt::format("## {}: {}\n\n{}\n\n", axis.id, escape_markdown(axis.title), escape_markdown(describe_axis(axis)));
+  text += make_markdown_table(escape(make_case_table(axis)));
+  text += list_markdown("Not what theory says, and why:", describe_explanations(axis));
+  text += list_markdown("Not what theory says, and **not explained**:", describe_disagreements(axis));
+  text += list_markdown("Also seen:", describe_notes(axis));
+  for (const StressExhibit& exhibit : axis.exhibits) {
+    text += fmt::format("### {}\n\n", escape_markdown(exhibit.title)) + list_markdown({}, exhibit.sentences);
+    if (exhibit.table) text += make_markdown_table(escape(*exhibit.table));
+  }
+  return text;
+}
+
+}  // namespace
+
+TextTable make_case_table(const StressAxis& axis) {
+  TextTable table{{"case", "last value that is ok", "degraded from", "broken from", "why", "observations"}, {}};
+  for (const StressCase& item : axis.cases) {
+    table.rows.push_back({label_of(item), format_last_ok(item), format_onset(item.degraded), format_onset(item.broken), format_reason(item),
+                          fmt::format("{}", item.samples.size())});
+  }
+  return table;
+}
+
+TextTable make_limit_table(const StressRecord& record) {
+  TextTable table{{"axis", "case", "verdict", "theory", "theoretical", "measured", "ratio", "kind, tolerance", "result"}, {}};
+  for (const StressAxis& axis : record.axes) {
+    for (const StressCase& item : axis.cases) {
+      for (const StressLimit& limit : item.limits) table.rows.push_back(make_limit_row(axis, item, limit));
+    }
+  }
+  return table;
+}
+
+std::vector<std::string> describe_explanations(const StressAxis& axis) { return list_limits(axis, StressAgreement::kExplained); }
+
+std::vector<std::string> describe_disagreements(const StressAxis& axis) { return list_limits(axis, StressAgreement::kDisagrees); }
+
+std::vector<std::string> describe_absences(const StressAxis& axis) {
+  std::vector<std::string> sentences;
+  for (const StressCase& item : axis.cases) {
+    if (!item.not_available.empty()) sentences.push_back(label_of(item) + ": " + item.not_available);
+  }
+  return sentences;
+}
+
+std::vector<std::string> describe_notes(const StressAxis& axis) {
+  std::vector<std::string> sentences;
+  for (const StressCase& item : axis.cases) {
+    for (const std::string& note : item.notes) sentences.push_back(fmt::format("{}: {}.", label_of(item), note));
+  }
+  return sentences;
+}
+
+std::string describe_axis(const StressAxis& axis) {
+  return fmt::format("Over the {}{}, {:g} .. {:g}. Measured: {}{}; degraded where it is over {:g}. Broken: {}.", axis.quantity,
+                     axis.unit.empty() ? "" : ", " + axis.unit, axis.range.low, axis.range.high, axis.measured,
+                     axis.measured_unit.empty() ? "" : ", " + axis.measured_unit, axis.bound, axis.broken_when);
+}
+
+std::string make_limit_tables(const StressRecord& record) { return make_markdown_table(escape(make_limit_table(record))); }
+
+std::string make_stress_text(const StressRecord& record) {
+  std::string text = "# Where filters break\n\n";
+  text += fmt::format("{} ({}), program {}, {:.1f} s. Filters: {}.\n\n", escape_markdown(record.gl.renderer), record.gl.backend, record.commit, record.seconds,
+                      escape_markdown(fmt::format("{}", fmt::join(record.filters, "; "))));
+  text += "## Measured against theoretical limits\n\n" + make_limit_tables(record);
+  for (const StressAxis& axis : record.axes) text += make_axis_text(axis);
+  return text;
+}
+
+}  // namespace shadowbench::report
