@@ -7,6 +7,7 @@
 
 #include "report/crossover.h"
 #include "report/summary.h"
+#include "report/verdict_places.h"
 
 namespace shadowbench::report {
 namespace {
@@ -34,20 +35,8 @@ struct Pair {
   auto operator<=>(const Pair&) const = default;
 };
 
-// Verdict to picture size and map to the scenes where it was found.
-using Verdicts = std::map<std::string, std::map<std::pair<std::string, int>, std::vector<std::string>>>;
-
-std::string describe_places(const Verdicts::mapped_type& places) {
-  std::map<std::pair<std::string, std::string>, std::vector<int>> maps;  // scenes and picture to maps
-  for (const auto& [place, scenes] : places) {
-    maps[{fmt::format("{}", fmt::join(scenes, ", ")), place.first}].push_back(place.second);
-  }
-  std::vector<std::string> texts;
-  for (const auto& [where, sizes] : maps) {
-    texts.push_back(fmt::format("{}, picture {}, map {}", where.first, where.second, fmt::join(sizes, ", ")));
-  }
-  return fmt::format("{}", fmt::join(texts, "; "));
-}
+// Verdict to the places where it was found.
+using Verdicts = std::map<std::string, VerdictPlaces>;
 
 std::string describe_pair(const Pair& pair, const Verdicts& verdicts) {
   std::vector<std::string> parts;

@@ -35,6 +35,12 @@ bool is_finite(const Ratio& value) {
   return std::isfinite(value.median) && std::isfinite(value.ci95.low) && std::isfinite(value.ci95.high);
 }
 
+bool is_finite(const std::vector<LightCountRecord>& value) {
+  return std::all_of(value.begin(), value.end(), [](const LightCountRecord& each) {
+    return is_finite(each.still_ms) && is_finite(each.moving_ms) && is_finite(each.still_ratio) && is_finite(each.moving_ratio);
+  });
+}
+
 // Writes each visited field into one JSON object and notes the nulls.
 struct FieldWriter {
   json& root;

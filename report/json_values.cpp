@@ -57,6 +57,18 @@ json value_json(const Ratio& value) {
   return {{"median", value.median}, {"ci95", json::array({value.ci95.low, value.ci95.high})}};
 }
 
+json value_json(const std::vector<LightCountRecord>& value) {
+  json result = json::array();
+  for (const LightCountRecord& each : value) {
+    result.push_back({{"count", each.count},
+                      {"still_ms", value_json(each.still_ms)},
+                      {"moving_ms", value_json(each.moving_ms)},
+                      {"ratio_to_none", {{"still", value_json(each.still_ratio)}, {"moving", value_json(each.moving_ratio)}}},
+                      {"maps_bytes", each.maps_bytes}});
+  }
+  return result;
+}
+
 json value_json(const ParamMap& value) {
   json result = json::object();
   for (const auto& [name, param] : value) {
@@ -141,6 +153,18 @@ Ratio read_value(const json& json) {
   const auto& ci95 = json.at("ci95");
   require(ci95.is_array() && ci95.size() == 2, "two numbers");
   return {read_value<double>(json.at("median")), {read_value<double>(ci95[0]), read_value<double>(ci95[1])}};
+}
+
+template <>
+std::vector<LightCountRecord> read_value(const json& json) {
+  require(json.is_array(), "an array");
+  std::vector<LightCountRecord> lights;
+  for (const auto& each : json) {
+    const auto& ratio = each.at("ratio_to_none");
+    lights.push_back({read_value<int>(each.at("count")), read_value<Quartiles>(each.at("still_ms")), read_value<Quartiles>(each.at("moving_ms")),
+                      read_value<Ratio>(ratio.at("still")), read_value<Ratio>(ratio.at("moving")), read_value<std::int64_t>(each.at("maps_bytes"))});
+  }
+  return lights;
 }
 
 template <>

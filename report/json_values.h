@@ -25,6 +25,7 @@ nlohmann::json value_json(CellStatus value);
 nlohmann::json value_json(TimerKind value);
 nlohmann::json value_json(const Quartiles& value);
 nlohmann::json value_json(const Ratio& value);
+nlohmann::json value_json(const std::vector<LightCountRecord>& value);
 nlohmann::json value_json(const ParamMap& value);
 nlohmann::json value_json(const BiasRecord& value);
 nlohmann::json value_json(const std::map<std::string, std::string>& value);

@@ -8,7 +8,7 @@
 namespace shadowbench::report {
 
 /// Names the fields that older files of this schema version lack; they are read as null there.
-inline constexpr std::array<std::string_view, 4> kLaterFields = {"claims", "repeat.cells", "repeat.overlapping", "repeat.of"};
+inline constexpr std::array<std::string_view, 5> kLaterFields = {"claims", "lights", "repeat.cells", "repeat.overlapping", "repeat.of"};
 
 /// Calls `visit(name, value)` for every field of a bias.
 template <class Bias, class Visitor>
@@ -66,6 +66,7 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("ratio_to_none.lookup", cell.ratio_to_none.lookup);
   visit("ratio_to_none.static", cell.ratio_to_none.static_map);
   visit("ratio_to_none.moving", cell.ratio_to_none.moving);
+  visit("lights", cell.lights);
   visit("cost.fetches", cell.cost.fetches);
   visit("cost.bytes_per_texel", cell.cost.bytes_per_texel);
   visit("cost.passes", cell.cost.passes);

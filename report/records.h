@@ -88,6 +88,16 @@ struct RatioRecord {
   std::optional<Ratio> moving;      ///< map, prefilter and lookup are paid in every frame
 };
 
+/// Holds what a frame lit by several lights costs, each with a shadow map of its own; milliseconds of the clock that the run names.
+struct LightCountRecord {
+  int count = 0;                ///< lights: the scene's, turned about the vertical by i * 360 / count degrees
+  Quartiles still_ms;           ///< maps and prefilters cached: a lookup per light
+  Quartiles moving_ms;          ///< a depth map, a prefilter and a lookup per light
+  Ratio still_ratio;            ///< per-round ratios to the filter `none` under as many lights
+  Ratio moving_ratio;
+  std::int64_t maps_bytes = 0;  ///< of the maps that the lookups read
+};
+
 /// Holds the costs that do not depend on the machine.
 struct CostRecord {
   std::optional<double> fetches;  ///< mean texture fetches per receiver
@@ -186,6 +196,7 @@ struct CellRecord {
   std::optional<std::int64_t> nan;        ///< pixels whose visibility is not finite
   TimeRecord time_ms;
   RatioRecord ratio_to_none;
+  std::optional<std::vector<LightCountRecord>> lights;  ///< by ascending count
   CostRecord cost;
   ErrorRecord error;
   TruthRecord truth;

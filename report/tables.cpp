@@ -264,18 +264,6 @@ std::string markdown_row(const std::vector<std::string>& fields) {
   return fmt::format("| {} |\n", fmt::join(escaped, " | "));
 }
 
-std::string markdown_table(const TextTable& table) {
-  std::string text = markdown_row(table.header) + "|";
-  for (std::size_t i = 0; i < table.header.size(); ++i) {
-    text += "---|";
-  }
-  text += "\n";
-  for (const auto& row : table.rows) {
-    text += markdown_row(row);
-  }
-  return text;
-}
-
 std::string markdown_list(const std::vector<std::string>& items) {
   std::string text;
   for (const std::string& item : items) {
@@ -361,6 +349,18 @@ std::string markdown_columns(CsvTable table) {
 }
 
 }  // namespace
+
+std::string markdown_table(const TextTable& table) {
+  std::string text = markdown_row(table.header) + "|";
+  for (std::size_t i = 0; i < table.header.size(); ++i) {
+    text += "---|";
+  }
+  text += "\n";
+  for (const auto& row : table.rows) {
+    text += markdown_row(row);
+  }
+  return text;
+}
 
 std::string make_summary(const RunRecord& run, const std::vector<CellRecord>& cells, const std::string& trade) {
   std::string text = "# Shadow filters compared\n\n";

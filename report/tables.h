@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "report/records.h"
+#include "report/text_tables.h"
 
 namespace shadowbench::report {
 
@@ -34,6 +35,9 @@ std::string make_csv(CsvTable table, const RunRecord& run, const std::vector<Cel
 
 /// Escapes a text so that Markdown shows it as it is, also in a table's field.
 std::string escape_markdown(std::string_view text);
+
+/// Writes a table as Markdown.
+std::string markdown_table(const TextTable& table);
 
 /// Makes summary.md: what was run, per group of comparable cells a table and sentences from its numbers, what is absent
 /// and why, and the meaning of the columns of the CSV files. `trade` is Markdown that goes before the groups.

@@ -87,22 +87,6 @@ class CellReader {
   }
 };
 
-// Names only the parameters in which a filter's configurations differ, and the map where there are several.
-void label_configurations(std::vector<TradeConfiguration>& configurations) {
-  std::map<std::pair<std::string, std::string>, std::set<std::string>> values;
-  std::set<int> map_sizes;
-  for (const TradeConfiguration& each : configurations) {
-    map_sizes.insert(each.map_size);
-    for (const auto& [name, value] : each.params) values[{each.filter, name}].insert(describe_params({{name, value}}));
-  }
-  for (TradeConfiguration& each : configurations) {
-    ParamMap telling = each.params;
-    std::erase_if(telling, [&](const auto& param) { return values[{each.filter, param.first}].size() < 2; });
-    each.label = each.filter + (telling.empty() ? "" : " (" + describe_params(telling) + ")");
-    if (map_sizes.size() > 1) each.label += fmt::format(" · map {}", each.map_size);
-  }
-}
-
 TradeScope make_place_scope(const std::vector<CellRecord>& cells, const std::vector<std::size_t>& indices,
                             const CellReader& reader) {
   const CellRecord& first = cells[indices.front()];
@@ -148,6 +132,21 @@ void make_unique(std::vector<TradeScope>& scopes) {
 }
 
 }  // namespace
+
+void label_configurations(std::vector<TradeConfiguration>& configurations) {
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> values;
+  std::set<int> map_sizes;
+  for (const TradeConfiguration& each : configurations) {
+    map_sizes.insert(each.map_size);
+    for (const auto& [name, value] : each.params) values[{each.filter, name}].insert(describe_params({{name, value}}));
+  }
+  for (TradeConfiguration& each : configurations) {
+    ParamMap telling = each.params;
+    std::erase_if(telling, [&](const auto& param) { return values[{each.filter, param.first}].size() < 2; });
+    each.label = each.filter + (telling.empty() ? "" : " (" + describe_params(telling) + ")");
+    if (map_sizes.size() > 1) each.label += fmt::format(" · map {}", each.map_size);
+  }
+}
 
 std::vector<TradeScope> make_trade_scopes(const std::vector<CellRecord>& cells) {
   std::vector<std::size_t> all(cells.size());

@@ -36,6 +36,9 @@ struct TradeScope {
   std::size_t incomplete = 0;  ///< configurations left out because not every scene and view has a cell of them
 };
 
+/// Labels configurations by their filter, the parameters in which those of one filter differ, and the map where there are several.
+void label_configurations(std::vector<TradeConfiguration>& configurations);
+
 /// Sorts a run's cells into scopes: scenes together first, where there are several, then each scene by itself in the order
 /// in which it appears. Scenes together hold only configurations that every scene and view has.
 std::vector<TradeScope> make_trade_scopes(const std::vector<CellRecord>& cells);

@@ -48,8 +48,10 @@ std::optional<std::string> draw_plots(const fs::path& dir, const std::vector<Plo
 }  // namespace
 
 Trade write_trade_files(const fs::path& dir, const std::vector<CellRecord>& cells, Trade trade) {
-  write_text_file(dir / "fronts.csv", make_fronts_csv(cells, trade.scopes));
-  write_text_file(dir / "chart.min.js", chart_library());
+  if (trade.has_fronts) {
+    write_text_file(dir / "fronts.csv", make_fronts_csv(cells, trade.scopes));
+    write_text_file(dir / "chart.min.js", chart_library());
+  }
   const std::string script = make_gnuplot_script(trade.plots);
   write_text_file(dir / "plots" / "plots.gp", script);
   trade.no_plots = draw_plots(dir, trade.plots, script);

@@ -129,6 +129,46 @@ Plot make_radius_plot(const RadiusChart& chart, LightState light, const std::vec
   return plot;
 }
 
+PlotSeries make_light_series(const LightCurve& curve, LightState light, const PlotStyle& style) {
+  const bool still = light == LightState::kStill;
+  PlotSeries series{still ? curve.label : "", style.color, still ? style.filled_point : style.hollow_point, still ? PlotLine::kSolid : PlotLine::kDashed, true, {}};
+  for (const LightPoint& p : curve.points) {
+    const double count = p.count;
+    series.points.push_back({{count, count, count}, frame_time(p, light)});
+  }
+  return series;
+}
+
+PlotAxis make_count_axis(const std::vector<int>& counts) {
+  PlotAxis axis{true, counts.front() / 1.12, counts.back() * 1.12, {}};
+  for (const int count : counts) axis.ticks.push_back({count, fmt::format("{}", count)});
+  return axis;
+}
+
+// What grows in proportion, from the corner of the plot on.
+PlotSeries make_proportion(const LightChart& chart, const PlotAxis& y) {
+  const double from = chart.counts.front(), to = std::min<double>(chart.counts.back(), from * y.high / y.low);
+  return {"in proportion", "#9aa0a8", 0, PlotLine::kSolid, false, {{{from, from, from}, {y.low, y.low, y.low}}, {{to, to, to}, {y.low * to / from, y.low, y.low}}}};
+}
+
+Plot make_light_plot(const LightChart& chart, const std::vector<std::string>& filters, const GlRecord& gl) {
+  Plot plot{light_plot_file(chart), chart.title, "lights, each with a map of its own", fmt::format("time of a frame, ms: {}", describe_clock(gl)), make_count_axis(chart.counts), {}, {}, {}};
+  std::vector<double> times, ends;
+  for (const LightCurve& curve : chart.curves) {
+    for (const LightState light : {LightState::kStill, LightState::kMoving}) {
+      plot.series.push_back(make_light_series(curve, light, style_of(place_of(filters, curve.filter))));
+      for (const PlotPoint& point : plot.series.back().points) {
+        times.push_back(point.y.value);
+        ends.insert(ends.end(), {point.y.low, point.y.high});
+      }
+    }
+  }
+  plot.y = choose_log_axis(times, ends);
+  plot.series.insert(plot.series.begin(), make_proportion(chart, plot.y));
+  plot.notes = {"solid: casters still", "dashed: casters moving"};
+  return plot;
+}
+
 }  // namespace
 
 PlotAxis choose_error_axis(const TradeScope& scope, std::size_t error) {
@@ -161,6 +201,16 @@ std::vector<Plot> make_radius_plots(const std::vector<RadiusChart>& charts, cons
   std::vector<Plot> plots;
   for (const RadiusChart& chart : charts) {
     for (const LightState light : {LightState::kStill, LightState::kMoving}) plots.push_back(make_radius_plot(chart, light, filters, gl));
+  }
+  return plots;
+}
+
+std::string light_plot_file(const LightChart& chart) { return fmt::format("plots/{}.map{}.lights.svg", chart.scope_id, chart.map_size); }
+
+std::vector<Plot> make_light_plots(const std::vector<LightChart>& charts, const std::vector<std::string>& filters, const GlRecord& gl) {
+  std::vector<Plot> plots;
+  for (const LightChart& chart : charts) {
+    if (chart.counts.size() > 1) plots.push_back(make_light_plot(chart, filters, gl));
   }
   return plots;
 }

@@ -6,6 +6,7 @@
 
 #include "report/crossover.h"
 #include "report/gnuplot.h"
+#include "report/light_growth.h"
 #include "report/trade.h"
 
 namespace shadowbench::report {
@@ -24,5 +25,12 @@ std::vector<Plot> make_front_plots(const std::vector<TradeScope>& scopes, const 
 /// crossings marked.
 std::vector<Plot> make_radius_plots(const std::vector<RadiusChart>& charts, const std::vector<std::string>& filters,
                                     const GlRecord& gl);
+
+/// Draws the time of a frame over its lights, one plot per chart of two counts or more, still and moving, in
+/// plots/<scope>.map<N>.lights.svg. Both axes are logarithmic: in proportion is the slope of the grey line.
+std::vector<Plot> make_light_plots(const std::vector<LightChart>& charts, const std::vector<std::string>& filters, const GlRecord& gl);
+
+/// Gives the file of that plot, relative to the report folder.
+std::string light_plot_file(const LightChart& chart);
 
 }  // namespace shadowbench::report

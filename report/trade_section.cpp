@@ -52,6 +52,34 @@ std::string html_crossovers(const std::vector<CellRecord>& cells, const Trade& t
   return text;
 }
 
+constexpr const char* kLightsTitle = "How a frame's cost grows with its lights";
+constexpr const char* kLightsNote =
+    "Light 0 is the scene's; the others are it, turned about the vertical in equal steps, each with a frustum, a depth map and an encoded map of its own. Still: maps "
+    "and prefilters are kept, and each light is looked up; moving: all of them are drawn in every frame. Shading is left out. In brackets: the 95 % interval of the "
+    "per-round ratio to the reference under as many lights, times its median (quartiles where the run does not hold the reference); cheaper is said where these do not "
+    "overlap. Growth is fitted to each filter's own medians, in brackets what its quartiles allow: each number of lights is timed in rounds of its own, and drift of the "
+    "machine between them is in the growth, not in the order.";
+
+std::vector<std::string> describe_lights(const Trade& trade, const GlRecord& gl) {
+  std::vector<std::string> sentences = describe_light_order(trade.lights);
+  const auto growth = describe_light_growth(trade.lights, gl);
+  sentences.insert(sentences.end(), growth.begin(), growth.end());
+  return sentences;
+}
+
+std::string name_light_table(const LightChart& chart, const GlRecord& gl) { return fmt::format("{}: time of a frame, ms: {}", chart.title, describe_clock(gl)); }
+
+std::string html_lights(const RunRecord& run, const Trade& trade) {
+  if (trade.lights.empty()) return {};
+  std::string text = fmt::format("<h3 id=\"lights\">{}</h3>\n", escape_html(kLightsTitle)) + html_list(describe_lights(trade, run.gl));
+  text += "<p class=\"note\">" + escape_html(kLightsNote) + "</p>\n";
+  for (const LightChart& chart : trade.lights) {
+    if (!trade.no_plots && chart.counts.size() > 1) text += figure(light_plot_file(chart), chart.title + ": time of a frame over its lights", "grid");
+    text += html_table(make_light_table(chart), name_light_table(chart, run.gl), "cost");
+  }
+  return text;
+}
+
 std::string html_static_plots(const Trade& trade) {
   if (trade.no_plots) return "<p class=\"note\">No plots for documents: " + escape_html(*trade.no_plots) + ".</p>\n";
   std::string items;
@@ -66,21 +94,47 @@ std::string markdown_list(const std::vector<std::string>& items) {
   return text + "\n";
 }
 
+std::string markdown_fronts(const RunRecord& run, const std::vector<CellRecord>& cells, const Trade& trade) {
+  std::string text;
+  for (const TradeScope& scope : trade.scopes) {
+    text += "### " + escape_markdown(scope.title) + "\n\n" + markdown_list(describe_scope(scope, run.gl));
+  }
+  const auto crossovers = describe_crossovers(trade.charts), growth = describe_growth(cells);
+  if (!crossovers.empty()) text += "### From which kernel on a prefiltered map pays\n\n" + markdown_list(crossovers);
+  if (!growth.empty()) text += "### How times grow\n\n" + markdown_list(growth);
+  return text + "### How to read the fronts\n\n" + markdown_list(explain_fronts());
+}
+
+std::string markdown_lights(const RunRecord& run, const Trade& trade) {
+  if (trade.lights.empty()) return {};
+  std::string text = fmt::format("### {}\n\n{}{}\n\n", kLightsTitle, markdown_list(describe_lights(trade, run.gl)), escape_markdown(kLightsNote));
+  for (const LightChart& chart : trade.lights) {
+    text += escape_markdown(name_light_table(chart, run.gl)) + ":\n\n" + markdown_table(make_light_table(chart)) + "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::optional<Trade> make_trade(const RunRecord& run, const std::vector<CellRecord>& cells) {
   Trade trade;
   trade.scopes = make_trade_scopes(cells);
-  if (!has_trade(trade.scopes)) return std::nullopt;
+  trade.has_fronts = has_trade(trade.scopes);
+  trade.lights = make_light_charts(cells, trade.scopes);
+  if (!trade.has_fronts && trade.lights.empty()) return std::nullopt;
   const auto filters = list_filters(cells);
-  trade.charts = make_radius_charts(cells, trade.scopes);
-  trade.plots = make_front_plots(trade.scopes, filters, run.gl);
-  for (Plot& plot : make_radius_plots(trade.charts, filters, run.gl)) trade.plots.push_back(std::move(plot));
+  if (trade.has_fronts) {
+    trade.charts = make_radius_charts(cells, trade.scopes);
+    trade.plots = make_front_plots(trade.scopes, filters, run.gl);
+    for (Plot& plot : make_radius_plots(trade.charts, filters, run.gl)) trade.plots.push_back(std::move(plot));
+  }
+  for (Plot& plot : make_light_plots(trade.lights, filters, run.gl)) trade.plots.push_back(std::move(plot));
   return trade;
 }
 
 std::string make_trade_html(const RunRecord& run, const std::vector<CellRecord>& cells, const Trade& trade) {
   const std::string selects = html_select("front-scope", "scene") + html_select("front-error", "error") + html_select("front-cost", "cost");
+  if (!trade.has_fronts) return "<section id=\"trade\">\n<h2>The trade: what less error costs</h2>\n" + html_lights(run, trade) + html_static_plots(trade) + "</section>\n";
   std::string text = fmt::format("<section id=\"trade\">\n<style>\n{}</style>\n<h2>The trade: what less error costs</h2>\n", trade_style());
   text += "<p class=\"note\">Lower left is better. Filled and joined: the front, the cells that no other beats. Hollow: cannot be told "
           "from a cell of the front, to which a dotted line leads. Faint: beaten. Whiskers are intervals. Point at a cell for its "
@@ -90,7 +144,7 @@ std::string make_trade_html(const RunRecord& run, const std::vector<CellRecord>&
   text += "<div id=\"front-pictures\" aria-live=\"polite\"></div>\n";
   text += "<details><summary>How to read the fronts</summary>\n" + html_list(explain_fronts()) + "<p>All fronts, cell by cell: " +
           link("fronts.csv", "fronts.csv") + ".</p></details>\n";
-  text += html_crossovers(cells, trade) + html_static_plots(trade);
+  text += html_crossovers(cells, trade) + html_lights(run, trade) + html_static_plots(trade);
   text += "<script type=\"application/json\" id=\"trade-data\">" + dump_for_script(make_trade_data(run, cells, trade.scopes, trade.charts)) +
           "</script>\n<script src=\"chart.min.js\"></script>\n";
   return text + fmt::format("<script>\n{}</script>\n</section>\n", trade_script());
@@ -98,14 +152,10 @@ std::string make_trade_html(const RunRecord& run, const std::vector<CellRecord>&
 
 std::string make_trade_markdown(const RunRecord& run, const std::vector<CellRecord>& cells, const Trade& trade) {
   std::string text = "## The trade: what less error costs\n\n";
-  for (const TradeScope& scope : trade.scopes) {
-    text += "### " + escape_markdown(scope.title) + "\n\n" + markdown_list(describe_scope(scope, run.gl));
-  }
-  const auto crossovers = describe_crossovers(trade.charts), growth = describe_growth(cells);
-  if (!crossovers.empty()) text += "### From which kernel on a prefiltered map pays\n\n" + markdown_list(crossovers);
-  if (!growth.empty()) text += "### How times grow\n\n" + markdown_list(growth);
-  text += "### How to read the fronts\n\n" + markdown_list(explain_fronts());
+  if (trade.has_fronts) text += markdown_fronts(run, cells, trade);
+  text += markdown_lights(run, trade);
   if (trade.no_plots) text += "No plots for documents: " + escape_markdown(*trade.no_plots) + ".\n\n";
+  if (!trade.has_fronts) return text;
   text += "### Columns of fronts.csv\n\n";
   for (const CsvColumn& column : list_front_columns()) text += fmt::format("- `{}`: {}\n", column.name, escape_markdown(column.meaning));
   return text + "\n";

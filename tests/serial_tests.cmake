@@ -1,2 +1,2 @@
 # Read by ctest once all tests are known.
-set_tests_properties("harness/run.Timing.TwiceTheTaps_TakeLonger" PROPERTIES RUN_SERIAL TRUE)
+set_tests_properties("harness/run.Timing.TwiceTheTaps_TakeLonger" "harness/run.LightTiming.MoreLights_TakeLonger_StillAndMoving" PROPERTIES RUN_SERIAL TRUE)

@@ -6,6 +6,7 @@
 #include "filters/error.h"
 #include "harness/run/bias_rule.h"
 #include "harness/run/experiment_file.h"
+#include "harness/run/light_counts.h"
 #include "harness/run/options.h"
 
 namespace shadowbench::cli {
@@ -15,7 +16,7 @@ namespace {
 const std::vector<std::string>& experiment_keys() {
   static const std::vector<std::string> keys = {
       "scene", "ground", "view", "filter_file", "map_size", "size", "bias", "map_format", "reversed_depth", "perspective_depth", "fit", "snap",
-      "light", "tuned", "border", "far_test", "behind_test", "border_page", "rounds", "precision", "budget", "cell_timeout", "seed", "truth", "attribution",
+      "light", "lights", "tuned", "border", "far_test", "behind_test", "border_page", "rounds", "precision", "budget", "cell_timeout", "seed", "truth", "attribution",
       "grids"};
   return keys;
 }
@@ -86,6 +87,8 @@ void add_run_options(CLI::App& command, RunArguments& a) {
   command.add_option("--rounds", a.rounds, "how often each filter is timed: a number, or 'auto', until its ratio to the unfiltered lookup is precise enough or the budget is spent")->capture_default_str();
   command.add_option("--precision", a.precision, "of 'auto' rounds: width of the ratio's 95 % interval, over the ratio")->capture_default_str();
   command.add_option("--budget", a.budget_s, "of 'auto' rounds: seconds of timed work for each filter on each map")->capture_default_str();
+  command.add_option("--lights", a.lights, fmt::format("also time frames lit by so many suns, each with a map of its own, casters still and moving: counts of 1 .. {} with commas (default: none)", run::kMostLights))
+      ->check([](const std::string& text) { return text.empty() ? std::string("counts of lights are missing, such as 1,2,4,8") : std::string(); });
   command.add_option("--seed", a.seed, "of random rotations and of the order of timing")->capture_default_str();
   command.add_option("--gl", a.backend, "OpenGL context: auto, osmesa, egl or glfw")->capture_default_str();
   command.add_option("--cell-timeout", a.cell_timeout_s, "seconds that a filter of your own may take on one scene")->capture_default_str();

@@ -32,6 +32,7 @@ struct RunArguments {
   std::string behind_test = "on";
   bool border_page = false;
   std::string rounds = "auto";
+  std::string lights;
   double precision = 0.05;
   double budget_s = 0.4;
   std::uint32_t seed = 1;

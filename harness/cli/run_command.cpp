@@ -14,6 +14,7 @@
 #include "harness/cli/progress_bar.h"
 #include "harness/cli/run_arguments.h"
 #include "harness/gl/pixel_format.h"
+#include "harness/run/light_counts.h"
 #include "harness/run/tuned_parameters.h"
 
 namespace shadowbench::cli {
@@ -34,14 +35,25 @@ std::vector<std::string> split(const std::string& text) {
   return parts;
 }
 
-std::vector<int> parse_map_sizes(const std::string& text) {
-  std::vector<int> sizes;
+/// Whole numbers, 1 or more, each once.
+std::vector<int> parse_counts(const std::string& text, const char* option) {
+  std::vector<int> counts;
   for (const std::string& each : split(text)) {
-    const int size = parse_count(each, "--map-size");
-    if (std::find(sizes.begin(), sizes.end(), size) != sizes.end()) fail(fmt::format("--map-size names {} twice", size));
-    sizes.push_back(size);
+    const int count = parse_count(each, option);
+    if (std::find(counts.begin(), counts.end(), count) != counts.end()) fail(fmt::format("{} names {} twice", option, count));
+    counts.push_back(count);
   }
-  return sizes;
+  return counts;
+}
+
+std::vector<int> parse_lights(const std::string& text) {
+  if (text.empty()) return {};
+  std::vector<int> counts = parse_counts(text, "--lights");
+  std::sort(counts.begin(), counts.end());
+  if (counts.back() > run::kMostLights) {
+    fail(fmt::format("--lights: {} is out of range: choose counts of 1 .. {}", counts.back(), run::kMostLights));
+  }
+  return counts;
 }
 
 void add_filters(run::RunOptions& options, const RunArguments& arguments) {
@@ -120,7 +132,7 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   options.resources = run::find_resources();
   options.scenes = arguments.scenes.empty() ? list_builtin_scenes(options.resources) : arguments.scenes;
   options.ground = arguments.ground;
-  options.map_sizes = parse_map_sizes(arguments.map_sizes);
+  options.map_sizes = parse_counts(arguments.map_sizes, "--map-size");
   add_filters(options, arguments);
   options.sizes = parse_sizes(arguments.sizes);
   options.views = arguments.views;
@@ -132,6 +144,8 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   options.range = {filters::parse_border(arguments.border), arguments.far_test == "on", arguments.behind_test == "on"};
   options.border_page = arguments.border_page;
   options.rounds = parse_rounds(arguments);
+  options.lights = parse_lights(arguments.lights);
+  run::require_light_maps_fit(options);
   options.reference = filters::Catalogue(options.resources.filters).parse_requests(kReferenceFilter).front();
   options.seed = arguments.seed;
   options.backend = gl::parse_backend(arguments.backend);

@@ -51,6 +51,16 @@ void FilterPasses::retune(ShaderLibrary& shaders, const filters::ParamValues& va
   if (prefilter_) prefilter_->retune(shaders, request_, light_);
 }
 
+PreparedLight FilterPasses::prepare(const LightSetup& light, std::shared_ptr<ImageTarget> encoded) {
+  return {light, prefilter_ ? prefilter_->find_border(light) : glm::vec4(0.0f), std::move(encoded)};
+}
+
+void FilterPasses::turn_to(const PreparedLight& light) {
+  light_ = light.light;
+  set_light(lookup_, light_);
+  if (prefilter_) prefilter_->turn_to(light_, light.border, light.encoded);
+}
+
 void FilterPasses::prefilter(const ShadowMap& map) {
   if (prefilter_) prefilter_->run(map);
 }

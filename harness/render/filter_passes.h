@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,13 @@ struct FilterCost {
   std::int64_t prefilter_texels = 0;  ///< texels that encode and blur write
 };
 
+/// A light that passes can be turned to at no other cost than its uniforms.
+struct PreparedLight {
+  LightSetup light;
+  glm::vec4 border{0.0f};                ///< of the encoded map
+  std::shared_ptr<ImageTarget> encoded;  ///< the encoded map; null for filters that read depth
+};
+
 /// One filter, with its parameters, over one G-buffer and one shadow map.
 class FilterPasses {
  public:
@@ -31,6 +39,17 @@ class FilterPasses {
   /// Takes other parameter values and another light, without compiling anything: what is drawn then equals what new passes draw.
   /// Requires that only values change that are neither `const` nor texts, and a light with the same range rule and map size.
   void retune(ShaderLibrary& shaders, const filters::ParamValues& values, const LightSetup& light);
+
+  /// Prepares another light, with the same range rule and map size. `encoded` is of encoded_format() and the map's size, or
+  /// null for filters that read depth; passes that take turns may share it. Passes draw with another light afterwards: turn
+  /// them to one.
+  PreparedLight prepare(const LightSetup& light, std::shared_ptr<ImageTarget> encoded);
+
+  /// Draws with another light from now on: what is drawn equals what new passes draw. Parameters stay.
+  void turn_to(const PreparedLight& light);
+
+  /// Gives the format of the encoded map; nothing for filters that read depth.
+  std::optional<GLenum> encoded_format() const { return prefilter_ ? std::optional(prefilter_->format()) : std::nullopt; }
 
   bool has_prefilter() const { return prefilter_.has_value(); }
   int prefilter_passes() const { return prefilter_ ? prefilter_->passes() : 0; }  ///< encode and blur

@@ -48,7 +48,7 @@ bool is_overflown(const float* channels, int count, float limit) {
 
 Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
                      const LightSetup& light, const Defines& map_defines)
-    : stored_(request.spec.id + " map", store_format(request.values), map_size, map_size),
+    : stored_(std::make_shared<ImageTarget>(request.spec.id + " map", store_format(request.values), map_size, map_size)),
       encode_(shaders.compile_filter(request.spec.id + " encode", "encode.frag", map_defines, filter_pieces(request))) {
   encode_.set("map_texel_uv", 1.0f / static_cast<float>(map_size));
   const bool nearest = combines_logs(request) || filters::text_or(request.values, "sample", "linear") == "nearest";
@@ -67,8 +67,20 @@ void Prefilter::retune(ShaderLibrary& shaders, const filters::FilterRequest& req
   radius_ = filters::prefilter_radius_texels(request.spec, request.values);
   weights_ = filters::gaussian_weights(radius_);
   if (radius_ == 0 || blur_) return;
-  scratch_.emplace(request.spec.id + " blur", store_format(request.values), stored_.texture().width(), stored_.texture().width());
+  scratch_.emplace(request.spec.id + " blur", store_format(request.values), stored_->texture().width(), stored_->texture().width());
   blur_ = &shaders.fullscreen("blur.frag", blur_defines(request, light.range.border));
+}
+
+glm::vec4 Prefilter::find_border(const LightSetup& light) {
+  set_light(encode_, light);
+  return encode_border(format());
+}
+
+void Prefilter::turn_to(const LightSetup& light, const glm::vec4& border, std::shared_ptr<ImageTarget> stored) {
+  set_light(encode_, light);
+  border_ = border;
+  sampler_.set_border(border_);
+  stored_ = std::move(stored);
 }
 
 /// What lies outside the map is the encoding of depth 1, stored in the map's own format.
@@ -86,12 +98,12 @@ glm::vec4 Prefilter::encode_border(GLenum format) {
 
 void Prefilter::run(const ShadowMap& map) {
   map.bind();
-  stored_.bind();
+  stored_->bind();
   encode_.use();
   triangle_.draw();
   if (radius_ == 0) return;
-  blur(stored_.texture(), *scratch_, {1, 0});
-  blur(scratch_->texture(), stored_, {0, 1});
+  blur(stored_->texture(), *scratch_, {1, 0});
+  blur(scratch_->texture(), *stored_, {0, 1});
 }
 
 void Prefilter::blur(const gl::Texture& from, ImageTarget& to, glm::ivec2 direction) {
@@ -107,16 +119,16 @@ void Prefilter::blur(const gl::Texture& from, ImageTarget& to, glm::ivec2 direct
 }
 
 void Prefilter::bind() const {
-  stored_.texture().bind(kStoredUnit);
+  stored_->texture().bind(kStoredUnit);
   sampler_.bind(kStoredUnit);
 }
 
 std::int64_t Prefilter::count_overflown() const {
-  const int channels = stored_.texture().format().channels, size = stored_.texture().width();
-  const float limit = overflow_limit(stored_.texture().format());
+  const int channels = stored_->texture().format().channels, size = stored_->texture().width();
+  const float limit = overflow_limit(stored_->texture().format());
   const bool border = reads_border_ && is_overflown(&border_[0], channels, limit);
   const int ring = border ? radius_ : 0;  // texels whose blur reads the border
-  const std::vector<float> values = stored_.texture().read_floats(channels);
+  const std::vector<float> values = stored_->texture().read_floats(channels);
   std::int64_t count = 0;
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
@@ -129,7 +141,7 @@ std::int64_t Prefilter::count_overflown() const {
 }
 
 std::int64_t Prefilter::texels_written() const {
-  const std::int64_t side = stored_.texture().width();
+  const std::int64_t side = stored_->texture().width();
   return passes() * side * side;
 }
 

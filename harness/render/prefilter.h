@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "filters/catalogue.h"
@@ -23,6 +24,13 @@ class Prefilter {
   /// Takes other values of the parameters that are neither `const` nor texts, and another light with the same range rule.
   void retune(ShaderLibrary& shaders, const filters::FilterRequest& request, const LightSetup& light);
 
+  /// Gives what the encoded map of a light holds outside the map. Reads one texel back.
+  glm::vec4 find_border(const LightSetup& light);
+
+  /// Takes another light with the same range rule, whose border find_border() gave: what run() writes and bind() binds is
+  /// `stored`, of format() and the map's size, from now on. Reads nothing back.
+  void turn_to(const LightSetup& light, const glm::vec4& border, std::shared_ptr<ImageTarget> stored);
+
   /// Encodes and blurs the depth map.
   void run(const ShadowMap& map);
 
@@ -35,12 +43,13 @@ class Prefilter {
   std::int64_t count_overflown() const;
 
   int passes() const { return radius_ > 0 ? 3 : 1; }
-  std::int64_t bytes() const { return static_cast<std::int64_t>(stored_.texture().bytes()); }
+  std::int64_t bytes() const { return static_cast<std::int64_t>(stored_->texture().bytes()); }
+  GLenum format() const { return stored_->texture().format().internal_format; }
   std::int64_t texels_written() const;
 
  private:
   int radius_ = 0;
-  ImageTarget stored_;
+  std::shared_ptr<ImageTarget> stored_;
   std::optional<ImageTarget> scratch_;  ///< only with a blur
   gl::Program encode_;
   gl::Program* blur_ = nullptr;  ///< likewise

@@ -17,6 +17,7 @@ void add_options(ContentHash& hash, const RunOptions& options) {
                        rounds.precision, rounds.budget_ms));
   // The masks of artefacts reach as far as the widest kernel of the run.
   hash.add(fmt::format("radius {} reference {} border page {}", largest_radius_texels(options.filters), options.reference.label(), options.border_page));
+  hash.add(fmt::format("lights {}", fmt::join(options.lights, " ")));
 }
 
 void add_material(ContentHash& hash, const scene::Material& m) {

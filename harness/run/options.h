@@ -71,6 +71,7 @@ struct RunOptions {
   bool border_page = false;          ///< also draw every rule for what lies outside the map, side by side
   std::optional<double> pad_texels;  ///< around the scene in the map; empty: what the widest kernel needs
   RoundLimits rounds;
+  std::vector<int> lights;           ///< frames lit by so many lights are timed too; none: they are not
   filters::FilterRequest reference;  ///< what the others are timed against
   std::uint32_t seed = 1;
   gl::Backend backend = gl::Backend::kAuto;

@@ -135,7 +135,8 @@ class Experiment {
   TimeForecast forecast_time(const RunPlan& plan, int left) {
     const char* on_top = options_.truth ? "rays and pictures come on top" : "pictures come on top";
     if (!options_.rounds.is_fixed()) {
-      const double seconds = left * 1e-3 * options_.rounds.budget_ms;
+      const double timings = 1.0 + static_cast<double>(options_.lights.size());
+      const double seconds = left * timings * 1e-3 * options_.rounds.budget_ms;
       return {seconds, fmt::format("; {} of timed work at most, more where four rounds take longer; {}", describe_duration(seconds), on_top)};
     }
     const TimeFloor floor = probe_time_floor(renderer_, plan, cache_);

@@ -24,16 +24,20 @@ LightMap& SceneAssets::light_map(const scene::Camera& camera, int map_size) {
   const std::pair key(options_.fit == scene::FitMode::kView ? &camera : nullptr, map_size);
   const auto found = maps_.find(key);
   if (found != maps_.end()) return found->second;
+  LightMap& kept = maps_.emplace(key, make_light_map(scene_.light, camera, map_size)).first->second;
+  require_casters(kept);
+  return kept;
+}
+
+LightMap SceneAssets::make_light_map(const scene::Light& light, const scene::Camera& camera, int map_size) {
   // A map smaller than the padding keeps half of its texels for the scene.
   const double pad_texels = std::min(pad_texels_, 0.25 * (map_size - 1));
   const double aspect = static_cast<double>(options_.width) / options_.height;
-  LightMap light{scene::fit_light(scene_, {options_.fit, map_size, pad_texels, options_.snap, &camera, aspect}),
-                 render::ShadowMap(map_size, options_.map)};
-  light.map.set_border(options_.range.border);
-  LightMap& kept = maps_.emplace(key, std::move(light)).first->second;
-  redraw(kept);
-  require_casters(kept);
-  return kept;
+  LightMap made{scene::fit_light(scene_, {options_.fit, map_size, pad_texels, options_.snap, &camera, aspect, &light}),
+                render::ShadowMap(map_size, options_.map)};
+  made.map.set_border(options_.range.border);
+  redraw(made);
+  return made;
 }
 
 void SceneAssets::redraw(LightMap& light, const render::MapBias& bias) {

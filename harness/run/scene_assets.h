@@ -30,6 +30,10 @@ class SceneAssets {
   /// Throws Error(kUsage) when the GL cannot give a map of this size.
   LightMap& light_map(const scene::Camera& camera, int map_size);
 
+  /// Draws the map of another light than the scene's; it is not kept.
+  /// Throws Error(kUsage) when the GL cannot give a map of this size.
+  LightMap make_light_map(const scene::Light& light, const scene::Camera& camera, int map_size);
+
   render::GBuffer& gbuffer(const scene::Camera& camera);
 
   /// Gives the truth of a view, traced when it is first asked for.

@@ -9,6 +9,7 @@
 #include "harness/render/filter_passes.h"
 #include "harness/render/receivers.h"
 #include "harness/render/shade_pass.h"
+#include "harness/run/light_timing.h"
 #include "harness/run/statistics.h"
 #include "harness/run/timing.h"
 #include "report/cell_key.h"
@@ -139,6 +140,21 @@ class SceneBench {
     result.timed_ms = times.spent_ms;
     for (std::size_t i = 0; i < filters.size(); ++i) {
       set_times(result.cells[i].record, times.map, times.filters[i], times.filters[reference]);
+    }
+    time_lights(result, pointers, reference);
+  }
+
+  void time_lights(SceneMeasurement& result, const std::vector<render::FilterPasses*>& filters, std::size_t reference) {
+    if (options_.lights.empty()) {
+      for (MeasuredCell& cell : result.cells) cell.record.absent["lights"] = "the run was made without --lights";
+      return;
+    }
+    LightMeasurement measured = measure_lights(renderer_, options_, assets_, {&task_.scene->light, task_.camera, task_.map_size, filters, reference});
+    result.timed_ms += measured.spent_ms;
+    for (std::size_t i = 0; i < result.cells.size(); ++i) {
+      report::CellRecord& record = result.cells[i].record;
+      record.lights = std::move(measured.filters[i]);
+      for (report::LightCountRecord& each : *record.lights) each.maps_bytes = each.count * record.cost.map_bytes.value();
     }
   }
 

@@ -1,6 +1,7 @@
 #include "harness/run/user_filter.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <cstring>
@@ -76,6 +77,10 @@ std::vector<std::string> worker_arguments(const RunOptions& options, const Scene
     arguments.push_back("--light");
     arguments.push_back(describe_light(*options.light));
   }
+  if (!options.lights.empty()) {
+    arguments.push_back("--lights");
+    arguments.push_back(fmt::format("{}", fmt::join(options.lights, ",")));
+  }
   for (const std::string& bias : options.bias_texts) {
     arguments.push_back("--bias");
     arguments.push_back(bias);
@@ -106,7 +111,7 @@ MeasuredCell failed_cell(const RunOptions& options, const SceneTask& task, const
     cell.record.message = outcome.signal ? fmt::format("killed by signal {} ({})", outcome.signal, strsignal(outcome.signal))
                                          : fmt::format("ended with exit code {}: {}", *outcome.exit_code, clean(outcome.error_text));
   }
-  for (const char* group : {"time_ms", "ratio_to_none", "cost", "receivers", "nan", "images"}) {
+  for (const char* group : {"time_ms", "ratio_to_none", "lights", "cost", "receivers", "nan", "images"}) {
     cell.record.absent[group] = cell.record.message;
   }
   return cell;

@@ -187,10 +187,11 @@ LightFrustum fit_light(const Scene& scene, FitMode mode, int map_size, double pa
 }
 
 LightFrustum fit_light(const Scene& scene, const FitRequest& request) {
+  const Light& light = request.light ? *request.light : scene.light;
   const double used_texels = count_used_texels(request);
   const Bounds bounds = scene.bounds();
   const glm::dvec3 center = center_of(bounds);
-  const glm::dvec3 direction = glm::normalize(glm::dvec3(scene.light.direction_ws));
+  const glm::dvec3 direction = glm::normalize(glm::dvec3(light.direction_ws));
   const glm::dmat3 rotation = light_rotation(direction);
   const Box box = choose_box(scene, request, rotation, center, used_texels);
 
@@ -209,7 +210,7 @@ LightFrustum fit_light(const Scene& scene, const FitRequest& request) {
   if (request.snap) eye = snap_to_texels(eye, -(rotation * center), fit.texel_size_ws);
   fit.light_from_world = glm::dmat4(rotation);
   fit.light_from_world[3] = glm::dvec4(-(rotation * center) - eye, 1.0);
-  if (scene.light.map_window) set_window(fit, *scene.light.map_window, request.map_size);
+  if (light.map_window) set_window(fit, *light.map_window, request.map_size);
   set_matrices(fit);
   return fit;
 }

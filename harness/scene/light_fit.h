@@ -27,6 +27,7 @@ struct FitRequest {
   bool snap = false;          ///< keep the texel grid fixed in the world while the camera or the scene's extent moves
   const Camera* camera = nullptr;  ///< FitMode::kView only
   double aspect = 1.0;             ///< of its picture, width / height
+  const Light* light = nullptr;    ///< in place of the scene's own
 };
 
 /// The orthographic frustum of a directional light: a square map over casters and receivers.

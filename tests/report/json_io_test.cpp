@@ -63,6 +63,7 @@ CellRecord make_full_cell() {
   cell.fit = "view snapped";
   cell.light = "120,-35.5";
   cell.time_ms.stopped = "budget";
+  cell.lights = {{1, {1.5, 1.25, 1.75, 9}, {2.5, 2.25, 2.75, 9}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 1024}, {16, {24.0, 20.0, 28.0, 5}, {40.0, 36.0, 44.0, 5}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 16384}};
   cell.content = "0123";
   cell.warnings = {"one", "two"};
   cell.absent.clear();
@@ -106,6 +107,12 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   EXPECT_EQ(back.fit, "view snapped");
   EXPECT_EQ(back.light, "120,-35.5");
   EXPECT_EQ(back.time_ms.stopped, "budget");
+  ASSERT_EQ(back.lights->size(), 2u);
+  EXPECT_EQ(back.lights->back().count, 16);
+  EXPECT_EQ(back.lights->back().still_ms.q3, 28.0);
+  EXPECT_EQ(back.lights->back().moving_ms.n, 5);
+  EXPECT_EQ(back.lights->back().moving_ratio.ci95.low, 1.75);
+  EXPECT_EQ(back.lights->back().maps_bytes, 16384);
   EXPECT_EQ(back.content, "0123");
   EXPECT_EQ(back.warnings, (std::vector<std::string>{"one", "two"}));
   EXPECT_EQ(std::get<std::string>(back.params.at("store")), "rg32f");
@@ -129,6 +136,32 @@ TEST(JsonIo, LaterFields_MayLack) {
   EXPECT_EQ(run_from_json(written, "here").seed, run.seed);
   written.erase("seed");
   EXPECT_THAT(message_of([&] { run_from_json(written, "here"); }), HasSubstr("'seed' is missing"));
+}
+
+/// Files of this version that were written before lights were counted stay readable, and valid.
+TEST(JsonIo, CellWithoutLights_IsReadAsNotMeasured) {
+  json written = to_json(make_full_cell());
+  written.erase("lights");
+  const CellRecord back = cell_from_json(written, "here");
+  EXPECT_FALSE(back.lights);
+  EXPECT_EQ(to_json(back).at("absent").at("lights"), "not measured");
+  const TemporaryFolder folder("json_no_lights");
+  write_results(folder.path(), make_run(), write_cells(folder.path(), {make_full_cell()}));
+  json results = json::parse(read_text(folder.path() / "results.json"));
+  results["cells"][0].erase("lights");
+  write_text_file(folder.path() / "results.json", results.dump());
+  EXPECT_TRUE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
+  results["cells"][0]["lights"] = {{{"count", 0}}};
+  write_text_file(folder.path() / "results.json", results.dump());
+  EXPECT_FALSE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
+}
+
+TEST(JsonIo, NotFiniteLights_AreNullWithTheirReason) {
+  CellRecord cell = make_full_cell();
+  cell.lights->back().moving_ms.median = std::numeric_limits<double>::infinity();
+  const json written = to_json(cell);
+  EXPECT_TRUE(written.at("lights").is_null());
+  EXPECT_EQ(written.at("absent").at("lights"), "the value was not finite");
 }
 
 TEST(JsonIo, NotFinite_IsNullWithItsReason) {
