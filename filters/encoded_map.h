@@ -26,7 +26,7 @@ class EncodedMap {
       : grid_(input.map.size, input.map.border),
         accuracy_(input.accuracy),
         store_(store_precision(text_or(input.values, "store", "r32f"))),
-        log_(is_log(input.values)),
+        log_(combines_logs(input.values)),
         nearest_(is_nearest(input.values)) {
     border_ = stored(encode(T(Position<T>(1))));
     texels_.reserve(input.map.stored.size());
@@ -77,9 +77,8 @@ class EncodedMap {
   Texel border_{};
   std::vector<Texel> texels_;
 
-  static bool is_log(const ParamValues& values) { return text_or(values, "combine", "linear") == "log"; }
   static bool is_nearest(const ParamValues& values) {
-    return is_log(values) || text_or(values, "sample", "linear") == "nearest";
+    return combines_logs(values) || text_or(values, "sample", "linear") == "nearest";
   }
 
   Texel stored(Texel texel) const {

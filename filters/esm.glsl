@@ -7,6 +7,7 @@ combine = ["linear", "log"]
 sample = "linear"
 radius_texels = "radius"
 bias_texels = 0
+exponent = "c"
 [param.radius]
 default = 4
 min = 0
@@ -18,7 +19,6 @@ default = 80.0
 min = 1.0
 max = 2000.0
 unit = "1/depth"
-stress = "esm-exponent"
 text = "exponent; too small fades contact shadows, too large overflows: above 88 in r32f, above 11 in r16f. combine=log has no such limit"
 +++*/
 vec4 encode(EncodeInput e) { return vec4(combine == COMBINE_LOG ? c * e.depth : exp(c * e.depth)); }

@@ -56,6 +56,8 @@ double bias_texels(const FilterSpec& spec, const ParamValues& values) {
   return number_or_param(spec.bias_texels, values);
 }
 
+bool combines_logs(const ParamValues& values) { return text_or(values, "combine", "linear") == "log"; }
+
 int prefilter_radius_texels(const FilterSpec& spec, const ParamValues& values) {
   return spec.has_prefilter ? static_cast<int>(radius_texels(spec, values)) : 0;
 }

@@ -31,7 +31,6 @@ struct ParamSpec {
   std::vector<ParamValue> choices;  ///< the only values allowed; empty: any
   std::string unit;
   std::string text;  ///< help: what too little and too much do
-  std::string stress;  ///< the axis of `shadowbench stress` that drives this parameter, or that it guards against; may be empty
 };
 
 /// Asks for a table of points in the unit disk, given to the GLSL as `const vec2 <name>[]`.
@@ -58,6 +57,9 @@ struct FilterSpec {
   bool has_encode = false;         ///< stores something else than depth
   bool uses_samplers = false;      ///< reads the map past the counted functions: its fetch count is unknown
   bool has_prefilter = false;      ///< `combine` is given: the map is blurred with radius `radius_texels`
+  bool holds_moments = false;      ///< channels in pairs: a mean, and the mean of its square
+  std::string exponent;            ///< parameter that the exponents of what is stored grow with; empty: none
+  std::string variance_floor;      ///< parameter that variances are raised to; empty: none
 
   const ParamSpec* find_param(const std::string& name) const;
 };
@@ -81,6 +83,9 @@ double radius_texels(const FilterSpec& spec, const ParamValues& values);
 /// Gives how many texels of receiver slope a depth bias has to cover for these parameter values, without the texel
 /// that the sampling grid itself needs.
 double bias_texels(const FilterSpec& spec, const ParamValues& values);
+
+/// Says whether the encoded map holds logarithms, which the prefilter adds as log-sum-exp.
+bool combines_logs(const ParamValues& values);
 
 /// Gives the radius in texels of the Gaussian prefilter, 0 where the filter has none.
 int prefilter_radius_texels(const FilterSpec& spec, const ParamValues& values);

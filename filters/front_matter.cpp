@@ -14,6 +14,7 @@
 
 #include "filters/error.h"
 #include "filters/nearest_name.h"
+#include "filters/store_format.h"
 
 namespace shadowbench::filters {
 namespace {
@@ -163,7 +164,7 @@ ParamSpec read_param(const Reader& reader, const std::string& name, const toml::
   const toml::table* table = node.as_table();
   if (!table) reader.fail(&node, fmt::format("'param.{}' must be a table", name));
   if (!is_identifier(name)) reader.fail(&node, fmt::format("'{}' cannot be the name of a GLSL uniform", name));
-  reader.check_keys(*table, {"default", "min", "max", "choices", "unit", "text", "stress", "const"}, fmt::format("[param.{}]", name));
+  reader.check_keys(*table, {"default", "min", "max", "choices", "unit", "text", "const"}, fmt::format("[param.{}]", name));
   const toml::node* default_node = table->get("default");
   if (!default_node) reader.fail(table, fmt::format("[param.{}] lacks 'default'", name));
   ParamSpec param;
@@ -174,7 +175,6 @@ ParamSpec read_param(const Reader& reader, const std::string& name, const toml::
   param.max = reader.finite(*table, "max");
   param.unit = reader.text(*table, "unit", false);
   param.text = reader.text(*table, "text", true);
-  param.stress = reader.text(*table, "stress", false);
   if (const toml::node* choices = table->get("choices")) {
     if (!choices->as_array()) reader.fail(choices, "'choices' must be a list");
     for (const toml::node& item : *choices->as_array()) param.choices.push_back(reader.value(item, "a choice"));
@@ -246,6 +246,31 @@ void read_prefilter(const Reader& reader, const toml::table& root, FilterSpec& s
   spec.has_prefilter = true;
 }
 
+/// The numeric parameter that a key names; empty without the key.
+std::string read_param_name(const Reader& reader, const toml::table& root, const FilterSpec& spec, const std::string& key) {
+  const std::string name = reader.text(root, key, false);
+  const ParamSpec* param = spec.find_param(name);
+  if (!name.empty() && (!param || !std::holds_alternative<double>(param->default_value))) {
+    reader.fail(root.get(key), fmt::format("'{}' names '{}', which is not a numeric parameter", key, name));
+  }
+  return name;
+}
+
+/// What the encoded map holds: `--stability` and warnings judge its numbers by that.
+void read_stored(const Reader& reader, const toml::table& root, FilterSpec& spec) {
+  spec.holds_moments = reader.flag(root, "moments");
+  spec.exponent = read_param_name(reader, root, spec, "exponent");
+  spec.variance_floor = read_param_name(reader, root, spec, "variance_floor");
+  if (!spec.variance_floor.empty() && !spec.holds_moments) {
+    reader.fail(root.get("variance_floor"), "'variance_floor' needs 'moments = true': only moments have a variance");
+  }
+  if (!spec.holds_moments) return;
+  for (const std::string& store : reader.texts(root, "store")) {
+    if (store_channels(store) >= 2) continue;
+    reader.fail(root.get("moments"), fmt::format("'moments' takes channels in pairs, a mean and the mean of its square, and the store '{}' has one", store));
+  }
+}
+
 void read_disks(const Reader& reader, const toml::table& root, FilterSpec& spec) {
   const toml::node* node = root.get("disk");
   if (!node) return;
@@ -269,7 +294,7 @@ void read_disks(const Reader& reader, const toml::table& root, FilterSpec& spec)
 
 void read_root(const Reader& reader, const toml::table& root, FilterSpec& spec) {
   reader.check_keys(root, {"title", "source", "kind", "store", "combine", "sample", "claims", "radius_texels",
-                           "bias_texels", "param", "disk"}, "the front matter");
+                           "bias_texels", "moments", "exponent", "variance_floor", "param", "disk"}, "the front matter");
   spec.title = reader.text(root, "title", true);
   spec.source = reader.text(root, "source", true);
   spec.kind = read_kind(reader, root);
@@ -283,6 +308,7 @@ void read_root(const Reader& reader, const toml::table& root, FilterSpec& spec) 
   spec.radius_texels = read_number_or_param(reader, root, spec, "radius_texels", 0.0);
   spec.bias_texels = read_number_or_param(reader, root, spec, "bias_texels", spec.radius_texels);
   read_prefilter(reader, root, spec);
+  read_stored(reader, root, spec);
   read_disks(reader, root, spec);
 }
 
@@ -298,6 +324,9 @@ void inspect_body(const Reader& reader, const toml::table& root, FilterSpec& spe
   if (!stores && spec.has_encode) reader.fail(nullptr, "the GLSL has encode(), but the front matter lacks 'store', the format it writes");
   for (const char* key : {"combine", "sample"}) {
     if (root.contains(key) && !stores) reader.fail(root.get(key), fmt::format("'{}' needs 'store': a depth map is not prefiltered", key));
+  }
+  for (const char* key : {"moments", "exponent"}) {
+    if (root.contains(key) && !stores) reader.fail(root.get(key), fmt::format("'{}' says what is stored, and needs 'store'", key));
   }
 }
 

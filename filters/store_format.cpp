@@ -2,7 +2,14 @@
 
 #include <glm/gtc/packing.hpp>
 
+#include <limits>
+
 namespace shadowbench::filters {
+namespace {
+
+constexpr double kLargestHalf = 65504.0;
+
+}  // namespace
 
 StorePrecision store_precision(const std::string& format) {
   if (format.ends_with("32f")) return StorePrecision::kSingle;
@@ -16,6 +23,15 @@ int store_channels(const std::string& format) {
 
 int store_bytes(const std::string& format) {
   return store_channels(format) * (store_precision(format) == StorePrecision::kSingle ? 4 : 2);
+}
+
+double largest_number(StorePrecision precision) {
+  switch (precision) {
+    case StorePrecision::kSingle: return static_cast<double>(std::numeric_limits<float>::max());
+    case StorePrecision::kHalf: return kLargestHalf;
+    case StorePrecision::kUnorm16: return 1.0;
+  }
+  return 1.0;
 }
 
 float round_to_store(float value, StorePrecision precision) {
@@ -32,7 +48,7 @@ Tracked round_to_store(Tracked value, StorePrecision precision) {
     case StorePrecision::kSingle: return value;
     // A GL may truncate instead of rounding to nearest: a whole spacing, not half of one.
     case StorePrecision::kHalf:
-      if (std::abs(value.value) + value.bound > 65504.0) return {value.value, HUGE_VAL};
+      if (std::abs(value.value) + value.bound > kLargestHalf) return {value.value, HUGE_VAL};
       return {value.value, value.bound + 0x1p-10 * (std::abs(value.value) + value.bound) + 0x1p-24};
     case StorePrecision::kUnorm16: return {value.value, value.bound + 1.0 / 65535.0};
   }

@@ -18,6 +18,9 @@ int store_channels(const std::string& format);
 /// Gives the bytes of one texel of a format.
 int store_bytes(const std::string& format);
 
+/// Gives the largest number that a precision holds: 65504 for half floats.
+double largest_number(StorePrecision precision);
+
 /// Rounds a value to what the store keeps; double and wider types stay as they are: they are references.
 float round_to_store(float value, StorePrecision precision);
 inline double round_to_store(double value, StorePrecision) { return value; }

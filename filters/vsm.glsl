@@ -7,6 +7,8 @@ combine = "linear"
 sample = "linear"
 radius_texels = "radius"
 bias_texels = 0
+moments = true
+variance_floor = "min_variance"
 [param.radius]
 default = 4
 min = 0
@@ -18,7 +20,6 @@ default = 1e-5
 min = 0.0
 max = 1e-1
 unit = "depth^2"
-stress = "vsm-cancellation"
 text = "lower bound on the variance; too small gives acne, too large fades contact shadows"
 [param.bleed_reduction]
 default = 0.0

@@ -11,6 +11,8 @@ constexpr Font kText{17, false};
 
 }  // namespace
 
+std::vector<std::string> wrap_figure_text(const std::string& text, int width) { return wrap_text(text, kText, width); }
+
 int figure_line_height() { return line_height(kText); }
 
 Figure::Figure(const std::string& title, const std::string& note, Size body) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "report/image.h"
 #include "report/rect.h"
@@ -42,6 +43,9 @@ class Figure {
   Image canvas_;
   Rect body_;
 };
+
+/// Splits a text into lines that Figure::write draws no wider than `width` pixels.
+std::vector<std::string> wrap_figure_text(const std::string& text, int width);
 
 /// The height of a line that Figure::write writes.
 int figure_line_height();

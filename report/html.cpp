@@ -56,6 +56,14 @@ std::string html_attribution_pictures(const CellGroup& group) {
   return html_gallery("Where in the picture the error comes from", figures, "gallery wide");
 }
 
+std::string html_stability_pictures(const CellGroup& group) {
+  std::string figures;
+  for (const CellRecord& cell : group.cells) {
+    if (cell.images.stability) figures += figure(*cell.images.stability, label_cell(group, cell) + ": where its numbers break, or come near to it", "single");
+  }
+  return html_gallery("Where numbers break: overflow, negative variance, 16 bits, and bounds", figures, "gallery wide");
+}
+
 std::string html_single_pictures(const CellGroup& group) {
   std::string figures;
   for (const CellRecord& cell : group.cells) {
@@ -95,6 +103,7 @@ std::string html_group(const RunRecord& run, const CellGroup& group, std::size_t
     text += figure(*grid, "all filters on " + group.scene + ", full size behind the link", "grid");
   }
   text += html_attribution_pictures(group);
+  text += html_stability_pictures(group);
   text += html_single_pictures(group);
   text += html_map_pictures(group);
   if (const auto exr = find_path(group, &ImagesRecord::exr)) {

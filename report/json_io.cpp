@@ -186,8 +186,6 @@ json to_json(const CellRecord& cell) {
   std::map<std::string, std::string> absent = cell.absent;
   std::vector<std::string> nulls;
   visit_cell_fields(cell, FieldWriter{root, absent, nulls});
-  root["stability"] = nullptr;
-  nulls.push_back("stability");
   root["absent"] = explain_nulls(root, absent, nulls);
   return root;
 }

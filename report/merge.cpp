@@ -79,7 +79,7 @@ void copy_whole(const std::filesystem::path& from, const std::filesystem::path& 
 std::vector<std::string> list_files(const CellRecord& cell) {
   std::vector<std::string> files;
   for (const auto member : {&ImagesRecord::picture, &ImagesRecord::visibility, &ImagesRecord::depth_map, &ImagesRecord::grid, &ImagesRecord::exr,
-                            &ImagesRecord::attribution, &ImagesRecord::texel_density, &ImagesRecord::texel_grid}) {
+                            &ImagesRecord::attribution, &ImagesRecord::texel_density, &ImagesRecord::texel_grid, &ImagesRecord::stability}) {
     if (cell.images.*member) files.push_back(*(cell.images.*member));
   }
   return files;

@@ -97,6 +97,17 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("attribution.discretisation.share", cell.attribution.discretisation.share);
   visit("attribution.model.rms", cell.attribution.model.rms);
   visit("attribution.model.share", cell.attribution.model.share);
+  visit("stability.overflow_texels", cell.stability.overflow_texels);
+  visit("stability.nan_texels", cell.stability.nan_texels);
+  visit("stability.negative_variance_texels", cell.stability.negative_variance_texels);
+  visit("stability.lowest_variance", cell.stability.lowest_variance);
+  visit("stability.headroom", cell.stability.headroom);
+  visit("stability.safe_exponent", cell.stability.safe_exponent);
+  visit("stability.half_difference_max", cell.stability.half_difference_max);
+  visit("stability.half_difference_rms", cell.stability.half_difference_rms);
+  visit("stability.bound_shortfall_max", cell.stability.bound_shortfall_max);
+  visit("stability.bound_violations", cell.stability.bound_violations);
+  visit("stability.bound_exact_violations", cell.stability.bound_exact_violations);
   visit("images.picture", cell.images.picture);
   visit("images.visibility", cell.images.visibility);
   visit("images.depth_map", cell.images.depth_map);
@@ -105,6 +116,7 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("images.attribution", cell.images.attribution);
   visit("images.texel_density", cell.images.texel_density);
   visit("images.texel_grid", cell.images.texel_grid);
+  visit("images.stability", cell.images.stability);
   visit("warnings", cell.warnings);
   visit("absent", cell.absent);
 }

@@ -147,6 +147,21 @@ struct AttributionRecord {
   AttributionPart model;
 };
 
+/// Says where a cell's numbers break, or come near to it.
+struct StabilityRecord {
+  std::optional<std::int64_t> overflow_texels;           ///< of the encoded map, or that the blur mixed one into
+  std::optional<std::int64_t> nan_texels;                ///< of the encoded map, NaN
+  std::optional<std::int64_t> negative_variance_texels;  ///< of a map of moments, before any clamp
+  std::optional<double> lowest_variance;                 ///< of a map of moments, before any clamp
+  std::optional<double> headroom;       ///< ln(largest number of the store) - ln(largest stored): what exponents could grow by
+  std::optional<double> safe_exponent;  ///< largest value of the filter's exponent with which no texel of this map overflows
+  std::optional<double> half_difference_max;  ///< of visibility, 16-bit store less 32-bit store: largest magnitude
+  std::optional<double> half_difference_rms;
+  std::optional<double> bound_shortfall_max;           ///< by how much a bound is darker than what it bounds
+  std::optional<std::int64_t> bound_violations;        ///< receivers where it is by more than rounding explains
+  std::optional<std::int64_t> bound_exact_violations;  ///< receivers where it is in double precision, too
+};
+
 /// Says how well the map's texels are spent on the view; over receivers: pixels whose surface faces the light.
 struct CoverageRecord {
   std::optional<double> texels_per_pixel;         ///< map texels under a pixel's footprint on its surface: the median
@@ -165,6 +180,7 @@ struct ImagesRecord {
   std::optional<std::string> attribution = std::nullopt;  ///< the error and its four parts, as heat maps
   std::optional<std::string> texel_density = std::nullopt;  ///< texels per pixel; one per scene, view and map settings
   std::optional<std::string> texel_grid = std::nullopt;     ///< the map's texels on the surfaces; one per the same
+  std::optional<std::string> stability = std::nullopt;      ///< where the cell's numbers break, per texel and per pixel
 };
 
 /// Holds everything measured of one scene x view x filter x parameters x map settings.
@@ -203,6 +219,7 @@ struct CellRecord {
   CoverageRecord coverage;
   ArtefactRecord artefact;
   AttributionRecord attribution;
+  StabilityRecord stability;
   ImagesRecord images;
   std::vector<std::string> warnings;  ///< for people: what makes this cell's numbers doubtful
   std::map<std::string, std::string> absent;

@@ -11,6 +11,7 @@
 #include "report/cell_key.h"
 #include "report/json_values.h"
 #include "report/repeat.h"
+#include "report/stability_words.h"
 
 namespace shadowbench::report {
 namespace {
@@ -287,7 +288,7 @@ std::vector<std::string> describe_group(const CellGroup& group, const GlRecord& 
   }
   const std::string coverage = describe_coverage(group.cells.front().coverage);
   if (!coverage.empty()) sentences.push_back("Over the receivers in view: " + coverage + ".");
-  for (const auto& more : {describe_prefilters(group, gl), describe_accuracy(group), describe_troubles(group)}) {
+  for (const auto& more : {describe_prefilters(group, gl), describe_accuracy(group), describe_stability(group), describe_troubles(group)}) {
     sentences.insert(sentences.end(), more.begin(), more.end());
   }
   return sentences;

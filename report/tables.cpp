@@ -227,6 +227,27 @@ std::vector<Column> attribution_columns() {
   return columns;
 }
 
+std::vector<Column> stability_columns() {
+  const auto column = [](const char* name, const char* meaning, auto StabilityRecord::*member) {
+    return cell_column(name, meaning, [member](const CellRecord& c) { return plain(c.stability.*member); });
+  };
+  return {column("overflow_texels", "texels of the encoded map that overflowed, or into which the blur mixed one that did", &StabilityRecord::overflow_texels),
+          column("nan_texels", "texels of the encoded map that are NaN", &StabilityRecord::nan_texels),
+          column("negative_variance_texels", "texels of a map of moments whose variance is below 0 before any clamp",
+                 &StabilityRecord::negative_variance_texels),
+          column("lowest_variance", "of a map of moments, before any clamp", &StabilityRecord::lowest_variance),
+          column("headroom", "ln(largest number of the store) - ln(largest stored value): what exponents could grow by", &StabilityRecord::headroom),
+          column("safe_exponent", "largest value of the filter's exponent with which no texel of this map overflows", &StabilityRecord::safe_exponent),
+          column("half_difference_max", "largest difference of visibility between the 16-bit store and the 32-bit store",
+                 &StabilityRecord::half_difference_max),
+          column("half_difference_rms", "the same, root mean square over the pixels that count", &StabilityRecord::half_difference_rms),
+          column("bound_shortfall_max", "by how much a bound is darker than the percentage-closer filter of its own kernel and depth",
+                 &StabilityRecord::bound_shortfall_max),
+          column("bound_violations", "receivers where it is by more than rounding explains", &StabilityRecord::bound_violations),
+          column("bound_exact_violations", "receivers where it is in double precision too: with these parameters it is no bound",
+                 &StabilityRecord::bound_exact_violations)};
+}
+
 std::vector<Column> columns_of(CsvTable table) {
   std::vector<Column> columns = setting_columns();
   const auto append = [&](const std::vector<Column>& more) { columns.insert(columns.end(), more.begin(), more.end()); };
@@ -235,6 +256,7 @@ std::vector<Column> columns_of(CsvTable table) {
     append(coverage_columns());
     append(artefact_columns());
     append(attribution_columns());
+    append(stability_columns());
     columns.push_back(key_column());
     return columns;
   }

@@ -33,9 +33,19 @@ std::string describe_range(const ParamSpec& param) {
   return fmt::format("{} .. {}{}", *param.min, *param.max, param.integer ? ", whole" : "");
 }
 
+/// What the encoded map holds, as far as the front matter says; empty where it says nothing.
+std::string describe_stored(const FilterSpec& spec) {
+  std::vector<std::string> parts;
+  if (spec.holds_moments) parts.push_back("moments");
+  if (!spec.variance_floor.empty()) parts.push_back("variances raised to " + spec.variance_floor);
+  if (!spec.exponent.empty()) parts.push_back("exponents that grow with " + spec.exponent);
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
 void print_filter(const FilterSpec& spec) {
   fmt::print("{}  {}\n  kind {}{}\n  source: {}\n", spec.id, spec.title, filters::to_string(spec.kind),
              filters::make_model(spec.id) ? "" : ", without a model", spec.source);
+  if (const std::string stored = describe_stored(spec); !stored.empty()) fmt::print("  its map holds: {}\n", stored);
   for (const ParamSpec& param : spec.params) {
     fmt::print("  {:<16} {} [{}]{}\n  {:<16} {}\n", param.name, describe_range(param),
                filters::to_string(param.default_value), param.unit.empty() ? "" : " " + param.unit, "", param.text);
@@ -64,7 +74,8 @@ nlohmann::json to_json(const FilterSpec& spec) {
   for (const ParamSpec& param : spec.params) params.push_back(to_json(param));
   return {{"id", spec.id},         {"title", spec.title},   {"source", spec.source},
           {"kind", filters::to_string(spec.kind)},          {"claims", spec.claims},
-          {"model", filters::make_model(spec.id) != nullptr}, {"params", params}};
+          {"model", filters::make_model(spec.id) != nullptr}, {"params", params},
+          {"moments", spec.holds_moments}, {"exponent", spec.exponent}, {"variance_floor", spec.variance_floor}};
 }
 
 int list_filters(const ListArguments& arguments) {

@@ -16,7 +16,7 @@ namespace {
 const std::vector<std::string>& experiment_keys() {
   static const std::vector<std::string> keys = {
       "scene", "ground", "view", "filter_file", "map_size", "size", "bias", "map_format", "reversed_depth", "perspective_depth", "fit", "snap",
-      "light", "lights", "tuned", "border", "far_test", "behind_test", "border_page", "rounds", "precision", "budget", "cell_timeout", "seed", "truth", "attribution",
+      "light", "lights", "tuned", "border", "far_test", "behind_test", "border_page", "rounds", "precision", "budget", "cell_timeout", "seed", "truth", "attribution", "stability",
       "grids"};
   return keys;
 }
@@ -94,6 +94,7 @@ void add_run_options(CLI::App& command, RunArguments& a) {
   command.add_option("--cell-timeout", a.cell_timeout_s, "seconds that a filter of your own may take on one scene")->capture_default_str();
   command.add_flag("--truth,!--no-truth", a.truth, "trace rays, and score every filter against them (default)");
   command.add_flag("--attribution,!--no-attribution", a.attribution, "take the errors apart: trace kernels, run models (default)");
+  command.add_flag("--stability,!--no-stability", a.stability, "say where numbers break, as pictures and counts: overflow, negative variance, 16- against 32-bit stores, bounds that do not hold");
   command.add_flag("--grids,!--no-grids", a.grids, fmt::format("compare all filters of a view in one picture, and keep their float images (default up to {} filters)", kFiltersOfAGrid));
   command.add_option("--shard", a.shard, "I/N: every N-th cell only, from the I-th on; 'merge' joins the N report folders")
       ->check([](const std::string& text) { return text.empty() ? std::string("I/N is missing") : std::string(); });

@@ -42,6 +42,7 @@ struct RunArguments {
   std::vector<std::string> views;
   bool truth = true;
   bool attribution = true;
+  bool stability = false;
   int grids = 0;  ///< 1: yes, -1: no, 0: where there are few filters
   std::string shard;
   bool fresh = false;

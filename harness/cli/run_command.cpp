@@ -154,6 +154,7 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   options.command = std::move(command);
   options.truth = arguments.truth && !arguments.worker;
   options.attribution = arguments.attribution;
+  options.stability = arguments.stability;
   options.shard = parse_shard(arguments.shard);
   options.grids = arguments.grids > 0 || (arguments.grids == 0 && options.filters.size() <= kFiltersOfAGrid);
   if (options.grids && options.shard.count > 1) fail("--shard needs --no-grids: a grid shows all filters of a view, and a shard has some of them");

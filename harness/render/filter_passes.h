@@ -57,9 +57,8 @@ class FilterPasses {
   /// Encodes and blurs the map; does nothing for filters that read depth.
   void prefilter(const ShadowMap& map);
 
-  /// Counts texels of the encoded map that overflowed (see Prefilter::count_overflown); 0 for filters that read depth. Call after
-  /// prefilter().
-  std::int64_t count_broken_texels() const { return prefilter_ ? prefilter_->count_overflown() : 0; }
+  /// What encodes and blurs; null for filters that read depth.
+  Prefilter* encoded_map() { return prefilter_ ? &*prefilter_ : nullptr; }
 
   /// Looks every receiver up; `target` is R32F, of the G-buffer's size. Background is 1.
   void lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& target);

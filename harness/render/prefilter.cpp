@@ -1,8 +1,5 @@
 #include "harness/render/prefilter.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
 
 #include "filters/gaussian.h"
@@ -20,28 +17,13 @@ GLenum store_format(const filters::ParamValues& values) {
   return formats.at(filters::text_or(values, "store", ""));
 }
 
-bool combines_logs(const filters::FilterRequest& request) {
-  return filters::text_or(request.values, "combine", "linear") == "log";
-}
-
 /// What the blur reads outside the map, it reads as the lookup does.
 Defines blur_defines(const filters::FilterRequest& request, filters::Border border) {
   Defines defines;
-  if (combines_logs(request)) defines.emplace_back("COMBINE_LOGS", "1");
+  if (filters::combines_logs(request.values)) defines.emplace_back("COMBINE_LOGS", "1");
   if (border == filters::Border::kEdge) defines.emplace_back("BORDER_EDGE", "1");
   if (border == filters::Border::kRepeat) defines.emplace_back("BORDER_REPEAT", "1");
   return defines;
-}
-
-/// Gives the magnitude from which on a number of a format counts as overflown; fixed point has none.
-float overflow_limit(const gl::PixelFormat& format) {
-  constexpr float kNearLargest = 0.99f;
-  if (format.name.ends_with("16f")) return kNearLargest * 65504.0f;
-  return format.name.ends_with("32f") ? kNearLargest * std::numeric_limits<float>::max() : std::numeric_limits<float>::infinity();
-}
-
-bool is_overflown(const float* channels, int count, float limit) {
-  return !std::all_of(channels, channels + count, [limit](float v) { return std::abs(v) < limit; });
 }
 
 }  // namespace
@@ -51,7 +33,7 @@ Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& reque
     : stored_(std::make_shared<ImageTarget>(request.spec.id + " map", store_format(request.values), map_size, map_size)),
       encode_(shaders.compile_filter(request.spec.id + " encode", "encode.frag", map_defines, filter_pieces(request))) {
   encode_.set("map_texel_uv", 1.0f / static_cast<float>(map_size));
-  const bool nearest = combines_logs(request) || filters::text_or(request.values, "sample", "linear") == "nearest";
+  const bool nearest = filters::combines_logs(request.values) || filters::text_or(request.values, "sample", "linear") == "nearest";
   sampler_.set_filter(nearest ? GL_NEAREST : GL_LINEAR, nearest ? GL_NEAREST : GL_LINEAR);
   sampler_.set_wrap(wrap_mode(light.range.border));
   reads_border_ = light.range.border == filters::Border::kBorder;
@@ -123,21 +105,20 @@ void Prefilter::bind() const {
   sampler_.bind(kStoredUnit);
 }
 
-std::int64_t Prefilter::count_overflown() const {
-  const int channels = stored_->texture().format().channels, size = stored_->texture().width();
-  const float limit = overflow_limit(stored_->texture().format());
-  const bool border = reads_border_ && is_overflown(&border_[0], channels, limit);
-  const int ring = border ? radius_ : 0;  // texels whose blur reads the border
-  const std::vector<float> values = stored_->texture().read_floats(channels);
-  std::int64_t count = 0;
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      const bool near_border = std::min({x, y, size - 1 - x, size - 1 - y}) < ring;
-      const auto first = static_cast<std::size_t>(y * size + x) * static_cast<std::size_t>(channels);
-      if (near_border || is_overflown(&values[first], channels, limit)) ++count;
-    }
-  }
-  return count;
+EncodedTexels Prefilter::read(const ImageTarget& target) {
+  const int channels = target.texture().format().channels;
+  return {target.texture().width(), channels, target.texture().read_floats(channels)};
+}
+
+EncodedTexels Prefilter::read() const { return read(*stored_); }
+
+EncodedTexels Prefilter::read_before_blur(const ShadowMap& map) {
+  if (radius_ == 0) return read(*stored_);
+  map.bind();
+  scratch_->bind();
+  encode_.use();
+  triangle_.draw();
+  return read(*scratch_);
 }
 
 std::int64_t Prefilter::texels_written() const {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "filters/catalogue.h"
 #include "harness/gl/fullscreen.h"
@@ -13,6 +14,13 @@
 #include "harness/render/shadow_map.h"
 
 namespace shadowbench::render {
+
+/// An encoded map as it was read back.
+struct EncodedTexels {
+  int side = 0;               ///< texels
+  int channels = 0;
+  std::vector<float> values;  ///< side x side x channels, row 0 is v = 0
+};
 
 /// The passes of a filter that stores something else than depth: `encode`, then `blur` twice where it asks for that.
 class Prefilter {
@@ -37,10 +45,16 @@ class Prefilter {
   /// Binds the result to the unit of lib/map_access.glsl that fetch_map reads.
   void bind() const;
 
-  /// Counts texels of the result that an exponential overflowed in: infinity, NaN, or within 1 % of the largest number of a float
-  /// format, at which GLs stop that round towards zero (llvmpipe does, on its way to 16 bits). Where what lies outside the map
-  /// overflowed, texels whose blur reads it count too. min() and clamp() in a lookup would hide them in the image.
-  std::int64_t count_overflown() const;
+  /// Reads the result back.
+  EncodedTexels read() const;
+
+  /// Encodes a map again and reads it back before any blur; the result stays as it is.
+  EncodedTexels read_before_blur(const ShadowMap& map);
+
+  int blur_radius_texels() const { return radius_; }
+
+  /// Gives what the blur reads outside the map, where that is not the map itself.
+  std::optional<glm::vec4> blurred_border() const { return reads_border_ && radius_ > 0 ? std::optional(border_) : std::nullopt; }
 
   int passes() const { return radius_ > 0 ? 3 : 1; }
   std::int64_t bytes() const { return static_cast<std::int64_t>(stored_->texture().bytes()); }
@@ -59,6 +73,7 @@ class Prefilter {
   gl::FullscreenTriangle triangle_;
   gl::Sampler sampler_{"encoded map"};
 
+  static EncodedTexels read(const ImageTarget& target);
   glm::vec4 encode_border(GLenum format);
   void blur(const gl::Texture& from, ImageTarget& to, glm::ivec2 direction);
 };

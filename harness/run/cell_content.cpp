@@ -12,7 +12,7 @@ namespace {
 
 void add_options(ContentHash& hash, const RunOptions& options) {
   const RoundLimits& rounds = options.rounds;
-  hash.add(fmt::format("seed {} truth {} attribution {} grids {} pad {} rounds {} {} {} {}", options.seed, options.truth, options.attribution,
+  hash.add(fmt::format("seed {} truth {} attribution {} stability {} grids {} pad {} rounds {} {} {} {}", options.seed, options.truth, options.attribution, options.stability,
                        options.grids, options.pad_texels.value_or(largest_padding_texels(options.filters)), rounds.fewest, rounds.most,
                        rounds.precision, rounds.budget_ms));
   // The masks of artefacts reach as far as the widest kernel of the run.
@@ -72,6 +72,7 @@ std::string name_cell_content(const std::string& scene_content, const filters::F
   hash.add(scene_content);
   hash.add(request.spec.body);
   hash.add(fmt::format("{} claims {}", request.user_file, fmt::join(request.spec.claims, " ")));
+  hash.add(fmt::format("moments {} exponent {} floor {}", request.spec.holds_moments, request.spec.exponent, request.spec.variance_floor));
   return hash.name();
 }
 

@@ -77,6 +77,7 @@ struct RunOptions {
   gl::Backend backend = gl::Backend::kAuto;
   bool truth = true;        ///< trace visibility and score every filter against it
   bool attribution = true;  ///< take the errors apart; needs truth
+  bool stability = false;   ///< say where numbers break, per texel and per pixel
   bool grids = true;        ///< compare all filters of a view in one picture and keep their float images; else each cell's pictures alone
   Shard shard;
   std::string title;        ///< of the experiment

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "filters/tracked.h"
 #include "harness/gl/context.h"
 #include "harness/gl/timer.h"
 #include "harness/render/shader_library.h"
@@ -17,10 +19,15 @@ struct Renderer {
   std::vector<std::string> refused;  ///< contexts that `auto` could not use, and why
   gl::TimerKind timer = gl::TimerKind::kWallClock;
   render::ShaderLibrary shaders;
+  std::optional<filters::GlAccuracy> accuracy = std::nullopt;  ///< see measure_accuracy()
 };
 
 /// Makes a context and chooses its timer by measurement.
 /// Throws Error(kContext).
 Renderer make_renderer(gl::Backend backend, const Resources& resources);
+
+/// Gives how exact the GL's functions and filtering weights are, by experiment: what propagated rounding bounds start from.
+/// Cost: under 2 s when first asked for, nothing then.
+filters::GlAccuracy measure_accuracy(Renderer& renderer);
 
 }  // namespace shadowbench::run

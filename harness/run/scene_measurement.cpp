@@ -9,7 +9,9 @@
 #include "harness/render/filter_passes.h"
 #include "harness/render/receivers.h"
 #include "harness/render/shade_pass.h"
+#include "harness/run/filter_setup.h"
 #include "harness/run/light_timing.h"
+#include "harness/run/stability.h"
 #include "harness/run/statistics.h"
 #include "harness/run/timing.h"
 #include "report/cell_key.h"
@@ -37,12 +39,15 @@ class SceneBench {
   SceneMeasurement run(const std::function<void(const std::string&)>& on_cell) {
     SceneMeasurement result;
     std::vector<std::unique_ptr<render::FilterPasses>> filters;
+    StabilityMeter stability(renderer_, options_, task_, assets_);
     for (const auto& request : task_.filters) {
       on_cell(request.label());
       filters.push_back(make_passes(request));
       result.cells.push_back(draw(*filters.back()));
       count_passes(result, *filters.back());
-      warn_of_overflow(result, *filters.back());
+      stability.warn(result.cells.back(), *filters.back());
+      warn_of_broken_pixels(result.cells.back());
+      if (options_.stability) stability.measure(result.cells.back(), *filters.back());
     }
     time(result, filters);
     result.stored_map = light_.map.read_picture();
@@ -64,9 +69,7 @@ class SceneBench {
   double drawn_ms_ = 0.0;  ///< of all filters' passes, once
 
   std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request) {
-    const render::Bias bias = resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
-    const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed, options_.range);
-    return std::make_unique<render::FilterPasses>(renderer_.shaders, request, light_.map, light);
+    return make_filter_passes(renderer_, options_, *task_.scene, light_, request);
   }
 
   MeasuredCell draw(render::FilterPasses& filter) {
@@ -104,17 +107,9 @@ class SceneBench {
     for (MeasuredCell& cell : result.cells) cell.record.warnings.push_back(warning);
   }
 
-  /// An overflow in the map is often invisible in the image, which is then wrong without a NaN.
-  void warn_of_overflow(SceneMeasurement& result, const render::FilterPasses& filter) const {
-    const std::string name = fmt::format("{}: {}", task_.scene->name, filter.request().label());
-    report::CellRecord& record = result.cells.back().record;
-    const std::int64_t broken = filter.count_broken_texels();
-    if (broken > 0) {
-      record.warnings.push_back(fmt::format("{}: {} texels of its map are infinite or NaN, or stopped at the largest number of their format, so "
-                                            "its image is not to be trusted; choose a smaller exponent, a wider store, or combine=log", name, broken));
-    }
-    const std::int64_t nan = record.nan.value_or(0);
-    if (nan > 0) record.warnings.push_back(fmt::format("{}: {} pixels are not finite", name, nan));
+  void warn_of_broken_pixels(MeasuredCell& cell) const {
+    const std::int64_t nan = cell.record.nan.value_or(0);
+    if (nan > 0) cell.record.warnings.push_back(fmt::format("{}: {}: {} pixels are not finite", task_.scene->name, cell.label, nan));
   }
 
   static void count_passes(SceneMeasurement& result, const render::FilterPasses& filter) {
@@ -204,6 +199,7 @@ report::CellRecord make_record(const RunOptions& options, const SceneTask& task,
                  amount(bias.normal_offset), bias.receiver_plane,     bias.map.polygon_factor, bias.map.polygon_units,
                  bias.map.cull_front,        bias.map.midpoint};
   record.range = {filters::to_string(options.range.border), options.range.far_test, options.range.behind_test};
+  if (!options.stability) record.absent["stability"] = record.absent["images.stability"] = "the run was made without --stability";
   record.width = options.width;
   record.height = options.height;
   record.key = report::cell_key(record);

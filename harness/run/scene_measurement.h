@@ -10,6 +10,7 @@
 #include "reference/metrics/artefacts.h"
 #include "report/image.h"
 #include "report/records.h"
+#include "report/stability_picture.h"
 
 namespace shadowbench::run {
 
@@ -20,6 +21,7 @@ struct MeasuredCell {
   std::string label;          ///< filter and the parameters that were asked for
   report::Image picture;      ///< linear RGB
   report::Image visibility;   ///< 1 lit .. 0 blocked
+  report::StabilityImages stability;  ///< where its numbers break; empty unless the run asks for it
   std::vector<report::Image> error_parts;  ///< in the order of reference::ErrorPart; empty where there is no attribution
 };
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "harness/run/run_facts.h"
+#include "harness/run/stability.h"
 #include "report/attribution_picture.h"
 #include "report/diverging.h"
 #include "report/file_name.h"
@@ -122,6 +123,13 @@ void add_truth_parts(std::vector<report::Part>& parts, const SceneTruth& truth,
   parts.push_back(make_part("truth.mask.contact_gap", truth, masks->contact_gap));
 }
 
+void add_stability_parts(std::vector<report::Part>& parts, const MeasuredCell& cell) {
+  for (const report::StabilityImage& each : report::list_stability_images()) {
+    const report::Image& image = cell.stability.*each.image;
+    if (!image.empty()) parts.push_back({stability_part(cell.label, each), {"Y"}, image, false});
+  }
+}
+
 /// Writes a cell's own pictures; no two labels share a file.
 void write_cell_pictures(const RunOptions& options, const std::string& stem, MeasuredCell& cell) {
   if (cell.picture.empty()) return;
@@ -165,6 +173,10 @@ std::string exr_name(const RunOptions& options, const SceneTask& task) { return 
 std::string visibility_part(const std::string& label) { return label + ".visibility"; }
 std::string picture_part(const std::string& label) { return label + ".picture"; }
 
+std::string stability_part(const std::string& label, const report::StabilityImage& image) {
+  return fmt::format("{}.stability.{}", label, image.id);
+}
+
 void write_float_images(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
                         const SceneTruth& truth, const gl::GlInfo& info) {
   std::vector<report::Part> parts;
@@ -176,6 +188,7 @@ void write_float_images(const RunOptions& options, const SceneTask& task, const 
       parts.push_back({fmt::format("{}.error.{}", cell.label, report::list_error_parts()[p].id), {"Y"}, cell.error_parts[p], false});
     }
   }
+  for (const MeasuredCell& cell : measured.cells) add_stability_parts(parts, cell);
   if (truth.absent.empty()) add_truth_parts(parts, truth, measured.masks);
   parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});
   report::write_exr(options.out / exr_name(options, task), parts, describe(options, task, info));
@@ -183,10 +196,11 @@ void write_float_images(const RunOptions& options, const SceneTask& task, const 
 
 void write_single_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured) {
   const std::string stem = task_stem(options, task);
-  tbb::parallel_for_each(measured.cells, [&](MeasuredCell& cell) {
-    write_cell_pictures(options, stem, cell);
+  tbb::parallel_for_each(measured.cells, [&](MeasuredCell& cell) { write_cell_pictures(options, stem, cell); });
+  for (MeasuredCell& cell : measured.cells) {
+    write_stability(options, stem, cell);
     cell.record.absent["images"] = "the run was made with --no-grids";
-  });
+  }
 }
 
 void write_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured,
@@ -198,6 +212,7 @@ void write_pictures(const RunOptions& options, const SceneTask& task, SceneMeasu
   tbb::parallel_for_each(measured.cells, [&](MeasuredCell& cell) { write_cell_pictures(options, stem, cell); });
   for (MeasuredCell& cell : measured.cells) {
     write_attribution(options, stem, cell, truth, grid);
+    write_stability(options, stem, cell);
     cell.record.images.grid = grid_name;
     cell.record.images.exr = exr_name(options, task);
   }

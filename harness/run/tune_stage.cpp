@@ -8,6 +8,7 @@
 
 #include "harness/render/shade_pass.h"
 #include "harness/run/cell_analysis.h"
+#include "harness/run/map_limits.h"
 #include "harness/run/mean_flip.h"
 #include "report/picture_io.h"
 
@@ -92,7 +93,7 @@ std::optional<std::vector<double>> TuneStage::score(render::FilterPasses& passes
   request.values = values;
   passes.retune(renderer_.shaders, values, make_light(request));
   passes.prefilter(light_->map);
-  if (passes.count_broken_texels() > 0) return std::nullopt;
+  if (count_broken_texels(passes, light_->map) > 0) return std::nullopt;
   std::vector<Shot> shots(views_.size());
   for (std::size_t i = 0; i < views_.size(); ++i) {
     render::GBuffer& gbuffer = assets_.gbuffer(*views_[i].camera);

@@ -68,6 +68,7 @@ std::vector<std::string> worker_arguments(const RunOptions& options, const Scene
   const std::vector<std::string> rounds = round_arguments(options.rounds);
   arguments.insert(arguments.end(), rounds.begin(), rounds.end());
   if (options.ground) arguments.push_back("--ground");
+  if (options.stability) arguments.push_back("--stability");
   if (options.map.curve.reversed) arguments.push_back("--reversed-depth");
   if (!options.map.curve.is_linear()) {
     arguments.push_back("--perspective-depth");
@@ -111,7 +112,7 @@ MeasuredCell failed_cell(const RunOptions& options, const SceneTask& task, const
     cell.record.message = outcome.signal ? fmt::format("killed by signal {} ({})", outcome.signal, strsignal(outcome.signal))
                                          : fmt::format("ended with exit code {}: {}", *outcome.exit_code, clean(outcome.error_text));
   }
-  for (const char* group : {"time_ms", "ratio_to_none", "lights", "cost", "receivers", "nan", "images"}) {
+  for (const char* group : {"time_ms", "ratio_to_none", "lights", "cost", "receivers", "nan", "stability", "images"}) {
     cell.record.absent[group] = cell.record.message;
   }
   return cell;
@@ -131,6 +132,9 @@ MeasuredCell read_cell(const RunOptions& options, const SceneTask& task, const f
   for (const report::Part& part : file.parts) {
     if (part.name == visibility_part(cell.label)) cell.visibility = part.image;
     if (part.name == picture_part(cell.label)) cell.picture = part.image;
+    for (const report::StabilityImage& each : report::list_stability_images()) {
+      if (part.name == stability_part(cell.label, each)) cell.stability.*each.image = part.image;
+    }
   }
   return cell;
 }

@@ -67,8 +67,8 @@ Case make_absent_case(std::string filter, std::string variant, Level level, std:
   return item;
 }
 
-Case make_undriven_case(const std::string& axis) {
-  return make_absent_case({}, "filters", Level::kGl, fmt::format("no chosen filter names the axis at a parameter: stress = \"{}\" in its front matter", axis));
+Case make_undriven_case(const std::string& what) {
+  return make_absent_case({}, "filters", Level::kGl, fmt::format("no chosen filter's front matter declares {}", what));
 }
 
 std::vector<Axis> choose_axes(const std::string& text) {

@@ -80,6 +80,7 @@ struct Axis {
   double bound = 0.0;         ///< `degraded` is said where what is measured is over it
   std::string broken_when;    ///< in words: "infinities in the map; NaN, all lit or all dark"
 
+  DrivenParam driven_param = nullptr;  ///< for axes that drive a parameter of filters; else null
   std::function<std::vector<Case>(const StressContext&)> make_cases;
   std::function<std::vector<Exhibit>(const StressContext&)> make_exhibits;  ///< tables and pictures of its own; may be null
 };
@@ -87,8 +88,8 @@ struct Axis {
 /// Makes a case that reports why it was not measured.
 Case make_absent_case(std::string filter, std::string variant, Level level, std::string reason);
 
-/// Makes a case that reports that no chosen filter names this axis in its front matter.
-Case make_undriven_case(const std::string& axis);
+/// Makes a case that reports that no chosen filter's front matter declares what an axis needs: "'exponent' without 'moments'".
+Case make_undriven_case(const std::string& what);
 
 /// Names a level: "GL", "model", "arithmetic".
 const char* name_of(Level level);

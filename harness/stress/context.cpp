@@ -4,12 +4,11 @@
 
 namespace shadowbench::stress {
 
-std::vector<DrivenFilter> find_driven(const StressContext& context, const std::string& axis) {
+std::vector<DrivenFilter> find_driven(const StressContext& context, DrivenParam param_of) {
   std::vector<DrivenFilter> driven;
   for (const filters::FilterRequest& request : context.filters) {
-    for (const filters::ParamSpec& param : request.spec.params) {
-      if (param.stress == axis) driven.push_back({request, param.name});
-    }
+    const std::string param = param_of(request.spec);
+    if (!param.empty()) driven.push_back({request, param});
   }
   return driven;
 }

@@ -23,14 +23,17 @@ struct StressContext {
   run::Progress* progress = nullptr;  ///< for exhibits' notes; may be null
 };
 
-/// A chosen filter whose front matter names an axis at one of its parameters: `stress = "esm-exponent"`.
+/// Names the parameter of a filter that an axis drives, from what the front matter declares; empty: not for this filter.
+using DrivenParam = std::string (*)(const filters::FilterSpec&);
+
+/// A chosen filter with the parameter that an axis drives.
 struct DrivenFilter {
   filters::FilterRequest request;
   std::string param;
 };
 
-/// Finds the chosen filters that name an axis, in the order they were chosen.
-std::vector<DrivenFilter> find_driven(const StressContext& context, const std::string& axis);
+/// Finds the chosen filters that have such a parameter, in the order they were chosen.
+std::vector<DrivenFilter> find_driven(const StressContext& context, DrivenParam param_of);
 
 /// Gives the choices of a filter's text parameter, such as `store`, for a case each: the chosen value alone where the user
 /// set it, all otherwise; empty where the filter has no such parameter.

@@ -8,6 +8,7 @@
 
 #include "harness/render/filter_passes.h"
 #include "harness/render/shade_pass.h"
+#include "harness/run/map_limits.h"
 #include "harness/run/scene_assets.h"
 #include "harness/run/truth_cache.h"
 #include "harness/scene/load.h"
@@ -89,7 +90,7 @@ class Stage {
     passes.lookup(assets_.gbuffer(camera()), light_.map, target_);
     Result result;
     result.label = request.label();
-    result.broken_texels = passes.count_broken_texels();
+    result.broken_texels = run::count_broken_texels(passes, light_.map);
     result.visibility = render::read_image(target_.texture(), 1);
     result.picture = render::shade(renderer_.shaders, assets_.gbuffer(camera()), target_.texture(), scene_, camera());
     score(result);

@@ -129,11 +129,13 @@ std::string describe_axes(const std::vector<filters::FilterRequest>& filters) {
   context.filters = filters;
   for (const Axis& axis : axis_table()) {
     std::vector<std::string> driven;
-    for (const DrivenFilter& filter : find_driven(context, axis.id)) driven.push_back(fmt::format("{}:{}", filter.request.spec.id, filter.param));
+    if (axis.driven_param) {
+      for (const DrivenFilter& filter : find_driven(context, axis.driven_param)) driven.push_back(fmt::format("{}:{}", filter.request.spec.id, filter.param));
+    }
     text += fmt::format("{}  {}\n  {}{}, {:g} .. {:g} (--range: within {:g} .. {:g})\n  measures {}; degraded over {:g}\n  broken: {}\n", axis.id, axis.title, axis.quantity,
                         axis.unit.empty() ? "" : ", " + axis.unit, axis.range.low, axis.range.high, axis.limits.low, axis.limits.high, axis.measured, axis.bound,
                         axis.broken_when);
-    if (!driven.empty()) text += fmt::format("  parameters that name it: {}\n", fmt::join(driven, ", "));
+    if (!driven.empty()) text += fmt::format("  drives: {}\n", fmt::join(driven, ", "));
     text += "\n";
   }
   return text;

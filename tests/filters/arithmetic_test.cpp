@@ -111,6 +111,15 @@ TEST(StoreFormat, NamesGiveChannelsBytesAndPrecision) {
   EXPECT_EQ(store_precision("rg16"), StorePrecision::kUnorm16);
 }
 
+/// The next number up is infinite, or does not fit.
+TEST(StoreFormat, LargestNumber_IsTheLargest) {
+  const auto largest = static_cast<float>(largest_number(StorePrecision::kHalf));
+  EXPECT_EQ(round_to_store(largest, StorePrecision::kHalf), largest);
+  EXPECT_TRUE(std::isinf(round_to_store(largest * 1.001f, StorePrecision::kHalf)));
+  EXPECT_TRUE(std::isinf(static_cast<float>(largest_number(StorePrecision::kSingle)) * 1.001f));
+  EXPECT_EQ(round_to_store(2.0f, StorePrecision::kUnorm16), static_cast<float>(largest_number(StorePrecision::kUnorm16)));
+}
+
 TEST(StoreFormat, HalfOverflowsAbove65504) {
   EXPECT_TRUE(std::isinf(round_to_store(std::exp(11.10f), StorePrecision::kHalf)));
   EXPECT_FALSE(std::isinf(round_to_store(std::exp(11.08f), StorePrecision::kHalf)));

@@ -31,15 +31,13 @@ TEST(FrontMatter, GivesEveryField) {
       "/*+++\ntitle = \"Title\"\nsource = \"Source\"\nkind = \"bound\"\nstore = [\"rg32f\", \"rg16f\"]\n"
       "combine = [\"linear\", \"log\"]\nsample = \"linear\"\nclaims = [\"contact-hardening\"]\nradius_texels = \"radius\"\n"
       "[param.radius]\ndefault = 3\nmin = 0\nmax = 9\nunit = \"texels\"\ntext = \"help\"\n"
-      "[param.amount]\ndefault = 0.5\nmin = 0.0\nmax = 1.0\ntext = \"help\"\nstress = \"an-axis\"\nconst = true\n+++*/\n"
+      "[param.amount]\ndefault = 0.5\nmin = 0.0\nmax = 1.0\ntext = \"help\"\nconst = true\n+++*/\n"
       "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n",
       "dir/mine.glsl");
   EXPECT_EQ(spec.id, "mine");
   EXPECT_EQ(spec.title, "Title");
   EXPECT_EQ(spec.source, "Source");
   EXPECT_EQ(spec.kind, FilterKind::kBound);
-  EXPECT_EQ(spec.find_param("radius")->stress, "");
-  EXPECT_EQ(spec.find_param("amount")->stress, "an-axis");
   EXPECT_EQ(spec.claims, std::vector<std::string>{"contact-hardening"});
   EXPECT_TRUE(spec.has_encode);
   EXPECT_TRUE(spec.has_prefilter);
@@ -99,6 +97,20 @@ TEST(FrontMatter, StoreAndEncode_ComeTogether) {
                "dir/mine.glsl:1", "lacks 'store'");
   expect_error(with("combine = \"linear\"\n"), "dir/mine.glsl:6", "needs 'store'");
   expect_error(with("store = \"rgb8\"\n"), "dir/mine.glsl:6", "'rgb8' is unknown");
+}
+
+TEST(FrontMatter, WhatTheMapHolds_IsDeclared) {
+  const std::string glsl = "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }";
+  const std::string param = "[param.c]\ndefault = 1.0\nmin = 0.0\nmax = 2.0\ntext = \"x\"\n";
+  const FilterSpec spec = parse_filter(with("store = \"rg32f\"\nmoments = true\nexponent = \"c\"\nvariance_floor = \"c\"\n" + param, glsl), "a.glsl");
+  EXPECT_TRUE(spec.holds_moments);
+  EXPECT_EQ(spec.exponent, "c");
+  EXPECT_EQ(spec.variance_floor, "c");
+  EXPECT_FALSE(parse_filter(with("store = \"rg32f\"\n", glsl), "a.glsl").holds_moments);
+  expect_error(with("store = [\"rg32f\", \"r32f\"]\nmoments = true\n", glsl), "dir/mine.glsl:7", "'r32f' has one");
+  expect_error(with("store = \"r32f\"\nexponent = \"d\"\n" + param, glsl), "dir/mine.glsl:7", "'d', which is not a numeric parameter");
+  expect_error(with("store = \"rg32f\"\nvariance_floor = \"c\"\n" + param, glsl), "dir/mine.glsl:7", "needs 'moments = true'");
+  expect_error(with("exponent = \"c\"\n" + param), "dir/mine.glsl:6", "needs 'store'");
 }
 
 TEST(FrontMatter, NoVisibility_IsRefused) { expect_error(with("", "float lit() { return 1.0; }"), "dir/mine.glsl:1", "visibility"); }

@@ -11,7 +11,6 @@
 namespace shadowbench::stress {
 namespace {
 
-constexpr const char* kId = "esm-exponent";
 constexpr double kBound = 0.02;       // of visibility: five steps of an 8-bit picture
 constexpr float kOccluder = 0.3f;     // of the largest depth
 constexpr const char* kSource = "derived: exp(c z) must stay below the largest finite number (IEEE 754)";
@@ -129,21 +128,23 @@ std::vector<Setting> list_settings(const DrivenFilter& driven) {
   return settings;
 }
 
+std::string driven_param(const filters::FilterSpec& spec) { return spec.holds_moments ? std::string() : spec.exponent; }
+
 std::vector<Case> make_cases(const StressContext& context) {
   std::vector<Case> cases;
-  for (const DrivenFilter& driven : find_driven(context, kId)) {
+  for (const DrivenFilter& driven : find_driven(context, driven_param)) {
     for (const Setting& setting : list_settings(driven)) {
       for (const Level level : {Level::kGl, Level::kModel}) cases.push_back(make_case(context, driven, setting, level));
     }
   }
-  if (cases.empty()) cases.push_back(make_undriven_case(kId));
+  if (cases.empty()) cases.push_back(make_undriven_case("'exponent' without 'moments'"));
   return cases;
 }
 
 /// A published comparison let a 16-bit exponential variance map overflow, at exponent 10 where 5.54 is the limit, and ranked the
 /// filter by what came of it. The same with an exponent that is fine in 32 bits.
 std::vector<Exhibit> make_exhibits(const StressContext& context) {
-  if (!context.renderer || find_driven(context, kId).empty()) return {};
+  if (!context.renderer || find_driven(context, driven_param).empty()) return {};
   const Mistake mistake{"stack", "esm:c=80,store=r16f", {"esm:c=80", "esm:c=80,store=r16f,combine=log", "esm:c=10,store=r16f", "esm:c=20,store=r16f"}, {"vsm", "poisson"}};
   return {replay(context, mistake, "mistake")};
 }
@@ -161,6 +162,7 @@ Axis make_esm_exponent_axis() {
   axis.measured = "largest error of visibility across a two-depth edge";
   axis.bound = kBound;
   axis.broken_when = "texels of the map overflowed (GL), or visibility is not finite, all lit, all dark, or falls by more than 0.1 from dark to light";
+  axis.driven_param = driven_param;
   axis.make_cases = make_cases;
   axis.make_exhibits = make_exhibits;
   return axis;

@@ -9,7 +9,6 @@
 namespace shadowbench::stress {
 namespace {
 
-constexpr const char* kId = "vsm-cancellation";
 constexpr double kBound = 0.02;     // of visibility: five steps of an 8-bit picture
 constexpr int kBands = 12;          // depths at which a gap is tried: how a moment is rounded is luck
 constexpr int kDepths = 512;        // the same, where no map is needed
@@ -148,16 +147,18 @@ std::vector<double> list_minima(const DrivenFilter& driven) {
   return set || chosen == 0.0 ? std::vector{chosen} : std::vector{chosen, 0.0};
 }
 
+std::string driven_param(const filters::FilterSpec& spec) { return spec.exponent.empty() ? spec.variance_floor : std::string(); }
+
 std::vector<Case> make_cases(const StressContext& context) {
   std::vector<Case> cases;
-  for (const DrivenFilter& driven : find_driven(context, kId)) {
+  for (const DrivenFilter& driven : find_driven(context, driven_param)) {
     for (const std::string& store : list_choices(driven.request, "store")) {
       for (const double minimum : list_minima(driven)) {
         for (const Level level : {Level::kGl, Level::kModel}) cases.push_back(make_filter_case(context, driven, store, minimum, level));
       }
     }
   }
-  if (cases.empty()) cases.push_back(make_undriven_case(kId));
+  if (cases.empty()) cases.push_back(make_undriven_case("'variance_floor' without 'exponent'"));
   cases.push_back(make_wall_case("32-bit float", filters::StorePrecision::kSingle));
   cases.push_back(make_wall_case("16-bit float", filters::StorePrecision::kHalf));
   cases.push_back(make_wall_case("16-bit unorm", filters::StorePrecision::kUnorm16));
@@ -176,6 +177,7 @@ Axis make_vsm_cancellation_axis() {
   axis.measured = "largest error of visibility";
   axis.bound = kBound;
   axis.broken_when = "visibility is not finite, all lit or all dark, or falls by more than 0.1 from dark to light; of arithmetic: over 0.98 behind a wall";
+  axis.driven_param = driven_param;
   axis.make_cases = make_cases;
   return axis;
 }

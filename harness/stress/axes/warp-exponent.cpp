@@ -9,7 +9,6 @@
 namespace shadowbench::stress {
 namespace {
 
-constexpr const char* kId = "warp-exponent";
 constexpr double kBound = 0.02;
 constexpr int kTaps = 81;  // of a 9 x 9 box
 constexpr const char* kSource = "derived: exp(2 c) must stay below the largest finite number (IEEE 754)";
@@ -85,6 +84,8 @@ Case make_filter_case(const StressContext& context, const DrivenFilter& driven, 
   return item;
 }
 
+std::string driven_param(const filters::FilterSpec& spec) { return spec.holds_moments ? spec.exponent : std::string(); }
+
 std::vector<Case> make_cases(const StressContext& context) {
   const double single = static_cast<double>(std::numeric_limits<float>::max());
   std::vector<Case> cases;
@@ -92,8 +93,8 @@ std::vector<Case> make_cases(const StressContext& context) {
                                  {"16-bit float", filters::StorePrecision::kHalf, 65504.0, 1}, {"16-bit float", filters::StorePrecision::kHalf, 65504.0, kTaps}}) {
     cases.push_back(make_moment_case(setting));
   }
-  const std::vector<DrivenFilter> driven = find_driven(context, kId);
-  if (driven.empty()) cases.push_back(make_undriven_case(kId));
+  const std::vector<DrivenFilter> driven = find_driven(context, driven_param);
+  if (driven.empty()) cases.push_back(make_undriven_case("'exponent' with 'moments'"));
   for (const DrivenFilter& filter : driven) {
     for (const std::string& store : list_choices(filter.request, "store")) {
       for (const Level level : {Level::kGl, Level::kModel}) cases.push_back(make_filter_case(context, filter, store, level));
@@ -114,6 +115,7 @@ Axis make_warp_exponent_axis() {
   axis.measured = "relative error of the second moment; of filters: error of visibility";
   axis.bound = kBound;
   axis.broken_when = "a moment or a sum of moments is infinite, or texels of the map overflowed; of filters also: visibility is not finite, all lit or all dark";
+  axis.driven_param = driven_param;
   axis.make_cases = make_cases;
   return axis;
 }

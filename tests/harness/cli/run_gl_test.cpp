@@ -234,8 +234,80 @@ TEST_F(Command, WithoutTruth_SaysSo) {
 TEST_F(Command, OverflowInTheMap_IsWarnedOf) {
   const Outcome outcome = run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none,esm:c=2000");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("infinite or NaN"), std::string::npos) << outcome.err;
+  for (const char* words : {"overflowed", "r32f holds numbers up to 3.40282e+38, which is e^88.72", "choose c <= 88.", "or combine=log"}) {
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << words << "\n" << outcome.err;
+  }
   ASSERT_EQ(results(folder())["warnings"].size(), 1u);
+}
+
+/// What the warning recommends, works; and it is of this very map.
+TEST_F(Command, OverflowWarning_NamesWhatKeepsTheLimit) {
+  const std::string common = "run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --no-truth --filters none,esm:";
+  const Outcome outcome = run(common + "c=20,store=r16f");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("choose c <= 11.0"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("store=r32f or combine=log"), std::string::npos) << outcome.err;
+  for (const char* remedy : {"c=11.08,store=r16f", "c=20,store=r32f", "c=20,store=r16f,combine=log"}) {
+    ASSERT_EQ(run(common + remedy).exit_code, 0);
+    EXPECT_EQ(results(folder())["warnings"].size(), 0u) << remedy;
+  }
+}
+
+TEST_F(Command, VarianceThatRoundingTakesBelowItsFloor_IsWarnedOf) {
+  const std::string common = "run --out out --size 64x36 --map-size 256 --rounds 1 --scene cubes --no-truth --filters none,vsm:";
+  const Outcome outcome = run(common + "store=rg16f");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* words : {"rounding in rg16f", "below 0", "choose min_variance >= 0.000", "store=rg32f"}) {
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << words << "\n" << outcome.err;
+  }
+  ASSERT_EQ(run(common + "store=rg32f").exit_code, 0);
+  EXPECT_EQ(results(folder())["warnings"].size(), 0u);
+}
+
+/// A user's file that says what its map holds gets what a built-in filter gets, but for what needs a model.
+TEST_F(Command, Stability_IsCountedDrawnAndLinked) {
+  std::string copied = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/vsm.glsl");
+  write("copied.glsl", copied);
+  const Outcome outcome = run("run --stability --out out --size 96x54 --map-size 64 --rounds 1 --scene cubes --no-truth --filters "
+                              "none,vsm,esm:c=20,store=r16f,copied --filter-file copied.glsl");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json cells = results(folder())["cells"];
+  ASSERT_EQ(cells.size(), 4u);
+  const auto& none = cells[0]["stability"];
+  EXPECT_TRUE(none["overflow_texels"].is_null());
+  EXPECT_EQ(cells[0]["absent"]["stability.overflow_texels"], "the filter reads the depth map itself");
+  EXPECT_TRUE(cells[0]["images"]["stability"].is_null());
+  const auto& vsm = cells[1]["stability"];
+  EXPECT_EQ(vsm["overflow_texels"], 0);
+  EXPECT_GE(vsm["negative_variance_texels"], 0);
+  EXPECT_GT(vsm["half_difference_max"], 0.0);
+  EXPECT_EQ(vsm["bound_violations"], 0);
+  EXPECT_GT(vsm["headroom"], 88.0);
+  const auto& esm = cells[2]["stability"];
+  EXPECT_GT(esm["overflow_texels"], 0);
+  EXPECT_TRUE(esm["headroom"].is_null());
+  EXPECT_NEAR(esm["safe_exponent"].get<double>(), 11.09, 0.02);
+  EXPECT_TRUE(esm["lowest_variance"].is_null());
+  const auto& user = cells[3]["stability"];
+  for (const char* field : {"overflow_texels", "negative_variance_texels", "lowest_variance", "headroom", "half_difference_max", "half_difference_rms"}) {
+    EXPECT_EQ(user[field], vsm[field]) << field;
+  }
+  EXPECT_EQ(cells[3]["absent"]["stability.bound_violations"], "the filter has no scalar model");
+  const std::string page = read_text(folder() / "out" / "index.html"), csv = read_text(folder() / "out" / "accuracy.csv");
+  for (const int i : {1, 2, 3}) {
+    const std::string image = cells[static_cast<std::size_t>(i)]["images"]["stability"];
+    EXPECT_TRUE(std::filesystem::exists(folder() / "out" / image)) << image;
+    EXPECT_NE(page.find(image), std::string::npos);
+  }
+  EXPECT_NE(page.find("an exponent of 11.0"), std::string::npos);
+  EXPECT_NE(csv.find("negative_variance_texels"), std::string::npos);
+}
+
+TEST_F(Command, WithoutStability_SaysSo) {
+  ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters vsm --no-truth").exit_code, 0);
+  const nlohmann::json cell = results(folder())["cells"][0];
+  EXPECT_TRUE(cell["stability"]["overflow_texels"].is_null());
+  EXPECT_EQ(cell["absent"]["stability"], "the run was made without --stability");
 }
 
 TEST_F(Command, MapOfOneTexel_Works) {

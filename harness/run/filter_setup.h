@@ -1,0 +1,20 @@
+#pragma once
+
+#include <memory>
+
+#include "harness/render/filter_passes.h"
+#include "harness/run/renderer.h"
+#include "harness/run/scene_assets.h"
+
+namespace shadowbench::run {
+
+/// Gives a scene's light as one filter sees it: with the run's bias, resolved for the filter's kernel.
+render::LightSetup make_filter_light(const RunOptions& options, const scene::Scene& scene, const LightMap& light,
+                                     const filters::FilterRequest& request);
+
+/// Compiles one filter over a light's map.
+/// Throws as render::FilterPasses.
+std::unique_ptr<render::FilterPasses> make_filter_passes(Renderer& renderer, const RunOptions& options, const scene::Scene& scene,
+                                                         const LightMap& light, const filters::FilterRequest& request);
+
+}  // namespace shadowbench::run
