@@ -34,7 +34,7 @@ TEST_F(StressCommand, WritesTheReport_WithLimitsBesideTheory) {
 TEST_F(StressCommand, WhatIsNotAvailable_IsSaid) {
   const Outcome outcome = run("stress --out out --filters vsm --axes esm-exponent");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("not available: filters (GL): no chosen filter names the axis"));
+  EXPECT_THAT(outcome.err, HasSubstr("not available: filters (GL): no chosen filter's front matter declares 'exponent'"));
   EXPECT_THAT(read_text(folder() / "out" / "stress.html"), HasSubstr("not available"));
 }
 
