@@ -51,10 +51,10 @@ LightFrameBench::LightFrameBench(Renderer& renderer, const RunOptions& options, 
       options_(options),
       assets_(assets),
       frame_(frame),
-      gbuffer_(assets.gbuffer(*frame.camera)),
-      target_("visibility of one of several lights", GL_R32F, options.width, options.height) {
+      gbuffer_(assets.gbuffer(*frame.camera)) {
   const std::vector<scene::Light> lights = scene::make_light_ring(*frame.light, count);
   for (const scene::Light& light : lights) maps_.push_back(assets.make_light_map(light, *frame.camera, frame.map_size));
+  for (int i = 0; i < count; ++i) targets_.push_back(std::make_unique<render::ImageTarget>("visibility of a light", GL_R32F, options.width, options.height));
   prepare_filters(lights);
 }
 
@@ -84,7 +84,7 @@ void LightFrameBench::prefilter(std::size_t filter) {
 void LightFrameBench::look_up(std::size_t filter) {
   for (std::size_t i = 0; i < maps_.size(); ++i) {
     frame_.filters[filter]->turn_to(prepared_[filter][i]);
-    frame_.filters[filter]->lookup(gbuffer_, maps_[i].map, target_);
+    frame_.filters[filter]->lookup(gbuffer_, maps_[i].map, *targets_[i]);
   }
 }
 
@@ -104,8 +104,8 @@ std::vector<std::vector<float>> LightFrameBench::draw(std::size_t filter) {
   std::vector<std::vector<float>> pictures;
   for (std::size_t i = 0; i < maps_.size(); ++i) {
     frame_.filters[filter]->turn_to(prepared_[filter][i]);
-    frame_.filters[filter]->lookup(gbuffer_, maps_[i].map, target_);
-    pictures.push_back(target_.texture().read_floats(1));
+    frame_.filters[filter]->lookup(gbuffer_, maps_[i].map, *targets_[i]);
+    pictures.push_back(targets_[i]->texture().read_floats(1));
   }
   return pictures;
 }

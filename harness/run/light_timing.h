@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "harness/render/filter_passes.h"
@@ -42,7 +43,7 @@ class LightFrameBench {
   SceneAssets& assets_;
   LightFrame frame_;
   render::GBuffer& gbuffer_;
-  render::ImageTarget target_;
+  std::vector<std::unique_ptr<render::ImageTarget>> targets_;  ///< one a light: what the next one overwrites need not be drawn
   std::vector<LightMap> maps_;
   std::vector<std::vector<render::PreparedLight>> prepared_;  ///< by filter and light
 

@@ -42,11 +42,12 @@ struct TimedFilter {
 };
 
 /// Times interleaved rounds: every round draws the map and runs each filter once, in a shuffled order, so that drift of
-/// the machine's speed hits all of them alike. One round warms up and is not counted; none where `drawn_ms`, which is what
+/// the machine's speed hits all of them alike. After a prefilter three lookups go untimed, and the fourth is timed: right
+/// after one, a CPU's lookups are up to 1.6 times as slow, which in a frame of lookups alone they are not. One round warms up and is not counted; none where `drawn_ms`, which is what
 /// running every filter once has cost before, spends the budget already. A filter drops out when its ratios
 /// to the filter `reference`, of the lookup and of map, prefilter and lookup, are precise enough; `reference` stays as
 /// long as any other. When the budget is spent, all stop, but not before three rounds, or one where no more may be.
-/// Requires at least one filter. Cost: (rounds + 1) times the sum of all passes.
+/// Requires at least one filter. Cost: (rounds + 1) times the sum of all passes, lookups of prefiltered maps four times.
 RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference, const std::function<double()>& draw_map,
                       const RoundLimits& limits, std::uint64_t seed, double drawn_ms = 0.0);
 

@@ -76,6 +76,16 @@ TEST(Rounds, BudgetIsSpent_AllStop_AndSaySo) {
   for (const FilterTimes& filter : times.filters) EXPECT_EQ(filter.stopped, StopReason::kBudget);
 }
 
+/// Lookups right after a prefilter are slow for a while; those of filters without one are timed as they come.
+TEST(Rounds, LookupsSettleAfterAPrefilter) {
+  int since = 0, alone = 0;
+  const TimedFilter slow{[&] { return since = 0, 10.0; }, [&] { return ++since > 3 ? 2.0 : 7.0; }}, other{{}, [&] { return 1.0 + alone++; }};
+  const RoundTimes times = run_rounds({slow, other}, 0, [] { return 1.0; }, RoundLimits::exactly(2), 3);
+  EXPECT_EQ(times.filters[0].lookup, (std::vector<double>{2.0, 2.0}));
+  EXPECT_EQ(times.filters[1].lookup, (std::vector<double>{2.0, 3.0}));
+  EXPECT_DOUBLE_EQ(times.spent_ms, 3.0 * (1.0 + 10.0 + 3.0 * 7.0 + 2.0) + 1.0 + 2.0 + 3.0);
+}
+
 TEST(Rounds, BudgetOfNothing_StillLeavesThreeRounds) {
   FakeFilters filters;
   filters.add(10.0, 0.5);
