@@ -1,0 +1,195 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "harness/run/bias_theory.h"
+#include "harness/stress/heat_map.h"
+#include "harness/stress/tilted_plane.h"
+
+namespace shadowbench::stress {
+namespace {
+
+constexpr double kBound = 10.0;      // texels
+constexpr double kTolerance = 0.1;   // of what geometry says
+constexpr const char* kSource = "derived: the depth that a plane gains over the kernel, s (r + 1) tan(angle)";
+
+/// A kernel as theory sees it.
+struct Reach {
+  double shape = 0.0;   ///< r: half-width of the kernel's own shape, texels
+  double between = 1.0; ///< what reading between texels adds: 1 for the bilinear 2x2, half for the nearest texel
+
+  double texels() const { return shape + between; }
+};
+
+Reach find_reach(const filters::FilterRequest& request) {
+  const filters::Kernel kernel = filters::make_model(request.spec.id)->kernel(request.values);
+  const bool nearest = kernel.reconstruction() == filters::Reconstruction::kNearest;
+  const double texels = run::reach_texels(request), between = nearest ? 0.5 : 1.0;
+  return {texels - between, between};
+}
+
+std::string describe_theory(const Reach& reach, bool diagonal) {
+  return fmt::format("s ({:g} + {:g}){} tan(angle)", reach.shape, reach.between, diagonal ? " sqrt(2)" : "");
+}
+
+/// The angle at which the bias reaches the bound, and the law itself: nowhere is the bias anything else.
+std::vector<Theory> make_theories(const Reach& reach, bool diagonal) {
+  const double gain = find_gain_m({45.0, diagonal}, reach.texels()) / kPlaneTexel_m;
+  const std::string law = describe_theory(reach, diagonal);
+  return {{std::atan(kBound / gain) * 180.0 / std::numbers::pi, TheoryKind::kSlope, fmt::format("{} = {:g} s", law, kBound), kSource, Verdict::kDegraded},
+          {std::nullopt, TheoryKind::kSlope, fmt::format("none: the bias is {} at every angle", law), kSource, Verdict::kBroken}};
+}
+
+Observation observe_plane(TiltedPlane& plane, const PlaneTilt& tilt, const Reach& reach) {
+  plane.tilt(tilt);
+  const double theory = find_gain_m(tilt, reach.texels());
+  const std::optional<double> needed = find_needed_bias(plane, theory);
+  if (!needed) return {Verdict::kBroken, std::nullopt, fmt::format("acne under twice the bias that theory asks for, {:.3g} texels", theory / kPlaneTexel_m)};
+  const double texels = *needed / kPlaneTexel_m;
+  if (std::abs(*needed - theory) > kTolerance * theory + plane.rounding_m()) {
+    return {Verdict::kBroken, texels, fmt::format("needs {:.3g} texels, where theory asks for {:.3g}", texels, theory / kPlaneTexel_m)};
+  }
+  if (texels > kBound) return {Verdict::kDegraded, texels, fmt::format("needs a bias of {:.3g} texels, over {:g}", texels, kBound)};
+  return {Verdict::kOk, texels, {}};
+}
+
+/// Says how near the bias came to theory, over all angles.
+std::vector<std::string> remark_ratio(const report::StressCase& record, const Reach& reach, bool diagonal) {
+  double least = std::numeric_limits<double>::infinity(), most = 0.0, steepest = 0.0;
+  for (const report::StressSample& sample : record.samples) {
+    const double theory = find_gain_m({sample.value, diagonal}, reach.texels()) / kPlaneTexel_m;
+    if (!sample.measured || theory <= 0.0) continue;
+    least = std::min(least, *sample.measured / theory);
+    most = std::max(most, *sample.measured / theory);
+    steepest = *sample.measured;
+  }
+  if (most == 0.0) return {};
+  const std::string low = fmt::format("{:.3f}", least), high = fmt::format("{:.3f}", most);
+  return {fmt::format("needs {} times {} at every angle, and {:.4g} texels at {:g} degrees", low == high ? low : low + " to " + high, describe_theory(reach, diagonal), steepest,
+                      record.samples.back().value)};
+}
+
+Case make_case(const StressContext& context, const filters::FilterRequest& request, bool diagonal, Level level) {
+  const std::string variant = diagonal ? "light along the diagonal" : "light along a row";
+  if (!filters::make_model(request.spec.id)) return make_absent_case(request.spec.id, variant, level, "the filter has no scalar model, which names its kernel");
+  if (level == Level::kGl && !context.renderer) return make_absent_case(request.spec.id, variant, level, "there is no GL");
+  const Reach reach = find_reach(request);
+  Case item;
+  item.filter = request.spec.id;
+  item.variant = variant;
+  item.level = level;
+  item.params = request.values;
+  item.theories = make_theories(reach, diagonal);
+  const std::shared_ptr<TiltedPlane> plane = level == Level::kGl ? make_gl_plane(context, request) : make_model_plane(request);
+  item.observe = [plane, reach, diagonal](double angle) { return observe_plane(*plane, {angle, diagonal}, reach); };
+  if (level == Level::kGl) item.remark = [reach, diagonal](const report::StressCase& record) { return remark_ratio(record, reach, diagonal); };
+  return item;
+}
+
+std::vector<filters::FilterRequest> list_comparisons(const StressContext& context) {
+  std::vector<filters::FilterRequest> chosen;
+  std::ranges::copy_if(context.filters, std::back_inserter(chosen), [](const auto& request) { return request.spec.kind == filters::FilterKind::kComparison; });
+  return chosen;
+}
+
+/// Models stand in where there is no GL; beside it they would draw the same lines.
+std::vector<Case> make_cases(const StressContext& context) {
+  std::vector<Case> cases;
+  for (const filters::FilterRequest& request : list_comparisons(context)) {
+    for (const bool diagonal : {false, true}) {
+      cases.push_back(make_case(context, request, diagonal, Level::kGl));
+      if (!context.renderer) cases.push_back(make_case(context, request, diagonal, Level::kModel));
+    }
+  }
+  if (cases.empty()) cases.push_back(make_absent_case({}, "any", Level::kGl, "no chosen filter is of kind comparison"));
+  return cases;
+}
+
+constexpr int kColumns = 110, kRows = 60;
+constexpr double kHighestBias = 12.0;  // texels
+
+/// The share of receivers with acne, a column for each angle. More bias never brings more acne: above the first bias without,
+/// nothing needs to be drawn.
+report::Image measure_acne(TiltedPlane& plane, bool diagonal) {
+  report::Image acne(kColumns, kRows, 1);
+  for (int x = 0; x < kColumns; ++x) {
+    plane.tilt({90.0 * (x + 0.5) / kColumns, diagonal});
+    for (int y = kRows - 1; y >= 0; --y) {
+      const Acne seen = plane.find_acne(kHighestBias * (kRows - y - 0.5) / kRows * kPlaneTexel_m);
+      *acne.at(x, y) = static_cast<float>(seen.share);
+      if (seen.mean_shadow == 0.0) break;
+    }
+  }
+  return acne;
+}
+
+/// Measures the bias at a few angles.
+std::string describe_growth(TiltedPlane& plane, const std::string& label, const Reach& reach) {
+  std::vector<std::string> needs;
+  for (const double angle : {45.0, 80.0, 89.0}) {
+    const PlaneTilt tilt{angle, false};
+    plane.tilt(tilt);
+    const std::optional<double> needed = find_needed_bias(plane, find_gain_m(tilt, reach.texels()));
+    if (needed) needs.push_back(fmt::format("{:.3g} texels of bias at {:g} degrees", *needed / kPlaneTexel_m, angle));
+  }
+  return fmt::format("{} needs {}: a bias that is enough at one angle is far from it at the next.", label, fmt::join(needs, ", "));
+}
+
+/// The filter with the widest kernel: its curve is the farthest from all others'.
+const filters::FilterRequest* choose_shown(const std::vector<filters::FilterRequest>& chosen) {
+  const filters::FilterRequest* shown = nullptr;
+  for (const filters::FilterRequest& request : chosen) {
+    if (filters::make_model(request.spec.id) && (!shown || find_reach(request).texels() > find_reach(*shown).texels())) shown = &request;
+  }
+  return shown;
+}
+
+std::vector<Exhibit> make_exhibits(const StressContext& context) {
+  const std::vector<filters::FilterRequest> chosen = list_comparisons(context);
+  const filters::FilterRequest* shown = choose_shown(chosen);
+  if (!context.renderer || !shown) return {};
+  const Reach reach = find_reach(*shown);
+  HeatMap map;
+  map.title = "Acne over angle and bias";
+  map.note = fmt::format("{} on an empty plane, light along a row, map {} · theory: {}", shown->label(), kPlaneMapTexels, describe_theory(reach, false));
+  map.quantity = "share of the lit plane that shows acne";
+  map.x = {"angle between the light and the plane's normal, degrees", {0.0, 90.0}, {0, 10, 20, 30, 40, 50, 60, 70, 80, 90}};
+  map.y = {"bias, texels along the light", {0.0, kHighestBias}, {0, 2, 4, 6, 8, 10, 12}};
+  const auto plane = make_gl_plane(context, *shown);
+  map.values = measure_acne(*plane, false);
+  map.scale = 1.0;
+  map.curve = [reach](double angle) { return angle < 90.0 ? find_gain_m({angle, false}, reach.texels()) / kPlaneTexel_m : std::numeric_limits<double>::infinity(); };
+  Exhibit exhibit;
+  exhibit.id = "acne";
+  exhibit.title = map.title;
+  exhibit.sentences = {describe_growth(*plane, shown->label(), reach)};
+  exhibit.pictures = {{"stress.acne.png", fmt::format("{}: acne, and the bias that theory asks for", shown->label())}};
+  write_heat_map(context.out / exhibit.pictures.front().file, map);
+  return {exhibit};
+}
+
+}  // namespace
+
+Axis make_grazing_light_axis() {
+  Axis axis;
+  axis.title = "Grazing light: the bias that an empty plane takes";
+  axis.quantity = "angle between the light and the plane's normal";
+  axis.unit = "degrees";
+  axis.scale = Scale::kLinear;
+  axis.range = {0.0, 89.99};
+  axis.limits = {0.0, 89.999};
+  axis.coarse_samples = 37;
+  axis.measured = "least bias without acne, along the light";
+  axis.measured_unit = "texels";
+  axis.bound = kBound;
+  axis.broken_when = "the bias that is needed is more than 10 % off what the plane's depth gains over the kernel";
+  axis.make_cases = make_cases;
+  axis.make_exhibits = make_exhibits;
+  return axis;
+}
+
+}  // namespace shadowbench::stress

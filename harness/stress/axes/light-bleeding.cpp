@@ -1,0 +1,144 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "harness/stress/explain.h"
+#include "harness/stress/layer_stack.h"
+
+namespace shadowbench::stress {
+namespace {
+
+constexpr double kBound = 0.1;      // of visibility, where truth is 0
+constexpr double kLit = 0.9;
+constexpr double kFirstGap = 0.1;   // of the depth range
+constexpr double kReceiver = 0.95;
+constexpr Range kRange{1e-4, 8.0};
+
+/// What a filter must say by its own formula; `visibility` is null where none is known.
+struct ClosedForm {
+  std::function<double(const LayerStack&, const std::vector<double>&)> visibility;
+  std::string formula;
+  std::string source;
+};
+
+/// A filter's front matter tells its formula: what names these axes is its exponent, or its least variance.
+ClosedForm find_closed_form(const filters::FilterRequest& request) {
+  const filters::ParamSpec* exponent = nullptr;
+  bool has_variance = false;
+  for (const filters::ParamSpec& param : request.spec.params) {
+    if (param.stress == "esm-exponent") exponent = &param;
+    if (param.stress == "warp-exponent") return {};  // moments of a warp: as many formulas as there are warps
+    has_variance = has_variance || param.stress == "vsm-cancellation";
+  }
+  if (has_variance) return {find_chebyshev, "s2 / (s2 + (t - mu)^2)", "Donnelly and Lauritzen 2006, Variance Shadow Maps, I3D, eq. 5 (Chebyshev)"};
+  if (!exponent) return {};
+  const double c = filters::number(request.values, exponent->name);
+  return {[c](const LayerStack& stack, const std::vector<double>& shares) { return find_exponential(stack, shares, c); },
+          fmt::format("mean of exp(-{:g} (t - z))", c), "Annen et al. 2008, Exponential Shadow Maps, Graphics Interface, eq. 5"};
+}
+
+LayerStack make_stack(int occluders, double ratio) { return make_layer_stack(occluders, kFirstGap, ratio, kReceiver); }
+
+/// The most that any receiver's kernel lets through.
+double find_largest(const ClosedForm& form, const LayerScene& layers, const LayerStack& stack) {
+  double largest = 0.0;
+  for (const std::vector<double>& shares : layers.shares) largest = std::max(largest, form.visibility(stack, shares));
+  return largest;
+}
+
+/// The gap ratio at which the closed form crosses the bound: it falls as the gap grows.
+Theory make_theory(const ClosedForm& form, int radius, int occluders) {
+  constexpr int kHalvings = 60;
+  Theory theory{std::nullopt, TheoryKind::kSlope, fmt::format("{} = {:g}", form.formula, kBound), form.source, Verdict::kDegraded};
+  const LayerScene layers = make_layer_scene(radius, make_stack(occluders, 1.0));  // whose shares hold for all ratios
+  double low = 1e-9, high = 100.0;
+  const auto bleeds = [&](double ratio) { return find_largest(form, layers, make_stack(occluders, ratio)) > kBound; };
+  if (!bleeds(low)) {
+    theory.formula = fmt::format("none: {} stays below {:g}", form.formula, kBound);
+    return theory;
+  }
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = std::sqrt(low * high);
+    (bleeds(middle) ? low : high) = middle;
+  }
+  theory.onset = low;
+  return theory;
+}
+
+Observation judge_bleeding(const ProbeResult& seen) {
+  if (seen.broken_texels > 0) return {Verdict::kBroken, std::nullopt, fmt::format("{} texels of the map overflowed", seen.broken_texels)};
+  if (!std::ranges::all_of(seen.visibility, [](double v) { return std::isfinite(v); })) return {Verdict::kBroken, std::nullopt, "visibility is NaN or infinite"};
+  const double largest = *std::ranges::max_element(seen.visibility);
+  const auto why = [&](double bound) { return fmt::format("visibility {:.3g} where nothing is lit, over {:g}", largest, bound); };
+  if (largest > kLit) return {Verdict::kBroken, largest, why(kLit)};
+  if (largest > kBound) return {Verdict::kDegraded, largest, why(kBound)};
+  return {Verdict::kOk, largest, {}};
+}
+
+/// A filter whose exact arithmetic says the same as what was drawn does not follow the formula, and is not wrong by rounding.
+std::string explain_by_model(const Disagreement& missed, Probe& exact, const filters::FilterRequest& request, int occluders) {
+  if (std::string words = explain_broken_throughout(missed); !words.empty() || !missed.measured) return words;
+  const LayerScene layers = make_layer_scene(filters::prefilter_radius_texels(request.spec, request.values), make_stack(occluders, *missed.measured));
+  const std::vector<double> visibility = exact.look(layers.scene, request.values).visibility;
+  const double largest = *std::ranges::max_element(visibility);
+  if (std::abs(largest / kBound - 1.0) > 0.1) return {};
+  return fmt::format("the filter's model in extended precision lets {:.3f} through there as well: with {} it is not the plain formula", largest,
+                     request.set_by_user.empty() ? "its defaults" : fmt::format("the chosen {}", fmt::join(request.set_by_user, ", ")));
+}
+
+Case make_case(const StressContext& context, const filters::FilterRequest& request, int occluders, Level level) {
+  const std::string variant = fmt::format("{} occluders", occluders);
+  const auto [probe, reason] = make_probe(context, request, level);
+  if (!probe) return make_absent_case(request.spec.id, variant, level, reason);
+  const int radius = filters::prefilter_radius_texels(request.spec, request.values);
+  const ClosedForm form = find_closed_form(request);
+  Case item;
+  item.filter = request.spec.id;
+  item.variant = variant;
+  item.level = level;
+  item.params = request.values;
+  if (form.visibility) item.theories = {make_theory(form, radius, occluders)};
+  else item.remark = [](const report::StressCase&) { return std::vector<std::string>{"its front matter tells of no formula: there is nothing to hold it against but truth"}; };
+  if (filters::make_model(request.spec.id)) {
+    const std::shared_ptr<Probe> exact = make_model_probe(context, request, filters::Precision::kExtended);
+    item.explain = [exact, request, occluders](const Disagreement& missed) { return explain_by_model(missed, *exact, request, occluders); };
+  }
+  item.observe = [probe = probe, values = request.values, radius, occluders](double ratio) {
+    return judge_bleeding(probe->look(make_layer_scene(radius, make_stack(occluders, ratio)).scene, values));
+  };
+  return item;
+}
+
+std::vector<Case> make_cases(const StressContext& context) {
+  std::vector<Case> cases;
+  for (const filters::FilterRequest& request : context.filters) {
+    if (request.spec.kind != filters::FilterKind::kBound || !request.spec.has_encode) continue;
+    for (const int occluders : {2, 4, 8, 16}) {
+      for (const Level level : {Level::kGl, Level::kModel}) cases.push_back(make_case(context, request, occluders, level));
+    }
+  }
+  if (cases.empty()) cases.push_back(make_absent_case({}, "any", Level::kGl, "no chosen filter of kind bound encodes its map"));
+  return cases;
+}
+
+}  // namespace
+
+Axis make_light_bleeding_axis() {
+  Axis axis;
+  axis.title = "Light bleeding behind stacked occluders";
+  axis.quantity = "gap between the last occluder and the receiver / gap between the first and the last occluder";
+  axis.range = kRange;
+  axis.limits = {1e-7, kReceiver / kFirstGap - 1.0};
+  axis.coarse_samples = 25;
+  axis.from = SearchFrom::kHigh;
+  axis.measured = "largest visibility of receivers that are wholly blocked";
+  axis.bound = kBound;
+  axis.broken_when = fmt::format("texels of the map overflowed, or visibility is not finite or over {:g}", kLit);
+  axis.make_cases = make_cases;
+  return axis;
+}
+
+}  // namespace shadowbench::stress

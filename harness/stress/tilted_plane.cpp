@@ -1,0 +1,202 @@
+#include "harness/stress/tilted_plane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "harness/render/image_target.h"
+
+namespace shadowbench::stress {
+namespace {
+
+constexpr int kReceivers = 64;          // along each axis
+constexpr double kStep_texels = 0.628;  // between them: meets every place within a texel
+constexpr double kLeastAcne = 1e-6;     // mean shadow: one receiver by 1/256
+constexpr double kRoundings = 8.0;      // of a depth, on its way into the map and from the receiver
+
+double tangent(const PlaneTilt& tilt) { return std::tan(tilt.angle_deg * std::numbers::pi / 180.0); }
+
+/// What the light sees of the plane, with a margin.
+double find_depth_range_m(const PlaneTilt& tilt) { return std::max(2.0 * tangent(tilt), 1e-3); }
+
+/// The light's axes: along the map's rows and columns, and away from it. The plane is y = 0.
+struct LightAxes {
+  glm::dvec3 right, up, away;
+};
+
+LightAxes make_axes(const PlaneTilt& tilt) {
+  const double angle = tilt.angle_deg * std::numbers::pi / 180.0;
+  const glm::dvec3 falling(std::cos(angle), std::sin(angle), 0.0), level(0.0, 0.0, 1.0), away(std::sin(angle), -std::cos(angle), 0.0);
+  if (!tilt.diagonal) return {falling, level, away};
+  return {(falling + level) / std::numbers::sqrt2, (level - falling) / std::numbers::sqrt2, away};
+}
+
+/// Gives the point of the plane that a place on the map, metres from its middle, shows.
+glm::dvec3 find_point(const PlaneTilt& tilt, const glm::dvec2& place) {
+  const LightAxes axes = make_axes(tilt);
+  const glm::dvec3 seen = place.x * axes.right + place.y * axes.up;
+  return seen - axes.away * (seen.y / axes.away.y);
+}
+
+/// The receivers, metres from the map's middle.
+std::vector<glm::dvec2> place_receivers() {
+  std::vector<glm::dvec2> places;
+  const auto place = [](int i) { return (i - 0.5 * (kReceivers - 1)) * kStep_texels * kPlaneTexel_m; };
+  for (int y = 0; y < kReceivers; ++y) {
+    for (int x = 0; x < kReceivers; ++x) places.emplace_back(place(x), place(y));
+  }
+  return places;
+}
+
+scene::LightFrustum make_frustum(const PlaneTilt& tilt) {
+  const LightAxes axes = make_axes(tilt);
+  scene::LightFrustum frustum;
+  frustum.width_ws = 1.0;
+  frustum.texel_size_ws = kPlaneTexel_m;
+  frustum.depth_range_ws = find_depth_range_m(tilt);
+  frustum.direction_ws = glm::vec3(axes.away);
+  frustum.light_from_world = glm::transpose(glm::dmat4(glm::dvec4(axes.right, 0.0), glm::dvec4(axes.up, 0.0), glm::dvec4(-axes.away, 0.0), glm::dvec4(0.0, 0.0, 0.0, 1.0)));
+  const double depth = -1.0 / frustum.depth_range_ws;
+  frustum.clip_from_light = glm::dmat4(glm::dvec4(2.0, 0.0, 0.0, 0.0), glm::dvec4(0.0, 2.0, 0.0, 0.0), glm::dvec4(0.0, 0.0, depth, 0.0), glm::dvec4(0.0, 0.0, 0.5, 1.0));
+  const glm::dmat4 uv_from_light(glm::dvec4(1.0, 0.0, 0.0, 0.0), glm::dvec4(0.0, 1.0, 0.0, 0.0), glm::dvec4(0.0, 0.0, depth, 0.0), glm::dvec4(0.5, 0.5, 0.5, 1.0));
+  frustum.clip_from_world = glm::mat4(frustum.clip_from_light * frustum.light_from_world);
+  frustum.uv_depth_from_world = glm::mat4(uv_from_light * frustum.light_from_world);
+  return frustum;
+}
+
+/// Larger than the map on every side.
+scene::Scene make_scene(const PlaneTilt& tilt) {
+  scene::Scene scene;
+  scene.materials.emplace_back();
+  scene::Mesh mesh;
+  for (const auto& [x, y] : {std::pair(-0.6, -0.6), {0.6, -0.6}, {0.6, 0.6}, {-0.6, 0.6}}) mesh.vertices.push_back({glm::vec3(find_point(tilt, {x, y})), {0.0f, 1.0f, 0.0f}, {}});
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  scene.meshes.push_back(std::move(mesh));
+  return scene;
+}
+
+Acne measure(const std::vector<float>& visibility) {
+  constexpr double kStep = 1.0 / 255.0;
+  Acne acne;
+  for (const float v : visibility) {
+    const double shadow = 1.0 - static_cast<double>(v);
+    acne.mean_shadow += shadow / static_cast<double>(visibility.size());
+    if (shadow >= kStep) acne.share += 1.0 / static_cast<double>(visibility.size());
+  }
+  return acne;
+}
+
+/// Remembers how the plane lies.
+class Plane : public TiltedPlane {
+ public:
+  double rounding_m() const override { return kRoundings * 0x1p-24 * find_depth_range_m(tilt_); }
+
+ protected:
+  PlaneTilt tilt_;
+};
+
+class GlPlane final : public Plane {
+ public:
+  GlPlane(const StressContext& context, filters::FilterRequest request) : shaders_(context.renderer->shaders), seed_(context.seed), request_(std::move(request)) {}
+
+  void tilt(const PlaneTilt& tilt) override {
+    tilt_ = tilt;
+    if (!stage_) stage_.emplace();
+    stage_->map.draw(shaders_, render::Geometry(make_scene(tilt)), make_frustum(tilt));
+    std::vector<float> positions, normals;
+    for (const glm::dvec2& place : place_receivers()) {
+      const glm::vec3 point(find_point(tilt, place));
+      positions.insert(positions.end(), {point.x, point.y, point.z, 1.0f});  // view depth 1: there is something
+      normals.insert(normals.end(), {0.0f, 1.0f, 0.0f, 0.0f});
+    }
+    stage_->gbuffer.upload(positions, normals);
+  }
+
+  Acne find_acne(double bias_m) override {
+    const scene::LightFrustum frustum = make_frustum(tilt_);
+    render::Bias bias;
+    bias.constant_depth = bias_m / frustum.depth_range_ws;
+    const render::LightSetup light{frustum, 0.0, bias, seed_, {}};
+    if (passes_) passes_->retune(shaders_, request_.values, light);
+    else passes_.emplace(shaders_, request_, stage_->map, light);
+    passes_->prefilter(stage_->map);
+    passes_->lookup(stage_->gbuffer, stage_->map, stage_->target);
+    return measure(stage_->target.texture().read_floats(1));
+  }
+
+ private:
+  struct Stage {
+    render::ShadowMap map{kPlaneMapTexels};
+    render::GBuffer gbuffer{kReceivers, kReceivers};
+    render::ImageTarget target{"acne", GL_R32F, kReceivers, kReceivers};
+  };
+  render::ShaderLibrary& shaders_;
+  std::uint32_t seed_;
+  filters::FilterRequest request_;
+  std::optional<Stage> stage_;
+  std::optional<render::FilterPasses> passes_;
+};
+
+class ModelPlane final : public Plane {
+ public:
+  explicit ModelPlane(filters::FilterRequest request) : request_(std::move(request)), model_(filters::make_model(request_.spec.id)) {}
+
+  void tilt(const PlaneTilt& tilt) override {
+    tilt_ = tilt;
+    map_ = {kPlaneMapTexels, {}};
+    for (int y = 0; y < kPlaneMapTexels; ++y) {
+      for (int x = 0; x < kPlaneMapTexels; ++x) {
+        map_.stored.push_back(static_cast<float>(find_depth({(x + 0.5) * kPlaneTexel_m - 0.5, (y + 0.5) * kPlaneTexel_m - 0.5})));
+      }
+    }
+  }
+
+  Acne find_acne(double bias_m) override {
+    const auto lookup = model_->prepare({request_.spec, request_.values, map_, {}}, filters::Precision::kFloat);
+    std::vector<float> visibility;
+    for (const glm::dvec2& place : place_receivers()) visibility.push_back(static_cast<float>(lookup->at(make_receiver(place, bias_m)).visibility));
+    return measure(visibility);
+  }
+
+ private:
+  filters::FilterRequest request_;
+  std::unique_ptr<filters::Model> model_;
+  filters::DepthMap map_;
+
+  double find_depth(const glm::dvec2& place) const {
+    const double along = tilt_.diagonal ? (place.x - place.y) / std::numbers::sqrt2 : place.x;
+    return 0.5 + along * tangent(tilt_) / find_depth_range_m(tilt_);
+  }
+
+  filters::Receiver make_receiver(const glm::dvec2& place, double bias_m) const {
+    filters::Receiver receiver;
+    receiver.uv = glm::vec2(place + 0.5);
+    receiver.depth_unbiased = static_cast<float>(find_depth(place));
+    receiver.depth = static_cast<float>(find_depth(place) - bias_m / find_depth_range_m(tilt_));
+    return receiver;
+  }
+};
+
+}  // namespace
+
+double find_gain_m(const PlaneTilt& tilt, double reach_texels) {
+  return reach_texels * kPlaneTexel_m * tangent(tilt) * (tilt.diagonal ? std::numbers::sqrt2 : 1.0);
+}
+
+std::unique_ptr<TiltedPlane> make_gl_plane(const StressContext& context, const filters::FilterRequest& request) { return std::make_unique<GlPlane>(context, request); }
+
+std::unique_ptr<TiltedPlane> make_model_plane(const filters::FilterRequest& request) { return std::make_unique<ModelPlane>(request); }
+
+std::optional<double> find_needed_bias(TiltedPlane& plane, double theory_m) {
+  const auto has_acne = [&](double bias_m) { return plane.find_acne(bias_m).mean_shadow > kLeastAcne; };
+  if (!has_acne(0.0)) return 0.0;
+  double low = 0.0, high = 2.0 * theory_m + plane.rounding_m();
+  if (has_acne(high)) return std::nullopt;
+  while (high - low > 1e-3 * high) {
+    const double middle = 0.5 * (low + high);
+    (has_acne(middle) ? low : high) = middle;
+  }
+  return high;
+}
+
+}  // namespace shadowbench::stress
