@@ -26,6 +26,9 @@ struct StressContext {
 /// Names the parameter of a filter that an axis drives, from what the front matter declares; empty: not for this filter.
 using DrivenParam = std::string (*)(const filters::FilterSpec&);
 
+/// Names the exponent of a filter that stores exponentials and no moments of them.
+std::string find_exponent(const filters::FilterSpec& spec);
+
 /// A chosen filter with the parameter that an axis drives.
 struct DrivenFilter {
   filters::FilterRequest request;

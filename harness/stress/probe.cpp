@@ -9,13 +9,13 @@ namespace shadowbench::stress {
 namespace {
 
 /// The map's own space is the world's: (x, y, z) of a receiver are its u, v and depth, bit for bit.
-render::LightSetup make_light(int map_size, std::uint32_t seed) {
+scene::LightFrustum make_frustum(int map_size) {
   scene::LightFrustum frustum;
   frustum.width_ws = 1.0;
   frustum.texel_size_ws = 1.0 / map_size;
   frustum.depth_range_ws = 1.0;
   frustum.direction_ws = {0.0f, 0.0f, 1.0f};
-  return {frustum, 0.0, {}, seed, {}};
+  return frustum;
 }
 
 /// Everything of one map size and receiver count.
@@ -44,7 +44,7 @@ class GlProbe final : public Probe {
 
   ProbeResult look(const ProbeScene& scene, const filters::ParamValues& values) override {
     const int receivers = static_cast<int>(scene.receivers.size());
-    const render::LightSetup light = make_light(scene.size, seed_);
+    const render::LightSetup light{scene.frustum.value_or(make_frustum(scene.size)), 0.0, {}, seed_, {}};
     const bool same_map = stage_ && stage_->map.size() == scene.size;
     if (!same_map) passes_.reset();
     if (!same_map || stage_->gbuffer.width() != receivers) stage_.emplace(settings_, scene.size, receivers);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,9 @@ namespace shadowbench::stress {
 struct ProbeScene {
   int size = 0;                   ///< texels per side of the map
   std::vector<float> depths;      ///< size * size, row 0 at v = 0
-  std::vector<glm::vec3> receivers;  ///< u, v, depth, each in [0,1]; they face the light, and no bias is applied
+  std::vector<glm::vec3> receivers;  ///< u, v, depth, each in [0,1] inside the map; they face the light, and no bias is applied
+  /// For the GL alone: another way from receivers to u, v, depth; all that one probe sees are projective, or none.
+  std::optional<scene::LightFrustum> frustum = {};
 
   /// Gives the uv of a texel's centre.
   float uv(int texel) const { return (static_cast<float>(texel) + 0.5f) / static_cast<float>(size); }

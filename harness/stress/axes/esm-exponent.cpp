@@ -128,11 +128,9 @@ std::vector<Setting> list_settings(const DrivenFilter& driven) {
   return settings;
 }
 
-std::string driven_param(const filters::FilterSpec& spec) { return spec.holds_moments ? std::string() : spec.exponent; }
-
 std::vector<Case> make_cases(const StressContext& context) {
   std::vector<Case> cases;
-  for (const DrivenFilter& driven : find_driven(context, driven_param)) {
+  for (const DrivenFilter& driven : find_driven(context, find_exponent)) {
     for (const Setting& setting : list_settings(driven)) {
       for (const Level level : {Level::kGl, Level::kModel}) cases.push_back(make_case(context, driven, setting, level));
     }
@@ -144,7 +142,7 @@ std::vector<Case> make_cases(const StressContext& context) {
 /// A published comparison let a 16-bit exponential variance map overflow, at exponent 10 where 5.54 is the limit, and ranked the
 /// filter by what came of it. The same with an exponent that is fine in 32 bits.
 std::vector<Exhibit> make_exhibits(const StressContext& context) {
-  if (!context.renderer || find_driven(context, driven_param).empty()) return {};
+  if (!context.renderer || find_driven(context, find_exponent).empty()) return {};
   const Mistake mistake{"stack", "esm:c=80,store=r16f", {"esm:c=80", "esm:c=80,store=r16f,combine=log", "esm:c=10,store=r16f", "esm:c=20,store=r16f"}, {"vsm", "poisson"}};
   return {replay(context, mistake, "mistake")};
 }
@@ -162,7 +160,7 @@ Axis make_esm_exponent_axis() {
   axis.measured = "largest error of visibility across a two-depth edge";
   axis.bound = kBound;
   axis.broken_when = "texels of the map overflowed (GL), or visibility is not finite, all lit, all dark, or falls by more than 0.1 from dark to light";
-  axis.driven_param = driven_param;
+  axis.driven_param = find_exponent;
   axis.make_cases = make_cases;
   axis.make_exhibits = make_exhibits;
   return axis;

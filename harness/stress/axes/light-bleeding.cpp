@@ -24,18 +24,13 @@ struct ClosedForm {
   std::string source;
 };
 
-/// A filter's front matter tells its formula: what names these axes is its exponent, or its least variance.
+/// A filter's front matter tells its formula: what its map holds.
 ClosedForm find_closed_form(const filters::FilterRequest& request) {
-  const filters::ParamSpec* exponent = nullptr;
-  bool has_variance = false;
-  for (const filters::ParamSpec& param : request.spec.params) {
-    if (param.stress == "esm-exponent") exponent = &param;
-    if (param.stress == "warp-exponent") return {};  // moments of a warp: as many formulas as there are warps
-    has_variance = has_variance || param.stress == "vsm-cancellation";
-  }
-  if (has_variance) return {find_chebyshev, "s2 / (s2 + (t - mu)^2)", "Donnelly and Lauritzen 2006, Variance Shadow Maps, I3D, eq. 5 (Chebyshev)"};
-  if (!exponent) return {};
-  const double c = filters::number(request.values, exponent->name);
+  const filters::FilterSpec& spec = request.spec;
+  if (spec.holds_moments && !spec.exponent.empty()) return {};  // moments of a warp: as many formulas as there are warps
+  if (spec.holds_moments) return {find_chebyshev, "s2 / (s2 + (t - mu)^2)", "Donnelly and Lauritzen 2006, Variance Shadow Maps, I3D, eq. 5 (Chebyshev)"};
+  if (spec.exponent.empty()) return {};
+  const double c = filters::number(request.values, spec.exponent);
   return {[c](const LayerStack& stack, const std::vector<double>& shares) { return find_exponential(stack, shares, c); },
           fmt::format("mean of exp(-{:g} (t - z))", c), "Annen et al. 2008, Exponential Shadow Maps, Graphics Interface, eq. 5"};
 }

@@ -1,0 +1,309 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <span>
+
+#include "filters/error.h"
+#include "harness/scene/mesh_tools.h"
+#include "harness/scene/validate.h"
+#include "harness/stress/probe.h"
+#include "harness/stress/slab_scene.h"
+
+namespace shadowbench::stress {
+namespace {
+
+constexpr int kMapSize = 64;
+constexpr float kOccluder = 0.3f, kReceiver = 0.6f;
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kDenormal = 1e-40f;
+
+/// A number that does not belong into a map, and the depth that it should do no more harm than.
+struct Drop {
+  float value;
+  float harmless;
+};
+
+/// What is put into a map's texels, in turn.
+struct Poison {
+  const char* name;
+  std::vector<Drop> drops;
+};
+
+const Poison& not_numbers() {
+  static const Poison poison{"NaN in the map", {{kNaN, kReceiver}}};
+  return poison;
+}
+const Poison& infinities() {
+  static const Poison poison{"infinities in the map", {{kInfinity, 1.0f}, {-kInfinity, 0.0f}}};
+  return poison;
+}
+const Poison& denormals() {
+  static const Poison poison{"denormals in the map", {{kDenormal, 0.0f}, {-kDenormal, 0.0f}}};
+  return poison;
+}
+const Poison& overflows() {
+  static const Poison poison{"overflow in the map", {{1.0f, kReceiver}}};
+  return poison;
+}
+constexpr double kOverflowingExponent = 100.0;  // exp(100) is infinite in 32 bits, exp(60) of the receivers' own depth is not
+
+/// Spreads texels all over the map, in an order that does not depend on how many there are; no texel twice.
+glm::ivec2 place_texel(int i) {
+  constexpr int kStride = 1117;  // has no divisor in common with the number of texels
+  const int at = (kMapSize * kMapSize / 2 + 7 + i * kStride) % (kMapSize * kMapSize);
+  return {at % kMapSize, at / kMapSize};
+}
+
+/// Occluders on the left half, receivers before every texel of it and behind.
+ProbeScene make_scene() {
+  ProbeScene scene;
+  scene.size = kMapSize;
+  for (int y = 0; y < kMapSize; ++y) {
+    for (int x = 0; x < kMapSize; ++x) {
+      scene.depths.push_back(2 * x < kMapSize ? kOccluder : kReceiver);
+      scene.receivers.emplace_back(scene.uv(x), scene.uv(y), kReceiver);
+    }
+  }
+  return scene;
+}
+
+void poison(ProbeScene& scene, int count, const Poison& poison, float Drop::*part) {
+  for (int i = 0; i < count; ++i) {
+    const glm::ivec2 texel = place_texel(i);
+    scene.depths[static_cast<std::size_t>(texel.y * kMapSize + texel.x)] = poison.drops[static_cast<std::size_t>(i) % poison.drops.size()].*part;
+  }
+}
+
+/// Gives which receivers' kernels hold a poisoned texel; what lies outside the map is as deep as the deepest poison.
+std::vector<bool> find_reached(int count, int reach, int border) {
+  std::vector<bool> reached(static_cast<std::size_t>(kMapSize) * kMapSize, false);
+  for (int i = 0; i < kMapSize * kMapSize; ++i) {
+    const int x = i % kMapSize, y = i / kMapSize;
+    reached[static_cast<std::size_t>(i)] = std::min({x, y, kMapSize - 1 - x, kMapSize - 1 - y}) < border;
+  }
+  for (int i = 0; i < count; ++i) {
+    const glm::ivec2 texel = place_texel(i);
+    for (int y = std::max(texel.y - reach, 0); y <= std::min(texel.y + reach, kMapSize - 1); ++y) {
+      for (int x = std::max(texel.x - reach, 0); x <= std::min(texel.x + reach, kMapSize - 1); ++x) reached[static_cast<std::size_t>(y * kMapSize + x)] = true;
+    }
+  }
+  return reached;
+}
+
+/// Harm, by where it is.
+struct Harm {
+  int reachable = 0;   ///< receivers whose kernel holds poison
+  int inside = 0;      ///< of them: not finite, or not what the harmless depth gives
+  int not_finite = 0;  ///< of those
+  int outside = 0;     ///< the same of all others
+};
+
+Harm count_harm(const std::vector<double>& seen, const std::vector<double>& harmless, const std::vector<bool>& reached) {
+  constexpr double kSame = 1e-6;
+  Harm harm;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const bool harmed = !(std::abs(seen[i] - harmless[i]) <= kSame);
+    if (reached[i]) ++harm.reachable;
+    if (harmed) ++(reached[i] ? harm.inside : harm.outside);
+    if (!std::isfinite(seen[i])) ++harm.not_finite;
+  }
+  return harm;
+}
+
+Observation judge_harm(const Harm& harm, int count, int reach) {
+  const double share = static_cast<double>(harm.inside) / std::max(harm.reachable, 1);
+  if (harm.outside > 0) return {Verdict::kBroken, share, fmt::format("{} receivers are harmed farther than {} texels from all {} poisoned ones", harm.outside, reach, count)};
+  if (harm.inside == 0) return {Verdict::kOk, 0.0, {}};
+  return {Verdict::kDegraded, share, fmt::format("{} of the {} receivers within {} texels are harmed, {} of them not finite; none beyond", harm.inside, harm.reachable, reach, harm.not_finite)};
+}
+
+/// Which of its texels a kernel's bilinear reads touch, from a texel's centre.
+int find_reach(const filters::FilterRequest& request) { return static_cast<int>(std::ceil(filters::radius_texels(request.spec, request.values))) + 1; }
+
+std::vector<std::string> remark_spread(const report::StressCase& record) {
+  double largest = 0.0;
+  for (const report::StressSample& sample : record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
+  if (record.broken || record.samples.empty() || largest == 0.0) return {};
+  return {fmt::format("up to {:.0f} % of the receivers whose kernel holds poison are harmed, and none beyond the kernel", 100.0 * largest)};
+}
+
+/// What one filter's map is poisoned with.
+struct MapSetting {
+  Poison poison;
+  Level level = Level::kGl;
+  bool border_is_poison = false;  ///< what lies outside the map is encoded as the poison is
+};
+
+/// Finds what a GL makes of poison that is uploaded: it may clamp it.
+std::string describe_stored(const Poison& poison) {
+  render::ShadowMap map(1);
+  std::vector<std::string> changed;
+  for (const Drop& drop : poison.drops) {
+    map.upload(std::span(&drop.value, 1));
+    const float stored = map.read().stored.front();
+    if (std::isfinite(stored) && !std::isfinite(drop.value)) changed.push_back(fmt::format("{:g} as {:g}", drop.value, stored));
+  }
+  return changed.empty() ? std::string() : fmt::format("this GL stores {} when depths are uploaded", fmt::join(changed, ", "));
+}
+
+std::vector<std::string> remark_map(const MapSetting& setting, const report::StressCase& record) {
+  std::vector<std::string> sentences = remark_spread(record);
+  if (setting.level != Level::kGl || record.samples.empty()) return sentences;
+  if (std::string stored = describe_stored(setting.poison); !stored.empty()) sentences.push_back(std::move(stored));
+  return sentences;
+}
+
+Case make_map_case(const StressContext& context, const filters::FilterRequest& request, const MapSetting& setting) {
+  const std::string variant = setting.poison.name;
+  const auto [probe, reason] = make_probe(context, request, setting.level);
+  if (!probe) return make_absent_case(request.spec.id, variant, setting.level, reason);
+  Case item;
+  item.filter = request.spec.id;
+  item.variant = variant;
+  item.level = setting.level;
+  item.params = request.values;
+  item.theories = {{std::nullopt, TheoryKind::kQuantum, "none: poison stays within the kernel", "derived: a blur of finite support", Verdict::kBroken}};
+  item.remark = [setting](const report::StressCase& record) { return remark_map(setting, record); };
+  item.observe = [probe = probe, values = request.values, setting, reach = find_reach(request), scene = make_scene()](double number) {
+    const int count = static_cast<int>(number);
+    ProbeScene poisoned = scene, harmless = scene;
+    poison(poisoned, count, setting.poison, &Drop::value);
+    poison(harmless, count, setting.poison, &Drop::harmless);
+    const std::vector<double> expected = probe->look(harmless, values).visibility;
+    const std::vector<bool> reached = find_reached(count, reach, setting.border_is_poison ? reach : 0);
+    return judge_harm(count_harm(probe->look(poisoned, values).visibility, expected, reached), count, reach);
+  };
+  return item;
+}
+
+/// A map of exponentials is poisoned by an exponent that overflows at the deepest texels, and at no others.
+std::vector<Case> make_overflow_cases(const StressContext& context) {
+  std::vector<Case> cases;
+  for (DrivenFilter& driven : find_driven(context, find_exponent)) {
+    filters::ParamValues& values = driven.request.values;
+    values[driven.param] = kOverflowingExponent;
+    if (values.contains("combine")) values["combine"] = std::string("linear");
+    if (values.contains("store")) values["store"] = std::string("r32f");
+    cases.push_back(make_map_case(context, driven.request, {overflows(), Level::kGl, true}));
+  }
+  return cases;
+}
+
+/// A way to poison a scene before it is validated, as what reads a file does.
+using PoisonScene = std::function<void(scene::Scene&, int count, double value)>;
+
+void poison_vertices(scene::Scene& scene, int count, double value) {
+  std::vector<scene::Vertex>& vertices = scene.meshes.front().vertices;
+  for (int i = 0; i < count; ++i) vertices[static_cast<std::size_t>(i * 7) % vertices.size()].position_ws[i % 3] = static_cast<float>(value);
+}
+
+void poison_matrix(scene::Scene& scene, int count, double value) {
+  glm::dmat4 matrix(1.0);
+  for (int i = 0; i < std::min(count, 12); ++i) matrix[i % 4][i / 4] = value;
+  scene.meshes.front() = scene::transform_mesh(std::move(scene.meshes.front()), matrix);
+}
+
+struct ScenePlace {
+  const char* name;
+  PoisonScene poison;
+};
+
+std::vector<ScenePlace> list_places() {
+  return {{"vertices", poison_vertices},
+          {"an object's matrix", poison_matrix},
+          {"the light's direction", [](scene::Scene& scene, int count, double value) { scene.light.direction_ws[count % 3] = static_cast<float>(value); }},
+          {"the camera's position", [](scene::Scene& scene, int count, double value) { scene.cameras.front().position_ws[count % 3] = static_cast<float>(value); }}};
+}
+
+/// A kind of poison; what is refused must be, of what is not something finite must come.
+struct SceneInput {
+  const char* name;
+  double value;
+  bool refused;
+};
+
+constexpr SceneInput kSceneInputs[] = {{"NaN in a scene", std::numeric_limits<double>::quiet_NaN(), true},
+                                       {"infinity in a scene", std::numeric_limits<double>::infinity(), true},
+                                       {"denormals in a scene", static_cast<double>(kDenormal), false}};
+
+bool is_finite(const scene::Scene& scene) {
+  return std::ranges::all_of(scene.meshes, [](const scene::Mesh& mesh) {
+    return std::ranges::all_of(mesh.vertices, [](const scene::Vertex& v) {
+      return std::isfinite(glm::dot(v.position_ws, v.position_ws)) && std::abs(glm::length(v.normal_ws) - 1.0f) < 1e-3f;
+    });
+  });
+}
+
+Observation observe_place(const SceneInput& input, const ScenePlace& place, int count) {
+  scene::Scene scene = make_slab_scene({});
+  place.poison(scene, count, input.value);
+  try {
+    const scene::Scene checked = scene::validate(std::move(scene), "poisoned scene");
+    if (input.refused) return {Verdict::kBroken, 1.0, fmt::format("it is accepted in {}", place.name)};
+    if (!is_finite(checked)) return {Verdict::kBroken, 1.0, fmt::format("what is made of it in {} is not finite", place.name)};
+  } catch (const Error& error) {
+    // Of a scene that nothing but denormals was left of, saying so is right.
+    if (error.kind() != ErrorKind::kInput) return {Verdict::kBroken, 1.0, error.what()};
+  }
+  return {Verdict::kOk, 0.0, {}};
+}
+
+Observation observe_input(const SceneInput& input, int count) {
+  for (const ScenePlace& place : list_places()) {
+    Observation seen = observe_place(input, place, count);
+    if (seen.verdict != Verdict::kOk) return seen;
+  }
+  return {Verdict::kOk, 0.0, {}};
+}
+
+std::vector<std::string> remark_refusal(const SceneInput& input, const report::StressCase& record) {
+  if (record.broken || record.samples.empty()) return {};
+  return {input.refused ? "in vertices, matrices, the light and the camera it is refused as the scene is loaded" : "accepted as the scene is loaded, or refused where no triangle keeps an area; nothing that is not finite comes of it"};
+}
+
+Case make_input_case(const SceneInput& input) {
+  Case item;
+  item.variant = input.name;
+  item.level = Level::kArithmetic;
+  item.theories = {{std::nullopt, TheoryKind::kQuantum, input.refused ? "none: it is refused" : "none: they are numbers", "by definition", Verdict::kBroken}};
+  item.remark = [input](const report::StressCase& record) { return remark_refusal(input, record); };
+  item.observe = [input](double number) { return observe_input(input, static_cast<int>(number)); };
+  return item;
+}
+
+std::vector<Case> make_cases(const StressContext& context) {
+  std::vector<Case> cases;
+  for (const filters::FilterRequest& request : context.filters) cases.push_back(make_map_case(context, request, {not_numbers()}));
+  for (const filters::FilterRequest& request : context.filters) {
+    if (!request.spec.has_encode) continue;  // what compares has nothing to spread poison with
+    for (const Poison& kind : {infinities(), denormals()}) cases.push_back(make_map_case(context, request, {kind}));
+    for (const Poison& kind : {not_numbers(), infinities()}) cases.push_back(make_map_case(context, request, {kind, Level::kModel}));
+  }
+  for (Case& item : make_overflow_cases(context)) cases.push_back(std::move(item));
+  for (const SceneInput& input : kSceneInputs) cases.push_back(make_input_case(input));
+  return cases;
+}
+
+}  // namespace
+
+Axis make_poisoned_input_axis() {
+  Axis axis;
+  axis.title = "Poisoned input: not a number, infinity, denormals";
+  axis.quantity = "poisoned texels; of a scene: poisoned numbers";
+  axis.range = {1.0, 64.0};
+  axis.limits = {1.0, 4096.0};
+  axis.coarse_samples = 7;
+  axis.whole = true;
+  axis.measured = "share harmed of the receivers whose kernel holds poison";
+  axis.measured_scale = Scale::kLinear;
+  axis.bound = 0.0;
+  axis.broken_when = "a receiver is harmed whose kernel holds no poison; of scenes: poison is accepted, or what was made of it is not finite";
+  axis.make_cases = make_cases;
+  return axis;
+}
+
+}  // namespace shadowbench::stress

@@ -1,0 +1,78 @@
+#include <fmt/format.h>
+
+#include "harness/scene/load.h"
+#include "harness/scene/validate.h"
+#include "harness/stress/drawn_scene.h"
+
+namespace shadowbench::stress {
+namespace {
+
+constexpr double kBound = 0.01;  // of the pixels
+
+glm::vec3 scale(const glm::vec3& p, double factor) { return glm::vec3(glm::dvec3(p) * factor); }
+
+scene::Scene scale(scene::Scene scene, double factor) {
+  for (scene::Mesh& mesh : scene.meshes) {
+    for (scene::Vertex& vertex : mesh.vertices) vertex.position_ws = scale(vertex.position_ws, factor);
+  }
+  for (scene::Camera& camera : scene.cameras) {
+    camera.position_ws = scale(camera.position_ws, factor);
+    camera.orthographic_height_m *= static_cast<float>(factor);
+  }
+  return scene::validate(std::move(scene), "scaled scene");
+}
+
+/// Every length in the chain is relative to the scene, the light's frustum or the map's texels.
+Theory make_theory() {
+  return {std::nullopt, TheoryKind::kRounding, "none: no length in the chain is absolute, and floats round alike at every scale", "derived: IEEE 754, normal numbers", Verdict::kDegraded};
+}
+
+std::vector<std::string> remark(const report::StressCase& record) {
+  double largest = 0.0;
+  for (const report::StressSample& sample : record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
+  if (record.degraded || record.broken || record.samples.empty()) return {};
+  return {fmt::format("from {:g} to {:g} times its size no more than {:.2g} of the pixels change", record.samples.front().value, record.samples.back().value, largest)};
+}
+
+Case make_case(const StressContext& context, const filters::FilterRequest& request, const scene::Scene& scene) {
+  if (!context.renderer) return make_absent_case(request.spec.id, scene.name, Level::kGl, "there is no GL");
+  Case item;
+  item.filter = request.spec.id;
+  item.variant = scene.name;
+  item.params = request.values;
+  item.theories = {make_theory()};
+  item.remark = remark;
+  const auto drawer = std::make_shared<SceneDrawer>(context, request);
+  item.observe = [drawer, scene, expected = std::optional<Drawing>()](double factor) mutable {
+    if (!expected) expected = drawer->draw(scene);
+    return judge_drawing(drawer->draw(scale(scene, factor)), *expected, kBound);
+  };
+  return item;
+}
+
+std::vector<Case> make_cases(const StressContext& context) {
+  const DrawingSize size;
+  const scene::Scene cubes = scene::load("cubes", {.scenes_folder = context.resources.scenes, .aspect = static_cast<double>(size.width) / size.height});
+  std::vector<Case> cases;
+  for (const filters::FilterRequest& request : context.filters) cases.push_back(make_case(context, request, cubes));
+  return cases;
+}
+
+}  // namespace
+
+Axis make_scale_axis() {
+  Axis axis;
+  axis.title = "Size of a scene";
+  axis.quantity = "factor on every length";
+  axis.range = {1e-6, 1e6};
+  axis.limits = {1e-15, 1e10};
+  axis.coarse_samples = 18;
+  axis.measured = "share of the pixels that differ by more than 0.1 from factor 1";
+  axis.measured_scale = Scale::kLinear;
+  axis.bound = kBound;
+  axis.broken_when = "visibility is not finite, all lit or all dark";
+  axis.make_cases = make_cases;
+  return axis;
+}
+
+}  // namespace shadowbench::stress

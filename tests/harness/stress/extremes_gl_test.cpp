@@ -1,0 +1,127 @@
+// What the axes of extreme scenes, maps and input measure, and that they see what is wrong.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "filters/error.h"
+#include "harness/scene/validate.h"
+#include "harness/stress/drawn_scene.h"
+#include "harness/stress/onset.h"
+#include "harness/stress/slab_scene.h"
+
+namespace shadowbench::stress {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+
+run::Renderer& shared_renderer() {
+  static run::Renderer renderer = run::make_renderer(gl::Backend::kAuto, run::find_resources());
+  return renderer;
+}
+
+StressContext make_context(const std::string& filters) {
+  static const filters::Catalogue catalogue(run::find_resources().filters);
+  shared_renderer().context->make_current();  // other files of this program have their own
+  StressContext context;
+  context.renderer = &shared_renderer();
+  context.resources = run::find_resources();
+  context.filters = catalogue.parse_requests(filters);
+  return context;
+}
+
+Case find_case(const StressContext& context, const std::string& axis, const std::string& filter, const std::string& part) {
+  for (Case& item : choose_axes(axis)[0].make_cases(context)) {
+    if (item.filter == filter && item.level == Level::kGl && item.variant.find(part) != std::string::npos) return std::move(item);
+  }
+  ADD_FAILURE() << "no case " << part;
+  return {};
+}
+
+/// Every case of these axes that runs on this GL keeps to its theory.
+class ExtremeAxis : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ExtremeAxis, GlCases_MeetTheirTheories) {
+  const StressContext context = make_context("none,box3x3,poisson,esm,vsm");
+  Axis axis = choose_axes(GetParam())[0];
+  axis.range.high = std::min(axis.range.high, axis.whole ? 512.0 : axis.range.high);  // larger maps cost seconds
+  for (const Case& item : axis.make_cases(context)) {
+    if (item.level != Level::kGl) continue;
+    const report::StressCase found = find_onsets(item, axis);
+    EXPECT_EQ(found.not_available, "");
+    for (const report::StressLimit& limit : compare(item, found, axis)) {
+      EXPECT_EQ(limit.agreement, report::StressAgreement::kAgrees)
+          << item.filter << " " << item.variant << ": theory " << limit.onset.value_or(-1.0) << ", measured " << limit.measured.value_or(-1.0);
+    }
+  }
+}
+
+std::string name_axis(const ::testing::TestParamInfo<const char*>& info) {
+  std::string name = info.param;
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ExtremeAxis, ::testing::Values("position", "scale", "map-edge", "map-size", "light-direction", "poisoned-input"), name_axis);
+
+TEST(Position, AcneComesFarAway_AndNotRelativeToTheScene) {
+  const StressContext context = make_context("none,vsm");
+  const double far = 200.0;
+  const Observation acne = find_case(context, "position", "none", "floor, as it is").observe(far);
+  EXPECT_EQ(acne.verdict, Verdict::kDegraded);
+  EXPECT_THAT(acne.why, HasSubstr("0 brighter"));
+  EXPECT_EQ(find_case(context, "position", "vsm", "floor, as it is").observe(far).verdict, Verdict::kOk);
+  EXPECT_EQ(find_case(context, "position", "none", "floor, relative in double").observe(far).verdict, Verdict::kOk);
+}
+
+TEST(Position, RemedyHolds_OnlyWhereItComesBeforeTheFloats) {
+  const StressContext context = make_context("none");
+  EXPECT_EQ(find_case(context, "position", "none", "cubes, relative in double").observe(1e8).verdict, Verdict::kOk);
+  EXPECT_NE(find_case(context, "position", "none", "cubes, relative too late").observe(1e6).verdict, Verdict::kOk);
+}
+
+TEST(Scale, ScalesTheScene) {
+  const Case item = find_case(make_context("none"), "scale", "none", "cubes");
+  EXPECT_EQ(item.observe(3.0).verdict, Verdict::kOk);
+  EXPECT_THROW(item.observe(1e13), Error) << "farther than scenes may reach";
+}
+
+TEST(LightDirection, ShadowOfALeaningLight_IsWhereConstructionSays) {
+  const StressContext context = make_context("none");
+  SceneDrawer drawer(context, context.filters[0]);
+  const SlabSetting setting{.light_local = {0.3, -1.0, 0.1}};
+  const Drawing drawing = drawer.draw(scene::validate(make_slab_scene(setting), "test"));
+  int lit = 0, dark = 0;
+  for (std::size_t i = 0; i < drawing.visibility.size(); ++i) {
+    const auto expected = drawing.position[i].w == 0.0f ? std::nullopt : find_slab_visibility(setting, glm::dvec3(drawing.position[i]), 0.1);
+    if (!expected) continue;
+    EXPECT_EQ(static_cast<double>(drawing.visibility[i]), *expected);
+    ++(*expected > 0.5 ? lit : dark);
+  }
+  EXPECT_GT(lit, 5000);
+  EXPECT_GT(dark, 500);
+}
+
+TEST(MapSize, OneTexelIsAMap) {
+  for (const char* id : {"none", "pcf2x2", "poisson", "vsm", "esm"}) {
+    const Observation seen = find_case(make_context(id), "map-size", id, "half").observe(1.0);
+    EXPECT_EQ(seen.verdict, Verdict::kOk) << id << ": " << seen.why;
+    EXPECT_TRUE(seen.measured);
+  }
+}
+
+TEST(MapSize, AboveTheLimit_IsRefusedBeforeAnythingIsAllocated) {
+  const StressContext context = make_context("none");
+  const std::vector<Exhibit> exhibits = choose_axes("map-size")[0].make_exhibits(context);
+  ASSERT_EQ(exhibits.size(), 1u);
+  const auto& rows = exhibits[0].table->rows;
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_THAT(rows[0][2], AnyOf(HasSubstr("ok: dark behind an occluder, lit beside it"), HasSubstr("not available: it needs")));
+  for (std::size_t i = 1; i < 3; ++i) EXPECT_THAT(rows[i][2], AllOf(HasSubstr("refused"), HasSubstr(fmt::format("at most {}", rows[0][0]))));
+}
+
+}  // namespace
+}  // namespace shadowbench::stress
