@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kFewestOfAnyBudget = 3;
 constexpr int kSettlingLookups = 3;
+constexpr int kRoundsPerLook = 8;  ///< a bootstrap takes as long as a small lookup: it looks again after an eighth more rounds
 
 /// Fisher and Yates; std::shuffle differs between standard libraries.
 void shuffle(std::vector<std::size_t>& order, std::mt19937_64& generator) {
@@ -48,6 +49,7 @@ class Rounds {
   std::mt19937_64 generator_;
   std::vector<std::size_t> active_;
   RoundTimes times_;
+  int next_look_ = 0;  ///< rounds after which intervals are looked at again
 
   void run_round(bool counted) {
     const double map_ms = draw_map_();
@@ -71,7 +73,10 @@ class Rounds {
 
   bool is_enough(int rounds) {
     if (limits_.is_fixed()) return false;
-    if (rounds >= limits_.fewest) drop_precise();
+    if (rounds >= std::max(limits_.fewest, next_look_)) {
+      drop_precise();
+      next_look_ = rounds + 1 + rounds / kRoundsPerLook;
+    }
     if (active_.empty()) return true;
     if (rounds < std::min(kFewestOfAnyBudget, limits_.most) || !is_spent()) return false;
     for (const std::size_t i : active_) times_.filters[i].stopped = StopReason::kBudget;
