@@ -63,7 +63,8 @@ std::string make_stress_html(const StressRecord& record) {
   page += fmt::format("<body>\n<main>\n<h1>{}</h1>\n<nav>", title);
   for (const StressAxis& axis : record.axes) page += fmt::format("<a href=\"#{0}\">{0}</a> ", escape_html(axis.id));
   page += "</nav>\n" + html_facts(record) + html_warnings(record);
-  page += "<section>\n<h2>Measured against theoretical limits</h2>\n" + html_table(make_limit_table(record), "Where each verdict is first met, found to 1 %", "stress") + "</section>\n";
+  page += "<section>\n<h2>Measured against theoretical limits</h2>\n" + html_table(make_limit_table(record), "Where each verdict is first met, found to 1 %", "stress") +
+          html_sentences("Not met, and not expected:", describe_out_of_sight(record)) + "</section>\n";
   for (const StressAxis& axis : record.axes) page += html_axis(axis, record.no_plots.empty());
   page += "<p>Data: " + link("stress.json", "stress.json") + ", " + link("stress.csv", "stress.csv") + ", " + link("stress.md", "stress.md") + ".</p>\n";
   return page + "</main>\n</body>\n</html>\n";

@@ -32,13 +32,14 @@ std::string format_reason(const StressCase& item) {
   return onset ? onset->why : std::string();
 }
 
-std::string format_agreement(const StressLimit& limit) { return limit.ratio || limit.agreement != StressAgreement::kAgrees ? name_of(limit.agreement) : "agrees, as far as the range goes"; }
-
 std::vector<std::string> make_limit_row(const StressAxis& axis, const StressCase& item, const StressLimit& limit) {
   return {axis.id, label_of(item), name_of(limit.predicts), limit.formula, limit.onset ? fmt::format("{:.4g}", *limit.onset) : "none",
           format_value(limit.measured, "not in the range"), limit.ratio ? fmt::format("{:.3f}", *limit.ratio) : std::string(kNothing),
-          limit.kind == StressTheoryKind::kRounding ? "rounding, factor 8" : fmt::format("{}, 10 %", name_of(limit.kind)), format_agreement(limit)};
+          limit.kind == StressTheoryKind::kRounding ? "rounding, factor 8" : fmt::format("{}, 10 %", name_of(limit.kind)), name_of(limit.agreement)};
 }
+
+/// There is nothing to see of a limit, and nothing should be: the range ends before it, or there is none.
+bool is_out_of_sight(const StressLimit& limit) { return !limit.measured && limit.agreement == StressAgreement::kAgrees; }
 
 std::vector<std::string> list_limits(const StressAxis& axis, StressAgreement agreement) {
   std::vector<std::string> sentences;
@@ -96,10 +97,29 @@ TextTable make_limit_table(const StressRecord& record) {
   TextTable table{{"axis", "case", "verdict", "theory", "theoretical", "measured", "ratio", "kind, tolerance", "result"}, {}};
   for (const StressAxis& axis : record.axes) {
     for (const StressCase& item : axis.cases) {
-      for (const StressLimit& limit : item.limits) table.rows.push_back(make_limit_row(axis, item, limit));
+      for (const StressLimit& limit : item.limits) {
+        if (!is_out_of_sight(limit)) table.rows.push_back(make_limit_row(axis, item, limit));
+      }
     }
   }
   return table;
+}
+
+std::vector<std::string> describe_out_of_sight(const StressRecord& record) {
+  std::vector<std::string> sentences;
+  for (const StressAxis& axis : record.axes) {
+    int unlimited = 0, beyond = 0;
+    for (const StressCase& item : axis.cases) {
+      for (const StressLimit& limit : item.limits) {
+        if (is_out_of_sight(limit)) ++(limit.onset ? beyond : unlimited);
+      }
+    }
+    std::vector<std::string> counts;
+    if (unlimited > 0) counts.push_back(fmt::format("{} where it says that there is none", unlimited));
+    if (beyond > 0) counts.push_back(fmt::format("{} where it puts it beyond the range", beyond));
+    if (!counts.empty()) sentences.push_back(fmt::format("{}: no limit within the range, as theory says: {}.", axis.id, fmt::join(counts, ", ")));
+  }
+  return sentences;
 }
 
 std::vector<std::string> describe_explanations(const StressAxis& axis) { return list_limits(axis, StressAgreement::kExplained); }
@@ -128,7 +148,7 @@ std::string describe_axis(const StressAxis& axis) {
                      axis.measured_unit.empty() ? "" : ", " + axis.measured_unit, axis.bound, axis.broken_when);
 }
 
-std::string make_limit_tables(const StressRecord& record) { return make_markdown_table(escape(make_limit_table(record))); }
+std::string make_limit_tables(const StressRecord& record) { return make_markdown_table(escape(make_limit_table(record))) + list_markdown("Not met, and not expected:", describe_out_of_sight(record)); }
 
 std::string make_stress_text(const StressRecord& record) {
   std::string text = "# Where filters break\n\n";

@@ -112,6 +112,20 @@ TEST(StressTables, LimitsStandBesideTheirTheory) {
   EXPECT_EQ(table.rows[1][4], "none");
 }
 
+TEST(StressTables, LimitsThatNobodyExpectsToSee_AreCountedInstead) {
+  StressRecord record = make_record();
+  std::vector<StressLimit>& limits = record.axes[0].cases[0].limits;
+  EXPECT_THAT(describe_out_of_sight(record), SizeIs(0));
+  limits[0].measured.reset();  // it should have been met
+  limits[1].measured.reset();
+  limits[1].agreement = StressAgreement::kAgrees;
+  limits.push_back(limits[1]);
+  limits.back().onset = 1e6;
+  EXPECT_THAT(make_limit_table(record).rows, SizeIs(1));
+  EXPECT_THAT(describe_out_of_sight(record), ::testing::ElementsAre(
+      "esm-exponent: no limit within the range, as theory says: 1 where it says that there is none, 1 where it puts it beyond the range."));
+}
+
 TEST(StressWords, DisagreementsAreSaid_ExplainedOnesWithTheReason) {
   const StressRecord record = make_record();
   EXPECT_EQ(count_disagreements(record), 1);
