@@ -98,6 +98,7 @@ RunRecord join(const std::vector<ShardRun>& shards) {
     run.work.truths_cached += other.work.truths_cached;
     run.work.timed_s += other.work.timed_s;
     run.work.elapsed_s += other.work.elapsed_s;
+    if (other.work.attribution_s) run.work.attribution_s = run.work.attribution_s.value_or(0.0) + *other.work.attribution_s;
     for (const std::string& warning : other.warnings) {
       if (std::find(run.warnings.begin(), run.warnings.end(), warning) == run.warnings.end()) run.warnings.push_back(warning);
     }

@@ -8,7 +8,7 @@
 namespace shadowbench::report {
 
 /// Names the fields that older files of this schema version lack; they are read as null there.
-inline constexpr std::array<std::string_view, 5> kLaterFields = {"claims", "lights", "repeat.cells", "repeat.overlapping", "repeat.of"};
+inline constexpr std::array<std::string_view, 6> kLaterFields = {"work.attribution_s", "claims", "lights", "repeat.cells", "repeat.overlapping", "repeat.of"};
 
 /// Calls `visit(name, value)` for every field of a bias.
 template <class Bias, class Visitor>
@@ -144,6 +144,7 @@ void visit_run_fields(Run& run, Visitor&& visit) {
   visit("work.truths_cached", run.work.truths_cached);
   visit("work.timed_s", run.work.timed_s);
   visit("work.elapsed_s", run.work.elapsed_s);
+  visit("work.attribution_s", run.work.attribution_s);
   visit("experiment.title", run.experiment.title);
   visit("experiment.settings", run.experiment.settings);
   visit("experiment.cells", run.experiment.cells);

@@ -255,6 +255,7 @@ struct WorkRecord {
   std::int64_t truths_cached = 0;  ///< ray-traced images read from the cache
   double timed_s = 0.0;            ///< of the passes that were timed, rounds that warm up included; seconds
   double elapsed_s = 0.0;          ///< from the first cell to the last, the report not included; seconds
+  std::optional<double> attribution_s = std::nullopt;  ///< of `elapsed_s`, what taking errors apart took; seconds
 };
 
 /// Says how the times of a run compare with those of the run that it replaced, which was told the very same.

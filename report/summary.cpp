@@ -114,11 +114,13 @@ std::string describe_experiment(const ExperimentRecord& experiment) {
 }
 
 std::string describe_work(const WorkRecord& work) {
-  return fmt::format(
+  std::string text = fmt::format(
       "{} shader variants compiled, {} passes run, {} passes skipped because no filter needed them, "
       "{} truths ray traced, {} truths read from the cache; {} s of timed passes in {} s",
       work.shader_variants_compiled, work.passes_run, work.passes_skipped, work.truths_traced, work.truths_cached,
       format_number(work.timed_s), format_number(work.elapsed_s));
+  if (work.attribution_s) text += fmt::format(", of which attribution took {} s", format_number(*work.attribution_s));
+  return text;
 }
 
 /// Writes a length in the units it was given in, then in all three where the map's scale is known.

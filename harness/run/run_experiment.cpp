@@ -106,6 +106,7 @@ class Experiment {
   void count(const SceneMeasurement& measured) {
     done_ += static_cast<int>(measured.cells.size());
     run_.work.timed_s += 1e-3 * measured.timed_ms;
+    if (options_.truth && options_.attribution) run_.work.attribution_s = run_.work.attribution_s.value_or(0.0) + measured.attribution_s;
     run_.work.passes_run += measured.passes_run;
     run_.work.passes_skipped += measured.passes_skipped;
     for (const MeasuredCell& cell : measured.cells) {

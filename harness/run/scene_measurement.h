@@ -32,6 +32,7 @@ struct SceneMeasurement {
   report::Image depth_map;   ///< the same, linearised
   std::optional<reference::ArtefactMasks> masks;  ///< where artefacts can occur; nothing without truth
   double timed_ms = 0.0;  ///< of the passes that were timed
+  double attribution_s = 0.0;  ///< that taking the errors apart took
   int passes_run = 0;
   int passes_skipped = 0;  ///< encode and blur passes that no chosen filter needed
 };

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for_each.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "harness/run/border_page.h"
 #include "harness/run/map_output.h"
@@ -70,7 +71,9 @@ void TaskRun::explain(SceneMeasurement& measured) {
   tbb::parallel_for_each(measured.cells, [&](MeasuredCell& cell) { score(cell.record, cell.visibility, cell.picture, truth); });
   show("attribution");
   if (!analyser_) analyser_.emplace(renderer_, options_, task_, assets_, truth);
+  const auto start = std::chrono::steady_clock::now();
   for (MeasuredCell& cell : measured.cells) analyser_->analyse(cell);
+  measured.attribution_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   measured.masks = analyser_->masks();
 }
 

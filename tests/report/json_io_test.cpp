@@ -311,6 +311,7 @@ TEST(JsonIo, Results_HoldTheNamedCellsInTheGivenOrder) {
   EXPECT_EQ(results.run.work.truths_cached, 2);
   EXPECT_EQ(results.run.work.timed_s, 1.5);
   EXPECT_EQ(results.run.work.elapsed_s, 2.0);
+  EXPECT_EQ(results.run.work.attribution_s, 0.5);
 }
 
 TEST(JsonIo, CutOffFile_IsAnInputErrorThatNamesItAndSaysWhatToDo) {

@@ -160,7 +160,7 @@ inline RunRecord make_run() {
   run.gl = {"osmesa", "llvmpipe (LLVM 15.0.6, 256 bits)", "4.5 (Core Profile) Mesa 22.3.6", true,
             TimerKind::kWallClock};
   run.machine = {"Some CPU", 2, 0.25, "GCC 12.2.0", "Debian GNU/Linux 12"};
-  run.work = {12, 40, 3, 5, 2, 1.5, 2.0};
+  run.work = {12, 40, 3, 5, 2, 1.5, 2.0, 0.5};
   run.scenes = {{"cubes", "Three cubes on a floor"}};
   return run;
 }

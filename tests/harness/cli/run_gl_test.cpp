@@ -204,6 +204,9 @@ TEST_F(Command, FrontCull_NamesTheOpenMeshes) {
 
 TEST_F(Command, BiasAmounts_AreStatedInAllUnits) {
   ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --bias constant:texels=2").exit_code, 0);
+  const nlohmann::json work = results(folder())["work"];
+  EXPECT_GT(work["attribution_s"], 0.0);
+  EXPECT_LT(work["attribution_s"], work["elapsed_s"]);
   const nlohmann::json cell = results(folder())["cells"][0];
   EXPECT_EQ(cell["bias"]["constant_texels"], 2.0);
   EXPECT_GT(cell["map_scale"]["texel_m"], 0.01);

@@ -100,6 +100,7 @@ TEST_F(Sweep, Continued_MeasuresNothingTwice_UnlessSomethingChanged) {
   EXPECT_EQ(cell_times(), before);
   EXPECT_EQ(results()["cells"], first["cells"]);
   EXPECT_EQ(results()["work"]["passes_run"], 0);
+  EXPECT_TRUE(results()["work"]["attribution_s"].is_null()) << "not asked for";
   // One cell is gone, one is cut off.
   std::filesystem::remove(folder() / "out" / "cells" / before.begin()->first);
   write("out/cells/" + before.rbegin()->first, "{");
