@@ -34,4 +34,7 @@ void add_tune_command(CLI::App& app, Action& action);
 /// Adds `stress`; `words` as for `run`.
 void add_stress_command(CLI::App& app, Action& action, const std::vector<std::string>& words);
 
+/// Adds `flicker`; `words` as for `run`.
+void add_flicker_command(CLI::App& app, Action& action, const std::vector<std::string>& words);
+
 }  // namespace shadowbench::cli

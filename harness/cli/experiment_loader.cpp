@@ -53,6 +53,10 @@ std::string load_and_describe_stress_axes(const std::vector<filters::FilterReque
   return text;
 }
 
+void load_and_run_flicker(const flicker::FlickerOptions& options, run::Progress& progress) {
+  load_entry<void(const flicker::FlickerOptions&, run::Progress&)>("shadowbench_run_flicker")(options, progress);
+}
+
 run::Comparison load_and_compare_pictures(const run::ComparisonOptions& options) {
   run::Comparison result;
   load_entry<void(const run::ComparisonOptions&, run::Comparison&)>("shadowbench_compare_pictures")(options, result);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "harness/flicker/run_flicker.h"
 #include "harness/run/compare_pictures.h"
 #include "harness/run/options.h"
 #include "harness/run/progress.h"
@@ -31,6 +32,9 @@ stress::StressOutcome load_and_run_stress(const stress::StressOptions& options, 
 
 /// Lists the axes of `stress`, for people.
 std::string load_and_describe_stress_axes(const std::vector<filters::FilterRequest>& filters);
+
+/// Measures flicker. Throws Error as flicker::run_flicker.
+void load_and_run_flicker(const flicker::FlickerOptions& options, run::Progress& progress);
 
 /// Compares two pictures. Throws Error as run::compare_pictures.
 run::Comparison load_and_compare_pictures(const run::ComparisonOptions& options);

@@ -1,6 +1,7 @@
 // The entries of the module that the command line loads when there is work to do: the image libraries behind it take
 // 0.2 s to load, which `list` and `--help` should not pay.
 
+#include "harness/flicker/run_flicker.h"
 #include "harness/run/bias_sweep.h"
 #include "harness/run/compare_pictures.h"
 #include "harness/run/run_experiment.h"
@@ -39,4 +40,8 @@ extern "C" void shadowbench_run_stress(const shadowbench::stress::StressOptions&
 
 extern "C" void shadowbench_describe_stress_axes(const std::vector<shadowbench::filters::FilterRequest>& filters, std::string& text) {
   text = shadowbench::stress::describe_axes(filters);
+}
+
+extern "C" void shadowbench_run_flicker(const shadowbench::flicker::FlickerOptions& options, shadowbench::run::Progress& progress) {
+  shadowbench::flicker::run_flicker(options, progress);
 }

@@ -1,0 +1,166 @@
+#include "harness/flicker/run_flicker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "filters/error.h"
+#include "harness/flicker/bench.h"
+#include "harness/run/run_facts.h"
+#include "harness/run/scene_loading.h"
+#include "report/atomic_file.h"
+#include "report/flicker_files.h"
+#include "report/flicker_picture.h"
+
+namespace shadowbench::flicker {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Stats = std::vector<reference::FlickerStats>;
+
+report::FlickerMotion describe_motion(Motion motion, double step) {
+  report::FlickerMotion record;
+  record.id = name_of(motion);
+  record.fit = scene::name_of(fit_of(motion));
+  record.picture = fmt::format("flicker.{}.png", record.id);
+  if (motion == Motion::kLight) {
+    record.title = "The light turns";
+    record.how = fmt::format("The sun turns about the vertical; the step is chosen so that the median receiver moves by {:g} texels in the map without snapping, in the first step.", kStepTexels);
+    record.step = glm::degrees(step);
+    record.step_unit = "degrees";
+  } else {
+    record.title = "The camera moves";
+    record.how = fmt::format("The camera moves to its right by {:g} of a texel's width a step, and the light's map follows what it sees.", kStepTexels);
+    record.step = step;
+    record.step_unit = "m";
+  }
+  return record;
+}
+
+report::FlickerFilter make_record(const std::string& label, const reference::FlickerStats& stats) {
+  return {label, stats.change, stats.flicker, stats.returning, stats.not_finite, stats.mean_change};
+}
+
+report::Image to_image(const reference::FlickerStats& stats, const run::RunOptions& options) {
+  report::Image image(options.width, options.height, 1);
+  image.texels = stats.by_pixel;
+  return image;
+}
+
+class FlickerRun {
+ public:
+  FlickerRun(const FlickerOptions& options, run::Progress& progress)
+      : options_(options),
+        progress_(progress),
+        motions_(parse_motions(options.motions)),
+        scene_(run::load_scene(options.run, options.run.scenes.front())),
+        renderer_(run::make_renderer(options.run.backend, options.run.resources)),
+        cache_(options.run.cache, [&progress](const std::string& message) { progress.note("warning: " + message); }),
+        bench_(renderer_, options.run, scene_, cache_) {}
+
+  void run() {
+    report::AtomicFile(options_.run.out / "flicker.json").write("");  // a folder that cannot be written is better found now
+    const auto start = Clock::now();
+    describe();
+    progress_.begin(count_frames(), 0);
+    for (const Motion motion : motions_) record_.motions.push_back(measure(motion));
+    record_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    progress_.show(done_, "writing");
+    report::write_flicker_files(options_.run.out, record_);
+  }
+
+ private:
+  const FlickerOptions& options_;
+  run::Progress& progress_;
+  std::vector<Motion> motions_;
+  scene::Scene scene_;
+  run::Renderer renderer_;
+  run::TruthCache cache_;
+  FlickerBench bench_;
+  report::FlickerRecord record_;
+  int done_ = 0;
+
+  int count_frames() const {
+    int passes = 0;
+    for (const Motion motion : motions_) passes += motion == Motion::kLight ? 3 : 2;  // the truth, and without and with snapping
+    return passes * options_.frames;
+  }
+
+  void describe() {
+    for (const std::string& reason : renderer_.refused) progress_.note("not used: " + reason);
+    record_.commit = run::build_commit();
+    record_.gl = run::describe_gl(renderer_);
+    record_.machine = run::describe_machine();
+    record_.seed = options_.run.seed;
+    record_.command = options_.run.command;
+    record_.scene = scene_.name;
+    record_.view = scene_.cameras.front().name;
+    record_.width = options_.run.width;
+    record_.height = options_.run.height;
+    record_.map_size = options_.run.map_sizes.front();
+    record_.frames = options_.frames;
+    record_.return_above = reference::kReturn;
+  }
+
+  std::function<void(int)> show(const std::string& what) {
+    return [this, what](int frame) { progress_.show(done_++, fmt::format("{} · frame {} of {}", what, frame + 1, options_.frames)); };
+  }
+
+  report::FlickerVariant describe_variant(bool snap, const std::vector<scene::LightFrustum>& frusta, const std::vector<std::uint8_t>& mask) const {
+    report::FlickerVariant variant;
+    variant.snap = snap;
+    variant.texel_m = frusta.front().texel_size_ws;
+    variant.grid_texels = measure_grid_move(bench_.receivers().image, mask, frusta, record_.map_size).value();
+    variant.resizes = count_resizes(frusta);
+    return variant;
+  }
+
+  report::FlickerMotion measure(Motion motion) {
+    const double step = choose_step(motion, scene_, bench_.receivers().image, bench_.following(false));
+    report::FlickerMotion record = describe_motion(motion, step);
+    const std::vector<Frame> frames = make_frames(motion, scene_, step, options_.frames);
+    std::vector<std::vector<scene::LightFrustum>> frusta;
+    for (const bool snap : {false, true}) frusta.push_back(fit_frames(motion, scene_, frames, bench_.following(snap)));
+    const std::vector<std::uint8_t> mask = mark(frusta);
+    const TruthFrames truth = bench_.trace(motion, frames, mask, show(record.id + " · truth"));
+    std::vector<Stats> stats;
+    for (std::size_t v = 0; v < frusta.size(); ++v) {
+      report::FlickerVariant& variant = record.variants.emplace_back(describe_variant(v == 1, frusta[v], mask));
+      stats.push_back(bench_.measure(frusta[v], mask, truth, show(record.id + (variant.snap ? " · snapped" : ""))));
+      for (std::size_t i = 0; i < stats[v].size(); ++i) variant.filters.push_back(make_record(options_.run.filters[i].label(), stats[v][i]));
+    }
+    const reference::FlickerStats& any = stats.front().front();
+    record.receivers = any.receivers;
+    record.truth = {truth.traced, any.truth_change, any.truth_returning, truth.noise, any.truth_mean_change};
+    write_picture(record, stats);
+    return record;
+  }
+
+  /// The receivers that count without snapping and with it.
+  std::vector<std::uint8_t> mark(const std::vector<std::vector<scene::LightFrustum>>& frusta) const {
+    std::vector<scene::LightFrustum> all;
+    for (const auto& some : frusta) all.insert(all.end(), some.begin(), some.end());
+    std::vector<std::uint8_t> mask = mark_receivers(bench_.receivers().image, all, record_.map_size, bench_.following(false).pad_texels);
+    if (std::ranges::count(mask, std::uint8_t{1}) > 0) return mask;
+    throw Error(ErrorKind::kInput, fmt::format("{}: no receiver faces the light and stays in its map in all {} frames; give fewer --frames, a larger --map-size or another --scene",
+                                               scene_.name, options_.frames));
+  }
+
+  void write_picture(const report::FlickerMotion& motion, const std::vector<Stats>& stats) const {
+    report::FlickerPicture picture;
+    picture.title = fmt::format("{}: flicker by pixel on {}", motion.title, scene_.name);
+    picture.note = fmt::format("root mean square, over {} steps, of the change of visibility less the truth's; map {}, {:.3g} {} a step", options_.frames - 1, record_.map_size, motion.step,
+                               motion.step_unit);
+    for (std::size_t i = 0; i < options_.run.filters.size(); ++i) {
+      picture.tiles.push_back({options_.run.filters[i].label(), to_image(stats[0][i], options_.run), to_image(stats[1][i], options_.run)});
+    }
+    report::write_flicker_picture(options_.run.out / motion.picture, picture);
+  }
+};
+
+}  // namespace
+
+void run_flicker(const FlickerOptions& options, run::Progress& progress) { FlickerRun(options, progress).run(); }
+
+}  // namespace shadowbench::flicker

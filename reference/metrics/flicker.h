@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace shadowbench::reference {
+
+/// A receiver's visibility went back and forth once it came back by more than this from where it had gone.
+inline constexpr float kReturn = 0.05f;
+
+/// How the visibility of fixed receivers changes from frame to frame, and how that differs from how the truth changes.
+/// Source: derived; with d and e the changes of image and truth from one frame to the next, at one receiver.
+struct FlickerStats {
+  std::int64_t receivers = 0;       ///< of the mask
+  std::int64_t not_finite = 0;      ///< pairs of a receiver and a step that are left out, because the image is NaN or infinite there
+  double change = 0.0;              ///< root mean square of d, over receivers and steps
+  double truth_change = 0.0;        ///< of e
+  double flicker = 0.0;             ///< of d - e: change that the truth does not have, or lacks
+  double returning = 0.0;           ///< share of the receivers that went back and forth by more than kReturn
+  double truth_returning = 0.0;     ///< the same of the truth
+  std::vector<double> mean_change;  ///< of each step, the mean of |d| over receivers
+  std::vector<double> truth_mean_change;  ///< of each step, the mean of |e|
+  std::vector<float> by_pixel;      ///< root mean square of d - e over the steps; 0 outside the mask
+};
+
+/// Takes frames one by one and keeps no more than the last.
+class FlickerMeter {
+ public:
+  /// `mask` is not 0 where a pixel counts in every frame.
+  explicit FlickerMeter(std::vector<std::uint8_t> mask);
+
+  /// Takes the next frame. Requires spans of the mask's length, and a finite truth where it counts.
+  void add(std::span<const float> image, std::span<const float> truth);
+
+  /// Gives nothing where no receiver counts or there are fewer than two frames.
+  std::optional<FlickerStats> finish() const;
+
+ private:
+  /// Follows one value's turns.
+  struct Turn {
+    float farthest = 0.0f;  ///< since it last turned
+    std::int8_t way = 0;    ///< 1 up, -1 down, 0: has not gone anywhere
+    bool returned = false;
+    void follow(float value);
+  };
+
+  /// What is kept of an image, or of the truth.
+  struct Track {
+    std::vector<float> last;
+    std::vector<Turn> turns;
+    std::vector<double> mean_change;
+    double squares = 0.0;
+    std::int64_t steps = 0;  ///< of receivers
+  };
+
+  std::vector<std::uint8_t> mask_;
+  Track image_, truth_;
+  std::vector<double> excess_;              ///< by pixel, sums of squares
+  std::vector<std::int32_t> excess_steps_;  ///< by pixel
+  std::int64_t not_finite_ = 0;
+  int frames_ = 0;
+
+  void begin(Track& track, std::span<const float> values) const;
+  void step(Track& track, std::span<const float> values) const;
+  void compare(std::span<const float> image, std::span<const float> truth);
+  double share_returned(const Track& track) const;
+};
+
+}  // namespace shadowbench::reference

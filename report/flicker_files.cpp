@@ -1,0 +1,23 @@
+#include "report/flicker_files.h"
+
+#include "report/atomic_file.h"
+#include "report/flicker_json.h"
+#include "report/flicker_plots.h"
+#include "report/flicker_text.h"
+
+namespace shadowbench::report {
+
+void write_flicker_files(const std::filesystem::path& dir, FlickerRecord& record) {
+  std::vector<Plot> plots;
+  for (const FlickerMotion& motion : record.motions) {
+    for (const FlickerVariant& variant : motion.variants) plots.push_back(make_flicker_plot(motion, variant));
+  }
+  write_text_file(dir / "flicker.gp", make_gnuplot_script(plots));
+  record.no_plots = run_gnuplot(dir, "flicker.gp").value_or("");
+  write_text_file(dir / "flicker.json", make_flicker_json(record));
+  write_text_file(dir / "flicker.csv", make_flicker_csv(record));
+  write_text_file(dir / "flicker.md", make_flicker_text(record));
+  write_text_file(dir / "flicker.html", make_flicker_html(record));
+}
+
+}  // namespace shadowbench::report

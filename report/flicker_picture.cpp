@@ -1,0 +1,99 @@
+#include "report/flicker_picture.h"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/figure.h"
+#include "report/picture_io.h"
+
+namespace shadowbench::report {
+namespace {
+
+constexpr int kPanelWidth = 400;
+constexpr int kGap = 10;
+constexpr int kBarWidth = 400;
+constexpr std::size_t kPerRow = 2;  // filters, each with two panels
+constexpr double kLeastShown = 1e-3;
+constexpr Rgb kGround{0.90f, 0.91f, 0.92f};
+
+/// Repeats each pixel, or takes the largest of those that share one, so that a single one that flickers is seen.
+Image fit_panel(const Image& image) {
+  const int width = kPanelWidth, height = std::max(1, image.height * width / image.width);
+  const auto begin_of = [](int at, int from, int to) { return static_cast<int>(static_cast<std::int64_t>(at) * from / to); };
+  Image shown(width, height, 1);
+  for (int y = 0; y < height; ++y) {
+    const int y0 = begin_of(y, image.height, height), y1 = std::max(y0 + 1, begin_of(y + 1, image.height, height));
+    for (int x = 0; x < width; ++x) {
+      const int x0 = begin_of(x, image.width, width), x1 = std::max(x0 + 1, begin_of(x + 1, image.width, width));
+      float most = *image.at(x0, y0);
+      for (int v = y0; v < y1; ++v) most = std::max(most, *std::max_element(image.at(x0, v), image.at(x0, v) + (x1 - x0)));
+      *shown.at(x, y) = most;
+    }
+  }
+  return shown;
+}
+
+/// Colours a place on the scale, [0,1], pale for little; what is below is the ground.
+Image color(Image places) {
+  const Image given = places;
+  for (float& place : places.texels) place = 0.95f * (1.0f - std::clamp(place, 0.0f, 1.0f));  // the palest of the map would be lost on the ground
+  const OIIO::ImageSpec spec(places.width, places.height, 1, OIIO::TypeDesc::FLOAT);
+  const OIIO::ImageBuf source(spec, places.texels.data());
+  Image colors(places.width, places.height, 3);
+  OIIO::ImageBufAlgo::color_map(source, 0, "inferno").get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, colors.texels.data());
+  for (std::size_t i = 0; i < given.texels.size(); ++i) {
+    if (given.texels[i] < 0.0f) std::ranges::copy(kGround, colors.texels.begin() + static_cast<std::ptrdiff_t>(3 * i));
+  }
+  return colors;
+}
+
+Image color_flicker(Image flicker) {
+  for (float& value : flicker.texels) value = static_cast<float>(place_flicker(static_cast<double>(value)).value_or(-1.0));
+  return color(std::move(flicker));
+}
+
+void draw_scale(Figure& figure, int top) {
+  const int line = figure_line_height(), left = figure.body().x + 3 * kGap;  // room for the first number
+  Image ramp(kBarWidth, line - 4, 1);
+  for (int y = 0; y < ramp.height; ++y) {
+    for (int x = 0; x < ramp.width; ++x) *ramp.at(x, y) = static_cast<float>(x) / static_cast<float>(ramp.width - 1);
+  }
+  figure.place(left, top + 2, color(std::move(ramp)));
+  for (const double tick : {0.001, 0.01, 0.1, 1.0}) {
+    figure.write_centred(left + static_cast<int>(*place_flicker(tick) * kBarWidth), top + line, fmt::format("{:g}", tick));
+  }
+  figure.write(left + kBarWidth + 4 * kGap, top, "grey: less than 0.001; the largest is shown where pixels share one");
+}
+
+}  // namespace
+
+std::optional<double> place_flicker(double flicker) {
+  if (!(flicker >= kLeastShown)) return std::nullopt;
+  return std::min(1.0, 1.0 - std::log10(flicker) / std::log10(kLeastShown));
+}
+
+void write_flicker_picture(const std::filesystem::path& path, const FlickerPicture& picture) {
+  const Image& first = picture.tiles.front().free;
+  const int line = figure_line_height(), panel_height = std::max(1, first.height * kPanelWidth / first.width);
+  const int row_height = line + panel_height + 2 * kGap, pair_width = 2 * kPanelWidth + kGap;
+  const int columns = static_cast<int>(std::min(kPerRow, picture.tiles.size()));
+  const int rows = static_cast<int>((picture.tiles.size() + kPerRow - 1) / kPerRow);
+  Figure figure(picture.title, picture.note, {columns * pair_width + (columns - 1) * 3 * kGap, rows * row_height + 2 * line});
+  for (std::size_t i = 0; i < picture.tiles.size(); ++i) {
+    const FlickerTile& tile = picture.tiles[i];
+    const int x = figure.body().x + static_cast<int>(i % kPerRow) * (pair_width + 3 * kGap);
+    const int y = figure.body().y + static_cast<int>(i / kPerRow) * row_height;
+    figure.write(x, y, tile.filter, kFigureInk);
+    figure.write(x + kPanelWidth + kGap, y, "snapped");
+    figure.place(x, y + line, color_flicker(fit_panel(tile.free)));
+    figure.place(x + kPanelWidth + kGap, y + line, color_flicker(fit_panel(tile.snapped)));
+  }
+  draw_scale(figure, figure.body().y + rows * row_height);
+  write_display_png(path, figure.canvas());
+}
+
+}  // namespace shadowbench::report
