@@ -99,7 +99,10 @@ TimerCheck check_timer(Context&) {
           agreeing / static_cast<double>(runs.size())};
 }
 
-TimerKind choose_timer(Context& context) { return check_timer(context).choice(); }
+TimerKind choose_timer(Context& context) {
+  if (context.info().software) return TimerKind::kWallClock;
+  return check_timer(context).choice();
+}
 
 double time_ms(TimerKind kind, const std::function<void()>& work) {
   if (kind == TimerKind::kWallClock) return time_by_wall_clock(work);
