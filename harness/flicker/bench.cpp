@@ -64,7 +64,7 @@ TruthFrames FlickerBench::trace(Motion motion, const std::vector<Frame>& frames,
 }
 
 report::Image FlickerBench::draw(render::FilterPasses& filter) {
-  filter.retune(renderer_.shaders, filter.request().values, run::make_filter_light(options_, scene_, map_, filter.request()));
+  filter.retune(renderer_.shaders, filter.request().values, run::make_filter_light(options_, scene_.light, map_.frustum, filter.request()));
   filter.prefilter(map_.map);
   filter.lookup(assets_.gbuffer(camera()), map_.map, target_);
   return render::read_image(target_.texture(), 1);

@@ -8,8 +8,8 @@
 
 namespace shadowbench::run {
 
-/// Gives a scene's light as one filter sees it: with the run's bias, resolved for the filter's kernel.
-render::LightSetup make_filter_light(const RunOptions& options, const scene::Scene& scene, const LightMap& light,
+/// Gives a light as one filter sees it: with the run's bias, resolved for the filter's kernel.
+render::LightSetup make_filter_light(const RunOptions& options, const scene::Light& light, const scene::LightFrustum& frustum,
                                      const filters::FilterRequest& request);
 
 /// Compiles one filter over a light's map.

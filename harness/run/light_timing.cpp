@@ -4,7 +4,7 @@
 #include <map>
 #include <memory>
 
-#include "harness/run/bias_rule.h"
+#include "harness/run/filter_setup.h"
 #include "harness/run/statistics.h"
 #include "harness/scene/light_ring.h"
 
@@ -63,9 +63,7 @@ void LightFrameBench::prepare_filters(const std::vector<scene::Light>& lights) {
   for (render::FilterPasses* filter : frame_.filters) {
     std::vector<render::PreparedLight>& prepared = prepared_.emplace_back();
     for (std::size_t i = 0; i < lights.size(); ++i) {
-      const scene::LightFrustum& frustum = maps_[i].frustum;
-      const render::Bias bias = resolve_bias(options_.bias, frustum, filter->request().spec, filter->request().values);
-      prepared.push_back(filter->prepare(render::make_light_setup(frustum, lights[i], bias, options_.seed, options_.range), encoded.find(*filter, i)));
+      prepared.push_back(filter->prepare(make_filter_light(options_, lights[i], maps_[i].frustum, filter->request()), encoded.find(*filter, i)));
     }
   }
 }

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "harness/render/filter_passes.h"
+#include "harness/run/filter_setup.h"
 #include "harness/run/scene_assets.h"
 
 namespace shadowbench::run {
@@ -34,12 +35,10 @@ RoundTime draw_round(Renderer& renderer, const PlannedScene& planned, const Scen
   const RunOptions& options = planned.options;
   LightMap& light = assets.light_map(*task.camera, task.map_size);
   render::GBuffer& gbuffer = assets.gbuffer(*task.camera);
-  const render::Bias bias = resolve_bias(options.bias, light.frustum, options.reference.spec, options.reference.values);
-  const auto setup = render::make_light_setup(light.frustum, planned.scene.light, bias, options.seed, options.range);
-  render::FilterPasses reference(renderer.shaders, options.reference, light.map, setup);
+  const auto reference = make_filter_passes(renderer, options, planned.scene, light, options.reference);
   render::ImageTarget target("probed visibility", GL_R32F, options.width, options.height);
   return {find_quickest_ms(renderer.timer, [&] { assets.redraw(light); }),
-          find_quickest_ms(renderer.timer, [&] { reference.lookup(gbuffer, light.map, target); })};
+          find_quickest_ms(renderer.timer, [&] { reference->lookup(gbuffer, light.map, target); })};
 }
 
 /// Draws the planned tasks scene by scene until that has taken long enough.

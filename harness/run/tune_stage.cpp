@@ -9,6 +9,7 @@
 #include "harness/render/shade_pass.h"
 #include "harness/run/cell_analysis.h"
 #include "harness/run/map_limits.h"
+#include "harness/run/filter_setup.h"
 #include "harness/run/mean_flip.h"
 #include "report/picture_io.h"
 
@@ -79,9 +80,7 @@ std::string TuneStage::explain_absent(const View& view) const {
 }
 
 render::LightSetup TuneStage::make_light(const filters::FilterRequest& request) const {
-  const RunOptions& options = *settings_.options;
-  const render::Bias bias = resolve_bias(options.bias, light_->frustum, request.spec, request.values);
-  return render::make_light_setup(light_->frustum, scene_.light, bias, options.seed, options.range);
+  return make_filter_light(*settings_.options, scene_.light, light_->frustum, request);
 }
 
 render::FilterPasses TuneStage::make_passes(const filters::FilterRequest& request) {

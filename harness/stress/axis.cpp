@@ -58,6 +58,15 @@ const char* name_of(Level level) {
   return level == Level::kModel ? "model" : "arithmetic";
 }
 
+Case start_case(const filters::FilterRequest& request, std::string variant, Level level) {
+  Case item;
+  item.filter = request.spec.id;
+  item.variant = std::move(variant);
+  item.level = level;
+  item.params = request.values;
+  return item;
+}
+
 Case make_absent_case(std::string filter, std::string variant, Level level, std::string reason) {
   Case item;
   item.filter = std::move(filter);

@@ -85,6 +85,9 @@ struct Axis {
   std::function<std::vector<Exhibit>(const StressContext&)> make_exhibits;  ///< tables and pictures of its own; may be null
 };
 
+/// Makes a case of a filter, with nothing known of it and nothing to observe yet.
+Case start_case(const filters::FilterRequest& request, std::string variant, Level level);
+
 /// Makes a case that reports why it was not measured.
 Case make_absent_case(std::string filter, std::string variant, Level level, std::string reason);
 

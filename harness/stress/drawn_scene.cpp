@@ -7,6 +7,7 @@
 
 #include "harness/run/bias_rule.h"
 #include "harness/scene/light_fit.h"
+#include "harness/scene/load.h"
 
 namespace shadowbench::stress {
 namespace {
@@ -49,6 +50,10 @@ std::vector<glm::vec4> read_positions(const gl::Texture& texture) {
 }
 
 }  // namespace
+
+scene::Scene load_drawn_scene(const StressContext& context, const std::string& name, const DrawingSize& size) {
+  return scene::load(name, {.scenes_folder = context.resources.scenes, .aspect = static_cast<double>(size.width) / size.height});
+}
 
 SceneDrawer::SceneDrawer(const StressContext& context, filters::FilterRequest request, const DrawingSize& size)
     : shaders_(context.renderer->shaders), seed_(context.seed), request_(std::move(request)), size_(size) {}

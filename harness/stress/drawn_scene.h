@@ -21,6 +21,9 @@ struct DrawingSize {
   int map = 256;  ///< texels per side
 };
 
+/// Loads a built-in scene, framed for drawings of this size. Throws Error as scene::load().
+scene::Scene load_drawn_scene(const StressContext& context, const std::string& name, const DrawingSize& size = {});
+
 /// One filter behind the whole chain that `run` has: light fit, depth pass, G-buffer, prefilter, lookup, with the default bias.
 class SceneDrawer {
  public:

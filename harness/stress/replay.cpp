@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/render/filter_passes.h"
 #include "harness/render/shade_pass.h"
+#include "harness/run/filter_setup.h"
 #include "harness/run/map_limits.h"
 #include "harness/run/scene_assets.h"
+#include "harness/run/scene_loading.h"
 #include "harness/run/truth_cache.h"
-#include "harness/scene/load.h"
 #include "reference/metrics/error_stats.h"
 #include "report/grid.h"
 #include "report/hardest_edge.h"
@@ -58,7 +58,7 @@ class Stage {
   Stage(const StressContext& context, const Mistake& mistake)
       : renderer_(*context.renderer),
         options_(make_options(context, mistake)),
-        scene_(scene::load(mistake.scene, {.scenes_folder = context.resources.scenes, .aspect = static_cast<double>(kWidth) / kHeight})),
+        scene_(run::load_scene(options_, mistake.scene)),
         cache_(context.cache, [progress = context.progress](const std::string& message) { if (progress) progress->note("warning: " + message); }),
         assets_(renderer_, options_, scene_, cache_, run::largest_padding_texels(options_.filters)),
         light_(assets_.light_map(camera(), kMapSize)),
@@ -84,13 +84,12 @@ class Stage {
   const scene::Camera& camera() const { return scene_.cameras.front(); }
 
   Result draw(const filters::FilterRequest& request) {
-    const render::Bias bias = run::resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
-    render::FilterPasses passes(renderer_.shaders, request, light_.map, render::make_light_setup(light_.frustum, scene_.light, bias, options_.seed));
-    passes.prefilter(light_.map);
-    passes.lookup(assets_.gbuffer(camera()), light_.map, target_);
+    const auto passes = run::make_filter_passes(renderer_, options_, scene_, light_, request);
+    passes->prefilter(light_.map);
+    passes->lookup(assets_.gbuffer(camera()), light_.map, target_);
     Result result;
     result.label = request.label();
-    result.broken_texels = run::count_broken_texels(passes, light_.map);
+    result.broken_texels = run::count_broken_texels(*passes, light_.map);
     result.visibility = render::read_image(target_.texture(), 1);
     result.picture = render::shade(renderer_.shaders, assets_.gbuffer(camera()), target_.texture(), scene_, camera());
     score(result);

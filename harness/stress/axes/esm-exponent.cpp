@@ -92,11 +92,7 @@ Case make_case(const StressContext& context, const DrivenFilter& driven, const S
   request.values = make_values(driven, setting);
   const auto [probe, reason] = make_probe(context, request, level);
   if (!probe) return make_absent_case(request.spec.id, name(setting), level, reason);
-  Case item;
-  item.filter = request.spec.id;
-  item.variant = name(setting);
-  item.level = level;
-  item.params = request.values;
+  Case item = start_case(request, name(setting), level);
   item.params.erase(driven.param);
   item.theories = {make_overflow(setting, level)};
   if (is_log(setting)) item.theories.push_back(make_rounding(setting));

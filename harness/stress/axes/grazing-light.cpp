@@ -78,11 +78,7 @@ Case make_case(const StressContext& context, const filters::FilterRequest& reque
   if (!filters::make_model(request.spec.id)) return make_absent_case(request.spec.id, variant, level, "the filter has no scalar model, which names its kernel");
   if (level == Level::kGl && !context.renderer) return make_absent_case(request.spec.id, variant, level, "there is no GL");
   const Reach reach = find_reach(request);
-  Case item;
-  item.filter = request.spec.id;
-  item.variant = variant;
-  item.level = level;
-  item.params = request.values;
+  Case item = start_case(request, variant, level);
   item.theories = make_theories(reach, diagonal);
   const std::shared_ptr<TiltedPlane> plane = level == Level::kGl ? make_gl_plane(context, request) : make_model_plane(request);
   item.observe = [plane, reach, diagonal](double angle) { return observe_plane(*plane, {angle, diagonal}, reach); };

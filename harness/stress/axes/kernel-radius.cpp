@@ -61,11 +61,7 @@ Case make_case(const StressContext& context, const RadiusFilter& filter, Level l
   if (!probe || !filters::make_model(request.spec.id)) {
     return make_absent_case(request.spec.id, variant, level, probe ? "the filter has no scalar model to be held against" : reason);
   }
-  Case item;
-  item.filter = request.spec.id;
-  item.variant = variant;
-  item.level = level;
-  item.params = request.values;
+  Case item = start_case(request, variant, level);
   item.params.erase(filter.param);
   item.theories = {{std::nullopt, TheoryKind::kRounding, "none: a wider kernel adds more numbers, none of them larger",
                     "derived: a mean of n numbers with weights that sum to 1 is off by n unit round-offs of the largest at most", Verdict::kDegraded}};

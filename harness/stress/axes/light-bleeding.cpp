@@ -90,11 +90,7 @@ Case make_case(const StressContext& context, const filters::FilterRequest& reque
   if (!probe) return make_absent_case(request.spec.id, variant, level, reason);
   const int radius = filters::prefilter_radius_texels(request.spec, request.values);
   const ClosedForm form = find_closed_form(request);
-  Case item;
-  item.filter = request.spec.id;
-  item.variant = variant;
-  item.level = level;
-  item.params = request.values;
+  Case item = start_case(request, variant, level);
   if (form.visibility) item.theories = {make_theory(form, radius, occluders)};
   else item.remark = [](const report::StressCase&) { return std::vector<std::string>{"its front matter tells of no formula: there is nothing to hold it against but truth"}; };
   if (filters::make_model(request.spec.id)) {

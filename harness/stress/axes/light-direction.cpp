@@ -109,10 +109,7 @@ std::vector<std::string> remark(const report::StressCase& record) {
 Case make_case(const StressContext& context, const filters::FilterRequest& request, const Way& way) {
   const std::string variant = fmt::format("light along {}", way.name);
   if (!context.renderer) return make_absent_case(request.spec.id, variant, Level::kGl, "there is no GL");
-  Case item;
-  item.filter = request.spec.id;
-  item.variant = variant;
-  item.params = request.values;
+  Case item = start_case(request, variant, Level::kGl);
   item.theories = {{std::nullopt, TheoryKind::kSlope, "none: the light's axes are chosen beside the axis that its direction is least parallel to", "by construction: h tan(angle)", Verdict::kDegraded}};
   item.remark = remark;
   Leaner leaner(std::make_shared<SceneDrawer>(context, request), request, way);

@@ -227,10 +227,7 @@ std::vector<std::string> remark(const report::StressCase& record) {
 Case make_case(const StressContext& context, const filters::FilterRequest& request) {
   constexpr const char* kVariant = "all borders";
   if (!context.renderer) return make_absent_case(request.spec.id, kVariant, Level::kGl, "there is no GL");
-  Case item;
-  item.filter = request.spec.id;
-  item.variant = kVariant;
-  item.params = request.values;
+  Case item = start_case(request, kVariant, Level::kGl);
   item.theories = {{std::nullopt, TheoryKind::kSlope, "none: what the map does not hold is lit", "by definition: border = encode of depth 1", Verdict::kDegraded}};
   item.remark = remark;
   const std::shared_ptr<Probe> orthographic = make_gl_probe(context, request), perspective = make_gl_probe(context, request);

@@ -59,10 +59,7 @@ Observation observe(const StressContext& context, const filters::FilterRequest& 
 Case make_case(const StressContext& context, const filters::FilterRequest& request) {
   constexpr const char* kVariant = "half of the map dark";
   if (!context.renderer) return make_absent_case(request.spec.id, kVariant, Level::kGl, "there is no GL");
-  Case item;
-  item.filter = request.spec.id;
-  item.variant = kVariant;
-  item.params = request.values;
+  Case item = start_case(request, kVariant, Level::kGl);
   item.theories = {{std::nullopt, TheoryKind::kQuantum, "none: a map of one texel is a map", "by definition", Verdict::kDegraded}};
   item.observe = [&context, request](double size) { return observe(context, request, static_cast<int>(size)); };
   return item;

@@ -161,11 +161,7 @@ Case make_map_case(const StressContext& context, const filters::FilterRequest& r
   const std::string variant = setting.poison.name;
   const auto [probe, reason] = make_probe(context, request, setting.level);
   if (!probe) return make_absent_case(request.spec.id, variant, setting.level, reason);
-  Case item;
-  item.filter = request.spec.id;
-  item.variant = variant;
-  item.level = setting.level;
-  item.params = request.values;
+  Case item = start_case(request, variant, setting.level);
   item.theories = {{std::nullopt, TheoryKind::kQuantum, "none: poison stays within the kernel", "derived: a blur of finite support", Verdict::kBroken}};
   item.remark = [setting](const report::StressCase& record) { return remark_map(setting, record); };
   item.observe = [probe = probe, values = request.values, setting, reach = find_reach(request), scene = make_scene()](double number) {

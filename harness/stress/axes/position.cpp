@@ -5,7 +5,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "harness/run/bias_rule.h"
-#include "harness/scene/load.h"
 #include "harness/scene/validate.h"
 #include "harness/stress/drawn_scene.h"
 #include "harness/stress/slab_scene.h"
@@ -114,10 +113,7 @@ Case make_case(const StressContext& context, const filters::FilterRequest& reque
   const std::string variant = fmt::format("{}, {}", setting.name, describe(setting.origin));
   if (!context.renderer) return make_absent_case(request.spec.id, variant, Level::kGl, "there is no GL");
   const auto drawer = std::make_shared<SceneDrawer>(context, request);
-  Case item;
-  item.filter = request.spec.id;
-  item.variant = variant;
-  item.params = request.values;
+  Case item = start_case(request, variant, Level::kGl);
   item.theories = list_theories(scene, drawer->fit(scene), request, setting.origin);
   item.remark = [origin = setting.origin](const report::StressCase& record) { return remark(origin, record); };
   item.observe = [drawer, scene, size = find_size(scene), origin = setting.origin, expected = std::optional<Drawing>()](double sizes) mutable {
@@ -134,9 +130,8 @@ scene::Scene make_facing_floor() {
 }
 
 std::vector<Case> make_cases(const StressContext& context) {
-  const DrawingSize size;
   const scene::Scene floor = scene::validate(make_facing_floor(), "facing floor");
-  const scene::Scene cubes = scene::load("cubes", {.scenes_folder = context.resources.scenes, .aspect = static_cast<double>(size.width) / size.height});
+  const scene::Scene cubes = load_drawn_scene(context, "cubes");
   std::vector<Case> cases;
   for (const filters::FilterRequest& request : context.filters) cases.push_back(make_case(context, request, floor, {"floor", Origin::kWorld}));
   cases.push_back(make_case(context, context.filters.front(), floor, {"floor", Origin::kSceneInDouble}));

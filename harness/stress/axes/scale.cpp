@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "harness/scene/load.h"
 #include "harness/scene/validate.h"
 #include "harness/stress/drawn_scene.h"
 
@@ -36,10 +35,7 @@ std::vector<std::string> remark(const report::StressCase& record) {
 
 Case make_case(const StressContext& context, const filters::FilterRequest& request, const scene::Scene& scene) {
   if (!context.renderer) return make_absent_case(request.spec.id, scene.name, Level::kGl, "there is no GL");
-  Case item;
-  item.filter = request.spec.id;
-  item.variant = scene.name;
-  item.params = request.values;
+  Case item = start_case(request, scene.name, Level::kGl);
   item.theories = {make_theory()};
   item.remark = remark;
   const auto drawer = std::make_shared<SceneDrawer>(context, request);
@@ -51,8 +47,7 @@ Case make_case(const StressContext& context, const filters::FilterRequest& reque
 }
 
 std::vector<Case> make_cases(const StressContext& context) {
-  const DrawingSize size;
-  const scene::Scene cubes = scene::load("cubes", {.scenes_folder = context.resources.scenes, .aspect = static_cast<double>(size.width) / size.height});
+  const scene::Scene cubes = load_drawn_scene(context, "cubes");
   std::vector<Case> cases;
   for (const filters::FilterRequest& request : context.filters) cases.push_back(make_case(context, request, cubes));
   return cases;

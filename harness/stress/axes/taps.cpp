@@ -84,11 +84,7 @@ Case make_case(const StressContext& context, const TapsFilter& filter, Level lev
   if (!probe || !filters::make_model(request.spec.id)) {
     return make_absent_case(request.spec.id, variant, level, probe ? "the filter has no scalar model to be held against" : reason);
   }
-  Case item;
-  item.filter = request.spec.id;
-  item.variant = variant;
-  item.level = level;
-  item.params = request.values;
+  Case item = start_case(request, variant, level);
   item.params.erase(filter.find_param().name);
   item.theories = {{std::nullopt, TheoryKind::kRounding, "none: more taps add more numbers, none of them above 1",
                     "derived: a mean of n numbers is off by n unit round-offs of the largest at most", Verdict::kDegraded}};

@@ -90,11 +90,7 @@ Case make_filter_case(const StressContext& context, const DrivenFilter& driven, 
   if (!probe) return make_absent_case(request.spec.id, variant, level, reason);
   const int radius = filters::prefilter_radius_texels(request.spec, request.values);
   const double error = bound_variance_error(filters::store_precision(store), radius > 0 ? 3 : 1, radius > 0 ? 2 * (2 * radius + 1) : 2);
-  Case item;
-  item.filter = request.spec.id;
-  item.variant = variant;
-  item.level = level;
-  item.params = request.values;
+  Case item = start_case(request, variant, level);
   item.theories = {make_theory(error, minimum, kBound, Verdict::kDegraded), make_theory(error, minimum, kLargestFall, Verdict::kBroken)};
   item.explain = explain_unmet_bound;
   item.observe = [probe = probe, edge = make_edge_scene(radius, make_bands(1.0)), values = request.values, minimum](double ratio) mutable {

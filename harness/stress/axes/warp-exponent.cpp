@@ -69,11 +69,7 @@ Case make_filter_case(const StressContext& context, const DrivenFilter& driven, 
   if (!probe || !filters::make_model(request.spec.id)) {
     return make_absent_case(request.spec.id, store, level, probe ? "the filter has no scalar model to be held against" : reason);
   }
-  Case item;
-  item.filter = request.spec.id;
-  item.variant = store;
-  item.level = level;
-  item.params = request.values;
+  Case item = start_case(request, store, level);
   item.params.erase(driven.param);
   item.theories = {make_filter_theory(store)};
   const std::shared_ptr<Probe> exact = make_model_probe(context, request, filters::Precision::kDouble);

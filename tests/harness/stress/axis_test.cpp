@@ -9,6 +9,7 @@
 #include "harness/run/options.h"
 #include "harness/stress/onset.h"
 #include "harness/stress/run_stress.h"
+#include "tests/harness/stress/stress_fixture.h"
 
 namespace shadowbench::stress {
 namespace {
@@ -20,13 +21,6 @@ using ::testing::SizeIs;
 const filters::Catalogue& catalogue() {
   static const filters::Catalogue filters(run::find_resources().filters);
   return filters;
-}
-
-StressContext make_context(const std::string& filters = "") {
-  StressContext context;
-  context.resources = run::find_resources();
-  context.filters = catalogue().parse_requests(filters);
-  return context;
 }
 
 /// Gives the message of the usage error that a range is refused with.

@@ -10,6 +10,7 @@
 #include "harness/stress/drawn_scene.h"
 #include "harness/stress/onset.h"
 #include "harness/stress/slab_scene.h"
+#include "tests/harness/stress/stress_fixture.h"
 
 namespace shadowbench::stress {
 namespace {
@@ -17,21 +18,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
-
-run::Renderer& shared_renderer() {
-  static run::Renderer renderer = run::make_renderer(gl::Backend::kAuto, run::find_resources());
-  return renderer;
-}
-
-StressContext make_context(const std::string& filters) {
-  static const filters::Catalogue catalogue(run::find_resources().filters);
-  shared_renderer().context->make_current();  // other files of this program have their own
-  StressContext context;
-  context.renderer = &shared_renderer();
-  context.resources = run::find_resources();
-  context.filters = catalogue.parse_requests(filters);
-  return context;
-}
 
 Case find_case(const StressContext& context, const std::string& axis, const std::string& filter, const std::string& part) {
   for (Case& item : choose_axes(axis)[0].make_cases(context)) {
@@ -45,7 +31,7 @@ Case find_case(const StressContext& context, const std::string& axis, const std:
 class ExtremeAxis : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ExtremeAxis, GlCases_MeetTheirTheories) {
-  const StressContext context = make_context("none,box3x3,poisson,esm,vsm");
+  const StressContext context = make_gl_context("none,box3x3,poisson,esm,vsm");
   Axis axis = choose_axes(GetParam())[0];
   axis.range.high = std::min(axis.range.high, axis.whole ? 512.0 : axis.range.high);  // larger maps cost seconds
   for (const Case& item : axis.make_cases(context)) {
@@ -68,7 +54,7 @@ std::string name_axis(const ::testing::TestParamInfo<const char*>& info) {
 INSTANTIATE_TEST_SUITE_P(All, ExtremeAxis, ::testing::Values("position", "scale", "map-edge", "map-size", "light-direction", "poisoned-input"), name_axis);
 
 TEST(Position, AcneComesFarAway_AndNotRelativeToTheScene) {
-  const StressContext context = make_context("none,vsm");
+  const StressContext context = make_gl_context("none,vsm");
   const double far = 200.0;
   const Observation acne = find_case(context, "position", "none", "floor, as it is").observe(far);
   EXPECT_EQ(acne.verdict, Verdict::kDegraded);
@@ -78,19 +64,19 @@ TEST(Position, AcneComesFarAway_AndNotRelativeToTheScene) {
 }
 
 TEST(Position, RemedyHolds_OnlyWhereItComesBeforeTheFloats) {
-  const StressContext context = make_context("none");
+  const StressContext context = make_gl_context("none");
   EXPECT_EQ(find_case(context, "position", "none", "cubes, relative in double").observe(1e8).verdict, Verdict::kOk);
   EXPECT_NE(find_case(context, "position", "none", "cubes, relative too late").observe(1e6).verdict, Verdict::kOk);
 }
 
 TEST(Scale, ScalesTheScene) {
-  const Case item = find_case(make_context("none"), "scale", "none", "cubes");
+  const Case item = find_case(make_gl_context("none"), "scale", "none", "cubes");
   EXPECT_EQ(item.observe(3.0).verdict, Verdict::kOk);
   EXPECT_THROW(item.observe(1e13), Error) << "farther than scenes may reach";
 }
 
 TEST(LightDirection, ShadowOfALeaningLight_IsWhereConstructionSays) {
-  const StressContext context = make_context("none");
+  const StressContext context = make_gl_context("none");
   SceneDrawer drawer(context, context.filters[0]);
   const SlabSetting setting{.light_local = {0.3, -1.0, 0.1}};
   const Drawing drawing = drawer.draw(scene::validate(make_slab_scene(setting), "test"));
@@ -107,14 +93,14 @@ TEST(LightDirection, ShadowOfALeaningLight_IsWhereConstructionSays) {
 
 TEST(MapSize, OneTexelIsAMap) {
   for (const char* id : {"none", "pcf2x2", "poisson", "vsm", "esm"}) {
-    const Observation seen = find_case(make_context(id), "map-size", id, "half").observe(1.0);
+    const Observation seen = find_case(make_gl_context(id), "map-size", id, "half").observe(1.0);
     EXPECT_EQ(seen.verdict, Verdict::kOk) << id << ": " << seen.why;
     EXPECT_TRUE(seen.measured);
   }
 }
 
 TEST(MapSize, AboveTheLimit_IsRefusedBeforeAnythingIsAllocated) {
-  const StressContext context = make_context("none");
+  const StressContext context = make_gl_context("none");
   const std::vector<Exhibit> exhibits = choose_axes("map-size")[0].make_exhibits(context);
   ASSERT_EQ(exhibits.size(), 1u);
   const auto& rows = exhibits[0].table->rows;

@@ -8,19 +8,12 @@
 #include "harness/stress/drawn_scene.h"
 #include "harness/stress/onset.h"
 #include "harness/stress/slab_scene.h"
+#include "tests/harness/stress/stress_fixture.h"
 
 namespace shadowbench::stress {
 namespace {
 
 using ::testing::HasSubstr;
-
-StressContext make_context(const std::string& filters) {
-  static const filters::Catalogue catalogue(run::find_resources().filters);
-  StressContext context;
-  context.resources = run::find_resources();
-  context.filters = catalogue.parse_requests(filters);
-  return context;
-}
 
 TEST(SlabScene, ShadowLiesUnderTheSlab_AndMovesWithTheLight) {
   const SlabSetting down;

@@ -5,26 +5,13 @@
 #include "harness/stress/onset.h"
 #include "harness/stress/stored_depths.h"
 #include "harness/stress/tilted_plane.h"
+#include "tests/harness/stress/stress_fixture.h"
 
 namespace shadowbench::stress {
 namespace {
 
-run::Renderer& shared_renderer() {
-  static run::Renderer renderer = run::make_renderer(gl::Backend::kAuto, run::find_resources());
-  return renderer;
-}
-
-StressContext make_context(const std::string& filters) {
-  static const filters::Catalogue catalogue(run::find_resources().filters);
-  StressContext context;
-  context.renderer = &shared_renderer();
-  context.resources = run::find_resources();
-  context.filters = catalogue.parse_requests(filters);
-  return context;
-}
-
 TEST(GeometryAxes, GlCases_MeetTheirTheories) {
-  const StressContext context = make_context("none,box4x4,poisson,vsm,esm");
+  const StressContext context = make_gl_context("none,box4x4,poisson,vsm,esm");
   for (const char* id : {"grazing-light", "depth-formats", "light-bleeding", "kernel-radius", "taps"}) {
     const Axis axis = choose_axes(id)[0];
     int limits = 0;
@@ -42,7 +29,7 @@ TEST(GeometryAxes, GlCases_MeetTheirTheories) {
 }
 
 TEST(TiltedPlane, DrawnAcne_EndsWhereTheModelsDoes) {
-  const StressContext context = make_context("tent3x3");
+  const StressContext context = make_gl_context("tent3x3");
   const auto drawn = make_gl_plane(context, context.filters[0]), model = make_model_plane(context.filters[0]);
   for (const PlaneTilt& tilt : {PlaneTilt{20.0, false}, PlaneTilt{75.0, true}, PlaneTilt{89.9, true}}) {
     drawn->tilt(tilt);

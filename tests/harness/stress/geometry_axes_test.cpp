@@ -14,19 +14,12 @@
 #include "harness/stress/onset.h"
 #include "harness/stress/straight_edge.h"
 #include "harness/stress/tilted_plane.h"
+#include "tests/harness/stress/stress_fixture.h"
 
 namespace shadowbench::stress {
 namespace {
 
 using ::testing::HasSubstr;
-
-StressContext make_context(const std::string& filters) {
-  static const filters::Catalogue catalogue(run::find_resources().filters);
-  StressContext context;
-  context.resources = run::find_resources();
-  context.filters = catalogue.parse_requests(filters);
-  return context;
-}
 
 /// The bias that a filter's model needs on a plane, in texels.
 double find_model_bias(const std::string& filter, const PlaneTilt& tilt) {

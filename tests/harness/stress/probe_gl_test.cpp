@@ -5,23 +5,10 @@
 #include "filters/error.h"
 #include "harness/stress/edge_scene.h"
 #include "harness/stress/onset.h"
+#include "tests/harness/stress/stress_fixture.h"
 
 namespace shadowbench::stress {
 namespace {
-
-run::Renderer& shared_renderer() {
-  static run::Renderer renderer = run::make_renderer(gl::Backend::kAuto, run::find_resources());
-  return renderer;
-}
-
-StressContext make_context(const std::string& filters) {
-  static const filters::Catalogue catalogue(run::find_resources().filters);
-  StressContext context;
-  context.renderer = &shared_renderer();
-  context.resources = run::find_resources();
-  context.filters = catalogue.parse_requests(filters);
-  return context;
-}
 
 ProbeScene make_scene() {
   ProbeScene scene;
@@ -33,14 +20,14 @@ ProbeScene make_scene() {
 }
 
 TEST(GlProbe, ReceiversSeeTheTexelsTheyStandIn) {
-  const StressContext context = make_context("none");
+  const StressContext context = make_gl_context("none");
   const ProbeResult result = make_gl_probe(context, context.filters[0])->look(make_scene(), context.filters[0].values);
   EXPECT_THAT(result.visibility, ::testing::ElementsAre(0.0, 1.0, 1.0, 0.0));
   EXPECT_EQ(result.broken_texels, 0);
 }
 
 TEST(GlProbe, EqualsTheModel_ForEveryFilterThatHasOne) {
-  const StressContext context = make_context("");
+  const StressContext context = make_gl_context("");
   for (const filters::FilterRequest& request : context.filters) {
     const EdgeScene edge = make_edge_scene(4, {{0.3f, 0.6f}});
     const ProbeResult gl = make_gl_probe(context, request)->look(edge.scene, request.values);
@@ -50,7 +37,7 @@ TEST(GlProbe, EqualsTheModel_ForEveryFilterThatHasOne) {
 }
 
 TEST(GlProbe, TakesAnotherSceneAndOtherValues) {
-  const StressContext context = make_context("esm:radius=0");
+  const StressContext context = make_gl_context("esm:radius=0");
   filters::ParamValues values = context.filters[0].values;
   const auto probe = make_gl_probe(context, context.filters[0]);
   EXPECT_EQ(probe->look(make_scene(), values).visibility.size(), 4u);
@@ -60,7 +47,7 @@ TEST(GlProbe, TakesAnotherSceneAndOtherValues) {
 }
 
 TEST(GlProbe, MapThatTheGlCannotGive_IsAnError_AndSoNotAvailable) {
-  const StressContext context = make_context("none");
+  const StressContext context = make_gl_context("none");
   ProbeScene scene = make_scene();
   scene.size = context.renderer->context->info().max_texture_size * 2;
   Case item;
@@ -75,7 +62,7 @@ TEST(GlProbe, MapThatTheGlCannotGive_IsAnError_AndSoNotAvailable) {
 
 /// Every case of the first axes that runs on this GL keeps to its theory, or says why not.
 TEST(Axes, GlCases_MeetTheirTheories) {
-  const StressContext context = make_context("vsm,esm");
+  const StressContext context = make_gl_context("vsm,esm");
   for (const char* id : {"esm-exponent", "vsm-cancellation"}) {
     const Axis axis = choose_axes(id)[0];
     for (const Case& item : axis.make_cases(context)) {
@@ -93,7 +80,7 @@ TEST(Axes, GlCases_MeetTheirTheories) {
 /// Annen et al.: exp(c z) overflows at c = 88.72 in 32-bit and 11.09 in 16-bit floats, where depth reaches 1.
 TEST(Axes, EsmOnGl_BreaksAtItsExponent) {
   const Axis axis = choose_axes("esm-exponent")[0];
-  for (const Case& item : axis.make_cases(make_context("esm"))) {
+  for (const Case& item : axis.make_cases(make_gl_context("esm"))) {
     if (item.level != Level::kGl || item.variant.find("linear, depths to 1") == std::string::npos) continue;
     const double limit = item.variant.starts_with("r16f") ? 11.09 : 88.72;
     EXPECT_NEAR(find_onsets(item, axis).broken->value / limit, 1.0, 0.02) << item.variant;

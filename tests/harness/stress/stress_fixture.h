@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "harness/stress/context.h"
+
+namespace shadowbench::stress {
+
+/// Makes a context of these filters without a GL.
+inline StressContext make_context(const std::string& filters = "") {
+  static const filters::Catalogue catalogue(run::find_resources().filters);
+  StressContext context;
+  context.resources = run::find_resources();
+  context.filters = catalogue.parse_requests(filters);
+  return context;
+}
+
+/// Gives the one renderer of a test program.
+inline run::Renderer& shared_renderer() {
+  static run::Renderer renderer = run::make_renderer(gl::Backend::kAuto, run::find_resources());
+  return renderer;
+}
+
+/// The same with a GL.
+inline StressContext make_gl_context(const std::string& filters) {
+  StressContext context = make_context(filters);
+  context.renderer = &shared_renderer();
+  return context;
+}
+
+}  // namespace shadowbench::stress
