@@ -4,8 +4,8 @@ set -eu
 
 packages="
   cmake g++ git ninja-build pkg-config python3-glad
-  libbenchmark-dev libcli11-dev libegl-dev libembree-dev libfmt-dev libfreetype-dev libgl-dev libglfw3-dev libglm-dev libgmock-dev libgtest-dev
-  libnlopt-cxx-dev libopenimageio-dev libosmesa6-dev libtbb-dev libtinygltf-dev libtinyobjloader-dev libtomlplusplus-dev nlohmann-json3-dev
+  libbenchmark-dev libcli11-dev libegl-dev libembree-dev libfmt-dev libfreetype-dev libgl-dev libglfw3-dev libglm-dev libgmock-dev libgsl-dev libgtest-dev
+  libnlopt-cxx-dev libopenimageio-dev libosmesa6-dev libpugixml-dev libtbb-dev libtinygltf-dev libtinyobjloader-dev libtomlplusplus-dev nlohmann-json3-dev
   fonts-dejavu-core gnuplot-nox libjs-chart.js openimageio-tools libegl1 libegl-mesa0 libgl1-mesa-dri python3-jsonschema xauth xvfb
 "
 

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "report/figure.h"
+#include "report/fit_worst.h"
 #include "report/picture_io.h"
 
 namespace shadowbench::report {
@@ -20,21 +21,9 @@ constexpr std::size_t kPerRow = 2;  // filters, each with two panels
 constexpr double kLeastShown = 1e-3;
 constexpr Rgb kGround{0.90f, 0.91f, 0.92f};
 
-/// Repeats each pixel, or takes the largest of those that share one, so that a single one that flickers is seen.
+/// A single pixel that flickers is seen.
 Image fit_panel(const Image& image) {
-  const int width = kPanelWidth, height = std::max(1, image.height * width / image.width);
-  const auto begin_of = [](int at, int from, int to) { return static_cast<int>(static_cast<std::int64_t>(at) * from / to); };
-  Image shown(width, height, 1);
-  for (int y = 0; y < height; ++y) {
-    const int y0 = begin_of(y, image.height, height), y1 = std::max(y0 + 1, begin_of(y + 1, image.height, height));
-    for (int x = 0; x < width; ++x) {
-      const int x0 = begin_of(x, image.width, width), x1 = std::max(x0 + 1, begin_of(x + 1, image.width, width));
-      float most = *image.at(x0, y0);
-      for (int v = y0; v < y1; ++v) most = std::max(most, *std::max_element(image.at(x0, v), image.at(x0, v) + (x1 - x0)));
-      *shown.at(x, y) = most;
-    }
-  }
-  return shown;
+  return fit_worst(image, kPanelWidth, [](float flicker) { return flicker; });
 }
 
 /// Colours a place on the scale, [0,1], pale for little; what is below is the ground.

@@ -8,7 +8,7 @@
 namespace shadowbench::report {
 
 /// Names the fields that older files of this schema version lack; they are read as null there.
-inline constexpr std::array<std::string_view, 6> kLaterFields = {"work.attribution_s", "claims", "lights", "repeat.cells", "repeat.overlapping", "repeat.of"};
+inline constexpr std::array<std::string_view, 7> kLaterFields = {"images.parts", "work.attribution_s", "claims", "lights", "repeat.cells", "repeat.overlapping", "repeat.of"};
 
 /// Calls `visit(name, value)` for every field of a bias.
 template <class Bias, class Visitor>
@@ -113,6 +113,7 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("images.depth_map", cell.images.depth_map);
   visit("images.grid", cell.images.grid);
   visit("images.exr", cell.images.exr);
+  visit("images.parts", cell.images.parts);
   visit("images.attribution", cell.images.attribution);
   visit("images.texel_density", cell.images.texel_density);
   visit("images.texel_grid", cell.images.texel_grid);

@@ -12,6 +12,7 @@
 
 #include "report/diverging.h"
 #include "report/figure.h"
+#include "report/fit_worst.h"
 #include "report/picture_io.h"
 #include "report/summary.h"
 
@@ -35,34 +36,11 @@ struct Panel {
   std::vector<Tick> ticks;
 };
 
-/// How bad a value is: the worst of the texels that share a pixel is drawn.
-using Badness = std::function<float(float)>;
-
 int shown_width(const Image& image) {
   return image.width >= kPanelWidth ? kPanelWidth : image.width * (kPanelWidth / image.width);
 }
 
-/// Reduces a large image to the worst of each block, and repeats the texels of a small one.
-Image show_worst(const Image& image, const Badness& badness) {
-  const int width = shown_width(image);
-  const int height = std::max(1, static_cast<int>(static_cast<std::int64_t>(image.height) * width / image.width));
-  const auto begin_of = [](int at, int from, int to) { return static_cast<int>(static_cast<std::int64_t>(at) * from / to); };
-  Image shown(width, height, 1);
-  for (int y = 0; y < height; ++y) {
-    const int y0 = begin_of(y, image.height, height), y1 = std::max(y0 + 1, begin_of(y + 1, image.height, height));
-    for (int x = 0; x < width; ++x) {
-      const int x0 = begin_of(x, image.width, width), x1 = std::max(x0 + 1, begin_of(x + 1, image.width, width));
-      float worst = *image.at(x0, y0);
-      for (int v = y0; v < y1; ++v) {
-        for (int u = x0; u < x1; ++u) {
-          if (badness(*image.at(u, v)) > badness(worst)) worst = *image.at(u, v);
-        }
-      }
-      *shown.at(x, y) = worst;
-    }
-  }
-  return shown;
-}
+Image show_worst(const Image& image, const Badness& badness) { return fit_worst(image, shown_width(image), badness); }
 
 Image color(const Image& values, const std::function<Rgb(float)>& color_of) {
   Image colors(values.width, values.height, 3);

@@ -22,6 +22,9 @@ void add_diff_command(CLI::App& app, Action& action);
 /// Adds `bias`.
 void add_bias_command(CLI::App& app, Action& action);
 
+/// Adds `regress`; `words` as for `run`.
+void add_regress_command(CLI::App& app, Action& action, const std::vector<std::string>& words);
+
 /// Adds `merge`.
 void add_merge_command(CLI::App& app, Action& action);
 

@@ -57,6 +57,12 @@ void load_and_run_flicker(const flicker::FlickerOptions& options, run::Progress&
   load_entry<void(const flicker::FlickerOptions&, run::Progress&)>("shadowbench_run_flicker")(options, progress);
 }
 
+regress::RegressOutcome load_and_run_regress(const regress::RegressOptions& options) {
+  regress::RegressOutcome outcome;
+  load_entry<void(const regress::RegressOptions&, regress::RegressOutcome&)>("shadowbench_run_regress")(options, outcome);
+  return outcome;
+}
+
 run::Comparison load_and_compare_pictures(const run::ComparisonOptions& options) {
   run::Comparison result;
   load_entry<void(const run::ComparisonOptions&, run::Comparison&)>("shadowbench_compare_pictures")(options, result);

@@ -9,6 +9,7 @@
 #include "harness/run/progress.h"
 #include "harness/run/tune_filters.h"
 #include "harness/stress/run_stress.h"
+#include "report/regress/regress.h"
 
 namespace shadowbench::cli {
 
@@ -35,6 +36,9 @@ std::string load_and_describe_stress_axes(const std::vector<filters::FilterReque
 
 /// Measures flicker. Throws Error as flicker::run_flicker.
 void load_and_run_flicker(const flicker::FlickerOptions& options, run::Progress& progress);
+
+/// Compares a run with a baseline. Throws Error as regress::run_regress.
+regress::RegressOutcome load_and_run_regress(const regress::RegressOptions& options);
 
 /// Compares two pictures. Throws Error as run::compare_pictures.
 run::Comparison load_and_compare_pictures(const run::ComparisonOptions& options);

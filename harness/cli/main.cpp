@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   shadowbench::cli::add_advise_command(app, action);
   shadowbench::cli::add_tune_command(app, action);
   shadowbench::cli::add_stress_command(app, action, {argv, argv + argc});
+  shadowbench::cli::add_regress_command(app, action, {argv, argv + argc});
   shadowbench::cli::add_flicker_command(app, action, {argv, argv + argc});
   try {
     app.parse(argc, argv);

@@ -16,7 +16,7 @@ namespace {
 const std::vector<std::string>& experiment_keys() {
   static const std::vector<std::string> keys = {
       "scene", "ground", "view", "filter_file", "map_size", "size", "bias", "map_format", "reversed_depth", "perspective_depth", "fit", "snap",
-      "light", "lights", "tuned", "border", "far_test", "behind_test", "border_page", "rounds", "precision", "budget", "cell_timeout", "seed", "truth", "attribution", "stability",
+      "light", "lights", "pad_texels", "tuned", "border", "far_test", "behind_test", "border_page", "rounds", "precision", "budget", "cell_timeout", "seed", "truth", "attribution", "stability", "uncertainty",
       "grids"};
   return keys;
 }
@@ -40,6 +40,7 @@ void add_scene_options(CLI::App& command, RunArguments& a) {
   command.add_option("--scene", a.scenes, "a built-in scene, or a .toml, .gltf, .glb or .obj file; may be repeated (default: all built-in scenes)")->allow_extra_args(false);
   command.add_flag("--ground", a.ground, "put a floor under a bare model");
   command.add_option("--map-size", a.map_sizes, "texels along a side of the shadow map; several with commas")->capture_default_str();
+  command.add_option("--pad-texels", a.pad_texels, "texels around the scene in the map (default: what the widest kernel of the run needs); set it where runs of different filters are compared");
   command.add_option("--view", a.views, "a scene's camera by its name; may be repeated (default: all)")->allow_extra_args(false);
   command.add_option("--size", a.sizes, "picture size in pixels, WIDTHxHEIGHT; several with commas")->capture_default_str();
   command.add_option("--map-format", a.map_format, "how the map stores depth: d16, d24 or d32f")->capture_default_str();
@@ -95,6 +96,7 @@ void add_run_options(CLI::App& command, RunArguments& a) {
   command.add_flag("--truth,!--no-truth", a.truth, "trace rays, and score every filter against them (default)");
   command.add_flag("--attribution,!--no-attribution", a.attribution, "take the errors apart: trace kernels, run models (default)");
   command.add_flag("--stability,!--no-stability", a.stability, "say where numbers break, as pictures and counts: overflow, negative variance, 16- against 32-bit stores, bounds that do not hold");
+  command.add_flag("--uncertainty,!--no-uncertainty", a.uncertainty, "keep how far rounding and other seeds can move each pixel, which 'regress' allows for");
   command.add_flag("--grids,!--no-grids", a.grids, fmt::format("compare all filters of a view in one picture, and keep their float images (default up to {} filters)", kFiltersOfAGrid));
   command.add_option("--shard", a.shard, "I/N: every N-th cell only, from the I-th on; 'merge' joins the N report folders")
       ->check([](const std::string& text) { return text.empty() ? std::string("I/N is missing") : std::string(); });
@@ -104,7 +106,6 @@ void add_run_options(CLI::App& command, RunArguments& a) {
   command.add_flag("--no-cache", a.no_cache, "trace everything, keep nothing");
   command.add_option("--out", a.out, "report folder")->capture_default_str();
   command.add_flag("--worker", a.worker, "")->group("");
-  command.add_option("--pad-texels", a.pad_texels, "")->group("");
 }
 
 std::string apply_experiment(CLI::App& command, RunArguments& arguments) {

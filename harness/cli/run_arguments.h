@@ -43,6 +43,7 @@ struct RunArguments {
   bool truth = true;
   bool attribution = true;
   bool stability = false;
+  bool uncertainty = false;
   int grids = 0;  ///< 1: yes, -1: no, 0: where there are few filters
   std::string shard;
   bool fresh = false;
@@ -51,7 +52,7 @@ struct RunArguments {
   std::string cache;
   bool no_cache = false;
   bool worker = false;
-  std::optional<double> pad_texels;  ///< workers see the same map as the run they belong to
+  std::optional<double> pad_texels;
 };
 
 /// Adds the options of `shadowbench run`; parsing fills `arguments`, which must outlive the application.

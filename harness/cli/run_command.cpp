@@ -21,6 +21,7 @@ namespace shadowbench::cli {
 namespace {
 
 constexpr double kLargestDepthRatio = 1e7;
+constexpr double kMostPadding = 1000.0;  // more than any kernel is wide
 constexpr int kMostRounds = 10000;
 constexpr const char* kReferenceFilter = "none";  // what the others' times are ratios to
 
@@ -70,7 +71,13 @@ void add_filters(run::RunOptions& options, const RunArguments& arguments) {
   require_distinct(options.filters);
 }
 
+void check_padding(const std::optional<double>& texels) {
+  if (!texels || (*texels >= 0.0 && *texels <= kMostPadding)) return;
+  fail(fmt::format("--pad-texels: {} is out of range: choose 0 .. {:g}", *texels, kMostPadding));
+}
+
 void check(const RunArguments& arguments) {
+  check_padding(arguments.pad_texels);
   if (!(arguments.cell_timeout_s > 0.0 && arguments.cell_timeout_s <= 86400.0)) {
     fail(fmt::format("--cell-timeout: {} is out of range: choose more than 0, at most 86400 seconds", arguments.cell_timeout_s));
   }
@@ -155,6 +162,7 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   options.truth = arguments.truth && !arguments.worker;
   options.attribution = arguments.attribution;
   options.stability = arguments.stability;
+  options.uncertainty = arguments.uncertainty;
   options.shard = parse_shard(arguments.shard);
   options.grids = arguments.grids > 0 || (arguments.grids == 0 && options.filters.size() <= kFiltersOfAGrid);
   if (options.grids && options.shard.count > 1) fail("--shard needs --no-grids: a grid shows all filters of a view, and a shard has some of them");

@@ -57,7 +57,7 @@ CellAnalyser::CellAnalyser(Renderer& renderer, const RunOptions& options, const 
                            const SceneTruth& truth)
     : renderer_(renderer), options_(options), task_(task), assets_(assets), truth_(truth), light_(assets.light_map(*task.camera, task.map_size)) {
   if (!truth_.absent.empty()) return;
-  masks_ = find_artefact_masks(assets_.tracer(), light_.frustum, truth_, largest_radius_texels(options_.filters));
+  masks_ = find_artefact_masks(assets_.tracer(), light_.frustum, truth_, widest_kernel_texels(options_));
 }
 
 const std::vector<float>& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {

@@ -12,11 +12,11 @@ namespace {
 
 void add_options(ContentHash& hash, const RunOptions& options) {
   const RoundLimits& rounds = options.rounds;
-  hash.add(fmt::format("seed {} truth {} attribution {} stability {} grids {} pad {} rounds {} {} {} {}", options.seed, options.truth, options.attribution, options.stability,
-                       options.grids, options.pad_texels.value_or(largest_padding_texels(options.filters)), rounds.fewest, rounds.most,
+  hash.add(fmt::format("seed {} truth {} attribution {} stability {} uncertainty {} grids {} pad {} rounds {} {} {} {}", options.seed, options.truth, options.attribution, options.stability, options.uncertainty,
+                       options.grids, padding_texels(options), rounds.fewest, rounds.most,
                        rounds.precision, rounds.budget_ms));
   // The masks of artefacts reach as far as the widest kernel of the run.
-  hash.add(fmt::format("radius {} reference {} border page {}", largest_radius_texels(options.filters), options.reference.label(), options.border_page));
+  hash.add(fmt::format("radius {} reference {} border page {}", widest_kernel_texels(options), options.reference.label(), options.border_page));
   hash.add(fmt::format("lights {}", fmt::join(options.lights, " ")));
 }
 

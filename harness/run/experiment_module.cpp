@@ -8,6 +8,7 @@
 #include "harness/run/tune_filters.h"
 #include "harness/stress/run_stress.h"
 #include "report/merge.h"
+#include "report/regress/regress.h"
 
 extern "C" void shadowbench_run_experiment(const shadowbench::run::RunOptions& options,
                                            shadowbench::run::Progress& progress) {
@@ -44,4 +45,8 @@ extern "C" void shadowbench_describe_stress_axes(const std::vector<shadowbench::
 
 extern "C" void shadowbench_run_flicker(const shadowbench::flicker::FlickerOptions& options, shadowbench::run::Progress& progress) {
   shadowbench::flicker::run_flicker(options, progress);
+}
+
+extern "C" void shadowbench_run_regress(const shadowbench::regress::RegressOptions& options, shadowbench::regress::RegressOutcome& outcome) {
+  outcome = shadowbench::regress::summarise(shadowbench::regress::run_regress(options));
 }

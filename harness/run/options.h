@@ -78,6 +78,7 @@ struct RunOptions {
   bool truth = true;        ///< trace visibility and score every filter against it
   bool attribution = true;  ///< take the errors apart; needs truth
   bool stability = false;   ///< say where numbers break, per texel and per pixel
+  bool uncertainty = false; ///< say how far rounding and other seeds can move each pixel
   bool grids = true;        ///< compare all filters of a view in one picture and keep their float images; else each cell's pictures alone
   Shard shard;
   std::string title;        ///< of the experiment

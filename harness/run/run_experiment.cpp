@@ -242,8 +242,7 @@ class Experiment {
     for (const PlannedTask& each : plan.tasks) {
       if (each.scene != index || each.task.filters.empty()) continue;
       if (!assets) {
-        assets.emplace(renderer_, planned.options, planned.scene, cache_,
-                       options_.pad_texels.value_or(largest_padding_texels(options_.filters)));
+        assets.emplace(renderer_, planned.options, planned.scene, cache_, padding_texels(options_));
       }
       TaskRun(renderer_, planned, each, *assets, run_.gl, listener_).run();
     }

@@ -105,4 +105,10 @@ double largest_padding_texels(const std::vector<filters::FilterRequest>& request
   return std::ceil(largest_radius_texels(requests)) + 1.0;
 }
 
+double padding_texels(const RunOptions& options) { return options.pad_texels.value_or(largest_padding_texels(options.filters)); }
+
+double widest_kernel_texels(const RunOptions& options) {
+  return options.pad_texels ? std::max(*options.pad_texels - 1.0, 0.0) : largest_radius_texels(options.filters);
+}
+
 }  // namespace shadowbench::run

@@ -76,4 +76,8 @@ double largest_radius_texels(const std::vector<filters::FilterRequest>& requests
 /// Gives the padding that the widest kernel of these filters needs, in whole texels.
 double largest_padding_texels(const std::vector<filters::FilterRequest>& requests);
 
+/// Give a run's padding, and the half-width of the widest kernel that it makes room for: as it was told, or of its own filters.
+double padding_texels(const RunOptions& options);
+double widest_kernel_texels(const RunOptions& options);
+
 }  // namespace shadowbench::run

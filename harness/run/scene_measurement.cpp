@@ -14,6 +14,7 @@
 #include "harness/run/stability.h"
 #include "harness/run/statistics.h"
 #include "harness/run/timing.h"
+#include "harness/run/uncertainty.h"
 #include "report/cell_key.h"
 #include "report/summary.h"
 
@@ -48,6 +49,7 @@ class SceneBench {
       stability.warn(result.cells.back(), *filters.back());
       warn_of_broken_pixels(result.cells.back());
       if (options_.stability) stability.measure(result.cells.back(), *filters.back());
+      if (options_.uncertainty) measure_uncertainty({renderer_, options_, task_, assets_}, result.cells.back(), *filters.back());
     }
     time(result, filters);
     result.stored_map = light_.map.read_picture();

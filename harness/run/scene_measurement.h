@@ -11,6 +11,7 @@
 #include "report/image.h"
 #include "report/records.h"
 #include "report/stability_picture.h"
+#include "report/uncertainty_images.h"
 
 namespace shadowbench::run {
 
@@ -22,6 +23,7 @@ struct MeasuredCell {
   report::Image picture;      ///< linear RGB
   report::Image visibility;   ///< 1 lit .. 0 blocked
   report::StabilityImages stability;  ///< where its numbers break; empty unless the run asks for it
+  report::UncertaintyImages uncertainty;  ///< how far rounding and other seeds can move its pixels; empty unless the run asks for it
   std::vector<report::Image> error_parts;  ///< in the order of reference::ErrorPart; empty where there is no attribution
 };
 

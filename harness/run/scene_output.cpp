@@ -130,6 +130,13 @@ void add_stability_parts(std::vector<report::Part>& parts, const MeasuredCell& c
   }
 }
 
+void add_uncertainty_parts(std::vector<report::Part>& parts, const MeasuredCell& cell) {
+  for (const report::UncertaintyImage& each : report::list_uncertainty_images()) {
+    const report::Image& image = cell.uncertainty.*each.image;
+    if (!image.empty()) parts.push_back({uncertainty_part(cell.label, each), {"Y"}, image, false});
+  }
+}
+
 /// Writes a cell's own pictures; no two labels share a file.
 void write_cell_pictures(const RunOptions& options, const std::string& stem, MeasuredCell& cell) {
   if (cell.picture.empty()) return;
@@ -177,6 +184,8 @@ std::string stability_part(const std::string& label, const report::StabilityImag
   return fmt::format("{}.stability.{}", label, image.id);
 }
 
+std::string uncertainty_part(const std::string& label, const report::UncertaintyImage& image) { return fmt::format("{}.{}", label, image.id); }
+
 void write_float_images(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
                         const SceneTruth& truth, const gl::GlInfo& info) {
   std::vector<report::Part> parts;
@@ -188,7 +197,10 @@ void write_float_images(const RunOptions& options, const SceneTask& task, const 
       parts.push_back({fmt::format("{}.error.{}", cell.label, report::list_error_parts()[p].id), {"Y"}, cell.error_parts[p], false});
     }
   }
-  for (const MeasuredCell& cell : measured.cells) add_stability_parts(parts, cell);
+  for (const MeasuredCell& cell : measured.cells) {
+    add_stability_parts(parts, cell);
+    add_uncertainty_parts(parts, cell);
+  }
   if (truth.absent.empty()) add_truth_parts(parts, truth, measured.masks);
   parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});
   report::write_exr(options.out / exr_name(options, task), parts, describe(options, task, info));
@@ -215,6 +227,7 @@ void write_pictures(const RunOptions& options, const SceneTask& task, SceneMeasu
     write_stability(options, stem, cell);
     cell.record.images.grid = grid_name;
     cell.record.images.exr = exr_name(options, task);
+    cell.record.images.parts = cell.label;
   }
 }
 

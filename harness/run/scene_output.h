@@ -19,6 +19,7 @@ std::string exr_name(const RunOptions& options, const SceneTask& task);
 std::string visibility_part(const std::string& label);
 std::string picture_part(const std::string& label);
 std::string stability_part(const std::string& label, const report::StabilityImage& image);
+std::string uncertainty_part(const std::string& label, const report::UncertaintyImage& image);
 
 /// Writes `<stem>.exr`: depth map, truth, and visibility and picture of each filter, with metadata to repeat the run.
 /// Throws Error(kOutput).

@@ -79,7 +79,7 @@ class Probe {
         continue;
       }
       if (!assets) {
-        assets.emplace(renderer_, options, planned.scene, cache_, options.pad_texels.value_or(largest_padding_texels(options.filters)));
+        assets.emplace(renderer_, options, planned.scene, cache_, padding_texels(options));
       }
       const RoundTime round = draw_round(renderer_, planned, each.task, *assets);
       drawn_ms_ += rounds() * round.of_cells_ms(each.task.filters.size());

@@ -60,7 +60,7 @@ std::vector<std::string> worker_arguments(const RunOptions& options, const Scene
                                         "--fit", std::string(scene::name_of(options.fit)),
                                         "--snap", options.snap ? "on" : "off",
                                         "--map-format", std::string(gl::pixel_format(options.map.format).name),
-                                        "--pad-texels", fmt::format("{}", largest_padding_texels(options.filters)),
+                                        "--pad-texels", fmt::format("{}", padding_texels(options)),
                                         "--border", filters::to_string(options.range.border),
                                         "--far-test", options.range.far_test ? "on" : "off",
                                         "--behind-test", options.range.behind_test ? "on" : "off",
@@ -69,6 +69,7 @@ std::vector<std::string> worker_arguments(const RunOptions& options, const Scene
   arguments.insert(arguments.end(), rounds.begin(), rounds.end());
   if (options.ground) arguments.push_back("--ground");
   if (options.stability) arguments.push_back("--stability");
+  if (options.uncertainty) arguments.push_back("--uncertainty");
   if (options.map.curve.reversed) arguments.push_back("--reversed-depth");
   if (!options.map.curve.is_linear()) {
     arguments.push_back("--perspective-depth");
@@ -132,6 +133,9 @@ MeasuredCell read_cell(const RunOptions& options, const SceneTask& task, const f
   for (const report::Part& part : file.parts) {
     if (part.name == visibility_part(cell.label)) cell.visibility = part.image;
     if (part.name == picture_part(cell.label)) cell.picture = part.image;
+    for (const report::UncertaintyImage& each : report::list_uncertainty_images()) {
+      if (part.name == uncertainty_part(cell.label, each)) cell.uncertainty.*each.image = part.image;
+    }
     for (const report::StabilityImage& each : report::list_stability_images()) {
       if (part.name == stability_part(cell.label, each)) cell.stability.*each.image = part.image;
     }

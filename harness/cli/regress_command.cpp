@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <sstream>
+
+#include "filters/error.h"
+#include "harness/cli/arguments.h"
+#include "harness/cli/commands.h"
+#include "harness/cli/experiment_loader.h"
+
+namespace shadowbench::cli {
+namespace {
+
+struct RegressArguments {
+  std::string run;
+  std::string baseline;
+  std::string filters;
+  std::vector<std::string> scenes;
+  std::string out;
+  std::string junit;
+  bool accept = false;
+  bool remove_missing = false;
+  bool json = false;
+};
+
+std::vector<std::string> split_names(const std::string& text) {
+  std::vector<std::string> names;
+  std::stringstream stream(text);
+  for (std::string name; std::getline(stream, name, ',');) names.push_back(name);
+  return names;
+}
+
+regress::RegressOptions make_options(const RegressArguments& a, const std::vector<std::string>& words) {
+  regress::RegressOptions options;
+  options.run = find_results(a.run).parent_path();
+  options.baseline = a.baseline;
+  options.out = a.out.empty() ? options.run / "regress" : std::filesystem::path(a.out);
+  options.selection = {split_names(a.filters), a.scenes};
+  options.accept = a.accept;
+  options.remove_missing = a.remove_missing;
+  if (!a.junit.empty()) options.junit = a.junit;
+  options.command = words;
+  if (a.remove_missing && !a.accept) throw Error(ErrorKind::kUsage, "--remove-missing changes the baseline: add --accept");
+  return options;
+}
+
+int regress(const RegressArguments& arguments, const std::vector<std::string>& words) {
+  const regress::RegressOutcome outcome = load_and_run_regress(make_options(arguments, words));
+  fmt::print("{}", arguments.json ? outcome.json : outcome.text);
+  if (outcome.failure.empty()) return 0;
+  throw Error(ErrorKind::kLimit, outcome.failure);
+}
+
+}  // namespace
+
+void add_regress_command(CLI::App& app, Action& action, const std::vector<std::string>& words) {
+  CLI::App* command = app.add_subcommand("regress", "Compare a run with a baseline: which outputs moved, and whether they are still as accurate");
+  command->footer(
+      "Exit code 1: a cell is less accurate, has changed, is slower, extra, missing or unreadable. Compared are visibility, errors, artefacts, attribution\n"
+      "and costs, and times as their ratio to 'none' where machine and OpenGL are the baseline's. BASELINE/baseline.toml holds the tolerances with\n"
+      "their reasons. Make runs for a baseline with --uncertainty: then pixels that rounding or another seed may move are known one by one.");
+  auto a = std::make_shared<RegressArguments>();
+  command->add_option("RUN", a->run, "the report folder of a run")->required();
+  command->add_option("--baseline", a->baseline, "folder of the expected results")->required();
+  command->add_option("--filters", a->filters, "compare these filters only, ids with commas");
+  command->add_option("--scene", a->scenes, "compare this scene only; may be repeated")->allow_extra_args(false);
+  command->add_flag("--accept", a->accept, "make what differs the baseline, and log it in BASELINE/accepted.md");
+  command->add_flag("--remove-missing", a->remove_missing, "with --accept: cells that the run lacks leave the baseline");
+  command->add_option("--junit", a->junit, "also write JUnit XML for a build server");
+  command->add_flag("--json", a->json, "print JSON; it also goes to OUT/regress.json");
+  command->add_option("--out", a->out, "folder for regress.json and the pictures (default: 'regress' in RUN)");
+  command->callback([&action, a, words] { action = [a, words] { return regress(*a, words); }; });
+}
+
+}  // namespace shadowbench::cli

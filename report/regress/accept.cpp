@@ -1,0 +1,105 @@
+#include "report/regress/accept.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "filters/error.h"
+#include "report/atomic_file.h"
+
+namespace shadowbench::regress {
+namespace {
+
+CellImages keep_images(const CellImages& images) {
+  CellImages kept = images;
+  kept.uncertainty.rounding = coarsen_rounding(images.uncertainty.rounding);
+  return kept;
+}
+
+std::string read_log(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+/// What nothing is compared with is not kept: it would only make the files differ.
+BaselineCell Accepter::make_cell(const ActualCell& cell) const {
+  const report::CellRecord& record = cell.record;
+  ComparedValues values = read_values(record);
+  const auto is_ignored = [&](const auto& value) { return std::isinf(tolerances_.find(record.filter, value.first).limit); };
+  std::erase_if(values.ratios, is_ignored);
+  return {record.key, record.scene, record.view, record.filter, record.images.parts.value_or(record.filter), record.map_size, record.width, record.height,
+          cell.origin, std::move(values)};
+}
+
+CellFile& Accepter::file(const std::string& scene, const std::string& filter) {
+  const auto [place, is_new] = files_.try_emplace({scene, filter});
+  if (!is_new) return place->second;
+  try {
+    place->second = baseline_.read_cells(scene, filter);
+  } catch (const Error&) {
+    place->second = {};  // what cannot be read is replaced
+  }
+  return place->second;
+}
+
+void Accepter::take(const Comparison& comparison, const ActualCell& cell) {
+  if (!comparison.failed() || cell.images.visibility.empty()) return;
+  CellFile& own = file(cell.record.scene, cell.record.filter);
+  BaselineCell taken = make_cell(cell);
+  const auto same = std::find_if(own.cells.begin(), own.cells.end(), [&](const BaselineCell& each) { return each.key == taken.key; });
+  if (same == own.cells.end()) own.cells.push_back(std::move(taken));
+  else *same = std::move(taken);
+  // Cells whose images were lost can no longer be compared, and leave with them.
+  own.images[cell.record.key] = keep_images(cell.images);
+  std::erase_if(own.cells, [&](const BaselineCell& each) { return !own.images.contains(each.key) || own.images.at(each.key).visibility.empty(); });
+  log(comparison, comparison.outcome == Outcome::kExtra ? "added" : "replaced");
+}
+
+void Accepter::take(const Comparison& comparison, const ActualTruth& truth) {
+  if (!comparison.failed()) return;
+  const std::string& scene = truth.record.scene;
+  if (!truths_.contains(scene)) {
+    try {
+      truths_[scene] = baseline_.read_truths(scene);
+    } catch (const Error&) {
+      truths_[scene] = {};
+    }
+  }
+  truths_[scene][comparison.key] = truth.images;
+  log(comparison, comparison.outcome == Outcome::kExtra ? "added" : "replaced");
+}
+
+void Accepter::drop(const Comparison& comparison) {
+  CellFile& own = file(comparison.scene, comparison.filter);
+  std::erase_if(own.cells, [&](const BaselineCell& each) { return each.key == comparison.key; });
+  log(comparison, "removed");
+}
+
+void Accepter::log(const Comparison& comparison, const std::string& what) {
+  std::string line = fmt::format("{}: {} {} ({})", what, comparison.scene, comparison.label, comparison.settings);
+  for (const Finding& finding : comparison.findings) line += "\n  - " + finding.text;
+  lines_.push_back(std::move(line));
+}
+
+std::vector<std::string> Accepter::write(const Origin& origin) {
+  if (lines_.empty()) return lines_;
+  for (const auto& [name, own] : files_) baseline_.write_cells(name.first, name.second, own);
+  for (const auto& [scene, truths] : truths_) baseline_.write_truths(scene, truths);
+  if (!baseline_.exists()) report::write_text_file(baseline_.tolerance_file(), write_tolerances(Tolerances()));
+  std::string entry = fmt::format("## {:%Y-%m-%d %H:%M} UTC, program {}, {}, seed {}\n\n", fmt::gmtime(std::chrono::system_clock::now()), origin.commit, origin.renderer, origin.seed);
+  for (const std::string& line : lines_) entry += "- " + line + "\n";
+  const std::string before = read_log(baseline_.log_file());
+  report::write_text_file(baseline_.log_file(), (before.empty() ? "# What was accepted into this baseline\n" : before) + "\n" + entry);
+  return lines_;
+}
+
+}  // namespace shadowbench::regress

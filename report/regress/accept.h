@@ -1,0 +1,39 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "report/regress/comparison.h"
+
+namespace shadowbench::regress {
+
+/// Turns what differs into the baseline, and nothing else: cells that are as they were keep their files' content.
+class Accepter {
+ public:
+  Accepter(const Baseline& baseline, const Tolerances& tolerances) : baseline_(baseline), tolerances_(tolerances) {}
+
+  /// Takes a cell over. Does nothing for one that is the same, or that the run could not measure.
+  void take(const Comparison& comparison, const ActualCell& cell);
+  void take(const Comparison& comparison, const ActualTruth& truth);
+
+  /// Lets a cell go that the run lacks.
+  void drop(const Comparison& comparison);
+
+  /// Writes what was taken, and one entry into the log. Gives the entry's lines.
+  /// Throws Error(kOutput).
+  std::vector<std::string> write(const Origin& origin);
+
+ private:
+  const Baseline& baseline_;
+  const Tolerances& tolerances_;
+  std::map<std::pair<std::string, std::string>, CellFile> files_;           ///< by scene and filter
+  std::map<std::string, std::map<std::string, TruthImages>> truths_;        ///< by scene
+  std::vector<std::string> lines_;
+
+  BaselineCell make_cell(const ActualCell& cell) const;
+  CellFile& file(const std::string& scene, const std::string& filter);
+  void log(const Comparison& comparison, const std::string& what);
+};
+
+}  // namespace shadowbench::regress

@@ -1,0 +1,175 @@
+#include "report/regress/baseline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "filters/error.h"
+#include "report/atomic_file.h"
+#include "report/file_name.h"
+#include "report/json_values.h"
+#include "report/picture_io.h"
+
+namespace shadowbench::regress {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr int kBaselineVersion = 1;
+constexpr const char* kTruthStem = "truth.area";
+constexpr const char* kVisibility = "visibility";
+
+ordered_json to_json(const BaselineCell& cell) {
+  ordered_json written = {{"key", cell.key},           {"scene", cell.scene}, {"view", cell.view},     {"filter", cell.filter}, {"label", cell.label},
+                          {"map_size", cell.map_size}, {"width", cell.width}, {"height", cell.height}, {"seed", cell.origin.seed},
+                          {"renderer", cell.origin.renderer}, {"machine", cell.origin.machine}, {"commit", cell.origin.commit}};
+  written["values"] = ordered_json::object();
+  for (const auto& [path, value] : cell.values.numbers) written["values"][path] = report::number_json(value);
+  written["ratios"] = ordered_json::object();
+  for (const auto& [path, ratio] : cell.values.ratios) written["ratios"][path] = report::value_json(ratio);
+  return written;
+}
+
+BaselineCell from_json(const json& read) {
+  BaselineCell cell;
+  for (const auto& [name, text] : std::initializer_list<std::pair<const char*, std::string*>>{
+           {"key", &cell.key}, {"scene", &cell.scene}, {"view", &cell.view}, {"filter", &cell.filter}, {"label", &cell.label},
+           {"renderer", &cell.origin.renderer}, {"machine", &cell.origin.machine}, {"commit", &cell.origin.commit}}) {
+    *text = report::read_value<std::string>(read.at(name));
+  }
+  cell.map_size = report::read_value<int>(read.at("map_size"));
+  cell.width = report::read_value<int>(read.at("width"));
+  cell.height = report::read_value<int>(read.at("height"));
+  cell.origin.seed = report::read_value<std::uint64_t>(read.at("seed"));
+  for (const auto& [path, value] : read.at("values").items()) cell.values.numbers[path] = report::read_value<double>(value);
+  for (const auto& [path, value] : read.at("ratios").items()) cell.values.ratios[path] = report::read_value<report::Ratio>(value);
+  return cell;
+}
+
+std::vector<BaselineCell> read_cell_list(const std::filesystem::path& file) {
+  try {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw Error(ErrorKind::kInput, "the file cannot be read; restore it, or accept a run again", file.string());
+    const json root = json::parse(stream);
+    if (root.at("baseline_version") != kBaselineVersion) throw std::invalid_argument(fmt::format("it is of another version than {}", kBaselineVersion));
+    std::vector<BaselineCell> cells;
+    for (const json& cell : root.at("cells")) cells.push_back(from_json(cell));
+    return cells;
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(ErrorKind::kInput, fmt::format("this is no baseline of cells: {}; restore the file, or accept a run again", error.what()), file.string());
+  }
+}
+
+std::filesystem::path with_extension(std::filesystem::path stem, const char* extension) { return stem += extension; }
+
+report::Part make_part(const std::string& key, const char* id, const report::Image& image) { return {key + "." + id, {"Y"}, image, true}; }
+
+std::vector<report::Part> make_parts(const CellFile& file) {
+  std::vector<report::Part> parts;
+  for (const BaselineCell& cell : file.cells) {
+    const CellImages& images = file.images.at(cell.key);
+    parts.push_back(make_part(cell.key, kVisibility, images.visibility));
+    for (const report::UncertaintyImage& each : report::list_uncertainty_images()) {
+      const report::Image& image = images.uncertainty.*each.image;
+      if (!image.empty()) parts.push_back(make_part(cell.key, each.id, image));
+    }
+  }
+  return parts;
+}
+
+void keep_part(std::map<std::string, CellImages>& images, report::Part part) {
+  const std::size_t dot = part.name.rfind('.');
+  if (dot == std::string::npos) return;
+  CellImages& cell = images[part.name.substr(0, dot)];
+  const std::string id = part.name.substr(dot + 1);
+  if (id == kVisibility) cell.visibility = std::move(part.image);
+  for (const report::UncertaintyImage& each : report::list_uncertainty_images()) {
+    if (id == each.id) cell.uncertainty.*each.image = std::move(part.image);
+  }
+}
+
+void remove_file(const std::filesystem::path& file) {
+  std::error_code error;
+  std::filesystem::remove(file, error);
+  if (error) throw Error(ErrorKind::kOutput, fmt::format("the file cannot be removed ({}); check the folder's rights", error.message()), file.string());
+}
+
+}  // namespace
+
+std::string truth_key(const report::CellRecord& cell) {
+  return fmt::format("{} {}x{} {}", report::make_file_stem(cell.view), cell.width, cell.height, cell.light);
+}
+
+bool Baseline::exists() const { return std::filesystem::exists(tolerance_file()); }
+
+std::filesystem::path Baseline::stem(const std::string& scene, const std::string& filter) const {
+  return folder_ / report::make_file_stem(scene) / report::make_file_stem(filter);
+}
+
+Baseline::Index Baseline::read_index() const {
+  Index index;
+  std::error_code ignored;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_, ignored)) {
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  for (const std::filesystem::path& file : files) {
+    try {
+      for (BaselineCell& cell : read_cell_list(file)) index.cells.push_back(std::move(cell));
+    } catch (const Error& error) {
+      index.unreadable[(file.parent_path().filename() / file.stem()).string()] = error.what();
+    }
+  }
+  return index;
+}
+
+CellFile Baseline::read_cells(const std::string& scene, const std::string& filter) const {
+  const std::filesystem::path numbers = with_extension(stem(scene, filter), ".json");
+  CellFile file;
+  if (!std::filesystem::exists(numbers)) return file;
+  file.cells = read_cell_list(numbers);
+  for (report::Part& part : report::read_exr(with_extension(stem(scene, filter), ".exr")).parts) keep_part(file.images, std::move(part));
+  return file;
+}
+
+void Baseline::write_cells(const std::string& scene, const std::string& filter, const CellFile& cells) const {
+  const std::filesystem::path numbers = with_extension(stem(scene, filter), ".json"), images = with_extension(stem(scene, filter), ".exr");
+  if (cells.cells.empty()) {
+    remove_file(numbers);
+    remove_file(images);
+    return;
+  }
+  ordered_json root = {{"baseline_version", kBaselineVersion}, {"cells", ordered_json::array()}};
+  for (const BaselineCell& cell : cells.cells) root["cells"].push_back(to_json(cell));
+  report::write_exr(images, make_parts(cells), {});
+  report::write_text_file(numbers, root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+}
+
+std::map<std::string, TruthImages> Baseline::read_truths(const std::string& scene) const {
+  std::map<std::string, TruthImages> truths;
+  const std::filesystem::path file = with_extension(stem(scene, kTruthStem), ".exr");
+  if (!std::filesystem::exists(file)) return truths;
+  for (report::Part& part : report::read_exr(file).parts) {
+    const std::size_t dot = part.name.rfind('.');
+    TruthImages& truth = truths[part.name.substr(0, dot)];
+    (part.name.substr(dot + 1) == "area" ? truth.area : truth.standard_error) = std::move(part.image);
+  }
+  return truths;
+}
+
+void Baseline::write_truths(const std::string& scene, const std::map<std::string, TruthImages>& truths) const {
+  std::vector<report::Part> parts;
+  for (const auto& [key, truth] : truths) {
+    parts.push_back(make_part(key, "area", truth.area));
+    parts.push_back(make_part(key, "standard_error", truth.standard_error));
+  }
+  report::write_exr(with_extension(stem(scene, kTruthStem), ".exr"), parts, {});
+}
+
+}  // namespace shadowbench::regress

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "report/regress/compared_metrics.h"
+#include "report/regress/pixel_change.h"
+#include "report/regress/tolerances.h"
+
+namespace shadowbench::regress {
+
+/// What of a run decides whether its numbers can be compared.
+struct Origin {
+  std::uint64_t seed = 0;
+  std::string renderer;  ///< GL_RENDERER
+  std::string machine;   ///< its processor and number of cores
+  std::string commit;    ///< of the program
+
+  bool operator==(const Origin&) const = default;
+};
+
+/// What a baseline knows of one cell, without its images.
+struct BaselineCell {
+  std::string key;  ///< of the cell's settings
+  std::string scene;
+  std::string view;
+  std::string filter;
+  std::string label;  ///< filter and the parameters that were asked for
+  int map_size = 0;
+  int width = 0;
+  int height = 0;
+  Origin origin;
+  ComparedValues values;
+};
+
+/// The area truth of one view, with its standard error.
+struct TruthImages {
+  report::Image area;
+  report::Image standard_error;
+};
+
+/// Names a view's truth in a baseline: of all that it depends on, what tells truths of one scene apart.
+std::string truth_key(const report::CellRecord& cell);
+
+/// The cells of one filter on one scene, with their images by key.
+struct CellFile {
+  std::vector<BaselineCell> cells;
+  std::map<std::string, CellImages> images;
+};
+
+/// A folder of expected results:
+///   baseline.toml            the tolerances
+///   SCENE/FILTER.json, .exr  numbers and images of a filter's cells, one part per cell and image
+///   SCENE/truth.area.exr     truths of the scene's views
+///   accepted.md              what was accepted when
+class Baseline {
+ public:
+  explicit Baseline(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  const std::filesystem::path& folder() const { return folder_; }
+  std::filesystem::path tolerance_file() const { return folder_ / "baseline.toml"; }
+  std::filesystem::path log_file() const { return folder_ / "accepted.md"; }
+  bool exists() const;
+
+  /// Lists the cells of all filters, and files that cannot be read, with the reason.
+  struct Index {
+    std::vector<BaselineCell> cells;
+    std::map<std::string, std::string> unreadable;  ///< "SCENE/FILTER" to reason
+  };
+  Index read_index() const;
+
+  /// Reads the cells of a filter, and their images; nothing where there are none.
+  /// Throws Error(kInput) where they cannot be read.
+  CellFile read_cells(const std::string& scene, const std::string& filter) const;
+
+  /// Writes the cells of a filter; removes the files where there are none left. Throws Error(kOutput).
+  void write_cells(const std::string& scene, const std::string& filter, const CellFile& cells) const;
+
+  /// The same for the truths of a scene, by truth_key().
+  std::map<std::string, TruthImages> read_truths(const std::string& scene) const;
+  void write_truths(const std::string& scene, const std::map<std::string, TruthImages>& truths) const;
+
+ private:
+  std::filesystem::path folder_;
+
+  std::filesystem::path stem(const std::string& scene, const std::string& filter) const;
+};
+
+}  // namespace shadowbench::regress

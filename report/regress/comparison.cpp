@@ -1,0 +1,246 @@
+#include "report/regress/comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "report/regress/noise_test.h"
+#include "report/summary.h"
+
+namespace shadowbench::regress {
+namespace {
+
+using report::format_number;
+
+/// Compares one cell, finding by finding.
+class CellComparer {
+ public:
+  CellComparer(const ActualCell& actual, const BaselineCell& expected, const CellImages& images, const Tolerances& tolerances)
+      : actual_(actual), expected_(expected), images_(images), tolerances_(tolerances), result_(name_comparison(expected)) {}
+
+  Comparison compare() {
+    compare_images();
+    const ComparedValues values = read_values(actual_.record);
+    for (const ComparedMetric& metric : list_compared_metrics()) compare_number(metric, values);
+    compare_ratios(values);
+    return std::move(result_);
+  }
+
+ private:
+  const ActualCell& actual_;
+  const BaselineCell& expected_;
+  const CellImages& images_;
+  const Tolerances& tolerances_;
+  Comparison result_;
+
+  const Tolerance& tolerance(const std::string& metric) const { return tolerances_.find(expected_.filter, metric); }
+  bool has_spread() const { return !images_.uncertainty.seed_mean.empty(); }
+  bool same_seed() const { return actual_.origin.seed == expected_.origin.seed; }
+
+  void compare_images() {
+    if (has_spread() && !same_seed()) {
+      compare_spread();
+      return;
+    }
+    result_.pixels = compare_pixels(actual_.images, images_, tolerance(kPixel).limit);
+    const PixelChange& change = *result_.pixels;
+    limit_share(change);
+    limit(kLargest, change.max, fmt::format("the largest difference is {} at pixel ({}, {})", format_number(change.max), change.max_x, change.max_y));
+    limit(kMean, change.mean, fmt::format("the mean difference is {}", format_number(change.mean)));
+    const double pixels = static_cast<double>(std::max<std::int64_t>(change.pixels(), 1));
+    const std::int64_t excused = change.excused_flips + change.excused_rounding;
+    limit(kExcused, static_cast<double>(excused - change.excused_expected) / pixels,
+          fmt::format("{} pixels are excused, {} in the baseline alone", excused, change.excused_expected));
+    if (change.excused_changed > 0) {
+      result_.notes.push_back(fmt::format("{} excused pixels differ: a comparison may flip at {} pixels, rounding moves {} by 1/32 or more", change.excused_changed,
+                                          change.excused_flips, change.excused_rounding));
+    }
+  }
+
+  void limit_share(const PixelChange& change) {
+    if (change.share() <= tolerance(kShare).limit) return;
+    result_.add(Outcome::kChanged, {kShare, std::nullopt, change.share(), tolerance(kShare).limit,
+                                    fmt::format("{} of {} pixels differ by more than {} and what rounding explains; the largest difference is {} at pixel ({}, {})",
+                                                change.changed, change.compared, format_number(tolerance(kPixel).limit), format_number(change.max), change.max_x, change.max_y)});
+  }
+
+  void limit(const char* metric, double value, const std::string& text) {
+    const Tolerance& allowed = tolerance(metric);
+    if (value <= allowed.limit) return;
+    result_.add(Outcome::kChanged, {metric, std::nullopt, value, allowed.limit, fmt::format("{} (limit {})", text, format_number(allowed.limit))});
+  }
+
+  void compare_spread() {
+    const double lookups = std::max(expected_.values.numbers.contains("cost.fetches") ? expected_.values.numbers.at("cost.fetches") : 1.0, 1.0);
+    const double level = tolerance(kLevel).limit;
+    const SpreadTest test = test_spread(actual_.images.visibility, images_.uncertainty, lookups, level);
+    result_.notes.push_back(fmt::format("drawn with seed {}, the baseline with {}: tested as noise, at level {}", actual_.origin.seed, expected_.origin.seed, format_number(level)));
+    add_noise(test.pixels, "pixels", "pixel", actual_.images.visibility.width);
+    add_noise(test.blocks, "blocks of 8 x 8 pixels", "block", (actual_.images.visibility.width + 7) / 8);
+  }
+
+  void add_noise(const reference::PixelTest& test, const char* many, const char* one, int columns) {
+    if (test.beyond == 0) return;
+    const auto x = test.worst % static_cast<std::size_t>(columns), y = test.worst / static_cast<std::size_t>(columns);
+    result_.add(Outcome::kChanged, {kLevel, std::nullopt, test.smallest_p, test.corrected_level,
+                                    fmt::format("{} of {} {} are not explained by the filter's noise; the least likely is {} ({}, {}), p = {:.2g} (corrected level {:.2g})",
+                                                test.beyond, test.tested, many, one, x, y, test.smallest_p, test.corrected_level)});
+  }
+
+  void compare_number(const ComparedMetric& metric, const ComparedValues& values) {
+    const Tolerance& allowed = tolerance(metric.path);
+    if (std::isinf(allowed.limit)) return;
+    const auto before = expected_.values.numbers.find(metric.path);
+    const auto now = values.numbers.find(metric.path);
+    if (before == expected_.values.numbers.end()) {
+      if (now != values.numbers.end()) result_.notes.push_back(fmt::format("{} is new: {}", metric.path, format_number(now->second)));
+      return;
+    }
+    if (now == values.numbers.end()) {
+      result_.add(Outcome::kChanged, {metric.path, before->second, std::nullopt, allowed.limit,
+                                      fmt::format("{} was {}, and is missing: {}", metric.path, format_number(before->second), find_absence(actual_.record, metric.path))});
+      return;
+    }
+    compare_values(metric, before->second, now->second, allowed);
+  }
+
+  void compare_values(const ComparedMetric& metric, double before, double now, const Tolerance& allowed) {
+    const double limit = allowed.limit + (metric.role == MetricRole::kError ? explained_change() : 0.0);
+    if (std::abs(now - before) <= limit) return;
+    const bool error = metric.role == MetricRole::kError;
+    const bool worse = error && std::abs(now) > std::abs(before);
+    const char* kind = worse ? "less accurate" : error ? "more accurate" : "changed";
+    // Parts of an error may grow while the error itself does not: they say why, not how well.
+    const bool regression = worse && !metric.path.starts_with("attribution.");
+    result_.add(regression ? Outcome::kLessAccurate : Outcome::kChanged,
+                {metric.path, before, now, limit, fmt::format("{}: {}, was {} ({}; limit {}: {})", metric.path, format_number(now), format_number(before), kind, format_number(limit), allowed.reason)});
+  }
+
+  /// What excused pixels, and the noise of truth and filter, may move a mean of errors by.
+  double explained_change() const {
+    const auto find = [&](const std::map<std::string, double>& numbers, const char* path) {
+      const auto found = numbers.find(path);
+      return found == numbers.end() ? 0.0 : found->second;
+    };
+    const double receivers = std::max(find(expected_.values.numbers, "receivers"), 1.0);
+    const double excused = result_.pixels ? std::sqrt(result_.pixels->excused_squares / receivers) : 0.0;
+    const double noise = 3.0 * std::hypot(find(expected_.values.numbers, "truth.se"), actual_.record.truth.se.value_or(0.0));
+    return excused + noise + (has_spread() && !same_seed() ? spread_of_errors(receivers) : 0.0);
+  }
+
+  /// Three standard deviations of what another seed makes of the root mean square error, to first order: its slope in pixel i is
+  /// e_i / (n RMSE), and |e_i| is at most 1.
+  double spread_of_errors(double receivers) const {
+    double squares = 0.0;
+    for (const float deviation : images_.uncertainty.seed_deviation.texels) squares += static_cast<double>(deviation) * static_cast<double>(deviation);
+    const auto rmse = expected_.values.numbers.find("error.rmse");
+    return 3.0 * std::sqrt(squares) / (receivers * (rmse == expected_.values.numbers.end() ? 1.0 : std::clamp(rmse->second, 1e-3, 1.0)));
+  }
+
+  void compare_ratios(const ComparedValues& values) {
+    if (expected_.values.ratios.empty()) return;
+    if (actual_.origin.machine != expected_.origin.machine || actual_.origin.renderer != expected_.origin.renderer) {
+      result_.notes.push_back(fmt::format("times are not compared: the baseline is of {} on {}", expected_.origin.renderer, expected_.origin.machine));
+      return;
+    }
+    for (const auto& [path, before] : expected_.values.ratios) {
+      const Tolerance& allowed = tolerance(path);
+      const auto now = values.ratios.find(path);
+      if (std::isinf(allowed.limit)) continue;
+      if (now == values.ratios.end()) {
+        result_.add(Outcome::kChanged, {path, before.median, std::nullopt, allowed.limit,
+                                        fmt::format("{} was {}, and is missing: {}", path, report::format_ratio(before), find_absence(actual_.record, path))});
+      } else if (now->second.ci95.low > before.ci95.high * (1.0 + allowed.limit)) {
+        result_.add(Outcome::kSlower, {path, before.median, now->second.median, allowed.limit,
+                                       fmt::format("{}: {}, was {}: slower by more than {} of the interval's end", path, report::format_ratio(now->second),
+                                                   report::format_ratio(before), format_number(allowed.limit))});
+      }
+    }
+  }
+};
+
+std::string describe_cell(const std::string& view, int map_size, int width, int height) {
+  return fmt::format("view {}, map {}, {} x {}", view, map_size, width, height);
+}
+
+/// Says why two sets of images cannot be compared pixel by pixel; empty where they can.
+std::string find_mismatch(const report::Image& actual, const report::Image& expected) {
+  if (expected.empty()) return "the baseline has no image of it";
+  if (actual.empty()) return "the run has no image of it";
+  if (actual.width == expected.width && actual.height == expected.height) return "";
+  return fmt::format("the image has {} x {} pixels, and {} x {} in the baseline", actual.width, actual.height, expected.width, expected.height);
+}
+
+}  // namespace
+
+std::string name_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kSame: return "same";
+    case Outcome::kSlower: return "slower";
+    case Outcome::kChanged: return "changed";
+    case Outcome::kLessAccurate: return "less accurate";
+    case Outcome::kExtra: return "extra";
+    case Outcome::kMissing: return "missing";
+    case Outcome::kUnreadable: return "unreadable";
+  }
+  return "";
+}
+
+void Comparison::add(Outcome worse, Finding finding) {
+  outcome = std::max(outcome, worse);
+  findings.push_back(std::move(finding));
+}
+
+Comparison name_comparison(const report::CellRecord& record) {
+  Comparison comparison;
+  comparison.key = record.key;
+  comparison.scene = record.scene;
+  comparison.view = record.view;
+  comparison.filter = record.filter;
+  comparison.label = record.images.parts.value_or(record.filter);
+  comparison.settings = describe_cell(record.view, record.map_size, record.width, record.height);
+  return comparison;
+}
+
+Comparison name_comparison(const BaselineCell& cell) {
+  Comparison comparison;
+  comparison.key = cell.key;
+  comparison.scene = cell.scene;
+  comparison.view = cell.view;
+  comparison.filter = cell.filter;
+  comparison.label = cell.label;
+  comparison.settings = describe_cell(cell.view, cell.map_size, cell.width, cell.height);
+  return comparison;
+}
+
+Comparison compare_cell(const ActualCell& actual, const BaselineCell& expected, const CellImages& expected_images, const Tolerances& tolerances) {
+  const std::string mismatch = actual.unreadable.empty() ? find_mismatch(actual.images.visibility, expected_images.visibility) : actual.unreadable;
+  if (mismatch.empty()) return CellComparer(actual, expected, expected_images, tolerances).compare();
+  Comparison comparison = name_comparison(expected);
+  comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, mismatch});
+  return comparison;
+}
+
+Comparison compare_truth(const ActualTruth& actual, const TruthImages& expected, double level) {
+  Comparison comparison = name_comparison(actual.record);
+  comparison.key = truth_key(actual.record);
+  comparison.filter = comparison.label = "truth";
+  comparison.settings = fmt::format("view {}, {} x {}", actual.record.view, actual.record.width, actual.record.height);
+  for (const auto member : {&TruthImages::area, &TruthImages::standard_error}) {
+    const std::string mismatch = find_mismatch(actual.images.*member, expected.*member);
+    if (mismatch.empty()) continue;
+    comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, mismatch});
+    return comparison;
+  }
+  const reference::PixelTest test = test_truth(actual.images, expected, level);
+  if (test.beyond == 0) return comparison;
+  const auto width = static_cast<std::size_t>(actual.images.area.width);
+  comparison.add(Outcome::kChanged, {kLevel, std::nullopt, test.smallest_p, test.corrected_level,
+                                     fmt::format("{} of {} pixels of the truth differ by more than its standard errors explain; the least likely is pixel ({}, {}), p = {:.2g} (corrected level {:.2g})", test.beyond,
+                                                 test.tested, test.worst % width, test.worst / width, test.smallest_p, test.corrected_level)});
+  return comparison;
+}
+
+}  // namespace shadowbench::regress

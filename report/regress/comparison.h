@@ -1,0 +1,70 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/regress/baseline.h"
+
+namespace shadowbench::regress {
+
+/// How a cell stands to its baseline, the worst last.
+enum class Outcome { kSame, kSlower, kChanged, kLessAccurate, kExtra, kMissing, kUnreadable };
+
+/// Names an outcome: "same", "slower", "changed", "less accurate", "extra", "missing", "unreadable".
+std::string name_of(Outcome outcome);
+
+/// Is one thing that is not as the baseline has it.
+struct Finding {
+  std::string metric;  ///< of list_limited_metrics(); empty where no limit is at stake
+  std::optional<double> expected;
+  std::optional<double> actual;
+  std::optional<double> limit;
+  std::string text;  ///< a whole sentence
+};
+
+/// What comparing one cell, or one view's truth, found.
+struct Comparison {
+  Outcome outcome = Outcome::kSame;
+  std::string key;
+  std::string scene;
+  std::string view;
+  std::string filter;  ///< "truth" for a view's truth
+  std::string label;   ///< filter and the parameters that were asked for
+  std::string settings;  ///< "view main, map 512, 256 x 144"
+  std::vector<Finding> findings;
+  std::vector<std::string> notes;      ///< what was not compared, and why
+  std::optional<PixelChange> pixels;
+  std::optional<std::string> picture;  ///< below the folder of the comparison
+
+  bool failed() const { return outcome != Outcome::kSame; }
+  /// Notes a finding; the worse outcome stays.
+  void add(Outcome worse, Finding finding);
+};
+
+/// One cell of the run at hand.
+struct ActualCell {
+  report::CellRecord record;
+  Origin origin;
+  CellImages images;       ///< empty where they cannot be read
+  std::string unreadable;  ///< why
+};
+
+/// Compares a cell with its baseline; `expected` has the images of the cell.
+/// Requires equal keys.
+Comparison compare_cell(const ActualCell& actual, const BaselineCell& expected, const CellImages& expected_images, const Tolerances& tolerances);
+
+/// Is one view's truth of the run at hand.
+struct ActualTruth {
+  report::CellRecord record;  ///< of any cell of the view
+  TruthImages images;
+};
+
+/// Compares truths by a test of noise at every pixel.
+Comparison compare_truth(const ActualTruth& actual, const TruthImages& expected, double level);
+
+/// Makes a comparison that only has a name.
+Comparison name_comparison(const report::CellRecord& record);
+Comparison name_comparison(const BaselineCell& cell);
+
+}  // namespace shadowbench::regress

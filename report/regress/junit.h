@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "report/regress/regress.h"
+
+namespace shadowbench::regress {
+
+/// Writes a comparison as JUnit XML, which build servers show: a suite per scene, a case per cell.
+/// Source: the format's common subset, as Jenkins' and GitLab's readers take it.
+std::string make_junit(const RegressReport& report);
+
+}  // namespace shadowbench::regress

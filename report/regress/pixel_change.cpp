@@ -1,0 +1,68 @@
+#include "report/regress/pixel_change.h"
+
+#include <cassert>
+#include <cmath>
+
+namespace shadowbench::regress {
+namespace {
+
+constexpr float kNegligibleBound = 0x1p-14f;
+
+float bound_at(const report::Image& rounding, std::size_t i) { return rounding.empty() ? 0.0f : rounding.texels[i]; }
+
+float coarsen(float bound) {
+  if (bound == report::kMayFlip) return bound;
+  if (bound < kNegligibleBound) return 0.0f;
+  if (!(bound < kWidestBound)) return 1.0f;
+  return std::exp2(std::ceil(std::log2(bound)));
+}
+
+bool says_nothing(float bound) { return bound >= kWidestBound && bound != report::kMayFlip; }
+
+}  // namespace
+
+report::Image coarsen_rounding(const report::Image& rounding) {
+  report::Image coarse = rounding;
+  for (float& bound : coarse.texels) bound = coarsen(bound);
+  return coarse;
+}
+
+PixelChange compare_pixels(const CellImages& actual, const CellImages& expected, double tolerance) {
+  assert(actual.visibility.texels.size() == expected.visibility.texels.size());
+  PixelChange change;
+  const report::Image bounds = coarsen_rounding(actual.uncertainty.rounding);
+  const auto width = static_cast<std::size_t>(actual.visibility.width);
+  for (std::size_t i = 0; i < actual.visibility.texels.size(); ++i) {
+    const float own = bound_at(bounds, i), known = bound_at(expected.uncertainty.rounding, i);
+    const bool finite = std::isfinite(actual.visibility.texels[i]) && std::isfinite(expected.visibility.texels[i]);
+    const double difference = finite ? std::abs(static_cast<double>(actual.visibility.texels[i]) - static_cast<double>(expected.visibility.texels[i])) : 1.0;
+    if (known == report::kMayFlip || says_nothing(known)) ++change.excused_expected;
+    const bool flips = own == report::kMayFlip || known == report::kMayFlip;
+    if (finite && (flips || says_nothing(own) || says_nothing(known))) {
+      ++(flips ? change.excused_flips : change.excused_rounding);
+      change.excused_squares += difference * difference;
+      if (difference > tolerance) ++change.excused_changed;
+      continue;
+    }
+    ++change.compared;
+    if (!finite || difference > tolerance + static_cast<double>(own) + static_cast<double>(known)) ++change.changed;
+    change.mean += difference;
+    change.rms += difference * difference;
+    if (difference <= change.max) continue;
+    change.max = difference;
+    change.max_x = static_cast<int>(i % width);
+    change.max_y = static_cast<int>(i / width);
+  }
+  const double count = change.compared > 0 ? static_cast<double>(change.compared) : 1.0;
+  change.mean /= count;
+  change.rms = std::sqrt(change.rms / count);
+  return change;
+}
+
+report::Image subtract(const report::Image& actual, const report::Image& expected) {
+  report::Image difference = actual;
+  for (std::size_t i = 0; i < difference.texels.size(); ++i) difference.texels[i] -= expected.texels[i];
+  return difference;
+}
+
+}  // namespace shadowbench::regress

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "report/uncertainty_images.h"
+
+namespace shadowbench::regress {
+
+/// A rounding bound from here on says nothing of its pixel.
+inline constexpr float kWidestBound = 0x1p-5f;
+
+/// One cell's visibility, with how far rounding and other seeds can move it. All images have one size or are empty.
+struct CellImages {
+  report::Image visibility;
+  report::UncertaintyImages uncertainty;
+};
+
+/// Coarsens rounding bounds to what a baseline keeps: 0 below 2^-14, which the pixel's own tolerance covers; the next power of
+/// two above; 1 from kWidestBound on; report::kMayFlip stays.
+report::Image coarsen_rounding(const report::Image& rounding);
+
+/// How far an image is from what was expected.
+struct PixelChange {
+  std::int64_t compared = 0;           ///< pixels that were
+  std::int64_t changed = 0;            ///< that differ by more than their tolerance, or are not finite
+  std::int64_t excused_flips = 0;      ///< left out: a comparison may flip there, or another texel be read
+  std::int64_t excused_rounding = 0;   ///< left out: rounding alone may move them by kWidestBound or more
+  std::int64_t excused_expected = 0;   ///< pixels that the baseline alone leaves out
+  std::int64_t excused_changed = 0;    ///< of those left out, that do differ by more than the tolerance
+  double excused_squares = 0.0;        ///< sum of the squared differences of those left out
+  double max = 0.0;                    ///< largest difference of a pixel that was compared
+  int max_x = 0;                       ///< where, from the left and the top
+  int max_y = 0;
+  double mean = 0.0;                   ///< mean magnitude over the compared pixels
+  double rms = 0.0;
+
+  std::int64_t pixels() const { return compared + excused_flips + excused_rounding; }
+  double share() const { return compared > 0 ? static_cast<double>(changed) / static_cast<double>(compared) : 0.0; }
+};
+
+/// Compares images of one size. A pixel may differ by `tolerance` and the rounding bounds of both.
+PixelChange compare_pixels(const CellImages& actual, const CellImages& expected, double tolerance);
+
+/// Gives actual less expected.
+report::Image subtract(const report::Image& actual, const report::Image& expected);
+
+}  // namespace shadowbench::regress

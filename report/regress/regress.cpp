@@ -1,0 +1,217 @@
+#include "report/regress/regress.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "filters/error.h"
+#include "report/file_name.h"
+#include "report/regress/accept.h"
+#include "report/regress/junit.h"
+#include "report/regress/regress_picture.h"
+#include "report/regress/regress_text.h"
+#include "report/atomic_file.h"
+
+namespace shadowbench::regress {
+namespace {
+
+/// Pictures are for people: the worst cells of a run that moved as a whole are enough.
+constexpr int kMostPictures = 50;
+
+/// One comparison of a run with its baseline.
+class Regression {
+ public:
+  explicit Regression(const RegressOptions& options)
+      : options_(options), baseline_(options.baseline), run_(options.run, options.selection), accepter_(baseline_, tolerances_) {
+    if (baseline_.exists()) tolerances_ = read_tolerances(baseline_.tolerance_file());
+    else if (!options.accept) fail_without_baseline();
+    index_ = baseline_.read_index();
+    std::erase_if(index_.cells, [&](const BaselineCell& cell) { return !options.selection.holds(cell.scene, cell.filter); });
+    if (run_.cells().empty() && index_.cells.empty()) throw Error(ErrorKind::kInput, "neither the run nor the baseline has a cell of these scenes and filters", options.run.string());
+  }
+
+  RegressReport compare() {
+    run_.visit([&](const ActualCell& cell) { compare_cell(cell); }, [&](const ActualTruth& truth) { compare_truth(truth); });
+    find_missing();
+    name_unreadable_files();
+    std::stable_sort(report_.comparisons.begin(), report_.comparisons.end(), is_worse);
+    report_.options = options_;
+    report_.accept_command = make_accept_command(options_);
+    if (options_.accept) accept();
+    return std::move(report_);
+  }
+
+ private:
+  const RegressOptions& options_;
+  Baseline baseline_;
+  RunCells run_;
+  Tolerances tolerances_;
+  Accepter accepter_;
+  Baseline::Index index_;
+  std::set<std::string> seen_;             ///< keys of the run's cells
+  std::set<std::string> named_unreadable_;  ///< files of the baseline whose trouble a cell reports
+  RegressReport report_;
+  CellFile file_;  ///< of the last cell's scene and filter
+  std::pair<std::string, std::string> file_name_;
+  int pictures_ = 0;
+
+  [[noreturn]] void fail_without_baseline() const {
+    throw Error(ErrorKind::kInput, fmt::format("there is no baseline here (no baseline.toml); make one: {}", make_accept_command(options_)), options_.baseline.string());
+  }
+
+  static bool is_worse(const Comparison& a, const Comparison& b) {
+    if (a.outcome != b.outcome) return a.outcome > b.outcome;
+    const double of_a = a.pixels ? a.pixels->rms : 0.0, of_b = b.pixels ? b.pixels->rms : 0.0;
+    return of_a > of_b;
+  }
+
+  const BaselineCell* find(const std::string& key) const {
+    const auto found = std::find_if(index_.cells.begin(), index_.cells.end(), [&](const BaselineCell& cell) { return cell.key == key; });
+    return found == index_.cells.end() ? nullptr : &*found;
+  }
+
+  const CellFile& read_file(const BaselineCell& cell) {
+    const std::pair name(cell.scene, cell.filter);
+    if (name != file_name_) {
+      file_ = baseline_.read_cells(cell.scene, cell.filter);
+      file_name_ = name;
+    }
+    return file_;
+  }
+
+  void compare_cell(const ActualCell& cell) {
+    seen_.insert(cell.record.key);
+    const BaselineCell* expected = find(cell.record.key);
+    Comparison comparison = name_comparison(cell.record);
+    CellImages images;
+    if (expected) {
+      try {
+        const auto& all = read_file(*expected).images;
+        if (const auto found = all.find(expected->key); found != all.end()) images = found->second;
+        comparison = regress::compare_cell(cell, *expected, images, tolerances_);
+      } catch (const Error& error) {
+        file_name_ = {};
+        comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, error.what()});
+      }
+    } else {
+      add_unknown(comparison, cell);
+    }
+    accepter_.take(comparison, cell);
+    draw(comparison, images.visibility, cell.images.visibility);
+    report_.comparisons.push_back(std::move(comparison));
+  }
+
+  void add_unknown(Comparison& comparison, const ActualCell& cell) {
+    const std::string file = (std::filesystem::path(report::make_file_stem(cell.record.scene)) / report::make_file_stem(cell.record.filter)).string();
+    const auto unreadable = index_.unreadable.find(file);
+    if (unreadable != index_.unreadable.end()) named_unreadable_.insert(file);
+    if (unreadable != index_.unreadable.end()) comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, unreadable->second});
+    else if (!cell.unreadable.empty()) comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, cell.unreadable});
+    else comparison.add(Outcome::kExtra, {"", {}, {}, {}, "the baseline has no such cell"});
+  }
+
+  void compare_truth(const ActualTruth& truth) {
+    Comparison comparison;
+    TruthImages expected;
+    try {
+      const auto truths = baseline_.read_truths(truth.record.scene);
+      const auto found = truths.find(truth_key(truth.record));
+      if (found != truths.end()) expected = found->second;
+      comparison = regress::compare_truth(truth, expected, tolerances_.find("truth", kLevel).limit);
+      if (found == truths.end()) {
+        comparison.outcome = Outcome::kExtra;
+        comparison.findings = {{"", {}, {}, {}, "the baseline has no truth of this view"}};
+      }
+    } catch (const Error& error) {
+      comparison = regress::compare_truth(truth, truth.images, 1.0);
+      comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, error.what()});
+    }
+    accepter_.take(comparison, truth);
+    draw(comparison, expected.area, truth.images.area);
+    report_.comparisons.push_back(std::move(comparison));
+  }
+
+  void draw(Comparison& comparison, const report::Image& expected, const report::Image& actual) {
+    const bool moved = comparison.outcome == Outcome::kChanged || comparison.outcome == Outcome::kLessAccurate;
+    if (!moved || pictures_ >= kMostPictures) return;
+    ++pictures_;
+    comparison.picture = report::make_file_stem(fmt::format("{}.{}.{}", comparison.scene, comparison.label, comparison.key)) + ".png";
+    write_regress_picture(options_.out / *comparison.picture, comparison, expected, actual);
+  }
+
+  void find_missing() {
+    for (const BaselineCell& cell : index_.cells) {
+      if (seen_.contains(cell.key)) continue;
+      Comparison comparison = name_comparison(cell);
+      comparison.add(Outcome::kMissing, {"", {}, {}, {}, "the run has no such cell"});
+      if (options_.remove_missing) accepter_.drop(comparison);
+      report_.comparisons.push_back(std::move(comparison));
+    }
+  }
+
+  /// Files of the baseline that no cell of the run stands for.
+  void name_unreadable_files() {
+    for (const auto& [file, reason] : index_.unreadable) {
+      const std::filesystem::path path(file);
+      if (named_unreadable_.contains(file) || !options_.selection.holds(path.parent_path().string(), path.filename().string())) continue;
+      Comparison comparison;
+      comparison.scene = path.parent_path().string();
+      comparison.filter = comparison.label = path.filename().string();
+      comparison.settings = "all cells of the file";
+      comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, reason});
+      report_.comparisons.push_back(std::move(comparison));
+    }
+  }
+
+  void accept() {
+    const report::RunRecord& run = run_.run();
+    report_.accepted = accepter_.write({run.seed, run.gl.renderer, "", run.commit});
+  }
+};
+
+/// Pictures of an earlier comparison would be taken for this one's.
+void remove_old_pictures(const std::filesystem::path& out) {
+  std::ifstream stream(out / "regress.json", std::ios::binary);
+  const auto old = nlohmann::json::parse(stream, nullptr, false);
+  if (!old.is_object() || !old.contains("cells")) return;
+  for (const auto& cell : old["cells"]) {
+    if (!cell.is_object()) continue;
+    const auto picture = cell.value("picture", nlohmann::json());
+    if (!picture.is_string()) continue;
+    const std::filesystem::path name(picture.get<std::string>());
+    std::error_code ignored;
+    if (name == name.filename() && name.extension() == ".png") std::filesystem::remove(out / name, ignored);
+  }
+}
+
+}  // namespace
+
+int RegressReport::count(Outcome outcome) const {
+  return static_cast<int>(std::count_if(comparisons.begin(), comparisons.end(), [&](const Comparison& each) { return each.outcome == outcome; }));
+}
+
+int RegressReport::failed() const {
+  return static_cast<int>(std::count_if(comparisons.begin(), comparisons.end(), [](const Comparison& each) { return each.failed(); }));
+}
+
+RegressReport run_regress(const RegressOptions& options) {
+  remove_old_pictures(options.out);
+  RegressReport result = Regression(options).compare();
+  report::write_text_file(options.out / "regress.json", make_regress_json(result));
+  if (options.junit) report::write_text_file(*options.junit, make_junit(result));
+  return result;
+}
+
+RegressOutcome summarise(const RegressReport& report) {
+  RegressOutcome outcome{make_regress_text(report), make_regress_json(report), ""};
+  const int left = report.failed() - static_cast<int>(report.accepted.size());
+  if (left <= 0) return outcome;
+  outcome.failure = report.options.accept ? fmt::format("{} cells could not be accepted; {}", left, describe_worst(report))
+                                          : fmt::format("{}; worst: {}", describe_counts(report), describe_worst(report));
+  return outcome;
+}
+
+}  // namespace shadowbench::regress

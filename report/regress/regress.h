@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/regress/comparison.h"
+#include "report/regress/run_cells.h"
+
+namespace shadowbench::regress {
+
+/// Everything that `shadowbench regress` is told.
+struct RegressOptions {
+  std::filesystem::path run;       ///< a run's report folder
+  std::filesystem::path baseline;
+  std::filesystem::path out;       ///< gets regress.json and the pictures
+  Selection selection;
+  bool accept = false;             ///< what differs becomes the baseline
+  bool remove_missing = false;     ///< with `accept`: cells that the run lacks leave the baseline
+  std::optional<std::filesystem::path> junit;
+  std::vector<std::string> command;  ///< the command line, to be given again with --accept
+};
+
+/// What a comparison found, the worst first.
+struct RegressReport {
+  std::vector<Comparison> comparisons;
+  std::vector<std::string> accepted;   ///< what became of the baseline, one line each
+  std::string accept_command;          ///< what would accept the differences
+  RegressOptions options;
+
+  int count(Outcome outcome) const;
+  int failed() const;
+};
+
+/// What the command line shows of it.
+struct RegressOutcome {
+  std::string text;
+  std::string json;
+  std::string failure;  ///< one line; empty where nothing is left that differs
+};
+
+/// Compares a run with its baseline, and writes regress.json, a picture of each cell that moved, and what else was asked for.
+/// Throws Error(kInput) where run or tolerances cannot be read, or there is no baseline and nothing is to be accepted;
+/// Error(kOutput).
+/// Cost: memory of one image file of the run, and of one of the baseline.
+RegressReport run_regress(const RegressOptions& options);
+
+/// Sums a comparison up. What was accepted is no failure; what could not be accepted is.
+RegressOutcome summarise(const RegressReport& report);
+
+}  // namespace shadowbench::regress

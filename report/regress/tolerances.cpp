@@ -1,0 +1,162 @@
+#include "report/regress/tolerances.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "filters/error.h"
+#include "filters/nearest_name.h"
+#include "report/regress/compared_metrics.h"
+
+namespace shadowbench::regress {
+namespace {
+
+constexpr double kHalfRounding = 0x1p-12;
+
+Tolerance tolerate(const ComparedMetric& metric) {
+  if (metric.path.starts_with("map_scale.")) return {1e-9, "a map of another scale is another map: the widest kernel of a run pads it, see --pad-texels"};
+  if (metric.role != MetricRole::kError) return {0.0, "a count: it does not depend on rounding"};
+  if (metric.path.starts_with("artefact.")) return {0.01, "a rate counts over 100 receivers or more: one of them may fall on the other side of its limit"};
+  return {kHalfRounding, "no mean of errors moves by more than the pixels do; what excused pixels and the truth's noise move it by is allowed on top"};
+}
+
+/// Reads one file and says where in it something is wrong.
+class ToleranceReader {
+ public:
+  explicit ToleranceReader(const std::filesystem::path& file) : file_(file.string()), root_(parse()) {}
+
+  Tolerances read() const {
+    Tolerances tolerances;
+    for (const auto& [key, node] : root_) {
+      const std::string name(key.str());
+      if (name == "all") read_filter(tolerances, "", node);
+      else if (name == "filter") read_filters(tolerances, node);
+      else fail(node, fmt::format("'{}' is not known here: write [all.\"METRIC\"] or [filter.ID.\"METRIC\"]", name));
+    }
+    return tolerances;
+  }
+
+ private:
+  std::string file_;
+  toml::table root_;
+
+  toml::table parse() const {
+    try {
+      return toml::parse_file(file_);
+    } catch (const toml::parse_error& error) {
+      throw Error(ErrorKind::kInput, std::string(error.description()), fmt::format("{}:{}", file_, error.source().begin.line));
+    }
+  }
+
+  [[noreturn]] void fail(const toml::node& node, const std::string& message) const {
+    throw Error(ErrorKind::kInput, message, fmt::format("{}:{}", file_, node.source().begin.line));
+  }
+
+  const toml::table& table(const toml::node& node, const std::string& name) const {
+    if (const toml::table* found = node.as_table()) return *found;
+    fail(node, fmt::format("'{}' must be a table", name));
+  }
+
+  void read_filters(Tolerances& tolerances, const toml::node& node) const {
+    for (const auto& [key, each] : table(node, "filter")) read_filter(tolerances, std::string(key.str()), each);
+  }
+
+  void read_filter(Tolerances& tolerances, const std::string& filter, const toml::node& node) const {
+    for (const auto& [key, each] : table(node, filter)) {
+      const std::string metric(key.str());
+      require_known(metric, each);
+      tolerances.set(filter, metric, read_tolerance(metric, table(each, metric)));
+    }
+  }
+
+  void require_known(const std::string& metric, const toml::node& node) const {
+    const std::vector<std::string>& known = list_limited_metrics();
+    if (std::find(known.begin(), known.end(), metric) != known.end()) return;
+    const auto near = nearest_name(metric, known);
+    fail(node, fmt::format("there is no metric '{}'{}; known: {}", metric, near ? fmt::format("; did you mean '{}'?", *near) : "", fmt::join(known, ", ")));
+  }
+
+  Tolerance read_tolerance(const std::string& metric, const toml::table& values) const {
+    for (const auto& [key, node] : values) {
+      if (key.str() != "limit" && key.str() != "reason") fail(node, fmt::format("'{}' is not known: a tolerance has a limit and a reason", std::string(key.str())));
+    }
+    const auto limit = values["limit"].value<double>();
+    if (!limit || !(*limit >= 0.0)) fail(values, fmt::format("the tolerance of {} needs a limit of 0 or more; 'inf' compares it with nothing", metric));
+    const auto reason = values["reason"].value<std::string>();
+    if (!reason || reason->empty()) fail(values, fmt::format("the tolerance of {} needs a reason: what limits the filter there", metric));
+    return {*limit, *reason};
+  }
+};
+
+std::string quote(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+}  // namespace
+
+Tolerances::Tolerances() {
+  auto& all = by_filter_[""];
+  all[kPixel] = {kHalfRounding, "images are stored as 16-bit floats, which round visibility by up to 2^-12"};
+  all[kShare] = {0.0, "what rounding can move is excused pixel by pixel, by name"};
+  all[kLargest] = {0.0625, "twice the widest tolerance of a pixel that is not excused: 1/32 in the baseline and 1/32 in the run"};
+  all[kMean] = {kHalfRounding, "the mean of roundings to 16 bits is at most the largest"};
+  all[kExcused] = {0.01, "ties and texel borders wander with the last bit of a depth, and are as many after it"};
+  all[kLevel] = {0.01, "one comparison in a hundred of the same thing may fail by chance"};
+  for (const ComparedMetric& metric : list_compared_metrics()) all[metric.path] = tolerate(metric);
+  all["truth.se"] = {HUGE_VAL, "the truth itself is tested pixel by pixel"};
+  for (const std::string& path : list_compared_ratios()) {
+    all[path] = {0.25, "ratios of one machine drift; the interval of the run must lie above that of the baseline by this share of it"};
+  }
+}
+
+const Tolerance& Tolerances::find(const std::string& filter, const std::string& metric) const {
+  if (const auto own = by_filter_.find(filter); own != by_filter_.end()) {
+    if (const auto found = own->second.find(metric); found != own->second.end()) return found->second;
+  }
+  const auto found = by_filter_.at("").find(metric);
+  assert(found != by_filter_.at("").end());
+  return found->second;
+}
+
+void Tolerances::set(const std::string& filter, const std::string& metric, Tolerance tolerance) {
+  by_filter_[filter][metric] = std::move(tolerance);
+}
+
+const std::vector<std::string>& list_limited_metrics() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = {kPixel, kShare, kLargest, kMean, kExcused, kLevel};
+    for (const ComparedMetric& metric : list_compared_metrics()) all.push_back(metric.path);
+    for (const std::string& path : list_compared_ratios()) all.push_back(path);
+    return all;
+  }();
+  return names;
+}
+
+Tolerances read_tolerances(const std::filesystem::path& file) { return ToleranceReader(file).read(); }
+
+std::string write_tolerances(const Tolerances& tolerances) {
+  std::string text =
+      "# How far a run may be from this baseline. 'all' holds for every filter, [filter.ID.\"METRIC\"] for one; each with its reason.\n"
+      "# Pixels whose comparison may flip, or whose rounding bound is 1/32 or more, are counted and excused by name instead.\n";
+  for (const auto& [filter, metrics] : tolerances.by_filter_) {
+    for (const std::string& name : list_limited_metrics()) {
+      const auto found = metrics.find(name);
+      if (found == metrics.end()) continue;
+      const std::string table = filter.empty() ? "all" : "filter." + quote(filter);
+      const std::string limit = std::isinf(found->second.limit) ? "inf" : fmt::format("{}", found->second.limit);
+      text += fmt::format("\n[{}.{}]\nlimit = {}\nreason = {}\n", table, quote(name), limit, quote(found->second.reason));
+    }
+  }
+  return text;
+}
+
+}  // namespace shadowbench::regress

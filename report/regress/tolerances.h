@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace shadowbench::regress {
+
+/// How far a number of a cell may be from its baseline, and why so far.
+struct Tolerance {
+  double limit = 0.0;  ///< infinite: the number is not compared
+  std::string reason;
+};
+
+/// What of the pixels is limited, beside the numbers of list_compared_metrics() and the ratios:
+inline constexpr const char* kPixel = "visibility.pixel";      ///< what a pixel may differ by, beside what rounding explains
+inline constexpr const char* kShare = "visibility.share";      ///< share of the pixels that may differ by more
+inline constexpr const char* kLargest = "visibility.max";      ///< largest difference of a pixel that is not excused
+inline constexpr const char* kMean = "visibility.mean";        ///< mean magnitude of the differences of pixels not excused
+inline constexpr const char* kExcused = "visibility.excused";  ///< share of pixels excused, more than the baseline excuses
+inline constexpr const char* kLevel = "noise.level";           ///< probability that chance alone fails a test of noise
+
+/// The tolerances of a baseline: those of all filters, and what single filters have in their place.
+class Tolerances {
+ public:
+  /// What a new baseline begins with: limits that follow from how goldens are stored and from single precision.
+  Tolerances();
+
+  /// Gives a filter's tolerance. Requires a metric of list_limited_metrics().
+  const Tolerance& find(const std::string& filter, const std::string& metric) const;
+
+  /// Sets the tolerance of a filter, or of all where `filter` is empty.
+  void set(const std::string& filter, const std::string& metric, Tolerance tolerance);
+
+ private:
+  std::map<std::string, std::map<std::string, Tolerance>> by_filter_;
+
+  friend std::string write_tolerances(const Tolerances& tolerances);
+};
+
+/// Lists what may be limited.
+const std::vector<std::string>& list_limited_metrics();
+
+/// Reads a baseline's tolerances; what the file leaves out is as in a new baseline.
+/// Throws Error(kInput), with the line, where the file is malformed, names no such metric, has a limit below 0, or gives no
+/// reason.
+Tolerances read_tolerances(const std::filesystem::path& file);
+
+/// Gives the text of such a file.
+std::string write_tolerances(const Tolerances& tolerances);
+
+}  // namespace shadowbench::regress

@@ -1,0 +1,289 @@
+#include "report/regress/comparison.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "report/cell_key.h"
+
+namespace shadowbench::regress {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr int kWidth = 32;
+constexpr int kHeight = 16;
+
+report::Image make_image(float value) {
+  report::Image image(kWidth, kHeight, 1);
+  for (float& texel : image.texels) texel = value;
+  return image;
+}
+
+/// A cell of a stand-in filter, half lit everywhere.
+ActualCell make_cell() {
+  ActualCell cell;
+  cell.record.scene = "cubes";
+  cell.record.view = "main";
+  cell.record.filter = "tent";
+  cell.record.map_size = 512;
+  cell.record.width = kWidth;
+  cell.record.height = kHeight;
+  cell.record.receivers = kWidth * kHeight;
+  cell.record.nan = 0;
+  cell.record.error.rmse = 0.05;
+  cell.record.error.mean = -0.01;
+  cell.record.artefact.leak = 0.2;
+  cell.record.attribution.model.rms = 0.04;
+  cell.record.cost.fetches = 4.0;
+  cell.record.ratio_to_none.lookup = report::Ratio{2.0, {1.9, 2.1}};
+  cell.record.images.parts = "tent";
+  cell.record.key = report::cell_key(cell.record);
+  cell.origin = {1, "llvmpipe", "a machine", "abc"};
+  cell.images.visibility = make_image(0.5f);
+  return cell;
+}
+
+BaselineCell expect(const ActualCell& cell) {
+  const report::CellRecord& r = cell.record;
+  return {r.key, r.scene, r.view, r.filter, *r.images.parts, r.map_size, r.width, r.height, cell.origin, read_values(r)};
+}
+
+/// Compares what `change` makes of a cell with the cell as it was.
+template <class Change>
+Comparison compare_changed(const Change& change) {
+  const ActualCell before = make_cell();
+  ActualCell now = before;
+  change(now);
+  return compare_cell(now, expect(before), before.images, Tolerances());
+}
+
+TEST(Comparison, OfTheSame_FindsNothing) {
+  const Comparison same = compare_changed([](ActualCell&) {});
+  EXPECT_EQ(same.outcome, Outcome::kSame);
+  EXPECT_TRUE(same.findings.empty());
+  EXPECT_TRUE(same.notes.empty());
+  EXPECT_EQ(same.pixels->compared, kWidth * kHeight);
+}
+
+TEST(Comparison, OnePixel_IsSeen_AndItsPlaceIsNamed) {
+  const Comparison moved = compare_changed([](ActualCell& cell) { *cell.images.visibility.at(7, 3) += 0.02f; });
+  EXPECT_EQ(moved.outcome, Outcome::kChanged);
+  EXPECT_EQ(moved.pixels->changed, 1);
+  EXPECT_EQ(moved.pixels->max_x, 7);
+  EXPECT_EQ(moved.pixels->max_y, 3);
+  EXPECT_NEAR(moved.pixels->max, 0.02, 1e-6);
+  EXPECT_THAT(moved.findings.front().text, HasSubstr("(7, 3)"));
+}
+
+TEST(Comparison, RoundingToHalf_IsNoChange) {
+  const auto move_all = [](float by) {
+    return compare_changed([by](ActualCell& cell) {
+      for (float& texel : cell.images.visibility.texels) texel += by;
+    });
+  };
+  EXPECT_EQ(move_all(0x1p-12f).outcome, Outcome::kSame);
+  EXPECT_EQ(move_all(0x1.2p-12f).outcome, Outcome::kChanged);
+}
+
+TEST(Comparison, NotFinite_IsAChange_ExcusedOrNot) {
+  for (const float bound : {0.0f, 1.0f, report::kMayFlip}) {
+    ActualCell before = make_cell();
+    before.images.uncertainty.rounding = make_image(bound);
+    ActualCell now = before;
+    *now.images.visibility.at(0, 0) = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(compare_cell(now, expect(before), before.images, Tolerances()).outcome, Outcome::kChanged) << bound;
+  }
+}
+
+TEST(Comparison, PixelThatMayFlip_IsExcusedByName) {
+  ActualCell before = make_cell();
+  before.images.uncertainty.rounding = make_image(0.0f);
+  *before.images.uncertainty.rounding.at(5, 5) = report::kMayFlip;
+  ActualCell now = before;
+  *now.images.visibility.at(5, 5) = 1.0f;
+  const Comparison excused = compare_cell(now, expect(before), before.images, Tolerances());
+  EXPECT_EQ(excused.outcome, Outcome::kSame);
+  EXPECT_EQ(excused.pixels->excused_flips, 1);
+  EXPECT_EQ(excused.pixels->excused_changed, 1);
+  ASSERT_EQ(excused.notes.size(), 1u);
+  *now.images.visibility.at(6, 5) = 1.0f;
+  EXPECT_EQ(compare_cell(now, expect(before), before.images, Tolerances()).outcome, Outcome::kChanged);
+}
+
+TEST(Comparison, RoundingBound_WidensItsPixelAlone) {
+  ActualCell before = make_cell();
+  before.images.uncertainty.rounding = make_image(0.0f);
+  *before.images.uncertainty.rounding.at(5, 5) = 0x1p-7f;
+  ActualCell now = before;
+  *now.images.visibility.at(5, 5) += 0x1p-7f;
+  EXPECT_EQ(compare_cell(now, expect(before), before.images, Tolerances()).outcome, Outcome::kSame);
+  *now.images.visibility.at(6, 5) += 0x1p-7f;
+  EXPECT_EQ(compare_cell(now, expect(before), before.images, Tolerances()).outcome, Outcome::kChanged);
+}
+
+/// A map that is broken has bounds that explain anything: no reason to excuse the whole image.
+TEST(Comparison, ExcusingMuchMoreThanTheBaseline_IsAChange) {
+  ActualCell before = make_cell();
+  before.images.uncertainty.rounding = make_image(0.0f);
+  ActualCell now = before;
+  now.images.uncertainty.rounding = make_image(1.0f);
+  now.images.visibility = make_image(0.0f);
+  const Comparison broken = compare_cell(now, expect(before), before.images, Tolerances());
+  EXPECT_EQ(broken.outcome, Outcome::kChanged);
+  EXPECT_EQ(broken.findings.front().metric, kExcused);
+}
+
+TEST(Comparison, LargerError_IsARegressionOfAccuracy_SmallerOneIsNot) {
+  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.record.error.rmse = 0.06; }).outcome, Outcome::kLessAccurate);
+  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.record.error.rmse = 0.04; }).outcome, Outcome::kChanged);
+  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.record.error.mean = -0.02; }).outcome, Outcome::kLessAccurate);
+  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.record.error.mean = 0.005; }).outcome, Outcome::kChanged);
+  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.record.artefact.leak = 0.3; }).outcome, Outcome::kLessAccurate);
+  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.record.attribution.model.rms = 0.05; }).outcome, Outcome::kChanged);
+  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.record.error.rmse = 0.05 + 0x1p-13; }).outcome, Outcome::kSame);
+}
+
+TEST(Comparison, Cost_MayNotChangeAtAll) {
+  const Comparison dearer = compare_changed([](ActualCell& cell) { cell.record.cost.fetches = 5.0; });
+  EXPECT_EQ(dearer.outcome, Outcome::kChanged);
+  EXPECT_THAT(dearer.findings.front().text, HasSubstr("cost.fetches: 5, was 4"));
+}
+
+TEST(Comparison, NumberThatIsGone_IsAChange_WithItsReason) {
+  const Comparison gone = compare_changed([](ActualCell& cell) {
+    cell.record.error = {};
+    cell.record.absent["error"] = "the run was made with --no-truth";
+  });
+  EXPECT_EQ(gone.outcome, Outcome::kChanged);
+  EXPECT_THAT(gone.findings.front().text, HasSubstr("the run was made with --no-truth"));
+}
+
+TEST(Comparison, Time_CountsAsRatioWithItsInterval_OnOneMachineAlone) {
+  const auto slow = [](double low) {
+    return [low](ActualCell& cell) { cell.record.ratio_to_none.lookup = report::Ratio{low + 0.1, {low, low + 0.2}}; };
+  };
+  EXPECT_EQ(compare_changed(slow(2.6)).outcome, Outcome::kSame);  // 2.1 x 1.25 = 2.625
+  EXPECT_EQ(compare_changed(slow(2.7)).outcome, Outcome::kSlower);
+  EXPECT_EQ(compare_changed(slow(1.0)).outcome, Outcome::kSame);
+  const Comparison elsewhere = compare_changed([&](ActualCell& cell) {
+    slow(2.7)(cell);
+    cell.origin.machine = "another";
+  });
+  EXPECT_EQ(elsewhere.outcome, Outcome::kSame);
+  EXPECT_THAT(elsewhere.notes.front(), HasSubstr("times are not compared"));
+}
+
+TEST(Comparison, EmptyOrOtherSizedImage_IsUnreadable) {
+  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.images.visibility = {}; }).outcome, Outcome::kUnreadable);
+  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.images.visibility = report::Image(4, 4, 1); }).outcome, Outcome::kUnreadable);
+  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.unreadable = "timeout"; }).findings.front().text, "timeout");
+  const ActualCell cell = make_cell();
+  EXPECT_EQ(compare_cell(cell, expect(cell), {}, Tolerances()).outcome, Outcome::kUnreadable);
+}
+
+/// A stochastic filter: each pixel the mean of 16 lookups, of which each is lit with probability `p`.
+class Spread : public ::testing::Test {
+ protected:
+  std::mt19937 generator_{1};
+
+  report::Image draw(double p) {
+    std::binomial_distribution<int> lit(16, p);
+    report::Image image(kWidth, kHeight, 1);
+    for (float& texel : image.texels) texel = static_cast<float>(lit(generator_)) / 16.0f;
+    return image;
+  }
+
+  /// A baseline of the mean and the deviation over 16 seeds.
+  CellImages make_baseline(double p) {
+    CellImages images{draw(p), {}};
+    std::vector<report::Image> seeds;
+    for (int i = 0; i < report::kSpreadSeeds; ++i) seeds.push_back(draw(p));
+    images.uncertainty.seed_mean = images.uncertainty.seed_deviation = report::Image(kWidth, kHeight, 1);
+    for (std::size_t i = 0; i < images.visibility.texels.size(); ++i) {
+      double sum = 0.0, squares = 0.0;
+      for (const report::Image& seed : seeds) sum += static_cast<double>(seed.texels[i]);
+      const double mean = sum / report::kSpreadSeeds;
+      for (const report::Image& seed : seeds) squares += std::pow(static_cast<double>(seed.texels[i]) - mean, 2);
+      images.uncertainty.seed_mean.texels[i] = static_cast<float>(mean);
+      images.uncertainty.seed_deviation.texels[i] = static_cast<float>(std::sqrt(squares / (report::kSpreadSeeds - 1)));
+    }
+    return images;
+  }
+
+  static Comparison compare(const report::Image& image, const CellImages& expected, std::uint64_t seed) {
+    ActualCell before = make_cell();
+    before.record.cost.fetches = 16.0;
+    ActualCell now = before;
+    now.origin.seed = seed;
+    now.images.visibility = image;
+    return compare_cell(now, expect(before), expected, Tolerances());
+  }
+};
+
+TEST_F(Spread, AnotherSeed_IsTheSame) {
+  for (const double p : {0.0, 0.001, 0.02, 0.5, 0.98, 1.0}) {
+    const CellImages expected = make_baseline(p);
+    int failed = 0;
+    for (std::uint64_t seed = 2; seed < 102; ++seed) failed += compare(draw(p), expected, seed).failed() ? 1 : 0;
+    EXPECT_LE(failed, 5) << p;  // one in a hundred expected; more than 5 has probability 6e-4 each
+  }
+}
+
+TEST_F(Spread, AnotherDistribution_IsFound) {
+  const CellImages expected = make_baseline(0.5);
+  EXPECT_EQ(compare(draw(0.6), expected, 2).outcome, Outcome::kChanged);
+}
+
+TEST_F(Spread, OnePixelOfTheOtherKind_IsFound) {
+  const CellImages expected = make_baseline(1.0);
+  report::Image acne = draw(1.0);
+  *acne.at(9, 2) = 0.5f;
+  const Comparison found = compare(acne, expected, 2);
+  EXPECT_EQ(found.outcome, Outcome::kChanged);
+  EXPECT_THAT(found.findings.front().text, HasSubstr("pixel (9, 2)"));
+}
+
+TEST_F(Spread, TheSameSeed_IsComparedPixelByPixel) {
+  const CellImages expected = make_baseline(0.5);
+  EXPECT_EQ(compare(expected.visibility, expected, 1).outcome, Outcome::kSame);
+  EXPECT_EQ(compare(draw(0.5), expected, 1).outcome, Outcome::kChanged);
+}
+
+class Truth : public ::testing::Test {
+ protected:
+  static constexpr float kError = 0.01f;
+  std::mt19937 generator_{1};
+
+  TruthImages trace(double at) {
+    std::normal_distribution<double> noise(0.0, static_cast<double>(kError));
+    TruthImages truth{report::Image(kWidth, kHeight, 1), make_image(kError)};
+    for (float& texel : truth.area.texels) texel = static_cast<float>(at + noise(generator_));
+    return truth;
+  }
+
+  static Comparison compare(const TruthImages& a, const TruthImages& b) { return compare_truth({make_cell().record, a}, b, 0.01); }
+};
+
+TEST_F(Truth, AnotherSeed_IsTheSame_AnotherTruthIsNot) {
+  const TruthImages expected = trace(0.5);
+  int failed = 0;
+  for (int i = 0; i < 100; ++i) failed += compare(trace(0.5), expected).failed() ? 1 : 0;
+  EXPECT_LE(failed, 5);
+  TruthImages moved = trace(0.5);
+  *moved.area.at(3, 4) = 0.8f;
+  EXPECT_THAT(compare(moved, expected).findings.at(0).text, HasSubstr("(3, 4)"));
+}
+
+TEST_F(Truth, WhereRaysAgree_ThreeInSixtyFourAreLeftOpen) {
+  TruthImages expected{make_image(1.0f), make_image(0.0f)}, now = expected;
+  *now.area.at(0, 0) = 1.0f - 2.5f / 64.0f;
+  EXPECT_FALSE(compare(now, expected).failed());
+  *now.area.at(0, 0) = 1.0f - 4.0f / 64.0f;
+  EXPECT_TRUE(compare(now, expected).failed());
+}
+
+}  // namespace
+}  // namespace shadowbench::regress
