@@ -1,0 +1,215 @@
+// The command `regress`, from a run to its exit code.
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "tests/harness/cli/program.h"
+
+namespace shadowbench::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Regress : public ProgramTest {
+ protected:
+  /// A run of two filters on one scene, small; no time counts.
+  void draw(const std::string& out, const std::string& options = "--filters none,pcf2x2") const {
+    const Outcome outcome = run("run --gl osmesa --scene cubes --size 96x54 --map-size 128 --rounds 1 --pad-texels 4 --uncertainty " + options + " --out " + out);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+
+  Outcome compare(const std::string& out, const std::string& options = "") const { return run("regress " + out + " --baseline base " + options); }
+
+  void make_baseline() {
+    write_tolerances();
+    draw("a");
+    ASSERT_EQ(compare("a", "--accept").exit_code, 0);
+    ASSERT_EQ(compare("a").exit_code, 0);
+  }
+
+  void write_tolerances() const {
+    std::filesystem::create_directories(folder() / "base");
+    std::string text;
+    for (const char* ratio : {"lookup", "static", "moving"}) text += std::string("[all.\"ratio_to_none.") + ratio + "\"]\nlimit = inf\nreason = \"one round\"\n";
+    write("base/baseline.toml", text);
+  }
+
+  nlohmann::json report(const std::string& out) const { return nlohmann::json::parse(read_text(folder() / out / "regress" / "regress.json")); }
+
+  void cut(const std::string& file) const { std::filesystem::resize_file(folder() / file, std::filesystem::file_size(folder() / file) / 2); }
+
+  /// Expects exit code 1 and that the worst cell is what it should be.
+  void expect_failure(const std::string& out, const std::string& outcome) const {
+    const Outcome compared = compare(out);
+    EXPECT_EQ(compared.exit_code, 1) << compared.out << compared.err;
+    EXPECT_THAT(compared.err, HasSubstr("is " + outcome));
+    EXPECT_EQ(report(out)["cells"][0]["outcome"], outcome);
+  }
+
+  std::map<std::string, std::string> read_baseline() const {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder() / "base")) {
+      if (entry.is_regular_file()) files[entry.path().filename().string()] = read_text(entry.path());
+    }
+    return files;
+  }
+
+  /// Names the baseline's files that are not as they were.
+  std::vector<std::string> list_changes(const std::map<std::string, std::string>& before) const {
+    std::vector<std::string> names;
+    const auto after = read_baseline();
+    for (const auto& [name, text] : after) {
+      if (!before.contains(name) || before.at(name) != text) names.push_back(name);
+    }
+    for (const auto& [name, text] : before) {
+      if (!after.contains(name)) names.push_back(name + " is gone");
+    }
+    return names;
+  }
+};
+
+/// A copy of tent3x3 whose first fetch lies a texel aside.
+TEST_F(Regress, OneTexelOffset_IsCaught_WithItsPicture) {
+  const std::string tent = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/tent3x3.glsl");
+  std::string shifted = tent;
+  const std::string first = "vec2(-0.5, -0.5)";
+  ASSERT_NE(shifted.find(first), std::string::npos);
+  shifted.replace(shifted.find(first), first.size(), "vec2(0.5, -0.5)");
+  write_tolerances();
+  write("my_tent.glsl", tent);
+  draw("a", "--filters none --filter-file my_tent.glsl");
+  ASSERT_EQ(compare("a", "--accept").exit_code, 0);
+  draw("b", "--filters none --filter-file my_tent.glsl");
+  EXPECT_EQ(compare("b").exit_code, 0);
+  write("my_tent.glsl", shifted);
+  draw("b", "--filters none --filter-file my_tent.glsl");
+  const Outcome caught = compare("b");
+  EXPECT_EQ(caught.exit_code, 1);
+  EXPECT_THAT(caught.err, HasSubstr("my_tent"));
+  EXPECT_THAT(caught.out, HasSubstr("if this is meant: "));
+  const nlohmann::json worst = report("b")["cells"][0];
+  EXPECT_EQ(worst["outcome"], "less accurate");
+  EXPECT_GT(worst["pixels"]["max"], 0.2);
+  EXPECT_TRUE(std::filesystem::exists(folder() / "b" / "regress" / worst["picture"].get<std::string>()));
+}
+
+TEST_F(Regress, Accept_ChangesWhatMovedAlone_AndLogsIt) {
+  make_baseline();
+  const auto before = read_baseline();
+  draw("b", "--filters none,pcf2x2 --bias plane:kernels=1,depth=2e-5 --seed 2");
+  EXPECT_EQ(compare("b").exit_code, 0) << "neither filter depends on the seed, and the truth is noise";
+  ASSERT_EQ(compare("b", "--accept").exit_code, 0);
+  EXPECT_EQ(list_changes(before), (std::vector<std::string>{}));
+  nlohmann::json wrong = nlohmann::json::parse(before.at("pcf2x2.json"));
+  wrong["cells"][0]["values"]["error.rmse"] = 0.0;
+  write("base/cubes/pcf2x2.json", wrong.dump());
+  EXPECT_EQ(compare("a").exit_code, 1);
+  const Outcome accepted = compare("a", "--accept");
+  EXPECT_EQ(accepted.exit_code, 0) << accepted.err;
+  EXPECT_THAT(accepted.out, HasSubstr("accepted: 1 change"));
+  const std::string log = read_text(folder() / "base" / "accepted.md");
+  ASSERT_THAT(log, ::testing::StartsWith(before.at("accepted.md")));
+  EXPECT_THAT(log.substr(before.at("accepted.md").size()), ::testing::AllOf(HasSubstr("replaced: cubes pcf2x2"), HasSubstr("error.rmse")));
+  // The image holds the time at which it was written; the numbers are what they were.
+  EXPECT_EQ(list_changes(before), (std::vector<std::string>{"accepted.md", "pcf2x2.exr"}));
+}
+
+TEST_F(Regress, MissingCell_Fails_AndLeavesOnRequestAlone) {
+  make_baseline();
+  draw("b", "--filters none");
+  expect_failure("b", "missing");
+  EXPECT_EQ(compare("b", "--filters none").exit_code, 0);
+  EXPECT_EQ(compare("b", "--accept").exit_code, 1) << "a cell that was not compared stays";
+  EXPECT_TRUE(std::filesystem::exists(folder() / "base/cubes/pcf2x2.exr"));
+  EXPECT_EQ(compare("b", "--accept --remove-missing").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder() / "base/cubes/pcf2x2.exr"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "base/cubes/pcf2x2.json"));
+  EXPECT_EQ(compare("b").exit_code, 0);
+}
+
+TEST_F(Regress, ExtraCell_Fails) {
+  make_baseline();
+  draw("b", "--filters none,pcf2x2,box3x3");
+  expect_failure("b", "extra");
+}
+
+TEST_F(Regress, UnreadableBaseline_Fails_AndCanBeReplaced) {
+  make_baseline();
+  for (const char* file : {"base/cubes/pcf2x2.exr", "base/cubes/pcf2x2.json", "base/cubes/truth.area.exr"}) {
+    cut(file);
+    expect_failure("a", "unreadable");
+    EXPECT_EQ(compare("a", "--accept").exit_code, 0) << file;
+    EXPECT_EQ(compare("a").exit_code, 0) << file;
+    write(file, "");
+    expect_failure("a", "unreadable");
+    EXPECT_EQ(compare("a", "--accept").exit_code, 0) << file;
+  }
+  std::filesystem::remove(folder() / "base/cubes/pcf2x2.exr");
+  expect_failure("a", "unreadable");
+}
+
+TEST_F(Regress, UnreadableRun_Fails_AndIsNotAccepted) {
+  make_baseline();
+  const auto before = read_baseline();
+  cut("a/cubes.exr");
+  expect_failure("a", "unreadable");
+  EXPECT_EQ(compare("a", "--accept").exit_code, 1);
+  EXPECT_EQ(list_changes(before), (std::vector<std::string>{}));
+  draw("b", "--filters none,pcf2x2 --no-grids");
+  expect_failure("b", "unreadable");
+  EXPECT_THAT(compare("b").out, HasSubstr("run it with --grids"));
+}
+
+TEST_F(Regress, CellThatTimedOut_IsUnreadable) {
+  write_tolerances();
+  draw("a", "--filters none --filter-file '" + user_filter("endless.glsl") + "' --cell-timeout 1");
+  const Outcome outcome = compare("a", "--accept");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("not finished after 1 s"));
+}
+
+TEST_F(Regress, StochasticFilter_OfAnotherSeed_IsTestedAsNoise) {
+  write_tolerances();
+  draw("a", "--filters none,poisson");
+  ASSERT_EQ(compare("a", "--accept").exit_code, 0);
+  draw("b", "--filters none,poisson --seed 9");
+  const Outcome noise = compare("b");
+  EXPECT_EQ(noise.exit_code, 0) << noise.out;
+  draw("b", "--filters none,poisson:radius=1 --seed 9 --fresh");
+  EXPECT_EQ(compare("b").exit_code, 1);
+}
+
+TEST_F(Regress, ForBuildServers_JUnitAndJson) {
+  make_baseline();
+  draw("b", "--filters none,box3x3");
+  const Outcome outcome = compare("b", "--junit '" + (folder() / "junit.xml").string() + "' --json");
+  EXPECT_EQ(outcome.exit_code, 1);
+  const nlohmann::json printed = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(printed, report("b"));
+  EXPECT_EQ(printed["failed"], 2);
+  const std::string count = "import xml.etree.ElementTree as e; r = e.parse('" + (folder() / "junit.xml").string() +
+                            "').getroot(); assert r.get('failures') == '2', r.attrib; assert len(r.findall('.//failure')) == 2; assert len(r.findall('.//testcase')) == 4";
+  EXPECT_EQ(std::system(("python3 -c \"" + count + "\"").c_str()), 0) << read_text(folder() / "junit.xml");
+}
+
+TEST_F(Regress, BadInput_IsRefused) {
+  draw("a");
+  expect_refusal("regress nowhere --baseline base", 3, {"nowhere"});
+  expect_refusal("regress a --baseline base", 3, {"base: there is no baseline here", "--accept"});
+  expect_refusal("regress a --baseline base --remove-missing", 2, {"--remove-missing", "add --accept"});
+  expect_refusal("regress a", 2, {"--baseline"});
+  write_tolerances();
+  expect_refusal("regress a --baseline base --filters nosuch", 3, {"neither the run nor the baseline has a cell of these scenes and filters"});
+  write("base/baseline.toml", "[all.\"error.rms\"]\nlimit = 1\nreason = \"r\"\n");
+  expect_refusal("regress a --baseline base", 3, {"baseline.toml:1", "did you mean 'error.rmse'?"});
+  write_tolerances();
+  write("file", "");
+  expect_refusal("regress a --baseline base --out file/sub", 6, {"file/sub"});
+  expect_refusal("run --pad-texels -1 --out out", 2, {"--pad-texels", "-1"});
+}
+
+}  // namespace
+}  // namespace shadowbench::test
