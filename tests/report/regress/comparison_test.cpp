@@ -173,6 +173,7 @@ TEST(Comparison, Time_CountsAsRatioWithItsInterval_OnOneMachineAlone) {
     cell.origin.machine = "another";
   });
   EXPECT_EQ(elsewhere.outcome, Outcome::kSame);
+  ASSERT_FALSE(elsewhere.notes.empty());
   EXPECT_THAT(elsewhere.notes.front(), HasSubstr("times are not compared"));
 }
 
@@ -246,6 +247,20 @@ TEST_F(Spread, OnePixelOfTheOtherKind_IsFound) {
   EXPECT_THAT(found.findings.front().text, HasSubstr("pixel (9, 2)"));
 }
 
+/// Lookups that fall together: a pixel is lit or blocked as a whole. Counts alone would call that a miracle.
+TEST_F(Spread, LookupsThatAgree_AreStillNoise) {
+  std::bernoulli_distribution lit(0.5);
+  const auto flip = [&] {
+    report::Image image(kWidth, kHeight, 1);
+    for (float& texel : image.texels) texel = lit(generator_) ? 1.0f : 0.0f;
+    return image;
+  };
+  CellImages expected{flip(), {}};
+  expected.uncertainty.seed_mean = make_image(0.5f);
+  expected.uncertainty.seed_deviation = make_image(0.516f);  // 8 of 16 seeds
+  EXPECT_FALSE(compare(flip(), expected, 2).failed());
+}
+
 TEST_F(Spread, TheSameSeed_IsComparedPixelByPixel) {
   const CellImages expected = make_baseline(0.5);
   EXPECT_EQ(compare(expected.visibility, expected, 1).outcome, Outcome::kSame);
@@ -275,6 +290,14 @@ TEST_F(Truth, AnotherSeed_IsTheSame_AnotherTruthIsNot) {
   TruthImages moved = trace(0.5);
   *moved.area.at(3, 4) = 0.8f;
   EXPECT_THAT(compare(moved, expected).findings.at(0).text, HasSubstr("(3, 4)"));
+}
+
+TEST_F(Truth, TheErrorsOfBothCount) {
+  TruthImages sure = trace(0.5);
+  for (float& texel : sure.area.texels) texel = 0.5f;
+  sure.standard_error = make_image(1e-4f);
+  EXPECT_FALSE(compare(trace(0.5), sure).failed());
+  EXPECT_FALSE(compare(sure, trace(0.5)).failed());
 }
 
 TEST_F(Truth, WhereRaysAgree_ThreeInSixtyFourAreLeftOpen) {

@@ -62,6 +62,7 @@ TEST_F(ToleranceFile, EveryToleranceHasItsReason) {
 
 TEST_F(ToleranceFile, BadFiles_AreRefusedWithTheirLine) {
   expect_refusal("[all.\"error.rmse\"]\nlimit = 0.1\n", 1, "needs a reason");
+  expect_refusal("[all.\"error.rmse\"]\nlimit = 0.1\nreason = \"\"\n", 1, "needs a reason");
   expect_refusal("[all.\"error.rmse\"]\nlimit = -0.1\nreason = \"r\"\n", 1, "limit of 0 or more");
   expect_refusal("[all.\"error.rmse\"]\nlimit = nan\nreason = \"r\"\n", 1, "limit of 0 or more");
   expect_refusal("[all.\"error.rmse\"]\nreason = \"r\"\n", 1, "limit of 0 or more");
