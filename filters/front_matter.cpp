@@ -9,18 +9,19 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <regex>
 #include <sstream>
 
 #include "filters/error.h"
 #include "filters/nearest_name.h"
 #include "filters/store_format.h"
+#include "filters/toml_depth.h"
 
 namespace shadowbench::filters {
 namespace {
 
 constexpr std::string_view kOpen = "/*+++";
 constexpr std::string_view kClose = "+++*/";
+constexpr double kMostDiskPoints = 4096.0;
 
 int count_lines(std::string_view text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
@@ -121,11 +122,37 @@ std::string strip_comments(const std::string& glsl) {
   return code;
 }
 
-bool matches(const std::string& text, const char* pattern) { return std::regex_search(text, std::regex(pattern)); }
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_word_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; }
+
+/// Where the word next stands on its own, from `start` on. The standard library's expressions recurse, and long texts end
+/// the program: none are used on what a user wrote.
+std::size_t find_word(std::string_view code, std::string_view word, std::size_t start) {
+  for (std::size_t at = code.find(word, start); at != std::string_view::npos; at = code.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    const bool begins = at == 0 || !is_word_character(code[at - 1]);
+    if (begins && (end == code.size() || !is_word_character(code[end]))) return at;
+  }
+  return std::string_view::npos;
+}
+
+/// Whether the code declares `type name(`.
+bool has_function(std::string_view code, std::string_view type, std::string_view name) {
+  constexpr std::string_view kBlank = " \t\r\n\v\f";
+  for (std::size_t at = find_word(code, name, 0); at != std::string_view::npos; at = find_word(code, name, at + 1)) {
+    const std::size_t after = code.find_first_not_of(kBlank, at + name.size());
+    const std::size_t before = at == 0 ? std::string_view::npos : code.find_last_not_of(kBlank, at - 1);
+    if (after == std::string_view::npos || code[after] != '(' || before == std::string_view::npos) continue;
+    const std::string_view left = code.substr(0, before + 1);
+    const bool is_whole = left.size() == type.size() || (left.size() > type.size() && !is_word_character(left[left.size() - type.size() - 1]));
+    if (left.ends_with(type) && is_whole) return true;
+  }
+  return false;
+}
 
 bool is_identifier(const std::string& name) {
-  static const std::regex identifier("[A-Za-z][A-Za-z0-9_]*");
-  return std::regex_match(name, identifier) && name.rfind("gl_", 0) != 0 && name.find("__") == std::string::npos;
+  return !name.empty() && is_letter(name.front()) && std::ranges::all_of(name, is_word_character) && !name.starts_with("gl_") &&
+         name.find("__") == std::string::npos;
 }
 
 FilterKind read_kind(const Reader& reader, const toml::table& root) {
@@ -139,8 +166,27 @@ FilterKind read_kind(const Reader& reader, const toml::table& root) {
               fmt::format("kind '{}' is unknown; known: comparison, bound, stochastic, other", name));
 }
 
+/// The values that a numeric parameter may take lie between these, ends included; its range, or its choices, were checked.
+struct Ends {
+  double smallest;
+  double largest;
+};
+
+Ends ends_of(const ParamSpec& param) {
+  if (param.choices.empty()) return {*param.min, *param.max};
+  Ends ends{std::get<double>(param.choices.front()), std::get<double>(param.choices.front())};
+  for (const ParamValue& choice : param.choices) {
+    ends.smallest = std::min(ends.smallest, std::get<double>(choice));
+    ends.largest = std::max(ends.largest, std::get<double>(choice));
+  }
+  return ends;
+}
+
 void check_default(const Reader& reader, const toml::node& node, const ParamSpec& param) {
   if (!param.choices.empty()) {
+    for (const ParamValue& choice : param.choices) {
+      if (choice.index() != param.default_value.index()) reader.fail(&node, fmt::format("the default of '{}' and its choices are of different types", param.name));
+    }
     if (std::find(param.choices.begin(), param.choices.end(), param.default_value) == param.choices.end()) {
       reader.fail(&node, fmt::format("the default of '{}' is not one of its choices", param.name));
     }
@@ -239,8 +285,8 @@ void read_prefilter(const Reader& reader, const toml::table& root, FilterSpec& s
   const ParamSpec* param = name ? spec.find_param(*name) : nullptr;
   const bool whole = param ? param->integer : std::holds_alternative<double>(spec.radius_texels) &&
                                                   std::floor(std::get<double>(spec.radius_texels)) == std::get<double>(spec.radius_texels);
-  const double largest = param ? *param->max : name ? 0.0 : std::get<double>(spec.radius_texels);
-  if (!whole || largest > kMaxPrefilterRadius || (param && *param->min < 0.0)) {
+  const Ends ends = param ? ends_of(*param) : Ends{0.0, name ? 0.0 : std::get<double>(spec.radius_texels)};
+  if (!whole || ends.largest > kMaxPrefilterRadius || ends.smallest < 0.0) {
     reader.fail(root.get("combine"), fmt::format("'combine' asks for the prefilter, whose radius is 'radius_texels': that must be a whole number, or an integer parameter, within 0 .. {}", kMaxPrefilterRadius));
   }
   spec.has_prefilter = true;
@@ -287,7 +333,12 @@ void read_disks(const Reader& reader, const toml::table& root, FilterSpec& spec)
     if (!param || !param->integer || !param->is_const) {
       reader.fail(table->get("count"), fmt::format("'count' names '{}', which is not a const integer parameter", disk.count));
     }
-    disk.seed = static_cast<unsigned>(reader.finite(*table, "seed").value_or(1.0));
+    if (const double most = ends_of(*param).largest; most > kMostDiskPoints) {
+      reader.fail(table->get("count"), fmt::format("'count' names '{}', which may be up to {}: at most {} points are made", disk.count, most, kMostDiskPoints));
+    }
+    const double seed = reader.finite(*table, "seed").value_or(1.0);
+    if (!(seed >= 0.0 && seed <= 4294967295.0)) reader.fail(table->get("seed"), "'seed' must be a whole number from 0 to 4294967295");
+    disk.seed = static_cast<unsigned>(seed);
     spec.disks.push_back(disk);
   }
 }
@@ -314,9 +365,11 @@ void read_root(const Reader& reader, const toml::table& root, FilterSpec& spec) 
 
 void inspect_body(const Reader& reader, const toml::table& root, FilterSpec& spec) {
   const std::string code = strip_comments(spec.body);
-  spec.has_encode = matches(code, R"(\bvec4\s+encode\s*\()");
-  spec.uses_samplers = matches(code, R"(\b(map_depth|map_compare|map_compare_nearest|map_stored)\b)");
-  if (!matches(code, R"(\bfloat\s+visibility\s*\()")) {
+  spec.has_encode = has_function(code, "vec4", "encode");
+  for (const char* sampler : {"map_depth", "map_compare", "map_compare_nearest", "map_stored"}) {
+    spec.uses_samplers = spec.uses_samplers || find_word(code, sampler, 0) != std::string_view::npos;
+  }
+  if (!has_function(code, "float", "visibility")) {
     reader.fail(nullptr, "the GLSL lacks 'float visibility(Receiver r)'");
   }
   const bool stores = root.contains("store");
@@ -344,9 +397,13 @@ FilterSpec parse_filter(const std::string& text, const std::filesystem::path& pa
   const std::size_t begin = open + kOpen.size();
   const int first_line = 1 + count_lines(std::string_view(text).substr(0, begin));
   const Reader reader(spec.path, first_line);
+  const std::string front_matter = text.substr(begin, close - begin);
+  if (const int line = find_too_deep_key(front_matter); line > 0) {
+    reader.fail_at(line, fmt::format("a key has more than {} dots", kMostDots));
+  }
   toml::table root;
   try {
-    root = toml::parse(text.substr(begin, close - begin));
+    root = toml::parse(front_matter);
   } catch (const toml::parse_error& error) {
     reader.fail_at(static_cast<int>(error.source().begin.line),
                    fmt::format("malformed front matter: {}", error.description()));

@@ -36,6 +36,7 @@ std::optional<std::string> nearest_name(std::string_view name, const std::vector
   std::optional<std::string> nearest;
   std::size_t nearest_distance = kLongestName;
   for (const std::string& candidate : known) {
+    if (candidate.size() > kLongestName) continue;
     const std::size_t distance = edit_distance(wanted, to_lower(candidate));
     const std::size_t limit = std::max<std::size_t>(1, std::max(wanted.size(), candidate.size()) / 2);
     if (distance > limit || distance >= nearest_distance) continue;

@@ -1,5 +1,6 @@
 #!/bin/sh
 # Installs the Debian 12 packages that building, testing and running Shadowbench need; does nothing where they are.
+# With --fuzz also clang and its libFuzzer, for the preset `fuzz`.
 set -eu
 
 packages="
@@ -8,6 +9,11 @@ packages="
   libnlopt-cxx-dev libopenimageio-dev libosmesa6-dev libpugixml-dev libtbb-dev libtinygltf-dev libtinyobjloader-dev libtomlplusplus-dev nlohmann-json3-dev
   fonts-dejavu-core gnuplot-nox libjs-chart.js openimageio-tools libegl1 libegl-mesa0 libgl1-mesa-dri python3-jsonschema xauth xvfb
 "
+case "${1-}" in
+  "") ;;
+  --fuzz) packages="$packages clang llvm libclang-rt-14-dev" ;;
+  *) echo "setup.sh: unknown argument '$1': use --fuzz, or none" >&2; exit 2 ;;
+esac
 
 missing=""
 for package in $packages; do

@@ -158,8 +158,8 @@ json parse_file(const std::filesystem::path& file) {
     throw Error(ErrorKind::kInput, "the file cannot be opened; was the run finished?", file.string());
   }
   try {
-    return json::parse(stream);
-  } catch (const json::exception& problem) {
+    return parse_json(stream);
+  } catch (const std::exception& problem) {
     throw Error(
         ErrorKind::kInput,
         fmt::format("this is not complete JSON, so the file was cut off or edited ({}); delete it and run again",
@@ -177,6 +177,38 @@ void check_version(const json& root, const std::string& where) {
                             version.is_null() ? "missing" : dump_line(version), kSchemaVersion),
                 where);
   }
+}
+
+// Whether a path that a report names stays in its folder: reports come from elsewhere, and `merge` copies what they name.
+bool stays_inside(const std::string& path) {
+  const std::filesystem::path relative = std::filesystem::path(path).lexically_normal();
+  return !path.empty() && relative.is_relative() && *relative.begin() != ".." && path.find('\0') == std::string::npos;
+}
+
+struct ImageCheck {
+  const std::string& where;
+
+  void operator()(const std::string& path, const std::optional<std::string>& value) const {
+    if (!path.starts_with("images.") || !value || stays_inside(*value)) return;
+    throw Error(ErrorKind::kInput, fmt::format("the field '{}' holds {}, which is outside the report's folder; delete this file and run again",
+                                               path, dump_line(*value).substr(0, 60)), where);
+  }
+  template <class T>
+  void operator()(const std::string&, const T&) const {}
+};
+
+void check_cell(const CellRecord& cell, const std::string& where) {
+  if (!is_cell_key(cell.key)) {
+    throw Error(ErrorKind::kInput, fmt::format("the field 'key' holds {}, which is no key of 16 hexadecimal digits; delete this file and run again",
+                                               dump_line(cell.key).substr(0, 60)), where);
+  }
+  visit_cell_fields(cell, ImageCheck{where});
+}
+
+void check_shard(const ExperimentRecord& experiment, const std::string& where) {
+  if (experiment.cells >= 0 && experiment.shard >= 1 && experiment.shard <= experiment.shards) return;
+  throw Error(ErrorKind::kInput, fmt::format("the field 'experiment' says shard {} of {}, with {} cells, which cannot be; delete this file and run again",
+                                             experiment.shard, experiment.shards, experiment.cells), where);
 }
 
 }  // namespace
@@ -203,6 +235,7 @@ json to_json(const RunRecord& run) {
 CellRecord cell_from_json(const json& json, const std::string& where) {
   CellRecord cell;
   visit_cell_fields(cell, FieldReader{json, where});
+  check_cell(cell, where);
   return cell;
 }
 
@@ -210,6 +243,7 @@ RunRecord run_from_json(const json& json, const std::string& where) {
   check_version(json, where);
   RunRecord run;
   visit_run_fields(run, FieldReader{json, where});
+  check_shard(run.experiment, where);
   return run;
 }
 

@@ -22,6 +22,14 @@ void require(bool holds, const char* expected) {
 
 }  // namespace
 
+json parse_json(std::istream& stream) {
+  constexpr int kDeepest = 100;
+  return json::parse(stream, [](int depth, json::parse_event_t, json&) {
+    if (depth > kDeepest) throw std::invalid_argument("nested more than 100 deep");
+    return true;
+  });
+}
+
 json number_json(double value) {
   assert(std::isfinite(value));
   if (std::nearbyint(value) == value && std::abs(value) <= kLargestExactInteger) {

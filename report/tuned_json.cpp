@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "filters/error.h"
+#include "report/json_values.h"
 
 namespace shadowbench::report {
 namespace {
@@ -111,8 +112,8 @@ json parse(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw Error(ErrorKind::kInput, "this file of tuned parameters cannot be read: check --tuned", file.string());
   try {
-    return json::parse(stream);
-  } catch (const json::exception& error) {
+    return parse_json(stream);
+  } catch (const std::exception& error) {
     fail(file, fmt::format("not JSON, or cut off: {}", error.what()));
   }
 }

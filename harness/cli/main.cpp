@@ -11,8 +11,18 @@ namespace {
 constexpr int kUsageError = 2;
 constexpr int kBug = 70;
 
+/// Control characters of names and files as "\x1b": they would steer the terminal. Lines of a shader's log stay lines.
+std::string make_visible(const std::string& message) {
+  std::string visible;
+  for (const char c : message) {
+    const auto code = static_cast<unsigned char>(c);
+    visible += (code < 0x20 && c != '\n') || code == 0x7f ? fmt::format("\\x{:02x}", code) : std::string(1, c);
+  }
+  return visible;
+}
+
 /// One line for one failure; nothing else of the program prints errors.
-void print_error(const std::string& message) { fmt::print(stderr, "shadowbench: {}\n", message); }
+void print_error(const std::string& message) { fmt::print(stderr, "shadowbench: {}\n", make_visible(message)); }
 
 }  // namespace
 

@@ -64,6 +64,12 @@ std::optional<std::string> parse_include_name(std::string_view rest) {
   return std::string(rest.substr(1, end - 1));
 }
 
+/// Whether a name leaves the folders that it is looked up in: "../x", "/etc/passwd". What is read shows in messages.
+bool leaves_folders(const std::string& name) {
+  const std::filesystem::path path = std::filesystem::path(name).lexically_normal();
+  return path.is_absolute() || path.empty() || *path.begin() == "..";
+}
+
 std::optional<std::string> read_text(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
@@ -111,6 +117,10 @@ class Builder {
     if (found.first_line + std::ranges::count(found.text, '\n') >= kLinesPerFile) {
       throw Error(found.blame, fmt::format("has more than {} lines", kLinesPerFile - 1), found.display_name);
     }
+    if (const std::size_t nul = found.text.find('\0'); nul != std::string::npos) {
+      const auto lines = std::count(found.text.begin(), found.text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
+      throw Error(found.blame, "a NUL byte: this is no text, or was damaged; take the byte out", fmt::format("{}:{}", found.display_name, found.first_line + lines));
+    }
     open_.push_back(found.key);
     const auto index = source_.files.size();
     source_.files.push_back(found.display_name);
@@ -141,10 +151,16 @@ class Builder {
     if (match_directive(line, "version")) {
       throw Error(from.blame, "#version is set by the program (450 core); take this line out", where);
     }
+    if (match_directive(line, "line")) {
+      throw Error(from.blame, "#line is set by the program, so that messages name your file; take this line out", where);
+    }
     const auto rest = match_directive(line, "include");
     if (!rest) return false;
     const auto name = parse_include_name(*rest);
     if (!name) throw Error(from.blame, "malformed #include; write #include \"lib/file.glsl\"", where);
+    if (leaves_folders(*name)) {
+      throw Error(from.blame, fmt::format("'{}' lies outside the program's shader folder; only files inside it are included", *name), where);
+    }
     const auto found = find(*name);
     if (!found) throw Error(from.blame, describe_missing(*name), where);
     if (std::ranges::find(open_, found->key) != open_.end()) {

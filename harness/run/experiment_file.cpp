@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "filters/error.h"
 #include "filters/nearest_name.h"
@@ -131,24 +132,41 @@ std::vector<std::string> list_values(const SweptParam& param, const filters::Par
     for (const double value : spread(param)) texts.push_back(fmt::format("{}", spec && spec->integer ? std::round(value) : value));
   }
   std::vector<std::string> distinct;
+  std::set<std::string> seen;
   for (const std::string& text : texts) {
-    if (std::find(distinct.begin(), distinct.end(), text) == distinct.end()) distinct.push_back(text);
+    if (seen.insert(text).second) distinct.push_back(text);
   }
   return distinct;
 }
 
-void require_few(const SweptFilter& filter, const filters::FilterSpec& spec) {
+/// How many combinations a filter's parameters have; where there are too many, not all are counted.
+double count_combinations(const SweptFilter& filter, const filters::FilterSpec& spec) {
   double combinations = 1.0;
-  for (const SweptParam& param : filter.params) combinations *= static_cast<double>(list_values(param, spec.find_param(param.name)).size());
+  for (const SweptParam& param : filter.params) {
+    if (combinations > kMostCombinations) break;
+    combinations *= static_cast<double>(list_values(param, spec.find_param(param.name)).size());
+  }
+  return combinations;
+}
+
+/// Throws unless a run takes as many combinations as the filters up to this one have.
+void require_few(double combinations, const SweptFilter& filter) {
   if (combinations <= kMostCombinations) return;
-  throw Error(ErrorKind::kUsage, fmt::format("the parameters of '{}' have {:.0f} combinations, and a run takes {:.0f} of one filter at most; name "
-                                             "fewer values", filter.id, combinations, kMostCombinations));
+  throw Error(ErrorKind::kUsage, fmt::format("with the parameters of '{}' there are more than {:.0f} combinations, and a run takes {:.0f} at most; name fewer values",
+                                             filter.id, kMostCombinations, kMostCombinations));
+}
+
+/// Says what is wrong with a filter's values while it is known where they stand; each is tried once, not in every combination.
+void check_values(const SweptFilter& filter, const filters::Catalogue& catalogue) {
+  const filters::FilterSpec& spec = catalogue.find(filter.id);
+  for (const SweptParam& param : filter.params) {
+    for (const std::string& value : list_values(param, spec.find_param(param.name))) filters::parse_value(spec, param.name, value);
+  }
 }
 
 /// Every combination of one filter's values, as `--filters` has it.
 std::vector<std::string> combine(const SweptFilter& filter, const filters::Catalogue& catalogue) {
   const filters::FilterSpec& spec = catalogue.find(filter.id);
-  require_few(filter, spec);
   std::vector<std::string> requests{filter.id};
   char separator = ':';
   for (const SweptParam& param : filter.params) {
@@ -186,12 +204,13 @@ Experiment read_experiment(const std::filesystem::path& file, const std::vector<
 
 std::string expand_filters(const Experiment& experiment, const filters::Catalogue& catalogue) {
   std::vector<std::string> all;
+  double combinations = 0.0;
   for (const SweptFilter& filter : experiment.filters) {
     try {
-      for (const std::string& request : combine(filter, catalogue)) {
-        catalogue.parse_requests(request);  // says what is wrong with it while it is known where it stands
-        all.push_back(request);
-      }
+      combinations += count_combinations(filter, catalogue.find(filter.id));
+      require_few(combinations, filter);
+      check_values(filter, catalogue);
+      for (std::string& request : combine(filter, catalogue)) all.push_back(std::move(request));
     } catch (const Error& error) {
       throw Error(ErrorKind::kInput, error.message(), filter.where);
     }

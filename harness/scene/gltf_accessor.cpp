@@ -13,6 +13,8 @@ namespace shadowbench::scene {
 namespace {
 
 constexpr std::size_t kMostElements = std::size_t{1} << 27;
+/// Of an accessor without a buffer view: nothing in the file stands for its elements, which are all zero.
+constexpr std::size_t kMostZeros = std::size_t{1} << 16;
 
 /// Bytes that were found to lie inside their buffer.
 struct Span {
@@ -102,6 +104,12 @@ Elements checked_elements(const tinygltf::Model& model, int index, int component
   }
   Elements elements{nullptr, accessor.count, 0, accessor.componentType, static_cast<std::size_t>(components)};
   component_size(accessor.componentType, owner, where);
+  if (accessor.bufferView < 0 && accessor.count > kMostZeros) {
+    throw Error(ErrorKind::kInput,
+                fmt::format("{} has {} elements and no buffer view; at most {} such zeros are read", owner, accessor.count,
+                            kMostZeros),
+                where);
+  }
   if (accessor.bufferView < 0) return elements;
   const Span span = checked_view(model, accessor.bufferView, owner, where);
   elements.stride = model.bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteStride;

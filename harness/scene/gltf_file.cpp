@@ -16,7 +16,7 @@
 namespace shadowbench::scene {
 namespace {
 
-constexpr std::size_t kMostVertices = std::size_t{1} << 26;
+constexpr std::size_t kMostCorners = std::size_t{3} << 25;
 
 /// Turns the list of a strip's or fan's corners into separate triangles.
 std::vector<std::uint32_t> to_triangles(const std::vector<std::uint32_t>& corners, int mode) {
@@ -101,21 +101,26 @@ class GltfImporter {
     const tinygltf::Image& image = source_.images[static_cast<std::size_t>(index)];
     const std::string fallback_name = image.uri.empty() ? fmt::format("image {}", index) : image.uri;
     const std::string name = image.name.empty() ? fallback_name : image.name;
-    if (image.bufferView >= 0) return decode_texture(read_buffer_view(source_, image.bufferView, where_), name, where_);
+    if (image.bufferView >= 0) return decode_texture(read_buffer_view(source_, image.bufferView, where_), name, where_, result_.textures);
     if (image.image.empty()) fail(fmt::format("the image '{}' is missing or empty", fallback_name));
-    return decode_texture(image.image, name, where_);
+    return decode_texture(image.image, name, where_, result_.textures);
   }
 
   void add_mesh(const tinygltf::Node& node, const glm::dmat4& world_from_node) {
     if (static_cast<std::size_t>(node.mesh) >= source_.meshes.size())
       fail(fmt::format("there is no mesh {}", node.mesh));
     for (const Mesh& local : local_meshes(node.mesh)) {
+      count_corners(local.indices.size());
       Mesh mesh = transform_mesh(local, world_from_node);
       if (!node.name.empty()) mesh.name = node.name;
-      vertex_count_ += mesh.vertices.size();
-      if (vertex_count_ > kMostVertices) fail(fmt::format("it has more than {} vertices", kMostVertices));
       result_.meshes.push_back(std::move(mesh));
     }
+  }
+
+  /// Counts what is read and what is placed, since a small file can name the same numbers many times.
+  void count_corners(std::size_t corners) {
+    corner_count_ += corners;
+    if (corner_count_ > kMostCorners) fail(fmt::format("it has more than {} triangles, as read or as placed", kMostCorners / 3));
   }
 
   /// The primitives of a mesh, read once however often the mesh is placed.
@@ -146,7 +151,9 @@ class GltfImporter {
     mesh.name = name;
     mesh.material = material_of(primitive);
     mesh.vertices = read_vertices(primitive, mesh);
+    count_corners(mesh.vertices.size());
     mesh.indices = to_triangles(read_corners(primitive, mesh), primitive.mode);
+    count_corners(mesh.indices.size());
     if (mesh.indices.size() % 3 != 0) {
       fail(fmt::format("'{}' has {} corners, which is no multiple of 3", name, mesh.indices.size()));
     }
@@ -253,7 +260,7 @@ class GltfImporter {
   std::map<int, int> texture_of_image_;
   std::map<int, std::vector<Mesh>> local_meshes_;
   std::vector<int> texcoord_set_;  ///< per material
-  std::size_t vertex_count_ = 0;
+  std::size_t corner_count_ = 0;
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "filters/error.h"
 #include "harness/scene/gltf_file.h"
 #include "harness/scene/obj_file.h"
+#include "harness/scene/picture_header.h"
 
 namespace shadowbench::scene {
 namespace {
@@ -32,6 +33,26 @@ std::vector<std::uint8_t> to_8_bits(const tinygltf::Image& image) {
   high.reserve(image.image.size() / 2);
   for (std::size_t i = 1; i < image.image.size(); i += 2) high.push_back(image.image[i]);
   return high;
+}
+
+/// Refuses what a picture's header claims before any memory is asked for.
+void require_usable_size(const std::vector<unsigned char>& bytes, const std::string& name, const std::string& where,
+                         const std::vector<Texture>& others) {
+  constexpr std::uint64_t kLongestSide = 16384;
+  constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 26;
+  constexpr std::uint64_t kMostPixelsOfAll = std::uint64_t{1} << 28;
+  const std::optional<PictureSize> size = read_picture_size(bytes);
+  if (!size) throw Error(ErrorKind::kInput, fmt::format("image '{}' cannot be decoded: use PNG or JPEG", name), where);
+  const bool short_enough = std::max(size->width, size->height) <= kLongestSide;
+  if (!short_enough || size->width * size->height > kMostPixels) {
+    throw Error(ErrorKind::kInput, fmt::format("image '{}' says that it has {} x {} pixels; at most {} a side and {} in all are read", name,
+                                               size->width, size->height, kLongestSide, kMostPixels), where);
+  }
+  std::uint64_t pixels = size->width * size->height;
+  for (const Texture& other : others) pixels += static_cast<std::uint64_t>(other.width) * static_cast<std::uint64_t>(other.height);
+  if (pixels <= kMostPixelsOfAll) return;
+  throw Error(ErrorKind::kInput, fmt::format("with image '{}' its textures have {} pixels; at most {} are read: use smaller ones", name, pixels,
+                                             kMostPixelsOfAll), where);
 }
 
 }  // namespace
@@ -65,10 +86,12 @@ Scene add_model(Scene scene, ImportedModel model) {
   return scene;
 }
 
-Texture decode_texture(const std::vector<unsigned char>& bytes, const std::string& name, const std::string& where) {
+Texture decode_texture(const std::vector<unsigned char>& bytes, const std::string& name, const std::string& where,
+                       const std::vector<Texture>& others) {
   if (bytes.empty() || bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
     throw Error(ErrorKind::kInput, fmt::format("image '{}' has no usable size: {} bytes", name, bytes.size()), where);
   }
+  require_usable_size(bytes, name, where, others);
   tinygltf::Image image;
   std::string failure;
   std::string warning;

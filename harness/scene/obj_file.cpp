@@ -126,10 +126,16 @@ class ObjImporter {
       const auto file = resolve_inside(file_.parent_path(), source.diffuse_texname);
       if (!file)
         fail(fmt::format("map_Kd '{}' lies outside its folder; such files are not read", source.diffuse_texname));
-      material.base_color_texture = static_cast<int>(result_.textures.size());
-      result_.textures.push_back(decode_texture(read_file_bytes(*file), source.diffuse_texname, where_));
+      material.base_color_texture = add_texture(*file, source.diffuse_texname);
     }
     result_.materials.push_back(material);
+  }
+
+  /// A picture that several materials show is there once.
+  int add_texture(const std::filesystem::path& file, const std::string& name) {
+    const auto [known, is_new] = texture_of_name_.try_emplace(name, static_cast<int>(result_.textures.size()));
+    if (is_new) result_.textures.push_back(decode_texture(read_file_bytes(file), name, where_, result_.textures));
+    return known->second;
   }
 
   /// Adds one mesh per material of the shape.
@@ -177,6 +183,7 @@ class ObjImporter {
   std::filesystem::path file_;
   std::string where_;
   ImportedModel result_;
+  std::map<std::string, int> texture_of_name_;
 };
 
 }  // namespace

@@ -125,7 +125,7 @@ class SceneBuilder {
   void add_object(const TomlTable& table) {
     const bool is_model = table.choice("shape", object_shapes()) == "model";
     ImportedModel model = is_model ? read_model_object(table) : ImportedModel{};
-    if (!is_model) model.meshes.push_back(make_shape(table));
+    if (!is_model) model.meshes.push_back(make_counted_shape(table));
     const glm::dmat4 world = world_from_object(table);
     for (Mesh& mesh : model.meshes) {
       mesh = transform_mesh(std::move(mesh), world);
@@ -142,6 +142,15 @@ class SceneBuilder {
       mesh.material = material;
       scene_.meshes.push_back(std::move(mesh));
     }
+  }
+
+  /// Makes a shape, unless all shapes together have too many triangles: a short file can ask for any number.
+  Mesh make_counted_shape(const TomlTable& table) {
+    Mesh mesh = make_shape(table);
+    corner_count_ += mesh.indices.size();
+    if (corner_count_ <= kMostShapeCorners) return mesh;
+    throw table.error("shape", fmt::format("with {} the scene's shapes have more than {} triangles; lower 'cells' or 'segments'", table.title(),
+                                           kMostShapeCorners / 3));
   }
 
   ImportedModel read_model_object(const TomlTable& table) const {
@@ -186,6 +195,7 @@ class SceneBuilder {
   Scene scene_;
   std::vector<std::string> named_materials_;  ///< the first of the scene's materials
   int default_material_ = -1;
+  std::size_t corner_count_ = 0;
 };
 
 }  // namespace

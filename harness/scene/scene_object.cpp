@@ -5,6 +5,7 @@
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
+#include <utility>
 
 #include "harness/scene/primitives.h"
 
@@ -22,6 +23,15 @@ struct Shape {
   std::function<Mesh(const TomlTable&)> make;
 };
 
+/// Throws where all bars together would have too many triangles, judged by one of them.
+void require_few_corners(Bars bars, const TomlTable& object) {
+  const int count = std::exchange(bars.count, 1);
+  const std::size_t corners = make_bars(bars).indices.size() * static_cast<std::size_t>(count);
+  if (corners <= kMostShapeCorners) return;
+  throw object.error("count", fmt::format("the {} bars in {} would have {} triangles; shapes may have {}: lower 'count' or 'cells'", count,
+                                          object.title(), corners / 3, kMostShapeCorners / 3));
+}
+
 Mesh make_bars_of(const TomlTable& object) {
   const std::map<std::string, BarDirection> kDirections{
       {"vertical", BarDirection::kVertical}, {"horizontal", BarDirection::kHorizontal}, {"both", BarDirection::kBoth}};
@@ -36,6 +46,7 @@ Mesh make_bars_of(const TomlTable& object) {
     throw object.error("spacing", fmt::format("'spacing' in {} must be more than 'bar_width', {}, but is {}",
                                               object.title(), bars.bar_width_m, bars.spacing_m));
   }
+  require_few_corners(bars, object);
   return make_bars(bars);
 }
 

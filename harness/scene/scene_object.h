@@ -9,6 +9,9 @@
 
 namespace shadowbench::scene {
 
+/// The most corners that the shapes of one scene may have, three per triangle: about 4 million triangles.
+inline constexpr std::size_t kMostShapeCorners = std::size_t{3} << 22;
+
 /// The keys that every [[object]] of a scene file may have.
 const std::vector<std::string>& common_object_keys();
 

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "filters/nearest_name.h"
+#include "filters/toml_depth.h"
 #include "harness/scene/file_bytes.h"
 
 namespace shadowbench::scene {
@@ -18,16 +19,30 @@ std::string range_text(Range range) {
   return fmt::format("a number from {} to {}", range.min, range.max);
 }
 
-std::string text_of(const toml::node& node) {
+std::string text_of_scalar(const toml::node& node) {
+  constexpr std::size_t kMostCharacters = 60;
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
   std::ostringstream text;
   node.visit([&](const auto& value) {
-    if constexpr (toml::is_table<decltype(value)>) {
-      text << "a table";
-    } else {
-      text << value;
-    }
+    if constexpr (toml::is_value<decltype(value)>) text << value;
   });
-  return text.str();
+  const std::string all = text.str();
+  return all.size() <= kMostCharacters ? all : all.substr(0, kMostCharacters) + "...";
+}
+
+/// What a message says that a value is. Lists are put together here: toml++ breaks long ones into lines, and for inf in a
+/// list it computes an undefined width.
+std::string text_of(const toml::node& node) {
+  constexpr std::size_t kMostElements = 6;
+  if (node.is_table()) return "a table";
+  const toml::array* array = node.as_array();
+  if (!array) return text_of_scalar(node);
+  std::vector<std::string> texts;
+  for (const toml::node& element : *array) {
+    if (texts.size() == kMostElements) break;
+    texts.push_back(element.is_array() ? "[...]" : element.is_table() ? "{...}" : text_of_scalar(element));
+  }
+  return fmt::format("[{}{}]", fmt::join(texts, ", "), array->size() > kMostElements ? ", ..." : "");
 }
 
 }  // namespace
@@ -35,6 +50,9 @@ std::string text_of(const toml::node& node) {
 toml::table parse_toml_file(const std::filesystem::path& file) {
   const std::vector<unsigned char> bytes = read_file_bytes(file);
   const std::string text(bytes.begin(), bytes.end());
+  if (const int line = find_too_deep_key(text); line > 0) {
+    throw Error(ErrorKind::kInput, fmt::format("a key has more than {} dots", kMostDots), fmt::format("{}:{}", file.string(), line));
+  }
   try {
     return toml::parse(text, file.string());
   } catch (const toml::parse_error& e) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
 #include <utility>
@@ -151,9 +152,11 @@ Light checked_light(Light light, const std::string& where) {
 /// Renames cameras of equal name, since names tell their pictures apart.
 std::vector<Camera> with_unique_names(std::vector<Camera> cameras) {
   std::set<std::string> taken;
+  std::map<std::string, int> last_number;  // without it, equal names take time with their number squared
   for (Camera& camera : cameras) {
     const std::string name = camera.name;
-    for (int i = 2; !taken.insert(camera.name).second; ++i) camera.name = fmt::format("{} {}", name, i);
+    int& number = last_number.try_emplace(name, 1).first->second;
+    while (!taken.insert(camera.name).second) camera.name = fmt::format("{} {}", name, ++number);
   }
   return cameras;
 }

@@ -121,5 +121,46 @@ TEST(FrontMatter, PrefilterRadius_MustBeWhole) {
                "dir/mine.glsl:6", "whole number");
 }
 
+TEST(FrontMatter, LongBlanksAndNames_DoNotExhaustTheStack) {
+  const std::string blanks(1'000'000, ' ');
+  EXPECT_FALSE(parse_filter(with("", "float" + blanks + "visibility" + blanks + "(Receiver r) { return 1.0; }"), "mine.glsl").has_encode);
+  expect_error(with("", "float" + blanks + "visibility"), "dir/mine.glsl:1", "visibility");
+  const std::string name(1'000'000, 'a');
+  EXPECT_EQ(parse_filter(with("[param." + name + "]\ndefault = 1.0\nmin = 0.0\nmax = 2.0\ntext = \"x\"\n"), "mine.glsl").params.size(), 1u);
+  std::string key = "a";
+  for (int i = 0; i < 1'000'000; ++i) key += ".a";
+  expect_error(with(key + " = 1\n"), "dir/mine.glsl:6", "256 dots");
+}
+
+TEST(FrontMatter, FunctionsAreFoundAsWholeWords) {
+  for (const char* glsl : {"float my_visibility(Receiver r) {}", "myfloat visibility(Receiver r) {}", "float visibility_of(Receiver r) {}", "float visibility;"}) {
+    expect_error(with("", glsl), "dir/mine.glsl:1", "visibility");
+  }
+  EXPECT_NO_THROW(parse_filter(with("", "int x; float\n\tvisibility\n(Receiver r) { return 1.0; }"), "mine.glsl"));
+  EXPECT_FALSE(parse_filter(with("", "float visibility(Receiver r) { return my_map_depth + map_depths; }"), "mine.glsl").uses_samplers);
+}
+
+TEST(FrontMatter, ChoicesAreOfOneType_AndBoundWhatTheyDrive) {
+  expect_error(with("[param.a]\ndefault = 1\nchoices = [1, \"x\"]\ntext = \"x\"\n"), "dir/mine.glsl:7", "different types");
+  const auto with_radius = [](const std::string& choices) {
+    return "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nstore = \"r32f\"\ncombine = \"linear\"\nradius_texels = \"radius\"\n[param.radius]\ndefault = 1\nchoices = " +
+           choices + "\ntext = \"x\"\n+++*/\nvec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n";
+  };
+  EXPECT_TRUE(parse_filter(with_radius("[1, 2]"), "mine.glsl").has_prefilter);
+  expect_error(with_radius("[1, 100000]"), "dir/mine.glsl:6", "radius_texels");
+  expect_error(with_radius("[1, -2]"), "dir/mine.glsl:6", "radius_texels");
+}
+
+TEST(FrontMatter, DisksOfTooManyPoints_AreRefused) {
+  const auto with_disk = [](const std::string& param, const std::string& seed) {
+    return with("[param.taps]\ndefault = 4\n" + param + "const = true\ntext = \"x\"\n[disk.points]\ncount = \"taps\"\nseed = " + seed + "\n");
+  };
+  EXPECT_EQ(parse_filter(with_disk("min = 1\nmax = 64\n", "4294967295"), "mine.glsl").disks.front().seed, 4294967295u);
+  expect_error(with_disk("min = 1\nmax = 2000000000\n", "1"), "dir/mine.glsl:13", "at most 4096 points");
+  expect_error(with_disk("choices = [4, 5000]\n", "1"), "dir/mine.glsl:12", "at most 4096 points");
+  expect_error(with_disk("min = 1\nmax = 64\n", "-1"), "dir/mine.glsl:14", "'seed'");
+  expect_error(with_disk("min = 1\nmax = 64\n", "1e10"), "dir/mine.glsl:14", "'seed'");
+}
+
 }  // namespace
 }  // namespace shadowbench::filters

@@ -25,6 +25,7 @@ TEST(NearestNameTest, NothingLike_GivesNothing) {
   EXPECT_EQ(nearest_name("", kNames), std::nullopt);
   EXPECT_EQ(nearest_name("vsm", {}), std::nullopt);
   EXPECT_EQ(nearest_name(std::string(100000, 'x'), kNames), std::nullopt);
+  EXPECT_EQ(nearest_name(std::string(256, 'x'), {std::string(300, 'x')}), std::nullopt);
 }
 
 }  // namespace

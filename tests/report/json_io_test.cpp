@@ -353,5 +353,32 @@ TEST(JsonIo, FieldOfAnotherType_IsAnInputErrorThatNamesTheField) {
   EXPECT_THAT(message_of([&] { cell_from_json(json(), "f.json"); }), HasSubstr("is missing"));
 }
 
+TEST(JsonIo, NestedWithoutEnd_IsAnInputError) {
+  const TemporaryFolder folder("json_deep");
+  const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
+  write_text_file(folder.path() / "results.json", R"({"schema_version": 2, "commit": )" + deep + "}");
+  EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }), HasSubstr("nested more than 100 deep"));
+}
+
+TEST(JsonIo, PathsAndKeysThatLeaveTheFolder_AreRefused) {
+  for (const std::string& path : {std::string("../outside.png"), std::string("/etc/passwd"), std::string("images/../../x.png"), std::string(".."), std::string(),
+                                  std::string("images/x.png\0/../..", 19)}) {
+    json written = to_json(make_full_cell());
+    written["images"]["picture"] = path;
+    EXPECT_THAT(message_of([&] { cell_from_json(written, "f.json"); }), HasSubstr("'images.picture'")) << path;
+  }
+  json written = to_json(make_full_cell());
+  written["key"] = "../../../../etc/x";
+  EXPECT_THAT(message_of([&] { cell_from_json(written, "f.json"); }), HasSubstr("'key'"));
+}
+
+TEST(JsonIo, ShardThatCannotBe_IsRefused) {
+  for (const auto& [field, value] : std::map<std::string, int>{{"shards", 0}, {"shard", 0}, {"cells", -1}}) {
+    json written = to_json(make_run());
+    written["experiment"][field] = value;
+    EXPECT_THAT(message_of([&] { run_from_json(written, "f.json"); }), HasSubstr("'experiment'")) << field;
+  }
+}
+
 }  // namespace
 }  // namespace shadowbench::report

@@ -148,5 +148,68 @@ TEST_F(BadInput, UserFilterWithATakenId) {
   expect_refusal(small("--filter-file " + copy.string()), 2, {"'vsm'", "taken"});
 }
 
+/// A filter file of the test's own, with this GLSL.
+std::string with_front_matter(const std::string& glsl) {
+  return "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nradius_texels = 0\n+++*/\n" + glsl;
+}
+
+TEST_F(BadInput, GlslThatCallsItself) {
+  write("itself.glsl", with_front_matter("float down(float x) { return x < 0.0 ? x : down(x - 1.0); }\nfloat visibility(Receiver r) { return down(r.depth); }\n"));
+  expect_refusal(small("--filter-file itself.glsl"), 5, {"itself.glsl:7", "'down' calls itself", "write a loop"});
+  write("mutual.glsl", with_front_matter("float b(float x);\nfloat a(float x) { return b(x); }\nfloat b(float x) { return a(x); }\n"
+                                         "float visibility(Receiver r) { return a(r.depth); }\n"));
+  expect_refusal(small("--filter-file mutual.glsl"), 5, {"mutual.glsl:", "calls itself, directly or through others"});
+}
+
+TEST_F(BadInput, GlslThatIncludesWhatIsNotItsOwn) {
+  write("secret.txt", "the_secret\n");
+  for (const std::string& name : {(folder() / "secret.txt").string(), std::string("../../../../../../../../etc/passwd")}) {
+    write("reader.glsl", with_front_matter("#include \"" + name + "\"\nfloat visibility(Receiver r) { return 1.0; }\n"));
+    expect_refusal(small("--filter-file reader.glsl"), 5, {"reader.glsl:7", "outside the program's shader folder"});
+    EXPECT_EQ(run(small("--filter-file reader.glsl")).err.find("the_secret"), std::string::npos);
+  }
+}
+
+TEST_F(BadInput, GlslWithALineDirectiveOrANulByte) {
+  write("lines.glsl", with_front_matter("#line 1 1\nfloat visibility(Receiver r) { return 1.0; }\n"));
+  expect_refusal(small("--filter-file lines.glsl"), 5, {"lines.glsl:7", "#line"});
+  write("nul.glsl", with_front_matter("float visibility(Receiver r) { return 1.0; }\n" + std::string(1, '\0') + "\n"));
+  expect_refusal(small("--filter-file nul.glsl"), 5, {"nul.glsl:8", "NUL"});
+}
+
+TEST_F(BadInput, FilterFileWhoseNameIsNoId) {
+  const std::string text = with_front_matter("float visibility(Receiver r) { return 1.0; }\n");
+  for (const std::string name : {"<script>alert(1)<.glsl", "a'b.glsl", "...glsl", "a b.glsl", "-x.glsl"}) {
+    write(name, text);
+    expect_refusal(small("--filter-file=\"" + name + "\""), 5, {"cannot be a filter's id"});
+  }
+}
+
+TEST_F(BadInput, ControlCharactersInAMessage_AreMadeVisible) {
+  write("bad.toml", "title = \"x\"\n\"\\u001b[2J\" = 1\n");
+  const Outcome outcome = run("run --out out --scene bad.toml");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_EQ(outcome.err.find('\x1b'), std::string::npos);
+  EXPECT_NE(outcome.err.find("\\x1b[2J"), std::string::npos) << outcome.err;
+}
+
+TEST_F(BadInput, HostileNamesOfSceneAndCamera_StayInTheReportAndAreEscaped) {
+  const std::string name = "<script>alert('1')<\" onload=x \n..%2f";
+  write(name + ".toml", "title = \"</title><script>alert(2)</script>\\u0000\\u001b\"\n[light]\nazimuth_deg = 40\nelevation_deg = 50\n"
+                        "[camera]\nname = \"../../../<script>alert(3)</script>\\u0000\\n\\\"x\"\nposition = [3, 5, 5]\ntarget = [0, 0, 0]\n"
+                        "[[material]]\nname = \"<b>\"\ncolor = [1, 1, 1]\n[[object]]\nshape = \"box\"\nsize = [1, 1, 1]\nname = \"../x\"\nmaterial = \"<b>\"\n");
+  std::ofstream(folder() / "run.sh") << "exec '" SHADOWBENCH_PROGRAM "' run --out out/report --size 64x36 --map-size 64 --rounds 1 --filters none,vsm --scene *alert*.toml\n";
+  ASSERT_EQ(std::system(("cd '" + folder().string() + "' && XDG_CACHE_HOME='" + cache_folder().string() + "' sh run.sh >stdout.txt 2>stderr.txt").c_str()), 0)
+      << read_text(folder() / "stderr.txt");
+  EXPECT_EQ(read_text(folder() / "stderr.txt").find('\x1b'), std::string::npos);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder() / "out"), {}), 1);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder()), {}), 6);  // the scene, run.sh, both outputs, out, cache
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder() / "out" / "report")) {
+    EXPECT_EQ(entry.path().filename().string().find_first_of("<>'\"\n %"), std::string::npos) << entry.path();
+    if (entry.path().extension() != ".html") continue;
+    for (const char* open : {"<script>alert", "<script&gt;alert", "</title&gt;"}) EXPECT_EQ(read_text(entry.path()).find(open), std::string::npos) << entry.path();
+  }
+}
+
 }  // namespace
 }  // namespace shadowbench::test

@@ -149,6 +149,11 @@ TEST_F(Regress, UnreadableBaseline_Fails_AndCanBeReplaced) {
   }
   std::filesystem::remove(folder() / "base/cubes/pcf2x2.exr");
   expect_failure("a", "unreadable");
+  // Of a filter that the run lacks, too.
+  write("base/cubes/gone.json", "{");
+  draw("b", "--filters none");
+  EXPECT_THAT(compare("b").out, HasSubstr("unreadable: cubes gone"));
+  EXPECT_EQ(compare("b", "--filters none").exit_code, 0);
 }
 
 TEST_F(Regress, UnreadableRun_Fails_AndIsNotAccepted) {

@@ -13,6 +13,7 @@
 namespace shadowbench::gl {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -131,6 +132,38 @@ TEST_F(ShaderSourceTest, MissingInclude_NamesTheUsersLineAndTheFolders) {
   EXPECT_EQ(error.where(), "user.glsl:21");
   EXPECT_THAT(error.message(), HasSubstr("lib/nosuch.glsl"));
   EXPECT_THAT(error.message(), HasSubstr(folder_.string()));
+}
+
+TEST_F(ShaderSourceTest, IncludeOutsideTheFolders_IsRefused) {
+  write("secret.txt", "SECRET\n");
+  options_.roots = {folder_ / "lib"};
+  write("lib/main.frag", "#include \"filter\"\n");
+  for (const std::string& name : {path("secret.txt"), std::string("../secret.txt"), std::string("x/../../secret.txt"), std::string("/etc/passwd")}) {
+    options_.pieces = {{"filter", "x\n#include \"" + name + "\"\n", "user.glsl", 20}};
+    const Error error = catch_error([&] { build_source(options_); });
+    EXPECT_EQ(error.kind(), ErrorKind::kFilter) << name;
+    EXPECT_EQ(error.where(), "user.glsl:21") << name;
+    EXPECT_THAT(error.message(), AllOf(HasSubstr("'" + name + "'"), HasSubstr("outside"))) << name;
+  }
+}
+
+TEST_F(ShaderSourceTest, LineDirectiveInTheText_IsRefused) {
+  write("main.frag", "#include \"filter\"\n");
+  for (const std::string line : {"#line 7 1", " # line 7", "#line"}) {
+    options_.pieces = {{"filter", "x\n" + line + "\n", "user.glsl", 5}};
+    const Error error = catch_error([&] { build_source(options_); });
+    EXPECT_EQ(error.where(), "user.glsl:6") << line;
+    EXPECT_THAT(error.message(), HasSubstr("#line")) << line;
+  }
+}
+
+TEST_F(ShaderSourceTest, NulByteInTheText_IsRefusedOnItsLine) {
+  write("main.frag", "#include \"filter\"\n");
+  options_.pieces = {{"filter", std::string("x\n\0y\n", 5), "user.glsl", 5}};
+  const Error error = catch_error([&] { build_source(options_); });
+  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
+  EXPECT_EQ(error.where(), "user.glsl:6");
+  EXPECT_THAT(error.message(), HasSubstr("NUL"));
 }
 
 TEST_F(ShaderSourceTest, MissingMainFile_IsAnInputError) {

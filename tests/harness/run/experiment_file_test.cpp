@@ -90,6 +90,8 @@ TEST_F(ExperimentFile, Mistakes_NameFileAndLine) {
       {"[[filter]]\nid = 'vsm'\nradius = {count = 3}\n", "one of them", 3},
       {"[[filter]]\nid = 'esm'\nc = {log = [0, 2], count = 3}\n", "more than 0", 3},
       {"[[filter]]\nid = 'esm'\nc = {linear = [1, 2000], count = 10000}\nradius = {linear = [0, 64], count = 64}\n", "combinations, and a run takes 100000", 1},
+      {"[[filter]]\nid = 'esm'\nc = {linear = [1, 2000], count = 10000}\nradius = [1, 2, 3, 4, 5, 6]\n"
+       "[[filter]]\nid = 'esm'\nc = {linear = [1, 2000], count = 10000}\nradius = [1, 2, 3, 4, 5, 6]\n", "combinations, and a run takes 100000", 5},
       {"[[filter]]\nid = 'esm'\nc = {linear = [1, inf], count = 3}\n", "number", 3},
       {"map_size = = 3\n", "not valid TOML", 1},
   };

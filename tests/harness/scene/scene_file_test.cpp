@@ -238,5 +238,39 @@ TEST(SceneFileTest, MissingModel_NamesTheLineThatWantsIt) {
   EXPECT_EQ(c.line, "14");
 }
 
+TEST(SceneFileTest, ModelOutsideTheScenesFolder_IsTheUsersChoice) {
+  const TestFolder folder;
+  const auto model = folder.write("models/tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  for (const std::string& file : {std::string("../models/tri.obj"), model.string()}) {
+    const std::string object = "[[object]]\nshape = \"model\"\nfile = \"" + file + "\"\n";
+    EXPECT_EQ(load_scene(folder.write("scenes/a.toml", kBase + object)).meshes.size(), 2U);
+  }
+}
+
+TEST(SceneFileTest, ShapesBeyondAllMemory_AreRefusedBeforeTheyAreMade) {
+  const std::string bars = "[[object]]\nshape = \"bars\"\ncount = 10000\nbar_width = 0.1\nspacing = 0.3\nlength = 2\ndirection = \"both\"\ncells = 512\n";
+  const Complaint c = complaint_about(kBase + bars);
+  EXPECT_THAT(c.message, testing::AllOf(HasSubstr("10000 bars"), HasSubstr("'count' or 'cells'")));
+  EXPECT_EQ(c.line, "14");
+  std::string spheres;
+  for (int i = 0; i < 9; ++i) spheres += "[[object]]\nshape = \"sphere\"\nradius = 1\nsegments = 1024\n";
+  EXPECT_THAT(complaint_about(kBase + spheres).message, HasSubstr("more than 4194304 triangles"));
+}
+
+TEST(SceneFileTest, KeyOfManyDots_DoesNotExhaustTheStack) {
+  std::string key = "a";
+  for (int i = 0; i < 1'000'000; ++i) key += ".a";
+  const Complaint c = complaint_about(kBase + key + " = 1\n");
+  EXPECT_THAT(c.message, HasSubstr("256 dots"));
+  EXPECT_EQ(c.line, "12");
+}
+
+TEST(SceneFileTest, ListsInMessages_AreShortAndOnOneLine) {
+  const std::string many = replaced(kBase, "size = [1, 2, 3]", "size = [1, 2, inf, -inf, nan, 1e300, 7" + std::string(3000, ' ') + ", -9223372036854775808]");
+  const Complaint c = complaint_about(many);
+  EXPECT_THAT(c.message, HasSubstr("but is [1, 2, inf, -inf, nan, 1e+300, ...]"));
+  EXPECT_THAT(c.message, testing::Not(HasSubstr("\n")));
+}
+
 }  // namespace
 }  // namespace shadowbench::scene

@@ -1,0 +1,25 @@
+// An experiment file: its settings, and its swept filters written out in full.
+
+#include "filters/catalogue.h"
+#include "harness/run/experiment_file.h"
+#include "tests/fuzz/scratch_folder.h"
+
+namespace shadowbench::fuzz {
+namespace {
+
+void read_experiment(std::string_view text) {
+  static const ScratchFolder folder;
+  static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
+  const run::Experiment experiment =
+      run::read_experiment(folder.write("input.toml", text), {"scene", "map_size", "size", "seed", "grids", "filter_file"});
+  run::expand_filters(experiment, catalogue);
+}
+
+}  // namespace
+}  // namespace shadowbench::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace shadowbench::fuzz;
+  allow_refusal([&] { read_experiment(as_text(data, size)); });
+  return 0;
+}

@@ -1,0 +1,26 @@
+// A scene file, read whole: its tables, its shapes, the model beside it, and the checks of the finished scene.
+
+#include "harness/scene/light_fit.h"
+#include "harness/scene/scene_file.h"
+#include "tests/fuzz/scratch_folder.h"
+
+namespace shadowbench::fuzz {
+namespace {
+
+constexpr std::string_view kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+void read_scene(std::string_view text) {
+  static const ScratchFolder folder;
+  static const std::filesystem::path model = folder.write("triangle.obj", kTriangle);
+  const scene::Scene scene = scene::load_scene(folder.write("input.toml", text));
+  scene::fit_light(scene, scene::FitMode::kTight, 64, 2.0);
+}
+
+}  // namespace
+}  // namespace shadowbench::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace shadowbench::fuzz;
+  allow_refusal([&] { read_scene(as_text(data, size)); });
+  return 0;
+}
