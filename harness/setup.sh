@@ -7,7 +7,7 @@ packages="
   cmake g++ git ninja-build pkg-config python3-glad
   libbenchmark-dev libcli11-dev libegl-dev libembree-dev libfmt-dev libfreetype-dev libgl-dev libglfw3-dev libglm-dev libgmock-dev libgsl-dev libgtest-dev
   libnlopt-cxx-dev libopenimageio-dev libosmesa6-dev libpugixml-dev libtbb-dev libtinygltf-dev libtinyobjloader-dev libtomlplusplus-dev nlohmann-json3-dev
-  fonts-dejavu-core gnuplot-nox libjs-chart.js openimageio-tools libegl1 libegl-mesa0 libgl1-mesa-dri python3-jsonschema xauth xvfb
+  fonts-dejavu-core gcovr gnuplot-nox libjs-chart.js openimageio-tools libegl1 libegl-mesa0 libgl1-mesa-dri python3-jsonschema xauth xvfb
 "
 case "${1-}" in
   "") ;;

@@ -1,7 +1,6 @@
 #include "report/atomic_file.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cassert>
 #include <cerrno>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "filters/error.h"
+#include "report/temporary_files.h"
 
 namespace shadowbench::report {
 namespace {
@@ -18,13 +18,6 @@ namespace {
               fmt::format("{} ({}); check the folder's rights and free space, or choose another with --out", what,
                           std::generic_category().message(code)),
               path.string());
-}
-
-std::filesystem::path make_temporary_path(const std::filesystem::path& path) {
-  std::filesystem::path name = path.stem();
-  name += fmt::format(".tmp-{}", getpid());
-  name += path.extension();
-  return path.parent_path() / name;
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "filters/error.h"
-#include "report/atomic_file.h"
+#include "report/image_file.h"
 #include "report/picture_io.h"
 
 namespace shadowbench::report {
@@ -128,20 +128,11 @@ Image round_to_half(const Image& image) {
 void write_exr(const std::filesystem::path& path, const std::vector<Part>& parts, const Metadata& metadata) {
   assert(!parts.empty());
   check_names(path, parts);
-  PendingFile file(path);
   std::vector<OIIO::ImageSpec> specs;
   for (const Part& part : parts) {
     specs.push_back(make_spec(part, parts.front().image, metadata));
   }
-  const auto output = OIIO::ImageOutput::create(file.temporary_path().string());
-  if (!output || !write_parts(*output, file.temporary_path().string(), parts, specs)) {
-    throw Error(ErrorKind::kOutput,
-                fmt::format("the EXR file cannot be written ({}); check the folder's rights and free space, or choose "
-                            "another with --out",
-                            output ? output->geterror() : OIIO::geterror()),
-                path.string());
-  }
-  file.commit();
+  write_image_file(path, [&](OIIO::ImageOutput& output, const std::string& name) { return write_parts(output, name, parts, specs); });
 }
 
 ExrFile read_exr(const std::filesystem::path& path) {

@@ -4,6 +4,7 @@
 #include "report/flicker_json.h"
 #include "report/flicker_plots.h"
 #include "report/flicker_text.h"
+#include "report/plot_files.h"
 
 namespace shadowbench::report {
 
@@ -12,8 +13,7 @@ void write_flicker_files(const std::filesystem::path& dir, FlickerRecord& record
   for (const FlickerMotion& motion : record.motions) {
     for (const FlickerVariant& variant : motion.variants) plots.push_back(make_flicker_plot(motion, variant));
   }
-  write_text_file(dir / "flicker.gp", make_gnuplot_script(plots));
-  record.no_plots = run_gnuplot(dir, "flicker.gp").value_or("");
+  record.no_plots = write_plot_files(dir, "flicker.gp", plots).value_or("");
   write_text_file(dir / "flicker.json", make_flicker_json(record));
   write_text_file(dir / "flicker.csv", make_flicker_csv(record));
   write_text_file(dir / "flicker.md", make_flicker_text(record));

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <system_error>
 
 #include "filters/error.h"
 #include "report/atomic_file.h"
+#include "report/folder_lock.h"
 #include "report/json_io.h"
 #include "report/report.h"
 
@@ -61,10 +63,24 @@ void require_complete(const std::vector<ShardRun>& shards) {
   }
 }
 
-/// A folder that has something else in it is not added to.
-void require_free(const std::filesystem::path& out) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(out / "results.json", ignored) && !std::filesystem::exists(out / "cells", ignored)) return;
+/// Says whether the folder holds a report, or a cell of something else than what is merged.
+bool is_taken(const std::filesystem::path& out, const std::set<std::string>& keys) {
+  std::error_code error;
+  if (std::filesystem::exists(out / "results.json", error)) return true;
+  std::filesystem::directory_iterator entry(out / "cells", error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    if (!keys.contains(entry->path().stem().string())) return true;
+  }
+  return false;
+}
+
+/// A folder that has something else in it is not added to; what a merge left that did not come to its end is.
+void require_free(const std::filesystem::path& out, const std::vector<ShardRun>& shards) {
+  std::set<std::string> keys;
+  for (const ShardRun& shard : shards) {
+    for (const CellRecord& cell : shard.results.cells) keys.insert(cell.key);
+  }
+  if (!is_taken(out, keys)) return;
   throw Error(ErrorKind::kUsage, "--out: there is a report in this folder already; choose an empty or new one", out.string());
 }
 
@@ -72,7 +88,7 @@ void copy_whole(const std::filesystem::path& from, const std::filesystem::path& 
   PendingFile pending(to);
   std::error_code error;
   std::filesystem::copy_file(from, pending.temporary_path(), std::filesystem::copy_options::overwrite_existing, error);
-  if (error) throw Error(ErrorKind::kOutput, fmt::format("it cannot be copied to {}: {}", to.string(), error.message()), from.string());
+  if (error) throw Error(ErrorKind::kOutput, fmt::format("it cannot be copied to {} ({}); check rights and free space there, or choose another folder with --out", to.string(), error.message()), from.string());
   pending.commit();
 }
 
@@ -116,7 +132,8 @@ void merge_runs(const std::vector<std::filesystem::path>& folders, const std::fi
   const std::vector<ShardRun> shards = read_shards(folders);
   for (const ShardRun& shard : shards) require_same(shards.front(), shard);
   require_complete(shards);
-  require_free(out);
+  const FolderLock lock(out);
+  require_free(out, shards);
   std::vector<std::string> keys;
   for (int i = 0; i < shards.front().results.run.experiment.cells; ++i) {
     const ShardRun& shard = shards[static_cast<std::size_t>(i) % shards.size()];

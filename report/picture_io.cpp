@@ -1,15 +1,11 @@
 #include "report/picture_io.h"
 
-#include <OpenImageIO/imageio.h>
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
 
-#include "filters/error.h"
-#include "report/atomic_file.h"
+#include "report/image_file.h"
 #include "report/stored_picture.h"
 
 namespace shadowbench::report {
@@ -44,27 +40,12 @@ Codes encode_texels(const Image& image, int channels, Encode encode) {
   return codes;
 }
 
-[[noreturn]] void fail_to_write(const std::filesystem::path& path, const std::string& reason) {
-  throw Error(ErrorKind::kOutput,
-              fmt::format("the picture cannot be written ({}); check the folder's rights and free space, or choose "
-                          "another with --out",
-                          reason),
-              path.string());
-}
-
 void write_png(const std::filesystem::path& path, const Image& image, const Codes& codes) {
-  PendingFile file(path);
-  const auto output = OIIO::ImageOutput::create(file.temporary_path().string());
-  if (!output) {
-    fail_to_write(path, OIIO::geterror());
-  }
   OIIO::ImageSpec spec(image.width, image.height, codes.channels, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  if (!output->open(file.temporary_path().string(), spec) ||
-      !output->write_image(OIIO::TypeDesc::UINT8, codes.bytes.data()) || !output->close()) {
-    fail_to_write(path, output->geterror());
-  }
-  file.commit();
+  write_image_file(path, [&](OIIO::ImageOutput& output, const std::string& name) {
+    return output.open(name, spec) && output.write_image(OIIO::TypeDesc::UINT8, codes.bytes.data()) && output.close();
+  });
 }
 
 }  // namespace

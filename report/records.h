@@ -177,11 +177,11 @@ struct ImagesRecord {
   std::optional<std::string> depth_map;  ///< one per scene and map settings
   std::optional<std::string> grid;       ///< one per scene, view and map settings
   std::optional<std::string> exr;        ///< one per scene
-  std::optional<std::string> parts = std::nullopt;  ///< what the names of the cell's parts in `exr` begin with
   std::optional<std::string> attribution = std::nullopt;  ///< the error and its four parts, as heat maps
   std::optional<std::string> texel_density = std::nullopt;  ///< texels per pixel; one per scene, view and map settings
   std::optional<std::string> texel_grid = std::nullopt;     ///< the map's texels on the surfaces; one per the same
   std::optional<std::string> stability = std::nullopt;      ///< where the cell's numbers break, per texel and per pixel
+  std::optional<std::string> parts = std::nullopt;          ///< no path: what the names of the cell's parts in `exr` begin with
 };
 
 /// Holds everything measured of one scene x view x filter x parameters x map settings.

@@ -6,6 +6,7 @@
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/experiment_loader.h"
+#include "harness/cli/interruption.h"
 #include "harness/cli/progress_bar.h"
 
 namespace shadowbench::cli {
@@ -40,6 +41,7 @@ run::RunOptions make_options(const BiasArguments& arguments) {
 int sweep(const BiasArguments& arguments) {
   const run::RunOptions options = make_options(arguments);
   {
+    const Interruption interruption(options.out, kStoppedAdvice);
     const std::unique_ptr<run::Progress> progress = make_progress();
     load_and_run_bias_sweep(options, *progress);
   }

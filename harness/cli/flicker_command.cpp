@@ -7,6 +7,7 @@
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/experiment_loader.h"
+#include "harness/cli/interruption.h"
 #include "harness/cli/progress_bar.h"
 
 namespace shadowbench::cli {
@@ -52,6 +53,7 @@ flicker::FlickerOptions make_options(const FlickerArguments& arguments, const st
 int measure_flicker(const FlickerArguments& arguments, const std::vector<std::string>& words) {
   const flicker::FlickerOptions options = make_options(arguments, words);
   {
+    const Interruption interruption(options.run.out, kStoppedAdvice);
     const std::unique_ptr<run::Progress> progress = make_progress();
     load_and_run_flicker(options, *progress);
   }

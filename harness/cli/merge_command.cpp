@@ -5,6 +5,7 @@
 
 #include "harness/cli/commands.h"
 #include "harness/cli/experiment_loader.h"
+#include "harness/cli/interruption.h"
 
 namespace shadowbench::cli {
 
@@ -19,7 +20,10 @@ void add_merge_command(CLI::App& app, Action& action) {
   command->add_option("--out", a->out, "folder of the whole report; new or empty")->required();
   command->callback([&action, a] {
     action = [a] {
-      load_and_merge_runs(a->folders, a->out);
+      {
+        const Interruption interruption(a->out, kStoppedAdvice);
+        load_and_merge_runs(a->folders, a->out);
+      }
       fmt::print("report: {}\n", (a->out / "index.html").string());
       return 0;
     };

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/prctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -11,6 +13,7 @@
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/experiment_loader.h"
+#include "harness/cli/interruption.h"
 #include "harness/cli/progress_bar.h"
 #include "harness/cli/run_arguments.h"
 #include "harness/gl/pixel_format.h"
@@ -174,14 +177,22 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   return options;
 }
 
+/// A worker must not outlive the run that waits for it: that reads what the worker writes to standard error.
+void end_with_parent() {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  pollfd reader{STDERR_FILENO, 0, 0};
+  if (poll(&reader, 1, 0) > 0 && (reader.revents & POLLERR) != 0) raise(SIGKILL);  // it ended before this could be heard
+}
+
 int run(CLI::App& command_line, RunArguments& arguments, std::vector<std::string> command) {
-  // A worker must not outlive the run that waits for it.
-  if (arguments.worker) prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (arguments.worker) end_with_parent();
   // A worker is told everything by the run it belongs to.
   const std::string title = arguments.worker ? std::string() : apply_experiment(command_line, arguments);
   run::RunOptions options = make_options(arguments, std::move(command));
   options.title = title;
   {
+    std::optional<Interruption> interruption;
+    if (!options.worker) interruption.emplace(options.out, "what was finished stays, and the same command goes on from there");
     const std::unique_ptr<run::Progress> progress = make_progress();
     for (const std::string& note : options.notes) progress->note("note: " + note);
     load_and_run_experiment(options, *progress);

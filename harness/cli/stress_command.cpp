@@ -6,6 +6,7 @@
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/experiment_loader.h"
+#include "harness/cli/interruption.h"
 #include "harness/cli/progress_bar.h"
 
 namespace shadowbench::cli {
@@ -51,6 +52,7 @@ int stress_filters(const StressArguments& arguments, const std::vector<std::stri
   }
   stress::StressOutcome outcome;
   {
+    const Interruption interruption(options.out, kStoppedAdvice);
     const std::unique_ptr<run::Progress> progress = make_progress();
     outcome = load_and_run_stress(options, *progress);
   }

@@ -8,6 +8,7 @@
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/experiment_loader.h"
+#include "harness/cli/interruption.h"
 #include "harness/cli/progress_bar.h"
 #include "harness/run/tune_metric.h"
 #include "harness/run/tune_views.h"
@@ -82,6 +83,7 @@ int tune(const TuneArguments& arguments) {
   const run::TuneOptions options = make_options(arguments);
   std::string text;
   {
+    const Interruption interruption(options.run.out, kStoppedAdvice);
     const std::unique_ptr<run::Progress> progress = make_progress();
     text = load_and_tune_filters(options, *progress);
   }

@@ -9,7 +9,7 @@
 #include "harness/flicker/bench.h"
 #include "harness/run/run_facts.h"
 #include "harness/run/scene_loading.h"
-#include "report/atomic_file.h"
+#include "report/folder_lock.h"
 #include "report/flicker_files.h"
 #include "report/flicker_picture.h"
 
@@ -60,13 +60,14 @@ class FlickerRun {
         bench_(renderer_, options.run, scene_, cache_) {}
 
   void run() {
-    report::AtomicFile(options_.run.out / "flicker.json").write("");  // a folder that cannot be written is better found now
+    const report::FolderLock lock(options_.run.out);  // a folder that cannot be written is better found now
     const auto start = Clock::now();
     describe();
     progress_.begin(count_frames(), 0);
     for (const Motion motion : motions_) record_.motions.push_back(measure(motion));
     record_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     progress_.show(done_, "writing");
+    lock.require_in_place();
     report::write_flicker_files(options_.run.out, record_);
   }
 

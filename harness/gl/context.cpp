@@ -81,7 +81,7 @@ ContextChoice create_context(Backend backend) {
       choice.refused.push_back(fmt::format("{}: {}", attempt.name, error.message()));
     }
   }
-  throw Error(ErrorKind::kContext, fmt::format("no OpenGL 4.5 core context; {}", fmt::join(choice.refused, "; ")));
+  throw Error(ErrorKind::kContext, fmt::format("no OpenGL 4.5 core context: {}; install OSMesa (harness/setup.sh does), or choose another with --gl", fmt::join(choice.refused, "; ")));
 }
 
 void Context::make_current() {

@@ -15,6 +15,7 @@
 #include "harness/run/scene_assets.h"
 #include "harness/run/scene_loading.h"
 #include "report/atomic_file.h"
+#include "report/folder_lock.h"
 #include "report/bias_chart.h"
 #include "report/bias_page.h"
 #include "report/grid.h"
@@ -47,7 +48,7 @@ class BiasSweep {
         target_("visibility", GL_R32F, options.width, options.height) {}
 
   void run() {
-    report::AtomicFile(options_.out / "bias.csv").write("");  // a folder that cannot be written is better found now
+    const report::FolderLock lock(options_.out);  // a folder that cannot be written is better found now
     progress_.begin(static_cast<int>(swept_modes().size() * options_.filters.size()), 0);
     progress_.show(0, "truth");
     make_masks();
@@ -55,6 +56,7 @@ class BiasSweep {
     describe();
     for (const SweptMode& mode : swept_modes()) record_.modes.push_back(sweep_mode(mode));
     renderer_.context->require_no_gl_errors();
+    lock.require_in_place();
     report::write_text_file(options_.out / "bias.csv", report::make_bias_csv(record_));
     report::write_text_file(options_.out / "bias.html", report::make_bias_html(record_));
     progress_.show(done_, "done");

@@ -14,10 +14,10 @@
 #include "harness/run/run_plan.h"
 #include "harness/run/task_run.h"
 #include "harness/run/time_probe.h"
-#include "harness/run/user_filter.h"
 #include "harness/scene/closed_mesh.h"
 #include "reference/truth/occluders.h"
 #include "report/atomic_file.h"
+#include "report/folder_lock.h"
 #include "report/json_io.h"
 #include "report/repeat.h"
 #include "report/report.h"
@@ -69,8 +69,8 @@ class Experiment {
   void run() {
     const RunPlan plan = make_plan(options_, renderer_.context->info().renderer);
     announce(plan);
+    lock_.emplace(options_.out);
     require_writable(options_.out);
-    remove_stale_worker_folders(options_.out);
     if (plan.finished == plan.own_cells && has_report(plan)) {
       progress_.note("nothing is left to do");
       return;
@@ -87,7 +87,7 @@ class Experiment {
     cache_.prune(kMaxCacheBytes);
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
     progress_.show(done_, "writing the report");
-    if (!options_.worker) report::write_report(options_.out, run_, list_keys(plan));
+    if (!options_.worker) write_report(list_keys(plan));
     progress_.show(done_, "done");
   }
 
@@ -97,6 +97,7 @@ class Experiment {
   Renderer renderer_;
   TruthCache cache_;
   report::RunRecord run_;
+  std::optional<report::FolderLock> lock_;
   int done_ = 0;
   std::set<std::string> told_;  ///< what cells warn of, of which the user has heard
   TaskListener listener_{[this](const std::string& what) { progress_.show(done_, what); },
@@ -104,6 +105,7 @@ class Experiment {
                          [this](const SceneMeasurement& measured) { count(measured); }};
 
   void count(const SceneMeasurement& measured) {
+    lock_->require_in_place();
     done_ += static_cast<int>(measured.cells.size());
     run_.work.timed_s += 1e-3 * measured.timed_ms;
     if (options_.truth && options_.attribution) run_.work.attribution_s = run_.work.attribution_s.value_or(0.0) + measured.attribution_s;
@@ -161,6 +163,15 @@ class Experiment {
       // What cannot be read cannot be compared with.
     }
     return {};
+  }
+
+  void write_report(const std::vector<std::string>& keys) const {
+    try {
+      report::write_report(options_.out, run_, keys);
+    } catch (const Error&) {
+      lock_->require_in_place();  // else this is why a cell is missing
+      throw;
+    }
   }
 
   void compare_with(const std::vector<report::CellRecord>& replaced, const std::vector<std::string>& keys) {

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <system_error>
 
 #include "filters/error.h"
 #include "harness/run/content_hash.h"
+#include "report/temporary_files.h"
 
 namespace shadowbench::run {
 namespace {
@@ -17,7 +19,7 @@ constexpr const char* kChecksum = "shadowbench:checksum";
 std::string checksum(const std::vector<report::Part>& parts) {
   ContentHash hash;
   for (const report::Part& part : parts) {
-    hash.add(part.name);
+    hash.add(fmt::format("{} {}x{}", part.name, part.image.width, part.image.height));
     hash.add_values(std::span<const float>(part.image.texels));
   }
   return hash.name();
@@ -33,12 +35,14 @@ bool holds(const report::ExrFile& file, const char* attribute, const std::string
 }  // namespace
 
 TruthCache::TruthCache(std::filesystem::path folder, std::function<void(const std::string&)> note)
-    : folder_(std::move(folder)), note_(std::move(note)) {}
+    : folder_(std::move(folder)), note_(std::move(note)) {
+  if (!folder_.empty()) report::remove_temporary_files(folder_, report::is_gone);
+}
 
 std::optional<std::vector<report::Part>> TruthCache::load(
     const std::string& name, const std::function<bool(const std::vector<report::Part>&)>& is_wanted) {
   std::error_code error;
-  if (!folder_.empty() && std::filesystem::exists(path_of(name), error)) {
+  if (!folder_.empty() && std::filesystem::is_regular_file(path_of(name), error)) {
     try {
       report::ExrFile file = report::read_exr(path_of(name));
       if (holds(file, kName, name) && holds(file, kChecksum, checksum(file.parts)) && is_wanted(file.parts)) {
@@ -46,8 +50,8 @@ std::optional<std::vector<report::Part>> TruthCache::load(
         ++loaded_;
         return std::move(file.parts);
       }
-    } catch (const Error&) {
-      // Damaged: traced again and written anew.
+    } catch (const std::exception&) {
+      // Damaged, whatever its header made of it: traced again and written anew.
     }
   }
   ++traced_;
@@ -55,12 +59,12 @@ std::optional<std::vector<report::Part>> TruthCache::load(
 }
 
 void TruthCache::store(const std::string& name, const std::vector<report::Part>& parts) {
-  if (folder_.empty()) return;
+  if (folder_.empty() || !note_) return;
   try {
     report::write_exr(path_of(name), parts, {{kName, name}, {kChecksum, checksum(parts)}});
   } catch (const Error& error) {
     note_(fmt::format("traced images are not kept for the next run: {}; choose another folder with --cache", error.what()));
-    folder_.clear();
+    note_ = nullptr;  // one that cannot be written may still be read
   }
 }
 

@@ -14,7 +14,7 @@ namespace shadowbench::run {
 /// light, settings and the code that traced them. Files can be deleted at any time.
 class TruthCache {
  public:
-  /// An empty folder name keeps nothing. `note` hears, once, of a folder that cannot be written.
+  /// An empty folder name keeps nothing. Clears away what killed processes left half-written. `note` hears, once, of a folder that cannot be written.
   TruthCache(std::filesystem::path folder, std::function<void(const std::string&)> note);
 
   /// Gives what was kept under a name; nothing where there is none, or where the file is damaged, of another content, or not

@@ -13,6 +13,7 @@
 #include "harness/run/scene_measurement.h"
 #include "harness/run/tune_stage.h"
 #include "report/atomic_file.h"
+#include "report/folder_lock.h"
 #include "report/tables.h"
 #include "report/tuned_json.h"
 #include "report/tuned_text.h"
@@ -69,12 +70,13 @@ class Tuner {
   }
 
   std::string run() {
-    report::AtomicFile(options_.run.out / "tuned.json").write("");  // a folder that cannot be written is better found now
+    const report::FolderLock lock(options_.run.out);  // a folder that cannot be written is better found now
     progress_.begin(static_cast<int>(filters_.size()) * options_.budget, 0);
     search_all();
     score_unseen();
     renderer_.context->require_no_gl_errors();
     progress_.show(done_, "writing");
+    lock.require_in_place();
     return write();
   }
 

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <cstring>
+#include <filesystem>
 #include <system_error>
 
 #include "filters/error.h"
@@ -13,6 +13,7 @@
 #include "harness/run/worker_process.h"
 #include "report/json_io.h"
 #include "report/picture_io.h"
+#include "report/temporary_files.h"
 
 namespace shadowbench::run {
 namespace {
@@ -143,24 +144,12 @@ MeasuredCell read_cell(const RunOptions& options, const SceneTask& task, const f
   return cell;
 }
 
-constexpr const char* kWorkerPrefix = ".worker-";
-
 }  // namespace
-
-void remove_stale_worker_folders(const std::filesystem::path& out) {
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(out, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.rfind(kWorkerPrefix, 0) != 0) continue;
-    const std::filesystem::path owner = std::filesystem::path("/proc") / name.substr(std::strlen(kWorkerPrefix));
-    if (!std::filesystem::exists(owner, ignored)) std::filesystem::remove_all(entry.path(), ignored);
-  }
-}
 
 MeasuredCell measure_user_filter(const RunOptions& options, const SceneTask& task,
                                  const filters::FilterRequest& request, const std::string& scene_argument,
                                  const std::string& backend) {
-  const TemporaryFolder folder(options.out / fmt::format("{}{}", kWorkerPrefix, getpid()));
+  const TemporaryFolder folder(report::make_temporary_folder_path(options.out, "worker"));
   const WorkerOutcome outcome = run_worker(
       worker_arguments(options, task, request, scene_argument, backend, folder.path()), options.cell_timeout_s);
   if (outcome.exit_code == 0) return read_cell(options, task, request, folder.path());

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "harness/run/options.h"
@@ -16,8 +15,5 @@ namespace shadowbench::run {
 MeasuredCell measure_user_filter(const RunOptions& options, const SceneTask& task,
                                  const filters::FilterRequest& request, const std::string& scene_argument,
                                  const std::string& backend);
-
-/// Removes what workers of runs that were killed left in a report folder.
-void remove_stale_worker_folders(const std::filesystem::path& out);
 
 }  // namespace shadowbench::run

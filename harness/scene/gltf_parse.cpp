@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <optional>
 #include <string_view>
 
@@ -122,6 +123,8 @@ bool parse_bytes(tinygltf::TinyGLTF& parser, tinygltf::Model* model, std::string
     if (is_glb(bytes)) return parser.LoadBinaryFromMemory(model, failure, &warning, bytes.data(), size, folder);
     const auto* text = reinterpret_cast<const char*>(bytes.data());
     return parser.LoadASCIIFromString(model, failure, &warning, text, size, folder);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& e) {
     *failure += e.what();
     return false;

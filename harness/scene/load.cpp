@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -90,7 +91,7 @@ Scene load_model(const fs::path& file, const LoadOptions& options) {
   return validate(completed(std::move(scene), options), file.string());
 }
 
-Scene load_file(const fs::path& file, const LoadOptions& options) {
+Scene load_kind(const fs::path& file, const LoadOptions& options) {
   if (is_model_file(file)) return load_model(file, options);
   if (file.extension() != ".toml") {
     throw Error(ErrorKind::kUsage, "this kind of file is no scene: use .toml, .gltf, .glb or .obj", file.string());
@@ -99,6 +100,15 @@ Scene load_file(const fs::path& file, const LoadOptions& options) {
   if (options.ground)
     scene.warnings.push_back("a floor is added to bare models only; this scene file has its own objects");
   return scene;
+}
+
+Scene load_file(const fs::path& file, const LoadOptions& options) {
+  try {
+    return load_kind(file, options);
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorKind::kInput, "memory ran out while this scene was loaded; raise the limit (ulimit -v), or use a model with fewer vertices and smaller textures",
+                file.string());
+  }
 }
 
 std::vector<SceneInfo> with_titles(const std::vector<fs::path>& files) {

@@ -9,7 +9,7 @@
 #include "filters/error.h"
 #include "harness/run/run_facts.h"
 #include "harness/stress/onset.h"
-#include "report/atomic_file.h"
+#include "report/folder_lock.h"
 #include "report/stress_files.h"
 #include "report/stress_text.h"
 
@@ -48,7 +48,7 @@ class StressRun {
   }
 
   StressOutcome run() {
-    report::AtomicFile(options_.out / "stress.json").write("");  // a folder that cannot be written is better found now
+    const report::FolderLock lock(options_.out);  // a folder that cannot be written is better found now
     const auto start = Clock::now();
     describe_run();
     make_all_cases();
@@ -56,6 +56,7 @@ class StressRun {
     record_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     warn();
     progress_.show(done_, "writing");
+    lock.require_in_place();
     report::write_stress_files(options_.out, record_);
     return {report::make_limit_tables(record_), report::count_disagreements(record_)};
   }

@@ -7,6 +7,9 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
+#include <new>
+#include <stdexcept>
+#include <string>
 
 #include "reference/truth/cut_out.h"
 
@@ -58,17 +61,29 @@ struct Occluders::Impl {
     rtcReleaseDevice(device);
   }
 
+  /// Embree reports what fails by a null pointer and a code of the device; without a look at them, rays would miss everything.
+  /// Throws std::bad_alloc, or std::runtime_error for what else may fail.
+  void require(bool is_done) const {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_OUT_OF_MEMORY || (!is_done && error == RTC_ERROR_NONE)) throw std::bad_alloc();
+    if (error != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot take the scene: error " + std::to_string(error));
+  }
+
   void add(const OccluderMesh& mesh) {
     std::vector<std::uint32_t> indices = keep_triangles_with_area(mesh);
     triangles += static_cast<std::int64_t>(indices.size() / 3);
     degenerate += static_cast<std::int64_t>((mesh.indices.size() - indices.size()) / 3);
     if (indices.empty()) return;
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    const std::unique_ptr<RTCGeometryTy, decltype(&rtcReleaseGeometry)> owned(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE), &rtcReleaseGeometry);
+    RTCGeometry geometry = owned.get();
+    require(geometry != nullptr);
     void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
                                              mesh.positions.size());
+    require(vertices != nullptr);
     std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<glm::vec3*>(vertices));
     void* corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                             3 * sizeof(std::uint32_t), indices.size() / 3);
+    require(corners != nullptr);
     std::copy(indices.begin(), indices.end(), static_cast<std::uint32_t*>(corners));
     if (mesh.cut_out) {
       hole_tests.push_back(std::make_unique<HoleTest>(HoleTest{*mesh.cut_out, std::move(indices)}));
@@ -78,17 +93,18 @@ struct Occluders::Impl {
     }
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
     for (const glm::vec3& p : mesh.positions) largest = glm::max(largest, glm::abs(p));
   }
 };
 
 Occluders::Occluders(std::span<const OccluderMesh> meshes) : impl_(std::make_unique<Impl>()) {
+  impl_->require(impl_->device != nullptr && impl_->scene != nullptr);
   // Robust: no ray slips through a shared edge. High quality: many more rays are traced than triangles are built in.
   rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
   for (const OccluderMesh& mesh : meshes) impl_->add(mesh);
   rtcCommitScene(impl_->scene);
+  impl_->require(true);
 }
 
 Occluders::~Occluders() = default;

@@ -45,6 +45,7 @@ float origin_offset(float largest_coordinate, float largest_of_scene);
 class Occluders {
  public:
   /// Builds the acceleration structure; degenerate triangles are dropped, since they may misreport.
+  /// Throws std::bad_alloc where memory runs out.
   /// Cost: about a second per million triangles.
   explicit Occluders(std::span<const OccluderMesh> meshes);
   ~Occluders();

@@ -1,10 +1,14 @@
 #include "report/gnuplot.h"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <cstdlib>
 
+#include "filters/error.h"
 #include "report/atomic_file.h"
+#include "report/plot_files.h"
 #include "report/plot_style.h"
 #include "report/trade_plots.h"
 #include "trade_cells.h"
@@ -69,6 +73,31 @@ TEST(Gnuplot, WhereItFails_TheReasonIsGiven) {
   EXPECT_THAT(run_gnuplot(folder.path(), "bad.gp").value_or(""), HasSubstr("gnuplot failed"));
   write_text_file(folder.path() / "slow.gp", "pause 30\n");
   EXPECT_THAT(run_gnuplot(folder.path(), "slow.gp", 0.2).value_or(""), HasSubstr("longer than 0.2 s"));
+}
+
+// A limit on file sizes stands for a full disk: the script fits, the drawing does not, and gnuplot does not say so.
+TEST(Gnuplot, FullDisk_IsAnOutputError_AndNoPlotIsLeft) {
+  const TemporaryFolder folder("gnuplot_full");
+  const std::vector<Plot> plots = {make_plot("a title")};
+  ASSERT_LT(make_gnuplot_script(plots).size(), 4096u);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{4096, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  std::string message = "no error";
+  try {
+    write_plot_files(folder.path(), "plots/plots.gp", plots);
+  } catch (const Error& error) {
+    message = error.kind() == ErrorKind::kOutput ? error.what() : "another error";
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_THAT(message, testing::AllOf(HasSubstr((folder.path() / "plots" / "a.svg").string()), HasSubstr("free space"), HasSubstr("--out")));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "plots" / "a.svg"));
+  write_plot_files(folder.path(), "plots/plots.gp", plots);
+  EXPECT_TRUE(has_text(read_text(folder.path() / "plots" / "a.svg"), "</svg>"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << "a folder that plots are drawn in stays";
 }
 
 TEST(Gnuplot, WhereItIsMissing_ThatIsSaid) {

@@ -1,9 +1,12 @@
 #include "report/picture_io.h"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstring>
+#include <functional>
 #include <limits>
 
 #include "filters/error.h"
@@ -189,6 +192,34 @@ TEST(PictureIo, DamagedFile_IsAnInputError) {
       EXPECT_THAT(error.what(), ::testing::HasSubstr(name));
     }
   }
+}
+
+// A limit on file sizes stands for a full disk, which the image libraries overlook.
+TEST(PictureIo, FullDisk_IsAnOutputErrorAndLeavesNothing) {
+  const TemporaryFolder folder("picture_full");
+  const Image grey = make_noise(64, 64, 1), colour = make_noise(64, 64, 3);
+  const std::vector<std::function<void()>> actions = {[&] { write_grey_png(folder.path() / "a.png", grey); },
+                                                      [&] { write_picture_png(folder.path() / "b.png", colour); },
+                                                      [&] { write_exr(folder.path() / "c.exr", {{"x", {"Y"}, grey, false}, {"y", {"R", "G", "B"}, colour, false}}, {}); }};
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  for (const rlim_t bytes : {rlim_t{0}, rlim_t{100}, rlim_t{400}}) {
+    for (std::size_t i = 0; i < actions.size(); ++i) {
+      const rlimit small{bytes, before.rlim_max};
+      setrlimit(RLIMIT_FSIZE, &small);
+      std::string message = "no error";
+      try {
+        actions[i]();
+      } catch (const Error& error) {
+        message = error.kind() == ErrorKind::kOutput ? error.what() : "another error";
+      }
+      setrlimit(RLIMIT_FSIZE, &before);
+      EXPECT_THAT(message, ::testing::AllOf(::testing::HasSubstr(folder.path().string()), ::testing::HasSubstr("File too large"), ::testing::HasSubstr("--out"))) << i << " " << bytes;
+      EXPECT_EQ(count_files(folder.path()), 0u) << i << " " << bytes;
+    }
+  }
+  std::signal(SIGXFSZ, handler);
 }
 
 }  // namespace

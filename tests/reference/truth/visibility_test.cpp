@@ -3,11 +3,15 @@
 #include "reference/truth/visibility.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
+#include <new>
 #include <numeric>
 #include <random>
 
@@ -18,6 +22,32 @@ namespace shadowbench::reference {
 namespace {
 
 std::vector<OccluderMesh> half_plane() { return {make_sheet(-40.0, 0.0, -40.0, 40.0, 2.0)}; }
+
+/// Ends the process by exit code 0 where occluders that memory is too small for are refused.
+[[noreturn]] void build_in_little_memory() {
+  OccluderMesh mesh = make_sheet(-1.0, 1.0, -1.0, 1.0, 1.0, 4);
+  mesh.positions.resize(20'000'000);
+  long pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  rlimit limit{};
+  getrlimit(RLIMIT_AS, &limit);
+  limit.rlim_cur = static_cast<rlim_t>(pages) * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (rlim_t{100} << 20);
+  setrlimit(RLIMIT_AS, &limit);
+  try {
+    const Occluders occluders(std::span<const OccluderMesh>(&mesh, 1));
+  } catch (const std::bad_alloc&) {
+    _exit(0);
+  }
+  _exit(1);
+}
+
+// What Embree has no room for must not become a scene that rays miss. In a process of its own, which the limit ends with.
+TEST(OccludersDeathTest, MemoryThatIsTooSmall_IsBadAlloc) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "address sanitizer needs more memory than a limit leaves";
+#endif
+  EXPECT_EXIT(build_in_little_memory(), ::testing::ExitedWithCode(0), "");
+}
 
 TEST(AreaTruth, DoesNotDependOnThreads) {
   const Occluders occluders(half_plane());
