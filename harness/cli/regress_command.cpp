@@ -8,6 +8,7 @@
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/experiment_loader.h"
+#include "harness/cli/interruption.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -27,7 +28,10 @@ struct RegressArguments {
 std::vector<std::string> split_names(const std::string& text) {
   std::vector<std::string> names;
   std::stringstream stream(text);
-  for (std::string name; std::getline(stream, name, ',');) names.push_back(name);
+  for (std::string name; std::getline(stream, name, ',');) {
+    const std::size_t begin = name.find_first_not_of(' ');
+    if (begin != std::string::npos) names.push_back(name.substr(begin, name.find_last_not_of(' ') - begin + 1));
+  }
   return names;
 }
 
@@ -46,7 +50,12 @@ regress::RegressOptions make_options(const RegressArguments& a, const std::vecto
 }
 
 int regress(const RegressArguments& arguments, const std::vector<std::string>& words) {
-  const regress::RegressOutcome outcome = load_and_run_regress(make_options(arguments, words));
+  const regress::RegressOptions options = make_options(arguments, words);
+  regress::RegressOutcome outcome;
+  {
+    const Interruption interruption(options.accept ? options.baseline : options.out, kStoppedAdvice);
+    outcome = load_and_run_regress(options);
+  }
   fmt::print("{}", arguments.json ? outcome.json : outcome.text);
   if (outcome.failure.empty()) return 0;
   throw Error(ErrorKind::kLimit, outcome.failure);

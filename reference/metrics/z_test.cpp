@@ -8,7 +8,7 @@
 namespace shadowbench::reference {
 
 double find_p(const NoisyDifference& d) {
-  if (!std::isfinite(d.difference)) return 0.0;
+  if (!std::isfinite(d.difference) || !std::isfinite(d.variance)) return 0.0;
   if (d.difference == 0.0) return 1.0;
   if (d.variance <= 0.0) return 0.0;
   return 2.0 * gsl_cdf_tdist_Q(std::abs(d.difference) / std::sqrt(d.variance), d.degrees_of_freedom);

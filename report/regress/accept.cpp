@@ -40,65 +40,79 @@ BaselineCell Accepter::make_cell(const ActualCell& cell) const {
           cell.origin, std::move(values)};
 }
 
+/// What cannot be read of a file stays unreadable, but for what is taken over now.
 CellFile& Accepter::file(const std::string& scene, const std::string& filter) {
   const auto [place, is_new] = files_.try_emplace({scene, filter});
   if (!is_new) return place->second;
   try {
     place->second = baseline_.read_cells(scene, filter);
+    return place->second;
   } catch (const Error&) {
-    place->second = {};  // what cannot be read is replaced
+    place->second = {};
+  }
+  try {
+    place->second.cells = baseline_.read_numbers(scene, filter);
+  } catch (const Error& error) {
+    lines_.push_back(fmt::format("lost: every other cell of {} {}: {}", scene, filter, error.what()));
   }
   return place->second;
 }
 
-void Accepter::take(const Comparison& comparison, const ActualCell& cell) {
-  if (!comparison.failed() || cell.images.visibility.empty()) return;
+std::map<std::string, TruthImages>& Accepter::truths(const std::string& scene) {
+  const auto [place, is_new] = truths_.try_emplace(scene);
+  if (!is_new) return place->second;
+  try {
+    place->second = baseline_.read_truths(scene);
+  } catch (const Error& error) {
+    lines_.push_back(fmt::format("lost: the truth of every other view of {}: {}", scene, error.what()));
+  }
+  return place->second;
+}
+
+void Accepter::take(Comparison& comparison, const ActualCell& cell) {
+  if (!comparison.differs() || cell.images.visibility.empty()) return;
   CellFile& own = file(cell.record.scene, cell.record.filter);
   BaselineCell taken = make_cell(cell);
   const auto same = std::find_if(own.cells.begin(), own.cells.end(), [&](const BaselineCell& each) { return each.key == taken.key; });
   if (same == own.cells.end()) own.cells.push_back(std::move(taken));
   else *same = std::move(taken);
-  // Cells whose images were lost can no longer be compared, and leave with them.
   own.images[cell.record.key] = keep_images(cell.images);
-  std::erase_if(own.cells, [&](const BaselineCell& each) { return !own.images.contains(each.key) || own.images.at(each.key).visibility.empty(); });
   log(comparison, comparison.outcome == Outcome::kExtra ? "added" : "replaced");
 }
 
-void Accepter::take(const Comparison& comparison, const ActualTruth& truth) {
-  if (!comparison.failed()) return;
-  const std::string& scene = truth.record.scene;
-  if (!truths_.contains(scene)) {
-    try {
-      truths_[scene] = baseline_.read_truths(scene);
-    } catch (const Error&) {
-      truths_[scene] = {};
-    }
+void Accepter::take(Comparison& comparison, const ActualTruth& truth) {
+  if (!comparison.differs()) return;
+  truths(truth.record.scene)[comparison.key] = truth.images;
+  log(comparison, comparison.outcome == Outcome::kExtra ? "added" : "replaced");
+}
+
+void Accepter::drop(Comparison& comparison) {
+  if (comparison.filter == kTruthName) {
+    truths(comparison.scene).erase(comparison.key);
+  } else {
+    CellFile& own = file(comparison.scene, comparison.filter);
+    std::erase_if(own.cells, [&](const BaselineCell& each) { return each.key == comparison.key; });
   }
-  truths_[scene][comparison.key] = truth.images;
-  log(comparison, comparison.outcome == Outcome::kExtra ? "added" : "replaced");
-}
-
-void Accepter::drop(const Comparison& comparison) {
-  CellFile& own = file(comparison.scene, comparison.filter);
-  std::erase_if(own.cells, [&](const BaselineCell& each) { return each.key == comparison.key; });
   log(comparison, "removed");
 }
 
-void Accepter::log(const Comparison& comparison, const std::string& what) {
+void Accepter::log(Comparison& comparison, const std::string& what) {
+  comparison.accepted = true;
   std::string line = fmt::format("{}: {} {} ({})", what, comparison.scene, comparison.label, comparison.settings);
   for (const Finding& finding : comparison.findings) line += "\n  - " + finding.text;
   lines_.push_back(std::move(line));
 }
 
 std::vector<std::string> Accepter::write(const Origin& origin) {
+  // Tolerances and log come first: whatever is written is then known to be a baseline, and why it is so.
+  if (!baseline_.exists()) report::write_text_file(baseline_.tolerance_file(), write_tolerances(tolerances_));
   if (lines_.empty()) return lines_;
-  for (const auto& [name, own] : files_) baseline_.write_cells(name.first, name.second, own);
-  for (const auto& [scene, truths] : truths_) baseline_.write_truths(scene, truths);
-  if (!baseline_.exists()) report::write_text_file(baseline_.tolerance_file(), write_tolerances(Tolerances()));
   std::string entry = fmt::format("## {:%Y-%m-%d %H:%M} UTC, program {}, {}, seed {}\n\n", fmt::gmtime(std::chrono::system_clock::now()), origin.commit, origin.renderer, origin.seed);
   for (const std::string& line : lines_) entry += "- " + line + "\n";
   const std::string before = read_log(baseline_.log_file());
   report::write_text_file(baseline_.log_file(), (before.empty() ? "# What was accepted into this baseline\n" : before) + "\n" + entry);
+  for (const auto& [name, own] : files_) baseline_.write_cells(name.first, name.second, own);
+  for (const auto& [scene, truths] : truths_) baseline_.write_truths(scene, truths);
   return lines_;
 }
 

@@ -13,12 +13,12 @@ class Accepter {
  public:
   Accepter(const Baseline& baseline, const Tolerances& tolerances) : baseline_(baseline), tolerances_(tolerances) {}
 
-  /// Takes a cell over. Does nothing for one that is the same, or that the run could not measure.
-  void take(const Comparison& comparison, const ActualCell& cell);
-  void take(const Comparison& comparison, const ActualTruth& truth);
+  /// Takes a cell over, and notes that. Does nothing for one that is the same, or that the run could not measure.
+  void take(Comparison& comparison, const ActualCell& cell);
+  void take(Comparison& comparison, const ActualTruth& truth);
 
-  /// Lets a cell go that the run lacks.
-  void drop(const Comparison& comparison);
+  /// Lets a cell, or a truth, go that the run lacks.
+  void drop(Comparison& comparison);
 
   /// Writes what was taken, and one entry into the log. Gives the entry's lines.
   /// Throws Error(kOutput).
@@ -33,7 +33,8 @@ class Accepter {
 
   BaselineCell make_cell(const ActualCell& cell) const;
   CellFile& file(const std::string& scene, const std::string& filter);
-  void log(const Comparison& comparison, const std::string& what);
+  std::map<std::string, TruthImages>& truths(const std::string& scene);
+  void log(Comparison& comparison, const std::string& what);
 };
 
 }  // namespace shadowbench::regress

@@ -11,6 +11,7 @@
 #include "report/file_name.h"
 #include "report/json_values.h"
 #include "report/picture_io.h"
+#include "report/temporary_files.h"
 
 namespace shadowbench::regress {
 namespace {
@@ -53,7 +54,7 @@ std::vector<BaselineCell> read_cell_list(const std::filesystem::path& file) {
   try {
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw Error(ErrorKind::kInput, "the file cannot be read; restore it, or accept a run again", file.string());
-    const json root = json::parse(stream);
+    const json root = report::parse_json(stream);
     if (root.at("baseline_version") != kBaselineVersion) throw std::invalid_argument(fmt::format("it is of another version than {}", kBaselineVersion));
     std::vector<BaselineCell> cells;
     for (const json& cell : root.at("cells")) cells.push_back(from_json(cell));
@@ -72,7 +73,9 @@ report::Part make_part(const std::string& key, const char* id, const report::Ima
 std::vector<report::Part> make_parts(const CellFile& file) {
   std::vector<report::Part> parts;
   for (const BaselineCell& cell : file.cells) {
-    const CellImages& images = file.images.at(cell.key);
+    const auto found = file.images.find(cell.key);
+    if (found == file.images.end() || found->second.visibility.empty()) continue;
+    const CellImages& images = found->second;
     parts.push_back(make_part(cell.key, kVisibility, images.visibility));
     for (const report::UncertaintyImage& each : report::list_uncertainty_images()) {
       const report::Image& image = images.uncertainty.*each.image;
@@ -93,6 +96,18 @@ void keep_part(std::map<std::string, CellImages>& images, report::Part part) {
   }
 }
 
+/// The entries of a folder, sorted; none where there is no such folder.
+std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> entries;
+  std::error_code error;
+  for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) entries.push_back(at->path());
+  if (error && error != std::errc::no_such_file_or_directory) {
+    throw Error(ErrorKind::kInput, fmt::format("the folder cannot be listed ({}); check its rights", error.message()), folder.string());
+  }
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
 void remove_file(const std::filesystem::path& file) {
   std::error_code error;
   std::filesystem::remove(file, error);
@@ -105,7 +120,12 @@ std::string truth_key(const report::CellRecord& cell) {
   return fmt::format("{} {}x{} {}", report::make_file_stem(cell.view), cell.width, cell.height, cell.light);
 }
 
-bool Baseline::exists() const { return std::filesystem::exists(tolerance_file()); }
+bool Baseline::exists() const {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(folder_, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_directory(status)) throw Error(ErrorKind::kInput, "this is a file: name the folder of a baseline", folder_.string());
+  return std::filesystem::exists(tolerance_file(), error);
+}
 
 std::filesystem::path Baseline::stem(const std::string& scene, const std::string& filter) const {
   return folder_ / report::make_file_stem(scene) / report::make_file_stem(filter);
@@ -113,27 +133,28 @@ std::filesystem::path Baseline::stem(const std::string& scene, const std::string
 
 Baseline::Index Baseline::read_index() const {
   Index index;
-  std::error_code ignored;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_, ignored)) {
-    if (entry.path().extension() == ".json") files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  for (const std::filesystem::path& file : files) {
-    try {
-      for (BaselineCell& cell : read_cell_list(file)) index.cells.push_back(std::move(cell));
-    } catch (const Error& error) {
-      index.unreadable[(file.parent_path().filename() / file.stem()).string()] = error.what();
+  for (const std::filesystem::path& folder : list_folder(folder_)) {
+    if (!std::filesystem::is_directory(folder)) continue;
+    for (const std::filesystem::path& file : list_folder(folder)) {
+      if (file.extension() != ".json" || report::is_temporary(file)) continue;
+      try {
+        for (BaselineCell& cell : read_cell_list(file)) index.cells.push_back(std::move(cell));
+      } catch (const Error& error) {
+        index.unreadable[(folder.filename() / file.stem()).string()] = error.what();
+      }
     }
   }
   return index;
 }
 
+std::vector<BaselineCell> Baseline::read_numbers(const std::string& scene, const std::string& filter) const {
+  const std::filesystem::path file = with_extension(stem(scene, filter), ".json");
+  return std::filesystem::exists(file) ? read_cell_list(file) : std::vector<BaselineCell>();
+}
+
 CellFile Baseline::read_cells(const std::string& scene, const std::string& filter) const {
-  const std::filesystem::path numbers = with_extension(stem(scene, filter), ".json");
-  CellFile file;
-  if (!std::filesystem::exists(numbers)) return file;
-  file.cells = read_cell_list(numbers);
+  CellFile file{read_numbers(scene, filter), {}};
+  if (file.cells.empty()) return file;
   for (report::Part& part : report::read_exr(with_extension(stem(scene, filter), ".exr")).parts) keep_part(file.images, std::move(part));
   return file;
 }
@@ -147,7 +168,9 @@ void Baseline::write_cells(const std::string& scene, const std::string& filter, 
   }
   ordered_json root = {{"baseline_version", kBaselineVersion}, {"cells", ordered_json::array()}};
   for (const BaselineCell& cell : cells.cells) root["cells"].push_back(to_json(cell));
-  report::write_exr(images, make_parts(cells), {});
+  const std::vector<report::Part> parts = make_parts(cells);
+  if (parts.empty()) remove_file(images);
+  else report::write_exr(images, parts, {});
   report::write_text_file(numbers, root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }
 
@@ -164,12 +187,17 @@ std::map<std::string, TruthImages> Baseline::read_truths(const std::string& scen
 }
 
 void Baseline::write_truths(const std::string& scene, const std::map<std::string, TruthImages>& truths) const {
+  const std::filesystem::path file = with_extension(stem(scene, kTruthStem), ".exr");
+  if (truths.empty()) {
+    remove_file(file);
+    return;
+  }
   std::vector<report::Part> parts;
   for (const auto& [key, truth] : truths) {
     parts.push_back(make_part(key, "area", truth.area));
     parts.push_back(make_part(key, "standard_error", truth.standard_error));
   }
-  report::write_exr(with_extension(stem(scene, kTruthStem), ".exr"), parts, {});
+  report::write_exr(file, parts, {});
 }
 
 }  // namespace shadowbench::regress

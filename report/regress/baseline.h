@@ -44,6 +44,9 @@ struct TruthImages {
   report::Image standard_error;
 };
 
+/// Stands for the filter in comparisons of a view's truth.
+inline constexpr const char* kTruthName = "truth";
+
 /// Names a view's truth in a baseline: of all that it depends on, what tells truths of one scene apart.
 std::string truth_key(const report::CellRecord& cell);
 
@@ -65,20 +68,26 @@ class Baseline {
   const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path tolerance_file() const { return folder_ / "baseline.toml"; }
   std::filesystem::path log_file() const { return folder_ / "accepted.md"; }
+  /// Throws Error(kInput) where the path is no folder.
   bool exists() const;
 
   /// Lists the cells of all filters, and files that cannot be read, with the reason.
+  /// Throws Error(kInput) where a folder cannot be listed.
   struct Index {
     std::vector<BaselineCell> cells;
     std::map<std::string, std::string> unreadable;  ///< "SCENE/FILTER" to reason
   };
   Index read_index() const;
 
+  /// Reads the cells of a filter without their images; nothing where there are none.
+  /// Throws Error(kInput) where they cannot be read.
+  std::vector<BaselineCell> read_numbers(const std::string& scene, const std::string& filter) const;
+
   /// Reads the cells of a filter, and their images; nothing where there are none.
   /// Throws Error(kInput) where they cannot be read.
   CellFile read_cells(const std::string& scene, const std::string& filter) const;
 
-  /// Writes the cells of a filter; removes the files where there are none left. Throws Error(kOutput).
+  /// Writes the cells of a filter, those without images too; removes the files where there are none left. Throws Error(kOutput).
   void write_cells(const std::string& scene, const std::string& filter, const CellFile& cells) const;
 
   /// The same for the truths of a scene, by truth_key().

@@ -1,5 +1,7 @@
 #include "report/regress/compared_metrics.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "report/record_fields.h"
@@ -81,10 +83,14 @@ const std::vector<std::string>& list_compared_ratios() {
 ComparedValues read_values(const report::CellRecord& cell) {
   ComparedValues values;
   report::visit_cell_fields(cell, ValueReader{values});
+  if (!cell.time_ms.lookup || cell.time_ms.lookup->n < kFewestRounds) values.ratios.clear();
   return values;
 }
 
 std::string find_absence(const report::CellRecord& cell, const std::string& path) {
+  if (path.starts_with("ratio_to_none.") && cell.time_ms.lookup && cell.time_ms.lookup->n < kFewestRounds) {
+    return fmt::format("it was timed over {} rounds, and {} are the fewest that give an interval", cell.time_ms.lookup->n, kFewestRounds);
+  }
   for (std::string name = path;; name.resize(name.rfind('.'))) {
     if (const auto reason = cell.absent.find(name); reason != cell.absent.end()) return reason->second;
     if (name.find('.') == std::string::npos) return "not measured";

@@ -53,6 +53,7 @@ class CellComparer {
     const std::int64_t excused = change.excused_flips + change.excused_rounding;
     limit(kExcused, static_cast<double>(excused - change.excused_expected) / pixels,
           fmt::format("{} pixels are excused, {} in the baseline alone", excused, change.excused_expected));
+    limit(kExcusedChanged, static_cast<double>(change.excused_changed) / pixels, fmt::format("{} excused pixels differ", change.excused_changed));
     if (change.excused_changed > 0) {
       result_.notes.push_back(fmt::format("{} excused pixels differ: a comparison may flip at {} pixels, rounding moves {} by 1/32 or more", change.excused_changed,
                                           change.excused_flips, change.excused_rounding));
@@ -95,7 +96,8 @@ class CellComparer {
     const auto before = expected_.values.numbers.find(metric.path);
     const auto now = values.numbers.find(metric.path);
     if (before == expected_.values.numbers.end()) {
-      if (now != values.numbers.end()) result_.notes.push_back(fmt::format("{} is new: {}", metric.path, format_number(now->second)));
+      if (now == values.numbers.end()) return;
+      result_.add(Outcome::kChanged, {metric.path, std::nullopt, now->second, allowed.limit, fmt::format("{} is {}, and missing in the baseline", metric.path, format_number(now->second))});
       return;
     }
     if (now == values.numbers.end()) {
@@ -107,6 +109,10 @@ class CellComparer {
   }
 
   void compare_values(const ComparedMetric& metric, double before, double now, const Tolerance& allowed) {
+    if (metric.path.starts_with("artefact.") && has_spread() && !same_seed()) {
+      result_.notes.push_back(fmt::format("{} is not compared with that of another seed: {}, was {}", metric.path, format_number(now), format_number(before)));
+      return;
+    }
     const double limit = allowed.limit + (metric.role == MetricRole::kError ? explained_change() : 0.0);
     if (std::abs(now - before) <= limit) return;
     const bool error = metric.role == MetricRole::kError;
@@ -118,7 +124,8 @@ class CellComparer {
                 {metric.path, before, now, limit, fmt::format("{}: {}, was {} ({}; limit {}: {})", metric.path, format_number(now), format_number(before), kind, format_number(limit), allowed.reason)});
   }
 
-  /// What excused pixels, and the noise of truth and filter, may move a mean of errors by.
+  /// What excused pixels, and the noise of truth and filter, may move a mean of errors by. The truth of one seed is the same, but for
+  /// what another machine's instructions make of its rays.
   double explained_change() const {
     const auto find = [&](const std::map<std::string, double>& numbers, const char* path) {
       const auto found = numbers.find(path);
@@ -126,7 +133,7 @@ class CellComparer {
     };
     const double receivers = std::max(find(expected_.values.numbers, "receivers"), 1.0);
     const double excused = result_.pixels ? std::sqrt(result_.pixels->excused_squares / receivers) : 0.0;
-    const double noise = 3.0 * std::hypot(find(expected_.values.numbers, "truth.se"), actual_.record.truth.se.value_or(0.0));
+    const double noise = same_seed() && actual_.origin.machine == expected_.origin.machine ? 0.0 : 3.0 * std::hypot(find(expected_.values.numbers, "truth.se"), actual_.record.truth.se.value_or(0.0));
     return excused + noise + (has_spread() && !same_seed() ? spread_of_errors(receivers) : 0.0);
   }
 
@@ -140,7 +147,10 @@ class CellComparer {
   }
 
   void compare_ratios(const ComparedValues& values) {
-    if (expected_.values.ratios.empty()) return;
+    if (expected_.values.ratios.empty()) {
+      if (!values.ratios.empty()) result_.notes.push_back("times are not compared: the baseline has none");
+      return;
+    }
     if (actual_.origin.machine != expected_.origin.machine || actual_.origin.renderer != expected_.origin.renderer) {
       result_.notes.push_back(fmt::format("times are not compared: the baseline is of {} on {}", expected_.origin.renderer, expected_.origin.machine));
       return;
@@ -165,12 +175,42 @@ std::string describe_cell(const std::string& view, int map_size, int width, int 
   return fmt::format("view {}, map {}, {} x {}", view, map_size, width, height);
 }
 
-/// Says why two sets of images cannot be compared pixel by pixel; empty where they can.
+bool same_size(const report::Image& a, const report::Image& b) { return a.width == b.width && a.height == b.height; }
+
+/// Says why two images cannot be compared pixel by pixel; empty where they can.
 std::string find_mismatch(const report::Image& actual, const report::Image& expected) {
   if (expected.empty()) return "the baseline has no image of it";
   if (actual.empty()) return "the run has no image of it";
-  if (actual.width == expected.width && actual.height == expected.height) return "";
+  if (same_size(actual, expected)) return "";
   return fmt::format("the image has {} x {} pixels, and {} x {} in the baseline", actual.width, actual.height, expected.width, expected.height);
+}
+
+/// Says what is wrong with one cell's images; empty where nothing is.
+std::string find_damage(const CellImages& images, const char* whose) {
+  const report::UncertaintyImages& uncertainty = images.uncertainty;
+  for (const report::UncertaintyImage& each : report::list_uncertainty_images()) {
+    const report::Image& image = uncertainty.*each.image;
+    if (!image.empty() && !same_size(image, images.visibility)) return fmt::format("{} image '{}' has another size than its visibility", whose, each.id);
+  }
+  if (uncertainty.seed_mean.empty() != uncertainty.seed_deviation.empty()) return fmt::format("{} images lack the mean or the deviation over seeds", whose);
+  return "";
+}
+
+/// Says why a cell cannot be compared; empty where it can.
+std::string find_obstacle(const ActualCell& actual, const CellImages& expected) {
+  if (!actual.unreadable.empty()) return actual.unreadable;
+  for (const std::string& found : {find_mismatch(actual.images.visibility, expected.visibility), find_damage(actual.images, "the run's"), find_damage(expected, "the baseline's")}) {
+    if (!found.empty()) return found;
+  }
+  return "";
+}
+
+std::string find_obstacle(const TruthImages& actual, const TruthImages& expected) {
+  for (const auto member : {&TruthImages::area, &TruthImages::standard_error}) {
+    const std::string mismatch = find_mismatch(actual.*member, expected.*member);
+    if (!mismatch.empty()) return mismatch;
+  }
+  return same_size(actual.area, actual.standard_error) ? "" : "the truth and its standard error have other sizes";
 }
 
 }  // namespace
@@ -216,22 +256,20 @@ Comparison name_comparison(const BaselineCell& cell) {
 }
 
 Comparison compare_cell(const ActualCell& actual, const BaselineCell& expected, const CellImages& expected_images, const Tolerances& tolerances) {
-  const std::string mismatch = actual.unreadable.empty() ? find_mismatch(actual.images.visibility, expected_images.visibility) : actual.unreadable;
-  if (mismatch.empty()) return CellComparer(actual, expected, expected_images, tolerances).compare();
+  const std::string obstacle = find_obstacle(actual, expected_images);
+  if (obstacle.empty()) return CellComparer(actual, expected, expected_images, tolerances).compare();
   Comparison comparison = name_comparison(expected);
-  comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, mismatch});
+  comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, obstacle});
   return comparison;
 }
 
 Comparison compare_truth(const ActualTruth& actual, const TruthImages& expected, double level) {
   Comparison comparison = name_comparison(actual.record);
   comparison.key = truth_key(actual.record);
-  comparison.filter = comparison.label = "truth";
+  comparison.filter = comparison.label = kTruthName;
   comparison.settings = fmt::format("view {}, {} x {}", actual.record.view, actual.record.width, actual.record.height);
-  for (const auto member : {&TruthImages::area, &TruthImages::standard_error}) {
-    const std::string mismatch = find_mismatch(actual.images.*member, expected.*member);
-    if (mismatch.empty()) continue;
-    comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, mismatch});
+  if (const std::string obstacle = find_obstacle(actual.images, expected); !obstacle.empty()) {
+    comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, obstacle});
     return comparison;
   }
   const reference::PixelTest test = test_truth(actual.images, expected, level);

@@ -36,8 +36,10 @@ struct Comparison {
   std::vector<std::string> notes;      ///< what was not compared, and why
   std::optional<PixelChange> pixels;
   std::optional<std::string> picture;  ///< below the folder of the comparison
+  bool accepted = false;               ///< what differs has become the baseline
 
-  bool failed() const { return outcome != Outcome::kSame; }
+  bool differs() const { return outcome != Outcome::kSame; }
+  bool failed() const { return differs() && !accepted; }
   /// Notes a finding; the worse outcome stays.
   void add(Outcome worse, Finding finding);
 };

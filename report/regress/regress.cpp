@@ -1,6 +1,7 @@
 #include "report/regress/regress.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <fstream>
@@ -8,7 +9,10 @@
 #include <set>
 
 #include "filters/error.h"
+#include "filters/nearest_name.h"
 #include "report/file_name.h"
+#include "report/folder_lock.h"
+#include "report/json_values.h"
 #include "report/regress/accept.h"
 #include "report/regress/junit.h"
 #include "report/regress/regress_picture.h"
@@ -26,16 +30,21 @@ class Regression {
  public:
   explicit Regression(const RegressOptions& options)
       : options_(options), baseline_(options.baseline), run_(options.run, options.selection), accepter_(baseline_, tolerances_) {
-    if (baseline_.exists()) tolerances_ = read_tolerances(baseline_.tolerance_file());
+    const bool known = baseline_.exists();
+    if (options.accept) lock_.emplace(options.baseline);
+    if (known) tolerances_ = read_tolerances(baseline_.tolerance_file());
     else if (!options.accept) fail_without_baseline();
     index_ = baseline_.read_index();
+    require_known(options.selection.filters, "--filters", [](const auto& cell) { return cell.filter; });
+    require_known(options.selection.scenes, "--scene", [](const auto& cell) { return cell.scene; });
     std::erase_if(index_.cells, [&](const BaselineCell& cell) { return !options.selection.holds(cell.scene, cell.filter); });
-    if (run_.cells().empty() && index_.cells.empty()) throw Error(ErrorKind::kInput, "neither the run nor the baseline has a cell of these scenes and filters", options.run.string());
+    if (run_.cells().empty() && index_.cells.empty() && index_.unreadable.empty()) throw Error(ErrorKind::kInput, "neither the run nor the baseline has a cell", options.run.string());
   }
 
   RegressReport compare() {
     run_.visit([&](const ActualCell& cell) { compare_cell(cell); }, [&](const ActualTruth& truth) { compare_truth(truth); });
     find_missing();
+    find_missing_truths();
     name_unreadable_files();
     std::stable_sort(report_.comparisons.begin(), report_.comparisons.end(), is_worse);
     report_.options = options_;
@@ -53,6 +62,8 @@ class Regression {
   Baseline::Index index_;
   std::set<std::string> seen_;             ///< keys of the run's cells
   std::set<std::string> named_unreadable_;  ///< files of the baseline whose trouble a cell reports
+  std::set<std::string> seen_truths_;      ///< scene and key
+  std::optional<report::FolderLock> lock_;  ///< of a baseline that may change
   RegressReport report_;
   CellFile file_;  ///< of the last cell's scene and filter
   std::pair<std::string, std::string> file_name_;
@@ -60,6 +71,21 @@ class Regression {
 
   [[noreturn]] void fail_without_baseline() const {
     throw Error(ErrorKind::kInput, fmt::format("there is no baseline here (no baseline.toml); make one: {}", make_accept_command(options_)), options_.baseline.string());
+  }
+
+  /// A misspelt name would take cells out of the comparison, and nobody would notice.
+  template <class Name>
+  void require_known(const std::vector<std::string>& chosen, const char* option, const Name& name_of_cell) const {
+    std::vector<std::string> known;
+    for (const report::CellRecord& cell : run_.all_cells()) known.push_back(name_of_cell(cell));
+    for (const BaselineCell& cell : index_.cells) known.push_back(name_of_cell(cell));
+    std::sort(known.begin(), known.end());
+    known.erase(std::unique(known.begin(), known.end()), known.end());
+    for (const std::string& name : chosen) {
+      if (std::binary_search(known.begin(), known.end(), name)) continue;
+      const auto near = nearest_name(name, known);
+      throw Error(ErrorKind::kInput, fmt::format("{}: neither the run nor the baseline has '{}'{}; they have: {}", option, name, near ? fmt::format("; did you mean '{}'?", *near) : "", fmt::join(known, ", ")));
+    }
   }
 
   static bool is_worse(const Comparison& a, const Comparison& b) {
@@ -99,7 +125,7 @@ class Regression {
     } else {
       add_unknown(comparison, cell);
     }
-    accepter_.take(comparison, cell);
+    if (options_.accept) accepter_.take(comparison, cell);
     draw(comparison, images.visibility, cell.images.visibility);
     report_.comparisons.push_back(std::move(comparison));
   }
@@ -114,6 +140,7 @@ class Regression {
   }
 
   void compare_truth(const ActualTruth& truth) {
+    seen_truths_.insert(truth.record.scene + "/" + truth_key(truth.record));
     Comparison comparison;
     TruthImages expected;
     try {
@@ -129,7 +156,7 @@ class Regression {
       comparison = regress::compare_truth(truth, truth.images, 1.0);
       comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, error.what()});
     }
-    accepter_.take(comparison, truth);
+    if (options_.accept) accepter_.take(comparison, truth);
     draw(comparison, expected.area, truth.images.area);
     report_.comparisons.push_back(std::move(comparison));
   }
@@ -150,6 +177,35 @@ class Regression {
       if (options_.remove_missing) accepter_.drop(comparison);
       report_.comparisons.push_back(std::move(comparison));
     }
+  }
+
+  void find_missing_truths() {
+    std::set<std::string> scenes;
+    for (const BaselineCell& cell : index_.cells) scenes.insert(cell.scene);
+    for (const std::string& scene : scenes) {
+      for (const std::string& key : list_truths(scene)) {
+        if (seen_truths_.contains(scene + "/" + key)) continue;
+        Comparison comparison;
+        comparison.key = key;
+        comparison.scene = scene;
+        comparison.filter = comparison.label = kTruthName;
+        comparison.settings = key;
+        comparison.add(Outcome::kMissing, {"", {}, {}, {}, "the run has no such truth"});
+        if (options_.remove_missing) accepter_.drop(comparison);
+        report_.comparisons.push_back(std::move(comparison));
+      }
+    }
+  }
+
+  /// Of a file that cannot be read, compare_truth() has told.
+  std::vector<std::string> list_truths(const std::string& scene) const {
+    std::vector<std::string> keys;
+    try {
+      for (const auto& [key, truth] : baseline_.read_truths(scene)) keys.push_back(key);
+    } catch (const Error&) {
+      keys.clear();
+    }
+    return keys;
   }
 
   /// Files of the baseline that no cell of the run stands for.
@@ -207,9 +263,8 @@ RegressReport run_regress(const RegressOptions& options) {
 
 RegressOutcome summarise(const RegressReport& report) {
   RegressOutcome outcome{make_regress_text(report), make_regress_json(report), ""};
-  const int left = report.failed() - static_cast<int>(report.accepted.size());
-  if (left <= 0) return outcome;
-  outcome.failure = report.options.accept ? fmt::format("{} cells could not be accepted; {}", left, describe_worst(report))
+  if (report.failed() == 0) return outcome;
+  outcome.failure = report.options.accept ? fmt::format("{} could not be accepted; {}", report.failed(), describe_worst(report))
                                           : fmt::format("{}; worst: {}", describe_counts(report), describe_worst(report));
   return outcome;
 }

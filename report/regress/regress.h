@@ -41,9 +41,9 @@ struct RegressOutcome {
 };
 
 /// Compares a run with its baseline, and writes regress.json, a picture of each cell that moved, and what else was asked for.
-/// Throws Error(kInput) where run or tolerances cannot be read, or there is no baseline and nothing is to be accepted;
-/// Error(kOutput).
-/// Cost: memory of one image file of the run, and of one of the baseline.
+/// Throws Error(kInput) where run or tolerances cannot be read, where there is no baseline and nothing is to be accepted, or for a
+/// name that is chosen and nowhere found; Error(kOutput), also where another process accepts into the same baseline.
+/// Cost: memory of one image file of the run, of one of the baseline, and of all that is accepted.
 RegressReport run_regress(const RegressOptions& options);
 
 /// Sums a comparison up. What was accepted is no failure; what could not be accepted is.

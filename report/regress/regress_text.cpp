@@ -49,6 +49,7 @@ ordered_json to_json(const PixelChange& change) {
 ordered_json to_json(const Comparison& comparison) {
   ordered_json json = {{"outcome", name_of(comparison.outcome)}, {"key", comparison.key}, {"scene", comparison.scene}, {"view", comparison.view},
                        {"filter", comparison.filter}, {"label", comparison.label}, {"settings", comparison.settings}};
+  json["accepted"] = comparison.accepted;
   json["findings"] = ordered_json::array();
   for (const Finding& finding : comparison.findings) {
     json["findings"].push_back({{"metric", finding.metric}, {"expected", optional_json(finding.expected)}, {"actual", optional_json(finding.actual)},
@@ -77,7 +78,7 @@ std::string describe_counts(const RegressReport& report) {
 }
 
 std::string describe_worst(const RegressReport& report) {
-  const Comparison& worst = report.comparisons.front();
+  const Comparison& worst = *std::find_if(report.comparisons.begin(), report.comparisons.end(), [](const Comparison& each) { return each.failed(); });
   return fmt::format("{} is {}: {}", name_cell(worst), name_of(worst.outcome), worst.findings.front().text);
 }
 
@@ -85,7 +86,7 @@ std::string make_regress_text(const RegressReport& report) {
   std::string text;
   int listed = 0;
   for (const Comparison& comparison : report.comparisons) {
-    if (!comparison.failed()) continue;
+    if (!comparison.differs()) continue;
     if (++listed > kMostListed) continue;
     text += fmt::format("{}: {}\n{}", name_of(comparison.outcome), name_cell(comparison), list_findings(comparison));
     if (comparison.picture) text += fmt::format("  picture: {}\n", (report.options.out / *comparison.picture).string());

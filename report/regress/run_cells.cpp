@@ -68,7 +68,7 @@ std::map<std::string, std::vector<const report::CellRecord*>> group_by_file(cons
 bool Selection::holds(const std::string& scene, const std::string& filter) const { return chosen(scenes, scene) && chosen(filters, filter); }
 
 RunCells::RunCells(const std::filesystem::path& folder, const Selection& selection)
-    : folder_(folder), results_(report::read_results(folder / "results.json")) {
+    : folder_(folder), results_(report::read_results(folder / "results.json")), all_(results_.cells) {
   std::erase_if(results_.cells, [&](const report::CellRecord& cell) { return !selection.holds(cell.scene, cell.filter); });
 }
 

@@ -27,6 +27,7 @@ class RunCells {
 
   const report::RunRecord& run() const { return results_.run; }
   const std::vector<report::CellRecord>& cells() const { return results_.cells; }
+  const std::vector<report::CellRecord>& all_cells() const { return all_; }  ///< those that are not compared, too
 
   /// Hands out every cell, and the truth of every view once, where there is one.
   void visit(const std::function<void(const ActualCell&)>& on_cell, const std::function<void(const ActualTruth&)>& on_truth) const;
@@ -34,6 +35,7 @@ class RunCells {
  private:
   std::filesystem::path folder_;
   report::Results results_;
+  std::vector<report::CellRecord> all_;
 
   Origin origin() const;
 };

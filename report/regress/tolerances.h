@@ -19,6 +19,7 @@ inline constexpr const char* kShare = "visibility.share";      ///< share of the
 inline constexpr const char* kLargest = "visibility.max";      ///< largest difference of a pixel that is not excused
 inline constexpr const char* kMean = "visibility.mean";        ///< mean magnitude of the differences of pixels not excused
 inline constexpr const char* kExcused = "visibility.excused";  ///< share of pixels excused, more than the baseline excuses
+inline constexpr const char* kExcusedChanged = "visibility.excused_changed";  ///< share of pixels excused that do differ
 inline constexpr const char* kLevel = "noise.level";           ///< probability that chance alone fails a test of noise
 
 /// The tolerances of a baseline: those of all filters, and what single filters have in their place.

@@ -3,8 +3,10 @@
 //   shadowbench run golden --out OUT && shadowbench regress OUT --baseline tests/golden --accept
 
 #include <csignal>
+#include <map>
 
 #include "report/regress/baseline.h"
+#include "report/regress/noise_test.h"
 #include "tests/harness/cli/program.h"
 #include "tests/harness/render/bench_fixture.h"
 
@@ -75,6 +77,32 @@ TEST_P(GoldenOfScene, NoFilterPassesAsAnother) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BuiltIn, GoldenOfScene, ::testing::ValuesIn(builtin_scenes()), [](const auto& each) { return each.param; });
+
+/// Says whether a filter's image is found not to be one of a stochastic filter's, drawn with another seed.
+bool is_told_apart(const regress::CellFile& expected, const report::Image& actual, double level) {
+  const report::UncertaintyImages& spread = expected.images.begin()->second.uncertainty;
+  const regress::SpreadTest test = regress::test_spread(actual, spread, expected.cells.front().values.numbers.at("cost.fetches"), level);
+  return test.pixels.beyond + test.blocks.beyond > 0;
+}
+
+/// Noise hides small differences: one small picture does not tell every filter from it, but the scenes together do.
+TEST(GoldenOfAllScenes, NoFilterPassesAsNoise) {
+  const regress::Baseline baseline(kBaseline);
+  const double level = regress::read_tolerances(baseline.tolerance_file()).find("", regress::kLevel).limit;
+  std::map<std::pair<std::string, std::string>, int> told_apart;
+  for (const std::string& scene : builtin_scenes()) {
+    for (const std::string& expected : filter_ids()) {
+      const regress::CellFile file = baseline.read_cells(scene, expected);
+      if (file.images.begin()->second.uncertainty.seed_mean.empty()) continue;
+      for (const std::string& actual : filter_ids()) {
+        if (actual == expected) continue;
+        told_apart[{actual, expected}] += is_told_apart(file, baseline.read_cells(scene, actual).images.begin()->second.visibility, level) ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_FALSE(told_apart.empty());
+  for (const auto& [pair, scenes] : told_apart) EXPECT_GE(scenes, 3) << pair.first << " passes as noise of " << pair.second;
+}
 
 }  // namespace
 }  // namespace shadowbench::test

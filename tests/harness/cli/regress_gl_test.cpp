@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "report/folder_lock.h"
 #include "tests/harness/cli/program.h"
 
 namespace shadowbench::test {
@@ -17,24 +18,16 @@ class Regress : public ProgramTest {
  protected:
   /// A run of two filters on one scene, small; no time counts.
   void draw(const std::string& out, const std::string& options = "--filters none,pcf2x2") const {
-    const Outcome outcome = run("run --gl osmesa --scene cubes --size 96x54 --map-size 128 --rounds 1 --pad-texels 4 --uncertainty " + options + " --out " + out);
+    const Outcome outcome = run("run --gl osmesa --scene cubes --size 96x54 --rounds 1 --pad-texels 4 --uncertainty " + options + (options.find("--map-size") == std::string::npos ? " --map-size 128" : "") + " --out " + out);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
 
   Outcome compare(const std::string& out, const std::string& options = "") const { return run("regress " + out + " --baseline base " + options); }
 
   void make_baseline() {
-    write_tolerances();
     draw("a");
     ASSERT_EQ(compare("a", "--accept").exit_code, 0);
     ASSERT_EQ(compare("a").exit_code, 0);
-  }
-
-  void write_tolerances() const {
-    std::filesystem::create_directories(folder() / "base");
-    std::string text;
-    for (const char* ratio : {"lookup", "static", "moving"}) text += std::string("[all.\"ratio_to_none.") + ratio + "\"]\nlimit = inf\nreason = \"one round\"\n";
-    write("base/baseline.toml", text);
   }
 
   nlohmann::json report(const std::string& out) const { return nlohmann::json::parse(read_text(folder() / out / "regress" / "regress.json")); }
@@ -78,7 +71,6 @@ TEST_F(Regress, OneTexelOffset_IsCaught_WithItsPicture) {
   const std::string first = "vec2(-0.5, -0.5)";
   ASSERT_NE(shifted.find(first), std::string::npos);
   shifted.replace(shifted.find(first), first.size(), "vec2(0.5, -0.5)");
-  write_tolerances();
   write("my_tent.glsl", tent);
   draw("a", "--filters none --filter-file my_tent.glsl");
   ASSERT_EQ(compare("a", "--accept").exit_code, 0);
@@ -156,6 +148,50 @@ TEST_F(Regress, UnreadableBaseline_Fails_AndCanBeReplaced) {
   EXPECT_EQ(compare("b", "--filters none").exit_code, 0);
 }
 
+/// What an accept that was killed leaves behind must not keep the next one from its work.
+TEST_F(Regress, HalfAcceptedBaseline_IsMadeWhole) {
+  make_baseline();
+  std::filesystem::remove(folder() / "base/baseline.toml");
+  EXPECT_EQ(compare("a").exit_code, 3);
+  EXPECT_EQ(compare("a", "--accept").exit_code, 0);
+  EXPECT_EQ(compare("a").exit_code, 0);
+  const std::string half = "base/cubes/none.shadowbench-tmp-1.json";
+  write(half, "{");
+  EXPECT_EQ(compare("a").exit_code, 0);
+  EXPECT_EQ(compare("a", "--accept").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder() / half));
+}
+
+TEST_F(Regress, UnreadableFile_KeepsTheCellsThatWereNotCompared_Unreadable) {
+  draw("a", "--filters none,pcf2x2 --map-size 64,128");
+  ASSERT_EQ(compare("a", "--accept").exit_code, 0);
+  cut("base/cubes/pcf2x2.exr");
+  draw("b", "--filters none,pcf2x2 --map-size 128");
+  EXPECT_EQ(compare("b", "--accept").exit_code, 1);
+  const Outcome later = compare("a");
+  EXPECT_EQ(later.exit_code, 1) << "the cell of the other map was not compared, and is no less lost";
+  EXPECT_THAT(later.out, HasSubstr("unreadable: cubes pcf2x2 (view main, map 64"));
+  EXPECT_THAT(later.out, HasSubstr("1 unreadable"));
+}
+
+TEST_F(Regress, AcceptBesideAnother_IsRefused) {
+  make_baseline();
+  const report::FolderLock other(folder() / "base");
+  const Outcome refused = compare("a", "--accept");
+  EXPECT_EQ(refused.exit_code, 6);
+  EXPECT_THAT(refused.err, HasSubstr("base"));
+  EXPECT_EQ(compare("a").exit_code, 0) << "to look is always allowed";
+}
+
+TEST_F(Regress, MissingTruth_Fails_AndLeavesOnRequestAlone) {
+  make_baseline();
+  draw("b", "--filters none,pcf2x2 --no-truth");
+  EXPECT_THAT(compare("b").out, HasSubstr("missing: cubes truth"));
+  EXPECT_EQ(compare("b", "--accept --remove-missing").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder() / "base/cubes/truth.area.exr"));
+  EXPECT_EQ(compare("b").exit_code, 0);
+}
+
 TEST_F(Regress, UnreadableRun_Fails_AndIsNotAccepted) {
   make_baseline();
   const auto before = read_baseline();
@@ -169,7 +205,6 @@ TEST_F(Regress, UnreadableRun_Fails_AndIsNotAccepted) {
 }
 
 TEST_F(Regress, CellThatTimedOut_IsUnreadable) {
-  write_tolerances();
   draw("a", "--filters none --filter-file '" + user_filter("endless.glsl") + "' --cell-timeout 1");
   const Outcome outcome = compare("a", "--accept");
   EXPECT_EQ(outcome.exit_code, 1);
@@ -177,7 +212,6 @@ TEST_F(Regress, CellThatTimedOut_IsUnreadable) {
 }
 
 TEST_F(Regress, StochasticFilter_OfAnotherSeed_IsTestedAsNoise) {
-  write_tolerances();
   draw("a", "--filters none,poisson");
   ASSERT_EQ(compare("a", "--accept").exit_code, 0);
   draw("b", "--filters none,poisson --seed 9");
@@ -206,11 +240,15 @@ TEST_F(Regress, BadInput_IsRefused) {
   expect_refusal("regress a --baseline base", 3, {"base: there is no baseline here", "--accept"});
   expect_refusal("regress a --baseline base --remove-missing", 2, {"--remove-missing", "add --accept"});
   expect_refusal("regress a", 2, {"--baseline"});
-  write_tolerances();
-  expect_refusal("regress a --baseline base --filters nosuch", 3, {"neither the run nor the baseline has a cell of these scenes and filters"});
+  ASSERT_EQ(compare("a", "--accept").exit_code, 0);
+  expect_refusal("regress a --baseline base --filters nosuch", 3, {"--filters: neither the run nor the baseline has 'nosuch'"});
+  expect_refusal("regress a --baseline base --filters \"none, pcf2x3\"", 3, {"did you mean 'pcf2x2'?"});
+  expect_refusal("regress a --baseline base --scene cubes --scene stakc", 3, {"'stakc'"});
+  expect_refusal("regress a --baseline stdout.txt", 3, {"stdout.txt: this is a file"});
+  expect_refusal("regress a --baseline stdout.txt --accept", 3, {"stdout.txt: this is a file"});
   write("base/baseline.toml", "[all.\"error.rms\"]\nlimit = 1\nreason = \"r\"\n");
   expect_refusal("regress a --baseline base", 3, {"baseline.toml:1", "did you mean 'error.rmse'?"});
-  write_tolerances();
+  write("base/baseline.toml", "");
   write("file", "");
   expect_refusal("regress a --baseline base --out file/sub", 6, {"file/sub"});
   expect_refusal("run --pad-texels -1 --out out", 2, {"--pad-texels", "-1"});

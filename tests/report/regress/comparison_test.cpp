@@ -38,6 +38,7 @@ ActualCell make_cell() {
   cell.record.artefact.leak = 0.2;
   cell.record.attribution.model.rms = 0.04;
   cell.record.cost.fetches = 4.0;
+  cell.record.time_ms.lookup = report::Quartiles{2.0, 1.9, 2.1, kFewestRounds};
   cell.record.ratio_to_none.lookup = report::Ratio{2.0, {1.9, 2.1}};
   cell.record.images.parts = "tent";
   cell.record.key = report::cell_key(cell.record);
@@ -98,19 +99,65 @@ TEST(Comparison, NotFinite_IsAChange_ExcusedOrNot) {
   }
 }
 
+TEST(Comparison, NotFiniteAsBefore_IsNoChange) {
+  ActualCell cell = make_cell();
+  *cell.images.visibility.at(0, 0) = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(compare_cell(cell, expect(cell), cell.images, Tolerances()).outcome, Outcome::kSame);
+  ActualCell more = cell;
+  more.record.nan = 1;
+  EXPECT_EQ(compare_cell(more, expect(cell), cell.images, Tolerances()).outcome, Outcome::kChanged);
+}
+
+TEST(Comparison, BrokenBoundOfTheBaseline_ExcusesNothing) {
+  ActualCell before = make_cell();
+  before.images.uncertainty.rounding = make_image(0.0f);
+  ActualCell now = before;
+  before.images.uncertainty.rounding.texels[7] = std::numeric_limits<float>::quiet_NaN();
+  now.images.visibility.texels[7] = 1.0f;
+  EXPECT_EQ(compare_cell(now, expect(before), before.images, Tolerances()).outcome, Outcome::kChanged);
+}
+
+TEST(Comparison, DamagedImages_AreUnreadable) {
+  const auto compare_damaged = [](const auto& damage) {
+    ActualCell cell = make_cell();
+    for (const report::UncertaintyImage& each : report::list_uncertainty_images()) cell.images.uncertainty.*each.image = make_image(0.0f);
+    CellImages expected = cell.images;
+    damage(cell.images, expected);
+    return compare_cell(cell, expect(cell), expected, Tolerances()).outcome;
+  };
+  EXPECT_EQ(compare_damaged([](CellImages&, CellImages&) {}), Outcome::kSame);
+  for (const report::UncertaintyImage& each : report::list_uncertainty_images()) {
+    EXPECT_EQ(compare_damaged([&](CellImages& run, CellImages&) { run.uncertainty.*each.image = report::Image(4, 4, 1); }), Outcome::kUnreadable) << each.id;
+    EXPECT_EQ(compare_damaged([&](CellImages&, CellImages& baseline) { baseline.uncertainty.*each.image = report::Image(4, 4, 1); }), Outcome::kUnreadable) << each.id;
+  }
+  EXPECT_EQ(compare_damaged([](CellImages&, CellImages& baseline) { baseline.uncertainty.seed_deviation = {}; }), Outcome::kUnreadable);
+}
+
+TEST(Comparison, ManyExcusedPixelsThatDiffer_AreAChange) {
+  ActualCell before = make_cell();
+  before.images.uncertainty.rounding = make_image(report::kMayFlip);
+  ActualCell now = before;
+  *now.images.visibility.at(5, 5) = 1.0f;  // one of 512: more than one in a thousand
+  const Comparison found = compare_cell(now, expect(before), before.images, Tolerances());
+  EXPECT_EQ(found.outcome, Outcome::kChanged);
+  EXPECT_EQ(found.findings.front().metric, kExcusedChanged);
+}
+
 TEST(Comparison, PixelThatMayFlip_IsExcusedByName) {
+  Tolerances tolerances;
+  tolerances.set("tent", kExcusedChanged, {0.01, "a small picture"});
   ActualCell before = make_cell();
   before.images.uncertainty.rounding = make_image(0.0f);
   *before.images.uncertainty.rounding.at(5, 5) = report::kMayFlip;
   ActualCell now = before;
   *now.images.visibility.at(5, 5) = 1.0f;
-  const Comparison excused = compare_cell(now, expect(before), before.images, Tolerances());
+  const Comparison excused = compare_cell(now, expect(before), before.images, tolerances);
   EXPECT_EQ(excused.outcome, Outcome::kSame);
   EXPECT_EQ(excused.pixels->excused_flips, 1);
   EXPECT_EQ(excused.pixels->excused_changed, 1);
   ASSERT_EQ(excused.notes.size(), 1u);
   *now.images.visibility.at(6, 5) = 1.0f;
-  EXPECT_EQ(compare_cell(now, expect(before), before.images, Tolerances()).outcome, Outcome::kChanged);
+  EXPECT_EQ(compare_cell(now, expect(before), before.images, tolerances).outcome, Outcome::kChanged);
 }
 
 TEST(Comparison, RoundingBound_WidensItsPixelAlone) {
@@ -161,6 +208,26 @@ TEST(Comparison, NumberThatIsGone_IsAChange_WithItsReason) {
   EXPECT_THAT(gone.findings.front().text, HasSubstr("the run was made with --no-truth"));
 }
 
+TEST(Comparison, NumberThatTheBaselineLacks_IsAChange) {
+  const ActualCell cell = make_cell();
+  BaselineCell empty = expect(cell);
+  empty.values.numbers.clear();
+  EXPECT_EQ(compare_cell(cell, empty, cell.images, Tolerances()).outcome, Outcome::kChanged);
+}
+
+TEST(Comparison, TruthsNoise_CountsWhereTheTruthIsAnother) {
+  const auto compare_with = [](std::uint64_t seed) {
+    ActualCell before = make_cell();
+    before.record.truth.se = 0.001;
+    ActualCell now = before;
+    now.origin.seed = seed;
+    now.record.error.rmse = *before.record.error.rmse + 0.003;  // 3 x sqrt 2 x 0.001 = 0.0042
+    return compare_cell(now, expect(before), before.images, Tolerances()).outcome;
+  };
+  EXPECT_EQ(compare_with(1), Outcome::kLessAccurate);
+  EXPECT_EQ(compare_with(2), Outcome::kSame);
+}
+
 TEST(Comparison, Time_CountsAsRatioWithItsInterval_OnOneMachineAlone) {
   const auto slow = [](double low) {
     return [low](ActualCell& cell) { cell.record.ratio_to_none.lookup = report::Ratio{low + 0.1, {low, low + 0.2}}; };
@@ -175,6 +242,15 @@ TEST(Comparison, Time_CountsAsRatioWithItsInterval_OnOneMachineAlone) {
   EXPECT_EQ(elsewhere.outcome, Outcome::kSame);
   ASSERT_FALSE(elsewhere.notes.empty());
   EXPECT_THAT(elsewhere.notes.front(), HasSubstr("times are not compared"));
+}
+
+TEST(Comparison, TooFewRounds_GiveNoRatio) {
+  ActualCell before = make_cell();
+  before.record.time_ms.lookup->n = kFewestRounds - 1;
+  EXPECT_TRUE(expect(before).values.ratios.empty());
+  const Comparison missing = compare_changed([](ActualCell& cell) { cell.record.time_ms.lookup->n = kFewestRounds - 1; });
+  EXPECT_EQ(missing.outcome, Outcome::kChanged);
+  EXPECT_THAT(missing.findings.front().text, HasSubstr("it was timed over 5 rounds"));
 }
 
 TEST(Comparison, EmptyOrOtherSizedImage_IsUnreadable) {
