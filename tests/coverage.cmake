@@ -1,5 +1,5 @@
 # The target `coverage`, what the build preset of that name builds: runs tests and prints the line coverage of the folders that decide
-# results; fails below 90 %. Tests that need no context, and of the others those that draw every filter and write reports.
+# results; fails below 90 %. gcovr 5.2 does not know all that gcov 12 writes, and would end there. Tests that need no context, and of the others those that draw every filter and write reports.
 option(SHADOWBENCH_COVERAGE "Add the target `coverage` (preset `coverage`)" OFF)
 if(NOT SHADOWBENCH_COVERAGE)
   return()
@@ -14,9 +14,9 @@ list(FILTER _programs INCLUDE REGEX "_test$|^fuzz_")
 add_custom_target(coverage
   COMMAND find ${PROJECT_BINARY_DIR} -name "*.gcda" -delete
   COMMAND xvfb-run -a ${CMAKE_CTEST_COMMAND} -j2 --output-on-failure -L cpu
-  COMMAND xvfb-run -a ${CMAKE_CTEST_COMMAND} -j2 --output-on-failure -R "[.]Contract[.]|[.]Run[.]|[.]Regress[.]|[.]Merge"
+  COMMAND xvfb-run -a ${CMAKE_CTEST_COMMAND} -j2 --output-on-failure -R "Contract[.]|[.]Regress[.]|[.]Merge|[.]Sweep[.]"
   COMMAND ${SHADOWBENCH_GCOVR} --root ${PROJECT_SOURCE_DIR} ${_filters} --object-directory ${PROJECT_BINARY_DIR} --exclude-throw-branches
-          --print-summary --fail-under-line 90 ${PROJECT_BINARY_DIR}
+          --gcov-ignore-parse-errors --print-summary --fail-under-line 90 ${PROJECT_BINARY_DIR}
   WORKING_DIRECTORY ${PROJECT_BINARY_DIR}
   DEPENDS ${_programs} shadowbench shadowbench_experiment
   USES_TERMINAL VERBATIM)
