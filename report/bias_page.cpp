@@ -91,17 +91,14 @@ std::string html_mode(const BiasModeRecord& mode, const BiasSweepRecord& sweep) 
   return page + "</section>\n";
 }
 
-std::string html_facts(const BiasSweepRecord& sweep) {
-  const std::vector<std::pair<std::string, std::string>> facts = {
+std::vector<std::pair<std::string, std::string>> list_facts(const BiasSweepRecord& sweep) {
+  return {
       {"scene", sweep.title.empty() ? sweep.scene : sweep.scene + ": " + sweep.title},
       {"view", fmt::format("{}, {} x {} pixels", sweep.view, sweep.width, sweep.height)},
       {"shadow map", fmt::format("{0} x {0} texels of {1:.3g} m, depth range {2:.3g} m", sweep.map_size, sweep.texel_m, sweep.depth_range_m)},
       {"steepest lit surfaces", fmt::format("{:.3g}th percentile of slope: |dz/du| + |dz/dv| = {:.3g} of depth per texel, {:.3g} degrees between "
                                            "normal and light", 100.0 * sweep.percentile, sweep.slope_depth, sweep.angle_deg)},
       {"drawn by", sweep.renderer}};
-  std::string html = "<dl>\n";
-  for (const auto& [name, value] : facts) html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_html(name), escape_html(value));
-  return html + "</dl>\n";
 }
 
 std::vector<std::string> explain(const BiasSweepRecord& sweep) {
@@ -150,7 +147,7 @@ std::string make_bias_html(const BiasSweepRecord& sweep) {
   std::string page = html_head(title, std::string(page_style()) + std::string(bias_page_style()));
   page += fmt::format("<body>\n<main>\n<h1>{}</h1>\n<nav>", title);
   for (const BiasModeRecord& mode : sweep.modes) page += fmt::format("<a href=\"#{0}\">{0}</a> ", escape_html(mode.mode));
-  page += "</nav>\n" + html_facts(sweep) + html_list(explain(sweep));
+  page += "</nav>\n" + html_facts(list_facts(sweep)) + html_list(explain(sweep));
   page += "<p>Data: " + link("bias.csv", "bias.csv") + ".</p>\n";
   for (const BiasModeRecord& mode : sweep.modes) page += html_mode(mode, sweep);
   return page + "</main>\n</body>\n</html>\n";

@@ -10,17 +10,14 @@
 namespace shadowbench::report {
 namespace {
 
-std::string html_facts(const FlickerRecord& record) {
-  const std::vector<std::pair<std::string, std::string>> facts = {
+std::vector<std::pair<std::string, std::string>> list_facts(const FlickerRecord& record) {
+  return {
       {"scene", fmt::format("{}, view {}, {} x {} pixels", record.scene, record.view, record.width, record.height)},
       {"shadow map", fmt::format("{0} x {0} texels", record.map_size)},
       {"OpenGL", fmt::format("{} ({}), {}", record.gl.renderer, record.gl.backend, record.gl.version)},
       {"program", record.commit},
       {"command", fmt::format("{}", fmt::join(record.command, " "))},
       {"took", fmt::format("{:.1f} s", record.seconds)}};
-  std::string html = "<dl>\n";
-  for (const auto& [name, value] : facts) html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_html(name), escape_html(value));
-  return html + "</dl>\n";
 }
 
 std::string html_plots(const FlickerMotion& motion) {
@@ -47,7 +44,7 @@ std::string make_flicker_html(const FlickerRecord& record) {
   std::string page = html_head(title, page_style());
   page += fmt::format("<body>\n<main>\n<h1>{}</h1>\n<nav>", title);
   for (const FlickerMotion& motion : record.motions) page += fmt::format("<a href=\"#{0}\">{0}</a> ", escape_html(motion.id));
-  page += "</nav>\n" + html_facts(record) + html_list(define_flicker(record));
+  page += "</nav>\n" + html_facts(list_facts(record)) + html_list(define_flicker(record));
   if (!record.no_plots.empty()) page += fmt::format("<section class=\"warnings\">\n<h2>Warnings</h2>\n{}</section>\n", html_list({"There are no plots: " + record.no_plots + "."}));
   for (const FlickerMotion& motion : record.motions) page += html_motion(motion, record);
   page += "<p>Data: " + link("flicker.json", "flicker.json") + ", " + link("flicker.csv", "flicker.csv") + ", " + link("flicker.md", "flicker.md") + ".</p>\n";

@@ -16,14 +16,6 @@ namespace {
 
 using OptionalPath = std::optional<std::string>;
 
-std::string html_facts(const RunRecord& run) {
-  std::string text = "<dl>\n";
-  for (const auto& [name, value] : list_run_facts(run)) {
-    text += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_html(name), escape_html(value));
-  }
-  return text + "</dl>\n";
-}
-
 std::string title_of(const RunRecord& run, const std::string& scene) {
   const auto found = std::find_if(run.scenes.begin(), run.scenes.end(),
                                   [&](const SceneRecord& candidate) { return candidate.name == scene; });
@@ -161,7 +153,7 @@ std::string escape_html(std::string_view text) {
 std::string make_index_html(const RunRecord& run, const std::vector<CellRecord>& cells, const std::string& trade) {
   const std::vector<CellGroup> groups = group_cells(cells);
   std::string page = html_head("Shadow filters compared", page_style()) + "<body>\n<main>\n<h1>Shadow filters compared</h1>\n" + html_navigation(groups);
-  page += html_facts(run);
+  page += html_facts(list_run_facts(run));
   page += "<p>Data: " + link("summary.md", "summary.md") + ", " + link("timings.csv", "timings.csv") + ", " + link("accuracy.csv", "accuracy.csv") + ", " +
           link("results.json", "results.json") + " (" + link("results.schema.json", "its schema") + ").</p>\n";
   if (!run.warnings.empty()) {

@@ -38,6 +38,12 @@ std::string figure(const std::string& path, const std::string& caption, std::str
       encode_url_path(path), escape_html(caption), style);
 }
 
+std::string html_facts(const std::vector<std::pair<std::string, std::string>>& facts) {
+  std::string html = "<dl>\n";
+  for (const auto& [name, value] : facts) html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_html(name), escape_html(value));
+  return html + "</dl>\n";
+}
+
 std::string html_list(const std::vector<std::string>& items) {
   std::string text = "<ul>\n";
   for (const std::string& item : items) {

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "report/text_tables.h"
@@ -18,6 +19,9 @@ std::string link(const std::string& path, const std::string& text);
 
 /// Makes a picture that links to itself, with a caption; `style` is a class.
 std::string figure(const std::string& path, const std::string& caption, std::string_view style);
+
+/// Makes a list of names with what each is.
+std::string html_facts(const std::vector<std::pair<std::string, std::string>>& facts);
 
 /// Makes a list of sentences.
 std::string html_list(const std::vector<std::string>& items);

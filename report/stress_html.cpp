@@ -10,17 +10,14 @@
 namespace shadowbench::report {
 namespace {
 
-std::string html_facts(const StressRecord& record) {
-  const std::vector<std::pair<std::string, std::string>> facts = {
+std::vector<std::pair<std::string, std::string>> list_facts(const StressRecord& record) {
+  return {
       {"filters", fmt::format("{}", fmt::join(record.filters, "; "))},
       {"OpenGL", fmt::format("{} ({}), {}", record.gl.renderer, record.gl.backend, record.gl.version)},
       {"machine", fmt::format("{}, {} cores", record.machine.cpu, record.machine.cores)},
       {"program", record.commit},
       {"command", fmt::format("{}", fmt::join(record.command, " "))},
       {"took", fmt::format("{:.1f} s", record.seconds)}};
-  std::string html = "<dl>\n";
-  for (const auto& [name, value] : facts) html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_html(name), escape_html(value));
-  return html + "</dl>\n";
 }
 
 std::string html_sentences(const std::string& title, const std::vector<std::string>& sentences) {
@@ -62,7 +59,7 @@ std::string make_stress_html(const StressRecord& record) {
   std::string page = html_head(title, std::string(page_style()) + std::string(bias_page_style()));
   page += fmt::format("<body>\n<main>\n<h1>{}</h1>\n<nav>", title);
   for (const StressAxis& axis : record.axes) page += fmt::format("<a href=\"#{0}\">{0}</a> ", escape_html(axis.id));
-  page += "</nav>\n" + html_facts(record) + html_warnings(record);
+  page += "</nav>\n" + html_facts(list_facts(record)) + html_warnings(record);
   page += "<section>\n<h2>Measured against theoretical limits</h2>\n" + html_table(make_limit_table(record), "Where each verdict is first met, found to 1 %", "stress") +
           html_sentences("Not met, and not expected:", describe_out_of_sight(record)) + "</section>\n";
   for (const StressAxis& axis : record.axes) page += html_axis(axis, record.no_plots.empty());
