@@ -35,6 +35,7 @@ class FaultTest : public ProgramTest {
   pid_t start(const std::string& arguments, const std::string& messages = "started.txt") const {
     const std::string command = "exec env XDG_CACHE_HOME='" + cache_folder().string() + "' '" SHADOWBENCH_PROGRAM "' " + arguments + " >/dev/null 2>'" + messages + "' </dev/null";
     const std::string where = folder().string();
+    std::filesystem::remove(folder() / messages);  // a signal may come before the shell makes it anew
     const pid_t pid = fork();
     if (pid == 0) {
       if (chdir(where.c_str()) == 0) execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
