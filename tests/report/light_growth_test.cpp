@@ -66,7 +66,7 @@ TEST(LightGrowth, Times_AreRatiosTimesTheReference) {
 TEST(LightGrowth, WithoutTheReference_TimesAreMediansAndQuartiles) {
   std::vector<CellRecord> cells = make_lit_cells();
   cells.erase(cells.begin());
-  const LightPoint& point = make_charts(cells)[0].curves[1].points[3];
+  const LightPoint point = make_charts(cells)[0].curves[1].points[3];
   EXPECT_NEAR(point.still.value, 1.1 * 12.0, 1e-9);
   EXPECT_NEAR(point.still.low, 1.1 * 12.0 - 0.5, 1e-9);
 }
