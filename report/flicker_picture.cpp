@@ -1,12 +1,11 @@
 #include "report/flicker_picture.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "report/color_values.h"
 #include "report/figure.h"
 #include "report/fit_worst.h"
 #include "report/picture_io.h"
@@ -30,10 +29,7 @@ Image fit_panel(const Image& image) {
 Image color(Image places) {
   const Image given = places;
   for (float& place : places.texels) place = 0.95f * (1.0f - std::clamp(place, 0.0f, 1.0f));  // the palest of the map would be lost on the ground
-  const OIIO::ImageSpec spec(places.width, places.height, 1, OIIO::TypeDesc::FLOAT);
-  const OIIO::ImageBuf source(spec, places.texels.data());
-  Image colors(places.width, places.height, 3);
-  OIIO::ImageBufAlgo::color_map(source, 0, "inferno").get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, colors.texels.data());
+  Image colors = color_values(places, "inferno");
   for (std::size_t i = 0; i < given.texels.size(); ++i) {
     if (given.texels[i] < 0.0f) std::ranges::copy(kGround, colors.texels.begin() + static_cast<std::ptrdiff_t>(3 * i));
   }
@@ -47,11 +43,7 @@ Image color_flicker(Image flicker) {
 
 void draw_scale(Figure& figure, int top) {
   const int line = figure_line_height(), left = figure.body().x + 3 * kGap;  // room for the first number
-  Image ramp(kBarWidth, line - 4, 1);
-  for (int y = 0; y < ramp.height; ++y) {
-    for (int x = 0; x < ramp.width; ++x) *ramp.at(x, y) = static_cast<float>(x) / static_cast<float>(ramp.width - 1);
-  }
-  figure.place(left, top + 2, color(std::move(ramp)));
+  figure.place(left, top + 2, color(make_ramp(kBarWidth, line - 4)));
   for (const double tick : {0.001, 0.01, 0.1, 1.0}) {
     figure.write_centred(left + static_cast<int>(*place_flicker(tick) * kBarWidth), top + line, fmt::format("{:g}", tick));
   }

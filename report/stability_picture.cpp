@@ -1,7 +1,5 @@
 #include "report/stability_picture.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <functional>
 #include <limits>
 
+#include "report/color_values.h"
 #include "report/diverging.h"
 #include "report/figure.h"
 #include "report/fit_worst.h"
@@ -42,32 +41,10 @@ int shown_width(const Image& image) {
 
 Image show_worst(const Image& image, const Badness& badness) { return fit_worst(image, shown_width(image), badness); }
 
-Image color(const Image& values, const std::function<Rgb(float)>& color_of) {
-  Image colors(values.width, values.height, 3);
-  for (std::size_t i = 0; i < values.texels.size(); ++i) {
-    const Rgb rgb = color_of(values.texels[i]);
-    std::copy(rgb.begin(), rgb.end(), colors.texels.begin() + static_cast<std::ptrdiff_t>(3 * i));
-  }
-  return colors;
-}
-
-/// Values 0 .. 1 from left to right.
-Image make_ramp() {
-  Image ramp(kPanelWidth, kBarHeight, 1);
-  for (int y = 0; y < kBarHeight; ++y) {
-    for (int x = 0; x < kPanelWidth; ++x) *ramp.at(x, y) = static_cast<float>(x) / static_cast<float>(kPanelWidth - 1);
-  }
-  return ramp;
-}
+Image make_bar() { return make_ramp(kPanelWidth, kBarHeight); }
 
 /// Colours values in [0,1], dark for little.
-Image color_sequential(const Image& values) {
-  const OIIO::ImageSpec spec(values.width, values.height, 1, OIIO::TypeDesc::FLOAT);
-  const OIIO::ImageBuf source(spec, const_cast<float*>(values.texels.data()));
-  Image colors(values.width, values.height, 3);
-  OIIO::ImageBufAlgo::color_map(source, 0, "viridis").get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, colors.texels.data());
-  return colors;
-}
+Image color_sequential(const Image& values) { return color_values(values, "viridis"); }
 
 float worst_if_nan(float value, float badness) { return std::isnan(value) ? std::numeric_limits<float>::infinity() : badness; }
 
@@ -84,7 +61,7 @@ Panel make_headroom_panel(const StabilityPicture& picture) {
   const Image shown = show_worst(headroom, [](float v) { return worst_if_nan(v, -v); });
   Image places = shown;
   for (float& value : places.texels) value = std::isfinite(value) ? std::clamp(value / scale, 0.0f, 1.0f) : 0.0f;
-  Panel panel{"overflow: what exponents could grow by, per texel of the map", picture.texels, color_sequential(places), color_sequential(make_ramp()), {}};
+  Panel panel{"overflow: what exponents could grow by, per texel of the map", picture.texels, color_sequential(places), color_sequential(make_bar()), {}};
   for (std::size_t i = 0; i < shown.texels.size(); ++i) {
     const float value = shown.texels[i];
     if (std::isfinite(value)) continue;
@@ -106,8 +83,8 @@ float place_variance(float variance) {
 Panel make_variance_panel(const StabilityPicture& picture) {
   const Image shown = show_worst(picture.images.variance, [](float v) { return worst_if_nan(v, -v); });
   const auto color_of = [](float v) { return std::isfinite(v) ? map_diverging(-place_variance(v), 1.0f) : kBroken; };
-  Panel panel{"variance before any clamp, per texel of the map", picture.variance, color(shown, color_of),
-              color(make_ramp(), [](float t) { return map_diverging(1.0f - 2.0f * t, 1.0f); }), {}};
+  Panel panel{"variance before any clamp, per texel of the map", picture.variance, color_values(shown, color_of),
+              color_values(make_bar(), [](float t) { return map_diverging(1.0f - 2.0f * t, 1.0f); }), {}};
   for (const float variance : {-1e-2f, -1e-5f, -1e-8f, 0.0f, 1e-8f, 1e-5f, 1e-2f}) {
     panel.ticks.emplace_back(0.5f + 0.5f * place_variance(variance), fmt::format("{:g}", variance));
   }
@@ -125,8 +102,8 @@ Panel make_difference_panel(const StabilityPicture& picture) {
   const double scale = choose_error_scale({&difference});
   const Image shown = show_worst(difference, [](float v) { return worst_if_nan(v, std::abs(v)); });
   const auto color_of = [scale](float v) { return std::isfinite(v) ? map_diverging(v, static_cast<float>(scale)) : kBroken; };
-  return {"visibility with the 16-bit store less that with the 32-bit store", picture.difference, color(shown, color_of),
-          color(make_ramp(), [](float t) { return map_diverging(2.0f * t - 1.0f, 1.0f); }), list_signed_ticks(scale)};
+  return {"visibility with the 16-bit store less that with the 32-bit store", picture.difference, color_values(shown, color_of),
+          color_values(make_bar(), [](float t) { return map_diverging(2.0f * t - 1.0f, 1.0f); }), list_signed_ticks(scale)};
 }
 
 /// Shortfalls, with what rounding does not explain above all colours.
@@ -140,8 +117,8 @@ Panel make_bound_panel(const StabilityPicture& picture) {
   }
   const Image shown = show_worst(marked, [](float v) { return worst_if_nan(v, v); });
   const auto color_of = [scale](float v) { return std::isfinite(v) ? map_diverging(-v, static_cast<float>(scale)) : kBroken; };
-  Panel panel{"a bound that must hold: by how much the filter is darker than the PCF of its kernel", picture.bound, color(shown, color_of),
-              color(make_ramp(), [](float t) { return map_diverging(-t, 1.0f); }), {}};
+  Panel panel{"a bound that must hold: by how much the filter is darker than the PCF of its kernel", picture.bound, color_values(shown, color_of),
+              color_values(make_bar(), [](float t) { return map_diverging(-t, 1.0f); }), {}};
   for (const float part : {0.0f, 0.5f, 1.0f}) panel.ticks.emplace_back(part, format_number(static_cast<double>(part) * scale));
   return panel;
 }

@@ -1,7 +1,5 @@
 #include "report/texel_pictures.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "report/color_values.h"
 #include "report/figure.h"
 #include "report/picture_io.h"
 
@@ -25,19 +24,13 @@ constexpr int kSmallestWidth = 640;  // of a figure: the legend needs it
 float place_density(float density) { return std::clamp(0.5f + 0.5f * std::log2(density) / kOctaves, 0.0f, 1.0f); }
 
 /// Colours values in [0,1]; blue for few, red for many.
-Image color_values(const Image& values) {
-  const OIIO::ImageSpec spec(values.width, values.height, 1, OIIO::TypeDesc::FLOAT);
-  const OIIO::ImageBuf source(spec, const_cast<float*>(values.texels.data()));
-  Image colors(values.width, values.height, 3);
-  OIIO::ImageBufAlgo::color_map(source, 0, "turbo").get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, colors.texels.data());
-  return colors;
-}
+Image color_places(const Image& places) { return color_values(places, "turbo"); }
 
 Image color_densities(const Image& density) {
   Image places = density;
   std::transform(density.texels.begin(), density.texels.end(), places.texels.begin(),
                  [](float d) { return d > 0.0f ? place_density(d) : 0.0f; });
-  Image colors = color_values(places);
+  Image colors = color_places(places);
   for (std::size_t i = 0; i < density.texels.size(); ++i) {
     if (density.texels[i] > 0.0f) continue;
     const Rgb& color = density.texels[i] < 0.0f ? kBackground : kAway;
@@ -47,11 +40,7 @@ Image color_densities(const Image& density) {
 }
 
 void draw_color_bar(Figure& figure, const Rect& bar) {
-  Image ramp(bar.width, bar.height, 1);
-  for (int y = 0; y < bar.height; ++y) {
-    for (int x = 0; x < bar.width; ++x) *ramp.at(x, y) = static_cast<float>(x) / static_cast<float>(bar.width - 1);
-  }
-  figure.place(bar.x, bar.y, color_values(ramp));
+  figure.place(bar.x, bar.y, color_places(make_ramp(bar.width, bar.height)));
   for (const auto& [density, label] : {std::pair{1.0f / 64.0f, "≤ 1/64"}, {1.0f / 16.0f, "1/16"}, {0.25f, "1/4"}, {1.0f, "1"},
                                        {4.0f, "4"}, {16.0f, "16"}, {64.0f, "≥ 64"}}) {
     const int x = bar.x + static_cast<int>(place_density(density) * static_cast<float>(bar.width - 1));

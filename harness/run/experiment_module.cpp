@@ -48,5 +48,5 @@ extern "C" void shadowbench_run_flicker(const shadowbench::flicker::FlickerOptio
 }
 
 extern "C" void shadowbench_run_regress(const shadowbench::regress::RegressOptions& options, shadowbench::regress::RegressOutcome& outcome) {
-  outcome = shadowbench::regress::summarise(shadowbench::regress::run_regress(options));
+  outcome = shadowbench::regress::run_regress(options);
 }

@@ -244,6 +244,14 @@ Comparison name_comparison(const report::CellRecord& record) {
   return comparison;
 }
 
+Comparison name_truth(const report::CellRecord& record) {
+  Comparison comparison = name_comparison(record);
+  comparison.key = truth_key(record);
+  comparison.filter = comparison.label = kTruthName;
+  comparison.settings = fmt::format("view {}, {} x {}", record.view, record.width, record.height);
+  return comparison;
+}
+
 Comparison name_comparison(const BaselineCell& cell) {
   Comparison comparison;
   comparison.key = cell.key;
@@ -264,10 +272,7 @@ Comparison compare_cell(const ActualCell& actual, const BaselineCell& expected, 
 }
 
 Comparison compare_truth(const ActualTruth& actual, const TruthImages& expected, double level) {
-  Comparison comparison = name_comparison(actual.record);
-  comparison.key = truth_key(actual.record);
-  comparison.filter = comparison.label = kTruthName;
-  comparison.settings = fmt::format("view {}, {} x {}", actual.record.view, actual.record.width, actual.record.height);
+  Comparison comparison = name_truth(actual.record);
   if (const std::string obstacle = find_obstacle(actual.images, expected); !obstacle.empty()) {
     comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, obstacle});
     return comparison;

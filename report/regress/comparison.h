@@ -65,7 +65,8 @@ struct ActualTruth {
 /// Compares truths by a test of noise at every pixel.
 Comparison compare_truth(const ActualTruth& actual, const TruthImages& expected, double level);
 
-/// Makes a comparison that only has a name.
+/// Make a comparison that only has a name: of a cell, or of the truth of a cell's view.
+Comparison name_truth(const report::CellRecord& record);
 Comparison name_comparison(const report::CellRecord& record);
 Comparison name_comparison(const BaselineCell& cell);
 

@@ -5,25 +5,31 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "filters/error.h"
 #include "filters/nearest_name.h"
+#include "report/atomic_file.h"
 #include "report/file_name.h"
 #include "report/folder_lock.h"
-#include "report/json_values.h"
 #include "report/regress/accept.h"
 #include "report/regress/junit.h"
 #include "report/regress/regress_picture.h"
 #include "report/regress/regress_text.h"
-#include "report/atomic_file.h"
 
 namespace shadowbench::regress {
 namespace {
 
 /// Pictures are for people: the worst cells of a run that moved as a whole are enough.
 constexpr int kMostPictures = 50;
+
+/// The truths of one scene, as the baseline has them.
+struct ExpectedTruths {
+  std::map<std::string, TruthImages> by_key;
+  std::string unreadable;  ///< why there are none
+};
 
 /// One comparison of a run with its baseline.
 class Regression {
@@ -63,6 +69,7 @@ class Regression {
   std::set<std::string> seen_;             ///< keys of the run's cells
   std::set<std::string> named_unreadable_;  ///< files of the baseline whose trouble a cell reports
   std::set<std::string> seen_truths_;      ///< scene and key
+  std::map<std::string, ExpectedTruths> truths_;  ///< by scene
   std::optional<report::FolderLock> lock_;  ///< of a baseline that may change
   RegressReport report_;
   CellFile file_;  ///< of the last cell's scene and filter
@@ -141,20 +148,17 @@ class Regression {
 
   void compare_truth(const ActualTruth& truth) {
     seen_truths_.insert(truth.record.scene + "/" + truth_key(truth.record));
-    Comparison comparison;
+    const ExpectedTruths& known = read_truths(truth.record.scene);
+    const auto found = known.by_key.find(truth_key(truth.record));
+    Comparison comparison = name_truth(truth.record);
     TruthImages expected;
-    try {
-      const auto truths = baseline_.read_truths(truth.record.scene);
-      const auto found = truths.find(truth_key(truth.record));
-      if (found != truths.end()) expected = found->second;
-      comparison = regress::compare_truth(truth, expected, tolerances_.find("truth", kLevel).limit);
-      if (found == truths.end()) {
-        comparison.outcome = Outcome::kExtra;
-        comparison.findings = {{"", {}, {}, {}, "the baseline has no truth of this view"}};
-      }
-    } catch (const Error& error) {
-      comparison = regress::compare_truth(truth, truth.images, 1.0);
-      comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, error.what()});
+    if (!known.unreadable.empty()) {
+      comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, known.unreadable});
+    } else if (found == known.by_key.end()) {
+      comparison.add(Outcome::kExtra, {"", {}, {}, {}, "the baseline has no truth of this view"});
+    } else {
+      expected = found->second;
+      comparison = regress::compare_truth(truth, expected, tolerances_.find(kTruthName, kLevel).limit);
     }
     if (options_.accept) accepter_.take(comparison, truth);
     draw(comparison, expected.area, truth.images.area);
@@ -183,7 +187,7 @@ class Regression {
     std::set<std::string> scenes;
     for (const BaselineCell& cell : index_.cells) scenes.insert(cell.scene);
     for (const std::string& scene : scenes) {
-      for (const std::string& key : list_truths(scene)) {
+      for (const auto& [key, truth] : read_truths(scene).by_key) {
         if (seen_truths_.contains(scene + "/" + key)) continue;
         Comparison comparison;
         comparison.key = key;
@@ -197,15 +201,16 @@ class Regression {
     }
   }
 
-  /// Of a file that cannot be read, compare_truth() has told.
-  std::vector<std::string> list_truths(const std::string& scene) const {
-    std::vector<std::string> keys;
+  /// Reads the truths of a scene once.
+  const ExpectedTruths& read_truths(const std::string& scene) {
+    const auto [place, is_new] = truths_.try_emplace(scene);
+    if (!is_new) return place->second;
     try {
-      for (const auto& [key, truth] : baseline_.read_truths(scene)) keys.push_back(key);
-    } catch (const Error&) {
-      keys.clear();
+      place->second.by_key = baseline_.read_truths(scene);
+    } catch (const Error& error) {
+      place->second.unreadable = error.what();
     }
-    return keys;
+    return place->second;
   }
 
   /// Files of the baseline that no cell of the run stands for.
@@ -234,13 +239,18 @@ void remove_old_pictures(const std::filesystem::path& out) {
   const auto old = nlohmann::json::parse(stream, nullptr, false);
   if (!old.is_object() || !old.contains("cells")) return;
   for (const auto& cell : old["cells"]) {
-    if (!cell.is_object()) continue;
-    const auto picture = cell.value("picture", nlohmann::json());
-    if (!picture.is_string()) continue;
-    const std::filesystem::path name(picture.get<std::string>());
+    if (!cell.is_object() || !cell.contains("picture") || !cell["picture"].is_string()) continue;
+    const std::filesystem::path name(cell["picture"].get<std::string>());
     std::error_code ignored;
     if (name == name.filename() && name.extension() == ".png") std::filesystem::remove(out / name, ignored);
   }
+}
+
+/// Sums a comparison up. What was accepted is no failure; what could not be accepted is.
+std::string describe_failure(const RegressReport& report) {
+  if (report.failed() == 0) return "";
+  if (report.options.accept) return fmt::format("{} could not be accepted; {}", report.failed(), describe_worst(report));
+  return fmt::format("{}; worst: {}", describe_counts(report), describe_worst(report));
 }
 
 }  // namespace
@@ -253,19 +263,12 @@ int RegressReport::failed() const {
   return static_cast<int>(std::count_if(comparisons.begin(), comparisons.end(), [](const Comparison& each) { return each.failed(); }));
 }
 
-RegressReport run_regress(const RegressOptions& options) {
+RegressOutcome run_regress(const RegressOptions& options) {
   remove_old_pictures(options.out);
-  RegressReport result = Regression(options).compare();
-  report::write_text_file(options.out / "regress.json", make_regress_json(result));
-  if (options.junit) report::write_text_file(*options.junit, make_junit(result));
-  return result;
-}
-
-RegressOutcome summarise(const RegressReport& report) {
-  RegressOutcome outcome{make_regress_text(report), make_regress_json(report), ""};
-  if (report.failed() == 0) return outcome;
-  outcome.failure = report.options.accept ? fmt::format("{} could not be accepted; {}", report.failed(), describe_worst(report))
-                                          : fmt::format("{}; worst: {}", describe_counts(report), describe_worst(report));
+  const RegressReport found = Regression(options).compare();
+  RegressOutcome outcome{make_regress_text(found), make_regress_json(found), describe_failure(found)};
+  report::write_text_file(options.out / "regress.json", outcome.json);
+  if (options.junit) report::write_text_file(*options.junit, make_junit(found));
   return outcome;
 }
 

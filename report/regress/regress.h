@@ -44,9 +44,6 @@ struct RegressOutcome {
 /// Throws Error(kInput) where run or tolerances cannot be read, where there is no baseline and nothing is to be accepted, or for a
 /// name that is chosen and nowhere found; Error(kOutput), also where another process accepts into the same baseline.
 /// Cost: memory of one image file of the run, of one of the baseline, and of all that is accepted.
-RegressReport run_regress(const RegressOptions& options);
-
-/// Sums a comparison up. What was accepted is no failure; what could not be accepted is.
-RegressOutcome summarise(const RegressReport& report);
+RegressOutcome run_regress(const RegressOptions& options);
 
 }  // namespace shadowbench::regress

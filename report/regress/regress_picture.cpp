@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "report/color_values.h"
 #include "report/diverging.h"
 #include "report/figure.h"
 #include "report/fit_worst.h"
@@ -41,15 +42,6 @@ Rgb color_visibility(float v) { return std::isfinite(v) ? Rgb{std::clamp(v, 0.0f
 
 float distance_from_lit(float v) { return std::isfinite(v) ? 1.0f - v : 2.0f; }
 float magnitude(float v) { return std::isfinite(v) ? std::abs(v) : 2.0f; }
-
-Image color(const Image& values, const Colors& colors) {
-  Image picture(values.width, values.height, 3);
-  for (std::size_t i = 0; i < values.texels.size(); ++i) {
-    const Rgb rgb = colors(values.texels[i]);
-    std::copy(rgb.begin(), rgb.end(), picture.texels.begin() + static_cast<std::ptrdiff_t>(3 * i));
-  }
-  return picture;
-}
 
 Image cut(const Image& image, const Rect& rect) {
   Image part(rect.width, rect.height, 1);
@@ -89,20 +81,17 @@ void draw_panel(report::Figure& figure, int column, int y, const Panel& panel, c
   const int x = figure.body().x + column * (kPanelWidth + kGap);
   const int below = y + report::figure_line_height() + kPanelWidth * panel.values.height / panel.values.width + kGap;
   figure.write(x, y, panel.title, report::kFigureInk);
-  frame(figure, x, y + report::figure_line_height(), color(report::fit_worst(panel.values, kPanelWidth, panel.badness), panel.colors));
+  frame(figure, x, y + report::figure_line_height(), report::color_values(report::fit_worst(panel.values, kPanelWidth, panel.badness), panel.colors));
   const auto scaled = [&](int place) { return place * kPanelWidth / panel.values.width; };
   outline(figure, {x + scaled(crop.x), y + report::figure_line_height() + scaled(crop.y), scaled(crop.width), scaled(crop.height)});
-  const Image magnified = color(report::fit_worst(cut(panel.values, crop), kPanelWidth, panel.badness), panel.colors);
+  const Image magnified = report::color_values(report::fit_worst(cut(panel.values, crop), kPanelWidth, panel.badness), panel.colors);
   frame(figure, x, below, magnified);
   outline(figure, {x, below, magnified.width, magnified.height});
 }
 
 void draw_scale(report::Figure& figure, int top, double scale) {
-  Image bar(kBarWidth, report::figure_line_height() - 4, 1);
-  for (int y = 0; y < bar.height; ++y) {
-    for (int x = 0; x < bar.width; ++x) *bar.at(x, y) = 2.0f * static_cast<float>(x) / static_cast<float>(bar.width - 1) - 1.0f;
-  }
-  figure.place(figure.body().x, top + 2, color(bar, [](float v) { return report::map_diverging(v, 1.0f); }));
+  const Image bar = report::make_ramp(kBarWidth, report::figure_line_height() - 4);
+  figure.place(figure.body().x, top + 2, report::color_values(bar, [](float t) { return report::map_diverging(2.0f * t - 1.0f, 1.0f); }));
   figure.write(figure.body().x + kBarWidth + kGap, top,
                fmt::format("actual less expected: -{0} (darker now) to +{0} (brighter now); below: the outlined part, with the largest difference", report::format_number(scale)));
 }
