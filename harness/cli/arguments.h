@@ -12,6 +12,9 @@ namespace shadowbench::cli {
 
 // What commands share of reading their options. All but find_results() throw Error(kUsage) with the option's name.
 
+/// Splits a text at its commas; an empty text is one empty part.
+std::vector<std::string> split_list(const std::string& text);
+
 /// Parses a whole number, 1 or more.
 int parse_count(const std::string& text, const char* option);
 

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <sstream>
 
 #include "filters/error.h"
 #include "harness/cli/arguments.h"
@@ -27,8 +26,7 @@ struct RegressArguments {
 
 std::vector<std::string> split_names(const std::string& text) {
   std::vector<std::string> names;
-  std::stringstream stream(text);
-  for (std::string name; std::getline(stream, name, ',');) {
+  for (const std::string& name : split_list(text)) {
     const std::size_t begin = name.find_first_not_of(' ');
     if (begin != std::string::npos) names.push_back(name.substr(begin, name.find_last_not_of(' ') - begin + 1));
   }

@@ -30,19 +30,10 @@ constexpr const char* kReferenceFilter = "none";  // what the others' times are 
 
 [[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
 
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
-    end = text.find(',', begin);
-    parts.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
-  }
-  return parts;
-}
-
 /// Whole numbers, 1 or more, each once.
 std::vector<int> parse_counts(const std::string& text, const char* option) {
   std::vector<int> counts;
-  for (const std::string& each : split(text)) {
+  for (const std::string& each : split_list(text)) {
     const int count = parse_count(each, option);
     if (std::find(counts.begin(), counts.end(), count) != counts.end()) fail(fmt::format("{} names {} twice", option, count));
     counts.push_back(count);
@@ -118,7 +109,7 @@ run::RoundLimits parse_rounds(const RunArguments& arguments) {
 
 std::vector<run::PictureSize> parse_sizes(const std::string& text) {
   std::vector<run::PictureSize> sizes;
-  for (const std::string& each : split(text)) {
+  for (const std::string& each : split_list(text)) {
     const auto [width, height] = parse_picture_size(each);
     const run::PictureSize size{width, height};
     if (std::find(sizes.begin(), sizes.end(), size) != sizes.end()) fail(fmt::format("--size names {} twice", each));

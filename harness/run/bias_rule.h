@@ -34,6 +34,9 @@ struct BiasRule {
 
   /// The rule that does nothing.
   static BiasRule none();
+
+  /// What the scalar models' receiver-plane bias treats steeper planes as; 0: the rule has none.
+  double plane_max_tangent() const { return receiver_plane ? max_tangent : 0.0; }
 };
 
 /// Parses `none`, or MODE:key=value,... with the modes constant, slope, plane, normal-offset, receiver-plane,

@@ -111,7 +111,7 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   const render::Bias comparison = resolve_comparison_bias(options_.bias, light_.frustum, request.spec, request.values);
   ModelReceivers receivers{read_receivers(own), {}};
   receivers.closer = own == comparison ? receivers.filter : read_receivers(comparison);
-  const double plane_max_tangent = options_.bias.receiver_plane ? options_.bias.max_tangent : 0.0;
+  const double plane_max_tangent = options_.bias.plane_max_tangent();
   const ModelImages images = evaluate_model(request, *map_, receivers, plane_max_tangent, options_.seed, options_.width,
                                              options_.height);
   const std::vector<float>& kernel = kernel_truth(model->kernel(request.values));

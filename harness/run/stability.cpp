@@ -177,7 +177,7 @@ void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filte
 /// Both at the depth that the filter itself compares with: another bias is another bound.
 reference::BoundCheck StabilityMeter::compare_with_closer(const MeasuredCell& cell, const filters::Model& model,
                                                           const std::vector<filters::Receiver>& receivers) {
-  const double plane_max_tangent = options_.bias.receiver_plane ? options_.bias.max_tangent : 0.0;
+  const double plane_max_tangent = options_.bias.plane_max_tangent();
   const filters::ModelInput input{cell.request.spec, cell.request.values, depth_map(), measure_accuracy(renderer_), options_.seed, plane_max_tangent};
   const auto exact = model.prepare(input, filters::Precision::kDouble);
   const auto tracked = model.prepare(input, filters::Precision::kTracked);

@@ -19,9 +19,8 @@ namespace {
 report::Image bound_rounding(const DrawnTask& drawn, const filters::Model& model, const render::FilterPasses& filter) {
   const RunOptions& options = drawn.options;
   const filters::DepthMap map = drawn.assets.light_map(*drawn.task.camera, drawn.task.map_size).map.read();
-  const double plane_max_tangent = options.bias.receiver_plane ? options.bias.max_tangent : 0.0;
   const filters::FilterRequest& request = filter.request();
-  const auto tracked = model.prepare({request.spec, request.values, map, measure_accuracy(drawn.renderer), options.seed, plane_max_tangent},
+  const auto tracked = model.prepare({request.spec, request.values, map, measure_accuracy(drawn.renderer), options.seed, options.bias.plane_max_tangent()},
                                      filters::Precision::kTracked);
   const auto receivers = render::read_receivers(drawn.renderer.shaders, drawn.assets.gbuffer(*drawn.task.camera), filter.light());
   report::Image image(options.width, options.height, 1);
