@@ -22,9 +22,7 @@ constexpr std::string_view kReservedIds[] = {"truth"};
 [[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
 
 std::string suggest(const std::string& name, const std::vector<std::string>& known) {
-  const auto near = nearest_name(name, known);
-  if (near) return fmt::format("; did you mean '{}'?", *near);
-  return known.empty() ? "; it has none" : fmt::format("; known: {}", fmt::join(known, ", "));
+  return known.empty() ? "; it has none" : did_you_mean_or_known(name, known);
 }
 
 std::vector<std::string> split(const std::string& text, char separator) {

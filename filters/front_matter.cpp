@@ -43,10 +43,8 @@ class Reader {
     for (const auto& [key, node] : table) {
       const std::string name(key.str());
       if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-      const auto near = nearest_name(name, known);
       fail_at(static_cast<int>(key.source().begin.line),
-              fmt::format("unknown key '{}' in {}{}", name, place,
-                          near ? fmt::format("; did you mean '{}'?", *near) : fmt::format("; known: {}", fmt::join(known, ", "))));
+              fmt::format("unknown key '{}' in {}{}", name, place, did_you_mean_or_known(name, known)));
     }
   }
 

@@ -1,5 +1,7 @@
 #include "filters/nearest_name.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cctype>
 
@@ -44,6 +46,16 @@ std::optional<std::string> nearest_name(std::string_view name, const std::vector
     nearest_distance = distance;
   }
   return nearest;
+}
+
+std::string did_you_mean(std::string_view name, const std::vector<std::string>& known) {
+  const std::optional<std::string> near = nearest_name(name, known);
+  return near ? fmt::format("; did you mean '{}'?", *near) : "";
+}
+
+std::string did_you_mean_or_known(std::string_view name, const std::vector<std::string>& known) {
+  const std::string hint = did_you_mean(name, known);
+  return hint.empty() && !known.empty() ? fmt::format("; known: {}", fmt::join(known, ", ")) : hint;
 }
 
 }  // namespace shadowbench

@@ -49,9 +49,8 @@ void require_claim(const std::vector<CellRecord>& cells, const AdviceRequest& re
   }
   if (known.contains(wanted)) return;
   if (known.empty()) refuse(fmt::format("--requires: no filter claims '{}', nor anything else: leave it out", wanted));
-  const auto near = nearest_name(wanted, {known.begin(), known.end()});
   refuse(fmt::format("--requires: no filter claims '{}'{}; filters claim {}", wanted,
-                     near ? fmt::format("; did you mean '{}'?", *near) : "", fmt::join(known, ", ")));
+                     did_you_mean(wanted, {known.begin(), known.end()}), fmt::join(known, ", ")));
 }
 
 std::vector<const CellRecord*> choose_cells(const std::vector<CellRecord>& cells, const AdviceRequest& request) {

@@ -72,9 +72,7 @@ int find_part(OIIO::ImageInput& input, const PictureName& name) {
   const std::vector<std::string> parts = list_parts(input);
   const auto found = std::find(parts.begin(), parts.end(), *name.part);
   if (found != parts.end()) return static_cast<int>(found - parts.begin());
-  const auto near = nearest_name(*name.part, parts);
-  fail(name.file, fmt::format("there is no part '{}'{}; parts: {}", *name.part,
-                              near ? fmt::format("; did you mean '{}'?", *near) : "", fmt::join(parts, ", ")));
+  fail(name.file, fmt::format("there is no part '{}'{}; parts: {}", *name.part, did_you_mean(*name.part, parts), fmt::join(parts, ", ")));
 }
 
 void check(const OIIO::ImageSpec& spec, const std::string& where) {

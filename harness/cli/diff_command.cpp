@@ -36,10 +36,9 @@ std::vector<reference::Metric> choose_metrics(const std::string& chosen) {
   if (chosen == kAllMetrics) return metrics;
   std::erase_if(metrics, [&](const reference::Metric& metric) { return metric.name() != chosen; });
   if (!metrics.empty()) return metrics;
-  const auto near = nearest_name(chosen, metric_names());
   throw Error(ErrorKind::kUsage,
               fmt::format("--metric: there is no '{}'{}; known: {}", chosen,
-                          near ? fmt::format("; did you mean '{}'?", *near) : "", fmt::join(metric_names(), ", ")));
+                          did_you_mean(chosen, metric_names()), fmt::join(metric_names(), ", ")));
 }
 
 void check_pixels_per_degree(double value) {

@@ -177,9 +177,8 @@ class SceneBuilder {
     for (std::size_t i = 0; i < named_materials_.size(); ++i) {
       if (named_materials_[i] == name) return static_cast<int>(i);
     }
-    const std::optional<std::string> nearest = nearest_name(name, named_materials_);
     throw table.error("material", fmt::format("{} has the unknown material '{}'{}", table.title(), name,
-                                              nearest ? fmt::format("; did you mean '{}'?", *nearest) : ""));
+                                              did_you_mean(name, named_materials_)));
   }
 
   int default_material() {

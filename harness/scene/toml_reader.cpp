@@ -69,10 +69,7 @@ void TomlTable::require_known_keys(const std::vector<std::string>& known) const 
   for (const auto& [key, node] : *table_) {
     const std::string name(key.str());
     if (std::ranges::find(known, name) != known.end()) continue;
-    const std::optional<std::string> nearest = nearest_name(name, known);
-    const std::string hint = nearest ? fmt::format("; did you mean '{}'?", *nearest)
-                                     : fmt::format("; known keys: {}", fmt::join(known, ", "));
-    throw Error(ErrorKind::kInput, fmt::format("unknown key '{}' in {}{}", name, title_, hint),
+    throw Error(ErrorKind::kInput, fmt::format("unknown key '{}' in {}{}", name, title_, did_you_mean_or_known(name, known)),
                 fmt::format("{}:{}", file_, key.source().begin.line));
   }
 }
@@ -127,10 +124,8 @@ std::string TomlTable::choice(std::string_view key, const std::vector<std::strin
                               std::optional<std::string> fallback) const {
   const std::string value = string(key, std::move(fallback));
   if (std::ranges::find(choices, value) != choices.end()) return value;
-  const std::optional<std::string> nearest = nearest_name(value, choices);
-  const std::string hint = nearest ? fmt::format("; did you mean '{}'?", *nearest) : "";
   throw error(key, fmt::format("unknown {} '{}' in {}; expected one of: {}{}", key, value, title_,
-                               fmt::join(choices, ", "), hint));
+                               fmt::join(choices, ", "), did_you_mean(value, choices)));
 }
 
 std::optional<TomlTable> TomlTable::table(std::string_view key) const {

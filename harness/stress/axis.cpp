@@ -21,9 +21,7 @@ const Axis& find_axis(const std::string& id, const char* option) {
   if (found != table.end()) return *found;
   std::vector<std::string> known;
   for (const Axis& axis : table) known.push_back(axis.id);
-  const auto near = nearest_name(id, known);
-  fail(fmt::format("{}: there is no axis '{}'{}", option, id,
-                   near ? fmt::format("; did you mean '{}'?", *near) : fmt::format("; there are: {}", fmt::join(known, ", "))));
+  fail(fmt::format("{}: there is no axis '{}'{}", option, id, did_you_mean_or_known(id, known)));
 }
 
 double parse_end(const std::string& text, const std::string& range) {

@@ -90,8 +90,8 @@ class Regression {
     known.erase(std::unique(known.begin(), known.end()), known.end());
     for (const std::string& name : chosen) {
       if (std::binary_search(known.begin(), known.end(), name)) continue;
-      const auto near = nearest_name(name, known);
-      throw Error(ErrorKind::kInput, fmt::format("{}: neither the run nor the baseline has '{}'{}; they have: {}", option, name, near ? fmt::format("; did you mean '{}'?", *near) : "", fmt::join(known, ", ")));
+      throw Error(ErrorKind::kInput, fmt::format("{}: neither the run nor the baseline has '{}'{}; they have: {}", option, name,
+                                                 did_you_mean(name, known), fmt::join(known, ", ")));
     }
   }
 

@@ -77,8 +77,7 @@ class ToleranceReader {
   void require_known(const std::string& metric, const toml::node& node) const {
     const std::vector<std::string>& known = list_limited_metrics();
     if (std::find(known.begin(), known.end(), metric) != known.end()) return;
-    const auto near = nearest_name(metric, known);
-    fail(node, fmt::format("there is no metric '{}'{}; known: {}", metric, near ? fmt::format("; did you mean '{}'?", *near) : "", fmt::join(known, ", ")));
+    fail(node, fmt::format("there is no metric '{}'{}; known: {}", metric, did_you_mean(metric, known), fmt::join(known, ", ")));
   }
 
   Tolerance read_tolerance(const std::string& metric, const toml::table& values) const {

@@ -28,5 +28,13 @@ TEST(NearestNameTest, NothingLike_GivesNothing) {
   EXPECT_EQ(nearest_name(std::string(256, 'x'), {std::string(300, 'x')}), std::nullopt);
 }
 
+TEST(NearestNameTest, Message_NamesTheNearestOrAll) {
+  EXPECT_EQ(did_you_mean("vssm", kNames), "; did you mean 'vsm'?");
+  EXPECT_EQ(did_you_mean("chandelier", kNames), "");
+  EXPECT_EQ(did_you_mean_or_known("vssm", kNames), "; did you mean 'vsm'?");
+  EXPECT_EQ(did_you_mean_or_known("chandelier", {"esm", "vsm"}), "; known: esm, vsm");
+  EXPECT_EQ(did_you_mean_or_known("chandelier", {}), "");
+}
+
 }  // namespace
 }  // namespace shadowbench

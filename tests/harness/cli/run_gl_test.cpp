@@ -316,7 +316,8 @@ TEST_F(Command, WithoutStability_SaysSo) {
 TEST_F(Command, MapOfOneTexel_Works) {
   const Outcome outcome = run("run --out out --size 64x36 --map-size 1 --rounds 1 --scene cubes");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (const auto& cell : results(folder())["cells"]) EXPECT_EQ(cell["nan"], 0);
+  const nlohmann::json written = results(folder());
+  for (const nlohmann::json& cell : written["cells"]) EXPECT_EQ(cell["nan"], 0);
 }
 
 TEST_F(Command, ListFilters_ShowsWhatTheFrontMatterSays) {

@@ -174,7 +174,8 @@ TEST_F(Sweep, ShardsMerged_EqualTheWhole) {
   const Outcome outcome = run("merge s3 s1 s2 --out out");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   expect_same("whole", "out");
-  for (const json& cell : results()["cells"]) {
+  const json merged = results();
+  for (const json& cell : merged["cells"]) {
     const std::string image = cell["images"]["picture"];
     EXPECT_EQ(read_text(folder() / "out" / image), read_text(folder() / "whole" / image)) << image;
   }

@@ -81,7 +81,7 @@ TEST(ChooseAxes, TakesThoseNamed_InThatOrder) {
 }
 
 TEST(ChooseAxes, UnknownOnes_AreRefusedWithTheNearest) {
-  for (const auto& [text, word] : {std::pair("esm-exponnet", "did you mean 'esm-exponent'"), std::pair("zzz", "there are: "), std::pair("", ""), std::pair("esm-exponent,esm-exponent", "twice")}) {
+  for (const auto& [text, word] : {std::pair("esm-exponnet", "did you mean 'esm-exponent'"), std::pair("zzz", "known: "), std::pair("", ""), std::pair("esm-exponent,esm-exponent", "twice")}) {
     try {
       choose_axes(text);
       EXPECT_EQ(std::string(text), "");
