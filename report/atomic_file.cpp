@@ -42,6 +42,10 @@ PendingFile::~PendingFile() {
 void PendingFile::commit() {
   std::error_code error;
   std::filesystem::rename(temporary_, path_, error);
+  if (error == std::errc::no_such_file_or_directory) {
+    throw Error(ErrorKind::kOutput, "its folder was removed or replaced while the file was written; run the same command again, or choose another with --out",
+                path_.string());
+  }
   if (error) {
     fail(path_, "the file cannot be given its name", error.value());
   }

@@ -69,6 +69,17 @@ TEST(AtomicFile, FolderThatIsAFile_IsAnOutputErrorWithPathAndReason) {
   EXPECT_THAT(message, HasSubstr("--out"));
 }
 
+TEST(AtomicFile, FolderThatVanishes_IsSaid) {
+  const TemporaryFolder folder("atomic_vanished");
+  const std::string message = message_of([&] {
+    AtomicFile file(folder.path() / "cells" / "a.json");
+    std::filesystem::rename(folder.path() / "cells", folder.path() / "moved");
+    file.commit();
+  });
+  EXPECT_THAT(message, HasSubstr((folder.path() / "cells" / "a.json").string() + ": its folder was removed or replaced"));
+  EXPECT_THAT(message, HasSubstr("--out"));
+}
+
 TEST(AtomicFile, NameThatIsAFolder_IsAnOutputErrorAndLeavesNoTemporary) {
   const TemporaryFolder folder("atomic_rename");
   std::filesystem::create_directories(folder.path() / "a.txt" / "inside");
