@@ -75,20 +75,12 @@ class Experiment {
       progress_.note("nothing is left to do");
       return;
     }
-    const std::vector<report::CellRecord> replaced = read_replaced();
-    done_ = plan.finished;
-    progress_.begin(plan.own_cells, plan.finished);
-    const auto start = std::chrono::steady_clock::now();
-    for (std::size_t scene = 0; scene < plan.scenes.size(); ++scene) run_scene(plan, scene);
-    run_.work.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    run_.work.shader_variants_compiled = renderer_.shaders.compiled();
-    run_.work.truths_traced = cache_.traced();
-    run_.work.truths_cached = cache_.loaded();
-    cache_.prune(kMaxCacheBytes);
-    if (!replaced.empty()) compare_with(replaced, list_keys(plan));
-    progress_.show(done_, "writing the report");
-    if (!options_.worker) write_report(list_keys(plan));
-    progress_.show(done_, "done");
+    try {
+      measure(plan);
+    } catch (const std::exception&) {
+      lock_->require_in_place();  // else this is why a file cannot be written, or a cell is missing
+      throw;
+    }
   }
 
  private:
@@ -103,6 +95,23 @@ class Experiment {
   TaskListener listener_{[this](const std::string& what) { progress_.show(done_, what); },
                          [this](const std::string& message) { progress_.note(message); },
                          [this](const SceneMeasurement& measured) { count(measured); }};
+
+  void measure(const RunPlan& plan) {
+    const std::vector<report::CellRecord> replaced = read_replaced();
+    done_ = plan.finished;
+    progress_.begin(plan.own_cells, plan.finished);
+    const auto start = std::chrono::steady_clock::now();
+    for (std::size_t scene = 0; scene < plan.scenes.size(); ++scene) run_scene(plan, scene);
+    run_.work.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    run_.work.shader_variants_compiled = renderer_.shaders.compiled();
+    run_.work.truths_traced = cache_.traced();
+    run_.work.truths_cached = cache_.loaded();
+    cache_.prune(kMaxCacheBytes);
+    if (!replaced.empty()) compare_with(replaced, list_keys(plan));
+    progress_.show(done_, "writing the report");
+    if (!options_.worker) report::write_report(options_.out, run_, list_keys(plan));
+    progress_.show(done_, "done");
+  }
 
   void count(const SceneMeasurement& measured) {
     lock_->require_in_place();
@@ -163,15 +172,6 @@ class Experiment {
       // What cannot be read cannot be compared with.
     }
     return {};
-  }
-
-  void write_report(const std::vector<std::string>& keys) const {
-    try {
-      report::write_report(options_.out, run_, keys);
-    } catch (const Error&) {
-      lock_->require_in_place();  // else this is why a cell is missing
-      throw;
-    }
   }
 
   void compare_with(const std::vector<report::CellRecord>& replaced, const std::vector<std::string>& keys) {
