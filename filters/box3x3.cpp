@@ -16,9 +16,8 @@ class Box3x3 {
   T visibility(const Receiver& r, Tally& tally) const {
     using P = Position<T>;
     T sum{};
-    for (const P y : {P(-1), P(0), P(1)}) {
+    for (const P y : {P(-1), P(0), P(1)})
       for (const P x : {P(-1), P(0), P(1)}) sum = sum + map_.compare_nearest(r, {x, y}, r.depth, tally);
-    }
     return sum / T(P(9));
   }
 

@@ -44,12 +44,10 @@ std::string list_choices(const ParamSpec& param) {
 double parse_number(const FilterSpec& spec, const ParamSpec& param, const std::string& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
     fail(fmt::format("{}:{}='{}' is not a finite number", spec.id, param.name, text));
-  }
-  if (param.integer && value != std::floor(value)) {
+  if (param.integer && value != std::floor(value))
     fail(fmt::format("{}:{}={} must be a whole number", spec.id, param.name, text));
-  }
   return value;
 }
 
@@ -61,14 +59,12 @@ void check_range(const FilterSpec& spec, const ParamSpec& param, double value) {
 
 void assign_value(FilterRequest& request, const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
-  if (equals == std::string::npos) {
+  if (equals == std::string::npos)
     fail(fmt::format("'{}' after '{}:' must be PARAM=VALUE", assignment, request.spec.id));
-  }
   const std::string name = assignment.substr(0, equals);
   request.values[name] = parse_value(request.spec, name, assignment.substr(equals + 1));
-  if (std::find(request.set_by_user.begin(), request.set_by_user.end(), name) == request.set_by_user.end()) {
+  if (std::find(request.set_by_user.begin(), request.set_by_user.end(), name) == request.set_by_user.end())
     request.set_by_user.push_back(name);
-  }
 }
 
 }  // namespace
@@ -108,11 +104,11 @@ ParamValue parse_value(const FilterSpec& spec, const std::string& name, const st
 
 Catalogue::Catalogue(const std::filesystem::path& folder) {
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
     if (entry.path().extension() == ".glsl") filters_.push_back(load_filter(entry.path()));
-  }
   if (filters_.empty()) {
-    throw Error(ErrorKind::kFilter, "no filters (*.glsl) in this folder: set SHADOWBENCH_ROOT to the project's folder", folder.string());
+    throw Error(ErrorKind::kFilter, "no filters (*.glsl) in this folder: set SHADOWBENCH_ROOT to the project's folder",
+                folder.string());
   }
   // Comparison filters first, narrow before wide: the order in which people learn them.
   const auto order = [](const FilterSpec& spec) {
@@ -134,11 +130,12 @@ const FilterSpec& Catalogue::find(const std::string& id) const {
 void Catalogue::add_user_file(const std::filesystem::path& path) {
   FilterSpec spec = load_filter(path);
   if (std::ranges::find(kReservedIds, spec.id) != std::end(kReservedIds)) {
-    fail(fmt::format("filter id '{}' of {} is taken by the report's own pictures: rename the file", spec.id, spec.path));
+    fail(
+        fmt::format("filter id '{}' of {} is taken by the report's own pictures: rename the file", spec.id, spec.path));
   }
-  for (const FilterSpec& known : filters_) {
-    if (known.id == spec.id) fail(fmt::format("filter id '{}' of {} is taken by {}: rename the file", spec.id, spec.path, known.path));
-  }
+  for (const FilterSpec& known : filters_)
+    if (known.id == spec.id)
+      fail(fmt::format("filter id '{}' of {} is taken by {}: rename the file", spec.id, spec.path, known.path));
   user_ids_.push_back(spec.id);
   filters_.push_back(std::move(spec));
 }

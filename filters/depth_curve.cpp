@@ -7,7 +7,8 @@
 namespace shadowbench::filters {
 
 double depth_of_distance(double distance_m, const DepthPlanes& planes, bool reversed) {
-  return DepthCurve{reversed, planes.far_m / planes.near_m}.store((distance_m - planes.near_m) / (planes.far_m - planes.near_m));
+  return DepthCurve{reversed, planes.far_m / planes.near_m}.store((distance_m - planes.near_m) /
+                                                                  (planes.far_m - planes.near_m));
 }
 
 double distance_of_depth(double depth, const DepthPlanes& planes, bool reversed) {

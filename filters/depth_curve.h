@@ -56,8 +56,8 @@ struct DepthFormat {
   bool is_float = true;
 };
 
-/// Gives the distance between neighbouring values of a format at a depth: 1 / (2^bits - 1), or the ULP of a float with 24
-/// significant bits.
+/// Gives the distance between neighbouring values of a format at a depth: 1 / (2^bits - 1), or the ULP of a float with
+/// 24 significant bits.
 double depth_quantum(double depth, const DepthFormat& format);
 
 /// Gives by how much two depths must differ at a depth for a format to tell them apart: (1 + (R - 1) z)^2 / R times the

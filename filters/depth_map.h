@@ -13,12 +13,12 @@ namespace shadowbench::filters {
 
 /// A depth map as read back from the GL; row 0 is v = 0.
 struct DepthMap {
-  int size = 0;                      ///< texels per side
-  std::vector<float> stored;         ///< size * size, in [0,1]; what it means is the curve's
+  int size = 0;               ///< texels per side
+  std::vector<float> stored;  ///< size * size, in [0,1]; what it means is the curve's
   DepthCurve curve{};
   /// Fixed-point formats clamp the reference of a comparison to [0,1], float formats do not (OpenGL 4.5, section 8.23).
   bool clamps_reference = false;
-  Border border = Border::kBorder;   ///< what lookups read outside
+  Border border = Border::kBorder;  ///< what lookups read outside
 
   /// Gives what a comparison with depth `z` compares with.
   float reference(float z) const {

@@ -62,8 +62,10 @@ std::vector<glm::vec2> generate_disk_points(int count, unsigned seed) {
   return result;
 }
 
-std::vector<glm::vec2> generate_disk_points(const FilterSpec& spec, const ParamValues& values, const std::string& name) {
-  const auto disk = std::find_if(spec.disks.begin(), spec.disks.end(), [&](const DiskTable& d) { return d.name == name; });
+std::vector<glm::vec2> generate_disk_points(const FilterSpec& spec, const ParamValues& values,
+                                            const std::string& name) {
+  const auto disk =
+      std::find_if(spec.disks.begin(), spec.disks.end(), [&](const DiskTable& d) { return d.name == name; });
   assert(disk != spec.disks.end());
   return generate_disk_points(static_cast<int>(number(values, disk->count)), disk->seed);
 }

@@ -32,7 +32,8 @@ class EncodedMap {
     texels_.reserve(input.map.stored.size());
     for (const float in_map : input.map.stored) {
       const float depth = input.map.curve.linear(in_map);
-      texels_.push_back(stored(encode(make_uncertain<T>(static_cast<Position<T>>(depth), linear_rounding(depth, input.map.curve)))));
+      texels_.push_back(
+          stored(encode(make_uncertain<T>(static_cast<Position<T>>(depth), linear_rounding(depth, input.map.curve)))));
     }
     if (radius_texels == 0) return;
     texels_ = blurred(gaussian_weights(radius_texels), 1, 0);
@@ -62,7 +63,8 @@ class EncodedMap {
   }
 
  private:
-  /// How far off single precision may be that linearises a depth: a stored value that is read one ULP off, and the division.
+  /// How far off single precision may be that linearises a depth: a stored value that is read one ULP off, and the
+  /// division.
   static double linear_rounding(float depth, const DepthCurve& curve) {
     if (std::is_same_v<T, float> || curve.is_linear()) return 0.0;
     const auto z = static_cast<double>(depth);
@@ -100,11 +102,9 @@ class EncodedMap {
   std::vector<Texel> blurred(const std::vector<float>& weights, int dx, int dy) const {
     std::vector<Texel> result;
     result.reserve(texels_.size());
-    for (int y = 0; y < grid_.size(); ++y) {
-      for (int x = 0; x < grid_.size(); ++x) {
+    for (int y = 0; y < grid_.size(); ++y)
+      for (int x = 0; x < grid_.size(); ++x)
         result.push_back(stored(log_ ? add_logs(weights, x, y, dx, dy) : add(weights, x, y, dx, dy)));
-      }
-    }
     return result;
   }
 

@@ -15,9 +15,8 @@ double number_or_param(const std::variant<double, std::string>& value, const Par
 }  // namespace
 
 const ParamSpec* FilterSpec::find_param(const std::string& name) const {
-  for (const ParamSpec& param : params) {
+  for (const ParamSpec& param : params)
     if (param.name == name) return &param;
-  }
   return nullptr;
 }
 

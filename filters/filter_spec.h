@@ -52,14 +52,14 @@ struct FilterSpec {
   std::variant<double, std::string> bias_texels = 0.0;    ///< half-width over which one depth stands for the receiver
   std::vector<ParamSpec> params;                          ///< `store`, `combine` and `sample` lists included
   std::vector<DiskTable> disks;
-  std::string body;                ///< GLSL after the front matter
-  int body_first_line = 1;         ///< line of the file at which `body` begins
-  bool has_encode = false;         ///< stores something else than depth
-  bool uses_samplers = false;      ///< reads the map past the counted functions: its fetch count is unknown
-  bool has_prefilter = false;      ///< `combine` is given: the map is blurred with radius `radius_texels`
-  bool holds_moments = false;      ///< channels in pairs: a mean, and the mean of its square
-  std::string exponent;            ///< parameter that the exponents of what is stored grow with; empty: none
-  std::string variance_floor;      ///< parameter that variances are raised to; empty: none
+  std::string body;            ///< GLSL after the front matter
+  int body_first_line = 1;     ///< line of the file at which `body` begins
+  bool has_encode = false;     ///< stores something else than depth
+  bool uses_samplers = false;  ///< reads the map past the counted functions: its fetch count is unknown
+  bool has_prefilter = false;  ///< `combine` is given: the map is blurred with radius `radius_texels`
+  bool holds_moments = false;  ///< channels in pairs: a mean, and the mean of its square
+  std::string exponent;        ///< parameter that the exponents of what is stored grow with; empty: none
+  std::string variance_floor;  ///< parameter that variances are raised to; empty: none
 
   const ParamSpec* find_param(const std::string& name) const;
 };

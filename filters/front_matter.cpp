@@ -123,8 +123,8 @@ std::string strip_comments(const std::string& glsl) {
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_word_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; }
 
-/// Where the word next stands on its own, from `start` on. The standard library's expressions recurse, and long texts end
-/// the program: none are used on what a user wrote.
+/// Where the word next stands on its own, from `start` on. The standard library's expressions recurse, and long texts
+/// end the program: none are used on what a user wrote.
 std::size_t find_word(std::string_view code, std::string_view word, std::size_t start) {
   for (std::size_t at = code.find(word, start); at != std::string_view::npos; at = code.find(word, at + 1)) {
     const std::size_t end = at + word.size();
@@ -142,29 +142,29 @@ bool has_function(std::string_view code, std::string_view type, std::string_view
     const std::size_t before = at == 0 ? std::string_view::npos : code.find_last_not_of(kBlank, at - 1);
     if (after == std::string_view::npos || code[after] != '(' || before == std::string_view::npos) continue;
     const std::string_view left = code.substr(0, before + 1);
-    const bool is_whole = left.size() == type.size() || (left.size() > type.size() && !is_word_character(left[left.size() - type.size() - 1]));
+    const bool is_whole = left.size() == type.size() ||
+                          (left.size() > type.size() && !is_word_character(left[left.size() - type.size() - 1]));
     if (left.ends_with(type) && is_whole) return true;
   }
   return false;
 }
 
 bool is_identifier(const std::string& name) {
-  return !name.empty() && is_letter(name.front()) && std::ranges::all_of(name, is_word_character) && !name.starts_with("gl_") &&
-         name.find("__") == std::string::npos;
+  return !name.empty() && is_letter(name.front()) && std::ranges::all_of(name, is_word_character) &&
+         !name.starts_with("gl_") && name.find("__") == std::string::npos;
 }
 
 FilterKind read_kind(const Reader& reader, const toml::table& root) {
   const std::vector<FilterKind> kinds = {FilterKind::kComparison, FilterKind::kBound, FilterKind::kStochastic,
                                          FilterKind::kOther};
   const std::string name = reader.text(root, "kind", true);
-  for (const FilterKind kind : kinds) {
+  for (const FilterKind kind : kinds)
     if (to_string(kind) == name) return kind;
-  }
-  reader.fail(root.get("kind"),
-              fmt::format("kind '{}' is unknown; known: comparison, bound, stochastic, other", name));
+  reader.fail(root.get("kind"), fmt::format("kind '{}' is unknown; known: comparison, bound, stochastic, other", name));
 }
 
-/// The values that a numeric parameter may take lie between these, ends included; its range, or its choices, were checked.
+/// The values that a numeric parameter may take lie between these, ends included; its range, or its choices, were
+/// checked.
 struct Ends {
   double smallest;
   double largest;
@@ -182,25 +182,26 @@ Ends ends_of(const ParamSpec& param) {
 
 void check_default(const Reader& reader, const toml::node& node, const ParamSpec& param) {
   if (!param.choices.empty()) {
-    for (const ParamValue& choice : param.choices) {
-      if (choice.index() != param.default_value.index()) reader.fail(&node, fmt::format("the default of '{}' and its choices are of different types", param.name));
-    }
-    if (std::find(param.choices.begin(), param.choices.end(), param.default_value) == param.choices.end()) {
+    for (const ParamValue& choice : param.choices)
+      if (choice.index() != param.default_value.index())
+        reader.fail(&node, fmt::format("the default of '{}' and its choices are of different types", param.name));
+    if (std::find(param.choices.begin(), param.choices.end(), param.default_value) == param.choices.end())
       reader.fail(&node, fmt::format("the default of '{}' is not one of its choices", param.name));
-    }
     return;
   }
   const auto* value = std::get_if<double>(&param.default_value);
   if (!value) {
-    if (std::holds_alternative<std::string>(param.default_value)) {
+    if (std::holds_alternative<std::string>(param.default_value))
       reader.fail(&node, fmt::format("'{}' is a text and needs 'choices'", param.name));
-    }
     return;
   }
-  if (!param.min || !param.max) reader.fail(&node, fmt::format("'{}' is a number and needs 'min' and 'max'", param.name));
-  if (*param.min > *param.max) reader.fail(&node, fmt::format("'{}' has min {} above max {}", param.name, *param.min, *param.max));
+  if (!param.min || !param.max)
+    reader.fail(&node, fmt::format("'{}' is a number and needs 'min' and 'max'", param.name));
+  if (*param.min > *param.max)
+    reader.fail(&node, fmt::format("'{}' has min {} above max {}", param.name, *param.min, *param.max));
   if (*value < *param.min || *value > *param.max) {
-    reader.fail(&node, fmt::format("the default of '{}' is {}, outside {} .. {}", param.name, *value, *param.min, *param.max));
+    reader.fail(&node,
+                fmt::format("the default of '{}' is {}, outside {} .. {}", param.name, *value, *param.min, *param.max));
   }
 }
 
@@ -208,7 +209,8 @@ ParamSpec read_param(const Reader& reader, const std::string& name, const toml::
   const toml::table* table = node.as_table();
   if (!table) reader.fail(&node, fmt::format("'param.{}' must be a table", name));
   if (!is_identifier(name)) reader.fail(&node, fmt::format("'{}' cannot be the name of a GLSL uniform", name));
-  reader.check_keys(*table, {"default", "min", "max", "choices", "unit", "text", "const"}, fmt::format("[param.{}]", name));
+  reader.check_keys(*table, {"default", "min", "max", "choices", "unit", "text", "const"},
+                    fmt::format("[param.{}]", name));
   const toml::node* default_node = table->get("default");
   if (!default_node) reader.fail(table, fmt::format("[param.{}] lacks 'default'", name));
   ParamSpec param;
@@ -253,9 +255,8 @@ void read_params(const Reader& reader, const toml::table& root, FilterSpec& spec
   std::vector<std::pair<std::string, const toml::node*>> found;
   for (const auto& [key, value] : *node->as_table()) found.emplace_back(std::string(key.str()), &value);
   // TOML tables are sorted by name; the author's order is the one people should read.
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
-    return a.second->source().begin.line < b.second->source().begin.line;
-  });
+  std::sort(found.begin(), found.end(),
+            [](const auto& a, const auto& b) { return a.second->source().begin.line < b.second->source().begin.line; });
   for (const auto& [name, value] : found) spec.params.push_back(read_param(reader, name, *value));
 }
 
@@ -266,9 +267,8 @@ std::variant<double, std::string> read_number_or_param(const Reader& reader, con
   if (!node) return fallback;
   if (const auto name = node->value_exact<std::string>()) {
     const ParamSpec* param = spec.find_param(*name);
-    if (!param || !std::holds_alternative<double>(param->default_value)) {
+    if (!param || !std::holds_alternative<double>(param->default_value))
       reader.fail(node, fmt::format("'{}' names '{}', which is not a numeric parameter", key, *name));
-    }
     return *name;
   }
   const auto value = reader.finite(root, key);
@@ -281,22 +281,26 @@ void read_prefilter(const Reader& reader, const toml::table& root, FilterSpec& s
   if (!root.contains("combine")) return;
   const auto* name = std::get_if<std::string>(&spec.radius_texels);
   const ParamSpec* param = name ? spec.find_param(*name) : nullptr;
-  const bool whole = param ? param->integer : std::holds_alternative<double>(spec.radius_texels) &&
-                                                  std::floor(std::get<double>(spec.radius_texels)) == std::get<double>(spec.radius_texels);
+  const bool whole = param
+                         ? param->integer
+                         : std::holds_alternative<double>(spec.radius_texels) &&
+                               std::floor(std::get<double>(spec.radius_texels)) == std::get<double>(spec.radius_texels);
   const Ends ends = param ? ends_of(*param) : Ends{0.0, name ? 0.0 : std::get<double>(spec.radius_texels)};
   if (!whole || ends.largest > kMaxPrefilterRadius || ends.smallest < 0.0) {
-    reader.fail(root.get("combine"), fmt::format("'combine' asks for the prefilter, whose radius is 'radius_texels': that must be a whole number, or an integer parameter, within 0 .. {}", kMaxPrefilterRadius));
+    reader.fail(root.get("combine"), fmt::format("'combine' asks for the prefilter, whose radius is 'radius_texels': "
+                                                 "that must be a whole number, or an integer parameter, within 0 .. {}",
+                                                 kMaxPrefilterRadius));
   }
   spec.has_prefilter = true;
 }
 
 /// The numeric parameter that a key names; empty without the key.
-std::string read_param_name(const Reader& reader, const toml::table& root, const FilterSpec& spec, const std::string& key) {
+std::string read_param_name(const Reader& reader, const toml::table& root, const FilterSpec& spec,
+                            const std::string& key) {
   const std::string name = reader.text(root, key, false);
   const ParamSpec* param = spec.find_param(name);
-  if (!name.empty() && (!param || !std::holds_alternative<double>(param->default_value))) {
+  if (!name.empty() && (!param || !std::holds_alternative<double>(param->default_value)))
     reader.fail(root.get(key), fmt::format("'{}' names '{}', which is not a numeric parameter", key, name));
-  }
   return name;
 }
 
@@ -305,13 +309,15 @@ void read_stored(const Reader& reader, const toml::table& root, FilterSpec& spec
   spec.holds_moments = reader.flag(root, "moments");
   spec.exponent = read_param_name(reader, root, spec, "exponent");
   spec.variance_floor = read_param_name(reader, root, spec, "variance_floor");
-  if (!spec.variance_floor.empty() && !spec.holds_moments) {
+  if (!spec.variance_floor.empty() && !spec.holds_moments)
     reader.fail(root.get("variance_floor"), "'variance_floor' needs 'moments = true': only moments have a variance");
-  }
   if (!spec.holds_moments) return;
   for (const std::string& store : reader.texts(root, "store")) {
     if (store_channels(store) >= 2) continue;
-    reader.fail(root.get("moments"), fmt::format("'moments' takes channels in pairs, a mean and the mean of its square, and the store '{}' has one", store));
+    reader.fail(
+        root.get("moments"),
+        fmt::format("'moments' takes channels in pairs, a mean and the mean of its square, and the store '{}' has one",
+                    store));
   }
 }
 
@@ -327,29 +333,37 @@ void read_disks(const Reader& reader, const toml::table& root, FilterSpec& spec)
     disk.name = std::string(key.str());
     disk.count = reader.text(*table, "count", true);
     const ParamSpec* param = spec.find_param(disk.count);
-    if (!is_identifier(disk.name)) reader.fail(table, fmt::format("'{}' cannot be the name of a GLSL array", disk.name));
+    if (!is_identifier(disk.name))
+      reader.fail(table, fmt::format("'{}' cannot be the name of a GLSL array", disk.name));
     if (!param || !param->integer || !param->is_const) {
-      reader.fail(table->get("count"), fmt::format("'count' names '{}', which is not a const integer parameter", disk.count));
+      reader.fail(table->get("count"),
+                  fmt::format("'count' names '{}', which is not a const integer parameter", disk.count));
     }
     if (const double most = ends_of(*param).largest; most > kMostDiskPoints) {
-      reader.fail(table->get("count"), fmt::format("'count' names '{}', which may be up to {}: at most {} points are made", disk.count, most, kMostDiskPoints));
+      reader.fail(table->get("count"),
+                  fmt::format("'count' names '{}', which may be up to {}: at most {} points are made", disk.count, most,
+                              kMostDiskPoints));
     }
     const double seed = reader.finite(*table, "seed").value_or(1.0);
-    if (!(seed >= 0.0 && seed <= 4294967295.0)) reader.fail(table->get("seed"), "'seed' must be a whole number from 0 to 4294967295");
+    if (!(seed >= 0.0 && seed <= 4294967295.0))
+      reader.fail(table->get("seed"), "'seed' must be a whole number from 0 to 4294967295");
     disk.seed = static_cast<unsigned>(seed);
     spec.disks.push_back(disk);
   }
 }
 
 void read_root(const Reader& reader, const toml::table& root, FilterSpec& spec) {
-  reader.check_keys(root, {"title", "source", "kind", "store", "combine", "sample", "claims", "radius_texels",
-                           "bias_texels", "moments", "exponent", "variance_floor", "param", "disk"}, "the front matter");
+  reader.check_keys(root,
+                    {"title", "source", "kind", "store", "combine", "sample", "claims", "radius_texels", "bias_texels",
+                     "moments", "exponent", "variance_floor", "param", "disk"},
+                    "the front matter");
   spec.title = reader.text(root, "title", true);
   spec.source = reader.text(root, "source", true);
   spec.kind = read_kind(reader, root);
   spec.claims = reader.texts(root, "claims");
   read_params(reader, root, spec);
-  add_list_param(reader, root, spec, "store", {"r16f", "r32f", "rg16f", "rg32f", "rgba16f", "rgba32f", "r16", "rg16", "rgba16"},
+  add_list_param(reader, root, spec, "store",
+                 {"r16f", "r32f", "rg16f", "rg32f", "rgba16f", "rgba32f", "r16", "rg16", "rgba16"},
                  "format of the encoded map");
   add_list_param(reader, root, spec, "combine", {"linear", "log"},
                  "how the prefilter adds texels; log: log-sum-exp, read with the nearest texel");
@@ -364,21 +378,20 @@ void read_root(const Reader& reader, const toml::table& root, FilterSpec& spec) 
 void inspect_body(const Reader& reader, const toml::table& root, FilterSpec& spec) {
   const std::string code = strip_comments(spec.body);
   spec.has_encode = has_function(code, "vec4", "encode");
-  for (const char* sampler : {"map_depth", "map_compare", "map_compare_nearest", "map_stored"}) {
+  for (const char* sampler : {"map_depth", "map_compare", "map_compare_nearest", "map_stored"})
     spec.uses_samplers = spec.uses_samplers || find_word(code, sampler, 0) != std::string_view::npos;
-  }
-  if (!has_function(code, "float", "visibility")) {
-    reader.fail(nullptr, "the GLSL lacks 'float visibility(Receiver r)'");
-  }
+  if (!has_function(code, "float", "visibility")) reader.fail(nullptr, "the GLSL lacks 'float visibility(Receiver r)'");
   const bool stores = root.contains("store");
-  if (stores && !spec.has_encode) reader.fail(root.get("store"), "'store' is given, but the GLSL lacks 'vec4 encode(EncodeInput e)'");
-  if (!stores && spec.has_encode) reader.fail(nullptr, "the GLSL has encode(), but the front matter lacks 'store', the format it writes");
-  for (const char* key : {"combine", "sample"}) {
-    if (root.contains(key) && !stores) reader.fail(root.get(key), fmt::format("'{}' needs 'store': a depth map is not prefiltered", key));
-  }
-  for (const char* key : {"moments", "exponent"}) {
-    if (root.contains(key) && !stores) reader.fail(root.get(key), fmt::format("'{}' says what is stored, and needs 'store'", key));
-  }
+  if (stores && !spec.has_encode)
+    reader.fail(root.get("store"), "'store' is given, but the GLSL lacks 'vec4 encode(EncodeInput e)'");
+  if (!stores && spec.has_encode)
+    reader.fail(nullptr, "the GLSL has encode(), but the front matter lacks 'store', the format it writes");
+  for (const char* key : {"combine", "sample"})
+    if (root.contains(key) && !stores)
+      reader.fail(root.get(key), fmt::format("'{}' needs 'store': a depth map is not prefiltered", key));
+  for (const char* key : {"moments", "exponent"})
+    if (root.contains(key) && !stores)
+      reader.fail(root.get(key), fmt::format("'{}' says what is stored, and needs 'store'", key));
 }
 
 }  // namespace
@@ -387,7 +400,8 @@ FilterSpec parse_filter(const std::string& text, const std::filesystem::path& pa
   const std::size_t open = text.find(kOpen);
   const std::size_t close = open == std::string::npos ? open : text.find(kClose, open);
   if (close == std::string::npos || text.find_first_not_of(" \t\r\n\xEF\xBB\xBF") != open) {
-    throw Error(ErrorKind::kFilter, "no front matter: the file must begin with /*+++, TOML, and +++*/", path.string() + ":1");
+    throw Error(ErrorKind::kFilter, "no front matter: the file must begin with /*+++, TOML, and +++*/",
+                path.string() + ":1");
   }
   FilterSpec spec;
   spec.id = path.stem().string();
@@ -396,9 +410,8 @@ FilterSpec parse_filter(const std::string& text, const std::filesystem::path& pa
   const int first_line = 1 + count_lines(std::string_view(text).substr(0, begin));
   const Reader reader(spec.path, first_line);
   const std::string front_matter = text.substr(begin, close - begin);
-  if (const int line = find_too_deep_key(front_matter); line > 0) {
+  if (const int line = find_too_deep_key(front_matter); line > 0)
     reader.fail_at(line, fmt::format("a key has more than {} dots", kMostDots));
-  }
   toml::table root;
   try {
     root = toml::parse(front_matter);
@@ -417,13 +430,13 @@ FilterSpec load_filter(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::stringstream text;
   if (file) text << file.rdbuf();
-  if (!file || std::filesystem::is_directory(path)) {
+  if (!file || std::filesystem::is_directory(path))
     throw Error(ErrorKind::kFilter, "cannot read this filter file: check the path and its permissions", path.string());
-  }
   if (!is_identifier(path.stem().string())) {
-    throw Error(ErrorKind::kFilter,
-                fmt::format("'{}' cannot be a filter's id: rename the file to letters, digits and '_'", path.stem().string()),
-                path.string());
+    throw Error(
+        ErrorKind::kFilter,
+        fmt::format("'{}' cannot be a filter's id: rename the file to letters, digits and '_'", path.stem().string()),
+        path.string());
   }
   return parse_filter(text.str(), path);
 }

@@ -40,7 +40,8 @@ Kernel Kernel::make_gaussian(int radius_texels, Reconstruction reconstruction) {
   const std::vector<float> weights = gaussian_weights(radius_texels);
   std::vector<Atom> atoms;
   for (int i = -radius_texels; i <= radius_texels; ++i) {
-    atoms.push_back({static_cast<double>(i), static_cast<double>(weights[static_cast<std::size_t>(i + radius_texels)])});
+    atoms.push_back(
+        {static_cast<double>(i), static_cast<double>(weights[static_cast<std::size_t>(i + radius_texels)])});
   }
   return make_grid(std::move(atoms), reconstruction);
 }

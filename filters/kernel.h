@@ -1,7 +1,6 @@
 #pragma once
 
 #include <glm/glm.hpp>
-
 #include <string>
 #include <vector>
 
@@ -36,7 +35,8 @@ class Kernel {
   /// A uniform disk, read bilinearly.
   static Kernel make_disk(double radius_texels);
 
-  /// Gives a point of the continuous kernel, in texels; `shape` and `between` in [0,1)^2, equal areas for equal weights.
+  /// Gives a point of the continuous kernel, in texels; `shape` and `between` in [0,1)^2, equal areas for equal
+  /// weights.
   glm::dvec2 sample(const glm::dvec2& shape, const glm::dvec2& between) const;
 
   /// Gives the half-width of the square outside which the continuous kernel is 0, in texels.

@@ -16,8 +16,9 @@ enum class Border {
 /// artefact.
 struct RangeRule {
   Border border = Border::kBorder;
-  bool far_test = true;     ///< beyond the far plane is lit; without, it is compared with depths that cannot reach it
-  bool behind_test = true;  ///< projective maps: behind the light is lit; without, the map is mirrored through the light
+  bool far_test = true;  ///< beyond the far plane is lit; without, it is compared with depths that cannot reach it
+  bool behind_test =
+      true;  ///< projective maps: behind the light is lit; without, the map is mirrored through the light
 };
 
 /// Lists the names of the borders, in the order of the enumerators: border, edge, repeat.

@@ -80,7 +80,8 @@ class PlaneBias {
   /// `max_tangent` 0 switches it off.
   explicit PlaneBias(double max_tangent) : max_tangent_(max_tangent) {}
 
-  /// `at` in texels of the map; the lowest depth within `reach_texels` of it per axis. `z` is the receiver's biased depth.
+  /// `at` in texels of the map; the lowest depth within `reach_texels` of it per axis. `z` is the receiver's biased
+  /// depth.
   float depth(const Receiver& r, int map_size, glm::dvec2 at, double reach_texels, float z) const {
     if (max_tangent_ <= 0.0) return z;
     const double steepest = max_tangent_ * static_cast<double>(r.texel_size_ws) / static_cast<double>(r.depth_range_ws);

@@ -3,9 +3,8 @@
 namespace shadowbench::filters {
 
 std::unique_ptr<Model> make_model(const std::string& id) {
-  for (const ModelEntry& entry : model_table()) {
+  for (const ModelEntry& entry : model_table())
     if (entry.id == id) return entry.make();
-  }
   return nullptr;
 }
 

@@ -12,11 +12,11 @@ namespace shadowbench::filters {
 
 /// The arithmetic a model runs in.
 enum class Precision {
-  kFloat,    ///< as the GL does it
-  kDouble,   ///< the reference
-  kExtended, ///< the reference where differences of nearly equal numbers leave double little: long double, 64 bits of
-             ///< significand on x86
-  kTracked,  ///< double, with a bound on what single precision can make of it
+  kFloat,     ///< as the GL does it
+  kDouble,    ///< the reference
+  kExtended,  ///< the reference where differences of nearly equal numbers leave double little: long double, 64 bits of
+              ///< significand on x86
+  kTracked,   ///< double, with a bound on what single precision can make of it
 };
 
 /// What a model says of one receiver.

@@ -20,11 +20,14 @@ double integrate_tent(double from, double to) {
 /// Integrates `f` over [a, b] with the Gauss-Legendre rule of 8 points (Abramowitz and Stegun 1964, table 25.4).
 template <class Function>
 double integrate(double a, double b, Function f) {
-  constexpr std::array<double, 4> kNodes = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
-  constexpr std::array<double, 4> kWeights = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+  constexpr std::array<double, 4> kNodes = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                                            0.9602898564975363};
+  constexpr std::array<double, 4> kWeights = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                                              0.1012285362903763};
   const double middle = 0.5 * (a + b), half = 0.5 * (b - a);
   double sum = 0.0;
-  for (std::size_t i = 0; i < kNodes.size(); ++i) sum += kWeights[i] * (f(middle - half * kNodes[i]) + f(middle + half * kNodes[i]));
+  for (std::size_t i = 0; i < kNodes.size(); ++i)
+    sum += kWeights[i] * (f(middle - half * kNodes[i]) + f(middle + half * kNodes[i]));
   return half * sum;
 }
 
@@ -38,7 +41,8 @@ double gather_tent(double radius, double dx, double dy) {
   constexpr int kPieces = 4;  // per half of the tent: chords that end near a kink are not smooth
   for (const double from : {dy - 1.0, dy}) {
     const double a = std::max(from, -radius), b = std::min(from + 1.0, radius);
-    for (int i = 0; i < kPieces && a < b; ++i) sum += integrate(a + (b - a) * i / kPieces, a + (b - a) * (i + 1) / kPieces, chord);
+    for (int i = 0; i < kPieces && a < b; ++i)
+      sum += integrate(a + (b - a) * i / kPieces, a + (b - a) * (i + 1) / kPieces, chord);
   }
   return sum / (std::numbers::pi * radius * radius);
 }
@@ -56,7 +60,8 @@ DiskWeights::DiskWeights(double radius_texels)
   const auto side = static_cast<std::size_t>(side_);
   for (std::size_t y = 0; y < side; ++y) {
     for (std::size_t x = 0; x <= y; ++x) {
-      const double weight = gather_tent(radius_texels, static_cast<double>(x) / cells_per_texel_, static_cast<double>(y) / cells_per_texel_);
+      const double weight = gather_tent(radius_texels, static_cast<double>(x) / cells_per_texel_,
+                                        static_cast<double>(y) / cells_per_texel_);
       table_[y * side + x] = table_[x * side + y] = weight;
     }
   }
@@ -66,7 +71,8 @@ double DiskWeights::at(double dx, double dy) const {
   const double x = std::abs(dx), y = std::abs(dy);
   if (x >= reach_ || y >= reach_) return 0.0;
   const double tx = x * cells_per_texel_, ty = y * cells_per_texel_;
-  const auto ix = static_cast<std::size_t>(tx), iy = static_cast<std::size_t>(ty), side = static_cast<std::size_t>(side_);
+  const auto ix = static_cast<std::size_t>(tx), iy = static_cast<std::size_t>(ty),
+             side = static_cast<std::size_t>(side_);
   const double sx = tx - static_cast<double>(ix), sy = ty - static_cast<double>(iy);
   const double* row = &table_[iy * side + ix];
   const double low = row[0] + sx * (row[1] - row[0]);
@@ -107,9 +113,9 @@ double PercentageCloser::gather_grid(double px, double py, const Receiver& recei
   double sum = 0.0;
   for (std::size_t y = 0; y < rows.weights.size(); ++y) {
     double row = 0.0;
-    for (std::size_t x = 0; x < columns.weights.size(); ++x) {
-      if (is_lit(columns.first + static_cast<int>(x), rows.first + static_cast<int>(y), receiver)) row += columns.weights[x];
-    }
+    for (std::size_t x = 0; x < columns.weights.size(); ++x)
+      if (is_lit(columns.first + static_cast<int>(x), rows.first + static_cast<int>(y), receiver))
+        row += columns.weights[x];
     sum += rows.weights[y] * row;
   }
   return sum;

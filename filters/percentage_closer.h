@@ -10,8 +10,8 @@ namespace shadowbench::filters {
 
 /// The share of a uniform disk that a unit tent beside it gathers, for any offset between the two.
 ///
-/// Tabulated over one quadrant and interpolated bilinearly: for radii up to 64 texels every weight is within 2e-4 of its
-/// share of the disk's mean weight.
+/// Tabulated over one quadrant and interpolated bilinearly: for radii up to 64 texels every weight is within 2e-4 of
+/// its share of the disk's mean weight.
 class DiskWeights {
  public:
   /// Cost: about 0.1 s.

@@ -26,8 +26,8 @@ float random_turn(glm::ivec2 pixel, std::uint32_t seed) {
 
 float interleaved_gradient_turn(glm::ivec2 pixel) {
   // 0.06711056 and 0.00583715 with 32 fraction bits, 52.9829189 with 26.
-  const std::uint32_t inner = 288237660U * static_cast<std::uint32_t>(pixel.x) +
-                              25070368U * static_cast<std::uint32_t>(pixel.y);
+  const std::uint32_t inner =
+      288237660U * static_cast<std::uint32_t>(pixel.x) + 25070368U * static_cast<std::uint32_t>(pixel.y);
   const std::uint64_t product = static_cast<std::uint64_t>(inner) * 3555623499U;
   return to_turn(static_cast<std::uint32_t>(product >> 26));
 }

@@ -4,11 +4,12 @@
 
 namespace shadowbench::filters {
 
-/// A surface faces the light where n.l is greater: below, the sign of a sum of rounded products decides nothing. The same
-/// in shaders/lib/receiver.glsl.
+/// A surface faces the light where n.l is greater: below, the sign of a sum of rounded products decides nothing. The
+/// same in shaders/lib/receiver.glsl.
 inline constexpr float kFacesLight = 1e-5f;
 
-/// Describes a receiver point to a filter; the same fields, in the same order, as `Receiver` in shaders/lib/receiver.glsl.
+/// Describes a receiver point to a filter; the same fields, in the same order, as `Receiver` in
+/// shaders/lib/receiver.glsl.
 struct Receiver {
   glm::vec3 position_ws{0.0f};
   glm::vec3 normal_ws{0.0f, 1.0f, 0.0f};  ///< geometric, flipped to the viewer

@@ -13,14 +13,18 @@ using Position = std::conditional_t<std::is_same_v<T, float>, float, double>;
 
 template <class T>
 T maximum(T a, T b) {
-  if constexpr (std::is_same_v<T, Tracked>) return max(a, b);
-  else return a > b ? a : b;
+  if constexpr (std::is_same_v<T, Tracked>)
+    return max(a, b);
+  else
+    return a > b ? a : b;
 }
 
 template <class T>
 T minimum(T a, T b) {
-  if constexpr (std::is_same_v<T, Tracked>) return min(a, b);
-  else return a < b ? a : b;
+  if constexpr (std::is_same_v<T, Tracked>)
+    return min(a, b);
+  else
+    return a < b ? a : b;
 }
 
 /// Gives e^x with the accuracy of the GL at hand.
@@ -51,8 +55,10 @@ T logarithm(T x) {
 /// Gives a value, and lets single precision be off by `bound`: errors of what is not tracked itself, such as positions.
 template <class T>
 T make_uncertain(Position<T> value, [[maybe_unused]] double bound) {
-  if constexpr (std::is_same_v<T, Tracked>) return Tracked(value, bound);
-  else return value;
+  if constexpr (std::is_same_v<T, Tracked>)
+    return Tracked(value, bound);
+  else
+    return value;
 }
 
 /// Gives the fraction of a texel position as the filtering weight that the sampler would use.

@@ -1,7 +1,6 @@
 #include "filters/store_format.h"
 
 #include <glm/gtc/packing.hpp>
-
 #include <limits>
 
 namespace shadowbench::filters {

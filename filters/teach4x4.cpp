@@ -15,9 +15,8 @@ class Teach4x4 {
   T visibility(const Receiver& r, Tally& tally) const {
     using P = Position<T>;
     T sum{};
-    for (const P y : {P(-1), P(1)}) {
+    for (const P y : {P(-1), P(1)})
       for (const P x : {P(-1), P(1)}) sum = sum + map_.compare_2x2(r, {x, y}, r.depth, tally);
-    }
     return T(P(0.25)) * sum;
   }
 

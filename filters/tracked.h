@@ -10,8 +10,8 @@ inline constexpr double kUnitRoundoff = 0x1p-24;
 
 /// Bounds what elementary functions of the GL at hand may get wrong, as `list gl --measure` finds it.
 struct GlAccuracy {
-  double exp_roundoffs = 8.0;      ///< relative error of exp(), in units of 2^-24
-  double weight_bits = 23.0;       ///< fraction bits of linear filtering weights; 23 or more: full single precision
+  double exp_roundoffs = 8.0;  ///< relative error of exp(), in units of 2^-24
+  double weight_bits = 23.0;   ///< fraction bits of linear filtering weights; 23 or more: full single precision
 };
 
 /// A real number together with a bound on how far the same computation in single precision can be from it: running

@@ -20,9 +20,7 @@ constexpr double kSmallestOffset = -0.005;  // what is written as "-1 %" and bel
 
 // "a", "a and b", "a, b and c".
 std::string join_words(const std::vector<std::string>& words) {
-  if (words.size() < 2) {
-    return words.empty() ? std::string() : words.front();
-  }
+  if (words.size() < 2) return words.empty() ? std::string() : words.front();
   return fmt::format("{} and {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
 }
 
@@ -42,9 +40,7 @@ std::string describe_error_ranking(const CellGroup& group, const std::vector<std
   bool any_tie = false;
   for (const auto& rank : ranks) {
     std::vector<std::string> names;
-    for (const std::size_t i : rank) {
-      names.push_back(name_with_rmse(group, i));
-    }
+    for (const std::size_t i : rank) names.push_back(name_with_rmse(group, i));
     places.push_back(fmt::format("{}", fmt::join(names, " tied with ")));
     any_tie = any_tie || rank.size() > 1;
   }
@@ -70,9 +66,7 @@ std::vector<AttributedCell> list_attributed(const CellGroup& group) {
   std::vector<AttributedCell> cells;
   for (const CellRecord& cell : group.cells) {
     const auto shares = list_shares(cell);
-    if (shares && !is_lost_in_truth(cell)) {
-      cells.push_back({label_cell(group, cell), *shares});
-    }
+    if (shares && !is_lost_in_truth(cell)) cells.push_back({label_cell(group, cell), *shares});
   }
   return cells;
 }
@@ -86,9 +80,7 @@ std::vector<std::string> describe_lost(const CellGroup& group) {
       largest_se = std::max(largest_se, truth_se(cell));
     }
   }
-  if (names.empty()) {
-    return {};
-  }
+  if (names.empty()) return {};
   return {fmt::format("The error of {} cannot be told from the truth's own (standard error {}).", join_words(names),
                       format_number(largest_se))};
 }
@@ -100,11 +92,9 @@ std::string explain_part(std::size_t part) {
 // One sentence per part that dominates, for all cells it does so in.
 std::vector<std::string> describe_dominated(const std::vector<AttributedCell>& cells) {
   std::map<std::size_t, std::vector<std::string>> names;
-  for (const AttributedCell& cell : cells) {
-    if (const auto part = find_dominating_part(cell.shares)) {
+  for (const AttributedCell& cell : cells)
+    if (const auto part = find_dominating_part(cell.shares))
       names[*part].push_back(fmt::format("{} ({})", cell.label, format_share(cell.shares[*part])));
-    }
-  }
   std::vector<std::string> sentences;
   for (const auto& [part, labels] : names) {
     sentences.push_back(fmt::format("Most of the error of {} is {}: {}.", join_words(labels),
@@ -145,14 +135,10 @@ using RateMember = std::optional<double> ArtefactRecord::*;
 // A sentence on one kind of fault, "what it is: filters with their rates"; none where no filter has it.
 std::vector<std::string> describe_artefact(const CellGroup& group, RateMember member, const std::string& definition) {
   std::vector<std::string> rates;
-  for (const CellRecord& cell : group.cells) {
-    if ((cell.artefact.*member).value_or(0.0) >= kSmallestRate) {
+  for (const CellRecord& cell : group.cells)
+    if ((cell.artefact.*member).value_or(0.0) >= kSmallestRate)
       rates.push_back(fmt::format("{} {}", label_cell(group, cell), format_rate(*(cell.artefact.*member))));
-    }
-  }
-  if (rates.empty()) {
-    return {};
-  }
+  if (rates.empty()) return {};
   return {fmt::format("{}: {}.", definition, fmt::join(rates, ", "))};
 }
 
@@ -190,18 +176,13 @@ std::vector<std::string> describe_artefacts(const CellGroup& group) {
 
 std::vector<std::vector<std::size_t>> rank_errors(const std::vector<CellRecord>& cells) {
   std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (cells[i].error.rmse) {
-      order.push_back(i);
-    }
-  }
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (cells[i].error.rmse) order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return *cells[a].error.rmse < *cells[b].error.rmse; });
   std::vector<std::vector<std::size_t>> groups;
   for (const std::size_t i : order) {
-    if (groups.empty() || !are_tied(cells[groups.back().front()], cells[i])) {
-      groups.emplace_back();
-    }
+    if (groups.empty() || !are_tied(cells[groups.back().front()], cells[i])) groups.emplace_back();
     groups.back().push_back(i);
   }
   return groups;
@@ -220,14 +201,11 @@ bool is_lost_in_truth(const CellRecord& cell) {
 std::vector<std::string> describe_accuracy(const CellGroup& group) {
   std::vector<std::string> sentences;
   const auto ranks = rank_errors(group.cells);
-  if (!ranks.empty()) {
-    sentences.push_back(describe_error_ranking(group, ranks));
-  }
+  if (!ranks.empty()) sentences.push_back(describe_error_ranking(group, ranks));
   const std::vector<AttributedCell> cells = list_attributed(group);
   for (const auto& more : {describe_lost(group), describe_dominated(cells), describe_divided(cells),
-                           explain_offsets(cells), describe_artefacts(group)}) {
+                           explain_offsets(cells), describe_artefacts(group)})
     sentences.insert(sentences.end(), more.begin(), more.end());
-  }
   return sentences;
 }
 

@@ -44,9 +44,8 @@ void require_size(const std::vector<CellRecord>& cells, std::pair<int, int> want
 void require_claim(const std::vector<CellRecord>& cells, const AdviceRequest& request, const std::string& wanted) {
   std::set<std::string> known;
   for (const auto& [filter, made] : request.claims) known.insert(made.begin(), made.end());
-  for (const CellRecord& cell : cells) {
+  for (const CellRecord& cell : cells)
     if (cell.claims) known.insert(cell.claims->begin(), cell.claims->end());
-  }
   if (known.contains(wanted)) return;
   if (known.empty()) refuse(fmt::format("--requires: no filter claims '{}', nor anything else: leave it out", wanted));
   refuse(fmt::format("--requires: no filter claims '{}'{}; filters claim {}", wanted,
@@ -67,7 +66,8 @@ std::vector<const CellRecord*> choose_cells(const std::vector<CellRecord>& cells
 }
 
 // Says why a value cannot be had, or nothing where it can.
-std::optional<std::string> find_gap(const std::vector<const CellRecord*>& cells, const LimitSpec& spec, const Advice& advice) {
+std::optional<std::string> find_gap(const std::vector<const CellRecord*>& cells, const LimitSpec& spec,
+                                    const Advice& advice) {
   for (const CellRecord* cell : cells) {
     if (spec.read(*cell, advice.request.light)) continue;
     return fmt::format("no {} on {}: {}", spec.field, describe_place(place_of(*cell), advice.places),
@@ -81,7 +81,8 @@ bool has_nothing_to_see(const CellRecord& cell, const LimitSpec& spec, LightMoti
 }
 
 // Says why a limit cannot be judged: a value is missing, or there is nothing to see anywhere.
-std::optional<std::string> find_limit_gap(const Configuration& configuration, const LimitSpec& spec, const Advice& advice) {
+std::optional<std::string> find_limit_gap(const Configuration& configuration, const LimitSpec& spec,
+                                          const Advice& advice) {
   std::vector<const CellRecord*> telling = configuration.cells;
   std::erase_if(telling, [&](const CellRecord* cell) { return has_nothing_to_see(*cell, spec, advice.request.light); });
   if (!telling.empty()) return find_gap(telling, spec, advice);
@@ -100,9 +101,8 @@ std::optional<std::string> find_missing_cell(const Configuration& configuration,
   for (const Place& place : places) {
     const auto cell = std::ranges::find_if(configuration.cells, [&](const auto* c) { return place_of(*c) == place; });
     if (cell == configuration.cells.end()) return "not measured on " + describe_place(place, places);
-    if ((*cell)->status != CellStatus::kOk) {
+    if ((*cell)->status != CellStatus::kOk)
       return fmt::format("did not finish on {} ({})", describe_place(place, places), describe_status(**cell));
-    }
   }
   return std::nullopt;
 }
@@ -159,11 +159,15 @@ std::variant<Candidate, Unjudged> judge(const Configuration& configuration, cons
     }
     const auto claims = find_claims(configuration, request);
     if (!claims) {
-      return Unjudged{configuration, fmt::format("the run does not say what '{}' claims, and it is no built-in filter", configuration.cells.front()->filter), i};
+      return Unjudged{configuration,
+                      fmt::format("the run does not say what '{}' claims, and it is no built-in filter",
+                                  configuration.cells.front()->filter),
+                      i};
     }
     candidate.verdicts.push_back({std::ranges::count(*claims, demand.claim) > 0, {}});
   }
-  if (const auto gap = find_gap(configuration.cells, cost_spec(request.cheapest), advice)) return Unjudged{configuration, *gap, {}};
+  if (const auto gap = find_gap(configuration.cells, cost_spec(request.cheapest), advice))
+    return Unjudged{configuration, *gap, {}};
   candidate.cost = measure_cost(configuration.cells, request);
   return candidate;
 }
@@ -185,9 +189,8 @@ void sort_by_cost(std::vector<Candidate>& candidates, LightMotion light) {
 
 std::vector<std::size_t> list_failed(const Candidate& candidate) {
   std::vector<std::size_t> failed;
-  for (std::size_t i = 0; i < candidate.verdicts.size(); ++i) {
+  for (std::size_t i = 0; i < candidate.verdicts.size(); ++i)
     if (!candidate.verdicts[i].kept) failed.push_back(i);
-  }
   return failed;
 }
 
@@ -230,9 +233,8 @@ std::optional<std::size_t> find_closest(const Advice& advice) {
 // The candidates that fail this demand alone, those that fail it by least first.
 std::vector<std::size_t> list_held_back(const Advice& advice, std::size_t demand) {
   std::vector<std::size_t> held;
-  for (std::size_t i = 0; i < advice.failing.size(); ++i) {
+  for (std::size_t i = 0; i < advice.failing.size(); ++i)
     if (list_failed(advice.failing[i]) == std::vector{demand}) held.push_back(i);
-  }
   const auto worst = [&](std::size_t i) { return advice.failing[i].verdicts[demand].worst.value_or(0.0); };
   std::ranges::stable_sort(held, {}, worst);
   return held;
@@ -265,9 +267,8 @@ CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, CostKin
 }
 
 Advice advise(const std::vector<CellRecord>& cells, const AdviceRequest& request) {
-  for (const Demand& demand : request.demands) {
+  for (const Demand& demand : request.demands)
     if (!demand.spec) require_claim(cells, request, demand.claim);
-  }
   Advice advice;
   advice.request = request;
   const std::vector<const CellRecord*> chosen = choose_cells(cells, request);

@@ -18,9 +18,10 @@ struct AdviceRequest {
   std::vector<Demand> demands;
   LightMotion light = LightMotion::kMoving;
   CostKind cheapest = CostKind::kTime;
-  std::vector<std::string> scenes;                         ///< empty: all of the run
-  std::optional<std::pair<int, int>> size;                 ///< of the picture, pixels; empty: all of the run
-  std::map<std::string, std::vector<std::string>> claims;  ///< of known filters, by id: for cells that do not hold theirs
+  std::vector<std::string> scenes;          ///< empty: all of the run
+  std::optional<std::pair<int, int>> size;  ///< of the picture, pixels; empty: all of the run
+  std::map<std::string, std::vector<std::string>>
+      claims;  ///< of known filters, by id: for cells that do not hold theirs
 };
 
 /// Says how a configuration stands to one demand.
@@ -37,7 +38,7 @@ struct Verdict {
 /// Holds a cost over all places, each counting the same.
 struct Cost {
   double mean = 0.0;
-  Interval quartiles;             ///< mean of the lower and of the upper quartiles; of bytes and fetches: the mean twice
+  Interval quartiles;  ///< mean of the lower and of the upper quartiles; of bytes and fetches: the mean twice
   std::optional<Interval> ratio;  ///< the mean, times what the 95 % interval of the ratio to `none` says of each place
 };
 
@@ -95,18 +96,18 @@ struct Advice {
   std::vector<Candidate> keeping;  ///< all demands, cheapest first: the first is advised, the second the runner-up
   std::vector<Candidate> failing;  ///< cheapest first
   std::vector<Unjudged> unjudged;
-  std::vector<Obstacle> obstacles;       ///< one per demand
-  std::vector<Relaxation> relaxations;   ///< by demand; a demand's own with every step dearer to grant and cheaper to run
-  std::optional<std::size_t> closest;    ///< index into `failing`: fails the fewest demands, among those by the least
+  std::vector<Obstacle> obstacles;  ///< one per demand
+  std::vector<Relaxation>
+      relaxations;                     ///< by demand; a demand's own with every step dearer to grant and cheaper to run
+  std::optional<std::size_t> closest;  ///< index into `failing`: fails the fewest demands, among those by the least
 };
 
 /// Finds the cheapest configuration that keeps every demand in every place; the worst place decides. Configurations of
 /// the same cost are ordered by time, then RMSE.
-/// A configuration that was not measured in a place, did not finish there, or lacks a value there is not judged. A value
-/// that has nothing to be measured on in some places, as is_nothing_to_see() says, is judged on the others, if there are any.
-/// Requires that `cells` outlive what is returned.
-/// Throws Error(kUsage) for a scene or picture size that the run does not have, or a claim that no filter makes;
-/// Error(kInput) where there is no cell.
+/// A configuration that was not measured in a place, did not finish there, or lacks a value there is not judged. A
+/// value that has nothing to be measured on in some places, as is_nothing_to_see() says, is judged on the others, if
+/// there are any. Requires that `cells` outlive what is returned. Throws Error(kUsage) for a scene or picture size that
+/// the run does not have, or a claim that no filter makes; Error(kInput) where there is no cell.
 Advice advise(const std::vector<CellRecord>& cells, const AdviceRequest& request);
 
 }  // namespace shadowbench::report

@@ -14,24 +14,18 @@ using Json = nlohmann::ordered_json;
 
 const char* name_of(CostKind kind) {
   switch (kind) {
-    case CostKind::kTime:
-      return "time";
-    case CostKind::kBytes:
-      return "bytes";
-    case CostKind::kFetches:
-      break;
+    case CostKind::kTime: return "time";
+    case CostKind::kBytes: return "bytes";
+    case CostKind::kFetches: break;
   }
   return "fetches";
 }
 
 const char* name_of(Basis basis) {
   switch (basis) {
-    case Basis::kExact:
-      return "exact";
-    case Basis::kRatio:
-      return "ratio_to_none";
-    case Basis::kQuartiles:
-      break;
+    case Basis::kExact: return "exact";
+    case Basis::kRatio: return "ratio_to_none";
+    case Basis::kQuartiles: break;
   }
   return "quartiles";
 }
@@ -73,14 +67,17 @@ Json demand_json(const Demand& demand) {
 Json nothing_to_see_json(const Demand& demand, const Verdict& verdict) {
   Json list = Json::array();
   for (const CellRecord* cell : verdict.nothing_to_see) {
-    list.push_back({{"scene", cell->scene}, {"view", cell->view}, {"reason", explain_absence(*cell, demand.spec->field)}});
+    list.push_back(
+        {{"scene", cell->scene}, {"view", cell->view}, {"reason", explain_absence(*cell, demand.spec->field)}});
   }
   return list;
 }
 
 Json verdict_json(const Demand& demand, const Verdict& verdict) {
   const CellRecord* cell = verdict.where;
-  const auto of_cell = [&](std::string CellRecord::*field) { return cell ? std::optional(cell->*field) : std::nullopt; };
+  const auto of_cell = [&](std::string CellRecord::*field) {
+    return cell ? std::optional(cell->*field) : std::nullopt;
+  };
   Json json = demand_json(demand);
   json["kept"] = verdict.kept;
   set(json, "worst", verdict.worst, kClaim);
@@ -101,9 +98,8 @@ Json settings_json(const CellRecord& cell) {
 
 std::string explain_no_interval(const Candidate& candidate, const AdviceRequest& request) {
   if (request.cheapest != CostKind::kTime) return "only times have an interval";
-  for (const CellRecord* cell : candidate.configuration.cells) {
+  for (const CellRecord* cell : candidate.configuration.cells)
     if (!frame_ratio(*cell, request.light)) return explain_absence(*cell, "ratio_to_none");
-  }
   return "a ratio to none is 0";
 }
 
@@ -111,8 +107,10 @@ Json cost_json(const Candidate& candidate, const AdviceRequest& request) {
   const Cost& cost = candidate.cost;
   Json json = {{"mean", cost.mean}, {"quartiles", interval_json(cost.quartiles)}, {"ci95", nullptr}};
   json["absent"] = Json::object();
-  if (cost.ratio) json["ci95"] = interval_json(*cost.ratio);
-  else json["absent"]["ci95"] = explain_no_interval(candidate, request);
+  if (cost.ratio)
+    json["ci95"] = interval_json(*cost.ratio);
+  else
+    json["absent"]["ci95"] = explain_no_interval(candidate, request);
   return json;
 }
 
@@ -121,11 +119,11 @@ Json candidate_json(const Candidate& candidate, const Advice& advice) {
   json["settings"] = settings_json(*candidate.configuration.cells.front());
   json["cost"] = cost_json(candidate, advice.request);
   json["limits"] = Json::array();
-  for (std::size_t i = 0; i < candidate.verdicts.size(); ++i) {
+  for (std::size_t i = 0; i < candidate.verdicts.size(); ++i)
     json["limits"].push_back(verdict_json(advice.request.demands[i], candidate.verdicts[i]));
-  }
   json["cells"] = Json::array();
-  for (const CellRecord* cell : candidate.configuration.cells) json["cells"].push_back(cell_json(*cell, advice.request.light));
+  for (const CellRecord* cell : candidate.configuration.cells)
+    json["cells"].push_back(cell_json(*cell, advice.request.light));
   return json;
 }
 
@@ -136,10 +134,11 @@ Json gap_json(const CostGap& gap) {
 Json request_json(const Advice& advice) {
   const AdviceRequest& request = advice.request;
   Json json = {{"limits", Json::object()}, {"requires", Json::array()}};
-  for (const Demand& demand : request.demands) {
-    if (demand.spec) json["limits"][demand.spec->option] = demand.most;
-    else json["requires"].push_back(demand.claim);
-  }
+  for (const Demand& demand : request.demands)
+    if (demand.spec)
+      json["limits"][demand.spec->option] = demand.most;
+    else
+      json["requires"].push_back(demand.claim);
   json["light"] = request.light == LightMotion::kMoving ? "moving" : "static";
   json["cheapest"] = name_of(request.cheapest);
   json["places"] = Json::array();
@@ -149,9 +148,8 @@ Json request_json(const Advice& advice) {
 
 Json unjudged_json(const Advice& advice) {
   Json list = Json::array();
-  for (const Unjudged& unjudged : advice.unjudged) {
+  for (const Unjudged& unjudged : advice.unjudged)
     list.push_back({{"label", unjudged.configuration.label}, {"reason", unjudged.reason}});
-  }
   return list;
 }
 
@@ -207,12 +205,8 @@ void set_answer(Json& json, const Advice& advice, const GlRecord& gl) {
 }  // namespace
 
 Json make_advice_json(const RunRecord& run, const Advice& advice) {
-  Json json = {{"fits", !advice.keeping.empty()},
-               {"commit", run.commit},
-               {"clock", describe_clock(run.gl)},
-               {"time_unit", time_unit(run.gl)},
-               {"software", run.gl.software},
-               {"renderer", run.gl.renderer},
+  Json json = {{"fits", !advice.keeping.empty()}, {"commit", run.commit},        {"clock", describe_clock(run.gl)},
+               {"time_unit", time_unit(run.gl)},  {"software", run.gl.software}, {"renderer", run.gl.renderer},
                {"asked", request_json(advice)}};
   set_answer(json, advice, run.gl);
   json["relaxed"] = relaxed_json(advice);

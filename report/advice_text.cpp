@@ -17,7 +17,8 @@ using Row = std::vector<std::string>;
 
 // Columns on a terminal: every code point of ours takes one.
 std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char c) { return (c & 0xc0) != 0x80; }));
 }
 
 std::string align(const std::vector<Row>& rows) {
@@ -29,7 +30,8 @@ std::string align(const std::vector<Row>& rows) {
   std::string text;
   for (const Row& row : rows) {
     std::string line = " ";
-    for (std::size_t i = 0; i < row.size(); ++i) line += fmt::format(" {}{} ", row[i], std::string(widths[i] - width_of(row[i]), ' '));
+    for (std::size_t i = 0; i < row.size(); ++i)
+      line += fmt::format(" {}{} ", row[i], std::string(widths[i] - width_of(row[i]), ' '));
     line.resize(line.find_last_not_of(' ') + 1);
     text += line + "\n";
   }
@@ -81,9 +83,8 @@ Row describe_limit(const Demand& demand, const Verdict& verdict, const RunRecord
 std::string list_limits(const RunRecord& run, const Advice& advice) {
   if (advice.request.demands.empty()) return "";
   std::vector<Row> rows = {{"limit", "worst", "on"}};
-  for (std::size_t i = 0; i < advice.request.demands.size(); ++i) {
+  for (std::size_t i = 0; i < advice.request.demands.size(); ++i)
     rows.push_back(describe_limit(advice.request.demands[i], advice.keeping.front().verdicts[i], run, advice));
-  }
   return align(rows);
 }
 
@@ -105,8 +106,10 @@ Row describe_cell(const CellRecord& cell, const Advice& advice) {
 }
 
 std::string list_cells(const RunRecord& run, const Advice& advice) {
-  std::vector<Row> rows = {{"scene", time_unit(run.gl), "quartiles", "/ none [95 %]", "RMSE", "bytes", "fetches", "cell"}};
-  for (const CellRecord* cell : advice.keeping.front().configuration.cells) rows.push_back(describe_cell(*cell, advice));
+  std::vector<Row> rows = {
+      {"scene", time_unit(run.gl), "quartiles", "/ none [95 %]", "RMSE", "bytes", "fetches", "cell"}};
+  for (const CellRecord* cell : advice.keeping.front().configuration.cells)
+    rows.push_back(describe_cell(*cell, advice));
   return align(rows);
 }
 
@@ -114,8 +117,8 @@ std::string describe_second(const RunRecord& run, const Advice& advice) {
   if (advice.keeping.size() < 2) return "Runner-up: no other configuration keeps the limits.\n";
   const Candidate& second = advice.keeping[1];
   return wrap(fmt::format("Runner-up: {}, {}; {}.", second.configuration.label,
-                                 format_cost(second.cost.mean, advice.request.cheapest, run.gl),
-                                 describe_runner_up(advice, run.gl)));
+                          format_cost(second.cost.mean, advice.request.cheapest, run.gl),
+                          describe_runner_up(advice, run.gl)));
 }
 
 Row describe_relaxation(const RunRecord& run, const Advice& advice, const Relaxation& step) {
@@ -125,7 +128,8 @@ Row describe_relaxation(const RunRecord& run, const Advice& advice, const Relaxa
   const CostKind kind = advice.request.cheapest;
   const double of = candidate.cost.mean + step.saving.difference;
   const double share = of > 0.0 ? step.saving.difference / of : 0.0;
-  return {worst ? fmt::format("{} -> {}", describe_demand(demand), format_limit(*worst)) : "without " + describe_demand(demand),
+  return {worst ? fmt::format("{} -> {}", describe_demand(demand), format_limit(*worst))
+                : "without " + describe_demand(demand),
           fmt::format("saves {} ({:.0f} %)", format_cost(step.saving.difference, kind, run.gl), 100.0 * share),
           candidate.configuration.label};
 }
@@ -136,10 +140,10 @@ std::string list_relaxations(const RunRecord& run, const Advice& advice) {
   std::vector<Row> rows;
   for (std::size_t i = 0; i < advice.request.demands.size(); ++i) {
     const std::size_t before = rows.size();
-    for (const Relaxation& step : advice.relaxations) {
+    for (const Relaxation& step : advice.relaxations)
       if (step.demand == i) rows.push_back(describe_relaxation(run, advice, step));
-    }
-    if (rows.size() == before) rows.push_back({describe_demand(advice.request.demands[i]), "relaxing it alone buys nothing"});
+    if (rows.size() == before)
+      rows.push_back({describe_demand(advice.request.demands[i]), "relaxing it alone buys nothing"});
   }
   return fmt::format("A relaxed limit buys:\n{}", align(rows));
 }
@@ -180,7 +184,9 @@ std::string describe_answer(const RunRecord& run, const Advice& advice) {
                      advice.keeping.size(), advice.request.demands.empty() ? "" : " that keep the limits", with);
 }
 
-std::string describe_nearest(const Advice& advice) { return advice.closest ? wrap(describe_closest(advice) + ".") : ""; }
+std::string describe_nearest(const Advice& advice) {
+  return advice.closest ? wrap(describe_closest(advice) + ".") : "";
+}
 
 }  // namespace
 
@@ -189,8 +195,8 @@ std::string make_advice_text(const RunRecord& run, const Advice& advice) {
   if (advice.keeping.empty()) {
     sections = {"Nothing fits.\n", list_obstacles(advice), describe_nearest(advice)};
   } else {
-    sections = {describe_answer(run, advice), list_limits(run, advice), list_cells(run, advice), describe_second(run, advice),
-                list_relaxations(run, advice)};
+    sections = {describe_answer(run, advice), list_limits(run, advice), list_cells(run, advice),
+                describe_second(run, advice), list_relaxations(run, advice)};
   }
   sections.push_back(list_remarks(run, advice));
   std::erase(sections, "");

@@ -91,33 +91,31 @@ void add_setting_notes(std::vector<std::string>& notes, const std::vector<const 
     lights.insert(cell->light);
   }
   if (const std::string list = list_settings_that_vary(sizes); !list.empty()) {
-    notes.push_back(fmt::format("Pictures of {} pixels compete here, and a smaller one costs less: --size chooses.", list));
+    notes.push_back(
+        fmt::format("Pictures of {} pixels compete here, and a smaller one costs less: --size chooses.", list));
   }
-  if (const std::string list = list_settings_that_vary(lights); !list.empty()) {
+  if (const std::string list = list_settings_that_vary(lights); !list.empty())
     notes.push_back(fmt::format("Lights at {} compete here, as if a renderer could choose.", list));
-  }
 }
 
 std::vector<const CellRecord*> list_judged_cells(const Advice& advice) {
   std::vector<const CellRecord*> cells;
-  for (const auto* candidates : {&advice.keeping, &advice.failing}) {
-    for (const Candidate& candidate : *candidates) {
+  for (const auto* candidates : {&advice.keeping, &advice.failing})
+    for (const Candidate& candidate : *candidates)
       cells.insert(cells.end(), candidate.configuration.cells.begin(), candidate.configuration.cells.end());
-    }
-  }
   return cells;
 }
 
 bool uses_time(const AdviceRequest& request) {
   return request.cheapest == CostKind::kTime ||
-         std::ranges::any_of(request.demands, [](const Demand& d) { return d.spec == &cost_spec(CostKind::kTime); });
+         std::ranges::any_of(
+             request.demands, [](const Demand& d) { return d.spec == &cost_spec(CostKind::kTime); });
 }
 
 void add_time_notes(std::vector<std::string>& notes, const std::vector<const CellRecord*>& cells, const GlRecord& gl) {
-  if (gl.software) {
-    notes.push_back(fmt::format("Times are {}: a GPU ranks filters differently.", describe_clock(gl)));
-  }
-  const bool once = std::ranges::any_of(cells, [](const CellRecord* c) { return c->time_ms.lookup && c->time_ms.lookup->n < 2; });
+  if (gl.software) notes.push_back(fmt::format("Times are {}: a GPU ranks filters differently.", describe_clock(gl)));
+  const bool once =
+      std::ranges::any_of(cells, [](const CellRecord* c) { return c->time_ms.lookup && c->time_ms.lookup->n < 2; });
   if (once) notes.push_back("Times of a single round have no spread, so their order may be chance: raise --rounds.");
 }
 
@@ -137,8 +135,8 @@ void add_notes_of_nothing_to_see(std::vector<std::string>& notes, const Advice& 
       if (fits) break;
     }
     if (places.empty()) continue;
-    notes.push_back(fmt::format("{} could not be judged on {}, and cannot be broken there: {}.", describe_demand(advice.request.demands[i]),
-                                fmt::join(places, ", "), reason));
+    notes.push_back(fmt::format("{} could not be judged on {}, and cannot be broken there: {}.",
+                                describe_demand(advice.request.demands[i]), fmt::join(places, ", "), reason));
   }
 }
 
@@ -146,12 +144,9 @@ void add_notes_of_nothing_to_see(std::vector<std::string>& notes, const Advice& 
 
 std::string format_cost(double value, CostKind kind, const GlRecord& gl) {
   switch (kind) {
-    case CostKind::kTime:
-      return fmt::format("{} {}", format_number(value), time_unit(gl));
-    case CostKind::kBytes:
-      return fmt::format("{} bytes", format_number(value));
-    case CostKind::kFetches:
-      break;
+    case CostKind::kTime: return fmt::format("{} {}", format_number(value), time_unit(gl));
+    case CostKind::kBytes: return fmt::format("{} bytes", format_number(value));
+    case CostKind::kFetches: break;
   }
   return fmt::format("{} {}", format_number(value), value == 1.0 ? "fetch" : "fetches");
 }
@@ -201,13 +196,11 @@ std::string describe_closest(const Advice& advice) {
 std::string describe_failure(const Advice& advice) {
   assert(advice.keeping.empty());
   const std::size_t total = advice.failing.size() + advice.unjudged.size();
-  if (advice.failing.empty()) {
+  if (advice.failing.empty())
     return fmt::format("none of {} configurations can be judged: {}", total, fmt::join(count_unjudged(advice), "; "));
-  }
   std::vector<std::string> obstacles;
-  for (std::size_t i = 0; i < advice.obstacles.size(); ++i) {
+  for (std::size_t i = 0; i < advice.obstacles.size(); ++i)
     if (advice.obstacles[i].alone > 0) obstacles.push_back(describe_obstacle(advice, i));
-  }
   return fmt::format("none of {} configurations keeps the limits; {}", total,
                      obstacles.empty() ? "no single one is in the way: " + describe_closest(advice)
                                        : fmt::format("in the way: {}", fmt::join(obstacles, ", ")));
@@ -216,7 +209,8 @@ std::string describe_failure(const Advice& advice) {
 std::vector<std::string> list_advice_notes(const Advice& advice, const GlRecord& gl) {
   std::vector<std::string> notes;
   if (advice.request.demands.empty()) {
-    notes.emplace_back("No limit was given: what does least is then the cheapest; --max-rmse or another limit asks for more.");
+    notes.emplace_back(
+        "No limit was given: what does least is then the cheapest; --max-rmse or another limit asks for more.");
   }
   const std::vector<const CellRecord*> cells = list_judged_cells(advice);
   if (uses_time(advice.request)) add_time_notes(notes, cells, gl);
@@ -225,8 +219,8 @@ std::vector<std::string> list_advice_notes(const Advice& advice, const GlRecord&
   if (advice.keeping.empty()) return notes;
   for (const CellRecord* cell : advice.keeping.front().configuration.cells) {
     if (cell->nan.value_or(0) == 0) continue;
-    notes.push_back(fmt::format("{} pixels of it on {} are not finite, and are left out of every number here.", *cell->nan,
-                                describe_place(place_of(*cell), advice.places)));
+    notes.push_back(fmt::format("{} pixels of it on {} are not finite, and are left out of every number here.",
+                                *cell->nan, describe_place(place_of(*cell), advice.places)));
   }
   return notes;
 }
@@ -235,8 +229,10 @@ std::vector<std::string> count_unjudged(const Advice& advice) {
   std::vector<std::pair<std::string, int>> counts;
   for (const Unjudged& unjudged : advice.unjudged) {
     const auto found = std::ranges::find(counts, unjudged.reason, &std::pair<std::string, int>::first);
-    if (found == counts.end()) counts.emplace_back(unjudged.reason, 1);
-    else ++found->second;
+    if (found == counts.end())
+      counts.emplace_back(unjudged.reason, 1);
+    else
+      ++found->second;
   }
   std::vector<std::string> texts;
   for (const auto& [reason, count] : counts) texts.push_back(fmt::format("{}: {}", count, reason));

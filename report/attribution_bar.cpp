@@ -19,11 +19,8 @@ constexpr int kTickWidth = 3;
 
 double round_up_length(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0}) {
-    if (value <= step * power * (1.0 + 1e-9)) {
-      return step * power;
-    }
-  }
+  for (const double step : {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0})
+    if (value <= step * power * (1.0 + 1e-9)) return step * power;
   return 10.0 * power;
 }
 
@@ -38,21 +35,15 @@ double AttributionBar::net() const { return std::accumulate(lengths.begin(), len
 
 std::optional<AttributionBar> make_attribution_bar(const CellRecord& cell) {
   const auto shares = list_shares(cell);
-  if (!shares || !cell.error.rmse || !std::isfinite(*cell.error.rmse)) {
-    return std::nullopt;
-  }
+  if (!shares || !cell.error.rmse || !std::isfinite(*cell.error.rmse)) return std::nullopt;
   AttributionBar bar;
-  for (std::size_t i = 0; i < kErrorParts; ++i) {
-    bar.lengths[i] = (*shares)[i] * *cell.error.rmse;
-  }
+  for (std::size_t i = 0; i < kErrorParts; ++i) bar.lengths[i] = (*shares)[i] * *cell.error.rmse;
   return bar;
 }
 
 std::string label_bar(const AttributionBar& bar) {
   const double net = bar.net();
-  if (!(net > 0.0)) {
-    return {};
-  }
+  if (!(net > 0.0)) return {};
   std::array<std::size_t, kErrorParts> order{};
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -60,9 +51,8 @@ std::string label_bar(const AttributionBar& bar) {
   std::vector<std::string> texts;
   for (const std::size_t part : order) {
     const double share = bar.lengths[part] / net;
-    if (texts.size() < kLabelledParts && std::abs(share) >= kSmallestLabelledShare) {
+    if (texts.size() < kLabelledParts && std::abs(share) >= kSmallestLabelledShare)
       texts.push_back(fmt::format("{} {}", list_error_parts()[part].id, format_share(share)));
-    }
   }
   return fmt::format("{}", fmt::join(texts, ", "));
 }
@@ -106,9 +96,7 @@ BarPlace place_bar(const AttributionBar& bar, const BarScale& scale, const Rect&
   for (const BarSegment& segment : stack_segments(bar)) {
     const int begin = pixel(segment.begin);
     const int end = pixel(segment.end);
-    if (end > begin) {
-      place.segments.push_back({{begin, track.y, end - begin, track.height}, segment.part});
-    }
+    if (end > begin) place.segments.push_back({{begin, track.y, end - begin, track.height}, segment.part});
   }
   return place;
 }

@@ -28,9 +28,8 @@ std::string svg_bar(const BarPlace& bar, const std::string& text) {
       fmt::format("<svg viewBox=\"0 0 {} {}\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"{}\">", kBarWidth,
                   kBarHeight, escape_html(text));
   svg += svg_rect(bar.track, "class=\"track\"") + svg_rect(bar.zero_line, "class=\"zero\"");
-  for (const SegmentBox& segment : bar.segments) {
+  for (const SegmentBox& segment : bar.segments)
     svg += svg_rect(segment.box, fmt::format("fill=\"{}\"", css_color(list_error_parts()[segment.part].color)));
-  }
   return svg + svg_rect(bar.net_tick, "class=\"net\"") + "</svg>";
 }
 
@@ -52,9 +51,8 @@ std::string html_bar(const CellGroup& group, const CellRecord& cell, const BarSc
   const std::string head =
       fmt::format("<li><span><b>{}</b> RMSE {}", escape_html(name), format_number(*cell.error.rmse));
   const auto bar = make_attribution_bar(cell);
-  if (!bar) {
+  if (!bar)
     return fmt::format("{} · no attribution: {}</span></li>\n", head, escape_html(explain_no_attribution(cell)));
-  }
   const std::string shares = describe_shares(*list_shares(cell));
   return fmt::format("{} · {}</span>{}</li>\n", head, escape_html(shares),
                      svg_bar(place_bar(*bar, scale, {0, 0, kBarWidth, kBarHeight}, 0), name + ": " + shares));
@@ -64,21 +62,13 @@ std::string html_bar(const CellGroup& group, const CellRecord& cell, const BarSc
 
 std::string make_bars_html(const CellGroup& group) {
   std::vector<AttributionBar> bars;
-  for (const CellRecord& cell : group.cells) {
-    if (const auto bar = make_attribution_bar(cell)) {
-      bars.push_back(*bar);
-    }
-  }
-  if (bars.empty()) {
-    return {};
-  }
+  for (const CellRecord& cell : group.cells)
+    if (const auto bar = make_attribution_bar(cell)) bars.push_back(*bar);
+  if (bars.empty()) return {};
   const BarScale scale = choose_bar_scale(bars);
   std::string text = "<figure class=\"bars\">\n" + html_legend(scale) + "<ul>\n";
-  for (const CellRecord& cell : group.cells) {
-    if (cell.error.rmse) {
-      text += html_bar(group, cell, scale);
-    }
-  }
+  for (const CellRecord& cell : group.cells)
+    if (cell.error.rmse) text += html_bar(group, cell, scale);
   return text + "</ul>\n</figure>\n";
 }
 

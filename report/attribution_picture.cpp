@@ -24,9 +24,7 @@ GridTile make_error_tile(const std::string& label, const std::string& caption, c
 // The largest of the images' own scales: no panel is saturated because another is nearly empty.
 double choose_common_scale(const AttributionPicture& picture) {
   double scale = choose_error_scale({&picture.total});
-  for (const Image& part : picture.parts) {
-    scale = std::max(scale, choose_error_scale({&part}));
-  }
+  for (const Image& part : picture.parts) scale = std::max(scale, choose_error_scale({&part}));
   return scale;
 }
 

@@ -27,16 +27,19 @@ std::string text(ChartPoint at, std::string_view anchor, std::string_view conten
 }
 
 std::string line(ChartPoint a, ChartPoint b, std::string_view style) {
-  return fmt::format("<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"></line>", style, a.x, a.y, b.x, b.y);
+  return fmt::format("<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"></line>", style, a.x,
+                     a.y, b.x, b.y);
 }
 
 /// A circle, a square or a diamond.
 std::string mark(ChartPoint at, std::size_t filter) {
-  if (filter % kMarks == 0) return fmt::format("<circle class=\"point\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"></circle>", at.x, at.y);
+  if (filter % kMarks == 0)
+    return fmt::format("<circle class=\"point\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"></circle>", at.x, at.y);
   const double half = filter % kMarks == 1 ? 2.6 : 2.9;
-  const std::string turn = filter % kMarks == 1 ? "" : fmt::format(" transform=\"rotate(45 {:.1f} {:.1f})\"", at.x, at.y);
-  return fmt::format("<rect class=\"point\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"{}></rect>", at.x - half,
-                     at.y - half, 2.0 * half, 2.0 * half, turn);
+  const std::string turn =
+      filter % kMarks == 1 ? "" : fmt::format(" transform=\"rotate(45 {:.1f} {:.1f})\"", at.x, at.y);
+  return fmt::format("<rect class=\"point\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"{}></rect>",
+                     at.x - half, at.y - half, 2.0 * half, 2.0 * half, turn);
 }
 
 std::string axes(const std::vector<double>& factors) {
@@ -47,11 +50,13 @@ std::string axes(const std::vector<double>& factors) {
     svg += text({kLeft - 6, y + 4}, "end", fmt::format("{} %", 100.0 * rate), " class=\"axis\"");
   }
   for (const double factor : factors) {
-    svg += text({place_in_chart(factors, factor, 0.0).x, kBottom + 18}, "middle", name_factor(factor), " class=\"axis\"");
+    svg +=
+        text({place_in_chart(factors, factor, 0.0).x, kBottom + 18}, "middle", name_factor(factor), " class=\"axis\"");
   }
   svg += text({0.5 * (kLeft + kRight), kBottom + 40}, "middle", "amount / theoretical amount");
   const double middle = 0.5 * (kTop + kBottom);
-  return svg + text({12, middle}, "middle", "rate (square-root scale)", fmt::format(" transform=\"rotate(-90 12 {:.1f})\"", middle));
+  return svg + text({12, middle}, "middle", "rate (square-root scale)",
+                    fmt::format(" transform=\"rotate(-90 12 {:.1f})\"", middle));
 }
 
 std::string theory_line(const std::vector<double>& factors) {
@@ -70,8 +75,9 @@ std::string draw_curve(const BiasCurve& curve, Rate rate, const std::vector<doub
   }
   if (points.empty()) return {};
   const bool gap = rate == &BiasPoint::contact_gap;
-  return fmt::format("<g class=\"c{}\"><title>{}: {}</title><polyline class=\"curve{}\" points=\"{}\"></polyline>{}</g>", filter % kColors,
-                     escape_html(curve.filter), gap ? "contact gap" : "acne", gap ? " gap" : "", points, marks);
+  return fmt::format(
+      "<g class=\"c{}\"><title>{}: {}</title><polyline class=\"curve{}\" points=\"{}\"></polyline>{}</g>",
+      filter % kColors, escape_html(curve.filter), gap ? "contact gap" : "acne", gap ? " gap" : "", points, marks);
 }
 
 std::string draw_curves(const BiasModeRecord& mode, const std::vector<std::string>& filters, Rate rate,
@@ -97,9 +103,8 @@ ChartPoint place_in_chart(const std::vector<double>& factors, double factor, dou
 std::vector<double> list_factors(const BiasModeRecord& mode) {
   std::set<double> factors;
   for (const BiasCurve& curve : mode.curves) {
-    for (const BiasPoint& point : curve.points) {
+    for (const BiasPoint& point : curve.points)
       if (point.factor) factors.insert(*point.factor);
-    }
   }
   return {factors.begin(), factors.end()};
 }
@@ -113,8 +118,8 @@ std::string make_bias_chart(const BiasModeRecord& mode, const std::vector<std::s
   if (factors.empty()) return {};
   const std::string acne = draw_curves(mode, filters, &BiasPoint::acne, factors);
   const std::string gap = draw_curves(mode, filters, &BiasPoint::contact_gap, factors);
-  std::string svg = fmt::format("<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kWidth, kHeight,
-                                escape_html(mode.mode + ": acne and contact gap over the amount"));
+  std::string svg = fmt::format("<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kWidth,
+                                kHeight, escape_html(mode.mode + ": acne and contact gap over the amount"));
   svg += axes(factors) + theory_line(factors) + gap + acne;
   const auto say_absent = [&](const std::string& drawn, double y, std::string_view what) {
     if (drawn.empty()) svg += text({kRight - 4, y}, "end", what);
@@ -129,11 +134,17 @@ std::string make_bias_legend(const BiasModeRecord& mode, const std::vector<std::
   for (std::size_t i = 0; i < filters.size(); ++i) {
     const auto is_it = [&](const BiasCurve& curve) { return curve.filter == filters[i]; };
     if (std::none_of(mode.curves.begin(), mode.curves.end(), is_it)) continue;
-    html += fmt::format("<span><svg class=\"c{}\" viewBox=\"0 0 32 16\" aria-hidden=\"true\"><path class=\"curve\" d=\"M1 8H31\"></path>{}</svg>{}</span> ",
-                        i % kColors, mark({16, 8}, i), escape_html(filters[i]));
+    html += fmt::format(
+        "<span><svg class=\"c{}\" viewBox=\"0 0 32 16\" aria-hidden=\"true\"><path class=\"curve\" d=\"M1 "
+        "8H31\"></path>{}</svg>{}</span> ",
+        i % kColors, mark({16, 8}, i), escape_html(filters[i]));
   }
-  html += "<span><svg viewBox=\"0 0 32 16\" aria-hidden=\"true\"><path class=\"curve\" d=\"M1 8H31\"></path></svg>acne</span> ";
-  return html + "<span><svg viewBox=\"0 0 32 16\" aria-hidden=\"true\"><path class=\"curve gap\" d=\"M1 8H31\"></path></svg>contact gap</span></p>\n";
+  html +=
+      "<span><svg viewBox=\"0 0 32 16\" aria-hidden=\"true\"><path class=\"curve\" d=\"M1 "
+      "8H31\"></path></svg>acne</span> ";
+  return html +
+         "<span><svg viewBox=\"0 0 32 16\" aria-hidden=\"true\"><path class=\"curve gap\" d=\"M1 "
+         "8H31\"></path></svg>contact gap</span></p>\n";
 }
 
 }  // namespace shadowbench::report

@@ -25,8 +25,9 @@ std::vector<double> list_factors(const BiasModeRecord& mode);
 /// Names a factor: "0", "1/8", "4".
 std::string name_factor(double factor);
 
-/// Draws a mode's curves as SVG: acne solid, contact gap dashed, theory as a vertical line; what is absent is left out, and
-/// said where a whole kind is. Colours are classes c0 .. c9 by the filter's place in `filters`, marks change with it too.
+/// Draws a mode's curves as SVG: acne solid, contact gap dashed, theory as a vertical line; what is absent is left out,
+/// and said where a whole kind is. Colours are classes c0 .. c9 by the filter's place in `filters`, marks change with
+/// it too.
 std::string make_bias_chart(const BiasModeRecord& mode, const std::vector<std::string>& filters);
 
 /// Makes the list of colours and marks of the filters that a mode was swept for; `filters` as for make_bias_chart().

@@ -21,12 +21,14 @@ std::string format_rate(const std::optional<double>& rate) {
 }
 
 const BiasPoint* find_point(const BiasCurve& curve, double factor) {
-  const auto found = std::find_if(curve.points.begin(), curve.points.end(), [&](const BiasPoint& p) { return p.factor == factor; });
+  const auto found =
+      std::find_if(curve.points.begin(), curve.points.end(), [&](const BiasPoint& p) { return p.factor == factor; });
   return found == curve.points.end() ? nullptr : &*found;
 }
 
 bool has_any(const BiasCurve& curve, Rate rate) {
-  return std::any_of(curve.points.begin(), curve.points.end(), [&](const BiasPoint& p) { return (p.*rate).has_value(); });
+  return std::any_of(
+      curve.points.begin(), curve.points.end(), [&](const BiasPoint& p) { return (p.*rate).has_value(); });
 }
 
 std::string describe_need(const BiasCurve& curve) {
@@ -48,19 +50,22 @@ std::string describe_range(const BiasModeRecord& mode, Rate rate, const std::str
   }
   if (!least) return name + " is absent";
   if (value(least) == value(most)) return fmt::format("{} is {}", name, format_rate(value(least)));
-  return fmt::format("{} lies between {} ({}) and {} ({})", name, format_rate(value(least)), least->filter, format_rate(value(most)),
-                     most->filter);
+  return fmt::format("{} lies between {} ({}) and {} ({})", name, format_rate(value(least)), least->filter,
+                     format_rate(value(most)), most->filter);
 }
 
 TextTable make_amount_table(const BiasModeRecord& mode) {
-  TextTable table{{"filter", mode.mode + ":" + mode.key, "depth", "texels", "metres", "enough", "acne", "contact gap"}, {}};
+  TextTable table{{"filter", mode.mode + ":" + mode.key, "depth", "texels", "metres", "enough", "acne", "contact gap"},
+                  {}};
   for (const BiasCurve& curve : mode.curves) {
     const BiasPoint* theory = find_point(curve, 1.0);
     const auto enough = find_enough(curve);
-    const std::string need = !has_any(curve, &BiasPoint::acne) ? "absent" : enough ? name_factor(*enough) : "more than swept";
-    table.rows.push_back({curve.filter, fmt::format("{:.4g}", curve.theory_setting), fmt::format("{:.3g}", curve.lift_depth),
-                          fmt::format("{:.3g}", curve.lift_texels), fmt::format("{:.3g}", curve.lift_m), need,
-                          format_rate(theory ? theory->acne : std::nullopt),
+    const std::string need = !has_any(curve, &BiasPoint::acne) ? "absent"
+                             : enough                          ? name_factor(*enough)
+                                                               : "more than swept";
+    table.rows.push_back({curve.filter, fmt::format("{:.4g}", curve.theory_setting),
+                          fmt::format("{:.3g}", curve.lift_depth), fmt::format("{:.3g}", curve.lift_texels),
+                          fmt::format("{:.3g}", curve.lift_m), need, format_rate(theory ? theory->acne : std::nullopt),
                           format_rate(theory ? theory->contact_gap : std::nullopt)});
   }
   return table;
@@ -68,21 +73,22 @@ TextTable make_amount_table(const BiasModeRecord& mode) {
 
 TextTable make_fixed_table(const BiasModeRecord& mode) {
   TextTable table{{"filter", "acne", "contact gap"}, {}};
-  for (const BiasCurve& curve : mode.curves) {
-    for (const BiasPoint& point : curve.points) {
+  for (const BiasCurve& curve : mode.curves)
+    for (const BiasPoint& point : curve.points)
       table.rows.push_back({curve.filter, format_rate(point.acne), format_rate(point.contact_gap)});
-    }
-  }
   return table;
 }
 
 std::string html_mode(const BiasModeRecord& mode, const BiasSweepRecord& sweep) {
   const bool swept = !mode.key.empty();
-  std::string page = fmt::format("<section id=\"{0}\">\n<h2>{0}</h2>\n<p class=\"note\">{1}</p>\n", escape_html(mode.mode), escape_html(mode.meaning));
+  std::string page = fmt::format("<section id=\"{0}\">\n<h2>{0}</h2>\n<p class=\"note\">{1}</p>\n",
+                                 escape_html(mode.mode), escape_html(mode.meaning));
   std::vector<std::string> words = describe_bias_mode(mode);
   words.insert(words.end(), mode.left_out.begin(), mode.left_out.end());
   page += html_list(words) + "<div class=\"mode\">\n";
-  if (swept) page += "<figure>" + make_bias_chart(mode, sweep.filters) + "<figcaption>" + make_bias_legend(mode, sweep.filters) + "</figcaption></figure>\n";
+  if (swept)
+    page += "<figure>" + make_bias_chart(mode, sweep.filters) + "<figcaption>" + make_bias_legend(mode, sweep.filters) +
+            "</figcaption></figure>\n";
   if (mode.curves.empty()) return page + "</div>\n</section>\n";
   page += swept ? html_table(make_amount_table(mode), "At theory: amount, move towards the light, rates", "sweep")
                 : html_table(make_fixed_table(mode), "Takes no amount", "sweep");
@@ -92,49 +98,65 @@ std::string html_mode(const BiasModeRecord& mode, const BiasSweepRecord& sweep) 
 }
 
 std::vector<std::pair<std::string, std::string>> list_facts(const BiasSweepRecord& sweep) {
-  return {
-      {"scene", sweep.title.empty() ? sweep.scene : sweep.scene + ": " + sweep.title},
-      {"view", fmt::format("{}, {} x {} pixels", sweep.view, sweep.width, sweep.height)},
-      {"shadow map", fmt::format("{0} x {0} texels of {1:.3g} m, depth range {2:.3g} m", sweep.map_size, sweep.texel_m, sweep.depth_range_m)},
-      {"steepest lit surfaces", fmt::format("{:.3g}th percentile of slope: |dz/du| + |dz/dv| = {:.3g} of depth per texel, {:.3g} degrees between "
-                                           "normal and light", 100.0 * sweep.percentile, sweep.slope_depth, sweep.angle_deg)},
-      {"drawn by", sweep.renderer}};
+  return {{"scene", sweep.title.empty() ? sweep.scene : sweep.scene + ": " + sweep.title},
+          {"view", fmt::format("{}, {} x {} pixels", sweep.view, sweep.width, sweep.height)},
+          {"shadow map", fmt::format("{0} x {0} texels of {1:.3g} m, depth range {2:.3g} m", sweep.map_size,
+                                     sweep.texel_m, sweep.depth_range_m)},
+          {"steepest lit surfaces",
+           fmt::format(
+               "{:.3g}th percentile of slope: |dz/du| + |dz/dv| = {:.3g} of depth per texel, {:.3g} degrees between "
+               "normal and light",
+               100.0 * sweep.percentile, sweep.slope_depth, sweep.angle_deg)},
+          {"drawn by", sweep.renderer}};
 }
 
 std::vector<std::string> explain(const BiasSweepRecord& sweep) {
   const auto count = [&](const char* name, const char* which, long receivers) {
-    return fmt::format("{}: of {} receivers that rays find {}.{}", name, receivers, which,
-                       receivers < sweep.fewest_receivers ? fmt::format(" Absent: a rate needs {}.", sweep.fewest_receivers) : "");
+    return fmt::format(
+        "{}: of {} receivers that rays find {}.{}", name, receivers, which,
+        receivers < sweep.fewest_receivers ? fmt::format(" Absent: a rate needs {}.", sweep.fewest_receivers) : "");
   };
-  return {count("Acne", fmt::format("wholly lit, with their surroundings, the share with visibility below {}", sweep.acne_below).c_str(), sweep.acne_receivers),
-          count("Contact gap", fmt::format("wholly blocked by something that touches them, the share with visibility above {}", sweep.gap_above).c_str(), sweep.contact_receivers),
-          "Theory: on a plane, the depth that a kernel's farthest texel differs from the receiver's, which is the kernel's half-width "
-          "(and half a texel where the map is read unfiltered) times |dz/du| + |dz/dv|. A scene has many slopes: the theoretical amount here is "
-          "what theory asks of the mode for the lit receiver at the " + fmt::format("{:.3g}", 100.0 * sweep.percentile) + "th percentile, so the others may need more.",
-          "VSM and ESM take slopes into account themselves; the theoretical amount is that of a comparison with their kernel.",
-          "Tables: what to give to --bias at theory; how far that moves the receiver that it is reckoned for, as depth in [0,1], in widths of a "
+  return {count("Acne",
+                fmt::format("wholly lit, with their surroundings, the share with visibility below {}", sweep.acne_below)
+                    .c_str(),
+                sweep.acne_receivers),
+          count("Contact gap",
+                fmt::format("wholly blocked by something that touches them, the share with visibility above {}",
+                            sweep.gap_above)
+                    .c_str(),
+                sweep.contact_receivers),
+          "Theory: on a plane, the depth that a kernel's farthest texel differs from the receiver's, which is the "
+          "kernel's half-width "
+          "(and half a texel where the map is read unfiltered) times |dz/du| + |dz/dv|. A scene has many slopes: the "
+          "theoretical amount here is "
+          "what theory asks of the mode for the lit receiver at the " +
+              fmt::format("{:.3g}", 100.0 * sweep.percentile) + "th percentile, so the others may need more.",
+          "VSM and ESM take slopes into account themselves; the theoretical amount is that of a comparison with their "
+          "kernel.",
+          "Tables: what to give to --bias at theory; how far that moves the receiver that it is reckoned for, as depth "
+          "in [0,1], in widths of a "
           "texel and in metres along the light; and the rates there.",
-          fmt::format("Enough: the smallest amount swept with acne below {} %, in theoretical amounts.", 100.0 * kLittleAcne)};
+          fmt::format("Enough: the smallest amount swept with acne below {} %, in theoretical amounts.",
+                      100.0 * kLittleAcne)};
 }
 
 }  // namespace
 
 std::optional<double> find_enough(const BiasCurve& curve) {
-  for (const BiasPoint& point : curve.points) {
+  for (const BiasPoint& point : curve.points)
     if (point.factor && point.acne && *point.acne < kLittleAcne) return point.factor;
-  }
   return std::nullopt;
 }
 
 std::vector<std::string> describe_bias_mode(const BiasModeRecord& mode) {
   if (mode.key.empty()) return {};
   std::vector<std::string> needs;
-  for (const BiasCurve& curve : mode.curves) {
+  for (const BiasCurve& curve : mode.curves)
     if (has_any(curve, &BiasPoint::acne)) needs.push_back(describe_need(curve));
-  }
   std::vector<std::string> words;
   if (!needs.empty()) {
-    words.push_back(fmt::format("For acne below {} %, in theoretical amounts: {}.", 100.0 * kLittleAcne, fmt::join(needs, "; ")));
+    words.push_back(
+        fmt::format("For acne below {} %, in theoretical amounts: {}.", 100.0 * kLittleAcne, fmt::join(needs, "; ")));
   }
   if (mode.curves.empty()) return {"No filter of this run can use it."};
   words.push_back(fmt::format("At the theoretical amount, {}; {}.", describe_range(mode, &BiasPoint::acne, "acne"),
@@ -146,7 +168,8 @@ std::string make_bias_html(const BiasSweepRecord& sweep) {
   const std::string title = "Depth bias: acne against contact";
   std::string page = html_head(title, std::string(page_style()) + std::string(bias_page_style()));
   page += fmt::format("<body>\n<main>\n<h1>{}</h1>\n<nav>", title);
-  for (const BiasModeRecord& mode : sweep.modes) page += fmt::format("<a href=\"#{0}\">{0}</a> ", escape_html(mode.mode));
+  for (const BiasModeRecord& mode : sweep.modes)
+    page += fmt::format("<a href=\"#{0}\">{0}</a> ", escape_html(mode.mode));
   page += "</nav>\n" + html_facts(list_facts(sweep)) + html_list(explain(sweep));
   page += "<p>Data: " + link("bias.csv", "bias.csv") + ".</p>\n";
   for (const BiasModeRecord& mode : sweep.modes) page += html_mode(mode, sweep);
@@ -154,15 +177,21 @@ std::string make_bias_html(const BiasSweepRecord& sweep) {
 }
 
 std::string make_bias_csv(const BiasSweepRecord& sweep) {
-  const auto optional = [](const std::optional<double>& value) { return value ? fmt::format("{}", *value) : std::string(); };
-  std::string csv = "scene,view,map_size,mode,key,filter,factor,setting,lift_depth,lift_texels,lift_m,acne,contact_gap\r\n";
+  const auto optional = [](const std::optional<double>& value) {
+    return value ? fmt::format("{}", *value) : std::string();
+  };
+  std::string csv =
+      "scene,view,map_size,mode,key,filter,factor,setting,lift_depth,lift_texels,lift_m,acne,contact_gap\r\n";
   for (const BiasModeRecord& mode : sweep.modes) {
     for (const BiasCurve& curve : mode.curves) {
       for (const BiasPoint& p : curve.points) {
-        const auto scaled = [&](double at_theory) { return p.factor ? fmt::format("{}", *p.factor * at_theory) : std::string(); };
-        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", quote_csv(sweep.scene), quote_csv(sweep.view), sweep.map_size, mode.mode,
-                           mode.key, quote_csv(curve.filter), optional(p.factor), p.factor ? fmt::format("{}", p.setting) : "",
-                           scaled(curve.lift_depth), scaled(curve.lift_texels), scaled(curve.lift_m), optional(p.acne), optional(p.contact_gap));
+        const auto scaled = [&](double at_theory) {
+          return p.factor ? fmt::format("{}", *p.factor * at_theory) : std::string();
+        };
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", quote_csv(sweep.scene), quote_csv(sweep.view),
+                           sweep.map_size, mode.mode, mode.key, quote_csv(curve.filter), optional(p.factor),
+                           p.factor ? fmt::format("{}", p.setting) : "", scaled(curve.lift_depth),
+                           scaled(curve.lift_texels), scaled(curve.lift_m), optional(p.acne), optional(p.contact_gap));
       }
     }
   }

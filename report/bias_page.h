@@ -13,7 +13,8 @@ inline constexpr double kLittleAcne = 0.001;
 /// Gives the smallest swept factor at which a filter has less than kLittleAcne; nothing where there is none.
 std::optional<double> find_enough(const BiasCurve& curve);
 
-/// Says of a mode, from its numbers: how much of the theoretical amount each filter needs, and what theory costs in contact.
+/// Says of a mode, from its numbers: how much of the theoretical amount each filter needs, and what theory costs in
+/// contact.
 std::vector<std::string> describe_bias_mode(const BiasModeRecord& mode);
 
 /// Makes bias.html: one page that opens from disk and loads nothing but the pictures that it names, by relative links.

@@ -13,15 +13,10 @@ namespace {
 using nlohmann::json;
 
 json canonical(const json& value) {
-  if (value.is_number_float()) {
-    return number_json(value.get<double>());
-  }
+  if (value.is_number_float()) return number_json(value.get<double>());
   json result = value;
-  if (result.is_structured()) {
-    for (json& child : result) {
-      child = canonical(child);
-    }
-  }
+  if (result.is_structured())
+    for (json& child : result) child = canonical(child);
   return result;
 }
 
@@ -37,11 +32,16 @@ std::uint64_t hash_text(std::string_view text) {
 }
 
 json cell_settings(const CellRecord& cell) {
-  return json{{"scene", cell.scene},           {"view", cell.view},
-              {"filter", cell.filter},         {"params", value_json(cell.params)},
-              {"map_size", cell.map_size},     {"map_format", cell.map_format},
-              {"bias", value_json(cell.bias)}, {"size", {cell.width, cell.height}},
-              {"fit", cell.fit},               {"light", cell.light},
+  return json{{"scene", cell.scene},
+              {"view", cell.view},
+              {"filter", cell.filter},
+              {"params", value_json(cell.params)},
+              {"map_size", cell.map_size},
+              {"map_format", cell.map_format},
+              {"bias", value_json(cell.bias)},
+              {"size", {cell.width, cell.height}},
+              {"fit", cell.fit},
+              {"light", cell.light},
               {"range", {cell.range.border, cell.range.far_test, cell.range.behind_test}}};
 }
 

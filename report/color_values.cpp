@@ -20,15 +20,15 @@ Image color_values(const Image& values, const std::string& map) {
   const OIIO::ImageSpec spec(values.width, values.height, 1, OIIO::TypeDesc::FLOAT);
   const OIIO::ImageBuf source(spec, const_cast<float*>(values.texels.data()));
   Image colors(values.width, values.height, 3);
-  OIIO::ImageBufAlgo::color_map(source, 0, map).get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, colors.texels.data());
+  OIIO::ImageBufAlgo::color_map(source, 0, map)
+      .get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, colors.texels.data());
   return colors;
 }
 
 Image make_ramp(int width, int height) {
   Image ramp(width, height, 1);
-  for (int y = 0; y < height; ++y) {
+  for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) *ramp.at(x, y) = static_cast<float>(x) / static_cast<float>(width - 1);
-  }
   return ramp;
 }
 

@@ -60,15 +60,13 @@ Census take_census(const std::vector<Configuration>& all) {
 // The map is always named; all else only where not every configuration has it.
 std::string make_label(const CellRecord& cell, const Census& census, std::size_t configurations) {
   ParamMap varying;
-  for (const auto& [name, value] : cell.params) {
+  for (const auto& [name, value] : cell.params)
     if (census.params.at(param_key(cell, name)) < census.filters.at(cell.filter)) varying[name] = value;
-  }
   std::string label = cell.filter;
   if (!varying.empty()) label += fmt::format(" ({})", describe_params(varying));
   const std::vector<std::string> parts = describe_parts(cell);
-  for (const std::string& part : parts) {
+  for (const std::string& part : parts)
     if (part == parts.front() || census.settings.at(part) < configurations) label += ", " + part;
-  }
   return label;
 }
 
@@ -79,9 +77,8 @@ void set_labels(std::vector<Configuration>& all) {
     configuration.label = make_label(*configuration.cells.front(), census, all.size());
     ++uses[configuration.label];
   }
-  for (Configuration& configuration : all) {
+  for (Configuration& configuration : all)
     if (uses[configuration.label] > 1) configuration.label += ", as cell " + configuration.cells.front()->key;
-  }
 }
 
 }  // namespace
@@ -90,14 +87,14 @@ Place place_of(const CellRecord& cell) { return {cell.scene, cell.view}; }
 
 std::vector<Place> list_places(const std::vector<const CellRecord*>& cells) {
   std::vector<Place> places;
-  for (const CellRecord* cell : cells) {
+  for (const CellRecord* cell : cells)
     if (std::find(places.begin(), places.end(), place_of(*cell)) == places.end()) places.push_back(place_of(*cell));
-  }
   return places;
 }
 
 std::string describe_place(const Place& place, const std::vector<Place>& places) {
-  const auto views = std::count_if(places.begin(), places.end(), [&](const Place& p) { return p.scene == place.scene; });
+  const auto views =
+      std::count_if(places.begin(), places.end(), [&](const Place& p) { return p.scene == place.scene; });
   return views > 1 ? fmt::format("{} ({})", place.scene, place.view) : place.scene;
 }
 

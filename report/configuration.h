@@ -25,9 +25,9 @@ std::string describe_place(const Place& place, const std::vector<Place>& places)
 
 /// Holds the cells that differ in nothing but scene and view: what a renderer would choose as a whole.
 struct Configuration {
-  std::string label;                      ///< filter and map, and all else in which the configurations differ
-  std::string surroundings;               ///< canonical settings without filter and parameters
-  std::vector<const CellRecord*> cells;   ///< in the order of the run; never empty
+  std::string label;                     ///< filter and map, and all else in which the configurations differ
+  std::string surroundings;              ///< canonical settings without filter and parameters
+  std::vector<const CellRecord*> cells;  ///< in the order of the run; never empty
 };
 
 /// Groups cells into configurations, in the order in which each first appears; no two have one label.

@@ -28,11 +28,15 @@ std::optional<TimedConfiguration> read_timed(const TradeConfiguration& configura
   if (!cell.kernel_radius_texels || !still || !moving) return std::nullopt;
   const bool prefiltered = cell.cost.prefilter_texels.value_or(0) > 0;
   const bool many_taps = !prefiltered && cell.cost.fetches.value_or(0.0) > 1.0 && *cell.kernel_radius_texels > 0.0;
-  return TimedConfiguration{&configuration, *cell.kernel_radius_texels, {*cell.kernel_radius_texels, *still, *moving},
-                            prefiltered, many_taps};
+  return TimedConfiguration{&configuration,
+                            *cell.kernel_radius_texels,
+                            {*cell.kernel_radius_texels, *still, *moving},
+                            prefiltered,
+                            many_taps};
 }
 
-// The parameters of a filter that say no more than its radius: each of their values has one radius and each radius one value.
+// The parameters of a filter that say no more than its radius: each of their values has one radius and each radius one
+// value.
 std::set<std::string> find_radius_params(const std::vector<TimedConfiguration>& timed, const std::string& filter) {
   std::map<std::string, std::set<std::pair<double, std::string>>> pairs;
   std::map<std::string, std::set<std::string>> values;
@@ -47,9 +51,8 @@ std::set<std::string> find_radius_params(const std::vector<TimedConfiguration>& 
     }
   }
   std::set<std::string> names;
-  for (const auto& [name, found] : pairs) {
+  for (const auto& [name, found] : pairs)
     if (found.size() == radii.size() && values[name].size() == radii.size() && radii.size() > 1) names.insert(name);
-  }
   return names;
 }
 
@@ -58,11 +61,12 @@ ParamMap without(ParamMap params, const std::set<std::string>& names) {
   return params;
 }
 
-void add_point(std::vector<RadiusCurve>& curves, std::map<std::string, std::size_t>& places, const TimedConfiguration& each,
-               const ParamMap& params) {
+void add_point(std::vector<RadiusCurve>& curves, std::map<std::string, std::size_t>& places,
+               const TimedConfiguration& each, const ParamMap& params) {
   const std::string key = each.configuration->filter + dump_line(value_json(params));
   const auto [place, is_new] = places.emplace(key, curves.size());
-  if (is_new) curves.push_back({each.configuration->filter, describe_params(params), each.prefiltered, each.many_taps, {}});
+  if (is_new)
+    curves.push_back({each.configuration->filter, describe_params(params), each.prefiltered, each.many_taps, {}});
   curves[place->second].points.push_back(each.point);
 }
 
@@ -84,8 +88,9 @@ std::vector<RadiusCurve> make_curves(const std::vector<TimedConfiguration>& time
     add_point(curves, places, each, without(each.configuration->params, names));
   }
   for (RadiusCurve& curve : curves) {
-    std::sort(curve.points.begin(), curve.points.end(),
-              [](const RadiusPoint& a, const RadiusPoint& b) { return a.radius_texels < b.radius_texels; });
+    std::sort(
+        curve.points.begin(), curve.points.end(),
+        [](const RadiusPoint& a, const RadiusPoint& b) { return a.radius_texels < b.radius_texels; });
   }
   label_curves(curves);
   return curves;
@@ -97,7 +102,9 @@ RadiusChart make_chart(const TradeScope& scope, int map_size, const std::vector<
     if (each.map_size != map_size) continue;
     if (const auto read = read_timed(each, cells[each.cells.front()])) timed.push_back(*read);
   }
-  return {scope.id,       fmt::format("{} · map {}", scope.title, map_size), scope.scene, scope.view, map_size, scope.width,
+  return {scope.id,     fmt::format("{} · map {}", scope.title, map_size),
+          scope.scene,  scope.view,
+          map_size,     scope.width,
           scope.height, make_curves(timed)};
 }
 
@@ -112,14 +119,14 @@ double lerp_time(double a, double b, double t) { return a > 0.0 && b > 0.0 ? a *
 
 std::vector<double> list_radii(const RadiusCurve& a, const RadiusCurve& b) {
   std::set<double> radii;
-  for (const RadiusCurve* curve : {&a, &b}) {
+  for (const RadiusCurve* curve : {&a, &b})
     for (const RadiusPoint& point : curve->points) radii.insert(point.radius_texels);
-  }
   return {radii.begin(), radii.end()};
 }
 
 // Where the curves meet between two radii; nothing where they do not.
-std::optional<RadiusPoint> find_crossing(const RadiusCurve& a, const RadiusCurve& b, double from, double to, LightState light) {
+std::optional<RadiusPoint> find_crossing(const RadiusCurve& a, const RadiusCurve& b, double from, double to,
+                                         LightState light) {
   const double a0 = time_at(a, from, light)->value, a1 = time_at(a, to, light)->value;
   const double b0 = time_at(b, from, light)->value, b1 = time_at(b, to, light)->value;
   if (!(std::min({a0, a1, b0, b1}) > 0.0)) return std::nullopt;
@@ -137,7 +144,8 @@ CurveComparison compare_pair(const RadiusChart& chart, std::size_t prefiltered, 
     const auto left = time_at(a, radius, light), right = time_at(b, radius, light);
     if (!left || !right) continue;
     if (!result.radii.empty()) {
-      if (const auto crossing = find_crossing(a, b, result.radii.back(), radius, light)) result.crossings.push_back(*crossing);
+      if (const auto crossing = find_crossing(a, b, result.radii.back(), radius, light))
+        result.crossings.push_back(*crossing);
     }
     result.radii.push_back(radius);
     result.signs.push_back(is_clearly_less_cost(*left, *right) ? -1 : is_clearly_less_cost(*right, *left) ? 1 : 0);
@@ -147,7 +155,8 @@ CurveComparison compare_pair(const RadiusChart& chart, std::size_t prefiltered, 
 
 }  // namespace
 
-std::vector<RadiusChart> make_radius_charts(const std::vector<CellRecord>& cells, const std::vector<TradeScope>& scopes) {
+std::vector<RadiusChart> make_radius_charts(const std::vector<CellRecord>& cells,
+                                            const std::vector<TradeScope>& scopes) {
   std::vector<RadiusChart> charts;
   for (const TradeScope& scope : scopes) {
     if (scope.scene.empty()) continue;

@@ -20,9 +20,8 @@ std::string list_numbers(const std::vector<double>& numbers) {
 
 std::vector<double> list_radii_with(const CurveComparison& comparison, int sign) {
   std::vector<double> radii;
-  for (std::size_t i = 0; i < comparison.radii.size(); ++i) {
+  for (std::size_t i = 0; i < comparison.radii.size(); ++i)
     if (comparison.signs[i] == sign) radii.push_back(comparison.radii[i]);
-  }
   return radii;
 }
 
@@ -40,9 +39,12 @@ using Verdicts = std::map<std::string, VerdictPlaces>;
 
 std::string describe_pair(const Pair& pair, const Verdicts& verdicts) {
   std::vector<std::string> parts;
-  for (const auto& [verdict, places] : verdicts) parts.push_back(fmt::format("{}: {}", verdict, describe_places(places)));
-  return fmt::format("{}: {} is cheaper than {} {}.", pair.light == LightState::kStill ? "Light still (lookup)" : "Light moving (map, prefilter, lookup)",
-                     pair.prefiltered, pair.taps, fmt::join(parts, "; "));
+  for (const auto& [verdict, places] : verdicts)
+    parts.push_back(fmt::format("{}: {}", verdict, describe_places(places)));
+  return fmt::format(
+      "{}: {} is cheaper than {} {}.",
+      pair.light == LightState::kStill ? "Light still (lookup)" : "Light moving (map, prefilter, lookup)",
+      pair.prefiltered, pair.taps, fmt::join(parts, "; "));
 }
 
 }  // namespace
@@ -52,12 +54,12 @@ std::string describe_comparison(const CurveComparison& comparison) {
   const std::string all = list_numbers(comparison.radii);
   const std::string not_apart = even.empty() ? "" : fmt::format(", not to be told apart at {}", list_numbers(even));
   if (cheaper.empty()) return fmt::format("at no radius compared ({} texels{})", all, not_apart);
-  if (cheaper.size() == comparison.radii.size()) {
+  if (cheaper.size() == comparison.radii.size())
     return fmt::format("at {} compared ({} texels)", cheaper.size() > 1 ? "every radius" : "the one radius", all);
-  }
   const bool to_the_end = comparison.signs.back() == -1;
   const auto first = std::find(comparison.signs.begin(), comparison.signs.end(), -1);
-  const bool in_one_piece = std::is_partitioned(comparison.signs.begin(), comparison.signs.end(), [](int s) { return s != -1; });
+  const bool in_one_piece =
+      std::is_partitioned(comparison.signs.begin(), comparison.signs.end(), [](int s) { return s != -1; });
   if (to_the_end && in_one_piece) {
     const double from = comparison.radii[static_cast<std::size_t>(first - comparison.signs.begin())];
     return fmt::format("from a kernel radius of {} texels on, of {} compared{}", format_number(from), all, not_apart);

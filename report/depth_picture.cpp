@@ -73,7 +73,8 @@ void draw_count_axis(Figure& figure, const Rect& plot, int decades) {
   for (int decade = 0; decade <= decades; ++decade) {
     const int y = plot.y + plot.height - decade * plot.height / decades;
     figure.fill({plot.x, y, plot.width, 1}, kFigureLines);
-    figure.write_before(plot.x - 8, y - figure_line_height() / 2, fmt::format("{}", static_cast<std::int64_t>(std::pow(10.0, decade))));
+    figure.write_before(plot.x - 8, y - figure_line_height() / 2,
+                        fmt::format("{}", static_cast<std::int64_t>(std::pow(10.0, decade))));
   }
 }
 
@@ -94,8 +95,10 @@ void draw_histogram(Figure& figure, const Rect& plot, const DepthHistogram& hist
   for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
     if (histogram.counts[i] == 0) continue;
     // One texel still shows: it stands on the axis two pixels high.
-    const int height = 2 + static_cast<int>(std::log10(static_cast<double>(histogram.counts[i])) / decades * (plot.height - 2));
-    figure.fill({plot.x + static_cast<int>(i) * kBinWidth, plot.y + plot.height - height, kBinWidth - 1, height}, kBars);
+    const int height =
+        2 + static_cast<int>(std::log10(static_cast<double>(histogram.counts[i])) / decades * (plot.height - 2));
+    figure.fill({plot.x + static_cast<int>(i) * kBinWidth, plot.y + plot.height - height, kBinWidth - 1, height},
+                kBars);
   }
   figure.fill({plot.x, plot.y + plot.height, plot.width, 1}, kFigureSecondInk);
   draw_depth_axis(figure, plot, curve, range_m);
@@ -113,8 +116,10 @@ void draw_panel(Figure& figure, int x, int y, const Panel& panel, double range_m
   y += line + line / 4;
   figure.place(x, y, map);
   y += map.height + line / 4;
-  figure.write(x, y, fmt::format("black: {} · light grey: {} · blue: nothing drawn, {} of {} texels", format_number(static_cast<double>(range.least)),
-                                 format_number(static_cast<double>(range.most)), histogram.empty, panel.depth.texels.size()));
+  figure.write(x, y,
+               fmt::format("black: {} · light grey: {} · blue: nothing drawn, {} of {} texels",
+                           format_number(static_cast<double>(range.least)),
+                           format_number(static_cast<double>(range.most)), histogram.empty, panel.depth.texels.size()));
   y += 2 * line;
   figure.write(x, y, fmt::format("texels per bin of 1/{} of the values (logarithmic)", kBins));
   y += line + line / 2;
@@ -123,12 +128,12 @@ void draw_panel(Figure& figure, int x, int y, const Panel& panel, double range_m
 
 /// As stored first; the rest is what cannot be seen in that.
 std::vector<Panel> make_panels(const DepthPicture& picture) {
-  if (picture.curve.is_linear() && !picture.curve.reversed) {
+  if (picture.curve.is_linear() && !picture.curve.reversed)
     return {{"depth, linear as it is stored", picture.stored, {}}};
-  }
   Image linear = picture.stored;
   for (float& depth : linear.texels) depth = picture.curve.linear(depth);
-  return {{"as stored", picture.stored, picture.curve}, {"linearised: depth over the light's range", std::move(linear), {}}};
+  return {{"as stored", picture.stored, picture.curve},
+          {"linearised: depth over the light's range", std::move(linear), {}}};
 }
 
 }  // namespace
@@ -140,7 +145,8 @@ DepthHistogram count_depths(const Image& depth, int bins, float far_plane) {
     if (d == far_plane) {
       ++histogram.empty;
     } else {
-      ++histogram.counts[static_cast<std::size_t>(std::clamp(static_cast<int>(d * static_cast<float>(bins)), 0, bins - 1))];
+      ++histogram
+            .counts[static_cast<std::size_t>(std::clamp(static_cast<int>(d * static_cast<float>(bins)), 0, bins - 1))];
     }
   }
   return histogram;
@@ -150,7 +156,9 @@ Image draw_depth_picture(const DepthPicture& picture) {
   constexpr int kPanelWidth = kMapSide + 20, kGap = 60;
   const std::vector<Panel> panels = make_panels(picture);
   const int count = static_cast<int>(panels.size()), line = figure_line_height();
-  Figure figure(picture.title, picture.note, {count * kPanelWidth + (count - 1) * kGap, displayed_side(picture.stored) + kPlotHeight + 8 * line + line / 2});
+  Figure figure(
+      picture.title, picture.note,
+      {count * kPanelWidth + (count - 1) * kGap, displayed_side(picture.stored) + kPlotHeight + 8 * line + line / 2});
   int x = figure.body().x;
   for (const Panel& panel : panels) {
     draw_panel(figure, x, figure.body().y, panel, picture.range_m);

@@ -14,9 +14,8 @@ constexpr float kSmallestError = 0.001f;  // a tenth of the smallest scale: nobo
 
 double round_up_nicely(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {1.0, 2.0, 5.0}) {
+  for (const double step : {1.0, 2.0, 5.0})
     if (value <= step * power * (1.0 + 1e-6)) return step * power;
-  }
   return 10.0 * power;
 }
 
@@ -33,9 +32,8 @@ std::array<float, 3> map_diverging(float value, float scale) {
 double choose_error_scale(const std::vector<const Image*>& errors) {
   std::vector<float> magnitudes;
   for (const Image* image : errors) {
-    for (const float value : image->texels) {
+    for (const float value : image->texels)
       if (std::isfinite(value) && std::abs(value) >= kSmallestError) magnitudes.push_back(std::abs(value));
-    }
   }
   if (magnitudes.empty()) return kSmallestScale;
   const auto rank = static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(magnitudes.size() - 1));

@@ -7,8 +7,8 @@
 
 namespace shadowbench::report {
 
-/// Maps a signed value to a colour for display, sRGB in [0,1]: blue below 0, near white at 0, red above; `scale` and beyond
-/// get the full colour.
+/// Maps a signed value to a colour for display, sRGB in [0,1]: blue below 0, near white at 0, red above; `scale` and
+/// beyond get the full colour.
 std::array<float, 3> map_diverging(float value, float scale);
 
 /// Chooses one scale for several signed images, so that their colours compare: the 95th percentile of the magnitudes

@@ -35,9 +35,7 @@ std::optional<PartValues> list_shares(const CellRecord& cell) {
   PartValues shares{};
   for (std::size_t i = 0; i < kErrorParts; ++i) {
     const auto& share = (cell.attribution.*list_error_parts()[i].record).share;
-    if (!share || !std::isfinite(*share)) {
-      return std::nullopt;
-    }
+    if (!share || !std::isfinite(*share)) return std::nullopt;
     shares[i] = *share;
   }
   return shares;
@@ -52,18 +50,14 @@ std::string format_rate(double rate) { return format_number(100.0 * rate) + " %"
 
 std::string describe_shares(const PartValues& shares) {
   std::vector<std::string> texts;
-  for (std::size_t i = 0; i < kErrorParts; ++i) {
+  for (std::size_t i = 0; i < kErrorParts; ++i)
     texts.push_back(fmt::format("{} {}", list_error_parts()[i].id, format_share(shares[i])));
-  }
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 std::string explain_no_attribution(const CellRecord& cell) {
-  for (const auto& [field, reason] : cell.absent) {
-    if (field == "attribution" || field.rfind("attribution.", 0) == 0) {
-      return reason;
-    }
-  }
+  for (const auto& [field, reason] : cell.absent)
+    if (field == "attribution" || field.rfind("attribution.", 0) == 0) return reason;
   const auto found = cell.absent.find("error");
   return found == cell.absent.end() ? "not measured" : found->second;
 }

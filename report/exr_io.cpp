@@ -26,13 +26,10 @@ void check_names(const std::filesystem::path& path, const std::vector<Part>& par
   for (const Part& part : parts) {
     assert(part.channel_names.size() == static_cast<std::size_t>(part.image.channels));
     names.push_back(part.name);
-    if (!has_unique_names(part.channel_names)) {
+    if (!has_unique_names(part.channel_names))
       throw Error(ErrorKind::kOutput, fmt::format("two channels of part '{}' have one name", part.name), path.string());
-    }
   }
-  if (!has_unique_names(names)) {
-    throw Error(ErrorKind::kOutput, "two parts have one name", path.string());
-  }
+  if (!has_unique_names(names)) throw Error(ErrorKind::kOutput, "two parts have one name", path.string());
 }
 
 OIIO::ImageSpec make_spec(const Part& part, const Image& display, const Metadata& metadata) {
@@ -45,28 +42,20 @@ OIIO::ImageSpec make_spec(const Part& part, const Image& display, const Metadata
   spec.attribute("compression", "zip");
   spec.attribute("oiio:subimagename", part.name);
   spec.attribute(kChannelOrder, OIIO::Strutil::join(part.channel_names, ","));
-  for (const auto& [name, value] : metadata) {
-    if (const auto* number = std::get_if<double>(&value)) {
+  for (const auto& [name, value] : metadata)
+    if (const auto* number = std::get_if<double>(&value))
       spec.attribute(name, OIIO::TypeDesc::DOUBLE, number);
-    } else {
+    else
       spec.attribute(name, std::get<std::string>(value));
-    }
-  }
   return spec;
 }
 
 bool write_parts(OIIO::ImageOutput& output, const std::string& file, const std::vector<Part>& parts,
                  const std::vector<OIIO::ImageSpec>& specs) {
-  if (!output.open(file, static_cast<int>(specs.size()), specs.data())) {
-    return false;
-  }
+  if (!output.open(file, static_cast<int>(specs.size()), specs.data())) return false;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (i > 0 && !output.open(file, specs[i], OIIO::ImageOutput::AppendSubimage)) {
-      return false;
-    }
-    if (!output.write_image(OIIO::TypeDesc::FLOAT, parts[i].image.texels.data())) {
-      return false;
-    }
+    if (i > 0 && !output.open(file, specs[i], OIIO::ImageOutput::AppendSubimage)) return false;
+    if (!output.write_image(OIIO::TypeDesc::FLOAT, parts[i].image.texels.data())) return false;
   }
   return output.close();
 }
@@ -75,17 +64,15 @@ bool write_parts(OIIO::ImageOutput& output, const std::string& file, const std::
 Part reorder_channels(Part part, const std::string& order) {
   const std::vector<std::string> names = OIIO::Strutil::splits(order, ",");
   if (names == part.channel_names ||
-      !std::is_permutation(names.begin(), names.end(), part.channel_names.begin(), part.channel_names.end())) {
+      !std::is_permutation(names.begin(), names.end(), part.channel_names.begin(), part.channel_names.end()))
     return part;
-  }
   Part result{part.name, names, Image(part.image.width, part.image.height, part.image.channels), part.half};
   const std::size_t channels = names.size();
   for (std::size_t to = 0; to < channels; ++to) {
     const auto found = std::find(part.channel_names.begin(), part.channel_names.end(), names[to]);
     const auto from = static_cast<std::size_t>(found - part.channel_names.begin());
-    for (std::size_t i = 0; i < part.image.texels.size(); i += channels) {
+    for (std::size_t i = 0; i < part.image.texels.size(); i += channels)
       result.image.texels[i + to] = part.image.texels[i + from];
-    }
   }
   return result;
 }
@@ -105,11 +92,10 @@ Metadata read_metadata(const OIIO::ImageSpec& spec) {
   Metadata metadata;
   for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
     const OIIO::TypeDesc type = attribute.type();
-    if (type == OIIO::TypeDesc::STRING) {
+    if (type == OIIO::TypeDesc::STRING)
       metadata[attribute.name().string()] = attribute.get_string();
-    } else if (type == OIIO::TypeDesc::DOUBLE) {
+    else if (type == OIIO::TypeDesc::DOUBLE)
       metadata[attribute.name().string()] = *static_cast<const double*>(attribute.data());
-    }
   }
   return metadata;
 }
@@ -129,21 +115,18 @@ void write_exr(const std::filesystem::path& path, const std::vector<Part>& parts
   assert(!parts.empty());
   check_names(path, parts);
   std::vector<OIIO::ImageSpec> specs;
-  for (const Part& part : parts) {
-    specs.push_back(make_spec(part, parts.front().image, metadata));
-  }
-  write_image_file(path, [&](OIIO::ImageOutput& output, const std::string& name) { return write_parts(output, name, parts, specs); });
+  for (const Part& part : parts) specs.push_back(make_spec(part, parts.front().image, metadata));
+  write_image_file(path, [&](OIIO::ImageOutput& output, const std::string& name) {
+    return write_parts(output, name, parts, specs);
+  });
 }
 
 ExrFile read_exr(const std::filesystem::path& path) {
   const auto input = OIIO::ImageInput::open(path.string());
-  if (!input) {
+  if (!input)
     throw Error(ErrorKind::kInput, fmt::format("the EXR file cannot be read ({})", OIIO::geterror()), path.string());
-  }
   ExrFile file{{}, read_metadata(input->spec(0))};
-  for (int i = 0; input->seek_subimage(i, 0); ++i) {
-    file.parts.push_back(read_part(*input, i, path));
-  }
+  for (int i = 0; input->seek_subimage(i, 0); ++i) file.parts.push_back(read_part(*input, i, path));
   return file;
 }
 

@@ -23,22 +23,18 @@ std::string make_file_stem(std::string_view name) {
   stem += name;
   std::replace_if(
       stem.begin(), stem.end(), [](char c) { return !is_plain(c); }, '_');
-  if (stem == name && stem.size() <= kMaxStem) {
-    return stem;
-  }
+  if (stem == name && stem.size() <= kMaxStem) return stem;
   const std::string suffix = fmt::format("-{:016x}", hash_text(name));
   return stem.substr(0, kMaxStem - suffix.size()) + suffix;
 }
 
 std::string encode_url_path(std::string_view path) {
   std::string url;
-  for (const char c : path) {
-    if (is_plain(c) || c == '/') {
+  for (const char c : path)
+    if (is_plain(c) || c == '/')
       url += c;
-    } else {
+    else
       url += fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    }
-  }
   return url;
 }
 

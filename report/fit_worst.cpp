@@ -29,9 +29,8 @@ Image fit_worst(const Image& image, int width, const Badness& badness) {
       const Span columns = span_of(x, image.width, width);
       float worst = *image.at(columns.begin, rows.begin);
       for (int v = rows.begin; v < rows.end; ++v) {
-        for (int u = columns.begin; u < columns.end; ++u) {
+        for (int u = columns.begin; u < columns.end; ++u)
           if (badness(*image.at(u, v)) > badness(worst)) worst = *image.at(u, v);
-        }
       }
       *shown.at(x, y) = worst;
     }

@@ -11,30 +11,36 @@ namespace shadowbench::report {
 namespace {
 
 std::vector<std::pair<std::string, std::string>> list_facts(const FlickerRecord& record) {
-  return {
-      {"scene", fmt::format("{}, view {}, {} x {} pixels", record.scene, record.view, record.width, record.height)},
-      {"shadow map", fmt::format("{0} x {0} texels", record.map_size)},
-      {"OpenGL", fmt::format("{} ({}), {}", record.gl.renderer, record.gl.backend, record.gl.version)},
-      {"program", record.commit},
-      {"command", fmt::format("{}", fmt::join(record.command, " "))},
-      {"took", fmt::format("{:.1f} s", record.seconds)}};
+  return {{"scene", fmt::format("{}, view {}, {} x {} pixels", record.scene, record.view, record.width, record.height)},
+          {"shadow map", fmt::format("{0} x {0} texels", record.map_size)},
+          {"OpenGL", fmt::format("{} ({}), {}", record.gl.renderer, record.gl.backend, record.gl.version)},
+          {"program", record.commit},
+          {"command", fmt::format("{}", fmt::join(record.command, " "))},
+          {"took", fmt::format("{:.1f} s", record.seconds)}};
 }
 
 std::string html_plots(const FlickerMotion& motion) {
   std::string html;
   for (const FlickerVariant& variant : motion.variants) {
-    html += figure(flicker_plot_file(motion, variant), fmt::format("mean change of visibility from frame to frame, {} snapping; one scale for both", variant.snap ? "with" : "without"), "grid");
+    html += figure(flicker_plot_file(motion, variant),
+                   fmt::format("mean change of visibility from frame to frame, {} snapping; one scale for both",
+                               variant.snap ? "with" : "without"),
+                   "grid");
   }
   return html;
 }
 
 std::string html_motion(const FlickerMotion& motion, const FlickerRecord& record) {
-  std::string html = fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n", escape_html(motion.id), escape_html(motion.title));
+  std::string html =
+      fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n", escape_html(motion.id), escape_html(motion.title));
   html += html_list(describe_flicker(motion));
-  html += html_table(make_flicker_table(motion), "Change and flicker: root mean squares of visibility per step", "flicker");
+  html +=
+      html_table(make_flicker_table(motion), "Change and flicker: root mean squares of visibility per step", "flicker");
   html += html_list(explain_motion(motion, record.frames));
   if (record.no_plots.empty()) html += html_plots(motion);
-  return html + figure(motion.picture, "flicker by pixel, without snapping and with it; grey: less than 0.001", "grid") + "</section>\n";
+  return html +
+         figure(motion.picture, "flicker by pixel, without snapping and with it; grey: less than 0.001", "grid") +
+         "</section>\n";
 }
 
 }  // namespace
@@ -43,11 +49,15 @@ std::string make_flicker_html(const FlickerRecord& record) {
   const std::string title = "Flicker: filters in motion against the truth in motion";
   std::string page = html_head(title, page_style());
   page += fmt::format("<body>\n<main>\n<h1>{}</h1>\n<nav>", title);
-  for (const FlickerMotion& motion : record.motions) page += fmt::format("<a href=\"#{0}\">{0}</a> ", escape_html(motion.id));
+  for (const FlickerMotion& motion : record.motions)
+    page += fmt::format("<a href=\"#{0}\">{0}</a> ", escape_html(motion.id));
   page += "</nav>\n" + html_facts(list_facts(record)) + html_list(define_flicker(record));
-  if (!record.no_plots.empty()) page += fmt::format("<section class=\"warnings\">\n<h2>Warnings</h2>\n{}</section>\n", html_list({"There are no plots: " + record.no_plots + "."}));
+  if (!record.no_plots.empty())
+    page += fmt::format("<section class=\"warnings\">\n<h2>Warnings</h2>\n{}</section>\n",
+                        html_list({"There are no plots: " + record.no_plots + "."}));
   for (const FlickerMotion& motion : record.motions) page += html_motion(motion, record);
-  page += "<p>Data: " + link("flicker.json", "flicker.json") + ", " + link("flicker.csv", "flicker.csv") + ", " + link("flicker.md", "flicker.md") + ".</p>\n";
+  page += "<p>Data: " + link("flicker.json", "flicker.json") + ", " + link("flicker.csv", "flicker.csv") + ", " +
+          link("flicker.md", "flicker.md") + ".</p>\n";
   return page + "</main>\n</body>\n</html>\n";
 }
 

@@ -25,7 +25,8 @@ PlotSeries make_points(const FlickerFilter& filter, std::size_t place) {
   PlotSeries series = make_series(filter.filter, style.color, PlotLine::kNone, filter.mean_change);
   series.point_type = style.hollow_point;
   std::vector<PlotPoint> chosen;
-  for (std::size_t i = place % kStepsPerPoint; i < series.points.size(); i += kStepsPerPoint) chosen.push_back(std::move(series.points[i]));
+  for (std::size_t i = place % kStepsPerPoint; i < series.points.size(); i += kStepsPerPoint)
+    chosen.push_back(std::move(series.points[i]));
   series.points = std::move(chosen);
   return series;
 }
@@ -34,9 +35,9 @@ PlotSeries make_points(const FlickerFilter& filter, std::size_t place) {
 PlotAxis choose_change_axis(const FlickerMotion& motion) {
   std::vector<double> values = {0.0};
   values.insert(values.end(), motion.truth.mean_change.begin(), motion.truth.mean_change.end());
-  for (const FlickerVariant& variant : motion.variants) {
-    for (const FlickerFilter& filter : variant.filters) values.insert(values.end(), filter.mean_change.begin(), filter.mean_change.end());
-  }
+  for (const FlickerVariant& variant : motion.variants)
+    for (const FlickerFilter& filter : variant.filters)
+      values.insert(values.end(), filter.mean_change.begin(), filter.mean_change.end());
   return choose_axis(values, {}, TickKind::kNumber);
 }
 

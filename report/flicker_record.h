@@ -34,7 +34,8 @@ struct FlickerTruth {
   bool moves = false;  ///< false: it cannot change, and is not traced
   double change = 0.0;
   double returning = 0.0;
-  double noise = 0.0;  ///< standard error of a change, root mean square, if frames were traced with random numbers of their own
+  double noise =
+      0.0;  ///< standard error of a change, root mean square, if frames were traced with random numbers of their own
   std::vector<double> mean_change;  ///< by step
 };
 

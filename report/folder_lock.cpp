@@ -23,17 +23,20 @@ namespace {
 constexpr const char* kName = ".shadowbench-lock";
 
 [[noreturn]] void fail(const std::filesystem::path& folder, int code) {
-  throw Error(ErrorKind::kOutput,
-              fmt::format("nothing can be written into this folder ({}); check its rights and free space, or choose another with --out",
-                          std::generic_category().message(code)),
-              folder.string());
+  throw Error(
+      ErrorKind::kOutput,
+      fmt::format(
+          "nothing can be written into this folder ({}); check its rights and free space, or choose another with --out",
+          std::generic_category().message(code)),
+      folder.string());
 }
 
 /// Reads who holds the lock; it has it before it can say so.
 std::string read_owner(int descriptor) {
   for (int tries = 0; tries < 50; ++tries) {
     char text[32] = {};
-    if (pread(descriptor, text, sizeof text - 1, 0) > 0 && std::strchr(text, '\n')) return fmt::format("process {}", std::strtol(text, nullptr, 10));
+    if (pread(descriptor, text, sizeof text - 1, 0) > 0 && std::strchr(text, '\n'))
+      return fmt::format("process {}", std::strtol(text, nullptr, 10));
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return "another process";
@@ -51,7 +54,8 @@ FolderLock::FolderLock(std::filesystem::path folder) : folder_(std::move(folder)
   while (!try_to_take()) {
   }
   const std::string owner = fmt::format("{}\n", getpid());
-  if (ftruncate(descriptor_, 0) != 0 || pwrite(descriptor_, owner.data(), owner.size(), 0) != static_cast<ssize_t>(owner.size())) {
+  if (ftruncate(descriptor_, 0) != 0 ||
+      pwrite(descriptor_, owner.data(), owner.size(), 0) != static_cast<ssize_t>(owner.size())) {
     const int code = errno;
     unlink(file_.c_str());
     close(descriptor_);
@@ -67,7 +71,9 @@ FolderLock::~FolderLock() {
 
 void FolderLock::require_in_place() const {
   if (is_in_place()) return;
-  throw Error(ErrorKind::kOutput, "this folder was removed or replaced while it was written; run the same command again, or choose another with --out",
+  throw Error(ErrorKind::kOutput,
+              "this folder was removed or replaced while it was written; run the same command again, or choose another "
+              "with --out",
               folder_.string());
 }
 
@@ -80,7 +86,9 @@ bool FolderLock::try_to_take() {
     const std::string owner = code == EWOULDBLOCK ? read_owner(descriptor_) : "";
     close(descriptor_);
     if (owner.empty()) fail(folder_, code);
-    throw Error(ErrorKind::kOutput, fmt::format("{} writes into this folder; wait until it ends, or choose another with --out", owner), folder_.string());
+    throw Error(ErrorKind::kOutput,
+                fmt::format("{} writes into this folder; wait until it ends, or choose another with --out", owner),
+                folder_.string());
   }
   if (is_in_place()) return true;
   close(descriptor_);
@@ -88,8 +96,10 @@ bool FolderLock::try_to_take() {
 }
 
 bool FolderLock::is_in_place() const {
-  struct stat taken {}, named {};
-  return fstat(descriptor_, &taken) == 0 && stat(file_.c_str(), &named) == 0 && taken.st_ino == named.st_ino && taken.st_dev == named.st_dev;
+  struct stat taken {
+  }, named{};
+  return fstat(descriptor_, &taken) == 0 && stat(file_.c_str(), &named) == 0 && taken.st_ino == named.st_ino &&
+         taken.st_dev == named.st_dev;
 }
 
 }  // namespace shadowbench::report

@@ -4,8 +4,8 @@
 
 namespace shadowbench::report {
 
-/// Keeps an output folder for this process, so that two runs do not write into one, and clears away what killed ones left
-/// half-written. The system lets go of the lock of a process that ends, however it ends.
+/// Keeps an output folder for this process, so that two runs do not write into one, and clears away what killed ones
+/// left half-written. The system lets go of the lock of a process that ends, however it ends.
 class FolderLock {
  public:
   /// Creates the folder where it is missing; takes it, or refuses at once where another process has it.

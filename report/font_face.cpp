@@ -36,9 +36,7 @@ Face open_face(FT_Library library, const std::string& name) {
   for (const char* folder : kFontFolders) {
     const std::filesystem::path file = std::filesystem::path(folder) / name;
     FT_Face face = nullptr;
-    if (std::filesystem::exists(file) && FT_New_Face(library, file.c_str(), 0, &face) == 0) {
-      return Face(face);
-    }
+    if (std::filesystem::exists(file) && FT_New_Face(library, file.c_str(), 0, &face) == 0) return Face(face);
   }
   throw Error(
       ErrorKind::kOutput,
@@ -76,9 +74,7 @@ int visit_glyphs(const std::string& text, Font font, const std::function<void(co
   FT_Face face = face_of(font);
   int pen = 0;
   for (const char32_t point : decode_utf8(text)) {
-    if (FT_Load_Char(face, point, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT) != 0) {
-      continue;
-    }
+    if (FT_Load_Char(face, point, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT) != 0) continue;
     const FT_GlyphSlot glyph = face->glyph;
     const FT_Bitmap& bitmap = glyph->bitmap;
     visit(

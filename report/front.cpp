@@ -12,7 +12,8 @@ std::vector<std::size_t> order_by_cost(const std::vector<FrontPoint>& points) {
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::tie(points[a].cost.value, points[a].error.value) < std::tie(points[b].cost.value, points[b].error.value);
+    return std::tie(points[a].cost.value, points[a].error.value) <
+           std::tie(points[b].cost.value, points[b].error.value);
   });
   return order;
 }
@@ -20,12 +21,10 @@ std::vector<std::size_t> order_by_cost(const std::vector<FrontPoint>& points) {
 // The place that the members give to a point, the cheapest member first; none where it belongs among them.
 std::optional<Placement> place_point(const std::vector<FrontPoint>& points, const std::vector<std::size_t>& members,
                                      const FrontPoint& point) {
-  for (const std::size_t member : members) {
+  for (const std::size_t member : members)
     if (dominates(points[member], point)) return Placement{Standing::kDominated, member};
-  }
-  for (const std::size_t member : members) {
+  for (const std::size_t member : members)
     if (is_tied(points[member], point)) return Placement{Standing::kTied, member};
-  }
   return std::nullopt;
 }
 

@@ -19,7 +19,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr fmt::string_view kMissing = "gnuplot cannot be started ({}); install gnuplot-nox and run again for static plots";
+constexpr fmt::string_view kMissing =
+    "gnuplot cannot be started ({}); install gnuplot-nox and run again for static plots";
 
 // Runs a program in a folder, in silence. Returns 0 with `pid` set, or the error.
 struct Started {
@@ -62,7 +63,8 @@ std::optional<int> wait_for(pid_t pid, double timeout_s) {
 
 }  // namespace
 
-std::optional<std::string> run_gnuplot(const std::filesystem::path& dir, const std::filesystem::path& script, double timeout_s) {
+std::optional<std::string> run_gnuplot(const std::filesystem::path& dir, const std::filesystem::path& script,
+                                       double timeout_s) {
   const Started started = start_gnuplot(dir, script);
   if (started.error != 0) return fmt::format(fmt::runtime(kMissing), std::strerror(started.error));
   const auto status = wait_for(started.pid, timeout_s);

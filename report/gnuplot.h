@@ -13,7 +13,7 @@ namespace shadowbench::report {
 /// Says how a series' points are joined.
 enum class PlotLine {
   kNone,
-  kSteps,   ///< along x, then along y
+  kSteps,  ///< along x, then along y
   kSolid,
   kDashed
 };
@@ -47,12 +47,13 @@ struct Plot {
   std::vector<std::string> notes;  ///< lines below the key
 };
 
-/// Writes a gnuplot script that draws the plots as SVG, all texts quoted, so that none of them is taken for a command or
-/// for markup. It stands alone: `gnuplot FILE` in the report folder draws the plots again.
+/// Writes a gnuplot script that draws the plots as SVG, all texts quoted, so that none of them is taken for a command
+/// or for markup. It stands alone: `gnuplot FILE` in the report folder draws the plots again.
 std::string make_gnuplot_script(const std::vector<Plot>& plots);
 
 /// Runs gnuplot on a script, in a folder; the user's own gnuplot settings are left out.
-/// Returns why the plots were not drawn: gnuplot is missing, failed, or took longer than `timeout_s`; nothing on success.
+/// Returns why the plots were not drawn: gnuplot is missing, failed, or took longer than `timeout_s`; nothing on
+/// success.
 std::optional<std::string> run_gnuplot(const std::filesystem::path& dir, const std::filesystem::path& script,
                                        double timeout_s = 120.0);
 

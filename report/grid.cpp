@@ -29,11 +29,9 @@ constexpr Rgb kNetTick{0.0f, 0.0f, 0.0f};
 constexpr int kOutlineWidth = 2;
 
 void fill_rect(Image& canvas, const Rect& rect, const Rgb& color) {
-  for (int y = std::max(0, rect.y); y < std::min(canvas.height, rect.y + rect.height); ++y) {
-    for (int x = std::max(0, rect.x); x < std::min(canvas.width, rect.x + rect.width); ++x) {
+  for (int y = std::max(0, rect.y); y < std::min(canvas.height, rect.y + rect.height); ++y)
+    for (int x = std::max(0, rect.x); x < std::min(canvas.width, rect.x + rect.width); ++x)
       std::copy(color.begin(), color.end(), canvas.at(x, y));
-    }
-  }
 }
 
 // Draws a line of `width` pixels around a rectangle, outside it.
@@ -79,16 +77,13 @@ Image reduce_image(const Image& image, Size size) {
 
 Image fit_image(const Image& image, const Rect& box) {
   const int factor = box.width / image.width;
-  if (factor >= 1 && box.width == image.width * factor && box.height == image.height * factor) {
+  if (factor >= 1 && box.width == image.width * factor && box.height == image.height * factor)
     return magnify_image(image, factor);
-  }
   return reduce_image(image, {box.width, box.height});
 }
 
 Rgb display_color(const float* texel, int channels, float exposure) {
-  if (!std::all_of(texel, texel + channels, [](float value) { return std::isfinite(value); })) {
-    return kNotFinite;
-  }
+  if (!std::all_of(texel, texel + channels, [](float value) { return std::isfinite(value); })) return kNotFinite;
   if (channels == 1) {
     const float grey = std::clamp(*texel, 0.0f, 1.0f);
     return {grey, grey, grey};
@@ -116,11 +111,9 @@ Rect intersect(const Rect& a, const Rect& b) {
 void outline_crop(Image& canvas, const Rect& crop, const Rect& box) {
   const int w = kOutlineWidth;
   const int outer = crop.width + 2 * w;
-  for (const Rect& side :
-       {Rect{crop.x - w, crop.y - w, outer, w}, Rect{crop.x - w, crop.y + crop.height, outer, w},
-        Rect{crop.x - w, crop.y, w, crop.height}, Rect{crop.x + crop.width, crop.y, w, crop.height}}) {
+  for (const Rect& side : {Rect{crop.x - w, crop.y - w, outer, w}, Rect{crop.x - w, crop.y + crop.height, outer, w},
+                           Rect{crop.x - w, crop.y, w, crop.height}, Rect{crop.x + crop.width, crop.y, w, crop.height}})
     fill_rect(canvas, intersect(side, box), kOutline);
-  }
 }
 
 Image color_errors(const Image& errors, double scale) {
@@ -145,11 +138,8 @@ void draw_display_image(Image& canvas, const Image& image, const Rect& box) {
 
 void draw_color_bar(Image& canvas, const Rect& box, double scale) {
   Image bar(box.width, box.height, 1);
-  for (int y = 0; y < box.height; ++y) {
-    for (int x = 0; x < box.width; ++x) {
-      *bar.at(x, y) = static_cast<float>(scale * (2.0 * (x + 0.5) / box.width - 1.0));
-    }
-  }
+  for (int y = 0; y < box.height; ++y)
+    for (int x = 0; x < box.width; ++x) *bar.at(x, y) = static_cast<float>(scale * (2.0 * (x + 0.5) / box.width - 1.0));
   draw_display_image(canvas, color_errors(bar, scale), box);
 }
 
@@ -167,41 +157,31 @@ void draw_panel(Image& canvas, const Grid& grid, const Panel& panel) {
     }
   }
   frame_rect(canvas, panel.box, is_crop ? kOutlineWidth : 1, is_crop ? kOutline : kFrame);
-  if (!is_crop && crop.width > 0 && crop.height > 0) {
+  if (!is_crop && crop.width > 0 && crop.height > 0)
     outline_crop(canvas, scale_crop(crop, image, panel.box), panel.box);
-  }
 }
 
 // The zero line shows above and below the parts only; the tick of the RMSE lies over them.
 void draw_bar(Image& canvas, const BarPlace& bar) {
   fill_rect(canvas, bar.track, kTrack);
   fill_rect(canvas, bar.zero_line, kZeroLine);
-  for (const SegmentBox& segment : bar.segments) {
-    fill_rect(canvas, segment.box, list_error_parts()[segment.part].color);
-  }
+  for (const SegmentBox& segment : bar.segments) fill_rect(canvas, segment.box, list_error_parts()[segment.part].color);
   fill_rect(canvas, bar.net_tick, kNetTick);
 }
 
 void draw_bars(Image& canvas, const GridLayout& layout) {
-  for (const BarPlace& bar : layout.bars) {
-    draw_bar(canvas, bar);
-  }
-  for (const Swatch& swatch : layout.swatches) {
-    fill_rect(canvas, swatch.box, list_error_parts()[swatch.part].color);
-  }
+  for (const BarPlace& bar : layout.bars) draw_bar(canvas, bar);
+  for (const Swatch& swatch : layout.swatches) fill_rect(canvas, swatch.box, list_error_parts()[swatch.part].color);
 }
 
 Rgb ink_of(TextRole role) {
   switch (role) {
     case TextRole::kTitle:
-    case TextRole::kLabel:
-      return kInk;
-    case TextRole::kMessage:
-      return kMessageInk;
+    case TextRole::kLabel: return kInk;
+    case TextRole::kMessage: return kMessageInk;
     case TextRole::kSubtitle:
     case TextRole::kCaption:
-    case TextRole::kLegend:
-      break;
+    case TextRole::kLegend: break;
   }
   return kSecondInk;
 }
@@ -212,21 +192,16 @@ Image draw_grid(const Grid& grid) {
   const GridLayout layout = layout_grid(grid);
   Image canvas(layout.canvas.width, layout.canvas.height, 3);
   fill_rect(canvas, {0, 0, canvas.width, canvas.height}, kBackground);
-  for (const Rect& box : layout.message_boxes) {
-    fill_rect(canvas, box, kMessageBackground);
-  }
-  for (const Panel& panel : layout.panels) {
-    if (panel.kind == PanelKind::kError) {
+  for (const Rect& box : layout.message_boxes) fill_rect(canvas, box, kMessageBackground);
+  for (const Panel& panel : layout.panels)
+    if (panel.kind == PanelKind::kError)
       draw_display_image(canvas, color_errors(grid.tiles[panel.tile].error, layout.error_scale), panel.box);
-    } else {
+    else
       draw_panel(canvas, grid, panel);
-    }
-  }
   if (layout.color_bar) draw_color_bar(canvas, *layout.color_bar, layout.error_scale);
   draw_bars(canvas, layout);
-  for (const TextLine& line : layout.texts) {
+  for (const TextLine& line : layout.texts)
     draw_text(canvas, line.box.x, line.box.y, line.text, font_of(line.role), ink_of(line.role));
-  }
   return canvas;
 }
 

@@ -34,9 +34,7 @@ struct BlockRows {
 
   int images_height() const {
     int height = 0;
-    for (const int row : {picture, visibility, error, bar, crop}) {
-      height += row > 0 ? row + kRowGap : 0;
-    }
+    for (const int row : {picture, visibility, error, bar, crop}) height += row > 0 ? row + kRowGap : 0;
     return std::max(0, height - kRowGap);
   }
 };
@@ -54,9 +52,8 @@ class Builder {
     int y = kMargin;
     y = add_text(grid_.title, TextRole::kTitle, full_width(y));
     y = add_text(grid_.subtitle, TextRole::kSubtitle, full_width(y + 4)) + kBlockGap / 2;
-    for (std::size_t first = 0; first < grid_.tiles.size(); first += columns_) {
+    for (std::size_t first = 0; first < grid_.tiles.size(); first += columns_)
       y = add_block(first, std::min(first + columns_, grid_.tiles.size()), y) + kBlockGap;
-    }
     y = add_color_bar(y);
     y = add_bar_legend(y);
     y = add_text(legend(), TextRole::kLegend, full_width(y));
@@ -69,9 +66,8 @@ class Builder {
 
   std::optional<BarScale> choose_scale_of_bars() const {
     std::vector<AttributionBar> bars;
-    for (const GridTile& tile : grid_.tiles) {
+    for (const GridTile& tile : grid_.tiles)
       if (tile.attribution) bars.push_back(*tile.attribution);
-    }
     return bars.empty() ? std::nullopt : std::optional(choose_bar_scale(bars));
   }
 
@@ -115,9 +111,8 @@ class Builder {
       rows.visibility = std::max(rows.visibility, shown_size(tile.visibility).height);
       rows.error = std::max(rows.error, shown_size(tile.error).height);
       rows.bar = std::max(rows.bar, bar_row_height(tile));
-      for (const Image* image : {&tile.picture, &tile.visibility}) {
+      for (const Image* image : {&tile.picture, &tile.visibility})
         rows.crop = std::max(rows.crop, crop_size(*image).height);
-      }
     }
     return rows;
   }
@@ -140,11 +135,10 @@ class Builder {
       const int x = kMargin + static_cast<int>(i - begin) * (kTileWidth + kColumnGap);
       const int caption_y = add_text(tile.label, TextRole::kLabel, {x, y, kTileWidth, 0});
       add_text(tile.caption, TextRole::kCaption, {x, caption_y, kTileWidth, 0});
-      if (!has_image(tile)) {
+      if (!has_image(tile))
         bottom = std::max(bottom, add_message(tile, {x, images_y, kTileWidth, rows.images_height()}));
-      } else {
+      else
         add_panels(i, {x, images_y, kTileWidth, 0}, rows);
-      }
     }
     return bottom;
   }
@@ -152,9 +146,8 @@ class Builder {
   /// One scale for the whole grid, with its bar and what its ends mean.
   int add_color_bar(int y) {
     std::vector<const Image*> errors;
-    for (const GridTile& tile : grid_.tiles) {
+    for (const GridTile& tile : grid_.tiles)
       if (!tile.error.empty()) errors.push_back(&tile.error);
-    }
     if (errors.empty()) return y;
     layout_.error_scale = grid_.error_scale ? *grid_.error_scale : choose_error_scale(errors);
     const int height = line_height(font_of(TextRole::kLegend));
@@ -243,9 +236,7 @@ class Builder {
   std::string legend() const {
     const bool shows_more_than_errors = std::any_of(layout_.panels.begin(), layout_.panels.end(),
                                                     [](const Panel& p) { return p.kind != PanelKind::kError; });
-    if (!shows_more_than_errors) {
-      return {};
-    }
+    if (!shows_more_than_errors) return {};
     std::string text = "Top: shaded picture. Below it: visibility (white lit, black blocked)";
     text += layout_.color_bar ? ", then its error" : "";
     text += layout_.bar_scale ? ", then the parts of the error." : ".";
@@ -268,27 +259,20 @@ class Builder {
 
 Font font_of(TextRole role) {
   switch (role) {
-    case TextRole::kTitle:
-      return {34, true};
-    case TextRole::kLabel:
-      return {28, true};
+    case TextRole::kTitle: return {34, true};
+    case TextRole::kLabel: return {28, true};
     case TextRole::kSubtitle:
     case TextRole::kCaption:
     case TextRole::kMessage:
-    case TextRole::kLegend:
-      break;
+    case TextRole::kLegend: break;
   }
   return {21, false};
 }
 
 Size fit_size(Size size, Size box) {
-  if (size.width <= 0 || size.height <= 0) {
-    return {};
-  }
+  if (size.width <= 0 || size.height <= 0) return {};
   const int factor = std::min(box.width / size.width, box.height / size.height);
-  if (factor >= 1) {
-    return {size.width * factor, size.height * factor};
-  }
+  if (factor >= 1) return {size.width * factor, size.height * factor};
   const double scale =
       std::min(static_cast<double>(box.width) / size.width, static_cast<double>(box.height) / size.height);
   return {std::clamp(static_cast<int>(size.width * scale + 0.5), 1, box.width),

@@ -36,11 +36,13 @@ std::string series_key(const CellRecord& cell, GrowthLaw law) {
   return dump_line(settings);
 }
 
-std::vector<std::vector<Point>> list_series(const std::vector<CellRecord>& cells, const std::string& filter, GrowthLaw law) {
+std::vector<std::vector<Point>> list_series(const std::vector<CellRecord>& cells, const std::string& filter,
+                                            GrowthLaw law) {
   std::map<std::string, std::vector<Point>> series;
   for (const CellRecord& cell : cells) {
     const auto time = time_of(cell, law);
-    if (cell.filter == filter && time && size_of(cell, law) > 0.0) series[series_key(cell, law)].push_back({size_of(cell, law), *time});
+    if (cell.filter == filter && time && size_of(cell, law) > 0.0)
+      series[series_key(cell, law)].push_back({size_of(cell, law), *time});
   }
   std::vector<std::vector<Point>> result;
   for (auto& [key, points] : series) {
@@ -54,7 +56,8 @@ std::optional<Growth> find_growth_of(const std::vector<CellRecord>& cells, const
   const auto series = list_series(cells, filter, law);
   if (series.empty()) return std::nullopt;
   std::vector<double> exponents;
-  Growth growth{filter, 0.0, 0.0, 0.0, static_cast<int>(series.size()), series[0].front().first, series[0].back().first};
+  Growth growth{
+      filter, 0.0, 0.0, 0.0, static_cast<int>(series.size()), series[0].front().first, series[0].back().first};
   for (const auto& points : series) {
     exponents.push_back(fit_exponent(points));
     growth.from = std::min(growth.from, points.front().first);
@@ -68,7 +71,9 @@ std::optional<Growth> find_growth_of(const std::vector<CellRecord>& cells, const
   return growth;
 }
 
-std::string format_exponent(double exponent) { return fmt::format("{:.2f}", std::abs(exponent) < 0.005 ? 0.0 : exponent); }
+std::string format_exponent(double exponent) {
+  return fmt::format("{:.2f}", std::abs(exponent) < 0.005 ? 0.0 : exponent);
+}
 
 std::string describe_one(const Growth& growth) {
   const std::string range = growth.series > 1 ? fmt::format(", {} to {} in {} series", format_exponent(growth.lowest),
@@ -109,9 +114,8 @@ double fit_exponent(const std::vector<Point>& points) {
 
 std::vector<Growth> find_growth(const std::vector<CellRecord>& cells, GrowthLaw law) {
   std::vector<Growth> growths;
-  for (const std::string& filter : list_filters(cells)) {
+  for (const std::string& filter : list_filters(cells))
     if (const auto growth = find_growth_of(cells, filter, law)) growths.push_back(*growth);
-  }
   return growths;
 }
 

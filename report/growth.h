@@ -15,18 +15,20 @@ enum class GrowthLaw {
   kPrefilterOverTexels  ///< prefilter over the map's texels
 };
 
-/// Is how one filter's time grows: the exponents p of time ~ size^p, one per series of cells that differ in the size alone.
+/// Is how one filter's time grows: the exponents p of time ~ size^p, one per series of cells that differ in the size
+/// alone.
 struct Growth {
   std::string filter;
   double exponent = 0.0;  ///< the median of the series
   double lowest = 0.0;
   double highest = 0.0;
   int series = 0;
-  double from = 0.0;      ///< the smallest size of all series
+  double from = 0.0;  ///< the smallest size of all series
   double to = 0.0;
 };
 
-/// Fits the exponent by least squares in the logarithms of (size, time). Requires two different sizes or more, all positive.
+/// Fits the exponent by least squares in the logarithms of (size, time). Requires two different sizes or more, all
+/// positive.
 double fit_exponent(const std::vector<std::pair<double, double>>& points);
 
 /// Finds the growth of every filter that has a series of two sizes or more; times are medians.

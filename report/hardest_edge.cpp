@@ -85,9 +85,7 @@ Rect find_hardest_edge(const std::vector<const Image*>& visibility, std::size_t 
   std::vector<const Image*> images;
   std::copy_if(visibility.begin(), visibility.end(), std::back_inserter(images),
                [](const Image* image) { return image != nullptr && !image->empty(); });
-  if (images.empty()) {
-    return {};
-  }
+  if (images.empty()) return {};
   const bool has_reference =
       reference < visibility.size() && visibility[reference] != nullptr && !visibility[reference]->empty();
   const Image& edge = has_reference ? *visibility[reference] : *images.front();

@@ -10,9 +10,7 @@ namespace {
 
 std::string html_row(const std::vector<std::string>& fields, std::string_view element) {
   std::string text = "<tr>";
-  for (const std::string& field : fields) {
-    text += fmt::format("<{0}>{1}</{0}>", element, escape_html(field));
-  }
+  for (const std::string& field : fields) text += fmt::format("<{0}>{1}</{0}>", element, escape_html(field));
   return text + "</tr>\n";
 }
 
@@ -40,15 +38,14 @@ std::string figure(const std::string& path, const std::string& caption, std::str
 
 std::string html_facts(const std::vector<std::pair<std::string, std::string>>& facts) {
   std::string html = "<dl>\n";
-  for (const auto& [name, value] : facts) html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_html(name), escape_html(value));
+  for (const auto& [name, value] : facts)
+    html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_html(name), escape_html(value));
   return html + "</dl>\n";
 }
 
 std::string html_list(const std::vector<std::string>& items) {
   std::string text = "<ul>\n";
-  for (const std::string& item : items) {
-    text += fmt::format("<li>{}</li>\n", escape_html(item));
-  }
+  for (const std::string& item : items) text += fmt::format("<li>{}</li>\n", escape_html(item));
   return text + "</ul>\n";
 }
 
@@ -58,9 +55,7 @@ std::string html_table(const TextTable& table, const std::string& name, std::str
       "<table class=\"{2}\">\n<caption>{0}</caption>\n"
       "<thead>{1}</thead>\n<tbody>\n",
       escape_html(name), html_row(table.header, "th"), style);
-  for (const auto& row : table.rows) {
-    text += html_row(row, "td");
-  }
+  for (const auto& row : table.rows) text += html_row(row, "td");
   return text + "</tbody></table></div>\n";
 }
 

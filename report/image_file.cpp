@@ -19,7 +19,8 @@ namespace {
 /// A file that remembers the first write that failed.
 class CheckedFile final : public OIIO::Filesystem::IOProxy {
  public:
-  explicit CheckedFile(const std::string& name) : IOProxy(name, Write), descriptor_(::open(name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+  explicit CheckedFile(const std::string& name)
+      : IOProxy(name, Write), descriptor_(::open(name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
     if (descriptor_ < 0) error_ = errno;
   }
   ~CheckedFile() override { finish(); }
@@ -36,7 +37,8 @@ class CheckedFile final : public OIIO::Filesystem::IOProxy {
   std::size_t pwrite(const void* bytes, std::size_t size, std::int64_t offset) override {
     std::size_t written = 0;
     while (written < size && error_ == 0) {
-      const ssize_t more = ::pwrite(descriptor_, static_cast<const char*>(bytes) + written, size - written, offset + static_cast<std::int64_t>(written));
+      const ssize_t more = ::pwrite(descriptor_, static_cast<const char*>(bytes) + written, size - written,
+                                    offset + static_cast<std::int64_t>(written));
       if (more < 0 && errno != EINTR) error_ = errno;
       if (more > 0) written += static_cast<std::size_t>(more);
     }
@@ -74,7 +76,10 @@ void write_image_file(const std::filesystem::path& path, const ImageWriting& wri
   }
   if (const int error = file.finish()) reason = std::generic_category().message(error);
   if (!reason.empty()) {
-    throw Error(ErrorKind::kOutput, fmt::format("the picture cannot be written ({}); check the folder's rights and free space, or choose another with --out", reason),
+    throw Error(ErrorKind::kOutput,
+                fmt::format("the picture cannot be written ({}); check the folder's rights and free space, or choose "
+                            "another with --out",
+                            reason),
                 path.string());
   }
   pending.commit();

@@ -36,9 +36,12 @@ bool is_finite(const Ratio& value) {
 }
 
 bool is_finite(const std::vector<LightCountRecord>& value) {
-  return std::all_of(value.begin(), value.end(), [](const LightCountRecord& each) {
-    return is_finite(each.still_ms) && is_finite(each.moving_ms) && is_finite(each.still_ratio) && is_finite(each.moving_ratio);
-  });
+  return std::all_of(
+      value.begin(), value.end(),
+      [](const LightCountRecord& each) {
+        return is_finite(each.still_ms) && is_finite(each.moving_ms) && is_finite(each.still_ratio) &&
+               is_finite(each.moving_ratio);
+      });
 }
 
 // Writes each visited field into one JSON object and notes the nulls.
@@ -60,9 +63,7 @@ struct FieldWriter {
     }
     root[make_pointer(path)] = nullptr;
     nulls.push_back(path);
-    if (value) {
-      not_finite[path] = "the value was not finite";
-    }
+    if (value) not_finite[path] = "the value was not finite";
   }
 };
 
@@ -123,18 +124,13 @@ std::vector<std::string> list_path_and_groups(std::string path) {
 }
 
 bool is_explained(const std::map<std::string, std::string>& absent, const std::string& path) {
-  for (const std::string& name : list_path_and_groups(path)) {
-    if (absent.count(name) != 0) {
-      return true;
-    }
-  }
+  for (const std::string& name : list_path_and_groups(path))
+    if (absent.count(name) != 0) return true;
   return false;
 }
 
 bool has_value(const json& value) {
-  if (!value.is_object()) {
-    return !value.is_null();
-  }
+  if (!value.is_object()) return !value.is_null();
   return std::any_of(value.begin(), value.end(), has_value);
 }
 
@@ -143,9 +139,7 @@ std::map<std::string, std::string> explain_nulls(const json& root, std::map<std:
   // A record that was read again says so of what has been measured since.
   std::erase_if(absent, [](const auto& entry) { return entry.second == kNotMeasured; });
   for (const std::string& path : nulls) {
-    if (is_explained(absent, path)) {
-      continue;
-    }
+    if (is_explained(absent, path)) continue;
     const std::string group = list_path_and_groups(path).back();
     absent[has_value(root.at(group)) ? path : group] = kNotMeasured;
   }
@@ -154,9 +148,7 @@ std::map<std::string, std::string> explain_nulls(const json& root, std::map<std:
 
 json parse_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    throw Error(ErrorKind::kInput, "the file cannot be opened; was the run finished?", file.string());
-  }
+  if (!stream) throw Error(ErrorKind::kInput, "the file cannot be opened; was the run finished?", file.string());
   try {
     return parse_json(stream);
   } catch (const std::exception& problem) {
@@ -179,7 +171,8 @@ void check_version(const json& root, const std::string& where) {
   }
 }
 
-// Whether a path that a report names stays in its folder: reports come from elsewhere, and `merge` copies what they name.
+// Whether a path that a report names stays in its folder: reports come from elsewhere, and `merge` copies what they
+// name.
 bool stays_inside(const std::string& path) {
   const std::filesystem::path relative = std::filesystem::path(path).lexically_normal();
   return !path.empty() && relative.is_relative() && *relative.begin() != ".." && path.find('\0') == std::string::npos;
@@ -190,8 +183,11 @@ struct ImageCheck {
 
   void operator()(const std::string& path, const std::optional<std::string>& value) const {
     if (!path.starts_with("images.") || !value || stays_inside(*value)) return;
-    throw Error(ErrorKind::kInput, fmt::format("the field '{}' holds {}, which is outside the report's folder; delete this file and run again",
-                                               path, dump_line(*value).substr(0, 60)), where);
+    throw Error(
+        ErrorKind::kInput,
+        fmt::format("the field '{}' holds {}, which is outside the report's folder; delete this file and run again",
+                    path, dump_line(*value).substr(0, 60)),
+        where);
   }
   template <class T>
   void operator()(const std::string&, const T&) const {}
@@ -199,16 +195,24 @@ struct ImageCheck {
 
 void check_cell(const CellRecord& cell, const std::string& where) {
   if (!is_cell_key(cell.key)) {
-    throw Error(ErrorKind::kInput, fmt::format("the field 'key' holds {}, which is no key of 16 hexadecimal digits; delete this file and run again",
-                                               dump_line(cell.key).substr(0, 60)), where);
+    throw Error(
+        ErrorKind::kInput,
+        fmt::format(
+            "the field 'key' holds {}, which is no key of 16 hexadecimal digits; delete this file and run again",
+            dump_line(cell.key).substr(0, 60)),
+        where);
   }
   visit_cell_fields(cell, ImageCheck{where});
 }
 
 void check_shard(const ExperimentRecord& experiment, const std::string& where) {
   if (experiment.cells >= 0 && experiment.shard >= 1 && experiment.shard <= experiment.shards) return;
-  throw Error(ErrorKind::kInput, fmt::format("the field 'experiment' says shard {} of {}, with {} cells, which cannot be; delete this file and run again",
-                                             experiment.shard, experiment.shards, experiment.cells), where);
+  throw Error(
+      ErrorKind::kInput,
+      fmt::format(
+          "the field 'experiment' says shard {} of {}, with {} cells, which cannot be; delete this file and run again",
+          experiment.shard, experiment.shards, experiment.cells),
+      where);
 }
 
 }  // namespace
@@ -283,12 +287,9 @@ Results read_results(const std::filesystem::path& file) {
   const json root = parse_file(file);
   Results results{run_from_json(root, file.string()), {}};
   const json cells = root.value("cells", json());
-  if (!cells.is_array()) {
+  if (!cells.is_array())
     throw Error(ErrorKind::kInput, "the list 'cells' is missing; delete this file and run again", file.string());
-  }
-  for (const json& cell : cells) {
-    results.cells.push_back(cell_from_json(cell, file.string()));
-  }
+  for (const json& cell : cells) results.cells.push_back(cell_from_json(cell, file.string()));
   return results;
 }
 

@@ -15,9 +15,7 @@ using nlohmann::json;
 constexpr double kLargestExactInteger = 9007199254740992.0;  // 2^53
 
 void require(bool holds, const char* expected) {
-  if (!holds) {
-    throw std::invalid_argument(expected);
-  }
+  if (!holds) throw std::invalid_argument(expected);
 }
 
 }  // namespace
@@ -32,9 +30,8 @@ json parse_json(std::istream& stream) {
 
 json number_json(double value) {
   assert(std::isfinite(value));
-  if (std::nearbyint(value) == value && std::abs(value) <= kLargestExactInteger) {
+  if (std::nearbyint(value) == value && std::abs(value) <= kLargestExactInteger)
     return static_cast<std::int64_t>(value);
-  }
   return value;
 }
 
@@ -68,20 +65,20 @@ json value_json(const Ratio& value) {
 json value_json(const std::vector<LightCountRecord>& value) {
   json result = json::array();
   for (const LightCountRecord& each : value) {
-    result.push_back({{"count", each.count},
-                      {"still_ms", value_json(each.still_ms)},
-                      {"moving_ms", value_json(each.moving_ms)},
-                      {"ratio_to_none", {{"still", value_json(each.still_ratio)}, {"moving", value_json(each.moving_ratio)}}},
-                      {"maps_bytes", each.maps_bytes}});
+    result.push_back(
+        {{"count", each.count},
+         {"still_ms", value_json(each.still_ms)},
+         {"moving_ms", value_json(each.moving_ms)},
+         {"ratio_to_none", {{"still", value_json(each.still_ratio)}, {"moving", value_json(each.moving_ratio)}}},
+         {"maps_bytes", each.maps_bytes}});
   }
   return result;
 }
 
 json value_json(const ParamMap& value) {
   json result = json::object();
-  for (const auto& [name, param] : value) {
+  for (const auto& [name, param] : value)
     result[name] = std::visit([](const auto& held) { return value_json(held); }, param);
-  }
   return result;
 }
 
@@ -96,9 +93,7 @@ json value_json(const std::vector<std::string>& value) { return json(value); }
 
 json value_json(const std::vector<SceneRecord>& value) {
   json result = json::array();
-  for (const SceneRecord& scene : value) {
-    result.push_back({{"name", scene.name}, {"title", scene.title}});
-  }
+  for (const SceneRecord& scene : value) result.push_back({{"name", scene.name}, {"title", scene.title}});
   return result;
 }
 
@@ -169,8 +164,9 @@ std::vector<LightCountRecord> read_value(const json& json) {
   std::vector<LightCountRecord> lights;
   for (const auto& each : json) {
     const auto& ratio = each.at("ratio_to_none");
-    lights.push_back({read_value<int>(each.at("count")), read_value<Quartiles>(each.at("still_ms")), read_value<Quartiles>(each.at("moving_ms")),
-                      read_value<Ratio>(ratio.at("still")), read_value<Ratio>(ratio.at("moving")), read_value<std::int64_t>(each.at("maps_bytes"))});
+    lights.push_back({read_value<int>(each.at("count")), read_value<Quartiles>(each.at("still_ms")),
+                      read_value<Quartiles>(each.at("moving_ms")), read_value<Ratio>(ratio.at("still")),
+                      read_value<Ratio>(ratio.at("moving")), read_value<std::int64_t>(each.at("maps_bytes"))});
   }
   return lights;
 }
@@ -179,15 +175,13 @@ template <>
 ParamMap read_value(const json& json) {
   require(json.is_object(), "an object");
   ParamMap params;
-  for (const auto& [name, value] : json.items()) {
-    if (value.is_boolean()) {
+  for (const auto& [name, value] : json.items())
+    if (value.is_boolean())
       params[name] = value.get<bool>();
-    } else if (value.is_string()) {
+    else if (value.is_string())
       params[name] = value.get<std::string>();
-    } else {
+    else
       params[name] = read_value<double>(value);
-    }
-  }
   return params;
 }
 
@@ -214,9 +208,8 @@ template <>
 std::vector<SceneRecord> read_value(const json& json) {
   require(json.is_array(), "an array");
   std::vector<SceneRecord> scenes;
-  for (const auto& scene : json) {
+  for (const auto& scene : json)
     scenes.push_back({read_value<std::string>(scene.at("name")), read_value<std::string>(scene.at("title"))});
-  }
   return scenes;
 }
 

@@ -8,8 +8,8 @@
 
 namespace shadowbench::report {
 
-/// Parses JSON. Throws nlohmann::json::exception, or std::invalid_argument where it is nested more than 100 deep: copying or
-/// writing such a value recurses, and would end the program.
+/// Parses JSON. Throws nlohmann::json::exception, or std::invalid_argument where it is nested more than 100 deep:
+/// copying or writing such a value recurses, and would end the program.
 nlohmann::json parse_json(std::istream& stream);
 
 /// Writes a number: integral values as integers, so that 4 and 4.0 are one text. Requires a finite value.

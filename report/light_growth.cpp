@@ -18,7 +18,8 @@ constexpr double kMebibyte = 1024.0 * 1024.0;
 
 const LightCountRecord* find_count(const CellRecord& cell, int count) {
   if (!cell.lights) return nullptr;
-  const auto found = std::find_if(cell.lights->begin(), cell.lights->end(), [&](const LightCountRecord& each) { return each.count == count; });
+  const auto found = std::find_if(cell.lights->begin(), cell.lights->end(),
+                                  [&](const LightCountRecord& each) { return each.count == count; });
   return found == cell.lights->end() ? nullptr : &*found;
 }
 
@@ -30,16 +31,18 @@ Estimate estimate(const Quartiles& time, const Ratio& ratio, const Quartiles* re
 }
 
 LightPoint make_point(const LightCountRecord& own, const LightCountRecord* reference) {
-  return {own.count, estimate(own.still_ms, own.still_ratio, reference ? &reference->still_ms : nullptr),
-          estimate(own.moving_ms, own.moving_ratio, reference ? &reference->moving_ms : nullptr), read_spread(own.still_ms), read_spread(own.moving_ms),
+  return {own.count,
+          estimate(own.still_ms, own.still_ratio, reference ? &reference->still_ms : nullptr),
+          estimate(own.moving_ms, own.moving_ratio, reference ? &reference->moving_ms : nullptr),
+          read_spread(own.still_ms),
+          read_spread(own.moving_ms),
           own.maps_bytes};
 }
 
 LightCurve make_curve(const TradeConfiguration& configuration, const CellRecord& cell, const CellRecord* reference) {
   LightCurve curve{configuration.filter, configuration.label, {}};
-  for (const LightCountRecord& each : *cell.lights) {
+  for (const LightCountRecord& each : *cell.lights)
     curve.points.push_back(make_point(each, reference ? find_count(*reference, each.count) : nullptr));
-  }
   return curve;
 }
 
@@ -53,7 +56,15 @@ LightChart make_chart(const TradeScope& scope, int map_size, const std::vector<C
     if (is_reference(cell)) reference = &cell;
   }
   label_configurations(timed);
-  LightChart chart{scope.id, fmt::format("{} · map {}", scope.title, map_size), scope.scene, scope.view, map_size, scope.width, scope.height, {}, {}};
+  LightChart chart{scope.id,
+                   fmt::format("{} · map {}", scope.title, map_size),
+                   scope.scene,
+                   scope.view,
+                   map_size,
+                   scope.width,
+                   scope.height,
+                   {},
+                   {}};
   std::set<int> counts;
   for (const TradeConfiguration& each : timed) {
     chart.curves.push_back(make_curve(each, cells[each.cells.front()], reference));
@@ -64,11 +75,14 @@ LightChart make_chart(const TradeScope& scope, int map_size, const std::vector<C
 }
 
 const LightPoint* find_point(const LightCurve& curve, int count) {
-  const auto found = std::find_if(curve.points.begin(), curve.points.end(), [&](const LightPoint& each) { return each.count == count; });
+  const auto found = std::find_if(curve.points.begin(), curve.points.end(),
+                                  [&](const LightPoint& each) { return each.count == count; });
   return found == curve.points.end() ? nullptr : &*found;
 }
 
-int compare(const Estimate& a, const Estimate& b) { return is_clearly_less_cost(a, b) ? -1 : is_clearly_less_cost(b, a) ? 1 : 0; }
+int compare(const Estimate& a, const Estimate& b) {
+  return is_clearly_less_cost(a, b) ? -1 : is_clearly_less_cost(b, a) ? 1 : 0;
+}
 
 LightComparison compare_pair(const LightChart& chart, std::size_t a, std::size_t b) {
   LightComparison result{a, b, {}, {}, {}};
@@ -83,7 +97,9 @@ LightComparison compare_pair(const LightChart& chart, std::size_t a, std::size_t
 }
 
 bool has_sign(const LightComparison& comparison, int sign) {
-  const auto has = [sign](const std::vector<int>& signs) { return std::find(signs.begin(), signs.end(), sign) != signs.end(); };
+  const auto has = [sign](const std::vector<int>& signs) {
+    return std::find(signs.begin(), signs.end(), sign) != signs.end();
+  };
   return has(comparison.still) || has(comparison.moving);
 }
 
@@ -102,9 +118,10 @@ double fit_slope(const Points& points) {
   return xy / xx;
 }
 
-// Fits the medians, and the flattest and the steepest line through the quartiles: least squares weigh a point by its distance from
-// the middle of the counts, as `scale` has them.
-Estimate fit_with_spread(const LightCurve& curve, LightState light, double (*fit)(const Points&), double (*scale)(double)) {
+// Fits the medians, and the flattest and the steepest line through the quartiles: least squares weigh a point by its
+// distance from the middle of the counts, as `scale` has them.
+Estimate fit_with_spread(const LightCurve& curve, LightState light, double (*fit)(const Points&),
+                         double (*scale)(double)) {
   Points medians, flattest, steepest;
   double middle = 0.0;
   for (const LightPoint& point : curve.points) middle += scale(point.count) / static_cast<double>(curve.points.size());
@@ -162,11 +179,14 @@ std::vector<LightChart> make_light_charts(const std::vector<CellRecord>& cells, 
   return charts;
 }
 
-const Estimate& frame_time(const LightPoint& point, LightState light) { return light == LightState::kStill ? point.still : point.moving; }
+const Estimate& frame_time(const LightPoint& point, LightState light) {
+  return light == LightState::kStill ? point.still : point.moving;
+}
 
 LightGrowth find_light_growth(const LightCurve& curve, LightState light) {
   assert(curve.points.size() > 1);
-  return {fit_with_spread(curve, light, fit_slope, [](double count) { return count; }), fit_with_spread(curve, light, fit_exponent, [](double count) { return std::log(count); })};
+  return {fit_with_spread(curve, light, fit_slope, [](double count) { return count; }),
+          fit_with_spread(curve, light, fit_exponent, [](double count) { return std::log(count); })};
 }
 
 std::vector<LightComparison> compare_light_curves(const LightChart& chart) {
@@ -185,9 +205,9 @@ TextTable make_light_table(const LightChart& chart) {
   table.header = {"filter", "casters"};
   for (const int count : chart.counts) table.header.push_back(fmt::format("{} light{}", count, count == 1 ? "" : "s"));
   table.header.insert(table.header.end(), {"ms per added light", "exponent", "MiB of maps at the most lights"});
-  for (const LightCurve& curve : chart.curves) {
-    for (const LightState light : {LightState::kStill, LightState::kMoving}) table.rows.push_back(make_row(chart, curve, light));
-  }
+  for (const LightCurve& curve : chart.curves)
+    for (const LightState light : {LightState::kStill, LightState::kMoving})
+      table.rows.push_back(make_row(chart, curve, light));
   return table;
 }
 

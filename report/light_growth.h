@@ -14,9 +14,9 @@ namespace shadowbench::report {
 /// Is what a frame costs under one number of lights.
 struct LightPoint {
   int count = 0;
-  Estimate still;   ///< ms: a lookup per light
-  Estimate moving;  ///< ms: a depth map, a prefilter and a lookup per light
-  Estimate still_spread;   ///< the same as the filter's own median and quartiles: what may be compared between counts
+  Estimate still;         ///< ms: a lookup per light
+  Estimate moving;        ///< ms: a depth map, a prefilter and a lookup per light
+  Estimate still_spread;  ///< the same as the filter's own median and quartiles: what may be compared between counts
   Estimate moving_spread;
   std::int64_t maps_bytes = 0;
 };
@@ -24,7 +24,7 @@ struct LightPoint {
 /// Is one filter over the number of lights, all else being equal.
 struct LightCurve {
   std::string filter;
-  std::string label;  ///< with the parameters that tell it from the filter's other curves
+  std::string label;               ///< with the parameters that tell it from the filter's other curves
   std::vector<LightPoint> points;  ///< by ascending count
 };
 
@@ -41,19 +41,20 @@ struct LightChart {
   std::vector<LightCurve> curves;
 };
 
-/// Is how a curve grows, fitted to the filter's own medians. The intervals are what a time anywhere within its quartiles would
-/// allow: they are wide where times are unsteady.
+/// Is how a curve grows, fitted to the filter's own medians. The intervals are what a time anywhere within its
+/// quartiles would allow: they are wide where times are unsteady.
 struct LightGrowth {
   Estimate per_light_ms;  ///< slope of the time over the count, by least squares
   Estimate exponent;      ///< p of time ~ count^p; see fit_exponent()
 };
 
-/// Compares two curves at the counts that both have. Signs: -1 `a` is cheaper, 1 it is dearer, 0 their intervals overlap.
+/// Compares two curves at the counts that both have. Signs: -1 `a` is cheaper, 1 it is dearer, 0 their intervals
+/// overlap.
 struct LightComparison {
   std::size_t a = 0;  ///< indices into the chart's curves
   std::size_t b = 0;
   std::vector<int> counts;
-  std::vector<int> still;   ///< at each count
+  std::vector<int> still;  ///< at each count
   std::vector<int> moving;
 
   /// Is one of the two cheaper somewhere, and the other elsewhere?
@@ -62,9 +63,9 @@ struct LightComparison {
   bool is_apart() const;
 };
 
-/// Sorts the cells whose frames under several lights were timed into charts. Times are per-round ratios to the chart's reference
-/// under as many lights, times its median, with the ratio's 95 % interval, as in read_cost(); where the run does not hold the
-/// reference, medians and quartiles.
+/// Sorts the cells whose frames under several lights were timed into charts. Times are per-round ratios to the chart's
+/// reference under as many lights, times its median, with the ratio's 95 % interval, as in read_cost(); where the run
+/// does not hold the reference, medians and quartiles.
 std::vector<LightChart> make_light_charts(const std::vector<CellRecord>& cells, const std::vector<TradeScope>& scopes);
 
 /// Gives the time of a frame.
@@ -83,11 +84,12 @@ std::string format_exponent(const Estimate& exponent);
 /// Makes the table of a chart, two rows per curve, for casters that stand still and that move.
 TextTable make_light_table(const LightChart& chart);
 
-/// Says how the times of each chart grow: per added light, and to which power of the count; nothing for charts of one count.
+/// Says how the times of each chart grow: per added light, and to which power of the count; nothing for charts of one
+/// count.
 std::vector<std::string> describe_light_growth(const std::vector<LightChart>& charts, const GlRecord& gl);
 
-/// Says which filters overtake another between numbers of lights, or between casters that stand still and that move, with the places
-/// where they do, and of each chart how many pairs keep their order.
+/// Says which filters overtake another between numbers of lights, or between casters that stand still and that move,
+/// with the places where they do, and of each chart how many pairs keep their order.
 std::vector<std::string> describe_light_order(const std::vector<LightChart>& charts);
 
 }  // namespace shadowbench::report

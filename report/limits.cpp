@@ -37,7 +37,8 @@ constexpr LimitSpec kTable[] = {
 };
 
 const LimitSpec& find_spec(const std::string& field) {
-  return *std::find_if(std::begin(kTable), std::end(kTable), [&](const LimitSpec& spec) { return spec.field == field; });
+  return *std::find_if(
+      std::begin(kTable), std::end(kTable), [&](const LimitSpec& spec) { return spec.field == field; });
 }
 
 void add(Quartiles& sum, const Quartiles& pass) {
@@ -53,12 +54,9 @@ std::span<const LimitSpec> limit_table() { return kTable; }
 
 const LimitSpec& cost_spec(CostKind kind) {
   switch (kind) {
-    case CostKind::kTime:
-      return find_spec("time_ms");
-    case CostKind::kBytes:
-      return find_spec("cost.map_bytes");
-    case CostKind::kFetches:
-      break;
+    case CostKind::kTime: return find_spec("time_ms");
+    case CostKind::kBytes: return find_spec("cost.map_bytes");
+    case CostKind::kFetches: break;
   }
   return find_spec("cost.fetches");
 }

@@ -32,15 +32,19 @@ std::vector<ShardRun> read_shards(const std::vector<std::filesystem::path>& fold
 /// How many cells a shard of an experiment holds: every `shards`-th from its own on.
 std::size_t count_cells(const ExperimentRecord& experiment) {
   const int first = experiment.shard - 1;
-  return first < experiment.cells ? static_cast<std::size_t>((experiment.cells - first - 1) / experiment.shards + 1) : 0;
+  return first < experiment.cells ? static_cast<std::size_t>((experiment.cells - first - 1) / experiment.shards + 1)
+                                  : 0;
 }
 
 void require_same(const ShardRun& first, const ShardRun& other) {
   const ExperimentRecord &a = first.results.run.experiment, &b = other.results.run.experiment;
   if (a.settings == b.settings && a.shards == b.shards) return;
-  throw Error(ErrorKind::kInput, fmt::format("this is no shard of the experiment in {}: scenes, filters, settings, program or OpenGL differ, "
-                                             "or it is one of {} shards and not of {}", first.folder.string(), b.shards, a.shards),
-              other.folder.string());
+  throw Error(
+      ErrorKind::kInput,
+      fmt::format("this is no shard of the experiment in {}: scenes, filters, settings, program or OpenGL differ, "
+                  "or it is one of {} shards and not of {}",
+                  first.folder.string(), b.shards, a.shards),
+      other.folder.string());
 }
 
 void require_complete(const std::vector<ShardRun>& shards) {
@@ -48,18 +52,23 @@ void require_complete(const std::vector<ShardRun>& shards) {
   for (std::size_t i = 0; i < shards.size(); ++i) {
     const ExperimentRecord& own = shards[i].results.run.experiment;
     if (i > 0 && own.shard == shards[i - 1].results.run.experiment.shard) {
-      throw Error(ErrorKind::kUsage, fmt::format("{} and {} are both shard {}/{}: name one of them", shards[i - 1].folder.string(),
-                                                 shards[i].folder.string(), own.shard, count));
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("{} and {} are both shard {}/{}: name one of them", shards[i - 1].folder.string(),
+                              shards[i].folder.string(), own.shard, count));
     }
     if (own.shard != static_cast<int>(i) + 1) break;
     if (shards[i].results.cells.size() == count_cells(own)) continue;
-    throw Error(ErrorKind::kInput, fmt::format("it holds {} cells, and shard {}/{} of {} cells has {}; run it again", shards[i].results.cells.size(),
-                                               own.shard, count, own.cells, count_cells(own)), shards[i].folder.string());
+    throw Error(ErrorKind::kInput,
+                fmt::format("it holds {} cells, and shard {}/{} of {} cells has {}; run it again",
+                            shards[i].results.cells.size(), own.shard, count, own.cells, count_cells(own)),
+                shards[i].folder.string());
   }
   for (int shard = 1; shard <= count; ++shard) {
     const auto is_it = [&](const ShardRun& each) { return each.results.run.experiment.shard == shard; };
     if (std::any_of(shards.begin(), shards.end(), is_it)) continue;
-    throw Error(ErrorKind::kUsage, fmt::format("shard {}/{} is missing: run it with --shard {}/{}, and name its folder too", shard, count, shard, count));
+    throw Error(ErrorKind::kUsage,
+                fmt::format("shard {}/{} is missing: run it with --shard {}/{}, and name its folder too", shard, count,
+                            shard, count));
   }
 }
 
@@ -68,36 +77,41 @@ bool is_taken(const std::filesystem::path& out, const std::set<std::string>& key
   std::error_code error;
   if (std::filesystem::exists(out / "results.json", error)) return true;
   std::filesystem::directory_iterator entry(out / "cells", error);
-  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error))
     if (!keys.contains(entry->path().stem().string())) return true;
-  }
   return false;
 }
 
 /// A folder that has something else in it is not added to; what a merge left that did not come to its end is.
 void require_free(const std::filesystem::path& out, const std::vector<ShardRun>& shards) {
   std::set<std::string> keys;
-  for (const ShardRun& shard : shards) {
+  for (const ShardRun& shard : shards)
     for (const CellRecord& cell : shard.results.cells) keys.insert(cell.key);
-  }
   if (!is_taken(out, keys)) return;
-  throw Error(ErrorKind::kUsage, "--out: there is a report in this folder already; choose an empty or new one", out.string());
+  throw Error(ErrorKind::kUsage, "--out: there is a report in this folder already; choose an empty or new one",
+              out.string());
 }
 
 void copy_whole(const std::filesystem::path& from, const std::filesystem::path& to) {
   PendingFile pending(to);
   std::error_code error;
   std::filesystem::copy_file(from, pending.temporary_path(), std::filesystem::copy_options::overwrite_existing, error);
-  if (error) throw Error(ErrorKind::kOutput, fmt::format("it cannot be copied to {} ({}); check rights and free space there, or choose another folder with --out", to.string(), error.message()), from.string());
+  if (error)
+    throw Error(
+        ErrorKind::kOutput,
+        fmt::format(
+            "it cannot be copied to {} ({}); check rights and free space there, or choose another folder with --out",
+            to.string(), error.message()),
+        from.string());
   pending.commit();
 }
 
 std::vector<std::string> list_files(const CellRecord& cell) {
   std::vector<std::string> files;
-  for (const auto member : {&ImagesRecord::picture, &ImagesRecord::visibility, &ImagesRecord::depth_map, &ImagesRecord::grid, &ImagesRecord::exr,
-                            &ImagesRecord::attribution, &ImagesRecord::texel_density, &ImagesRecord::texel_grid, &ImagesRecord::stability}) {
+  for (const auto member : {&ImagesRecord::picture, &ImagesRecord::visibility, &ImagesRecord::depth_map,
+                            &ImagesRecord::grid, &ImagesRecord::exr, &ImagesRecord::attribution,
+                            &ImagesRecord::texel_density, &ImagesRecord::texel_grid, &ImagesRecord::stability})
     if (cell.images.*member) files.push_back(*(cell.images.*member));
-  }
   return files;
 }
 
@@ -114,13 +128,15 @@ RunRecord join(const std::vector<ShardRun>& shards) {
     run.work.truths_cached += other.work.truths_cached;
     run.work.timed_s += other.work.timed_s;
     run.work.elapsed_s += other.work.elapsed_s;
-    if (other.work.attribution_s) run.work.attribution_s = run.work.attribution_s.value_or(0.0) + *other.work.attribution_s;
-    for (const std::string& warning : other.warnings) {
-      if (std::find(run.warnings.begin(), run.warnings.end(), warning) == run.warnings.end()) run.warnings.push_back(warning);
-    }
+    if (other.work.attribution_s)
+      run.work.attribution_s = run.work.attribution_s.value_or(0.0) + *other.work.attribution_s;
+    for (const std::string& warning : other.warnings)
+      if (std::find(run.warnings.begin(), run.warnings.end(), warning) == run.warnings.end())
+        run.warnings.push_back(warning);
     if (other.machine.cpu == run.machine.cpu && other.machine.cores == run.machine.cores) continue;
-    run.warnings.push_back(fmt::format("shards ran on different machines, so times of their cells do not compare: {} with {} cores, {} with {}",
-                                       run.machine.cpu, run.machine.cores, other.machine.cpu, other.machine.cores));
+    run.warnings.push_back(fmt::format(
+        "shards ran on different machines, so times of their cells do not compare: {} with {} cores, {} with {}",
+        run.machine.cpu, run.machine.cores, other.machine.cpu, other.machine.cores));
   }
   return run;
 }

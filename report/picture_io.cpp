@@ -21,7 +21,8 @@ struct Codes {
 };
 
 bool is_finite_texel(const float* texel, int channels) {
-  return std::all_of(texel, texel + channels, [](float value) { return std::isfinite(value); });
+  return std::all_of(
+      texel, texel + channels, [](float value) { return std::isfinite(value); });
 }
 
 template <class Encode>
@@ -51,9 +52,7 @@ void write_png(const std::filesystem::path& path, const Image& image, const Code
 }  // namespace
 
 float encode_srgb(float linear) {
-  if (!(linear > 0.0f)) {
-    return std::isnan(linear) ? linear : 0.0f;
-  }
+  if (!(linear > 0.0f)) return std::isnan(linear) ? linear : 0.0f;
   const float value = std::min(linear, 1.0f);
   return value <= 0.0031308f ? 12.92f * value : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
 }
@@ -76,9 +75,7 @@ void write_grey_png(const std::filesystem::path& path, const Image& image, GreyR
             encode_texels(image, finite ? 1 : 3, [&](float value) { return (value - range.black) * scale; }));
 }
 
-float decode_srgb(float code) {
-  return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f);
-}
+float decode_srgb(float code) { return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f); }
 
 Image read_picture(const std::filesystem::path& path) { return read_stored_picture(path.string()).image; }
 

@@ -22,26 +22,26 @@ std::string label_tick(double value, TickKind kind) {
 std::vector<double> list_log_ticks(double low, double high, const std::vector<double>& digits) {
   std::vector<double> ticks;
   for (double power = std::pow(10.0, std::floor(std::log10(low))); power <= high; power *= 10.0) {
-    for (const double digit : digits) {
+    for (const double digit : digits)
       if (digit * power >= low && digit * power <= high) ticks.push_back(digit * power);
-    }
   }
   return ticks;
 }
 
 std::vector<double> list_powers(double low, double high, double base) {
   std::vector<double> ticks;
-  for (double tick = std::pow(base, std::ceil(std::log(low) / std::log(base) - 1e-9)); tick <= high; tick *= base) ticks.push_back(tick);
+  for (double tick = std::pow(base, std::ceil(std::log(low) / std::log(base) - 1e-9)); tick <= high; tick *= base)
+    ticks.push_back(tick);
   return ticks;
 }
 
 std::vector<double> choose_log_ticks(double low, double high, TickKind kind) {
   const bool bytes = kind == TickKind::kBytes;
-  for (const auto& ticks : bytes ? std::vector{list_powers(low, high, 2.0), list_powers(low, high, 4.0), list_powers(low, high, 16.0)}
-                                 : std::vector{list_log_ticks(low, high, {1, 2, 3, 4, 5, 6, 7, 8, 9}), list_log_ticks(low, high, {1, 2, 3, 5}),
-                                               list_log_ticks(low, high, {1, 2, 5})}) {
+  for (const auto& ticks :
+       bytes ? std::vector{list_powers(low, high, 2.0), list_powers(low, high, 4.0), list_powers(low, high, 16.0)}
+             : std::vector{list_log_ticks(low, high, {1, 2, 3, 4, 5, 6, 7, 8, 9}),
+                           list_log_ticks(low, high, {1, 2, 3, 5}), list_log_ticks(low, high, {1, 2, 5})})
     if (ticks.size() <= kMostTicks) return ticks;
-  }
   return list_powers(low, high, bytes ? 256.0 : 10.0);
 }
 
@@ -49,15 +49,16 @@ std::vector<double> choose_linear_ticks(double low, double high) {
   const double rough = (high - low) / 6.0;
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
   double step = 10.0 * power;
-  for (const double digit : {5.0, 2.0, 1.0}) {
+  for (const double digit : {5.0, 2.0, 1.0})
     if (digit * power >= rough) step = digit * power;
-  }
   std::vector<double> ticks;
-  for (double k = std::ceil(low / step - 1e-9); k * step <= high * (1.0 + 1e-12); k += 1.0) ticks.push_back(k == 0.0 ? 0.0 : k * step);  // never -0
+  for (double k = std::ceil(low / step - 1e-9); k * step <= high * (1.0 + 1e-12); k += 1.0)
+    ticks.push_back(k == 0.0 ? 0.0 : k * step);  // never -0
   return ticks;
 }
 
-PlotAxis choose_axis_from(const std::vector<double>& values, const std::vector<double>& ends, TickKind kind, double log_span) {
+PlotAxis choose_axis_from(const std::vector<double>& values, const std::vector<double>& ends, TickKind kind,
+                          double log_span) {
   PlotAxis axis;
   if (values.empty()) return axis;
   const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());

@@ -45,16 +45,23 @@ bool is_whole(const fs::path& drawing) {
 
 void move_plot(const fs::path& from, const fs::path& to) {
   if (!is_whole(from)) {
-    throw Error(ErrorKind::kOutput, "gnuplot could not draw this file to its end; check the folder's free space, or choose another with --out", to.string());
+    throw Error(
+        ErrorKind::kOutput,
+        "gnuplot could not draw this file to its end; check the folder's free space, or choose another with --out",
+        to.string());
   }
   std::error_code error;
   fs::rename(from, to, error);
-  if (error) throw Error(ErrorKind::kOutput, fmt::format("the plot cannot be given its name ({}); check the folder's rights", error.message()), to.string());
+  if (error)
+    throw Error(ErrorKind::kOutput,
+                fmt::format("the plot cannot be given its name ({}); check the folder's rights", error.message()),
+                to.string());
 }
 
 }  // namespace
 
-std::optional<std::string> write_plot_files(const fs::path& dir, const fs::path& script, const std::vector<Plot>& plots) {
+std::optional<std::string> write_plot_files(const fs::path& dir, const fs::path& script,
+                                            const std::vector<Plot>& plots) {
   const std::string text = make_gnuplot_script(plots);
   write_text_file(dir / script, text);
   if (plots.empty()) return std::nullopt;

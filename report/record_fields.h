@@ -8,7 +8,8 @@
 namespace shadowbench::report {
 
 /// Names the fields that older files of this schema version lack; they are read as null there.
-inline constexpr std::array<std::string_view, 7> kLaterFields = {"images.parts", "work.attribution_s", "claims", "lights", "repeat.cells", "repeat.overlapping", "repeat.of"};
+inline constexpr std::array<std::string_view, 7> kLaterFields = {
+    "images.parts", "work.attribution_s", "claims", "lights", "repeat.cells", "repeat.overlapping", "repeat.of"};
 
 /// Calls `visit(name, value)` for every field of a bias.
 template <class Bias, class Visitor>

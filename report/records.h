@@ -56,8 +56,8 @@ struct BiasRecord {
   bool receiver_plane = false;     ///< the plane's gradient is added for every tap
   double polygon_factor = 0.0;     ///< glPolygonOffset in the depth pass
   double polygon_units = 0.0;
-  bool front_cull = false;         ///< faces towards the light are not drawn into the map
-  bool midpoint = false;           ///< the map lies half-way between the first and the second surface
+  bool front_cull = false;  ///< faces towards the light are not drawn into the map
+  bool midpoint = false;    ///< the map lies half-way between the first and the second surface
 };
 
 /// Holds what the units of lengths along the light are worth in a map.
@@ -78,7 +78,8 @@ struct TimeRecord {
   std::optional<Quartiles> map;
   std::optional<Quartiles> prefilter;
   std::optional<Quartiles> lookup;
-  std::optional<std::string> stopped = std::nullopt;  ///< why no more rounds were timed: "rounds", "precise" or "budget"
+  std::optional<std::string> stopped =
+      std::nullopt;  ///< why no more rounds were timed: "rounds", "precise" or "budget"
 };
 
 /// Holds per-round ratios to the filter `none`; `none` itself carries 1 [1, 1].
@@ -88,12 +89,13 @@ struct RatioRecord {
   std::optional<Ratio> moving;      ///< map, prefilter and lookup are paid in every frame
 };
 
-/// Holds what a frame lit by several lights costs, each with a shadow map of its own; milliseconds of the clock that the run names.
+/// Holds what a frame lit by several lights costs, each with a shadow map of its own; milliseconds of the clock that
+/// the run names.
 struct LightCountRecord {
-  int count = 0;                ///< lights: the scene's, turned about the vertical by i * 360 / count degrees
-  Quartiles still_ms;           ///< maps and prefilters cached: a lookup per light
-  Quartiles moving_ms;          ///< a depth map, a prefilter and a lookup per light
-  Ratio still_ratio;            ///< per-round ratios to the filter `none` under as many lights
+  int count = 0;        ///< lights: the scene's, turned about the vertical by i * 360 / count degrees
+  Quartiles still_ms;   ///< maps and prefilters cached: a lookup per light
+  Quartiles moving_ms;  ///< a depth map, a prefilter and a lookup per light
+  Ratio still_ratio;    ///< per-round ratios to the filter `none` under as many lights
   Ratio moving_ratio;
   std::int64_t maps_bytes = 0;  ///< of the maps that the lookups read
 };
@@ -153,8 +155,10 @@ struct StabilityRecord {
   std::optional<std::int64_t> nan_texels;                ///< of the encoded map, NaN
   std::optional<std::int64_t> negative_variance_texels;  ///< of a map of moments, before any clamp
   std::optional<double> lowest_variance;                 ///< of a map of moments, before any clamp
-  std::optional<double> headroom;       ///< ln(largest number of the store) - ln(largest stored): what exponents could grow by
-  std::optional<double> safe_exponent;  ///< largest value of the filter's exponent with which no texel of this map overflows
+  std::optional<double>
+      headroom;  ///< ln(largest number of the store) - ln(largest stored): what exponents could grow by
+  std::optional<double>
+      safe_exponent;  ///< largest value of the filter's exponent with which no texel of this map overflows
   std::optional<double> half_difference_max;  ///< of visibility, 16-bit store less 32-bit store: largest magnitude
   std::optional<double> half_difference_rms;
   std::optional<double> bound_shortfall_max;           ///< by how much a bound is darker than what it bounds
@@ -174,14 +178,14 @@ struct CoverageRecord {
 struct ImagesRecord {
   std::optional<std::string> picture;
   std::optional<std::string> visibility;
-  std::optional<std::string> depth_map;  ///< one per scene and map settings
-  std::optional<std::string> grid;       ///< one per scene, view and map settings
-  std::optional<std::string> exr;        ///< one per scene
-  std::optional<std::string> attribution = std::nullopt;  ///< the error and its four parts, as heat maps
+  std::optional<std::string> depth_map;                     ///< one per scene and map settings
+  std::optional<std::string> grid;                          ///< one per scene, view and map settings
+  std::optional<std::string> exr;                           ///< one per scene
+  std::optional<std::string> attribution = std::nullopt;    ///< the error and its four parts, as heat maps
   std::optional<std::string> texel_density = std::nullopt;  ///< texels per pixel; one per scene, view and map settings
   std::optional<std::string> texel_grid = std::nullopt;     ///< the map's texels on the surfaces; one per the same
   std::optional<std::string> stability = std::nullopt;      ///< where the cell's numbers break, per texel and per pixel
-  std::optional<std::string> parts = std::nullopt;          ///< no path: what the names of the cell's parts in `exr` begin with
+  std::optional<std::string> parts = std::nullopt;  ///< no path: what the names of the cell's parts in `exr` begin with
 };
 
 /// Holds everything measured of one scene x view x filter x parameters x map settings.
@@ -189,7 +193,7 @@ struct ImagesRecord {
 /// What does not exist stays empty, and `absent` says why: dotted field name, or the name of a whole group
 /// ("error"), to reason. A null that nobody explained is written as "not measured".
 struct CellRecord {
-  std::string key;  ///< cell_key() of the settings below
+  std::string key;      ///< cell_key() of the settings below
   std::string content;  ///< names what it was made from beside its settings: program, OpenGL, scene, filter, options
   CellStatus status = CellStatus::kOk;
   std::string message;  ///< why `status` is not ok; empty otherwise
@@ -197,10 +201,10 @@ struct CellRecord {
   std::string view;
   std::string filter;
   ParamMap params;
-  std::optional<double> kernel_radius_texels;  ///< half-width of the kernel; no setting, it follows from `params`
+  std::optional<double> kernel_radius_texels;      ///< half-width of the kernel; no setting, it follows from `params`
   std::optional<std::vector<std::string>> claims;  ///< what the filter says of itself, such as "contact-hardening"
-  int map_size = 0;        ///< texels along a side
-  std::string map_format;  ///< "d32f", "d16 reversed"
+  int map_size = 0;                                ///< texels along a side
+  std::string map_format;                          ///< "d32f", "d16 reversed"
   std::string fit = "tight";    ///< of the light's frustum: "sphere", "tight" or "view"; with " snapped" behind it
   std::string light = "scene";  ///< where the light stands: as the scene says, or "AZIMUTH,ELEVATION" in degrees
   BiasRecord bias;

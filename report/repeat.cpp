@@ -12,9 +12,12 @@ namespace shadowbench::report {
 namespace {
 
 using NamedRatio = std::pair<const char*, std::optional<Ratio> RatioRecord::*>;
-constexpr NamedRatio kRatios[] = {{"lookup", &RatioRecord::lookup}, {"static", &RatioRecord::static_map}, {"moving", &RatioRecord::moving}};
+constexpr NamedRatio kRatios[] = {
+    {"lookup", &RatioRecord::lookup}, {"static", &RatioRecord::static_map}, {"moving", &RatioRecord::moving}};
 
-bool is_same(const Ratio& a, const Ratio& b) { return a.median == b.median && a.ci95.low == b.ci95.low && a.ci95.high == b.ci95.high; }
+bool is_same(const Ratio& a, const Ratio& b) {
+  return a.median == b.median && a.ci95.low == b.ci95.low && a.ci95.high == b.ci95.high;
+}
 
 bool is_own_reference(const Ratio& ratio) { return is_same(ratio, {1.0, {1.0, 1.0}}); }
 
@@ -36,8 +39,10 @@ void add_cell(RepeatComparison& comparison, const CellRecord& a, const CellRecor
     if (repeats_lookup(a.ratio_to_none, which) && repeats_lookup(b.ratio_to_none, which)) continue;
     ++*comparison.record.of;
     const double gap = measure_gap(x->ci95, y->ci95);
-    if (gap > 0.0) comparison.apart.push_back({&a, &b, name, gap});
-    else ++*comparison.record.overlapping;
+    if (gap > 0.0)
+      comparison.apart.push_back({&a, &b, name, gap});
+    else
+      ++*comparison.record.overlapping;
   }
 }
 

@@ -21,9 +21,9 @@ struct RepeatComparison {
   std::vector<RatioApart> apart;  ///< the widest gap first
 };
 
-/// Compares the ratios to `none` of the cells that two runs have in common, matched by key. A ratio that either run lacks
-/// is left out, and so is one that cannot differ: 1 [1, 1] of `none` itself, and `static` where it is the lookup's.
-/// Requires that the cells outlive what is returned.
+/// Compares the ratios to `none` of the cells that two runs have in common, matched by key. A ratio that either run
+/// lacks is left out, and so is one that cannot differ: 1 [1, 1] of `none` itself, and `static` where it is the
+/// lookup's. Requires that the cells outlive what is returned.
 RepeatComparison compare_times(const std::vector<CellRecord>& a, const std::vector<CellRecord>& b);
 
 /// Says it in a sentence's beginning: "118 of 120 ratio intervals overlap".

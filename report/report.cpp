@@ -15,9 +15,9 @@ namespace {
 /// What a run warns of is what concerns all of it, then what concerns its cells; each said once.
 void add_warnings(RunRecord& run, const std::vector<CellRecord>& cells) {
   for (const CellRecord& cell : cells) {
-    for (const std::string& warning : cell.warnings) {
-      if (std::find(run.warnings.begin(), run.warnings.end(), warning) == run.warnings.end()) run.warnings.push_back(warning);
-    }
+    for (const std::string& warning : cell.warnings)
+      if (std::find(run.warnings.begin(), run.warnings.end(), warning) == run.warnings.end())
+        run.warnings.push_back(warning);
   }
 }
 
@@ -25,9 +25,7 @@ void add_warnings(RunRecord& run, const std::vector<CellRecord>& cells) {
 
 void write_report(const std::filesystem::path& dir, RunRecord run, const std::vector<std::string>& keys) {
   std::vector<CellRecord> cells;
-  for (const std::string& key : keys) {
-    cells.push_back(read_cell(dir, key));
-  }
+  for (const std::string& key : keys) cells.push_back(read_cell(dir, key));
   add_warnings(run, cells);
   write_text_file(dir / "timings.csv", make_csv(CsvTable::kTimings, run, cells));
   write_text_file(dir / "accuracy.csv", make_csv(CsvTable::kAccuracy, run, cells));

@@ -46,7 +46,9 @@ Image make_bar() { return make_ramp(kPanelWidth, kBarHeight); }
 /// Colours values in [0,1], dark for little.
 Image color_sequential(const Image& values) { return color_values(values, "viridis"); }
 
-float worst_if_nan(float value, float badness) { return std::isnan(value) ? std::numeric_limits<float>::infinity() : badness; }
+float worst_if_nan(float value, float badness) {
+  return std::isnan(value) ? std::numeric_limits<float>::infinity() : badness;
+}
 
 /// The largest finite value, rounded up to a multiple of 5: the end of the headroom's colour bar.
 float choose_headroom_scale(const Image& headroom) {
@@ -61,14 +63,19 @@ Panel make_headroom_panel(const StabilityPicture& picture) {
   const Image shown = show_worst(headroom, [](float v) { return worst_if_nan(v, -v); });
   Image places = shown;
   for (float& value : places.texels) value = std::isfinite(value) ? std::clamp(value / scale, 0.0f, 1.0f) : 0.0f;
-  Panel panel{"overflow: what exponents could grow by, per texel of the map", picture.texels, color_sequential(places), color_sequential(make_bar()), {}};
+  Panel panel{"overflow: what exponents could grow by, per texel of the map",
+              picture.texels,
+              color_sequential(places),
+              color_sequential(make_bar()),
+              {}};
   for (std::size_t i = 0; i < shown.texels.size(); ++i) {
     const float value = shown.texels[i];
     if (std::isfinite(value)) continue;
     const Rgb& rgb = value > 0.0f ? kZeroTexel : kBroken;
     std::copy(rgb.begin(), rgb.end(), panel.picture.texels.begin() + static_cast<std::ptrdiff_t>(3 * i));
   }
-  for (const float part : {0.0f, 0.25f, 0.5f, 0.75f, 1.0f}) panel.ticks.emplace_back(part, format_number(static_cast<double>(part * scale)));
+  for (const float part : {0.0f, 0.25f, 0.5f, 0.75f, 1.0f})
+    panel.ticks.emplace_back(part, format_number(static_cast<double>(part * scale)));
   panel.ticks.front().second = "0: the limit";
   return panel;
 }
@@ -81,29 +88,38 @@ float place_variance(float variance) {
 }
 
 Panel make_variance_panel(const StabilityPicture& picture) {
-  const Image shown = show_worst(picture.images.variance, [](float v) { return worst_if_nan(v, -v); });
+  const Image shown = show_worst(
+      picture.images.variance, [](float v) { return worst_if_nan(v, -v); });
   const auto color_of = [](float v) { return std::isfinite(v) ? map_diverging(-place_variance(v), 1.0f) : kBroken; };
-  Panel panel{"variance before any clamp, per texel of the map", picture.variance, color_values(shown, color_of),
-              color_values(make_bar(), [](float t) { return map_diverging(1.0f - 2.0f * t, 1.0f); }), {}};
-  for (const float variance : {-1e-2f, -1e-5f, -1e-8f, 0.0f, 1e-8f, 1e-5f, 1e-2f}) {
+  Panel panel{"variance before any clamp, per texel of the map",
+              picture.variance,
+              color_values(shown, color_of),
+              color_values(make_bar(), [](float t) { return map_diverging(1.0f - 2.0f * t, 1.0f); }),
+              {}};
+  for (const float variance : {-1e-2f, -1e-5f, -1e-8f, 0.0f, 1e-8f, 1e-5f, 1e-2f})
     panel.ticks.emplace_back(0.5f + 0.5f * place_variance(variance), fmt::format("{:g}", variance));
-  }
   return panel;
 }
 
 std::vector<Tick> list_signed_ticks(double scale) {
   std::vector<Tick> ticks;
-  for (const double part : {-1.0, -0.5, 0.0, 0.5, 1.0}) ticks.emplace_back(static_cast<float>(0.5 + 0.5 * part), format_number(part * scale));
+  for (const double part : {-1.0, -0.5, 0.0, 0.5, 1.0})
+    ticks.emplace_back(static_cast<float>(0.5 + 0.5 * part), format_number(part * scale));
   return ticks;
 }
 
 Panel make_difference_panel(const StabilityPicture& picture) {
   const Image& difference = picture.images.half_difference;
   const double scale = choose_error_scale({&difference});
-  const Image shown = show_worst(difference, [](float v) { return worst_if_nan(v, std::abs(v)); });
-  const auto color_of = [scale](float v) { return std::isfinite(v) ? map_diverging(v, static_cast<float>(scale)) : kBroken; };
-  return {"visibility with the 16-bit store less that with the 32-bit store", picture.difference, color_values(shown, color_of),
-          color_values(make_bar(), [](float t) { return map_diverging(2.0f * t - 1.0f, 1.0f); }), list_signed_ticks(scale)};
+  const Image shown = show_worst(
+      difference, [](float v) { return worst_if_nan(v, std::abs(v)); });
+  const auto color_of = [scale](float v) {
+    return std::isfinite(v) ? map_diverging(v, static_cast<float>(scale)) : kBroken;
+  };
+  return {"visibility with the 16-bit store less that with the 32-bit store", picture.difference,
+          color_values(shown, color_of),
+          color_values(make_bar(), [](float t) { return map_diverging(2.0f * t - 1.0f, 1.0f); }),
+          list_signed_ticks(scale)};
 }
 
 /// Shortfalls, with what rounding does not explain above all colours.
@@ -112,14 +128,20 @@ Panel make_bound_panel(const StabilityPicture& picture) {
   assert(picture.images.violation.texels.size() == shortfall.texels.size());
   const double scale = choose_error_scale({&shortfall});
   Image marked = shortfall;
-  for (std::size_t i = 0; i < marked.texels.size(); ++i) {
+  for (std::size_t i = 0; i < marked.texels.size(); ++i)
     if (picture.images.violation.texels[i] > 0.0f) marked.texels[i] = std::numeric_limits<float>::infinity();
-  }
-  const Image shown = show_worst(marked, [](float v) { return worst_if_nan(v, v); });
-  const auto color_of = [scale](float v) { return std::isfinite(v) ? map_diverging(-v, static_cast<float>(scale)) : kBroken; };
-  Panel panel{"a bound that must hold: by how much the filter is darker than the PCF of its kernel", picture.bound, color_values(shown, color_of),
-              color_values(make_bar(), [](float t) { return map_diverging(-t, 1.0f); }), {}};
-  for (const float part : {0.0f, 0.5f, 1.0f}) panel.ticks.emplace_back(part, format_number(static_cast<double>(part) * scale));
+  const Image shown = show_worst(
+      marked, [](float v) { return worst_if_nan(v, v); });
+  const auto color_of = [scale](float v) {
+    return std::isfinite(v) ? map_diverging(-v, static_cast<float>(scale)) : kBroken;
+  };
+  Panel panel{"a bound that must hold: by how much the filter is darker than the PCF of its kernel",
+              picture.bound,
+              color_values(shown, color_of),
+              color_values(make_bar(), [](float t) { return map_diverging(-t, 1.0f); }),
+              {}};
+  for (const float part : {0.0f, 0.5f, 1.0f})
+    panel.ticks.emplace_back(part, format_number(static_cast<double>(part) * scale));
   return panel;
 }
 
@@ -159,9 +181,12 @@ void draw_panel(Figure& figure, int x, int y, const Panel& panel) {
   for (const auto& [place, label] : panel.ticks) {
     const int at = x + static_cast<int>(place * static_cast<float>(kPanelWidth - 1));
     figure.fill({at, y + kBarHeight, 1, 5}, kFigureSecondInk);
-    if (place <= 0.0f) figure.write(x, y + kBarHeight + 6, label);
-    else if (place >= 1.0f) figure.write_before(at, y + kBarHeight + 6, label);
-    else figure.write_centred(at, y + kBarHeight + 6, label);
+    if (place <= 0.0f)
+      figure.write(x, y + kBarHeight + 6, label);
+    else if (place >= 1.0f)
+      figure.write_before(at, y + kBarHeight + 6, label);
+    else
+      figure.write_centred(at, y + kBarHeight + 6, label);
   }
 }
 
@@ -181,7 +206,8 @@ Image draw_stability_picture(const StabilityPicture& picture) {
   assert(!panels.empty());
   const int columns = std::min<int>(2, static_cast<int>(panels.size()));
   std::vector<int> row_heights((panels.size() + 1) / 2, 0);
-  for (std::size_t i = 0; i < panels.size(); ++i) row_heights[i / 2] = std::max(row_heights[i / 2], measure_height(panels[i]));
+  for (std::size_t i = 0; i < panels.size(); ++i)
+    row_heights[i / 2] = std::max(row_heights[i / 2], measure_height(panels[i]));
   int height = 0;
   for (const int row : row_heights) height += row;
   Figure figure(picture.title, picture.note, {columns * kPanelWidth + (columns - 1) * kGap, height});

@@ -11,7 +11,9 @@ namespace {
 
 constexpr double kVisibleDifference = 1.0 / 255.0;  // of visibility: one step of a picture
 
-double count_texels(const CellRecord& cell) { return static_cast<double>(cell.map_size) * static_cast<double>(cell.map_size); }
+double count_texels(const CellRecord& cell) {
+  return static_cast<double>(cell.map_size) * static_cast<double>(cell.map_size);
+}
 
 std::string share_of_map(const CellRecord& cell, std::int64_t texels) {
   return format_number(100.0 * static_cast<double>(texels) / count_texels(cell)) + " % of its map's texels";
@@ -32,20 +34,25 @@ std::string describe_overflow(const CellRecord& cell) {
   std::string text = fmt::format("{} overflowed", share_of_map(cell, count_broken(cell.stability)));
   const std::string limit = describe_limit(cell);
   if (!limit.empty()) text += ": " + limit;
-  if (cell.stability.safe_exponent) text += fmt::format("; an exponent of {:.4g} is safe here", *cell.stability.safe_exponent);
+  if (cell.stability.safe_exponent)
+    text += fmt::format("; an exponent of {:.4g} is safe here", *cell.stability.safe_exponent);
   return text;
 }
 
 std::string describe_variance(const CellRecord& cell) {
-  return fmt::format("the variance of {} is below 0 before the clamp, down to {:.2g}", share_of_map(cell, *cell.stability.negative_variance_texels),
+  return fmt::format("the variance of {} is below 0 before the clamp, down to {:.2g}",
+                     share_of_map(cell, *cell.stability.negative_variance_texels),
                      cell.stability.lowest_variance.value_or(0.0));
 }
 
 std::string describe_bound(const StabilityRecord& s) {
-  std::string text = fmt::format("darker than the percentage-closer filter that it bounds, by up to {}; at {} receivers by more than rounding "
-                                 "explains", format_number(*s.bound_shortfall_max), s.bound_violations.value_or(0));
+  std::string text = fmt::format(
+      "darker than the percentage-closer filter that it bounds, by up to {}; at {} receivers by more than rounding "
+      "explains",
+      format_number(*s.bound_shortfall_max), s.bound_violations.value_or(0));
   if (s.bound_exact_violations.value_or(0) > 0) {
-    text += fmt::format(", and at {} in exact arithmetic too: with these parameters it is no bound", *s.bound_exact_violations);
+    text += fmt::format(", and at {} in exact arithmetic too: with these parameters it is no bound",
+                        *s.bound_exact_violations);
   }
   return text;
 }
@@ -56,7 +63,8 @@ std::vector<std::string> list_troubles(const CellRecord& cell) {
   if (count_broken(s) > 0) troubles.push_back(describe_overflow(cell));
   if (s.negative_variance_texels.value_or(0) > 0) troubles.push_back(describe_variance(cell));
   if (s.half_difference_max.value_or(0.0) > kVisibleDifference) troubles.push_back(caption_difference(cell));
-  if (s.bound_violations.value_or(0) > 0 || s.bound_shortfall_max.value_or(0.0) > kVisibleDifference) troubles.push_back("it is " + describe_bound(s));
+  if (s.bound_violations.value_or(0) > 0 || s.bound_shortfall_max.value_or(0.0) > kVisibleDifference)
+    troubles.push_back("it is " + describe_bound(s));
   return troubles;
 }
 
@@ -65,7 +73,8 @@ std::vector<std::string> list_troubles(const CellRecord& cell) {
 std::vector<std::string> describe_stability(const CellGroup& group) {
   std::vector<std::string> sentences;
   for (const CellRecord& cell : group.cells) {
-    const std::string label = cell.params.empty() ? cell.filter : fmt::format("{} ({})", cell.filter, describe_params(cell.params));
+    const std::string label =
+        cell.params.empty() ? cell.filter : fmt::format("{} ({})", cell.filter, describe_params(cell.params));
     for (const std::string& trouble : list_troubles(cell)) sentences.push_back(fmt::format("{}: {}.", label, trouble));
   }
   return sentences;
@@ -90,7 +99,8 @@ std::string caption_variance(const CellRecord& cell) {
 std::string caption_difference(const CellRecord& cell) {
   const StabilityRecord& s = cell.stability;
   if (!s.half_difference_max || !s.half_difference_rms) return {};
-  return fmt::format("the 16-bit store's visibility is up to {} off that of the 32-bit store (RMS {})", format_number(*s.half_difference_max), format_number(*s.half_difference_rms));
+  return fmt::format("the 16-bit store's visibility is up to {} off that of the 32-bit store (RMS {})",
+                     format_number(*s.half_difference_max), format_number(*s.half_difference_rms));
 }
 
 std::string caption_bound(const CellRecord& cell) {

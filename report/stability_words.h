@@ -7,9 +7,9 @@
 
 namespace shadowbench::report {
 
-/// Says in a sentence for each trouble what breaks in a group's cells: broken texels, with the exponent that would be safe,
-/// variances below 0, a bound that does not hold, a 16-bit store that shows. Nothing where nothing breaks, or where the run
-/// was made without stability maps.
+/// Says in a sentence for each trouble what breaks in a group's cells: broken texels, with the exponent that would be
+/// safe, variances below 0, a bound that does not hold, a 16-bit store that shows. Nothing where nothing breaks, or
+/// where the run was made without stability maps.
 std::vector<std::string> describe_stability(const CellGroup& group);
 
 /// Are captions of the parts of a cell's stability picture; empty where there is nothing to say.

@@ -42,9 +42,8 @@ bool exists(const std::string& file) {
 /// File names may hold '#' themselves: the longest one that exists is meant.
 PictureName parse_name(const std::string& name) {
   if (exists(name)) return {name, std::nullopt};
-  for (std::size_t at = name.rfind('#'); at != std::string::npos && at > 0; at = name.rfind('#', at - 1)) {
+  for (std::size_t at = name.rfind('#'); at != std::string::npos && at > 0; at = name.rfind('#', at - 1))
     if (exists(name.substr(0, at))) return {name.substr(0, at), name.substr(at + 1)};
-  }
   fail(name.substr(0, name.rfind('#')), "there is no such file: check the path, or run 'shadowbench run' first");
 }
 
@@ -72,7 +71,8 @@ int find_part(OIIO::ImageInput& input, const PictureName& name) {
   const std::vector<std::string> parts = list_parts(input);
   const auto found = std::find(parts.begin(), parts.end(), *name.part);
   if (found != parts.end()) return static_cast<int>(found - parts.begin());
-  fail(name.file, fmt::format("there is no part '{}'{}; parts: {}", *name.part, did_you_mean(*name.part, parts), fmt::join(parts, ", ")));
+  fail(name.file, fmt::format("there is no part '{}'{}; parts: {}", *name.part, did_you_mean(*name.part, parts),
+                              fmt::join(parts, ", ")));
 }
 
 void check(const OIIO::ImageSpec& spec, const std::string& where) {
@@ -106,9 +106,8 @@ StoredPicture read_stored_picture(const std::string& name) {
   check(spec, name);
   StoredPicture picture{Image(spec.width, spec.height, spec.nchannels), find_alpha(spec), is_srgb(spec), spec.x,
                         spec.y};
-  if (!input->read_image(part, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, picture.image.texels.data())) {
+  if (!input->read_image(part, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, picture.image.texels.data()))
     fail(name, fmt::format("the picture is damaged ({})", make_line(input->geterror())));
-  }
   return picture;
 }
 

@@ -6,9 +6,8 @@
 
 namespace shadowbench::report {
 
-/// Writes stress.json, .csv, .md, .html, and the plots with their script, stress.gp, into a folder. Sets `record.no_plots` where
-/// gnuplot did not draw them, which stops nothing.
-/// Throws Error(kOutput).
+/// Writes stress.json, .csv, .md, .html, and the plots with their script, stress.gp, into a folder. Sets
+/// `record.no_plots` where gnuplot did not draw them, which stops nothing. Throws Error(kOutput).
 void write_stress_files(const std::filesystem::path& dir, StressRecord& record);
 
 }  // namespace shadowbench::report

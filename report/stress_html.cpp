@@ -11,13 +11,12 @@ namespace shadowbench::report {
 namespace {
 
 std::vector<std::pair<std::string, std::string>> list_facts(const StressRecord& record) {
-  return {
-      {"filters", fmt::format("{}", fmt::join(record.filters, "; "))},
-      {"OpenGL", fmt::format("{} ({}), {}", record.gl.renderer, record.gl.backend, record.gl.version)},
-      {"machine", fmt::format("{}, {} cores", record.machine.cpu, record.machine.cores)},
-      {"program", record.commit},
-      {"command", fmt::format("{}", fmt::join(record.command, " "))},
-      {"took", fmt::format("{:.1f} s", record.seconds)}};
+  return {{"filters", fmt::format("{}", fmt::join(record.filters, "; "))},
+          {"OpenGL", fmt::format("{} ({}), {}", record.gl.renderer, record.gl.backend, record.gl.version)},
+          {"machine", fmt::format("{}, {} cores", record.machine.cpu, record.machine.cores)},
+          {"program", record.commit},
+          {"command", fmt::format("{}", fmt::join(record.command, " "))},
+          {"took", fmt::format("{:.1f} s", record.seconds)}};
 }
 
 std::string html_sentences(const std::string& title, const std::vector<std::string>& sentences) {
@@ -26,11 +25,12 @@ std::string html_sentences(const std::string& title, const std::vector<std::stri
 
 std::string html_warnings(const StressRecord& record) {
   std::vector<std::string> sentences;
-  for (const StressAxis& axis : record.axes) {
+  for (const StressAxis& axis : record.axes)
     for (const std::string& sentence : describe_disagreements(axis)) sentences.push_back(axis.id + ": " + sentence);
-  }
   if (!record.no_plots.empty()) sentences.push_back("There are no plots: " + record.no_plots + ".");
-  return sentences.empty() ? std::string() : "<section class=\"warnings\">\n<h2>Warnings</h2>\n" + html_list(sentences) + "</section>\n";
+  return sentences.empty()
+             ? std::string()
+             : "<section class=\"warnings\">\n<h2>Warnings</h2>\n" + html_list(sentences) + "</section>\n";
 }
 
 std::string html_exhibit(const StressExhibit& exhibit) {
@@ -41,10 +41,14 @@ std::string html_exhibit(const StressExhibit& exhibit) {
 }
 
 std::string html_axis(const StressAxis& axis, bool plotted) {
-  std::string html = fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n<p class=\"note\">{}</p>\n", escape_html(axis.id), escape_html(axis.title),
-                                 escape_html(describe_axis(axis)));
+  std::string html = fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n<p class=\"note\">{}</p>\n", escape_html(axis.id),
+                                 escape_html(axis.title), escape_html(describe_axis(axis)));
   html += html_table(make_case_table(axis), "What is safe, and where it ends", "stress");
-  if (plotted && has_plot(axis)) html += figure(plot_file(axis), fmt::format("{} over {}; filled: broken, at the upper edge where nothing finite was measured", axis.measured, axis.quantity), "grid");
+  if (plotted && has_plot(axis))
+    html += figure(plot_file(axis),
+                   fmt::format("{} over {}; filled: broken, at the upper edge where nothing finite was measured",
+                               axis.measured, axis.quantity),
+                   "grid");
   html += html_sentences("Not what theory says, and why:", describe_explanations(axis));
   html += html_sentences("Not what theory says, and not explained:", describe_disagreements(axis));
   html += html_sentences("Also seen:", describe_notes(axis));
@@ -60,10 +64,12 @@ std::string make_stress_html(const StressRecord& record) {
   page += fmt::format("<body>\n<main>\n<h1>{}</h1>\n<nav>", title);
   for (const StressAxis& axis : record.axes) page += fmt::format("<a href=\"#{0}\">{0}</a> ", escape_html(axis.id));
   page += "</nav>\n" + html_facts(list_facts(record)) + html_warnings(record);
-  page += "<section>\n<h2>Measured against theoretical limits</h2>\n" + html_table(make_limit_table(record), "Where each verdict is first met, found to 1 %", "stress") +
+  page += "<section>\n<h2>Measured against theoretical limits</h2>\n" +
+          html_table(make_limit_table(record), "Where each verdict is first met, found to 1 %", "stress") +
           html_sentences("Not met, and not expected:", describe_out_of_sight(record)) + "</section>\n";
   for (const StressAxis& axis : record.axes) page += html_axis(axis, record.no_plots.empty());
-  page += "<p>Data: " + link("stress.json", "stress.json") + ", " + link("stress.csv", "stress.csv") + ", " + link("stress.md", "stress.md") + ".</p>\n";
+  page += "<p>Data: " + link("stress.json", "stress.json") + ", " + link("stress.csv", "stress.csv") + ", " +
+          link("stress.md", "stress.md") + ".</p>\n";
   return page + "</main>\n</body>\n</html>\n";
 }
 

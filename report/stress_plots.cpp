@@ -19,14 +19,15 @@ constexpr double kLeastShown = 1e-9;  // of a logarithmic scale
 /// A place in the plot, without intervals.
 PlotPoint place(double x, double y) { return {{x, x, x}, {y, y, y}}; }
 
-bool is_shown(const StressAxis& axis, const std::optional<double>& measured) { return measured && (!axis.measured_log || *measured >= kLeastShown); }
+bool is_shown(const StressAxis& axis, const std::optional<double>& measured) {
+  return measured && (!axis.measured_log || *measured >= kLeastShown);
+}
 
 std::vector<double> list_measured(const StressAxis& axis) {
   std::vector<double> values = {axis.bound};
   for (const StressCase& item : axis.cases) {
-    for (const StressSample& sample : item.samples) {
+    for (const StressSample& sample : item.samples)
       if (is_shown(axis, sample.measured)) values.push_back(*sample.measured);
-    }
   }
   return values;
 }
@@ -35,7 +36,8 @@ PlotAxis choose_value_axis(const StressAxis& axis) {
   const std::vector<double> ends = {axis.range.low, axis.range.high};
   if (axis.log) return choose_log_axis(ends, {});
   PlotAxis chosen = choose_axis(ends, {}, TickKind::kNumber);
-  if (chosen.log) chosen = choose_axis({0.0, axis.range.high}, {}, TickKind::kNumber);  // it prefers a logarithm for what is positive
+  if (chosen.log)
+    chosen = choose_axis({0.0, axis.range.high}, {}, TickKind::kNumber);  // it prefers a logarithm for what is positive
   return chosen;
 }
 
@@ -49,12 +51,15 @@ std::string group_of(const StressCase& item) { return item.filter + ": " + item.
 
 void add_case(Plot& plot, const StressAxis& axis, const StressCase& item, const PlotStyle& style) {
   const bool model = item.level == "model";  // beside the GL's line, whose points would hide it
-  PlotSeries line{label_of(item), style.color, model ? 0 : style.hollow_point, model ? PlotLine::kDashed : PlotLine::kSolid, false, {}};
+  PlotSeries line{
+      label_of(item), style.color, model ? 0 : style.hollow_point, model ? PlotLine::kDashed : PlotLine::kSolid,
+      false,          {}};
   PlotSeries broken{{}, style.color, style.filled_point, PlotLine::kNone, false, {}};
   for (const StressSample& sample : item.samples) {
     const bool shown = is_shown(axis, sample.measured);
     if (shown) line.points.push_back(place(sample.value, *sample.measured));
-    if (sample.verdict == StressVerdict::kBroken) broken.points.push_back(place(sample.value, shown ? *sample.measured : plot.y.high));
+    if (sample.verdict == StressVerdict::kBroken)
+      broken.points.push_back(place(sample.value, shown ? *sample.measured : plot.y.high));
   }
   plot.series.push_back(std::move(line));
   if (!broken.points.empty()) plot.series.push_back(std::move(broken));
@@ -64,16 +69,17 @@ void add_case(Plot& plot, const StressAxis& axis, const StressCase& item, const 
 void add_theory(Plot& plot, const StressAxis& axis) {
   std::map<std::string, double> onsets;  // by what the label says, so that equal limits are one line
   for (const StressCase& item : axis.cases) {
-    for (const StressLimit& limit : item.limits) {
-      if (limit.onset && *limit.onset >= plot.x.low && *limit.onset <= plot.x.high) onsets.emplace(fmt::format("{:.4g}", *limit.onset), *limit.onset);
-    }
+    for (const StressLimit& limit : item.limits)
+      if (limit.onset && *limit.onset >= plot.x.low && *limit.onset <= plot.x.high)
+        onsets.emplace(fmt::format("{:.4g}", *limit.onset), *limit.onset);
   }
   std::vector<std::pair<double, std::string>> sorted;
   for (const auto& [label, onset] : onsets) sorted.emplace_back(onset, label);
   std::ranges::sort(sorted);
   std::string title = "theoretical limits:";
   for (const auto& [onset, label] : sorted) {
-    plot.series.push_back({title, kInk, 0, PlotLine::kDashed, false, {place(onset, plot.y.low), place(onset, plot.y.high)}});
+    plot.series.push_back(
+        {title, kInk, 0, PlotLine::kDashed, false, {place(onset, plot.y.low), place(onset, plot.y.high)}});
     title.clear();
   }
   for (std::size_t i = 0; i < sorted.size(); i += kLimitsPerLine) {
@@ -81,7 +87,9 @@ void add_theory(Plot& plot, const StressAxis& axis) {
     for (std::size_t j = i; j < std::min(i + kLimitsPerLine, sorted.size()); ++j) labels.push_back(sorted[j].second);
     plot.notes.push_back(fmt::format("{}", fmt::join(labels, ", ")));
   }
-  const bool says_none = std::ranges::any_of(axis.cases, [](const StressCase& item) { return std::ranges::any_of(item.limits, [](const StressLimit& limit) { return !limit.onset; }); });
+  const bool says_none = std::ranges::any_of(axis.cases, [](const StressCase& item) {
+    return std::ranges::any_of(item.limits, [](const StressLimit& limit) { return !limit.onset; });
+  });
   if (says_none) plot.notes.push_back("some cases have no theoretical limit");
 }
 
@@ -90,11 +98,14 @@ void add_theory(Plot& plot, const StressAxis& axis) {
 std::string plot_file(const StressAxis& axis) { return fmt::format("stress.{}.svg", axis.id); }
 
 bool has_plot(const StressAxis& axis) {
-  return std::ranges::any_of(axis.cases, [](const StressCase& item) { return !item.samples.empty(); });
+  return std::ranges::any_of(
+      axis.cases, [](const StressCase& item) { return !item.samples.empty(); });
 }
 
 Plot make_stress_plot(const StressAxis& axis) {
-  const auto with_unit = [](const std::string& name, const std::string& unit) { return unit.empty() ? name : fmt::format("{}, {}", name, unit); };
+  const auto with_unit = [](const std::string& name, const std::string& unit) {
+    return unit.empty() ? name : fmt::format("{}, {}", name, unit);
+  };
   Plot plot;
   plot.file = plot_file(axis);
   plot.title = axis.title;
@@ -103,10 +114,15 @@ Plot make_stress_plot(const StressAxis& axis) {
   plot.x = choose_value_axis(axis);
   plot.y = choose_measured_axis(axis);
   std::map<std::string, std::size_t> styles;
-  for (const StressCase& item : axis.cases) {
-    if (!item.samples.empty()) add_case(plot, axis, item, style_of(styles.emplace(group_of(item), styles.size()).first->second));
-  }
-  plot.series.push_back({fmt::format("bound, {:g}", axis.bound), "#8a8f98", 0, PlotLine::kDashed, false, {place(plot.x.low, axis.bound), place(plot.x.high, axis.bound)}});
+  for (const StressCase& item : axis.cases)
+    if (!item.samples.empty())
+      add_case(plot, axis, item, style_of(styles.emplace(group_of(item), styles.size()).first->second));
+  plot.series.push_back({fmt::format("bound, {:g}", axis.bound),
+                         "#8a8f98",
+                         0,
+                         PlotLine::kDashed,
+                         false,
+                         {place(plot.x.low, axis.bound), place(plot.x.high, axis.bound)}});
   add_theory(plot, axis);
   plot.notes.push_back("filled: broken");
   return plot;

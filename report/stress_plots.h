@@ -15,8 +15,8 @@ std::string plot_file(const StressAxis& axis);
 bool has_plot(const StressAxis& axis);
 
 /// Draws what was measured over an axis' quantity: a line per case, the same colour for the levels of one variant, the
-/// model's dashed; broken points filled, at the upper edge where nothing finite was measured; the bound, and theoretical
-/// limits as vertical lines, dashed. Zeros are left out where the scale is logarithmic.
+/// model's dashed; broken points filled, at the upper edge where nothing finite was measured; the bound, and
+/// theoretical limits as vertical lines, dashed. Zeros are left out where the scale is logarithmic.
 Plot make_stress_plot(const StressAxis& axis);
 
 }  // namespace shadowbench::report

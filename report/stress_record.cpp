@@ -40,11 +40,9 @@ const StressOnset* find_onset(const StressCase& item, StressVerdict verdict) {
 
 int count_disagreements(const StressRecord& record) {
   int count = 0;
-  for (const StressAxis& axis : record.axes) {
-    for (const StressCase& item : axis.cases) {
+  for (const StressAxis& axis : record.axes)
+    for (const StressCase& item : axis.cases)
       count += static_cast<int>(std::ranges::count(item.limits, StressAgreement::kDisagrees, &StressLimit::agreement));
-    }
-  }
   return count;
 }
 

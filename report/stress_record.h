@@ -50,9 +50,9 @@ struct StressSample {
 
 /// Holds where a verdict was first met.
 struct StressOnset {
-  double value = 0.0;                ///< the first value with that verdict or a worse one
-  std::optional<double> last_before; ///< the last value without; empty: the range begins with it
-  std::string why;                   ///< of the observation at `value`
+  double value = 0.0;                 ///< the first value with that verdict or a worse one
+  std::optional<double> last_before;  ///< the last value without; empty: the range begins with it
+  std::string why;                    ///< of the observation at `value`
 };
 
 /// Holds one theoretical limit of a case, and what was measured beside it.
@@ -65,16 +65,16 @@ struct StressLimit {
   std::optional<double> measured;  ///< where that verdict was first met; empty: nowhere in the range
   std::optional<double> ratio;     ///< measured / onset; empty where one of them is
   StressAgreement agreement = StressAgreement::kAgrees;
-  std::string explanation;         ///< of kExplained
+  std::string explanation;  ///< of kExplained
 };
 
 /// Holds one filter in one variant on one axis.
 struct StressCase {
   std::string filter;  ///< id; empty: the axis tests arithmetic that no filter has yet
   std::string variant;
-  std::string level;   ///< what ran: "GL", "model" or "arithmetic"
+  std::string level;  ///< what ran: "GL", "model" or "arithmetic"
   ParamMap params;
-  std::string not_available;  ///< why nothing was measured; empty: it was
+  std::string not_available;          ///< why nothing was measured; empty: it was
   std::vector<StressSample> samples;  ///< all, by ascending value
   std::optional<StressOnset> degraded;
   std::optional<StressOnset> broken;
@@ -105,7 +105,7 @@ struct StressAxis {
   StressRange range;
   std::string measured;  ///< what samples measure
   std::string measured_unit;
-  double bound = 0.0;    ///< `degraded` is said above it
+  double bound = 0.0;  ///< `degraded` is said above it
   bool measured_log = false;
   std::string broken_when;  ///< in words
   std::vector<StressCase> cases;

@@ -10,11 +10,14 @@
 namespace shadowbench::report {
 namespace {
 
-std::string format_value(const std::optional<double>& value, const char* nothing) { return value ? fmt::format("{:.4g}", *value) : std::string(nothing); }
+std::string format_value(const std::optional<double>& value, const char* nothing) {
+  return value ? fmt::format("{:.4g}", *value) : std::string(nothing);
+}
 
 std::string format_onset(const std::optional<StressOnset>& onset) {
   if (!onset) return kNothing;
-  return onset->last_before ? fmt::format("{:.4g}", onset->value) : fmt::format("{:.4g} (where the range begins)", onset->value);
+  return onset->last_before ? fmt::format("{:.4g}", onset->value)
+                            : fmt::format("{:.4g} (where the range begins)", onset->value);
 }
 
 /// Gives the last value before anything changed.
@@ -33,22 +36,33 @@ std::string format_reason(const StressCase& item) {
 }
 
 std::vector<std::string> make_limit_row(const StressAxis& axis, const StressCase& item, const StressLimit& limit) {
-  return {axis.id, label_of(item), name_of(limit.predicts), limit.formula, limit.onset ? fmt::format("{:.4g}", *limit.onset) : "none",
-          format_value(limit.measured, "not in the range"), limit.ratio ? fmt::format("{:.3f}", *limit.ratio) : std::string(kNothing),
-          limit.kind == StressTheoryKind::kRounding ? "rounding, factor 8" : fmt::format("{}, 10 %", name_of(limit.kind)), name_of(limit.agreement)};
+  return {
+      axis.id,
+      label_of(item),
+      name_of(limit.predicts),
+      limit.formula,
+      limit.onset ? fmt::format("{:.4g}", *limit.onset) : "none",
+      format_value(limit.measured, "not in the range"),
+      limit.ratio ? fmt::format("{:.3f}", *limit.ratio) : std::string(kNothing),
+      limit.kind == StressTheoryKind::kRounding ? "rounding, factor 8" : fmt::format("{}, 10 %", name_of(limit.kind)),
+      name_of(limit.agreement)};
 }
 
 /// There is nothing to see of a limit, and nothing should be: the range ends before it, or there is none.
-bool is_out_of_sight(const StressLimit& limit) { return !limit.measured && limit.agreement == StressAgreement::kAgrees; }
+bool is_out_of_sight(const StressLimit& limit) {
+  return !limit.measured && limit.agreement == StressAgreement::kAgrees;
+}
 
 std::vector<std::string> list_limits(const StressAxis& axis, StressAgreement agreement) {
   std::vector<std::string> sentences;
   for (const StressCase& item : axis.cases) {
     for (const StressLimit& limit : item.limits) {
       if (limit.agreement != agreement) continue;
-      sentences.push_back(fmt::format("{}: {} at {}, where theory says {} ({}){}{}.", label_of(item), name_of(limit.predicts),
-                                      format_value(limit.measured, "no value of the range"), limit.onset ? fmt::format("{:.4g}", *limit.onset) : "none",
-                                      limit.formula, limit.explanation.empty() ? ", and nothing explains it" : ": ", limit.explanation));
+      sentences.push_back(fmt::format("{}: {} at {}, where theory says {} ({}){}{}.", label_of(item),
+                                      name_of(limit.predicts), format_value(limit.measured, "no value of the range"),
+                                      limit.onset ? fmt::format("{:.4g}", *limit.onset) : "none", limit.formula,
+                                      limit.explanation.empty() ? ", and nothing explains it" : ": ",
+                                      limit.explanation));
     }
   }
   return sentences;
@@ -56,9 +70,8 @@ std::vector<std::string> list_limits(const StressAxis& axis, StressAgreement agr
 
 TextTable escape(TextTable table) {
   for (std::string& field : table.header) field = escape_markdown(field);
-  for (auto& row : table.rows) {
+  for (auto& row : table.rows)
     for (std::string& field : row) field = escape_markdown(field);
-  }
   return table;
 }
 
@@ -70,7 +83,8 @@ std::string list_markdown(const std::string& title, const std::vector<std::strin
 }
 
 std::string make_axis_text(const StressAxis& axis) {
-  std::string text = fmt::format("## {}: {}\n\n{}\n\n", axis.id, escape_markdown(axis.title), escape_markdown(describe_axis(axis)));
+  std::string text =
+      fmt::format("## {}: {}\n\n{}\n\n", axis.id, escape_markdown(axis.title), escape_markdown(describe_axis(axis)));
   text += make_markdown_table(escape(make_case_table(axis)));
   text += list_markdown("Not what theory says, and why:", describe_explanations(axis));
   text += list_markdown("Not what theory says, and **not explained**:", describe_disagreements(axis));
@@ -87,19 +101,19 @@ std::string make_axis_text(const StressAxis& axis) {
 TextTable make_case_table(const StressAxis& axis) {
   TextTable table{{"case", "last value that is ok", "degraded from", "broken from", "why", "observations"}, {}};
   for (const StressCase& item : axis.cases) {
-    table.rows.push_back({label_of(item), format_last_ok(item), format_onset(item.degraded), format_onset(item.broken), format_reason(item),
-                          fmt::format("{}", item.samples.size())});
+    table.rows.push_back({label_of(item), format_last_ok(item), format_onset(item.degraded), format_onset(item.broken),
+                          format_reason(item), fmt::format("{}", item.samples.size())});
   }
   return table;
 }
 
 TextTable make_limit_table(const StressRecord& record) {
-  TextTable table{{"axis", "case", "verdict", "theory", "theoretical", "measured", "ratio", "kind, tolerance", "result"}, {}};
+  TextTable table{
+      {"axis", "case", "verdict", "theory", "theoretical", "measured", "ratio", "kind, tolerance", "result"}, {}};
   for (const StressAxis& axis : record.axes) {
     for (const StressCase& item : axis.cases) {
-      for (const StressLimit& limit : item.limits) {
+      for (const StressLimit& limit : item.limits)
         if (!is_out_of_sight(limit)) table.rows.push_back(make_limit_row(axis, item, limit));
-      }
     }
   }
   return table;
@@ -110,49 +124,57 @@ std::vector<std::string> describe_out_of_sight(const StressRecord& record) {
   for (const StressAxis& axis : record.axes) {
     int unlimited = 0, beyond = 0;
     for (const StressCase& item : axis.cases) {
-      for (const StressLimit& limit : item.limits) {
+      for (const StressLimit& limit : item.limits)
         if (is_out_of_sight(limit)) ++(limit.onset ? beyond : unlimited);
-      }
     }
     std::vector<std::string> counts;
     if (unlimited > 0) counts.push_back(fmt::format("{} where it says that there is none", unlimited));
     if (beyond > 0) counts.push_back(fmt::format("{} where it puts it beyond the range", beyond));
-    if (!counts.empty()) sentences.push_back(fmt::format("{}: no limit within the range, as theory says: {}.", axis.id, fmt::join(counts, ", ")));
+    if (!counts.empty())
+      sentences.push_back(
+          fmt::format("{}: no limit within the range, as theory says: {}.", axis.id, fmt::join(counts, ", ")));
   }
   return sentences;
 }
 
-std::vector<std::string> describe_explanations(const StressAxis& axis) { return list_limits(axis, StressAgreement::kExplained); }
+std::vector<std::string> describe_explanations(const StressAxis& axis) {
+  return list_limits(axis, StressAgreement::kExplained);
+}
 
-std::vector<std::string> describe_disagreements(const StressAxis& axis) { return list_limits(axis, StressAgreement::kDisagrees); }
+std::vector<std::string> describe_disagreements(const StressAxis& axis) {
+  return list_limits(axis, StressAgreement::kDisagrees);
+}
 
 std::vector<std::string> describe_absences(const StressAxis& axis) {
   std::vector<std::string> sentences;
-  for (const StressCase& item : axis.cases) {
+  for (const StressCase& item : axis.cases)
     if (!item.not_available.empty()) sentences.push_back(label_of(item) + ": " + item.not_available);
-  }
   return sentences;
 }
 
 std::vector<std::string> describe_notes(const StressAxis& axis) {
   std::vector<std::string> sentences;
-  for (const StressCase& item : axis.cases) {
+  for (const StressCase& item : axis.cases)
     for (const std::string& note : item.notes) sentences.push_back(fmt::format("{}: {}.", label_of(item), note));
-  }
   return sentences;
 }
 
 std::string describe_axis(const StressAxis& axis) {
-  return fmt::format("Over the {}{}, {:g} .. {:g}. Measured: {}{}; degraded where it is over {:g}. Broken: {}.", axis.quantity,
-                     axis.unit.empty() ? "" : ", " + axis.unit, axis.range.low, axis.range.high, axis.measured,
-                     axis.measured_unit.empty() ? "" : ", " + axis.measured_unit, axis.bound, axis.broken_when);
+  return fmt::format("Over the {}{}, {:g} .. {:g}. Measured: {}{}; degraded where it is over {:g}. Broken: {}.",
+                     axis.quantity, axis.unit.empty() ? "" : ", " + axis.unit, axis.range.low, axis.range.high,
+                     axis.measured, axis.measured_unit.empty() ? "" : ", " + axis.measured_unit, axis.bound,
+                     axis.broken_when);
 }
 
-std::string make_limit_tables(const StressRecord& record) { return make_markdown_table(escape(make_limit_table(record))) + list_markdown("Not met, and not expected:", describe_out_of_sight(record)); }
+std::string make_limit_tables(const StressRecord& record) {
+  return make_markdown_table(escape(make_limit_table(record))) +
+         list_markdown("Not met, and not expected:", describe_out_of_sight(record));
+}
 
 std::string make_stress_text(const StressRecord& record) {
   std::string text = "# Where filters break\n\n";
-  text += fmt::format("{} ({}), program {}, {:.1f} s. Filters: {}.\n\n", escape_markdown(record.gl.renderer), record.gl.backend, record.commit, record.seconds,
+  text += fmt::format("{} ({}), program {}, {:.1f} s. Filters: {}.\n\n", escape_markdown(record.gl.renderer),
+                      record.gl.backend, record.commit, record.seconds,
                       escape_markdown(fmt::format("{}", fmt::join(record.filters, "; "))));
   text += "## Measured against theoretical limits\n\n" + make_limit_tables(record);
   for (const StressAxis& axis : record.axes) text += make_axis_text(axis);

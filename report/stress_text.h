@@ -8,14 +8,16 @@
 
 namespace shadowbench::report {
 
-/// Makes an axis' table of what is safe: a row per case, with the last value that is ok and the first ones that are not.
+/// Makes an axis' table of what is safe: a row per case, with the last value that is ok and the first ones that are
+/// not.
 TextTable make_case_table(const StressAxis& axis);
 
-/// Makes the table of measured against theoretical limits over all axes; one row per limit that was met, or should have been.
+/// Makes the table of measured against theoretical limits over all axes; one row per limit that was met, or should have
+/// been.
 TextTable make_limit_table(const StressRecord& record);
 
-/// Says of each axis how many limits the table leaves out: those that theory puts beyond the range, or says that there are none,
-/// and that were not met.
+/// Says of each axis how many limits the table leaves out: those that theory puts beyond the range, or says that there
+/// are none, and that were not met.
 std::vector<std::string> describe_out_of_sight(const StressRecord& record);
 
 /// Lists the limits of an axis that are not what theory says: those explained, and those that are not.

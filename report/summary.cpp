@@ -17,25 +17,17 @@ namespace shadowbench::report {
 namespace {
 
 std::string format_param(const ParamValue& value) {
-  if (const auto* number = std::get_if<double>(&value)) {
-    return dump_line(number_json(*number));
-  }
-  if (const auto* flag = std::get_if<bool>(&value)) {
-    return *flag ? "on" : "off";
-  }
+  if (const auto* number = std::get_if<double>(&value)) return dump_line(number_json(*number));
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "on" : "off";
   return std::get<std::string>(value);
 }
 
 const char* name_of(CellStatus status) {
   switch (status) {
-    case CellStatus::kOk:
-      return "ok";
-    case CellStatus::kTimeout:
-      return "timeout";
-    case CellStatus::kCrashed:
-      return "crashed";
-    case CellStatus::kError:
-      break;
+    case CellStatus::kOk: return "ok";
+    case CellStatus::kTimeout: return "timeout";
+    case CellStatus::kCrashed: return "crashed";
+    case CellStatus::kError: break;
   }
   return "error";
 }
@@ -52,17 +44,13 @@ bool overlap(const Interval& a, const Interval& b) { return a.low <= b.high && b
 
 std::string join_tied(const CellGroup& group, const std::vector<std::size_t>& indices) {
   std::vector<std::string> names;
-  for (const std::size_t i : indices) {
-    names.push_back(label_cell(group, group.cells[i]));
-  }
+  for (const std::size_t i : indices) names.push_back(label_cell(group, group.cells[i]));
   return fmt::format("{}", fmt::join(names, " tied with "));
 }
 
 std::string describe_ranking(const CellGroup& group, const std::vector<std::vector<std::size_t>>& ranks) {
   std::string text = "Lookup, fastest first: ";
-  for (std::size_t i = 0; i < ranks.size(); ++i) {
-    text += (i > 0 ? "; then " : "") + join_tied(group, ranks[i]);
-  }
+  for (std::size_t i = 0; i < ranks.size(); ++i) text += (i > 0 ? "; then " : "") + join_tied(group, ranks[i]);
   return text + ".";
 }
 
@@ -73,9 +61,8 @@ std::string describe_extremes(const CellGroup& group, const CellRecord& fastest,
   if (&fastest != &slowest) {
     text +=
         fmt::format(", that of {} {} ms", label_cell(group, slowest), format_number(slowest.time_ms.lookup->median));
-    if (slowest.ratio_to_none.lookup) {
+    if (slowest.ratio_to_none.lookup)
       text += fmt::format(", which is {} times that of the filter none", format_ratio(slowest.ratio_to_none.lookup));
-    }
   }
   return text + ".";
 }
@@ -88,27 +75,24 @@ std::vector<std::string> describe_prefilters(const CellGroup& group, const GlRec
                                   time_unit(gl)));
     }
   }
-  if (parts.empty()) {
-    return {};
-  }
+  if (parts.empty()) return {};
   return {fmt::format("A prefilter comes on top, paid again whenever the map changes: {}.", fmt::join(parts, ", "))};
 }
 
 std::vector<std::string> describe_troubles(const CellGroup& group) {
   std::vector<std::string> sentences;
   for (const CellRecord& cell : group.cells) {
-    if (cell.status != CellStatus::kOk) {
+    if (cell.status != CellStatus::kOk)
       sentences.push_back(fmt::format("{} did not finish ({}).", label_cell(group, cell), describe_status(cell)));
-    }
-    if (cell.nan.value_or(0) > 0) {
+    if (cell.nan.value_or(0) > 0)
       sentences.push_back(fmt::format("{} has {} pixels that are not finite.", label_cell(group, cell), *cell.nan));
-    }
   }
   return sentences;
 }
 
 std::string describe_experiment(const ExperimentRecord& experiment) {
-  std::string text = fmt::format("{}{}{} cells", experiment.title, experiment.title.empty() ? "" : " · ", experiment.cells);
+  std::string text =
+      fmt::format("{}{}{} cells", experiment.title, experiment.title.empty() ? "" : " · ", experiment.cells);
   if (experiment.shards > 1) text += fmt::format(", shard {} of {}", experiment.shard, experiment.shards);
   return text;
 }
@@ -144,13 +128,13 @@ std::string describe_bias(const BiasRecord& bias, const MapScaleRecord& scale) {
   if (any(bias.constant)) parts.push_back(describe_amount(bias.constant, scale));
   if (any(bias.slope)) parts.push_back("(1 − n·l) × " + describe_amount(bias.slope, scale));
   if (bias.plane_texels > 0.0) parts.push_back(fmt::format("plane over {} texels", format_number(bias.plane_texels)));
-  if (bias.plane_kernels > 0.0) {
+  if (bias.plane_kernels > 0.0)
     parts.push_back(fmt::format("plane over {} × (kernel half-width + 1) texels", format_number(bias.plane_kernels)));
-  }
   if (any(bias.normal_offset)) parts.push_back("normal offset of " + describe_amount(bias.normal_offset, scale));
   if (bias.receiver_plane) parts.push_back("receiver plane, per tap");
   if (bias.polygon_factor > 0.0 || bias.polygon_units > 0.0) {
-    parts.push_back(fmt::format("polygon offset {}, {}", format_number(bias.polygon_factor), format_number(bias.polygon_units)));
+    parts.push_back(
+        fmt::format("polygon offset {}, {}", format_number(bias.polygon_factor), format_number(bias.polygon_units)));
   }
   if (bias.front_cull) parts.push_back("front faces culled");
   if (bias.midpoint) parts.push_back("midpoint map");
@@ -179,18 +163,15 @@ std::string describe_wrong_range(const RangeRecord& range) {
 
 std::string describe_coverage(const CoverageRecord& coverage) {
   if (!coverage.texels_per_pixel || !coverage.fewest_texels_per_pixel || !coverage.map_used) return {};
-  return fmt::format("{} map texels per pixel (worst {}), {:.0f} % of the map used", format_number(*coverage.texels_per_pixel),
-                     format_number(*coverage.fewest_texels_per_pixel), 100.0 * *coverage.map_used);
+  return fmt::format("{} map texels per pixel (worst {}), {:.0f} % of the map used",
+                     format_number(*coverage.texels_per_pixel), format_number(*coverage.fewest_texels_per_pixel),
+                     100.0 * *coverage.map_used);
 }
 
 std::string format_number(double value) {
-  if (!std::isfinite(value)) {
-    return kNothing;
-  }
+  if (!std::isfinite(value)) return kNothing;
   const double size = std::abs(value);
-  if (size >= 99.95 && size < 1e15) {
-    return fmt::format("{:.0f}", value);
-  }
+  if (size >= 99.95 && size < 1e15) return fmt::format("{:.0f}", value);
   return fmt::format("{:.3g}", value);
 }
 
@@ -213,30 +194,24 @@ std::string format_ratio(const std::optional<Ratio>& ratio) {
 
 std::string describe_clock(const GlRecord& gl) {
   const bool wall_clock = gl.timer == TimerKind::kWallClock;
-  if (gl.software) {
-    return wall_clock ? "CPU time (software rasteriser)" : "GL timer query (software rasteriser)";
-  }
+  if (gl.software) return wall_clock ? "CPU time (software rasteriser)" : "GL timer query (software rasteriser)";
   return wall_clock ? "wall-clock time" : "GPU time (timer query)";
 }
 
 std::string time_unit(const GlRecord& gl) {
-  if (gl.timer == TimerKind::kWallClock) {
-    return gl.software ? "ms (CPU)" : "ms";
-  }
+  if (gl.timer == TimerKind::kWallClock) return gl.software ? "ms (CPU)" : "ms";
   return gl.software ? "ms (GL timer)" : "ms (GPU)";
 }
 
 std::string describe_params(const ParamMap& params) {
   std::vector<std::string> parts;
-  for (const auto& [name, value] : params) {
-    parts.push_back(name + " " + format_param(value));
-  }
+  for (const auto& [name, value] : params) parts.push_back(name + " " + format_param(value));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 std::string describe_settings(const CellRecord& cell) {
-  return fmt::format("view {} · map {} × {} {}{} · picture {} × {} · bias: {}{}", cell.view, cell.map_size, cell.map_size,
-                     cell.map_format, describe_fit_and_light(cell), cell.width, cell.height,
+  return fmt::format("view {} · map {} × {} {}{} · picture {} × {} · bias: {}{}", cell.view, cell.map_size,
+                     cell.map_size, cell.map_format, describe_fit_and_light(cell), cell.width, cell.height,
                      describe_bias(cell.bias, cell.map_scale), describe_wrong_range(cell.range));
 }
 
@@ -248,9 +223,7 @@ std::vector<CellGroup> group_cells(const std::vector<CellRecord>& cells) {
     settings.erase("filter");
     settings.erase("params");
     const auto [place, is_new] = places.emplace(dump_line(settings), groups.size());
-    if (is_new) {
-      groups.push_back({cell.scene, {}});
-    }
+    if (is_new) groups.push_back({cell.scene, {}});
     groups[place->second].cells.push_back(cell);
   }
   return groups;
@@ -272,9 +245,7 @@ std::vector<std::vector<std::size_t>> rank_lookups(const std::vector<CellRecord>
   for (const std::size_t i : order) {
     const bool tied = !groups.empty() && overlap(lookup_interval(cells[groups.back().front()], by_ratio),
                                                  lookup_interval(cells[i], by_ratio));
-    if (!tied) {
-      groups.emplace_back();
-    }
+    if (!tied) groups.emplace_back();
     groups.back().push_back(i);
   }
   return groups;
@@ -290,9 +261,9 @@ std::vector<std::string> describe_group(const CellGroup& group, const GlRecord& 
   }
   const std::string coverage = describe_coverage(group.cells.front().coverage);
   if (!coverage.empty()) sentences.push_back("Over the receivers in view: " + coverage + ".");
-  for (const auto& more : {describe_prefilters(group, gl), describe_accuracy(group), describe_stability(group), describe_troubles(group)}) {
+  for (const auto& more :
+       {describe_prefilters(group, gl), describe_accuracy(group), describe_stability(group), describe_troubles(group)})
     sentences.insert(sentences.end(), more.begin(), more.end());
-  }
   return sentences;
 }
 
@@ -309,19 +280,16 @@ std::vector<std::pair<std::string, std::string>> list_run_facts(const RunRecord&
       {"system", fmt::format("{} · {}", run.machine.os, run.machine.compiler)},
       {"work", describe_work(run.work)}};
   if (run.repeat.of.value_or(0) > 0) {
-    facts.emplace_back("repeat", fmt::format("{} those of the run that this one replaced ({} cells)", describe_overlap(run.repeat),
-                                             run.repeat.cells.value_or(0)));
+    facts.emplace_back("repeat", fmt::format("{} those of the run that this one replaced ({} cells)",
+                                             describe_overlap(run.repeat), run.repeat.cells.value_or(0)));
   }
   return facts;
 }
 
 std::map<std::string, int> count_absences(const std::vector<CellRecord>& cells) {
   std::map<std::string, int> counts;
-  for (const CellRecord& cell : cells) {
-    for (const auto& [field, reason] : cell.absent) {
-      ++counts[field + ": " + reason];
-    }
-  }
+  for (const CellRecord& cell : cells)
+    for (const auto& [field, reason] : cell.absent) ++counts[field + ": " + reason];
   return counts;
 }
 

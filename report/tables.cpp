@@ -40,55 +40,86 @@ std::string name_switch(bool on) { return on ? "on" : "off"; }
 
 std::vector<Column> setting_columns() {
   return {
-      cell_column("scene", "the scene's name", [](const CellRecord& c) { return c.scene; }),
-      cell_column("view", "the camera's name", [](const CellRecord& c) { return c.view; }),
-      cell_column("filter", "the filter's id", [](const CellRecord& c) { return c.filter; }),
-      cell_column("params", "the filter's parameters as JSON",
-                  [](const CellRecord& c) { return dump_line(value_json(c.params)); }),
-      cell_column("map_size", "shadow map, texels along a side", [](const CellRecord& c) { return plain(c.map_size); }),
-      cell_column("map_format", "the shadow map's format", [](const CellRecord& c) { return c.map_format; }),
-      cell_column("fit", "of the light's frustum; snapped: to whole texels", [](const CellRecord& c) { return c.fit; }),
-      cell_column("light", "where the light stands: as the scene says, or azimuth and elevation in degrees",
-                  [](const CellRecord& c) { return c.light; }),
-      cell_column("bias_constant_depth", "constant bias, depth in [0,1]",
-                  [](const CellRecord& c) { return plain(c.bias.constant.depth); }),
-      cell_column("bias_constant_texels", "constant bias, texels; adds to the one before",
-                  [](const CellRecord& c) { return plain(c.bias.constant.texels); }),
-      cell_column("bias_constant_world", "constant bias, metres; adds to the two before",
-                  [](const CellRecord& c) { return plain(c.bias.constant.world); }),
-      cell_column("bias_slope_depth", "bias times 1 - n.l, depth in [0,1]",
-                  [](const CellRecord& c) { return plain(c.bias.slope.depth); }),
-      cell_column("bias_slope_texels", "bias times 1 - n.l, texels",
-                  [](const CellRecord& c) { return plain(c.bias.slope.texels); }),
-      cell_column("bias_slope_world", "bias times 1 - n.l, metres",
-                  [](const CellRecord& c) { return plain(c.bias.slope.world); }),
-      cell_column("bias_plane_texels", "bias by the slope of the receiver's plane, texels",
-                  [](const CellRecord& c) { return plain(c.bias.plane_texels); }),
-      cell_column("bias_plane_kernels", "the same, in kernel half-widths plus one texel",
-                  [](const CellRecord& c) { return plain(c.bias.plane_kernels); }),
-      cell_column("bias_normal_offset_texels", "normal offset, texels",
-                  [](const CellRecord& c) { return plain(c.bias.normal_offset.texels); }),
-      cell_column("bias_normal_offset_world", "normal offset, metres",
-                  [](const CellRecord& c) { return plain(c.bias.normal_offset.world); }),
-      cell_column("bias_receiver_plane", "1: the receiver plane's gradient is added for every tap",
-                  [](const CellRecord& c) { return plain(c.bias.receiver_plane ? 1.0 : 0.0); }),
-      cell_column("bias_polygon_factor", "glPolygonOffset in the depth pass, factor",
-                  [](const CellRecord& c) { return plain(c.bias.polygon_factor); }),
-      cell_column("bias_polygon_units", "glPolygonOffset in the depth pass, units",
-                  [](const CellRecord& c) { return plain(c.bias.polygon_units); }),
-      cell_column("bias_front_cull", "1: front faces are left out of the depth map",
-                  [](const CellRecord& c) { return plain(c.bias.front_cull ? 1.0 : 0.0); }),
-      cell_column("bias_midpoint", "1: the depth map lies half-way between first and second surface",
-                  [](const CellRecord& c) { return plain(c.bias.midpoint ? 1.0 : 0.0); }),
-      cell_column("border", "what lookups read outside the map", [](const CellRecord& c) { return c.range.border; }),
-      cell_column("far_test", "beyond the map's far plane is lit", [](const CellRecord& c) { return name_switch(c.range.far_test); }),
-      cell_column("behind_test", "behind the light of a projective map is lit",
-                  [](const CellRecord& c) { return name_switch(c.range.behind_test); }),
-      cell_column("width", "picture, pixels", [](const CellRecord& c) { return plain(c.width); }),
-      cell_column("height", "picture, pixels", [](const CellRecord& c) { return plain(c.height); }),
-      cell_column("status", "ok, timeout, crashed or error",
-                  [](const CellRecord& c) { return value_json(c.status).get<std::string>(); }),
-      cell_column("message", "why the status is not ok", [](const CellRecord& c) { return c.message; }),
+      cell_column(
+          "scene", "the scene's name", [](const CellRecord& c) { return c.scene; }),
+      cell_column(
+          "view", "the camera's name", [](const CellRecord& c) { return c.view; }),
+      cell_column(
+          "filter", "the filter's id", [](const CellRecord& c) { return c.filter; }),
+      cell_column(
+          "params", "the filter's parameters as JSON",
+          [](const CellRecord& c) { return dump_line(value_json(c.params)); }),
+      cell_column(
+          "map_size", "shadow map, texels along a side", [](const CellRecord& c) { return plain(c.map_size); }),
+      cell_column(
+          "map_format", "the shadow map's format", [](const CellRecord& c) { return c.map_format; }),
+      cell_column(
+          "fit", "of the light's frustum; snapped: to whole texels", [](const CellRecord& c) { return c.fit; }),
+      cell_column(
+          "light", "where the light stands: as the scene says, or azimuth and elevation in degrees",
+          [](const CellRecord& c) { return c.light; }),
+      cell_column(
+          "bias_constant_depth", "constant bias, depth in [0,1]",
+          [](const CellRecord& c) { return plain(c.bias.constant.depth); }),
+      cell_column(
+          "bias_constant_texels", "constant bias, texels; adds to the one before",
+          [](const CellRecord& c) { return plain(c.bias.constant.texels); }),
+      cell_column(
+          "bias_constant_world", "constant bias, metres; adds to the two before",
+          [](const CellRecord& c) { return plain(c.bias.constant.world); }),
+      cell_column(
+          "bias_slope_depth", "bias times 1 - n.l, depth in [0,1]",
+          [](const CellRecord& c) { return plain(c.bias.slope.depth); }),
+      cell_column(
+          "bias_slope_texels", "bias times 1 - n.l, texels",
+          [](const CellRecord& c) { return plain(c.bias.slope.texels); }),
+      cell_column(
+          "bias_slope_world", "bias times 1 - n.l, metres",
+          [](const CellRecord& c) { return plain(c.bias.slope.world); }),
+      cell_column(
+          "bias_plane_texels", "bias by the slope of the receiver's plane, texels",
+          [](const CellRecord& c) { return plain(c.bias.plane_texels); }),
+      cell_column(
+          "bias_plane_kernels", "the same, in kernel half-widths plus one texel",
+          [](const CellRecord& c) { return plain(c.bias.plane_kernels); }),
+      cell_column(
+          "bias_normal_offset_texels", "normal offset, texels",
+          [](const CellRecord& c) { return plain(c.bias.normal_offset.texels); }),
+      cell_column(
+          "bias_normal_offset_world", "normal offset, metres",
+          [](const CellRecord& c) { return plain(c.bias.normal_offset.world); }),
+      cell_column(
+          "bias_receiver_plane", "1: the receiver plane's gradient is added for every tap",
+          [](const CellRecord& c) { return plain(c.bias.receiver_plane ? 1.0 : 0.0); }),
+      cell_column(
+          "bias_polygon_factor", "glPolygonOffset in the depth pass, factor",
+          [](const CellRecord& c) { return plain(c.bias.polygon_factor); }),
+      cell_column(
+          "bias_polygon_units", "glPolygonOffset in the depth pass, units",
+          [](const CellRecord& c) { return plain(c.bias.polygon_units); }),
+      cell_column(
+          "bias_front_cull", "1: front faces are left out of the depth map",
+          [](const CellRecord& c) { return plain(c.bias.front_cull ? 1.0 : 0.0); }),
+      cell_column(
+          "bias_midpoint", "1: the depth map lies half-way between first and second surface",
+          [](const CellRecord& c) { return plain(c.bias.midpoint ? 1.0 : 0.0); }),
+      cell_column(
+          "border", "what lookups read outside the map", [](const CellRecord& c) { return c.range.border; }),
+      cell_column(
+          "far_test", "beyond the map's far plane is lit",
+          [](const CellRecord& c) { return name_switch(c.range.far_test); }),
+      cell_column(
+          "behind_test", "behind the light of a projective map is lit",
+          [](const CellRecord& c) { return name_switch(c.range.behind_test); }),
+      cell_column(
+          "width", "picture, pixels", [](const CellRecord& c) { return plain(c.width); }),
+      cell_column(
+          "height", "picture, pixels", [](const CellRecord& c) { return plain(c.height); }),
+      cell_column(
+          "status", "ok, timeout, crashed or error",
+          [](const CellRecord& c) { return value_json(c.status).get<std::string>(); }),
+      cell_column(
+          "message", "why the status is not ok", [](const CellRecord& c) { return c.message; }),
   };
 }
 
@@ -98,7 +129,8 @@ Column clock_column() {
 }
 
 Column key_column() {
-  return cell_column("key", "the cell's file is cells/<key>.json", [](const CellRecord& c) { return c.key; });
+  return cell_column(
+      "key", "the cell's file is cells/<key>.json", [](const CellRecord& c) { return c.key; });
 }
 
 using TimeMember = std::optional<Quartiles> TimeRecord::*;
@@ -133,39 +165,55 @@ std::vector<Column> ratio_columns(const std::string& name, const std::string& me
 
 std::vector<Column> cost_columns() {
   return {
-      cell_column("fetches", "texture fetches per receiver, mean",
-                  [](const CellRecord& c) { return plain(c.cost.fetches); }),
-      cell_column("bytes_per_texel", "of what the lookup reads",
-                  [](const CellRecord& c) { return plain(c.cost.bytes_per_texel); }),
-      cell_column("passes", "passes per frame", [](const CellRecord& c) { return plain(c.cost.passes); }),
-      cell_column("map_bytes", "memory of the maps", [](const CellRecord& c) { return plain(c.cost.map_bytes); }),
-      cell_column("prefilter_texels", "texels that the prefilter writes",
-                  [](const CellRecord& c) { return plain(c.cost.prefilter_texels); }),
-      cell_column("receivers", "pixels that count", [](const CellRecord& c) { return plain(c.receivers); }),
-      cell_column("nan", "pixels whose visibility is not finite", [](const CellRecord& c) { return plain(c.nan); }),
+      cell_column(
+          "fetches", "texture fetches per receiver, mean", [](const CellRecord& c) { return plain(c.cost.fetches); }),
+      cell_column(
+          "bytes_per_texel", "of what the lookup reads",
+          [](const CellRecord& c) { return plain(c.cost.bytes_per_texel); }),
+      cell_column(
+          "passes", "passes per frame", [](const CellRecord& c) { return plain(c.cost.passes); }),
+      cell_column(
+          "map_bytes", "memory of the maps", [](const CellRecord& c) { return plain(c.cost.map_bytes); }),
+      cell_column(
+          "prefilter_texels", "texels that the prefilter writes",
+          [](const CellRecord& c) { return plain(c.cost.prefilter_texels); }),
+      cell_column(
+          "receivers", "pixels that count", [](const CellRecord& c) { return plain(c.receivers); }),
+      cell_column(
+          "nan", "pixels whose visibility is not finite", [](const CellRecord& c) { return plain(c.nan); }),
   };
 }
 
 std::vector<Column> error_columns() {
   return {
-      cell_column("rmse", "root mean square of visibility less area truth",
-                  [](const CellRecord& c) { return plain(c.error.rmse); }),
-      cell_column("mae", "mean absolute error", [](const CellRecord& c) { return plain(c.error.mae); }),
-      cell_column("p95", "95th percentile of the absolute error",
-                  [](const CellRecord& c) { return plain(c.error.p95); }),
-      cell_column("max", "largest absolute error", [](const CellRecord& c) { return plain(c.error.max); }),
-      cell_column("mean", "mean error; positive: too bright", [](const CellRecord& c) { return plain(c.error.mean); }),
-      cell_column("flip", "mean LDR-FLIP of the picture against the one shaded with the area truth",
-                  [](const CellRecord& c) { return plain(c.error.flip); }),
-      cell_column("kernel_rmse",
-                  "root mean square of visibility less kernel truth: what the filter's own kernel sees, ray traced",
-                  [](const CellRecord& c) { return plain(c.error.kernel_rmse); }),
-      cell_column("truth_se", "standard error of the truth, root mean square over the pixels that count",
-                  [](const CellRecord& c) { return plain(c.truth.se); }),
-      cell_column("truth_unanimous", "share of those pixels whose rays all agree",
-                  [](const CellRecord& c) { return plain(c.truth.unanimous); }),
-      cell_column("receivers", "pixels that count", [](const CellRecord& c) { return plain(c.receivers); }),
-      cell_column("nan", "pixels whose visibility is not finite", [](const CellRecord& c) { return plain(c.nan); }),
+      cell_column(
+          "rmse", "root mean square of visibility less area truth",
+          [](const CellRecord& c) { return plain(c.error.rmse); }),
+      cell_column(
+          "mae", "mean absolute error", [](const CellRecord& c) { return plain(c.error.mae); }),
+      cell_column(
+          "p95", "95th percentile of the absolute error", [](const CellRecord& c) { return plain(c.error.p95); }),
+      cell_column(
+          "max", "largest absolute error", [](const CellRecord& c) { return plain(c.error.max); }),
+      cell_column(
+          "mean", "mean error; positive: too bright", [](const CellRecord& c) { return plain(c.error.mean); }),
+      cell_column(
+          "flip", "mean LDR-FLIP of the picture against the one shaded with the area truth",
+          [](const CellRecord& c) { return plain(c.error.flip); }),
+      cell_column(
+          "kernel_rmse",
+          "root mean square of visibility less kernel truth: what the filter's own kernel sees, ray traced",
+          [](const CellRecord& c) { return plain(c.error.kernel_rmse); }),
+      cell_column(
+          "truth_se", "standard error of the truth, root mean square over the pixels that count",
+          [](const CellRecord& c) { return plain(c.truth.se); }),
+      cell_column(
+          "truth_unanimous", "share of those pixels whose rays all agree",
+          [](const CellRecord& c) { return plain(c.truth.unanimous); }),
+      cell_column(
+          "receivers", "pixels that count", [](const CellRecord& c) { return plain(c.receivers); }),
+      cell_column(
+          "nan", "pixels whose visibility is not finite", [](const CellRecord& c) { return plain(c.nan); }),
   };
 }
 
@@ -173,11 +221,13 @@ std::vector<Column> coverage_columns() {
   const auto column = [](const char* name, const char* meaning, std::optional<double> CoverageRecord::*member) {
     return cell_column(name, meaning, [member](const CellRecord& c) { return plain(c.coverage.*member); });
   };
-  return {column("texels_per_pixel", "map texels under a pixel's footprint, median over the pixels that count",
-                 &CoverageRecord::texels_per_pixel),
-          column("fewest_texels_per_pixel", "the same of the pixel with the fewest", &CoverageRecord::fewest_texels_per_pixel),
-          column("map_used", "share in [0,1] of the map's area under the pixels' footprints", &CoverageRecord::map_used),
-          column("map_filled", "share in [0,1] of the map's texels that hold a caster", &CoverageRecord::map_filled)};
+  return {
+      column("texels_per_pixel", "map texels under a pixel's footprint, median over the pixels that count",
+             &CoverageRecord::texels_per_pixel),
+      column("fewest_texels_per_pixel", "the same of the pixel with the fewest",
+             &CoverageRecord::fewest_texels_per_pixel),
+      column("map_used", "share in [0,1] of the map's area under the pixels' footprints", &CoverageRecord::map_used),
+      column("map_filled", "share in [0,1] of the map's texels that hold a caster", &CoverageRecord::map_filled)};
 }
 
 std::vector<Column> artefact_columns() {
@@ -214,10 +264,10 @@ std::vector<Column> attribution_columns() {
   std::vector<Column> columns;
   for (const ErrorPart& part : list_error_parts()) {
     const auto record = part.record;
-    columns.push_back(
-        cell_column(fmt::format("{}_rms", part.id),
-                    fmt::format("root mean square of the error's part {}, visibility: {}", part.name, part.meaning),
-                    [record](const CellRecord& c) { return plain((c.attribution.*record).rms); }));
+    columns.push_back(cell_column(
+        fmt::format("{}_rms", part.id),
+        fmt::format("root mean square of the error's part {}, visibility: {}", part.name, part.meaning),
+        [record](const CellRecord& c) { return plain((c.attribution.*record).rms); }));
     columns.push_back(cell_column(
         fmt::format("{}_share", part.id),
         fmt::format("mean(error * part) / mean(error^2) of the part {}; the four sum to 1, and may be negative",
@@ -231,21 +281,29 @@ std::vector<Column> stability_columns() {
   const auto column = [](const char* name, const char* meaning, auto StabilityRecord::*member) {
     return cell_column(name, meaning, [member](const CellRecord& c) { return plain(c.stability.*member); });
   };
-  return {column("overflow_texels", "texels of the encoded map that overflowed, or into which the blur mixed one that did", &StabilityRecord::overflow_texels),
-          column("nan_texels", "texels of the encoded map that are NaN", &StabilityRecord::nan_texels),
-          column("negative_variance_texels", "texels of a map of moments whose variance is below 0 before any clamp",
-                 &StabilityRecord::negative_variance_texels),
-          column("lowest_variance", "of a map of moments, before any clamp", &StabilityRecord::lowest_variance),
-          column("headroom", "ln(largest number of the store) - ln(largest stored value): what exponents could grow by", &StabilityRecord::headroom),
-          column("safe_exponent", "largest value of the filter's exponent with which no texel of this map overflows", &StabilityRecord::safe_exponent),
-          column("half_difference_max", "largest difference of visibility between the 16-bit store and the 32-bit store",
-                 &StabilityRecord::half_difference_max),
-          column("half_difference_rms", "the same, root mean square over the pixels that count", &StabilityRecord::half_difference_rms),
-          column("bound_shortfall_max", "by how much a bound is darker than the percentage-closer filter of its own kernel and depth",
-                 &StabilityRecord::bound_shortfall_max),
-          column("bound_violations", "receivers where it is by more than rounding explains", &StabilityRecord::bound_violations),
-          column("bound_exact_violations", "receivers where it is in double precision too: with these parameters it is no bound",
-                 &StabilityRecord::bound_exact_violations)};
+  return {
+      column("overflow_texels", "texels of the encoded map that overflowed, or into which the blur mixed one that did",
+             &StabilityRecord::overflow_texels),
+      column("nan_texels", "texels of the encoded map that are NaN", &StabilityRecord::nan_texels),
+      column("negative_variance_texels", "texels of a map of moments whose variance is below 0 before any clamp",
+             &StabilityRecord::negative_variance_texels),
+      column("lowest_variance", "of a map of moments, before any clamp", &StabilityRecord::lowest_variance),
+      column("headroom", "ln(largest number of the store) - ln(largest stored value): what exponents could grow by",
+             &StabilityRecord::headroom),
+      column("safe_exponent", "largest value of the filter's exponent with which no texel of this map overflows",
+             &StabilityRecord::safe_exponent),
+      column("half_difference_max", "largest difference of visibility between the 16-bit store and the 32-bit store",
+             &StabilityRecord::half_difference_max),
+      column("half_difference_rms", "the same, root mean square over the pixels that count",
+             &StabilityRecord::half_difference_rms),
+      column("bound_shortfall_max",
+             "by how much a bound is darker than the percentage-closer filter of its own kernel and depth",
+             &StabilityRecord::bound_shortfall_max),
+      column("bound_violations", "receivers where it is by more than rounding explains",
+             &StabilityRecord::bound_violations),
+      column("bound_exact_violations",
+             "receivers where it is in double precision too: with these parameters it is no bound",
+             &StabilityRecord::bound_exact_violations)};
 }
 
 std::vector<Column> columns_of(CsvTable table) {
@@ -264,7 +322,8 @@ std::vector<Column> columns_of(CsvTable table) {
   append(time_columns("lookup", "filtered lookup of all pixels", &TimeRecord::lookup));
   append(time_columns("prefilter", "encoding and blurring the map", &TimeRecord::prefilter));
   append(time_columns("map", "drawing the depth map", &TimeRecord::map));
-  append({cell_column("stopped", "why no more rounds were timed: rounds, precise or budget", [](const CellRecord& c) { return c.time_ms.stopped.value_or(""); })});
+  append({cell_column("stopped", "why no more rounds were timed: rounds, precise or budget",
+                      [](const CellRecord& c) { return c.time_ms.stopped.value_or(""); })});
   append(ratio_columns("ratio_lookup", "lookup against none", &RatioRecord::lookup));
   append(ratio_columns("ratio_static", "frame with a cached map against none", &RatioRecord::static_map));
   append(ratio_columns("ratio_moving", "frame with a new map against none", &RatioRecord::moving));
@@ -288,9 +347,7 @@ std::string markdown_row(const std::vector<std::string>& fields) {
 
 std::string markdown_list(const std::vector<std::string>& items) {
   std::string text;
-  for (const std::string& item : items) {
-    text += "- " + escape_markdown(item) + "\n";
-  }
+  for (const std::string& item : items) text += "- " + escape_markdown(item) + "\n";
   return text;
 }
 
@@ -303,9 +360,8 @@ std::string markdown_group(const CellGroup& group, const GlRecord& gl) {
 
 std::string markdown_absences(const std::vector<CellRecord>& cells) {
   std::vector<std::string> items;
-  for (const auto& [reason, count] : count_absences(cells)) {
+  for (const auto& [reason, count] : count_absences(cells))
     items.push_back(fmt::format("{} ({} of {} cells)", reason, count, cells.size()));
-  }
   return items.empty() ? std::string() : "## What is not there, and why\n\n" + markdown_list(items) + "\n";
 }
 
@@ -313,29 +369,21 @@ std::string markdown_absences(const std::vector<CellRecord>& cells) {
 
 std::vector<CsvColumn> list_csv_columns(CsvTable table) {
   std::vector<CsvColumn> names;
-  for (const Column& column : columns_of(table)) {
-    names.push_back(column.column);
-  }
+  for (const Column& column : columns_of(table)) names.push_back(column.column);
   return names;
 }
 
 std::string quote_csv(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
-    return std::string(text);
-  }
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
   std::string quoted = "\"";
-  for (const char c : text) {
-    quoted += c == '"' ? "\"\"" : std::string(1, c);
-  }
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + "\"";
 }
 
 std::string make_csv(CsvTable table, const RunRecord& run, const std::vector<CellRecord>& cells) {
   const std::vector<Column> columns = columns_of(table);
   std::vector<std::string> fields;
-  for (const Column& column : columns) {
-    fields.push_back(column.column.name);
-  }
+  for (const Column& column : columns) fields.push_back(column.column.name);
   std::string csv = join_row(fields);
   for (const CellRecord& cell : cells) {
     std::transform(columns.begin(), columns.end(), fields.begin(),
@@ -352,9 +400,7 @@ std::string escape_markdown(std::string_view text) {
       escaped += ' ';
       continue;
     }
-    if (std::string_view("\\`*_[]<>|#~").find(c) != std::string_view::npos) {
-      escaped += '\\';
-    }
+    if (std::string_view("\\`*_[]<>|#~").find(c) != std::string_view::npos) escaped += '\\';
     escaped += c;
   }
   return escaped;
@@ -364,9 +410,8 @@ namespace {
 
 std::string markdown_columns(CsvTable table) {
   std::string text;
-  for (const CsvColumn& column : list_csv_columns(table)) {
+  for (const CsvColumn& column : list_csv_columns(table))
     text += fmt::format("- `{}`: {}\n", column.name, escape_markdown(column.meaning));
-  }
   return text;
 }
 
@@ -374,29 +419,20 @@ std::string markdown_columns(CsvTable table) {
 
 std::string markdown_table(const TextTable& table) {
   std::string text = markdown_row(table.header) + "|";
-  for (std::size_t i = 0; i < table.header.size(); ++i) {
-    text += "---|";
-  }
+  for (std::size_t i = 0; i < table.header.size(); ++i) text += "---|";
   text += "\n";
-  for (const auto& row : table.rows) {
-    text += markdown_row(row);
-  }
+  for (const auto& row : table.rows) text += markdown_row(row);
   return text;
 }
 
 std::string make_summary(const RunRecord& run, const std::vector<CellRecord>& cells, const std::string& trade) {
   std::string text = "# Shadow filters compared\n\n";
-  for (const auto& [name, value] : list_run_facts(run)) {
+  for (const auto& [name, value] : list_run_facts(run))
     text += fmt::format("- **{}**: {}\n", name, escape_markdown(value));
-  }
   text += "\nAll times are " + describe_clock(run.gl) + ". Filters whose intervals overlap are tied.\n\n";
-  if (!run.warnings.empty()) {
-    text += "## Warnings\n\n" + markdown_list(run.warnings) + "\n";
-  }
+  if (!run.warnings.empty()) text += "## Warnings\n\n" + markdown_list(run.warnings) + "\n";
   text += trade;
-  for (const CellGroup& group : group_cells(cells)) {
-    text += markdown_group(group, run.gl);
-  }
+  for (const CellGroup& group : group_cells(cells)) text += markdown_group(group, run.gl);
   text += markdown_absences(cells) + "## Columns of timings.csv\n\n" + markdown_columns(CsvTable::kTimings);
   text += "\n## Columns of accuracy.csv\n\n" + markdown_columns(CsvTable::kAccuracy);
   return text;

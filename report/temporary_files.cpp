@@ -33,14 +33,14 @@ std::optional<pid_t> owner_of_file(const fs::path& path) {
   const std::string name = path.filename().string();
   const std::size_t mark = name.rfind(kFileMark);
   if (mark == std::string::npos) return std::nullopt;
-  return parse_process(std::string_view(name).substr(mark + kFileMark.size()), path.extension().string().starts_with(kFileMark) ? "" : path.extension().string());
+  return parse_process(std::string_view(name).substr(mark + kFileMark.size()),
+                       path.extension().string().starts_with(kFileMark) ? "" : path.extension().string());
 }
 
 std::optional<pid_t> owner_of_folder(const fs::path& path) {
   const std::string name = path.filename().string();
-  for (const std::string_view mark : kFolderMarks) {
+  for (const std::string_view mark : kFolderMarks)
     if (name.starts_with(mark)) return parse_process(std::string_view(name).substr(mark.size()), "");
-  }
   return std::nullopt;
 }
 
@@ -53,8 +53,10 @@ std::vector<fs::path> clean(const fs::path& folder, const std::function<bool(pid
     std::error_code unknown;
     const bool is_folder = entry->symlink_status(unknown).type() == fs::file_type::directory;
     const std::optional<pid_t> owner = is_folder ? owner_of_folder(entry->path()) : owner_of_file(entry->path());
-    if (owner && is_stale(*owner)) stale.push_back(entry->path());
-    else if (is_folder) folders.push_back(entry->path());
+    if (owner && is_stale(*owner))
+      stale.push_back(entry->path());
+    else if (is_folder)
+      folders.push_back(entry->path());
   }
   for (const fs::path& path : stale) fs::remove_all(path, error);
   return folders;

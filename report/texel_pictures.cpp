@@ -41,8 +41,13 @@ Image color_densities(const Image& density) {
 
 void draw_color_bar(Figure& figure, const Rect& bar) {
   figure.place(bar.x, bar.y, color_places(make_ramp(bar.width, bar.height)));
-  for (const auto& [density, label] : {std::pair{1.0f / 64.0f, "≤ 1/64"}, {1.0f / 16.0f, "1/16"}, {0.25f, "1/4"}, {1.0f, "1"},
-                                       {4.0f, "4"}, {16.0f, "16"}, {64.0f, "≥ 64"}}) {
+  for (const auto& [density, label] : {std::pair{1.0f / 64.0f, "≤ 1/64"},
+                                       {1.0f / 16.0f, "1/16"},
+                                       {0.25f, "1/4"},
+                                       {1.0f, "1"},
+                                       {4.0f, "4"},
+                                       {16.0f, "16"},
+                                       {64.0f, "≥ 64"}}) {
     const int x = bar.x + static_cast<int>(place_density(density) * static_cast<float>(bar.width - 1));
     figure.fill({x, bar.y + bar.height, 1, 5}, kFigureSecondInk);
     figure.write_centred(x, bar.y + bar.height + 6, label);
@@ -58,7 +63,9 @@ float grid_strength(float density) {
 }
 
 bool is_dark_field(const float* texel, int field_texels) {
-  const auto odd = [&](float place) { return (static_cast<std::int64_t>(std::floor(place / static_cast<float>(field_texels))) & 1) != 0; };
+  const auto odd = [&](float place) {
+    return (static_cast<std::int64_t>(std::floor(place / static_cast<float>(field_texels))) & 1) != 0;
+  };
   return odd(texel[0]) != odd(texel[1]);
 }
 
@@ -72,7 +79,8 @@ Image draw_density_picture(const DensityPicture& picture) {
   const Rect& body = figure.body();
   figure.place(body.x, body.y, color_densities(picture.density));
   int y = body.y + picture.density.height + line / 2;
-  figure.write(body.x, y, "map texels per pixel · grey: turned away from the light, or outside the map · white: background");
+  figure.write(body.x, y,
+               "map texels per pixel · grey: turned away from the light, or outside the map · white: background");
   y += line + line / 2;
   draw_color_bar(figure, {body.x + 40, y, width - 80, kBarHeight});
   return figure.canvas();
@@ -85,12 +93,14 @@ void write_density_picture(const std::filesystem::path& path, const DensityPictu
 int choose_field_texels(const Image& density) {
   constexpr float kFieldPixels = 36.0f;
   std::vector<float> receivers;
-  std::copy_if(density.texels.begin(), density.texels.end(), std::back_inserter(receivers), [](float d) { return d > 0.0f; });
+  std::copy_if(density.texels.begin(), density.texels.end(), std::back_inserter(receivers),
+               [](float d) { return d > 0.0f; });
   if (receivers.empty()) return 1;
   const auto middle = receivers.begin() + static_cast<std::ptrdiff_t>(receivers.size() / 2);
   std::nth_element(receivers.begin(), middle, receivers.end());
   int field = 1;
-  while (static_cast<float>(field) * static_cast<float>(field) < kFieldPixels * *middle && field < (1 << 14)) field *= 2;
+  while (static_cast<float>(field) * static_cast<float>(field) < kFieldPixels * *middle && field < (1 << 14))
+    field *= 2;
   return field;
 }
 
@@ -101,9 +111,11 @@ Image draw_texel_grid_picture(const TexelGridPicture& picture) {
   for (std::size_t i = 0; i < picture.density.texels.size(); ++i) {
     const float fields_per_pixel = picture.density.texels[i] / static_cast<float>(field * field);
     const float strength = is_dark_field(&picture.texel.texels[2 * i], field) ? grid_strength(fields_per_pixel) : 0.0f;
-    for (std::size_t c = 0; c < 3; ++c) shown.texels[3 * i + c] = (1.0f - strength) * encode_srgb(picture.picture.texels[3 * i + c]);
+    for (std::size_t c = 0; c < 3; ++c)
+      shown.texels[3 * i + c] = (1.0f - strength) * encode_srgb(picture.picture.texels[3 * i + c]);
   }
-  const std::string fields = fmt::format("{} · each field of the chessboard is {} × {} texels", picture.note, field, field);
+  const std::string fields =
+      fmt::format("{} · each field of the chessboard is {} × {} texels", picture.note, field, field);
   Figure figure(picture.title, fields, {std::max(shown.width, kSmallestWidth), shown.height});
   figure.place(figure.body().x, figure.body().y, shown);
   return figure.canvas();

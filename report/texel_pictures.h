@@ -34,10 +34,9 @@ struct TexelGridPicture {
 /// median field of a receiver covers 36 pixels; 1 where no receiver faces the light.
 int choose_field_texels(const Image& density);
 
-/// Draws the texels as a chessboard whose dark fields darken the picture, each of choose_field_texels() a side, which the
-/// note says. Where fields are smaller than 4 pixels the pattern fades, and it is gone where they are smaller than 2: it
-/// would show the pixels' grid instead. Display values.
-/// Throws Error(kOutput) where the font is not installed.
+/// Draws the texels as a chessboard whose dark fields darken the picture, each of choose_field_texels() a side, which
+/// the note says. Where fields are smaller than 4 pixels the pattern fades, and it is gone where they are smaller than
+/// 2: it would show the pixels' grid instead. Display values. Throws Error(kOutput) where the font is not installed.
 Image draw_texel_grid_picture(const TexelGridPicture& picture);
 
 /// Writes it as PNG. Throws Error(kOutput).

@@ -40,9 +40,7 @@ void blend_glyph(Image& canvas, int x, int y, const GlyphBitmap& glyph, const Rg
     for (int column = 0; column < glyph.box.width; ++column) {
       const int px = x + glyph.box.x + column;
       const int py = y + glyph.box.y + row;
-      if (px < 0 || py < 0 || px >= canvas.width || py >= canvas.height) {
-        continue;
-      }
+      if (px < 0 || py < 0 || px >= canvas.width || py >= canvas.height) continue;
       const float cover = static_cast<float>(glyph.coverage[row * glyph.stride + column]) / 255.0f;
       for (std::size_t c = 0; c < 3; ++c) {
         float& value = canvas.at(px, py)[c];
@@ -67,12 +65,8 @@ std::string fitting_beginning(const std::string& word, Font font, int width) {
   std::string fit;
   for (std::size_t begin = 0; begin < word.size();) {
     std::size_t end = begin + 1;
-    while (end < word.size() && is_continuation(word[end])) {
-      ++end;
-    }
-    if (!fit.empty() && measure_text(word.substr(0, end), font) > width) {
-      break;
-    }
+    while (end < word.size() && is_continuation(word[end])) ++end;
+    if (!fit.empty() && measure_text(word.substr(0, end), font) > width) break;
     fit = word.substr(0, end);
     begin = end;
   }
@@ -85,9 +79,7 @@ std::vector<std::string> split_fitting_words(const std::string& text, Font font,
   for (std::string word : split_words(text)) {
     while (measure_text(word, font) > width) {
       std::string piece = fitting_beginning(word, font, width);
-      if (piece == word) {
-        break;  // a single character wider than the line
-      }
+      if (piece == word) break;  // a single character wider than the line
       piece.resize(find_good_break(piece));
       pieces.push_back(piece);
       word.erase(0, piece.size());
@@ -103,16 +95,12 @@ std::string clean_text(std::string_view text) {
   using nlohmann::json;
   const std::string quoted = json(std::string(text)).dump(-1, ' ', false, json::error_handler_t::replace);
   std::string clean;
-  for (const char c : json::parse(quoted).get<std::string>()) {
-    if (!is_space(c)) {
+  for (const char c : json::parse(quoted).get<std::string>())
+    if (!is_space(c))
       clean += c;
-    } else if (!clean.empty() && clean.back() != ' ') {
+    else if (!clean.empty() && clean.back() != ' ')
       clean += ' ';
-    }
-  }
-  if (!clean.empty() && clean.back() == ' ') {
-    clean.pop_back();
-  }
+  if (!clean.empty() && clean.back() == ' ') clean.pop_back();
   return clean;
 }
 
@@ -125,13 +113,11 @@ int line_height(Font font) { return (font.size * 13 + 9) / 10; }
 
 std::vector<std::string> wrap_text(std::string_view text, Font font, int width) {
   std::vector<std::string> lines;
-  for (const std::string& word : split_fitting_words(clean_text(text), font, width)) {
-    if (!lines.empty() && measure_text(lines.back() + " " + word, font) <= width) {
+  for (const std::string& word : split_fitting_words(clean_text(text), font, width))
+    if (!lines.empty() && measure_text(lines.back() + " " + word, font) <= width)
       lines.back() += " " + word;
-    } else {
+    else
       lines.push_back(word);
-    }
-  }
   return lines;
 }
 

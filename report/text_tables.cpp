@@ -38,9 +38,7 @@ std::string format_dominating_part(const CellRecord& cell) {
 // "numeric / estimator / discretisation / model", and the numbers in that order.
 std::string join_part_names() {
   std::vector<std::string> names;
-  for (const ErrorPart& part : list_error_parts()) {
-    names.emplace_back(part.id);
-  }
+  for (const ErrorPart& part : list_error_parts()) names.emplace_back(part.id);
   return fmt::format("{}", fmt::join(names, " / "));
 }
 
@@ -48,9 +46,7 @@ std::string format_shares(const CellRecord& cell) {
   const auto shares = list_shares(cell);
   if (!shares) return kNothing;
   std::vector<std::string> texts;
-  for (const double share : *shares) {
-    texts.push_back(format_share(share));
-  }
+  for (const double share : *shares) texts.push_back(format_share(share));
   return fmt::format("{}", fmt::join(texts, " / "));
 }
 

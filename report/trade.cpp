@@ -53,9 +53,8 @@ std::vector<std::vector<std::size_t>> group_indices(const std::vector<CellRecord
 class CellReader {
  public:
   explicit CellReader(const std::vector<CellRecord>& cells) : cells_(cells) {
-    for (const CellRecord& cell : cells) {
+    for (const CellRecord& cell : cells)
       if (is_reference(cell)) references_.emplace(reference_key(cell), &cell);
-    }
   }
 
   TradeConfiguration read(const std::vector<std::size_t>& indices) const {
@@ -95,9 +94,8 @@ TradeScope make_place_scope(const std::vector<CellRecord>& cells, const std::vec
   scope.view = first.view;
   scope.title = fmt::format("{} · view {} · {} × {}", first.scene, first.view, first.width, first.height);
   scope.id = make_file_stem(fmt::format("{}.{}.{}x{}", first.scene, first.view, first.width, first.height));
-  for (const auto& group : group_indices(cells, indices, configuration_key)) {
+  for (const auto& group : group_indices(cells, indices, configuration_key))
     scope.configurations.push_back(reader.read({group.front()}));
-  }
   return scope;
 }
 
@@ -107,16 +105,16 @@ TradeScope make_joint_scope(const std::vector<CellRecord>& cells, const std::vec
   const std::size_t places = group_indices(cells, indices, place_key).size();
   const std::size_t scenes = group_indices(cells, indices, [](const CellRecord& cell) { return cell.scene; }).size();
   TradeScope scope;
-  scope.title = fmt::format("{} · {} × {}", places == scenes ? fmt::format("all {} scenes", scenes) : fmt::format("all {} views of {} scenes", places, scenes),
+  scope.title = fmt::format("{} · {} × {}",
+                            places == scenes ? fmt::format("all {} scenes", scenes)
+                                             : fmt::format("all {} views of {} scenes", places, scenes),
                             first.width, first.height);
   scope.id = fmt::format("all.{}x{}", first.width, first.height);
-  for (const auto& group : group_indices(cells, indices, configuration_key)) {
-    if (group.size() == places) {
+  for (const auto& group : group_indices(cells, indices, configuration_key))
+    if (group.size() == places)
       scope.configurations.push_back(reader.read(group));
-    } else {
+    else
       ++scope.incomplete;
-    }
-  }
   return scope;
 }
 
@@ -153,10 +151,10 @@ std::vector<TradeScope> make_trade_scopes(const std::vector<CellRecord>& cells) 
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   const CellReader reader(cells);
   std::vector<TradeScope> scopes;
-  for (const auto& picture : group_indices(cells, all, picture_key)) {
+  for (const auto& picture : group_indices(cells, all, picture_key))
     if (group_indices(cells, picture, place_key).size() > 1) scopes.push_back(make_joint_scope(cells, picture, reader));
-  }
-  for (const auto& place : group_indices(cells, all, place_key)) scopes.push_back(make_place_scope(cells, place, reader));
+  for (const auto& place : group_indices(cells, all, place_key))
+    scopes.push_back(make_place_scope(cells, place, reader));
   for (TradeScope& scope : scopes) {
     const CellRecord* first = scope.configurations.empty() ? nullptr : &cells[scope.configurations[0].cells[0]];
     scope.width = first ? first->width : 0;
@@ -189,21 +187,21 @@ TradeFront make_trade_front(const TradeScope& scope, std::size_t error, std::siz
 
 bool has_trade(const std::vector<TradeScope>& scopes) {
   const auto has_one = [](const auto& measured) {
-    return std::any_of(measured.begin(), measured.end(), [](const Measured& each) { return each.estimate.has_value(); });
+    return std::any_of(
+        measured.begin(), measured.end(), [](const Measured& each) { return each.estimate.has_value(); });
   };
   return std::any_of(scopes.begin(), scopes.end(), [&](const TradeScope& scope) {
-    const auto count = std::count_if(scope.configurations.begin(), scope.configurations.end(), [&](const TradeConfiguration& each) {
-      return has_one(each.errors) && has_one(each.costs);
-    });
+    const auto count =
+        std::count_if(scope.configurations.begin(), scope.configurations.end(),
+                      [&](const TradeConfiguration& each) { return has_one(each.errors) && has_one(each.costs); });
     return static_cast<std::size_t>(count) >= kFewestCells;
   });
 }
 
 std::vector<std::string> list_filters(const std::vector<CellRecord>& cells) {
   std::vector<std::string> filters;
-  for (const CellRecord& cell : cells) {
+  for (const CellRecord& cell : cells)
     if (std::find(filters.begin(), filters.end(), cell.filter) == filters.end()) filters.push_back(cell.filter);
-  }
   return filters;
 }
 

@@ -23,8 +23,8 @@ struct TradeConfiguration {
   std::array<Measured, kCostMeasures> costs;
 };
 
-/// Is what may be compared on one front: all cells of one scene, view and picture size, or all scenes and views together.
-/// Map format, bias, fit, light and range rule are the same throughout.
+/// Is what may be compared on one front: all cells of one scene, view and picture size, or all scenes and views
+/// together. Map format, bias, fit, light and range rule are the same throughout.
 struct TradeScope {
   std::string id;     ///< fit for a file name, and unique
   std::string title;  ///< "cubes · view main · 480 × 270"
@@ -36,22 +36,23 @@ struct TradeScope {
   std::size_t incomplete = 0;  ///< configurations left out because not every scene and view has a cell of them
 };
 
-/// Labels configurations by their filter, the parameters in which those of one filter differ, and the map where there are several.
+/// Labels configurations by their filter, the parameters in which those of one filter differ, and the map where there
+/// are several.
 void label_configurations(std::vector<TradeConfiguration>& configurations);
 
-/// Sorts a run's cells into scopes: scenes together first, where there are several, then each scene by itself in the order
-/// in which it appears. Scenes together hold only configurations that every scene and view has.
+/// Sorts a run's cells into scopes: scenes together first, where there are several, then each scene by itself in the
+/// order in which it appears. Scenes together hold only configurations that every scene and view has.
 std::vector<TradeScope> make_trade_scopes(const std::vector<CellRecord>& cells);
 
 /// Is the front of a scope for one error and one cost.
 struct TradeFront {
-  std::size_t error = 0;                      ///< index into list_error_measures()
-  std::size_t cost = 0;                       ///< index into list_cost_measures()
-  std::vector<std::size_t> configurations;    ///< those that have both, indices into the scope's
-  std::vector<FrontPoint> points;             ///< entry i is of configurations[i]
-  std::vector<Placement> placements;          ///< likewise; `by` is an index into `points`
-  std::vector<std::size_t> members;           ///< indices into `points`, cheapest first
-  std::map<std::string, int> left_out;        ///< reason to number of configurations without one of the two
+  std::size_t error = 0;                    ///< index into list_error_measures()
+  std::size_t cost = 0;                     ///< index into list_cost_measures()
+  std::vector<std::size_t> configurations;  ///< those that have both, indices into the scope's
+  std::vector<FrontPoint> points;           ///< entry i is of configurations[i]
+  std::vector<Placement> placements;        ///< likewise; `by` is an index into `points`
+  std::vector<std::size_t> members;         ///< indices into `points`, cheapest first
+  std::map<std::string, int> left_out;      ///< reason to number of configurations without one of the two
 };
 
 /// Finds the front of a scope.

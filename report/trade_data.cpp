@@ -30,7 +30,10 @@ template <class Measures>
 json measures_json(const Measures& measures, const GlRecord& gl) {
   json list = json::array();
   for (const Measure& each : measures) {
-    list.push_back({{"id", each.id}, {"name", each.name}, {"axis", name_axis(each, gl)}, {"bytes", each.is_bytes},
+    list.push_back({{"id", each.id},
+                    {"name", each.name},
+                    {"axis", name_axis(each, gl)},
+                    {"bytes", each.is_bytes},
                     {"unit", each.is_time ? time_unit(gl) : std::string()}});
   }
   return list;
@@ -38,9 +41,8 @@ json measures_json(const Measures& measures, const GlRecord& gl) {
 
 json filters_json(const std::vector<std::string>& filters) {
   json list = json::array();
-  for (std::size_t i = 0; i < filters.size(); ++i) {
+  for (std::size_t i = 0; i < filters.size(); ++i)
     list.push_back({{"id", filters[i]}, {"color", style_of(i).color}, {"shape", style_of(i).shape}});
-  }
   return list;
 }
 
@@ -60,8 +62,12 @@ json configuration_json(const TradeConfiguration& configuration, const std::vect
   json errors = json::array(), costs = json::array();
   for (const Measured& each : configuration.errors) errors.push_back(measured_json(each));
   for (const Measured& each : configuration.costs) costs.push_back(measured_json(each));
-  return {{"filter", configuration.filter}, {"params", describe_params(configuration.params)}, {"map", configuration.map_size},
-          {"label", configuration.label},   {"errors", errors},  {"costs", costs},
+  return {{"filter", configuration.filter},
+          {"params", describe_params(configuration.params)},
+          {"map", configuration.map_size},
+          {"label", configuration.label},
+          {"errors", errors},
+          {"costs", costs},
           {"pictures", pictures_json(configuration, cells)}};
 }
 
@@ -85,17 +91,19 @@ json scope_json(const TradeScope& scope, const std::vector<CellRecord>& cells, c
   for (std::size_t e = 0; e < kErrorMeasures; ++e) {
     error_axes.push_back(axis_json(choose_error_axis(scope, e)));
     fronts.push_back(json::array());
-    for (std::size_t c = 0; c < kCostMeasures; ++c) fronts.back().push_back(front_json(scope, make_trade_front(scope, e, c), gl));
+    for (std::size_t c = 0; c < kCostMeasures; ++c)
+      fronts.back().push_back(front_json(scope, make_trade_front(scope, e, c), gl));
   }
   for (std::size_t c = 0; c < kCostMeasures; ++c) cost_axes.push_back(axis_json(choose_cost_axis(scope, c)));
-  return {{"id", scope.id},        {"title", scope.title},     {"configurations", configurations}, {"fronts", fronts},
-          {"errorAxes", error_axes}, {"costAxes", cost_axes}};
+  return {{"id", scope.id},   {"title", scope.title},    {"configurations", configurations},
+          {"fronts", fronts}, {"errorAxes", error_axes}, {"costAxes", cost_axes}};
 }
 
 json curve_json(const RadiusCurve& curve, LightState light) {
   json points = json::array();
   for (const RadiusPoint& p : curve.points) {
-    points.push_back({{"radius", p.radius_texels}, {"time", estimate_json(light == LightState::kStill ? p.still : p.moving)}});
+    points.push_back(
+        {{"radius", p.radius_texels}, {"time", estimate_json(light == LightState::kStill ? p.still : p.moving)}});
   }
   return {{"filter", curve.filter}, {"label", curve.label}, {"prefiltered", curve.prefiltered}, {"points", points}};
 }
@@ -113,11 +121,14 @@ json chart_json(const RadiusChart& chart, LightState light) {
   }
   for (const CurveComparison& each : compare_curves(chart, light)) {
     for (const RadiusPoint& p : each.crossings) {
-      crossings.push_back({{"radius", p.radius_texels}, {"time", p.still.value},
+      crossings.push_back({{"radius", p.radius_texels},
+                           {"time", p.still.value},
                            {"label", chart.curves[each.prefiltered].label + " × " + chart.curves[each.taps].label}});
     }
   }
-  return {{"curves", curves}, {"crossings", crossings}, {"x", axis_json(choose_axis(radii, {}, TickKind::kNumber))},
+  return {{"curves", curves},
+          {"crossings", crossings},
+          {"x", axis_json(choose_axis(radii, {}, TickKind::kNumber))},
           {"y", axis_json(choose_log_axis(times, {}))}};
 }
 
@@ -125,11 +136,15 @@ json chart_json(const RadiusChart& chart, LightState light) {
 
 json make_trade_data(const RunRecord& run, const std::vector<CellRecord>& cells, const std::vector<TradeScope>& scopes,
                      const std::vector<RadiusChart>& charts) {
-  json data{{"errors", measures_json(list_error_measures(), run.gl)}, {"costs", measures_json(list_cost_measures(), run.gl)},
-            {"filters", filters_json(list_filters(cells))}, {"scopes", json::array()}, {"charts", json::array()}};
+  json data{{"errors", measures_json(list_error_measures(), run.gl)},
+            {"costs", measures_json(list_cost_measures(), run.gl)},
+            {"filters", filters_json(list_filters(cells))},
+            {"scopes", json::array()},
+            {"charts", json::array()}};
   for (const TradeScope& scope : scopes) data["scopes"].push_back(scope_json(scope, cells, run.gl));
   for (const RadiusChart& chart : charts) {
-    data["charts"].push_back({{"title", chart.title}, {"still", chart_json(chart, LightState::kStill)},
+    data["charts"].push_back({{"title", chart.title},
+                              {"still", chart_json(chart, LightState::kStill)},
                               {"moving", chart_json(chart, LightState::kMoving)}});
   }
   return data;
@@ -139,11 +154,10 @@ std::string dump_for_script(const json& data) {
   std::string safe;
   for (const char c : dump_line(data)) {
     // In JSON these stand in strings only, where an escape means the same.
-    if (c == '<' || c == '>' || c == '&') {
+    if (c == '<' || c == '>' || c == '&')
       safe += fmt::format("\\u{:04x}", static_cast<int>(c));
-    } else {
+    else
       safe += c;
-    }
   }
   return safe;
 }

@@ -10,8 +10,9 @@
 namespace shadowbench::report {
 
 /// Makes what trade_page.js draws from: measures, filters with their styles, scopes with configurations (values as
-/// [value, low, high] or null), axes, pictures (URLs), and each front: standing and `by` of every configuration that has both
-/// values, members cheapest first, and its sentences; and the charts of time over kernel radius with their crossings.
+/// [value, low, high] or null), axes, pictures (URLs), and each front: standing and `by` of every configuration that
+/// has both values, members cheapest first, and its sentences; and the charts of time over kernel radius with their
+/// crossings.
 nlohmann::json make_trade_data(const RunRecord& run, const std::vector<CellRecord>& cells,
                                const std::vector<TradeScope>& scopes, const std::vector<RadiusChart>& charts);
 

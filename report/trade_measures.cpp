@@ -34,9 +34,8 @@ std::optional<double> total_ms(const CellRecord& cell, double Quartiles::*which,
 Measured read_time(const CellRecord& cell, const CellRecord* reference, bool moving) {
   const std::optional<Ratio>& ratio = moving ? cell.ratio_to_none.moving : cell.ratio_to_none.lookup;
   const auto unit_ms = reference ? total_ms(*reference, &Quartiles::median, moving) : std::nullopt;
-  if (ratio && unit_ms) {
+  if (ratio && unit_ms)
     return {Estimate{ratio->median * *unit_ms, ratio->ci95.low * *unit_ms, ratio->ci95.high * *unit_ms}, {}};
-  }
   const auto median = total_ms(cell, &Quartiles::median, moving);
   if (!median) return make_exact(cell, std::optional<double>(), "time_ms", moving ? "time_ms.map" : "time_ms.lookup");
   return {Estimate{*median, *total_ms(cell, &Quartiles::q1, moving), *total_ms(cell, &Quartiles::q3, moving)}, {}};
@@ -96,12 +95,12 @@ const std::array<Measure, kErrorMeasures>& list_error_measures() {
       {{"rmse", "RMSE to the area truth", "root mean square error of visibility; interval: the truth's standard error",
         "root mean square over the scenes", false, false},
        {"kernel_rmse", "RMSE to the filter's exact kernel",
-        "root mean square error of visibility against the traced kernel; no interval", "root mean square over the scenes",
+        "root mean square error of visibility against the traced kernel; no interval",
+        "root mean square over the scenes", false, false},
+       {"leak", "leak rate", "share of the wholly blocked receivers that are bright; no interval", "the worst scene",
         false, false},
-       {"leak", "leak rate", "share of the wholly blocked receivers that are bright; no interval", "the worst scene", false,
-        false},
-       {"flip", "FLIP of the picture", "mean LDR-FLIP of the shaded picture; no interval", "mean over the scenes", false,
-        false}}};
+       {"flip", "FLIP of the picture", "mean LDR-FLIP of the shaded picture; no interval", "mean over the scenes",
+        false, false}}};
   return kMeasures;
 }
 
@@ -109,14 +108,17 @@ const std::array<Measure, kCostMeasures>& list_cost_measures() {
   static const char* const kTime = "geometric mean over the scenes";
   static const std::array<Measure, kCostMeasures> kMeasures = {
       {{"lookup", "time of the lookup",
-        "what is paid while light and casters stand still: the ratio to the lookup without filter, per round, times that lookup's median; interval: 95 % of the ratio", kTime, true,
-        false},
+        "what is paid while light and casters stand still: the ratio to the lookup without filter, per round, times "
+        "that lookup's median; interval: 95 % of the ratio",
+        kTime, true, false},
        {"moving", "time of map, prefilter and lookup",
-        "what is paid while they move: the ratio to the same without filter, per round, times its median; interval: 95 % of the ratio", kTime, true, false},
+        "what is paid while they move: the ratio to the same without filter, per round, times its median; interval: 95 "
+        "% of the ratio",
+        kTime, true, false},
        {"fetches", "texture fetches per receiver", "mean over the receivers, counted in the shader; no interval",
         "mean over the scenes", false, false},
-       {"bytes", "bytes of the map", "what the lookup reads, mip levels included; exact", "the largest of the scenes", false,
-        true}}};
+       {"bytes", "bytes of the map", "what the lookup reads, mip levels included; exact", "the largest of the scenes",
+        false, true}}};
   return kMeasures;
 }
 
@@ -139,28 +141,22 @@ Measured read_error(const CellRecord& cell, std::size_t measure) {
     case 0: {
       Measured rmse = make_exact(cell, cell.error.rmse, "error", "error.rmse");
       const double se = cell.truth.se.value_or(0.0);
-      if (rmse.estimate) rmse.estimate = Estimate{*cell.error.rmse, std::max(0.0, *cell.error.rmse - se), *cell.error.rmse + se};
+      if (rmse.estimate)
+        rmse.estimate = Estimate{*cell.error.rmse, std::max(0.0, *cell.error.rmse - se), *cell.error.rmse + se};
       return rmse;
     }
-    case 1:
-      return make_exact(cell, cell.error.kernel_rmse, "error", "error.kernel_rmse");
-    case 2:
-      return make_exact(cell, cell.artefact.leak, "artefact", "artefact.leak");
-    default:
-      return make_exact(cell, cell.error.flip, "error", "error.flip");
+    case 1: return make_exact(cell, cell.error.kernel_rmse, "error", "error.kernel_rmse");
+    case 2: return make_exact(cell, cell.artefact.leak, "artefact", "artefact.leak");
+    default: return make_exact(cell, cell.error.flip, "error", "error.flip");
   }
 }
 
 Measured read_cost(const CellRecord& cell, const CellRecord* reference, std::size_t measure) {
   switch (measure) {
-    case 0:
-      return read_time(cell, reference, false);
-    case 1:
-      return read_time(cell, reference, true);
-    case 2:
-      return make_exact(cell, cell.cost.fetches, "cost", "cost.fetches");
-    default:
-      return make_exact(cell, cell.cost.map_bytes, "cost", "cost.map_bytes");
+    case 0: return read_time(cell, reference, false);
+    case 1: return read_time(cell, reference, true);
+    case 2: return make_exact(cell, cell.cost.fetches, "cost", "cost.fetches");
+    default: return make_exact(cell, cell.cost.map_bytes, "cost", "cost.map_bytes");
   }
 }
 

@@ -50,11 +50,11 @@ struct Measured {
 Measured read_error(const CellRecord& cell, std::size_t measure);
 
 /// Reads a cost from a cell; `measure` is an index into list_cost_measures().
-/// Times: the per-round ratio to the reference filter and its 95 % interval, times the reference's own median, in ms; the
-/// ratio is robust against drift of the machine's speed between rounds, and the product can be compared between maps and
-/// picture sizes. The reference's median counts as exact. Where the ratio or `reference` is missing: median and quartiles
-/// (for a sum of passes the sums of theirs).
-/// `reference` is the cell that ratios of this cell's map and picture refer to, or null.
+/// Times: the per-round ratio to the reference filter and its 95 % interval, times the reference's own median, in ms;
+/// the ratio is robust against drift of the machine's speed between rounds, and the product can be compared between
+/// maps and picture sizes. The reference's median counts as exact. Where the ratio or `reference` is missing: median
+/// and quartiles (for a sum of passes the sums of theirs). `reference` is the cell that ratios of this cell's map and
+/// picture refer to, or null.
 Measured read_cost(const CellRecord& cell, const CellRecord* reference, std::size_t measure);
 
 /// Is a cell the one that ratios refer to? That is the one whose own ratio is exactly 1 [1, 1].

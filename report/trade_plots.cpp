@@ -33,7 +33,8 @@ PlotPoint make_point(const TradeFront& front, std::size_t i) { return {front.poi
 PlotSeries make_series(const TradeScope& scope, const TradeFront& front, const std::string& filter, Standing standing) {
   PlotSeries series;
   for (std::size_t i = 0; i < front.points.size(); ++i) {
-    if (scope.configurations[front.configurations[i]].filter != filter || front.placements[i].standing != standing) continue;
+    if (scope.configurations[front.configurations[i]].filter != filter || front.placements[i].standing != standing)
+      continue;
     series.points.push_back(make_point(front, i));
   }
   return series;
@@ -49,8 +50,8 @@ PlotSeries make_front_line(const TradeFront& front) {
   return line;
 }
 
-void add_filter(std::vector<PlotSeries>& series, const TradeScope& scope, const TradeFront& front, const std::string& filter,
-                const PlotStyle& style) {
+void add_filter(std::vector<PlotSeries>& series, const TradeScope& scope, const TradeFront& front,
+                const std::string& filter, const PlotStyle& style) {
   const std::string color = style.color;
   const std::string faint = "#99" + color.substr(1);
   const std::tuple<Standing, int, std::string> looks[] = {{Standing::kDominated, style.hollow_point, faint},
@@ -67,7 +68,8 @@ void add_filter(std::vector<PlotSeries>& series, const TradeScope& scope, const 
   if (series.size() > before) series.push_back({filter, color, style.filled_point, PlotLine::kNone, false, {}});
 }
 
-Plot make_front_plot(const TradeScope& scope, const TradeFront& front, const std::vector<std::string>& filters, const GlRecord& gl) {
+Plot make_front_plot(const TradeScope& scope, const TradeFront& front, const std::vector<std::string>& filters,
+                     const GlRecord& gl) {
   const Measure &error = list_error_measures()[front.error], &cost = list_cost_measures()[front.cost];
   Plot plot{fmt::format("plots/{}.{}.{}.svg", scope.id, error.id, cost.id),
             scope.title,
@@ -80,7 +82,8 @@ Plot make_front_plot(const TradeScope& scope, const TradeFront& front, const std
   for (std::size_t i = 0; i < filters.size(); ++i) add_filter(plot.series, scope, front, filters[i], style_of(i));
   plot.series.push_back({"tied: hollow; dominated: faint", "#ffffff", 0, PlotLine::kNone, false, {}});
   for (std::size_t i = 0; i < front.members.size(); ++i) {
-    plot.notes.push_back(fmt::format("{}: {}", i + 1, scope.configurations[front.configurations[front.members[i]]].label));
+    plot.notes.push_back(
+        fmt::format("{}: {}", i + 1, scope.configurations[front.configurations[front.members[i]]].label));
   }
   return plot;
 }
@@ -90,10 +93,10 @@ const Estimate& time_of(const RadiusPoint& point, LightState light) {
 }
 
 PlotSeries make_curve_series(const RadiusCurve& curve, LightState light, const PlotStyle& style) {
-  PlotSeries series{curve.label, style.color, style.filled_point, curve.prefiltered ? PlotLine::kSolid : PlotLine::kDashed, true, {}};
-  for (const RadiusPoint& p : curve.points) {
+  PlotSeries series{
+      curve.label, style.color, style.filled_point, curve.prefiltered ? PlotLine::kSolid : PlotLine::kDashed, true, {}};
+  for (const RadiusPoint& p : curve.points)
     series.points.push_back({{p.radius_texels, p.radius_texels, p.radius_texels}, time_of(p, light)});
-  }
   return series;
 }
 
@@ -101,18 +104,26 @@ PlotSeries make_crossings(const RadiusChart& chart, LightState light) {
   PlotSeries series{"crossing", kInk, 2, PlotLine::kNone, false, {}};
   for (const CurveComparison& each : compare_curves(chart, light)) {
     for (const RadiusPoint& p : each.crossings) {
-      series.points.push_back({{p.radius_texels, p.radius_texels, p.radius_texels}, time_of(p, light), format_number(p.radius_texels)});
+      series.points.push_back(
+          {{p.radius_texels, p.radius_texels, p.radius_texels}, time_of(p, light), format_number(p.radius_texels)});
     }
   }
   if (series.points.empty()) series.title.clear();
   return series;
 }
 
-Plot make_radius_plot(const RadiusChart& chart, LightState light, const std::vector<std::string>& filters, const GlRecord& gl) {
+Plot make_radius_plot(const RadiusChart& chart, LightState light, const std::vector<std::string>& filters,
+                      const GlRecord& gl) {
   const bool still = light == LightState::kStill;
   std::vector<double> radii, times, ends;
-  Plot plot{fmt::format("plots/{}.map{}.radius.{}.svg", chart.scope_id, chart.map_size, still ? "still" : "moving"), chart.title,
-            "kernel half-width, texels", name_axis(list_cost_measures()[still ? 0 : 1], gl), {}, {}, {}, {}};
+  Plot plot{fmt::format("plots/{}.map{}.radius.{}.svg", chart.scope_id, chart.map_size, still ? "still" : "moving"),
+            chart.title,
+            "kernel half-width, texels",
+            name_axis(list_cost_measures()[still ? 0 : 1], gl),
+            {},
+            {},
+            {},
+            {}};
   for (const RadiusCurve& curve : chart.curves) {
     plot.series.push_back(make_curve_series(curve, light, style_of(place_of(filters, curve.filter))));
     for (const PlotPoint& point : plot.series.back().points) {
@@ -131,7 +142,12 @@ Plot make_radius_plot(const RadiusChart& chart, LightState light, const std::vec
 
 PlotSeries make_light_series(const LightCurve& curve, LightState light, const PlotStyle& style) {
   const bool still = light == LightState::kStill;
-  PlotSeries series{still ? curve.label : "", style.color, still ? style.filled_point : style.hollow_point, still ? PlotLine::kSolid : PlotLine::kDashed, true, {}};
+  PlotSeries series{still ? curve.label : "",
+                    style.color,
+                    still ? style.filled_point : style.hollow_point,
+                    still ? PlotLine::kSolid : PlotLine::kDashed,
+                    true,
+                    {}};
   for (const LightPoint& p : curve.points) {
     const double count = p.count;
     series.points.push_back({{count, count, count}, frame_time(p, light)});
@@ -148,11 +164,23 @@ PlotAxis make_count_axis(const std::vector<int>& counts) {
 // What grows in proportion, from the corner of the plot on.
 PlotSeries make_proportion(const LightChart& chart, const PlotAxis& y) {
   const double from = chart.counts.front(), to = std::min<double>(chart.counts.back(), from * y.high / y.low);
-  return {"in proportion", "#9aa0a8", 0, PlotLine::kSolid, false, {{{from, from, from}, {y.low, y.low, y.low}}, {{to, to, to}, {y.low * to / from, y.low, y.low}}}};
+  return {"in proportion",
+          "#9aa0a8",
+          0,
+          PlotLine::kSolid,
+          false,
+          {{{from, from, from}, {y.low, y.low, y.low}}, {{to, to, to}, {y.low * to / from, y.low, y.low}}}};
 }
 
 Plot make_light_plot(const LightChart& chart, const std::vector<std::string>& filters, const GlRecord& gl) {
-  Plot plot{light_plot_file(chart), chart.title, "lights, each with a map of its own", fmt::format("time of a frame, ms: {}", describe_clock(gl)), make_count_axis(chart.counts), {}, {}, {}};
+  Plot plot{light_plot_file(chart),
+            chart.title,
+            "lights, each with a map of its own",
+            fmt::format("time of a frame, ms: {}", describe_clock(gl)),
+            make_count_axis(chart.counts),
+            {},
+            {},
+            {}};
   std::vector<double> times, ends;
   for (const LightCurve& curve : chart.curves) {
     for (const LightState light : {LightState::kStill, LightState::kMoving}) {
@@ -199,19 +227,21 @@ std::vector<Plot> make_front_plots(const std::vector<TradeScope>& scopes, const 
 std::vector<Plot> make_radius_plots(const std::vector<RadiusChart>& charts, const std::vector<std::string>& filters,
                                     const GlRecord& gl) {
   std::vector<Plot> plots;
-  for (const RadiusChart& chart : charts) {
-    for (const LightState light : {LightState::kStill, LightState::kMoving}) plots.push_back(make_radius_plot(chart, light, filters, gl));
-  }
+  for (const RadiusChart& chart : charts)
+    for (const LightState light : {LightState::kStill, LightState::kMoving})
+      plots.push_back(make_radius_plot(chart, light, filters, gl));
   return plots;
 }
 
-std::string light_plot_file(const LightChart& chart) { return fmt::format("plots/{}.map{}.lights.svg", chart.scope_id, chart.map_size); }
+std::string light_plot_file(const LightChart& chart) {
+  return fmt::format("plots/{}.map{}.lights.svg", chart.scope_id, chart.map_size);
+}
 
-std::vector<Plot> make_light_plots(const std::vector<LightChart>& charts, const std::vector<std::string>& filters, const GlRecord& gl) {
+std::vector<Plot> make_light_plots(const std::vector<LightChart>& charts, const std::vector<std::string>& filters,
+                                   const GlRecord& gl) {
   std::vector<Plot> plots;
-  for (const LightChart& chart : charts) {
+  for (const LightChart& chart : charts)
     if (chart.counts.size() > 1) plots.push_back(make_light_plot(chart, filters, gl));
-  }
   return plots;
 }
 

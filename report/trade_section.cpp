@@ -44,9 +44,13 @@ std::string html_crossovers(const std::vector<CellRecord>& cells, const Trade& t
   std::string text;
   if (!trade.charts.empty()) {
     text += "<h3>From which kernel on a prefiltered map pays</h3>\n" + html_list(describe_crossovers(trade.charts));
-    text += "<p class=\"note\">A radius counts where both were measured, or one was and the other is interpolated between its "
-            "neighbours; cheaper is said where the 95 % intervals do not overlap. Crosses mark where the medians meet.</p>\n";
-    text += html_plot("radius", "Time over kernel radius", html_select("radius-place", "where") + html_select("radius-light", "light"));
+    text +=
+        "<p class=\"note\">A radius counts where both were measured, or one was and the other is interpolated between "
+        "its "
+        "neighbours; cheaper is said where the 95 % intervals do not overlap. Crosses mark where the medians "
+        "meet.</p>\n";
+    text += html_plot("radius", "Time over kernel radius",
+                      html_select("radius-place", "where") + html_select("radius-light", "light"));
   }
   if (!growth.empty()) text += "<h3>How times grow</h3>\n" + html_list(growth);
   return text;
@@ -54,10 +58,14 @@ std::string html_crossovers(const std::vector<CellRecord>& cells, const Trade& t
 
 constexpr const char* kLightsTitle = "How a frame's cost grows with its lights";
 constexpr const char* kLightsNote =
-    "Light 0 is the scene's; the others are it, turned about the vertical in equal steps, each with a frustum, a depth map and an encoded map of its own. Still: maps "
-    "and prefilters are kept, and each light is looked up; moving: all of them are drawn in every frame. Shading is left out. In brackets: the 95 % interval of the "
-    "per-round ratio to the reference under as many lights, times its median (quartiles where the run does not hold the reference); cheaper is said where these do not "
-    "overlap. Growth is fitted to each filter's own medians, in brackets what its quartiles allow: each number of lights is timed in rounds of its own, and drift of the "
+    "Light 0 is the scene's; the others are it, turned about the vertical in equal steps, each with a frustum, a depth "
+    "map and an encoded map of its own. Still: maps "
+    "and prefilters are kept, and each light is looked up; moving: all of them are drawn in every frame. Shading is "
+    "left out. In brackets: the 95 % interval of the "
+    "per-round ratio to the reference under as many lights, times its median (quartiles where the run does not hold "
+    "the reference); cheaper is said where these do not "
+    "overlap. Growth is fitted to each filter's own medians, in brackets what its quartiles allow: each number of "
+    "lights is timed in rounds of its own, and drift of the "
     "machine between them is in the growth, not in the order.";
 
 std::vector<std::string> describe_lights(const Trade& trade, const GlRecord& gl) {
@@ -67,14 +75,18 @@ std::vector<std::string> describe_lights(const Trade& trade, const GlRecord& gl)
   return sentences;
 }
 
-std::string name_light_table(const LightChart& chart, const GlRecord& gl) { return fmt::format("{}: time of a frame, ms: {}", chart.title, describe_clock(gl)); }
+std::string name_light_table(const LightChart& chart, const GlRecord& gl) {
+  return fmt::format("{}: time of a frame, ms: {}", chart.title, describe_clock(gl));
+}
 
 std::string html_lights(const RunRecord& run, const Trade& trade) {
   if (trade.lights.empty()) return {};
-  std::string text = fmt::format("<h3 id=\"lights\">{}</h3>\n", escape_html(kLightsTitle)) + html_list(describe_lights(trade, run.gl));
+  std::string text =
+      fmt::format("<h3 id=\"lights\">{}</h3>\n", escape_html(kLightsTitle)) + html_list(describe_lights(trade, run.gl));
   text += "<p class=\"note\">" + escape_html(kLightsNote) + "</p>\n";
   for (const LightChart& chart : trade.lights) {
-    if (!trade.no_plots && chart.counts.size() > 1) text += figure(light_plot_file(chart), chart.title + ": time of a frame over its lights", "grid");
+    if (!trade.no_plots && chart.counts.size() > 1)
+      text += figure(light_plot_file(chart), chart.title + ": time of a frame over its lights", "grid");
     text += html_table(make_light_table(chart), name_light_table(chart, run.gl), "cost");
   }
   return text;
@@ -96,9 +108,8 @@ std::string markdown_list(const std::vector<std::string>& items) {
 
 std::string markdown_fronts(const RunRecord& run, const std::vector<CellRecord>& cells, const Trade& trade) {
   std::string text;
-  for (const TradeScope& scope : trade.scopes) {
+  for (const TradeScope& scope : trade.scopes)
     text += "### " + escape_markdown(scope.title) + "\n\n" + markdown_list(describe_scope(scope, run.gl));
-  }
   const auto crossovers = describe_crossovers(trade.charts), growth = describe_growth(cells);
   if (!crossovers.empty()) text += "### From which kernel on a prefiltered map pays\n\n" + markdown_list(crossovers);
   if (!growth.empty()) text += "### How times grow\n\n" + markdown_list(growth);
@@ -107,10 +118,10 @@ std::string markdown_fronts(const RunRecord& run, const std::vector<CellRecord>&
 
 std::string markdown_lights(const RunRecord& run, const Trade& trade) {
   if (trade.lights.empty()) return {};
-  std::string text = fmt::format("### {}\n\n{}{}\n\n", kLightsTitle, markdown_list(describe_lights(trade, run.gl)), escape_markdown(kLightsNote));
-  for (const LightChart& chart : trade.lights) {
+  std::string text = fmt::format("### {}\n\n{}{}\n\n", kLightsTitle, markdown_list(describe_lights(trade, run.gl)),
+                                 escape_markdown(kLightsNote));
+  for (const LightChart& chart : trade.lights)
     text += escape_markdown(name_light_table(chart, run.gl)) + ":\n\n" + markdown_table(make_light_table(chart)) + "\n";
-  }
   return text;
 }
 
@@ -133,19 +144,27 @@ std::optional<Trade> make_trade(const RunRecord& run, const std::vector<CellReco
 }
 
 std::string make_trade_html(const RunRecord& run, const std::vector<CellRecord>& cells, const Trade& trade) {
-  const std::string selects = html_select("front-scope", "scene") + html_select("front-error", "error") + html_select("front-cost", "cost");
-  if (!trade.has_fronts) return "<section id=\"trade\">\n<h2>The trade: what less error costs</h2>\n" + html_lights(run, trade) + html_static_plots(trade) + "</section>\n";
-  std::string text = fmt::format("<section id=\"trade\">\n<style>\n{}</style>\n<h2>The trade: what less error costs</h2>\n", trade_style());
-  text += "<p class=\"note\">Lower left is better. Filled and joined: the front, the cells that no other beats. Hollow: cannot be told "
-          "from a cell of the front, to which a dotted line leads. Faint: beaten. Whiskers are intervals. Point at a cell for its "
-          "numbers, click it for its pictures.</p>\n";
+  const std::string selects =
+      html_select("front-scope", "scene") + html_select("front-error", "error") + html_select("front-cost", "cost");
+  if (!trade.has_fronts)
+    return "<section id=\"trade\">\n<h2>The trade: what less error costs</h2>\n" + html_lights(run, trade) +
+           html_static_plots(trade) + "</section>\n";
+  std::string text = fmt::format(
+      "<section id=\"trade\">\n<style>\n{}</style>\n<h2>The trade: what less error costs</h2>\n", trade_style());
+  text +=
+      "<p class=\"note\">Lower left is better. Filled and joined: the front, the cells that no other beats. Hollow: "
+      "cannot be told "
+      "from a cell of the front, to which a dotted line leads. Faint: beaten. Whiskers are intervals. Point at a cell "
+      "for its "
+      "numbers, click it for its pictures.</p>\n";
   text += html_plot("front", "Error against cost of all cells", selects);
   text += "<div id=\"front-words\">" + html_list(describe_scope(trade.scopes.front(), run.gl)) + "</div>\n";
   text += "<div id=\"front-pictures\" aria-live=\"polite\"></div>\n";
-  text += "<details><summary>How to read the fronts</summary>\n" + html_list(explain_fronts()) + "<p>All fronts, cell by cell: " +
-          link("fronts.csv", "fronts.csv") + ".</p></details>\n";
+  text += "<details><summary>How to read the fronts</summary>\n" + html_list(explain_fronts()) +
+          "<p>All fronts, cell by cell: " + link("fronts.csv", "fronts.csv") + ".</p></details>\n";
   text += html_crossovers(cells, trade) + html_lights(run, trade) + html_static_plots(trade);
-  text += "<script type=\"application/json\" id=\"trade-data\">" + dump_for_script(make_trade_data(run, cells, trade.scopes, trade.charts)) +
+  text += "<script type=\"application/json\" id=\"trade-data\">" +
+          dump_for_script(make_trade_data(run, cells, trade.scopes, trade.charts)) +
           "</script>\n<script src=\"chart.min.js\"></script>\n";
   return text + fmt::format("<script>\n{}</script>\n</section>\n", trade_script());
 }
@@ -157,7 +176,8 @@ std::string make_trade_markdown(const RunRecord& run, const std::vector<CellReco
   if (trade.no_plots) text += "No plots for documents: " + escape_markdown(*trade.no_plots) + ".\n\n";
   if (!trade.has_fronts) return text;
   text += "### Columns of fronts.csv\n\n";
-  for (const CsvColumn& column : list_front_columns()) text += fmt::format("- `{}`: {}\n", column.name, escape_markdown(column.meaning));
+  for (const CsvColumn& column : list_front_columns())
+    text += fmt::format("- `{}`: {}\n", column.name, escape_markdown(column.meaning));
   return text + "\n";
 }
 

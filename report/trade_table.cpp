@@ -22,13 +22,12 @@ std::string join_keys(const std::vector<CellRecord>& cells, const TradeConfigura
 }
 
 void append(std::vector<std::string>& fields, const std::optional<Estimate>& estimate) {
-  for (double Estimate::*member : {&Estimate::value, &Estimate::low, &Estimate::high}) {
+  for (double Estimate::*member : {&Estimate::value, &Estimate::low, &Estimate::high})
     fields.push_back(estimate ? fmt::format("{}", *estimate.*member) : std::string());
-  }
 }
 
-std::vector<std::string> describe_place(const std::vector<CellRecord>& cells, const TradeScope& scope, const TradeFront& front,
-                                        std::size_t configuration) {
+std::vector<std::string> describe_place(const std::vector<CellRecord>& cells, const TradeScope& scope,
+                                        const TradeFront& front, std::size_t configuration) {
   const auto found = std::find(front.configurations.begin(), front.configurations.end(), configuration);
   if (found == front.configurations.end()) {
     const TradeConfiguration& each = scope.configurations[configuration];
@@ -41,12 +40,20 @@ std::vector<std::string> describe_place(const std::vector<CellRecord>& cells, co
           place.standing == Standing::kTied ? by : "", ""};
 }
 
-std::string make_row(const std::vector<CellRecord>& cells, const TradeScope& scope, const TradeFront& front, std::size_t i) {
+std::string make_row(const std::vector<CellRecord>& cells, const TradeScope& scope, const TradeFront& front,
+                     std::size_t i) {
   const TradeConfiguration& each = scope.configurations[i];
-  std::vector<std::string> fields = {scope.id, scope.scene, scope.view, fmt::format("{}", scope.width),
-                                     fmt::format("{}", scope.height), list_error_measures()[front.error].id,
-                                     list_cost_measures()[front.cost].id, join_keys(cells, each), each.filter,
-                                     dump_line(value_json(each.params)), fmt::format("{}", each.map_size)};
+  std::vector<std::string> fields = {scope.id,
+                                     scope.scene,
+                                     scope.view,
+                                     fmt::format("{}", scope.width),
+                                     fmt::format("{}", scope.height),
+                                     list_error_measures()[front.error].id,
+                                     list_cost_measures()[front.cost].id,
+                                     join_keys(cells, each),
+                                     each.filter,
+                                     dump_line(value_json(each.params)),
+                                     fmt::format("{}", each.map_size)};
   append(fields, each.errors[front.error].estimate);
   append(fields, each.costs[front.cost].estimate);
   const auto place = describe_place(cells, scope, front, i);

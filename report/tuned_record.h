@@ -53,8 +53,8 @@ struct TunedFilterRecord {
   ParamMap params;    ///< complete: what to run with; the defaults, unless the verdict is kBetter
   std::vector<TunedParamRecord> searched;
   std::vector<TunedViewRecord> views;
-  TunedScore training;  ///< mean over the training views
-  TunedScore unseen;    ///< mean over the others
+  TunedScore training;                    ///< mean over the training views
+  TunedScore unseen;                      ///< mean over the others
   std::optional<double> unseen_truth_se;  ///< mean over these; empty: the metric is not in units of visibility
   TuneVerdict verdict = TuneVerdict::kNoGain;
   int search_evaluations = 0;  ///< settings that the search drew
@@ -67,24 +67,25 @@ struct TunedRecord {
   std::string renderer;
   std::string metric;
   int map_size = 0;
-  int width = 0;   ///< pixels
-  int height = 0;  ///< pixels
-  double pad_texels = 0.0;       ///< around the scene in the map
-  double widest_kernel = 0.0;    ///< half-width in texels of the widest kernel that was searched
+  int width = 0;               ///< pixels
+  int height = 0;              ///< pixels
+  double pad_texels = 0.0;     ///< around the scene in the map
+  double widest_kernel = 0.0;  ///< half-width in texels of the widest kernel that was searched
   int budget = 0;
-  double tolerance = 0.0;        ///< of the good range, relative
+  double tolerance = 0.0;  ///< of the good range, relative
   std::uint32_t seed = 0;
-  std::string light;             ///< "AZIMUTH,ELEVATION"; empty: each scene's own
+  std::string light;              ///< "AZIMUTH,ELEVATION"; empty: each scene's own
   std::vector<std::string> bias;  ///< as asked for; empty: the default
-  std::string training_views;    ///< in words
-  std::string unseen_views;      ///< likewise
+  std::string training_views;     ///< in words
+  std::string unseen_views;       ///< likewise
   std::vector<std::string> scenes;
   std::vector<std::string> notes;  ///< views left out, and why
   std::vector<TunedFilterRecord> filters;
 };
 
-/// Fills in a filter's means, verdict and the parameters to run with, from its views and `found`, its complete parameters as
-/// found. `metric_in_visibility`: the truth's standard error is in the metric's unit; else any gain counts.
+/// Fills in a filter's means, verdict and the parameters to run with, from its views and `found`, its complete
+/// parameters as found. `metric_in_visibility`: the truth's standard error is in the metric's unit; else any gain
+/// counts.
 void judge_tuning(TunedFilterRecord& filter, const ParamMap& found, bool metric_in_visibility);
 
 }  // namespace shadowbench::report

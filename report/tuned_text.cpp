@@ -20,7 +20,8 @@ std::string format_value(double value) { return fmt::format("{:.5g}", value); }
 std::string format_percent(double share) { return fmt::format("{:.3g} %", 100.0 * share); }
 
 std::string format_gain(const TunedScore& score) {
-  return score.at_default > 0.0 ? fmt::format("{:+.1f} %", 100.0 * score.gain() / score.at_default) : std::string(kNothing);
+  return score.at_default > 0.0 ? fmt::format("{:+.1f} %", 100.0 * score.gain() / score.at_default)
+                                : std::string(kNothing);
 }
 
 std::string make_param_table(const TunedFilterRecord& filter, const std::string& metric) {
@@ -47,18 +48,20 @@ std::string format_intervals(const TunedParamRecord& param) {
   if (param.no_effect) return "all of it: no effect";
   std::vector<std::string> texts;
   for (const Interval& interval : param.good) {
-    texts.push_back(interval.low == interval.high ? format_value(interval.low)
-                                                  : fmt::format("{} .. {}", format_value(interval.low), format_value(interval.high)));
+    texts.push_back(interval.low == interval.high
+                        ? format_value(interval.low)
+                        : fmt::format("{} .. {}", format_value(interval.low), format_value(interval.high)));
   }
   return fmt::format("{}", fmt::join(texts, ", and "));
 }
 
 std::string make_range_table(const TunedFilterRecord& filter, double tolerance) {
   TextTable table;
-  table.header = {"parameter", "searched", "scale", fmt::format("within {:g} % of the best", 100.0 * tolerance), "share of the scale"};
+  table.header = {"parameter", "searched", "scale", fmt::format("within {:g} % of the best", 100.0 * tolerance),
+                  "share of the scale"};
   for (const TunedParamRecord& param : filter.searched) {
-    table.rows.push_back({param.name, fmt::format("{} .. {}", format_value(param.min), format_value(param.max)), param.scale,
-                          format_intervals(param), format_percent(param.good_share)});
+    table.rows.push_back({param.name, fmt::format("{} .. {}", format_value(param.min), format_value(param.max)),
+                          param.scale, format_intervals(param), format_percent(param.good_share)});
   }
   return make_markdown_table(table);
 }
@@ -67,7 +70,8 @@ std::string make_range_table(const TunedFilterRecord& filter, double tolerance) 
 std::string make_scene_table(const TunedFilterRecord& filter, const TunedRecord& record) {
   TextTable table;
   std::vector<std::string> losers;
-  table.header = {"scene, unseen views", record.metric + ", default", record.metric + ", found", "gain", "better in", "truth's standard error"};
+  table.header = {"scene, unseen views", record.metric + ", default", record.metric + ", found", "gain",
+                  "better in",           "truth's standard error"};
   for (const std::string& scene : record.scenes) {
     TunedScore sum;
     double truth_se = 0.0;
@@ -82,11 +86,13 @@ std::string make_scene_table(const TunedFilterRecord& filter, const TunedRecord&
     }
     const TunedScore mean{sum.at_default / views, sum.tuned / views};
     if (mean.gain() < 0.0) losers.push_back(escape_markdown(scene));
-    table.rows.push_back({escape_markdown(scene), format_number(mean.at_default), format_number(mean.tuned), format_gain(mean),
-                          fmt::format("{} of {} views", better, views), filter.unseen_truth_se ? format_number(truth_se / views) : std::string(kNothing)});
+    table.rows.push_back({escape_markdown(scene), format_number(mean.at_default), format_number(mean.tuned),
+                          format_gain(mean), fmt::format("{} of {} views", better, views),
+                          filter.unseen_truth_se ? format_number(truth_se / views) : std::string(kNothing)});
   }
   if (losers.empty()) return make_markdown_table(table);
-  return make_markdown_table(table) + fmt::format("Worse by them: {}. Tune for such scenes apart (--scene).\n\n", fmt::join(losers, ", "));
+  return make_markdown_table(table) +
+         fmt::format("Worse by them: {}. Tune for such scenes apart (--scene).\n\n", fmt::join(losers, ", "));
 }
 
 std::string make_filter_text(const TunedFilterRecord& filter, const TunedRecord& record) {
@@ -95,31 +101,43 @@ std::string make_filter_text(const TunedFilterRecord& filter, const TunedRecord&
   text += describe_verdict(filter, record.metric) + "\n\n";
   text += make_scene_table(filter, record);
   text += make_range_table(filter, record.tolerance);
-  text += fmt::format("{} settings were drawn: {} by the search, the others for the good ranges.\n\n", filter.evaluations, filter.search_evaluations);
+  text += fmt::format("{} settings were drawn: {} by the search, the others for the good ranges.\n\n",
+                      filter.evaluations, filter.search_evaluations);
   return text;
 }
 
 }  // namespace
 
 std::string describe_verdict(const TunedFilterRecord& filter, const std::string& metric) {
-  const std::string numbers = fmt::format("Gain on unseen views: {} ({} {} to {}{})", format_gain(filter.unseen), metric, format_number(filter.unseen.at_default),
-                                          format_number(filter.unseen.tuned),
-                                          filter.unseen_truth_se ? "; the truth's standard error is " + format_number(*filter.unseen_truth_se) : std::string());
+  const std::string numbers =
+      fmt::format("Gain on unseen views: {} ({} {} to {}{})", format_gain(filter.unseen), metric,
+                  format_number(filter.unseen.at_default), format_number(filter.unseen.tuned),
+                  filter.unseen_truth_se ? "; the truth's standard error is " + format_number(*filter.unseen_truth_se)
+                                         : std::string());
   switch (filter.verdict) {
     case TuneVerdict::kBetter: return numbers + ". Kept: the parameters found.";
-    case TuneVerdict::kOverfitted: return numbers + ". Overfitted: better in training, but not on views it has not seen. Kept: the default.";
+    case TuneVerdict::kOverfitted:
+      return numbers + ". Overfitted: better in training, but not on views it has not seen. Kept: the default.";
     case TuneVerdict::kNoGain: break;
   }
-  return fmt::format("{}. No gain{}. Kept: the default.", numbers, filter.unseen_truth_se ? ": the difference, in training or on unseen views, is within the truth's standard error" : "");
+  return fmt::format("{}. No gain{}. Kept: the default.", numbers,
+                     filter.unseen_truth_se
+                         ? ": the difference, in training or on unseen views, is within the truth's standard error"
+                         : "");
 }
 
 std::string make_tuned_text(const TunedRecord& record) {
   std::string text = fmt::format("# Parameters tuned for {}\n\n", record.metric);
-  text += fmt::format("Scenes: {}. Map {} texels, padded by {:g} (the widest kernel searched is {:g}); picture {}x{}; {}; program {}.\n", fmt::join(record.scenes, ", "),
-                      record.map_size, record.pad_texels, record.widest_kernel, record.width, record.height, record.renderer, record.commit);
-  text += fmt::format("Light: {}. Bias: {}. Seed: {}.\n", record.light.empty() ? "each scene's own" : record.light,
-                      record.bias.empty() ? "the default" : fmt::format("{}", fmt::join(record.bias, " ")), record.seed);
-  text += fmt::format("Training views of each scene, in degrees: {}. Unseen: {}. A score is the mean over views.\n\n", record.training_views, record.unseen_views);
+  text += fmt::format(
+      "Scenes: {}. Map {} texels, padded by {:g} (the widest kernel searched is {:g}); picture {}x{}; {}; program "
+      "{}.\n",
+      fmt::join(record.scenes, ", "), record.map_size, record.pad_texels, record.widest_kernel, record.width,
+      record.height, record.renderer, record.commit);
+  text +=
+      fmt::format("Light: {}. Bias: {}. Seed: {}.\n", record.light.empty() ? "each scene's own" : record.light,
+                  record.bias.empty() ? "the default" : fmt::format("{}", fmt::join(record.bias, " ")), record.seed);
+  text += fmt::format("Training views of each scene, in degrees: {}. Unseen: {}. A score is the mean over views.\n\n",
+                      record.training_views, record.unseen_views);
   for (const std::string& note : record.notes) text += fmt::format("Left out: {}.\n\n", escape_markdown(note));
   for (const TunedFilterRecord& filter : record.filters) text += make_filter_text(filter, record);
   return text;

@@ -7,13 +7,11 @@ namespace shadowbench::report {
 
 std::string describe_places(const VerdictPlaces& places) {
   std::map<std::pair<std::string, std::string>, std::vector<int>> maps;  // scenes and picture to maps
-  for (const auto& [place, scenes] : places) {
+  for (const auto& [place, scenes] : places)
     maps[{fmt::format("{}", fmt::join(scenes, ", ")), place.first}].push_back(place.second);
-  }
   std::vector<std::string> texts;
-  for (const auto& [where, sizes] : maps) {
+  for (const auto& [where, sizes] : maps)
     texts.push_back(fmt::format("{}, picture {}, map {}", where.first, where.second, fmt::join(sizes, ", ")));
-  }
   return fmt::format("{}", fmt::join(texts, "; "));
 }
 

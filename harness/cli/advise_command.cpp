@@ -23,7 +23,8 @@ using report::AdviceRequest;
 
 struct AdviseArguments {
   std::string run;
-  std::vector<std::optional<std::string>> limits = std::vector<std::optional<std::string>>(report::limit_table().size());
+  std::vector<std::optional<std::string>> limits =
+      std::vector<std::optional<std::string>>(report::limit_table().size());
   std::vector<std::string> claims;
   std::vector<std::string> scenes;
   std::string size;
@@ -66,9 +67,9 @@ AdviceRequest make_request(const AdviseArguments& arguments) {
   using report::CostKind, report::LightMotion;
   request.light = parse_choice<LightMotion>(arguments.light, "--light",
                                             {{"moving", LightMotion::kMoving}, {"static", LightMotion::kStatic}});
-  request.cheapest = parse_choice<CostKind>(
-      arguments.cheapest, "--cheapest",
-      {{"time", CostKind::kTime}, {"bytes", CostKind::kBytes}, {"fetches", CostKind::kFetches}});
+  request.cheapest =
+      parse_choice<CostKind>(arguments.cheapest, "--cheapest",
+                             {{"time", CostKind::kTime}, {"bytes", CostKind::kBytes}, {"fetches", CostKind::kFetches}});
   request.scenes = arguments.scenes;
   if (!arguments.size.empty()) request.size = parse_picture_size(arguments.size);
   if (!arguments.claims.empty()) request.claims = list_claims();
@@ -90,12 +91,17 @@ int advise(const AdviseArguments& arguments) {
 }
 
 constexpr const char* kFooter =
-    "A configuration is all that makes a cell but scene and view: filter, parameters, map, picture size, bias. It keeps a\n"
-    "limit where its worst scene does. Its cost is the mean over all views of all scenes; --max-ms holds for each of them.\n"
+    "A configuration is all that makes a cell but scene and view: filter, parameters, map, picture size, bias. It "
+    "keeps a\n"
+    "limit where its worst scene does. Its cost is the mean over all views of all scenes; --max-ms holds for each of "
+    "them.\n"
     "A frame with a moving light pays for map, prefilter and lookup, one with a static light for the lookup alone.\n"
-    "Costs are apart where their intervals are: the 95 % interval of the ratio to 'none' where both share map, bias and\n"
-    "picture size, else the quartiles of the times. Without any limit the cheapest of all is advised, which does least.\n"
-    "What was not measured on all the scenes, did not finish, or lacks a value that is asked for keeps no limit. A limit on\n"
+    "Costs are apart where their intervals are: the 95 % interval of the ratio to 'none' where both share map, bias "
+    "and\n"
+    "picture size, else the quartiles of the times. Without any limit the cheapest of all is advised, which does "
+    "least.\n"
+    "What was not measured on all the scenes, did not finish, or lacks a value that is asked for keeps no limit. A "
+    "limit on\n"
     "a fault that has too few receivers to occur on in a scene is judged on the others; the answer names that scene.\n"
     "Exit code 1: nothing keeps the limits; the message names the ones in the way.";
 

@@ -16,9 +16,8 @@ namespace {
 double parse_angle(const std::string& text, const char* name, double limit_deg) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(std::abs(value) <= limit_deg)) {
+  if (error != std::errc() || end != text.data() + text.size() || !(std::abs(value) <= limit_deg))
     fail(fmt::format("--light: the {} '{}' must be a number of degrees, {} .. {}", name, text, -limit_deg, limit_deg));
-  }
   return value;
 }
 
@@ -36,9 +35,8 @@ std::vector<std::string> split_list(const std::string& text) {
 int parse_count(const std::string& text, const char* option) {
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < 1) {
+  if (error != std::errc() || end != text.data() + text.size() || value < 1)
     fail(fmt::format("{}: '{}' must be a whole number, 1 or more", option, text));
-  }
   return value;
 }
 
@@ -52,16 +50,16 @@ void require_distinct(const std::vector<filters::FilterRequest>& requests) {
   for (std::size_t i = 0; i < requests.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const filters::FilterRequest &a = requests[i], &b = requests[j];
-      if (a.spec.id == b.spec.id && a.values == b.values) {
+      if (a.spec.id == b.spec.id && a.values == b.values)
         fail(fmt::format("--filters names '{}' twice: '{}' has the same parameters", a.label(), b.label()));
-      }
     }
   }
 }
 
 run::LightAngles parse_light(const std::string& text) {
   const std::size_t comma = text.find(',');
-  if (comma == std::string::npos) fail(fmt::format("--light: '{}' must be AZIMUTH,ELEVATION in degrees, such as 120,35", text));
+  if (comma == std::string::npos)
+    fail(fmt::format("--light: '{}' must be AZIMUTH,ELEVATION in degrees, such as 120,35", text));
   return {parse_angle(text.substr(0, comma), "azimuth", 360.0), parse_angle(text.substr(comma + 1), "elevation", 90.0)};
 }
 
@@ -74,8 +72,8 @@ std::vector<std::string> list_builtin_scenes(const run::Resources& resources) {
 std::filesystem::path find_results(const std::filesystem::path& run) {
   if (std::filesystem::is_directory(run)) return run / "results.json";
   if (std::filesystem::exists(run)) return run;
-  throw Error(ErrorKind::kInput, "there is no such folder or file; give a run's folder (its --out), or its results.json",
-              run.string());
+  throw Error(ErrorKind::kInput,
+              "there is no such folder or file; give a run's folder (its --out), or its results.json", run.string());
 }
 
 std::filesystem::path choose_cache(const std::string& folder, bool no_cache) {

@@ -30,7 +30,8 @@ std::vector<std::string> list_builtin_scenes(const run::Resources& resources);
 /// Refuses filters that are named twice with the same parameters.
 void require_distinct(const std::vector<filters::FilterRequest>& requests);
 
-/// Gives the results.json of a run, which is named by its folder or by that file. Throws Error(kInput) where there is neither.
+/// Gives the results.json of a run, which is named by its folder or by that file. Throws Error(kInput) where there is
+/// neither.
 std::filesystem::path find_results(const std::filesystem::path& run);
 
 /// Gives the folder for traced images; empty: nothing is kept.

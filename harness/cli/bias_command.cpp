@@ -52,11 +52,15 @@ int sweep(const BiasArguments& arguments) {
 }  // namespace
 
 void add_bias_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("bias", "Sweep every mode of depth bias over its amount, and write a page about it");
-  command->footer("Draws the scene's first view with each filter under each mode of --bias (see 'run --help'), at 0 to 8 times the amount\n"
-                  "that theory asks for, and writes bias.html (charts of acne and contact gap), bias.csv and pictures.");
+  CLI::App* command =
+      app.add_subcommand("bias", "Sweep every mode of depth bias over its amount, and write a page about it");
+  command->footer(
+      "Draws the scene's first view with each filter under each mode of --bias (see 'run --help'), at 0 to 8 times the "
+      "amount\n"
+      "that theory asks for, and writes bias.html (charts of acne and contact gap), bias.csv and pictures.");
   auto a = std::make_shared<BiasArguments>();
-  command->add_option("--scene", a->scene, "a built-in scene, or a .toml, .gltf, .glb or .obj file")->capture_default_str();
+  command->add_option("--scene", a->scene, "a built-in scene, or a .toml, .gltf, .glb or .obj file")
+      ->capture_default_str();
   command->add_option("--filters", a->filters, "built-in filters with parameters (default: all; see 'list filters')");
   command->add_option("--map-size", a->map_size, "texels along a side of the shadow map")->capture_default_str();
   command->add_option("--size", a->size, "picture size in pixels, WIDTHxHEIGHT")->capture_default_str();

@@ -36,9 +36,8 @@ std::vector<reference::Metric> choose_metrics(const std::string& chosen) {
   if (chosen == kAllMetrics) return metrics;
   std::erase_if(metrics, [&](const reference::Metric& metric) { return metric.name() != chosen; });
   if (!metrics.empty()) return metrics;
-  throw Error(ErrorKind::kUsage,
-              fmt::format("--metric: there is no '{}'{}; known: {}", chosen,
-                          did_you_mean(chosen, metric_names()), fmt::join(metric_names(), ", ")));
+  throw Error(ErrorKind::kUsage, fmt::format("--metric: there is no '{}'{}; known: {}", chosen,
+                                             did_you_mean(chosen, metric_names()), fmt::join(metric_names(), ", ")));
 }
 
 void check_pixels_per_degree(double value) {
@@ -85,12 +84,15 @@ bool name_runs(const CLI::App& command, const run::ComparisonOptions& options) {
   const bool a = is_run(options.image), b = is_run(options.truth);
   if (!a && !b) return false;
   if (a != b) {
-    throw Error(ErrorKind::kInput, fmt::format("'{}' is a run's folder or results, and '{}' is not: name two pictures, or the report folders of two runs",
-                                               a ? options.image : options.truth, a ? options.truth : options.image));
+    throw Error(
+        ErrorKind::kInput,
+        fmt::format(
+            "'{}' is a run's folder or results, and '{}' is not: name two pictures, or the report folders of two runs",
+            a ? options.image : options.truth, a ? options.truth : options.image));
   }
-  for (const char* option : {"--metric", "--mask", "--pixels-per-degree"}) {
-    if (command.count(option) > 0) throw Error(ErrorKind::kUsage, fmt::format("{} is of pictures, and these are runs: leave it out", option));
-  }
+  for (const char* option : {"--metric", "--mask", "--pixels-per-degree"})
+    if (command.count(option) > 0)
+      throw Error(ErrorKind::kUsage, fmt::format("{} is of pictures, and these are runs: leave it out", option));
   return true;
 }
 
@@ -113,7 +115,8 @@ int diff(const CLI::App& command, DiffArguments arguments) {
 }  // namespace
 
 void add_diff_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("diff", "Compare two pictures as a run compares its own, or the times of two runs");
+  CLI::App* command =
+      app.add_subcommand("diff", "Compare two pictures as a run compares its own, or the times of two runs");
   command->footer(
       "A and B are pictures in any format that OpenImageIO reads; FILE#PART is one part of a multi-part EXR file, such "
       "as\n"
@@ -122,7 +125,8 @@ void add_diff_command(CLI::App& app, Action& action) {
       "stored (8-bit codes as code/255). FLIP alone sees linear RGB clamped to [0,1], and the whole picture: sRGB "
       "codes are\n"
       "decoded, one channel is grey. Pixels that are NaN or infinite are counted and left out.\n"
-      "Where A and B are report folders of runs (or their results.json), it is counted how many of their cells' ratios to\n"
+      "Where A and B are report folders of runs (or their results.json), it is counted how many of their cells' ratios "
+      "to\n"
       "'none' repeat: 95 % intervals that overlap. Exit code 1: some do not.");
   auto a = std::make_shared<DiffArguments>();
   a->options.pixels_per_degree = reference::kDefaultPixelsPerDegree;

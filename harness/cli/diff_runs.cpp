@@ -29,8 +29,9 @@ const std::optional<report::Ratio>& ratio_of(const CellRecord& cell, const std::
 std::string describe(const RatioApart& apart) {
   const CellRecord& cell = *apart.a;
   return fmt::format("{} ({}), {}{}, map {}, picture {} x {}: {} {} against {}", cell.scene, cell.view, cell.filter,
-                     cell.params.empty() ? "" : " (" + report::describe_params(cell.params) + ")", cell.map_size, cell.width, cell.height,
-                     apart.ratio, report::format_ratio(ratio_of(cell, apart.ratio)), report::format_ratio(ratio_of(*apart.b, apart.ratio)));
+                     cell.params.empty() ? "" : " (" + report::describe_params(cell.params) + ")", cell.map_size,
+                     cell.width, cell.height, apart.ratio, report::format_ratio(ratio_of(cell, apart.ratio)),
+                     report::format_ratio(ratio_of(*apart.b, apart.ratio)));
 }
 
 void print_text(const report::RepeatComparison& found) {
@@ -42,12 +43,18 @@ void print_text(const report::RepeatComparison& found) {
 }
 
 void print_json(const report::RepeatComparison& found) {
-  nlohmann::ordered_json json = {{"cells", *found.record.cells}, {"overlapping", *found.record.overlapping}, {"of", *found.record.of}};
+  nlohmann::ordered_json json = {
+      {"cells", *found.record.cells}, {"overlapping", *found.record.overlapping}, {"of", *found.record.of}};
   json["apart"] = nlohmann::ordered_json::array();
   for (const RatioApart& apart : found.apart) {
-    json["apart"].push_back({{"key", apart.a->key}, {"scene", apart.a->scene}, {"view", apart.a->view}, {"filter", apart.a->filter},
-                             {"ratio", apart.ratio}, {"a", report::value_json(*ratio_of(*apart.a, apart.ratio))},
-                             {"b", report::value_json(*ratio_of(*apart.b, apart.ratio))}, {"gap", apart.gap}});
+    json["apart"].push_back({{"key", apart.a->key},
+                             {"scene", apart.a->scene},
+                             {"view", apart.a->view},
+                             {"filter", apart.a->filter},
+                             {"ratio", apart.ratio},
+                             {"a", report::value_json(*ratio_of(*apart.a, apart.ratio))},
+                             {"b", report::value_json(*ratio_of(*apart.b, apart.ratio))},
+                             {"gap", apart.gap}});
   }
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
@@ -57,7 +64,9 @@ void warn_of_differences(const report::RunRecord& a, const report::RunRecord& b)
   const auto warn = [](const char* what, const std::string& x, const std::string& y) {
     if (x != y) fmt::print(stderr, "warning: the runs differ in {}: {}, and {}\n", what, x, y);
   };
-  const auto machine = [](const report::RunRecord& run) { return fmt::format("{} with {} cores", run.machine.cpu, run.machine.cores); };
+  const auto machine = [](const report::RunRecord& run) {
+    return fmt::format("{} with {} cores", run.machine.cpu, run.machine.cores);
+  };
   warn("their machine", machine(a), machine(b));
   warn("their OpenGL", a.gl.renderer, b.gl.renderer);
   warn("the program's commit", a.commit, b.commit);
@@ -65,20 +74,29 @@ void warn_of_differences(const report::RunRecord& a, const report::RunRecord& b)
 
 }  // namespace
 
-bool is_run(const std::filesystem::path& argument) { return std::filesystem::is_directory(argument) || argument.extension() == ".json"; }
+bool is_run(const std::filesystem::path& argument) {
+  return std::filesystem::is_directory(argument) || argument.extension() == ".json";
+}
 
 int diff_runs(const std::filesystem::path& a, const std::filesystem::path& b, bool json) {
   const report::Results first = report::read_results(find_results(a)), second = report::read_results(find_results(b));
   const report::RepeatComparison found = report::compare_times(first.cells, second.cells);
   if (found.record.of == 0) {
-    throw Error(ErrorKind::kInput, fmt::format("the two runs have {} cells in common, and no ratio to none to compare: run the same experiment twice",
-                                               *found.record.cells), fmt::format("{} and {}", a.string(), b.string()));
+    throw Error(
+        ErrorKind::kInput,
+        fmt::format(
+            "the two runs have {} cells in common, and no ratio to none to compare: run the same experiment twice",
+            *found.record.cells),
+        fmt::format("{} and {}", a.string(), b.string()));
   }
   warn_of_differences(first.run, second.run);
-  if (json) print_json(found);
-  else print_text(found);
+  if (json)
+    print_json(found);
+  else
+    print_text(found);
   if (found.apart.empty()) return 0;
-  throw Error(ErrorKind::kLimit, fmt::format("{}; widest apart: {}", report::describe_overlap(found.record), describe(found.apart.front())));
+  throw Error(ErrorKind::kLimit, fmt::format("{}; widest apart: {}", report::describe_overlap(found.record),
+                                             describe(found.apart.front())));
 }
 
 }  // namespace shadowbench::cli

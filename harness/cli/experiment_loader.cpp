@@ -32,24 +32,28 @@ void load_and_run_bias_sweep(const run::RunOptions& options, run::Progress& prog
 }
 
 void load_and_merge_runs(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out) {
-  load_entry<void(const std::vector<std::filesystem::path>&, const std::filesystem::path&)>("shadowbench_merge_runs")(folders, out);
+  load_entry<void(const std::vector<std::filesystem::path>&, const std::filesystem::path&)>("shadowbench_merge_runs")(
+      folders, out);
 }
 
 std::string load_and_tune_filters(const run::TuneOptions& options, run::Progress& progress) {
   std::string text;
-  load_entry<void(const run::TuneOptions&, run::Progress&, std::string&)>("shadowbench_tune_filters")(options, progress, text);
+  load_entry<void(const run::TuneOptions&, run::Progress&, std::string&)>("shadowbench_tune_filters")(options, progress,
+                                                                                                      text);
   return text;
 }
 
 stress::StressOutcome load_and_run_stress(const stress::StressOptions& options, run::Progress& progress) {
   stress::StressOutcome outcome;
-  load_entry<void(const stress::StressOptions&, run::Progress&, stress::StressOutcome&)>("shadowbench_run_stress")(options, progress, outcome);
+  load_entry<void(const stress::StressOptions&, run::Progress&, stress::StressOutcome&)>("shadowbench_run_stress")(
+      options, progress, outcome);
   return outcome;
 }
 
 std::string load_and_describe_stress_axes(const std::vector<filters::FilterRequest>& filters) {
   std::string text;
-  load_entry<void(const std::vector<filters::FilterRequest>&, std::string&)>("shadowbench_describe_stress_axes")(filters, text);
+  load_entry<void(const std::vector<filters::FilterRequest>&, std::string&)>("shadowbench_describe_stress_axes")(
+      filters, text);
   return text;
 }
 
@@ -59,7 +63,8 @@ void load_and_run_flicker(const flicker::FlickerOptions& options, run::Progress&
 
 regress::RegressOutcome load_and_run_regress(const regress::RegressOptions& options) {
   regress::RegressOutcome outcome;
-  load_entry<void(const regress::RegressOptions&, regress::RegressOutcome&)>("shadowbench_run_regress")(options, outcome);
+  load_entry<void(const regress::RegressOptions&, regress::RegressOutcome&)>("shadowbench_run_regress")(options,
+                                                                                                        outcome);
   return outcome;
 }
 

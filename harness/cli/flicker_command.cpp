@@ -29,7 +29,9 @@ struct FlickerArguments {
 int parse_frames(const std::string& text) {
   const int frames = parse_count(text, "--frames");
   if (frames >= 2) return frames;
-  throw Error(ErrorKind::kUsage, fmt::format("--frames: '{}' must be 2 or more: flicker is what changes from one frame to the next", text));
+  throw Error(
+      ErrorKind::kUsage,
+      fmt::format("--frames: '{}' must be 2 or more: flicker is what changes from one frame to the next", text));
 }
 
 flicker::FlickerOptions make_options(const FlickerArguments& arguments, const std::vector<std::string>& words) {
@@ -64,17 +66,23 @@ int measure_flicker(const FlickerArguments& arguments, const std::vector<std::st
 }  // namespace
 
 void add_flicker_command(CLI::App& app, Action& action, const std::vector<std::string>& words) {
-  CLI::App* command = app.add_subcommand("flicker", "Move light and camera by less than a texel a frame, and hold what flickers against the truth");
-  command->footer("Looks the first frame's receivers up in every frame's map, without snapping the map's texel grid and with it, and holds\n"
-                  "what changes from frame to frame against what changes in ray-traced truth. Writes flicker.html, .md, .json, .csv, plots\n"
-                  "and pictures by pixel.");
+  CLI::App* command = app.add_subcommand(
+      "flicker", "Move light and camera by less than a texel a frame, and hold what flickers against the truth");
+  command->footer(
+      "Looks the first frame's receivers up in every frame's map, without snapping the map's texel grid and with it, "
+      "and holds\n"
+      "what changes from frame to frame against what changes in ray-traced truth. Writes flicker.html, .md, .json, "
+      ".csv, plots\n"
+      "and pictures by pixel.");
   auto a = std::make_shared<FlickerArguments>();
-  command->add_option("--scene", a->scene, "a built-in scene, or a .toml, .gltf, .glb or .obj file")->capture_default_str();
+  command->add_option("--scene", a->scene, "a built-in scene, or a .toml, .gltf, .glb or .obj file")
+      ->capture_default_str();
   command->add_option("--filters", a->filters, "built-in filters with parameters (default: all; see 'list filters')");
   command->add_option("--frames", a->frames, "2 or more")->capture_default_str();
   command->add_option("--map-size", a->map_size, "texels along a side of the shadow map")->capture_default_str();
   command->add_option("--size", a->size, "picture size in pixels, WIDTHxHEIGHT")->capture_default_str();
-  command->add_option("--motion", a->motions, "what moves: light, camera, or both, separated by a comma")->capture_default_str();
+  command->add_option("--motion", a->motions, "what moves: light, camera, or both, separated by a comma")
+      ->capture_default_str();
   command->add_option("--gl", a->backend, "OpenGL context: auto, osmesa, egl or glfw")->capture_default_str();
   command->add_option("--cache", a->cache, "folder that keeps traced images for later runs (default: as 'run')");
   command->add_flag("--no-cache", a->no_cache, "trace everything, keep nothing");

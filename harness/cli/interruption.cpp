@@ -28,7 +28,8 @@ extern "C" void send_signal(int signal) {
 }
 
 void set_handler(int signal, void (*handler)(int)) {
-  struct sigaction old {}, action {};
+  struct sigaction old {
+  }, action{};
   sigaction(signal, nullptr, &old);
   if (old.sa_handler == SIG_IGN) return;
   action.sa_handler = handler;
@@ -41,7 +42,8 @@ const char* name_of(int signal) { return signal == SIGINT ? "SIGINT" : signal ==
 
 }  // namespace
 
-Interruption::Interruption(std::filesystem::path out, std::string advice) : out_(std::move(out)), advice_(std::move(advice)) {
+Interruption::Interruption(std::filesystem::path out, std::string advice)
+    : out_(std::move(out)), advice_(std::move(advice)) {
   if (pipe2(g_pipe, O_CLOEXEC) != 0) return;  // without, a signal ends the program as it ends others
   try {
     thread_ = std::thread([this] { wait(); });

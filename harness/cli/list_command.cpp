@@ -58,10 +58,14 @@ nlohmann::json to_json(const filters::ParamValue& value) {
 }
 
 nlohmann::json to_json(const ParamSpec& param) {
-  nlohmann::json json = {{"name", param.name},          {"default", to_json(param.default_value)},
-                         {"integer", param.integer},    {"const", param.is_const},
-                         {"unit", param.unit},          {"text", param.text},
-                         {"min", nullptr},              {"max", nullptr},
+  nlohmann::json json = {{"name", param.name},
+                         {"default", to_json(param.default_value)},
+                         {"integer", param.integer},
+                         {"const", param.is_const},
+                         {"unit", param.unit},
+                         {"text", param.text},
+                         {"min", nullptr},
+                         {"max", nullptr},
                          {"choices", nlohmann::json::array()}};
   if (param.min) json["min"] = *param.min;
   if (param.max) json["max"] = *param.max;
@@ -72,19 +76,26 @@ nlohmann::json to_json(const ParamSpec& param) {
 nlohmann::json to_json(const FilterSpec& spec) {
   nlohmann::json params = nlohmann::json::array();
   for (const ParamSpec& param : spec.params) params.push_back(to_json(param));
-  return {{"id", spec.id},         {"title", spec.title},   {"source", spec.source},
-          {"kind", filters::to_string(spec.kind)},          {"claims", spec.claims},
-          {"model", filters::make_model(spec.id) != nullptr}, {"params", params},
-          {"moments", spec.holds_moments}, {"exponent", spec.exponent}, {"variance_floor", spec.variance_floor}};
+  return {{"id", spec.id},
+          {"title", spec.title},
+          {"source", spec.source},
+          {"kind", filters::to_string(spec.kind)},
+          {"claims", spec.claims},
+          {"model", filters::make_model(spec.id) != nullptr},
+          {"params", params},
+          {"moments", spec.holds_moments},
+          {"exponent", spec.exponent},
+          {"variance_floor", spec.variance_floor}};
 }
 
 int list_filters(const ListArguments& arguments) {
   const filters::Catalogue catalogue(run::find_resources().filters);
   nlohmann::json json = nlohmann::json::array();
-  for (const FilterSpec& spec : catalogue.filters()) {
-    if (arguments.json) json.push_back(to_json(spec));
-    else print_filter(spec);
-  }
+  for (const FilterSpec& spec : catalogue.filters())
+    if (arguments.json)
+      json.push_back(to_json(spec));
+    else
+      print_filter(spec);
   if (arguments.json) fmt::print("{}\n", json.dump(2));
   return 0;
 }
@@ -93,10 +104,11 @@ int list_scenes(const ListArguments& arguments) {
   const std::filesystem::path folder = run::find_resources().scenes;
   nlohmann::json json = nlohmann::json::array();
   const auto show = [&](const std::vector<scene::SceneInfo>& scenes, bool teaching) {
-    for (const scene::SceneInfo& info : scenes) {
-      if (arguments.json) json.push_back({{"name", info.name}, {"title", info.title}, {"teaching", teaching}});
-      else fmt::print("{:<8} {}\n", info.name, info.title);
-    }
+    for (const scene::SceneInfo& info : scenes)
+      if (arguments.json)
+        json.push_back({{"name", info.name}, {"title", info.title}, {"teaching", teaching}});
+      else
+        fmt::print("{:<8} {}\n", info.name, info.title);
   };
   show(scene::list_scenes(folder), false);
   if (!arguments.json) fmt::print("\nFor teaching, run only where --scene names them:\n");
@@ -126,10 +138,11 @@ nlohmann::json to_json(const reference::Metric& metric) {
 
 int list_metrics(const ListArguments& arguments) {
   nlohmann::json json = nlohmann::json::array();
-  for (const reference::Metric& metric : reference::metric_table()) {
-    if (arguments.json) json.push_back(to_json(metric));
-    else fmt::print("{}  {}, {}\n  {}\n", metric.path, metric.unit, describe_range(metric), metric.definition);
-  }
+  for (const reference::Metric& metric : reference::metric_table())
+    if (arguments.json)
+      json.push_back(to_json(metric));
+    else
+      fmt::print("{}  {}, {}\n  {}\n", metric.path, metric.unit, describe_range(metric), metric.definition);
   if (arguments.json) fmt::print("{}\n", json.dump(2));
   return 0;
 }
@@ -142,15 +155,16 @@ int list_gl(const ListArguments& arguments) {
     fmt::print("{}", gl::format_measurement(info, gl::measure_gl(*choice.context)));
     return 0;
   }
-  fmt::print("{}: {}, OpenGL {}, maps up to {} x {}\n", info.backend, info.renderer, info.version, info.max_texture_size,
-             info.max_texture_size);
+  fmt::print("{}: {}, OpenGL {}, maps up to {} x {}\n", info.backend, info.renderer, info.version,
+             info.max_texture_size, info.max_texture_size);
   return 0;
 }
 
 }  // namespace
 
 void add_list_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("list", "Show what there is: filters, scenes, metrics, or the OpenGL underneath");
+  CLI::App* command =
+      app.add_subcommand("list", "Show what there is: filters, scenes, metrics, or the OpenGL underneath");
   command->require_subcommand(1);
   auto a = std::make_shared<ListArguments>();
   CLI::App* filters = command->add_subcommand("filters", "Filters with parameters, ranges, units and source");

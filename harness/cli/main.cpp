@@ -57,7 +57,8 @@ int run(int argc, char** argv) {
 /// What was printed may not have got anywhere: a disk is full, a pipe is closed.
 int finish_output(int exit_code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
-  print_error(fmt::format("standard output cannot be written ({}); check the free space where it goes", std::strerror(errno)));
+  print_error(
+      fmt::format("standard output cannot be written ({}); check the free space where it goes", std::strerror(errno)));
   return kOutputError;
 }
 
@@ -74,7 +75,9 @@ int main(int argc, char** argv) {
     print_error(error.what());
     return static_cast<int>(error.kind());
   } catch (const std::bad_alloc&) {
-    print_error("memory ran out; raise the limit (ulimit -v), or choose a smaller --size, a smaller --map-size or fewer filters at once");
+    print_error(
+        "memory ran out; raise the limit (ulimit -v), or choose a smaller --size, a smaller --map-size or fewer "
+        "filters at once");
     return kInputError;
   } catch (const std::system_error& error) {
     print_error(fmt::format("{}; check that the folder is there, its rights and its free space", error.what()));

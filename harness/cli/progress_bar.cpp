@@ -84,7 +84,9 @@ class PlainLines final : public run::Progress {
     cells_ = cells;
     left_.begin(cells, finished);
   }
-  void show(int done, const std::string& what) override { fmt::print(stderr, "{}/{} {}{}\n", done, cells_, what, left_.describe(done)); }
+  void show(int done, const std::string& what) override {
+    fmt::print(stderr, "{}/{} {}{}\n", done, cells_, what, left_.describe(done));
+  }
   void note(const std::string& message) override { fmt::print(stderr, "{}\n", message); }
 
  private:

@@ -35,7 +35,8 @@ std::vector<int> parse_counts(const std::string& text, const char* option) {
   std::vector<int> counts;
   for (const std::string& each : split_list(text)) {
     const int count = parse_count(each, option);
-    if (std::find(counts.begin(), counts.end(), count) != counts.end()) fail(fmt::format("{} names {} twice", option, count));
+    if (std::find(counts.begin(), counts.end(), count) != counts.end())
+      fail(fmt::format("{} names {} twice", option, count));
     counts.push_back(count);
   }
   return counts;
@@ -45,9 +46,8 @@ std::vector<int> parse_lights(const std::string& text) {
   if (text.empty()) return {};
   std::vector<int> counts = parse_counts(text, "--lights");
   std::sort(counts.begin(), counts.end());
-  if (counts.back() > run::kMostLights) {
+  if (counts.back() > run::kMostLights)
     fail(fmt::format("--lights: {} is out of range: choose counts of 1 .. {}", counts.back(), run::kMostLights));
-  }
   return counts;
 }
 
@@ -61,7 +61,8 @@ void add_filters(run::RunOptions& options, const RunArguments& arguments) {
     if (std::any_of(options.filters.begin(), options.filters.end(), is_it)) continue;
     options.filters.push_back(catalogue.parse_requests(id).front());
   }
-  if (!arguments.tuned.empty()) options.notes = run::apply_tuned(options.filters, catalogue, arguments.tuned, options.map_sizes);
+  if (!arguments.tuned.empty())
+    options.notes = run::apply_tuned(options.filters, catalogue, arguments.tuned, options.map_sizes);
   require_distinct(options.filters);
 }
 
@@ -73,32 +74,34 @@ void check_padding(const std::optional<double>& texels) {
 void check(const RunArguments& arguments) {
   check_padding(arguments.pad_texels);
   if (!(arguments.cell_timeout_s > 0.0 && arguments.cell_timeout_s <= 86400.0)) {
-    fail(fmt::format("--cell-timeout: {} is out of range: choose more than 0, at most 86400 seconds", arguments.cell_timeout_s));
+    fail(fmt::format("--cell-timeout: {} is out of range: choose more than 0, at most 86400 seconds",
+                     arguments.cell_timeout_s));
   }
   // Above, single precision cannot tell the ratio from the ratio less 1, by which depth is linearised.
   const double ratio = arguments.perspective_depth.value_or(2.0);
   if (!(ratio > 1.0 && ratio <= kLargestDepthRatio)) {
-    fail(fmt::format("--perspective-depth: {} is out of range: choose far over near, more than 1, at most {:g}", ratio, kLargestDepthRatio));
+    fail(fmt::format("--perspective-depth: {} is out of range: choose far over near, more than 1, at most {:g}", ratio,
+                     kLargestDepthRatio));
   }
 }
 
 void set_map_and_light(run::RunOptions& options, const RunArguments& arguments) {
-  options.map = {gl::parse_depth_format(arguments.map_format).internal_format, {arguments.reversed_depth, arguments.perspective_depth.value_or(1.0)}};
+  options.map = {gl::parse_depth_format(arguments.map_format).internal_format,
+                 {arguments.reversed_depth, arguments.perspective_depth.value_or(1.0)}};
   options.fit = scene::parse_fit_mode(arguments.fit);
   options.snap = arguments.snap == "on";
   if (!arguments.light.empty()) options.light = parse_light(arguments.light);
 }
 
 run::RoundLimits parse_rounds(const RunArguments& arguments) {
-  if (!(arguments.precision > 0.0 && arguments.precision <= 1.0)) {
+  if (!(arguments.precision > 0.0 && arguments.precision <= 1.0))
     fail(fmt::format("--precision: {} is out of range: choose more than 0, at most 1", arguments.precision));
-  }
-  if (!(arguments.budget_s > 0.0 && arguments.budget_s <= 3600.0)) {
+  if (!(arguments.budget_s > 0.0 && arguments.budget_s <= 3600.0))
     fail(fmt::format("--budget: {} is out of range: choose more than 0, at most 3600 seconds", arguments.budget_s));
-  }
   if (arguments.rounds != "auto") {
     const int rounds = parse_count(arguments.rounds, "--rounds");
-    if (rounds > kMostRounds) fail(fmt::format("--rounds: {} is out of range: choose 1 .. {}, or auto", rounds, kMostRounds));
+    if (rounds > kMostRounds)
+      fail(fmt::format("--rounds: {} is out of range: choose 1 .. {}, or auto", rounds, kMostRounds));
     return run::RoundLimits::exactly(rounds);
   }
   run::RoundLimits limits;
@@ -122,8 +125,10 @@ run::Shard parse_shard(const std::string& text) {
   if (text.empty()) return {};
   const std::size_t slash = text.find('/');
   if (slash == std::string::npos) fail(fmt::format("--shard: '{}' must be I/N, such as 1/3", text));
-  const run::Shard shard{parse_count(text.substr(0, slash), "--shard") - 1, parse_count(text.substr(slash + 1), "--shard")};
-  if (shard.index >= shard.count) fail(fmt::format("--shard: {} has no {} of {}; choose 1 .. {}", text, shard.index + 1, shard.count, shard.count));
+  const run::Shard shard{parse_count(text.substr(0, slash), "--shard") - 1,
+                         parse_count(text.substr(slash + 1), "--shard")};
+  if (shard.index >= shard.count)
+    fail(fmt::format("--shard: {} has no {} of {}; choose 1 .. {}", text, shard.index + 1, shard.count, shard.count));
   return shard;
 }
 
@@ -159,7 +164,8 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   options.uncertainty = arguments.uncertainty;
   options.shard = parse_shard(arguments.shard);
   options.grids = arguments.grids > 0 || (arguments.grids == 0 && options.filters.size() <= kFiltersOfAGrid);
-  if (options.grids && options.shard.count > 1) fail("--shard needs --no-grids: a grid shows all filters of a view, and a shard has some of them");
+  if (options.grids && options.shard.count > 1)
+    fail("--shard needs --no-grids: a grid shows all filters of a view, and a shard has some of them");
   options.fresh = arguments.fresh;
   options.large_is_fine = arguments.yes;
   options.cache = choose_cache(arguments.cache, arguments.no_cache);
@@ -172,7 +178,8 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
 void end_with_parent() {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   pollfd reader{STDERR_FILENO, 0, 0};
-  if (poll(&reader, 1, 0) > 0 && (reader.revents & POLLERR) != 0) raise(SIGKILL);  // it ended before this could be heard
+  if (poll(&reader, 1, 0) > 0 && (reader.revents & POLLERR) != 0)
+    raise(SIGKILL);  // it ended before this could be heard
 }
 
 int run(CLI::App& command_line, RunArguments& arguments, std::vector<std::string> command) {
@@ -183,7 +190,8 @@ int run(CLI::App& command_line, RunArguments& arguments, std::vector<std::string
   options.title = title;
   {
     std::optional<Interruption> interruption;
-    if (!options.worker) interruption.emplace(options.out, "what was finished stays, and the same command goes on from there");
+    if (!options.worker)
+      interruption.emplace(options.out, "what was finished stays, and the same command goes on from there");
     const std::unique_ptr<run::Progress> progress = make_progress();
     for (const std::string& note : options.notes) progress->note("note: " + note);
     load_and_run_experiment(options, *progress);
@@ -198,7 +206,8 @@ void add_run_command(CLI::App& app, Action& action, const std::vector<std::strin
   CLI::App* command = app.add_subcommand("run", "Render scenes with filters and write a report");
   auto a = std::make_shared<RunArguments>();
   add_run_options(*command, *a);
-  command->callback([&action, command, a, words] { action = [command, a, words] { return run(*command, *a, words); }; });
+  command->callback(
+      [&action, command, a, words] { action = [command, a, words] { return run(*command, *a, words); }; });
 }
 
 }  // namespace shadowbench::cli

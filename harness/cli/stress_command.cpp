@@ -27,7 +27,8 @@ struct StressArguments {
 
 stress::StressOptions make_options(const StressArguments& arguments, const std::vector<std::string>& words) {
   if (!arguments.filter_files.empty()) {
-    throw Error(ErrorKind::kUsage, fmt::format("--filter-file: {} has no scalar model to be held against, so only built-in filters are stressed; add it as CONTRIBUTING says",
+    throw Error(ErrorKind::kUsage, fmt::format("--filter-file: {} has no scalar model to be held against, so only "
+                                               "built-in filters are stressed; add it as CONTRIBUTING says",
                                                arguments.filter_files.front()));
   }
   stress::StressOptions options;
@@ -64,7 +65,8 @@ void add_stress_options(CLI::App& command, StressArguments& a) {
   command.add_option("--filters", a.filters, "built-in filters with parameters (default: all; see 'list filters')");
   command.add_option("--filter-file", a.filter_files, "")->group("");
   command.add_option("--axes", a.axes, "axes, separated by commas (default: all; see --list)");
-  command.add_option("--range", a.ranges, "AXIS=LO,HI in place of an axis' own range; may be repeated")->allow_extra_args(false);
+  command.add_option("--range", a.ranges, "AXIS=LO,HI in place of an axis' own range; may be repeated")
+      ->allow_extra_args(false);
   command.add_flag("--list", a.list, "list the axes and end");
   command.add_option("--seed", a.seed, "of random rotations and of the truth's rays")->capture_default_str();
   command.add_option("--gl", a.backend, "OpenGL context: auto, osmesa, egl or glfw")->capture_default_str();
@@ -76,10 +78,14 @@ void add_stress_options(CLI::App& command, StressArguments& a) {
 }  // namespace
 
 void add_stress_command(CLI::App& app, Action& action, const std::vector<std::string>& words) {
-  CLI::App* command = app.add_subcommand("stress", "Drive filters to where their numbers break, and hold the limits against theory");
-  command->footer("Along each axis every case is ok, degraded (an error over the axis' bound) or broken (NaN, infinity, all lit, all dark, or falling\n"
-                  "where it must rise). The first value of each is found to 1 % and compared with theory. Writes stress.html, .md, .json, .csv\n"
-                  "and a plot for each axis. Exit code 1: a limit is not what theory says, and nothing explains it.");
+  CLI::App* command =
+      app.add_subcommand("stress", "Drive filters to where their numbers break, and hold the limits against theory");
+  command->footer(
+      "Along each axis every case is ok, degraded (an error over the axis' bound) or broken (NaN, infinity, all lit, "
+      "all dark, or falling\n"
+      "where it must rise). The first value of each is found to 1 % and compared with theory. Writes stress.html, .md, "
+      ".json, .csv\n"
+      "and a plot for each axis. Exit code 1: a limit is not what theory says, and nothing explains it.");
   auto a = std::make_shared<StressArguments>();
   add_stress_options(*command, *a);
   command->callback([&action, a, words] { action = [a, words] { return stress_filters(*a, words); }; });

@@ -41,14 +41,17 @@ struct TuneArguments {
 
 int parse_budget(const std::string& text) {
   const int budget = parse_count(text, "--budget");
-  if (budget > kLargestBudget) fail(fmt::format("--budget: {} is out of range: choose 1 .. {}", budget, kLargestBudget));
+  if (budget > kLargestBudget)
+    fail(fmt::format("--budget: {} is out of range: choose 1 .. {}", budget, kLargestBudget));
   return budget;
 }
 
 void add_filters(run::RunOptions& options, const TuneArguments& arguments) {
   if (!arguments.filter_files.empty()) {
-    fail(fmt::format("--filter-file: only built-in filters are tuned, and {} would run in this process, where an endless loop ends all; add it as CONTRIBUTING says",
-                     arguments.filter_files.front()));
+    fail(
+        fmt::format("--filter-file: only built-in filters are tuned, and {} would run in this process, where an "
+                    "endless loop ends all; add it as CONTRIBUTING says",
+                    arguments.filter_files.front()));
   }
   if (arguments.filters.empty()) fail("--filter: name at least one filter to tune, such as vsm (see 'list filters')");
   options.filters = filters::Catalogue(options.resources.filters).parse_requests(arguments.filters);
@@ -93,28 +96,43 @@ int tune(const TuneArguments& arguments) {
 
 std::string describe_command() {
   return fmt::format(
-      "Searches every numeric parameter with a range (but those that --filter sets, and const ones) for the least mean of the metric over\n"
-      "the training views of all scenes, then scores default and found parameters on views that the search has not seen.\n"
-      "Views, of each scene's first camera, turned about the vertical axis through the point it looks at (of its central ray, the\n"
+      "Searches every numeric parameter with a range (but those that --filter sets, and const ones) for the least mean "
+      "of the metric over\n"
+      "the training views of all scenes, then scores default and found parameters on views that the search has not "
+      "seen.\n"
+      "Views, of each scene's first camera, turned about the vertical axis through the point it looks at (of its "
+      "central ray, the\n"
       "one nearest to the middle of the scene's bounds), and of its light, turned in azimuth; degrees:\n"
       "  training: {}\n  unseen:   {}\n"
-      "Kept are the found parameters only where the gain on unseen views is more than the truth's standard error (for flip, leak and\n"
-      "acne: more than nothing), else the default. Writes tuned.json, for 'run --tuned', tune.md, and every setting drawn to\n"
-      "evaluations.csv. The budget is of the search; the good ranges (error within 10 % of the best, the other parameters at theirs)\n"
+      "Kept are the found parameters only where the gain on unseen views is more than the truth's standard error (for "
+      "flip, leak and\n"
+      "acne: more than nothing), else the default. Writes tuned.json, for 'run --tuned', tune.md, and every setting "
+      "drawn to\n"
+      "evaluations.csv. The budget is of the search; the good ranges (error within 10 % of the best, the other "
+      "parameters at theirs)\n"
       "take some 25 settings more per parameter.",
       run::describe_tune_views(true), run::describe_tune_views(false));
 }
 
 void add_tune_options(CLI::App& command, TuneArguments& a) {
-  command.add_option("--filter", a.filters, "filters with the parameters that stay fixed, such as vsm:store=rg16f,esm")->required();
+  command.add_option("--filter", a.filters, "filters with the parameters that stay fixed, such as vsm:store=rg16f,esm")
+      ->required();
   command.add_option("--filter-file", a.filter_files, "")->group("");
-  command.add_option("--metric", a.metric, fmt::format("what to make small: {} (see 'list metrics')", fmt::join(run::list_tune_metrics(), ", ")))->capture_default_str();
-  command.add_option("--scene", a.scenes, "a built-in scene, or a .toml, .gltf, .glb or .obj file; may be repeated (default: all built-in scenes)")->allow_extra_args(false);
+  command
+      .add_option("--metric", a.metric,
+                  fmt::format("what to make small: {} (see 'list metrics')", fmt::join(run::list_tune_metrics(), ", ")))
+      ->capture_default_str();
+  command
+      .add_option(
+          "--scene", a.scenes,
+          "a built-in scene, or a .toml, .gltf, .glb or .obj file; may be repeated (default: all built-in scenes)")
+      ->allow_extra_args(false);
   command.add_flag("--ground", a.ground, "put a floor under a bare model");
   command.add_option("--map-size", a.map_size, "texels along a side of the shadow map")->capture_default_str();
   command.add_option("--size", a.size, "picture size in pixels, WIDTHxHEIGHT")->capture_default_str();
   command.add_option("--budget", a.budget, "settings that the search draws of each filter")->capture_default_str();
-  command.add_option("--light", a.light, "AZIMUTH,ELEVATION in degrees, where the light stands in every scene before it is turned");
+  command.add_option("--light", a.light,
+                     "AZIMUTH,ELEVATION in degrees, where the light stands in every scene before it is turned");
   command.add_option("--bias", a.bias, "bias, as of 'run'; may be repeated")->allow_extra_args(false);
   command.add_option("--seed", a.seed, "of random rotations and of the truth's rays")->capture_default_str();
   command.add_option("--gl", a.backend, "OpenGL context: auto, osmesa, egl or glfw")->capture_default_str();
@@ -126,7 +144,8 @@ void add_tune_options(CLI::App& command, TuneArguments& a) {
 }  // namespace
 
 void add_tune_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("tune", "Find the best parameters of filters, and how much their choice matters");
+  CLI::App* command =
+      app.add_subcommand("tune", "Find the best parameters of filters, and how much their choice matters");
   command->footer(describe_command());
   auto a = std::make_shared<TuneArguments>();
   add_tune_options(*command, *a);

@@ -17,13 +17,15 @@ double choose_padding(const run::RunOptions& options) {
 
 double sum_squares(const std::vector<float>& errors, const std::vector<std::uint8_t>& mask) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < mask.size(); ++i) sum += mask[i] ? static_cast<double>(errors[i]) * static_cast<double>(errors[i]) : 0.0;
+  for (std::size_t i = 0; i < mask.size(); ++i)
+    sum += mask[i] ? static_cast<double>(errors[i]) * static_cast<double>(errors[i]) : 0.0;
   return sum;
 }
 
 }  // namespace
 
-FlickerBench::FlickerBench(run::Renderer& renderer, const run::RunOptions& options, const scene::Scene& scene, run::TruthCache& cache)
+FlickerBench::FlickerBench(run::Renderer& renderer, const run::RunOptions& options, const scene::Scene& scene,
+                           run::TruthCache& cache)
     : renderer_(renderer),
       options_(options),
       scene_(scene),
@@ -33,15 +35,20 @@ FlickerBench::FlickerBench(run::Renderer& renderer, const run::RunOptions& optio
       receivers_(run::read_view_receivers(assets_.gbuffer(camera()), -scene.light.direction_ws)),
       turned_(scene),
       turned_tracer_(turned_, cache, options.seed) {
-  if (!receivers_.any_counts()) throw Error(ErrorKind::kInput, fmt::format("{}: no surface in view faces the light; choose another scene", scene.name));
-  for (const filters::FilterRequest& request : options.filters) filters_.push_back(run::make_filter_passes(renderer, options, scene, map_, request));
+  if (!receivers_.any_counts())
+    throw Error(ErrorKind::kInput,
+                fmt::format("{}: no surface in view faces the light; choose another scene", scene.name));
+  for (const filters::FilterRequest& request : options.filters)
+    filters_.push_back(run::make_filter_passes(renderer, options, scene, map_, request));
 }
 
 MapFollowing FlickerBench::following(bool snap) const {
-  return {options_.map_sizes.front(), choose_padding(options_), static_cast<double>(options_.width) / options_.height, snap};
+  return {options_.map_sizes.front(), choose_padding(options_), static_cast<double>(options_.width) / options_.height,
+          snap};
 }
 
-TruthFrames FlickerBench::trace(Motion motion, const std::vector<Frame>& frames, const std::vector<std::uint8_t>& mask, const std::function<void(int)>& on_frame) {
+TruthFrames FlickerBench::trace(Motion motion, const std::vector<Frame>& frames, const std::vector<std::uint8_t>& mask,
+                                const std::function<void(int)>& on_frame) {
   TruthFrames truth;
   if (motion == Motion::kCamera) {
     truth.visibility.assign(frames.size(), std::vector<float>(mask.size()));
@@ -52,7 +59,8 @@ TruthFrames FlickerBench::trace(Motion motion, const std::vector<Frame>& frames,
   for (std::size_t t = 0; t < frames.size(); ++t) {
     on_frame(static_cast<int>(t));
     turned_.light = frames[t].light;
-    const auto rays = turned_tracer_.trace_view(run::read_view_receivers(assets_.gbuffer(camera()), -turned_.light.direction_ws));
+    const auto rays =
+        turned_tracer_.trace_view(run::read_view_receivers(assets_.gbuffer(camera()), -turned_.light.direction_ws));
     const double errors = sum_squares(rays.area.standard_error, mask);
     if (t > 0) squares += before + errors;
     before = errors;
@@ -64,13 +72,16 @@ TruthFrames FlickerBench::trace(Motion motion, const std::vector<Frame>& frames,
 }
 
 report::Image FlickerBench::draw(render::FilterPasses& filter) {
-  filter.retune(renderer_.shaders, filter.request().values, run::make_filter_light(options_, scene_.light, map_.frustum, filter.request()));
+  filter.retune(renderer_.shaders, filter.request().values,
+                run::make_filter_light(options_, scene_.light, map_.frustum, filter.request()));
   filter.prefilter(map_.map);
   filter.lookup(assets_.gbuffer(camera()), map_.map, target_);
   return render::read_image(target_.texture(), 1);
 }
 
-std::vector<reference::FlickerStats> FlickerBench::measure(const std::vector<scene::LightFrustum>& frusta, const std::vector<std::uint8_t>& mask, const TruthFrames& truth,
+std::vector<reference::FlickerStats> FlickerBench::measure(const std::vector<scene::LightFrustum>& frusta,
+                                                           const std::vector<std::uint8_t>& mask,
+                                                           const TruthFrames& truth,
                                                            const std::function<void(int)>& on_frame) {
   std::vector<reference::FlickerMeter> meters(filters_.size(), reference::FlickerMeter(mask));
   for (std::size_t t = 0; t < frusta.size(); ++t) {

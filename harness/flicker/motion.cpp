@@ -19,7 +19,8 @@ constexpr std::array<std::string_view, 2> kNames = {"light", "camera"};  // in t
 Motion parse_motion(const std::string& name) {
   const auto found = std::ranges::find(kNames, name);
   if (found != kNames.end()) return static_cast<Motion>(found - kNames.begin());
-  throw Error(ErrorKind::kUsage, fmt::format("--motion: unknown motion '{}'; there are {}", name, fmt::join(kNames, ", ")));
+  throw Error(ErrorKind::kUsage,
+              fmt::format("--motion: unknown motion '{}'; there are {}", name, fmt::join(kNames, ", ")));
 }
 
 bool lies_inside(const glm::dvec3& place, double map_size, double pad_texels) {
@@ -46,14 +47,17 @@ std::vector<Motion> parse_motions(const std::string& text) {
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const Motion motion = parse_motion(text.substr(begin, end - begin));
-    if (std::ranges::find(motions, motion) != motions.end()) throw Error(ErrorKind::kUsage, fmt::format("--motion names '{}' twice", name_of(motion)));
+    if (std::ranges::find(motions, motion) != motions.end())
+      throw Error(ErrorKind::kUsage, fmt::format("--motion names '{}' twice", name_of(motion)));
     motions.push_back(motion);
     begin = end + 1;
   }
   return motions;
 }
 
-scene::FitMode fit_of(Motion motion) { return motion == Motion::kLight ? scene::FitMode::kTight : scene::FitMode::kView; }
+scene::FitMode fit_of(Motion motion) {
+  return motion == Motion::kLight ? scene::FitMode::kTight : scene::FitMode::kView;
+}
 
 std::vector<Frame> make_frames(Motion motion, const scene::Scene& scene, double step, int count) {
   const scene::Camera& camera = scene.cameras.front();
@@ -61,37 +65,47 @@ std::vector<Frame> make_frames(Motion motion, const scene::Scene& scene, double 
   std::vector<Frame> frames(static_cast<std::size_t>(count), Frame{scene.light, camera});
   for (int i = 1; i < count; ++i) {
     Frame& frame = frames[static_cast<std::size_t>(i)];
-    if (motion == Motion::kLight) frame.light.direction_ws = glm::vec3(glm::rotateY(glm::dvec3(scene.light.direction_ws), i * step));
-    else frame.camera.position_ws = glm::vec3(glm::dvec3(camera.position_ws) + i * step * right);
+    if (motion == Motion::kLight)
+      frame.light.direction_ws = glm::vec3(glm::rotateY(glm::dvec3(scene.light.direction_ws), i * step));
+    else
+      frame.camera.position_ws = glm::vec3(glm::dvec3(camera.position_ws) + i * step * right);
   }
   return frames;
 }
 
-std::vector<scene::LightFrustum> fit_frames(Motion motion, const scene::Scene& scene, const std::vector<Frame>& frames, const MapFollowing& following) {
+std::vector<scene::LightFrustum> fit_frames(Motion motion, const scene::Scene& scene, const std::vector<Frame>& frames,
+                                            const MapFollowing& following) {
   std::vector<scene::LightFrustum> frusta;
   for (const Frame& frame : frames) {
-    frusta.push_back(scene::fit_light(scene, {fit_of(motion), following.map_size, following.pad_texels, following.snap, &frame.camera, following.aspect, &frame.light}));
+    frusta.push_back(scene::fit_light(scene, {fit_of(motion), following.map_size, following.pad_texels, following.snap,
+                                              &frame.camera, following.aspect, &frame.light}));
   }
   return frusta;
 }
 
 glm::dvec3 find_place(const scene::LightFrustum& frustum, int map_size, const glm::vec3& point_ws) {
   const glm::dvec4 seen = frustum.light_from_world * glm::dvec4(point_ws, 1.0);
-  return {seen.x / frustum.texel_size_ws + 0.5 * map_size, seen.y / frustum.texel_size_ws + 0.5 * map_size, -seen.z / frustum.depth_range_ws};
+  return {seen.x / frustum.texel_size_ws + 0.5 * map_size, seen.y / frustum.texel_size_ws + 0.5 * map_size,
+          -seen.z / frustum.depth_range_ws};
 }
 
-std::vector<std::uint8_t> mark_receivers(const reference::ReceiverImage& receivers, const std::vector<scene::LightFrustum>& frusta, int map_size, double pad_texels) {
+std::vector<std::uint8_t> mark_receivers(const reference::ReceiverImage& receivers,
+                                         const std::vector<scene::LightFrustum>& frusta, int map_size,
+                                         double pad_texels) {
   std::vector<std::uint8_t> marked;
   for (const reference::ReceiverPoint& point : receivers.points) {
     const bool counts = point.counts && std::ranges::all_of(frusta, [&](const scene::LightFrustum& frustum) {
-      return glm::dot(point.normal_ws, -frustum.direction_ws) > filters::kFacesLight && lies_inside(find_place(frustum, map_size, point.position_ws), map_size, pad_texels);
-    });
+                          return glm::dot(point.normal_ws, -frustum.direction_ws) > filters::kFacesLight &&
+                                 lies_inside(find_place(frustum, map_size, point.position_ws), map_size, pad_texels);
+                        });
     marked.push_back(counts ? 1 : 0);
   }
   return marked;
 }
 
-std::optional<double> measure_grid_move(const reference::ReceiverImage& receivers, const std::vector<std::uint8_t>& marked, const std::vector<scene::LightFrustum>& frusta, int map_size) {
+std::optional<double> measure_grid_move(const reference::ReceiverImage& receivers,
+                                        const std::vector<std::uint8_t>& marked,
+                                        const std::vector<scene::LightFrustum>& frusta, int map_size) {
   std::vector<double> moves;
   for (std::size_t i = 0; i < marked.size(); ++i) {
     if (!marked[i]) continue;
@@ -107,23 +121,29 @@ std::optional<double> measure_grid_move(const reference::ReceiverImage& receiver
 
 int count_resizes(const std::vector<scene::LightFrustum>& frusta) {
   int count = 0;
-  for (std::size_t t = 1; t < frusta.size(); ++t) {
+  for (std::size_t t = 1; t < frusta.size(); ++t)
     if (std::abs(frusta[t].texel_size_ws / frusta[t - 1].texel_size_ws - 1.0) > 1e-6) ++count;
-  }
   return count;
 }
 
-double choose_step(Motion motion, const scene::Scene& scene, const reference::ReceiverImage& receivers, MapFollowing following) {
+double choose_step(Motion motion, const scene::Scene& scene, const reference::ReceiverImage& receivers,
+                   MapFollowing following) {
   constexpr double kTrial_rad = 1e-4;  // far below a texel's turn in any map that a GL can give
   following.snap = false;
   const bool light = motion == Motion::kLight;
   const auto frusta = fit_frames(motion, scene, make_frames(motion, scene, light ? kTrial_rad : 0.0, 2), following);
   if (!light) return kStepTexels * frusta.front().texel_size_ws;
-  const auto moved = measure_grid_move(receivers, mark_receivers(receivers, frusta, following.map_size, following.pad_texels), frusta, following.map_size);
-  if (!moved) throw Error(ErrorKind::kInput, fmt::format("{}: no surface in view faces the light; choose another scene", scene.name));
+  const auto moved =
+      measure_grid_move(receivers, mark_receivers(receivers, frusta, following.map_size, following.pad_texels), frusta,
+                        following.map_size);
+  if (!moved)
+    throw Error(ErrorKind::kInput,
+                fmt::format("{}: no surface in view faces the light; choose another scene", scene.name));
   constexpr double kLeast = 1e-6;
   if (*moved < kLeast) {
-    throw Error(ErrorKind::kInput, fmt::format("{}: turning the light about the vertical moves nothing, it stands overhead; choose another scene, or --motion camera", scene.name));
+    throw Error(ErrorKind::kInput, fmt::format("{}: turning the light about the vertical moves nothing, it stands "
+                                               "overhead; choose another scene, or --motion camera",
+                                               scene.name));
   }
   return kTrial_rad * kStepTexels / *moved;
 }

@@ -47,17 +47,22 @@ struct MapFollowing {
 
 /// Fits the light's map to each frame.
 /// Throws as scene::fit_light.
-std::vector<scene::LightFrustum> fit_frames(Motion motion, const scene::Scene& scene, const std::vector<Frame>& frames, const MapFollowing& following);
+std::vector<scene::LightFrustum> fit_frames(Motion motion, const scene::Scene& scene, const std::vector<Frame>& frames,
+                                            const MapFollowing& following);
 
 /// Gives a point's place in a map of `map_size` texels: texels from its first row and column, and depth in [0,1].
 glm::dvec3 find_place(const scene::LightFrustum& frustum, int map_size, const glm::vec3& point_ws);
 
 /// Marks, with 1, the receivers that face the light and lie in the map, `pad_texels` from its edge, in every frame.
-std::vector<std::uint8_t> mark_receivers(const reference::ReceiverImage& receivers, const std::vector<scene::LightFrustum>& frusta, int map_size, double pad_texels);
+std::vector<std::uint8_t> mark_receivers(const reference::ReceiverImage& receivers,
+                                         const std::vector<scene::LightFrustum>& frusta, int map_size,
+                                         double pad_texels);
 
-/// Gives the median, over marked receivers and steps, of how far a receiver moves against the map's grid, in texels; whole texels,
-/// which change no filter's weights, are left out along each axis. Nothing where no receiver is marked.
-std::optional<double> measure_grid_move(const reference::ReceiverImage& receivers, const std::vector<std::uint8_t>& marked, const std::vector<scene::LightFrustum>& frusta, int map_size);
+/// Gives the median, over marked receivers and steps, of how far a receiver moves against the map's grid, in texels;
+/// whole texels, which change no filter's weights, are left out along each axis. Nothing where no receiver is marked.
+std::optional<double> measure_grid_move(const reference::ReceiverImage& receivers,
+                                        const std::vector<std::uint8_t>& marked,
+                                        const std::vector<scene::LightFrustum>& frusta, int map_size);
 
 /// Counts the steps in which the texel's size changes by more than a millionth of it.
 int count_resizes(const std::vector<scene::LightFrustum>& frusta);
@@ -65,9 +70,10 @@ int count_resizes(const std::vector<scene::LightFrustum>& frusta);
 /// Texels that a step moves the grid by: small enough for a shadow's edge to be seen at several places within a texel.
 inline constexpr double kStepTexels = 0.125;
 
-/// Gives the step at which the grid moves by kStepTexels: for the light, at the median receiver that faces it; for the camera, which moves
-/// by that share of a texel. `following.snap` is not used.
-/// Throws Error(kInput) where turning the light moves nothing: no receiver faces it, or it stands overhead.
-double choose_step(Motion motion, const scene::Scene& scene, const reference::ReceiverImage& receivers, MapFollowing following);
+/// Gives the step at which the grid moves by kStepTexels: for the light, at the median receiver that faces it; for the
+/// camera, which moves by that share of a texel. `following.snap` is not used. Throws Error(kInput) where turning the
+/// light moves nothing: no receiver faces it, or it stands overhead.
+double choose_step(Motion motion, const scene::Scene& scene, const reference::ReceiverImage& receivers,
+                   MapFollowing following);
 
 }  // namespace shadowbench::flicker

@@ -9,9 +9,9 @@
 #include "harness/flicker/bench.h"
 #include "harness/run/run_facts.h"
 #include "harness/run/scene_loading.h"
-#include "report/folder_lock.h"
 #include "report/flicker_files.h"
 #include "report/flicker_picture.h"
+#include "report/folder_lock.h"
 
 namespace shadowbench::flicker {
 namespace {
@@ -26,12 +26,17 @@ report::FlickerMotion describe_motion(Motion motion, double step) {
   record.picture = fmt::format("flicker.{}.png", record.id);
   if (motion == Motion::kLight) {
     record.title = "The light turns";
-    record.how = fmt::format("The sun turns about the vertical; the step is chosen so that the median receiver moves by {:g} texels in the map without snapping, in the first step.", kStepTexels);
+    record.how = fmt::format(
+        "The sun turns about the vertical; the step is chosen so that the median receiver moves by {:g} texels in the "
+        "map without snapping, in the first step.",
+        kStepTexels);
     record.step = glm::degrees(step);
     record.step_unit = "degrees";
   } else {
     record.title = "The camera moves";
-    record.how = fmt::format("The camera moves to its right by {:g} of a texel's width a step, and the light's map follows what it sees.", kStepTexels);
+    record.how = fmt::format(
+        "The camera moves to its right by {:g} of a texel's width a step, and the light's map follows what it sees.",
+        kStepTexels);
     record.step = step;
     record.step_unit = "m";
   }
@@ -84,7 +89,8 @@ class FlickerRun {
 
   int count_frames() const {
     int passes = 0;
-    for (const Motion motion : motions_) passes += motion == Motion::kLight ? 3 : 2;  // the truth, and without and with snapping
+    for (const Motion motion : motions_)
+      passes += motion == Motion::kLight ? 3 : 2;  // the truth, and without and with snapping
     return passes * options_.frames;
   }
 
@@ -105,10 +111,13 @@ class FlickerRun {
   }
 
   std::function<void(int)> show(const std::string& what) {
-    return [this, what](int frame) { progress_.show(done_++, fmt::format("{} · frame {} of {}", what, frame + 1, options_.frames)); };
+    return [this, what](int frame) {
+      progress_.show(done_++, fmt::format("{} · frame {} of {}", what, frame + 1, options_.frames));
+    };
   }
 
-  report::FlickerVariant describe_variant(bool snap, const std::vector<scene::LightFrustum>& frusta, const std::vector<std::uint8_t>& mask) const {
+  report::FlickerVariant describe_variant(bool snap, const std::vector<scene::LightFrustum>& frusta,
+                                          const std::vector<std::uint8_t>& mask) const {
     report::FlickerVariant variant;
     variant.snap = snap;
     variant.texel_m = frusta.front().texel_size_ws;
@@ -129,7 +138,8 @@ class FlickerRun {
     for (std::size_t v = 0; v < frusta.size(); ++v) {
       report::FlickerVariant& variant = record.variants.emplace_back(describe_variant(v == 1, frusta[v], mask));
       stats.push_back(bench_.measure(frusta[v], mask, truth, show(record.id + (variant.snap ? " · snapped" : ""))));
-      for (std::size_t i = 0; i < stats[v].size(); ++i) variant.filters.push_back(make_record(options_.run.filters[i].label(), stats[v][i]));
+      for (std::size_t i = 0; i < stats[v].size(); ++i)
+        variant.filters.push_back(make_record(options_.run.filters[i].label(), stats[v][i]));
     }
     const reference::FlickerStats& any = stats.front().front();
     record.receivers = any.receivers;
@@ -142,19 +152,23 @@ class FlickerRun {
   std::vector<std::uint8_t> mark(const std::vector<std::vector<scene::LightFrustum>>& frusta) const {
     std::vector<scene::LightFrustum> all;
     for (const auto& some : frusta) all.insert(all.end(), some.begin(), some.end());
-    std::vector<std::uint8_t> mask = mark_receivers(bench_.receivers().image, all, record_.map_size, bench_.following(false).pad_texels);
+    std::vector<std::uint8_t> mask =
+        mark_receivers(bench_.receivers().image, all, record_.map_size, bench_.following(false).pad_texels);
     if (std::ranges::count(mask, std::uint8_t{1}) > 0) return mask;
-    throw Error(ErrorKind::kInput, fmt::format("{}: no receiver faces the light and stays in its map in all {} frames; give fewer --frames, a larger --map-size or another --scene",
+    throw Error(ErrorKind::kInput, fmt::format("{}: no receiver faces the light and stays in its map in all {} frames; "
+                                               "give fewer --frames, a larger --map-size or another --scene",
                                                scene_.name, options_.frames));
   }
 
   void write_picture(const report::FlickerMotion& motion, const std::vector<Stats>& stats) const {
     report::FlickerPicture picture;
     picture.title = fmt::format("{}: flicker by pixel on {}", motion.title, scene_.name);
-    picture.note = fmt::format("root mean square, over {} steps, of the change of visibility less the truth's; map {}, {:.3g} {} a step", options_.frames - 1, record_.map_size, motion.step,
-                               motion.step_unit);
+    picture.note = fmt::format(
+        "root mean square, over {} steps, of the change of visibility less the truth's; map {}, {:.3g} {} a step",
+        options_.frames - 1, record_.map_size, motion.step, motion.step_unit);
     for (std::size_t i = 0; i < options_.run.filters.size(); ++i) {
-      picture.tiles.push_back({options_.run.filters[i].label(), to_image(stats[0][i], options_.run), to_image(stats[1][i], options_.run)});
+      picture.tiles.push_back(
+          {options_.run.filters[i].label(), to_image(stats[0][i], options_.run), to_image(stats[1][i], options_.run)});
     }
     report::write_flicker_picture(options_.run.out / motion.picture, picture);
   }

@@ -32,9 +32,8 @@ Buffer::Buffer(std::string_view label, std::size_t size) : handle_(create_buffer
 }
 
 void Buffer::upload(std::span<const std::byte> bytes, std::size_t offset) {
-  if (offset > size_ || bytes.size() > size_ - offset) {
+  if (offset > size_ || bytes.size() > size_ - offset)
     throw std::logic_error(fmt::format("{} bytes at {} do not fit a buffer of {}", bytes.size(), offset, size_));
-  }
   glNamedBufferSubData(id(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()), bytes.data());
 }
 

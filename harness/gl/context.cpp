@@ -26,9 +26,8 @@ std::string get_gl_string(GLenum name) {
 // For display, and for what `auto` tries first; nothing that can be measured may follow from it.
 bool looks_like_software(const std::string& renderer) {
   for (const std::string_view name :
-       {"llvmpipe", "softpipe", "swrast", "Software Rasterizer", "SwiftShader", "lavapipe"}) {
+       {"llvmpipe", "softpipe", "swrast", "Software Rasterizer", "SwiftShader", "lavapipe"})
     if (renderer.find(name) != std::string::npos) return true;
-  }
   return false;
 }
 
@@ -43,14 +42,10 @@ std::vector<Attempt> list_attempts(Backend backend) {
   const Attempt egl = {"egl", create_egl_context};
   const Attempt glfw = {"glfw", create_glfw_context};
   switch (backend) {
-    case Backend::kOsmesa:
-      return {osmesa};
-    case Backend::kEgl:
-      return {egl};
-    case Backend::kGlfw:
-      return {glfw};
-    case Backend::kAuto:
-      break;
+    case Backend::kOsmesa: return {osmesa};
+    case Backend::kEgl: return {egl};
+    case Backend::kGlfw: return {glfw};
+    case Backend::kAuto: break;
   }
   return {egl_gpu, osmesa, egl, glfw};
 }
@@ -58,16 +53,14 @@ std::vector<Attempt> list_attempts(Backend backend) {
 }  // namespace
 
 Backend parse_backend(std::string_view text) {
-  for (const auto& [backend, name] : kNames) {
+  for (const auto& [backend, name] : kNames)
     if (name == text) return backend;
-  }
   throw Error(ErrorKind::kUsage, fmt::format("unknown GL back end '{}'; there are auto, osmesa, egl and glfw", text));
 }
 
 std::string_view backend_name(Backend backend) {
-  for (const auto& [value, name] : kNames) {
+  for (const auto& [value, name] : kNames)
     if (value == backend) return name;
-  }
   throw std::logic_error("a GL back end without a name");
 }
 
@@ -81,7 +74,10 @@ ContextChoice create_context(Backend backend) {
       choice.refused.push_back(fmt::format("{}: {}", attempt.name, error.message()));
     }
   }
-  throw Error(ErrorKind::kContext, fmt::format("no OpenGL 4.5 core context: {}; install OSMesa (harness/setup.sh does), or choose another with --gl", fmt::join(choice.refused, "; ")));
+  throw Error(
+      ErrorKind::kContext,
+      fmt::format("no OpenGL 4.5 core context: {}; install OSMesa (harness/setup.sh does), or choose another with --gl",
+                  fmt::join(choice.refused, "; ")));
 }
 
 void Context::make_current() {
@@ -91,9 +87,8 @@ void Context::make_current() {
 
 void Context::initialise(GlInfo info, std::chrono::steady_clock::time_point start) {
   make_current();
-  if (!GLAD_GL_VERSION_4_5) {
+  if (!GLAD_GL_VERSION_4_5)
     throw Error(ErrorKind::kContext, fmt::format("OpenGL 4.5 is needed, this is {}", get_gl_string(GL_VERSION)));
-  }
   info_ = std::move(info);
   info_.vendor = get_gl_string(GL_VENDOR);
   info_.renderer = get_gl_string(GL_RENDERER);
@@ -124,9 +119,8 @@ void GLAPIENTRY Context::record_message(GLenum source, GLenum type, GLuint, GLen
 std::vector<std::string> Context::take_gl_errors() {
   // A context without the debug flag need not send messages: what is pending without one counts as well.
   const auto pending = drain_gl_errors();
-  if (errors_.empty()) {
+  if (errors_.empty())
     for (const GLenum error : pending) errors_.push_back(gl_error_name(error));
-  }
   return std::exchange(errors_, {});
 }
 

@@ -80,9 +80,8 @@ std::vector<Candidate> list_candidates() {
   std::vector<Candidate> candidates;
   if (has_word(client, "EGL_EXT_platform_device")) candidates = list_devices();
   std::ranges::stable_partition(candidates, [](const Candidate& candidate) { return !candidate.software; });
-  if (has_word(client, "EGL_MESA_platform_surfaceless")) {
+  if (has_word(client, "EGL_MESA_platform_surfaceless"))
     candidates.push_back({"surfaceless", EGL_PLATFORM_SURFACELESS_MESA, nullptr, false});
-  }
   return candidates;
 }
 
@@ -104,9 +103,8 @@ EGLConfig choose_config(const Display& opened) {
   const EGLint attributes[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_NONE};
   EGLConfig config = nullptr;
   EGLint count = 0;
-  if (eglChooseConfig(opened.display, attributes, &config, 1, &count) == EGL_FALSE || count < 1) {
+  if (eglChooseConfig(opened.display, attributes, &config, 1, &count) == EGL_FALSE || count < 1)
     refuse("no configuration renders OpenGL");
-  }
   return config;
 }
 
@@ -146,9 +144,8 @@ class EglContext : public Context {
   void bind() override {
     // The API in force belongs to the thread, and GLFW may have changed it.
     eglBindAPI(EGL_OPENGL_API);
-    if (eglMakeCurrent(owned_.display, EGL_NO_SURFACE, EGL_NO_SURFACE, owned_.context) == EGL_FALSE) {
+    if (eglMakeCurrent(owned_.display, EGL_NO_SURFACE, EGL_NO_SURFACE, owned_.context) == EGL_FALSE)
       refuse("the context cannot be made current");
-    }
   }
 
   GLADloadfunc loader() const override { return &eglGetProcAddress; }

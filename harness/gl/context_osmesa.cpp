@@ -43,9 +43,8 @@ class OsmesaContext : public Context {
   using Owned = std::unique_ptr<std::remove_pointer_t<OSMesaContext>, Destroy>;
 
   void bind() override {
-    if (OSMesaMakeCurrent(context_.get(), window_, GL_UNSIGNED_BYTE, kSide, kSide) == 0) {
+    if (OSMesaMakeCurrent(context_.get(), window_, GL_UNSIGNED_BYTE, kSide, kSide) == 0)
       throw Error(ErrorKind::kContext, "OSMesa cannot make its context current");
-    }
   }
 
   GLADloadfunc loader() const override {

@@ -53,9 +53,8 @@ void Framebuffer::clear_depth(float depth) { glClearNamedFramebufferfv(id(), GL_
 
 // GL draws to the intersection of unequal attachments; every pass here fills whole ones.
 void Framebuffer::adopt_size(int width, int height) {
-  if (width_ != 0 && (width != width_ || height != height_)) {
+  if (width_ != 0 && (width != width_ || height != height_))
     throw std::logic_error(fmt::format("framebuffer '{}': {}x{} joins {}x{}", label_, width, height, width_, height_));
-  }
   width_ = width;
   height_ = height;
   complete_ = false;
@@ -63,12 +62,10 @@ void Framebuffer::adopt_size(int width, int height) {
 
 void Framebuffer::require_complete() {
   const GLenum status = glCheckNamedFramebufferStatus(id(), GL_DRAW_FRAMEBUFFER);
-  if (status == GL_FRAMEBUFFER_UNSUPPORTED) {
+  if (status == GL_FRAMEBUFFER_UNSUPPORTED)
     throw Error(ErrorKind::kContext, fmt::format("framebuffer '{}': this GL cannot draw into its textures", label_));
-  }
-  if (status != GL_FRAMEBUFFER_COMPLETE) {
+  if (status != GL_FRAMEBUFFER_COMPLETE)
     throw std::logic_error(fmt::format("framebuffer '{}' is incomplete: 0x{:04x}", label_, status));
-  }
   complete_ = true;
 }
 

@@ -8,9 +8,8 @@ FullscreenTriangle::FullscreenTriangle() : empty_("fullscreen triangle") {}
 
 void FullscreenTriangle::set_state() const {
   for (const GLenum capability : {GL_DEPTH_TEST, GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_BLEND, GL_CULL_FACE,
-                                  GL_POLYGON_OFFSET_FILL, GL_RASTERIZER_DISCARD, GL_COLOR_LOGIC_OP}) {
+                                  GL_POLYGON_OFFSET_FILL, GL_RASTERIZER_DISCARD, GL_COLOR_LOGIC_OP})
     glDisable(capability);
-  }
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   empty_.bind();

@@ -10,20 +10,13 @@ namespace shadowbench::gl {
 
 std::string gl_error_name(GLenum error) {
   switch (error) {
-    case GL_INVALID_ENUM:
-      return "GL_INVALID_ENUM";
-    case GL_INVALID_VALUE:
-      return "GL_INVALID_VALUE";
-    case GL_INVALID_OPERATION:
-      return "GL_INVALID_OPERATION";
-    case GL_INVALID_FRAMEBUFFER_OPERATION:
-      return "GL_INVALID_FRAMEBUFFER_OPERATION";
-    case GL_OUT_OF_MEMORY:
-      return "GL_OUT_OF_MEMORY";
-    case GL_CONTEXT_LOST:
-      return "GL_CONTEXT_LOST";
-    default:
-      return fmt::format("GL error 0x{:04x}", error);
+    case GL_INVALID_ENUM: return "GL_INVALID_ENUM";
+    case GL_INVALID_VALUE: return "GL_INVALID_VALUE";
+    case GL_INVALID_OPERATION: return "GL_INVALID_OPERATION";
+    case GL_INVALID_FRAMEBUFFER_OPERATION: return "GL_INVALID_FRAMEBUFFER_OPERATION";
+    case GL_OUT_OF_MEMORY: return "GL_OUT_OF_MEMORY";
+    case GL_CONTEXT_LOST: return "GL_CONTEXT_LOST";
+    default: return fmt::format("GL error 0x{:04x}", error);
   }
 }
 
@@ -40,14 +33,11 @@ std::vector<GLenum> drain_gl_errors() {
 
 void require_allocated(std::string_view what) {
   const auto errors = drain_gl_errors();
-  for (const GLenum error : errors) {
-    if (error == GL_OUT_OF_MEMORY) {
+  for (const GLenum error : errors)
+    if (error == GL_OUT_OF_MEMORY)
       throw Error(ErrorKind::kContext, fmt::format("{}: the GL has not enough memory; choose smaller sizes", what));
-    }
-  }
-  if (!errors.empty()) {
+  if (!errors.empty())
     throw std::logic_error(fmt::format("{}: {} in making it, or before", what, gl_error_name(errors.front())));
-  }
 }
 
 }  // namespace shadowbench::gl

@@ -36,9 +36,8 @@ class PlaneDrawer {
 
  private:
   double draw(const Plane& plane, const Offset& offset) {
-    for (const GLenum capability : {GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_CULL_FACE, GL_RASTERIZER_DISCARD}) {
+    for (const GLenum capability : {GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_CULL_FACE, GL_RASTERIZER_DISCARD})
       glDisable(capability);
-    }
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
     glDepthMask(GL_TRUE);

@@ -35,11 +35,9 @@ double get_distance(int row) {
 
 std::vector<float> list_coordinates() {
   std::vector<float> coordinates;
-  for (int row = 0; row < kDistances; ++row) {
-    for (int border = 0; border < kMapSize; ++border) {
+  for (int row = 0; row < kDistances; ++row)
+    for (int border = 0; border < kMapSize; ++border)
       coordinates.push_back(static_cast<float>((border + get_distance(row)) / kMapSize));
-    }
-  }
   return coordinates;
 }
 

@@ -26,11 +26,10 @@ constexpr Window kFine = {0.5f, 1.0f / static_cast<float>(1 << WeightPrecision::
 Texture make_step_map(GLenum format) {
   Texture map("probe step", format, 2, 1);
   map.set_filter(GL_LINEAR, GL_LINEAR);
-  if (map.format().channels == 1) {
+  if (map.format().channels == 1)
     map.upload_floats(std::array{0.0f, 1.0f}, 1);
-  } else {
+  else
     map.upload_floats(std::array{0.0f, 0.0f, 1.0f, 1.0f}, 2);
-  }
   if (map.format().depth) map.set_compare(GL_LEQUAL);
   return map;
 }

@@ -35,17 +35,15 @@ constexpr std::array kFormats = {
 
 GLenum PixelFormat::transfer_format(int count) const {
   constexpr std::array<GLenum, 4> kColors = {GL_RED, GL_RG, GL_RGB, GL_RGBA};
-  if (count < 1 || count > channels) {
+  if (count < 1 || count > channels)
     throw std::logic_error(fmt::format("{} channels asked of {}, which has {}", count, name, channels));
-  }
   return depth ? GL_DEPTH_COMPONENT : kColors[static_cast<std::size_t>(count - 1)];
 }
 
 const PixelFormat& pixel_format(GLenum internal_format) {
   const auto found = std::ranges::find(kFormats, internal_format, &PixelFormat::internal_format);
-  if (found == kFormats.end()) {
+  if (found == kFormats.end())
     throw std::logic_error(fmt::format("internal format 0x{:04x} is not in the table of formats", internal_format));
-  }
   return *found;
 }
 
@@ -58,12 +56,12 @@ const PixelFormat& parse_pixel_format(std::string_view name) {
 }
 
 const PixelFormat& parse_depth_format(std::string_view name) {
-  const auto found = std::ranges::find_if(kFormats, [&](const PixelFormat& format) { return format.depth && format.name == name; });
+  const auto found =
+      std::ranges::find_if(kFormats, [&](const PixelFormat& format) { return format.depth && format.name == name; });
   if (found != kFormats.end()) return *found;
   std::string known;
-  for (const auto& format : kFormats) {
+  for (const auto& format : kFormats)
     if (format.depth) known += fmt::format("{}{}", known.empty() ? "" : ", ", format.name);
-  }
   throw Error(ErrorKind::kUsage, fmt::format("unknown depth format '{}'; there are {}", name, known));
 }
 

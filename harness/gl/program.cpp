@@ -146,21 +146,15 @@ void Program::set(std::string_view name, const glm::mat4& value) {
 }
 
 void Program::set(std::string_view name, std::span<const float> values) {
-  if (!values.empty()) {
-    glProgramUniform1fv(id(), location(name), static_cast<GLsizei>(values.size()), values.data());
-  }
+  if (!values.empty()) glProgramUniform1fv(id(), location(name), static_cast<GLsizei>(values.size()), values.data());
 }
 
 void Program::set(std::string_view name, std::span<const glm::vec2> values) {
-  if (!values.empty()) {
-    glProgramUniform2fv(id(), location(name), static_cast<GLsizei>(values.size()), &values[0][0]);
-  }
+  if (!values.empty()) glProgramUniform2fv(id(), location(name), static_cast<GLsizei>(values.size()), &values[0][0]);
 }
 
 void Program::set(std::string_view name, std::span<const glm::vec4> values) {
-  if (!values.empty()) {
-    glProgramUniform4fv(id(), location(name), static_cast<GLsizei>(values.size()), &values[0][0]);
-  }
+  if (!values.empty()) glProgramUniform4fv(id(), location(name), static_cast<GLsizei>(values.size()), &values[0][0]);
 }
 
 }  // namespace shadowbench::gl

@@ -50,9 +50,8 @@ std::optional<std::string_view> match_directive(std::string_view line, std::stri
   line = trim(line.substr(1));
   if (!line.starts_with(name)) return std::nullopt;
   const std::string_view rest = line.substr(name.size());
-  if (!rest.empty() && (rest.front() == '_' || std::isalnum(static_cast<unsigned char>(rest.front())) != 0)) {
+  if (!rest.empty() && (rest.front() == '_' || std::isalnum(static_cast<unsigned char>(rest.front())) != 0))
     return std::nullopt;
-  }
   return trim(rest);
 }
 
@@ -95,14 +94,12 @@ class Builder {
  private:
   std::optional<Found> find(const std::string& name) const {
     const auto piece = std::ranges::find(options_.pieces, name, &Piece::include_name);
-    if (piece != options_.pieces.end()) {
+    if (piece != options_.pieces.end())
       return Found{"piece:" + name, piece->text, piece->display_name, piece->first_line, ErrorKind::kFilter};
-    }
     for (const auto& root : options_.roots) {
       const auto path = (root / name).lexically_normal();
-      if (auto text = read_text(path)) {
+      if (auto text = read_text(path))
         return Found{path.generic_string(), std::move(*text), path.generic_string(), 1, ErrorKind::kInput};
-      }
     }
     return std::nullopt;
   }
@@ -114,12 +111,12 @@ class Builder {
   }
 
   void append(const Found& found) {
-    if (found.first_line + std::ranges::count(found.text, '\n') >= kLinesPerFile) {
+    if (found.first_line + std::ranges::count(found.text, '\n') >= kLinesPerFile)
       throw Error(found.blame, fmt::format("has more than {} lines", kLinesPerFile - 1), found.display_name);
-    }
     if (const std::size_t nul = found.text.find('\0'); nul != std::string::npos) {
       const auto lines = std::count(found.text.begin(), found.text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
-      throw Error(found.blame, "a NUL byte: this is no text, or was damaged; take the byte out", fmt::format("{}:{}", found.display_name, found.first_line + lines));
+      throw Error(found.blame, "a NUL byte: this is no text, or was damaged; take the byte out",
+                  fmt::format("{}:{}", found.display_name, found.first_line + lines));
     }
     open_.push_back(found.key);
     const auto index = source_.files.size();
@@ -139,33 +136,34 @@ class Builder {
       if (open_after && !in_comment) comment_line = number;
       in_comment = open_after;
     }
-    if (in_comment) {
+    if (in_comment)
       throw Error(found.blame, "a comment is not closed", fmt::format("{}:{}", found.display_name, comment_line));
-    }
     open_.pop_back();
   }
 
   // Returns whether the line was an include and has been replaced.
   bool append_include(std::string_view line, const Found& from, int number, std::size_t index) {
     const std::string where = fmt::format("{}:{}", from.display_name, number);
-    if (match_directive(line, "version")) {
+    if (match_directive(line, "version"))
       throw Error(from.blame, "#version is set by the program (450 core); take this line out", where);
-    }
     if (match_directive(line, "line")) {
-      throw Error(from.blame, "#line is set by the program, so that messages name your file; take this line out", where);
+      throw Error(from.blame, "#line is set by the program, so that messages name your file; take this line out",
+                  where);
     }
     const auto rest = match_directive(line, "include");
     if (!rest) return false;
     const auto name = parse_include_name(*rest);
     if (!name) throw Error(from.blame, "malformed #include; write #include \"lib/file.glsl\"", where);
     if (leaves_folders(*name)) {
-      throw Error(from.blame, fmt::format("'{}' lies outside the program's shader folder; only files inside it are included", *name), where);
+      throw Error(
+          from.blame,
+          fmt::format("'{}' lies outside the program's shader folder; only files inside it are included", *name),
+          where);
     }
     const auto found = find(*name);
     if (!found) throw Error(from.blame, describe_missing(*name), where);
-    if (std::ranges::find(open_, found->key) != open_.end()) {
+    if (std::ranges::find(open_, found->key) != open_.end())
       throw Error(from.blame, fmt::format("'{}' includes itself, directly or through others", *name), where);
-    }
     if (done_.insert(found->key).second) append(*found);
     append_line_directive(number + 1, index);
     return true;

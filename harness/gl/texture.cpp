@@ -37,9 +37,8 @@ void reset_transfer_state() {
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
   for (const GLenum name : {GL_PACK_ALIGNMENT, GL_UNPACK_ALIGNMENT}) glPixelStorei(name, 1);
   for (const GLenum name : {GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS, GL_UNPACK_ROW_LENGTH,
-                            GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS}) {
+                            GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS})
     glPixelStorei(name, 0);
-  }
 }
 
 }  // namespace
@@ -126,9 +125,8 @@ std::size_t Texture::bytes() const {
 void Texture::require_count(std::size_t count, int channels) const {
   const auto wanted =
       static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * static_cast<std::size_t>(channels);
-  if (count != wanted) {
+  if (count != wanted)
     throw std::logic_error(fmt::format("{} values for a texture of {}x{}x{}", count, width_, height_, channels));
-  }
 }
 
 }  // namespace shadowbench::gl

@@ -30,8 +30,8 @@ struct TimerCheck {
 /// Requires: `context` is current. Cost: about 0.2 s.
 TimerCheck check_timer(Context& context);
 
-/// Chooses the clock to trust on this GL: by `check_timer` on a GPU; the wall clock on a software rasteriser, which works on
-/// the processor that the clock times, and whose query may agree by chance on a busy machine.
+/// Chooses the clock to trust on this GL: by `check_timer` on a GPU; the wall clock on a software rasteriser, which
+/// works on the processor that the clock times, and whose query may agree by chance on a busy machine.
 TimerKind choose_timer(Context& context);
 
 /// Runs `work` and returns how long the GL took over it, in milliseconds. Waits for what was queued before, and for it.

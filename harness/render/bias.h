@@ -2,8 +2,8 @@
 
 namespace shadowbench::render {
 
-/// Says how far a receiver is moved towards the light before it is compared. The parts add up, but for the first two, of
-/// which the larger holds.
+/// Says how far a receiver is moved towards the light before it is compared. The parts add up, but for the first two,
+/// of which the larger holds.
 struct Bias {
   double constant_depth = 0.0;        ///< in depth, [0,1] over the light's range
   double slope_depth = 0.0;           ///< times 1 - n.l, in depth
@@ -17,10 +17,10 @@ struct Bias {
 
 /// Says what is drawn into the depth map instead of the surfaces that light meets first.
 struct MapBias {
-  bool cull_front = false;       ///< leave out faces that face the light, of meshes that allow it
-  bool midpoint = false;         ///< half-way between the first and the second surface
-  double polygon_factor = 0.0;   ///< glPolygonOffset: times the larger depth slope
-  double polygon_units = 0.0;    ///< glPolygonOffset: times the format's smallest step
+  bool cull_front = false;      ///< leave out faces that face the light, of meshes that allow it
+  bool midpoint = false;        ///< half-way between the first and the second surface
+  double polygon_factor = 0.0;  ///< glPolygonOffset: times the larger depth slope
+  double polygon_units = 0.0;   ///< glPolygonOffset: times the format's smallest step
 
   bool operator==(const MapBias&) const = default;
 };

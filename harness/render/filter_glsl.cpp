@@ -44,16 +44,16 @@ std::string declare(const ParamSpec& param, const ParamValue& value) {
   if (!param.is_const) return fmt::format("uniform {} {};\n", glsl_type(param), param.name);
   if (const auto* flag = std::get_if<bool>(&value)) return fmt::format("const bool {} = {};\n", param.name, *flag);
   const double number = std::get<double>(value);
-  const std::string text = param.integer ? fmt::format("{}", static_cast<int>(number)) : literal(static_cast<float>(number));
+  const std::string text =
+      param.integer ? fmt::format("{}", static_cast<int>(number)) : literal(static_cast<float>(number));
   return fmt::format("const {} {} = {};\n", glsl_type(param), param.name, text);
 }
 
 std::string declare_disk(const FilterRequest& request, const filters::DiskTable& disk) {
   std::string points;
   const auto generated = filters::generate_disk_points(request.spec, request.values, disk.name);
-  for (const glm::vec2& p : generated) {
+  for (const glm::vec2& p : generated)
     points += fmt::format("{}vec2({}, {})", points.empty() ? "" : ", ", literal(p.x), literal(p.y));
-  }
   return fmt::format("const vec2 {}[{}] = vec2[]({});\n", disk.name, generated.size(), points);
 }
 
@@ -66,9 +66,8 @@ std::vector<gl::Piece> filter_pieces(const FilterRequest& request) {
   gl::Piece parameters;
   parameters.include_name = "filter_parameters";
   parameters.display_name = request.spec.path + " (parameters)";
-  for (const ParamSpec& param : request.spec.params) {
+  for (const ParamSpec& param : request.spec.params)
     if (is_for_shader(param)) parameters.text += declare(param, request.values.at(param.name));
-  }
   for (const filters::DiskTable& disk : request.spec.disks) parameters.text += declare_disk(request, disk);
   return {parameters, {"filter", request.spec.body, request.spec.path, request.spec.body_first_line}};
 }
@@ -77,13 +76,12 @@ void set_parameters(gl::Program& program, const FilterRequest& request) {
   for (const ParamSpec& param : request.spec.params) {
     const ParamValue& value = request.values.at(param.name);
     if (param.is_const || std::holds_alternative<std::string>(value)) continue;
-    if (const auto* flag = std::get_if<bool>(&value)) {
+    if (const auto* flag = std::get_if<bool>(&value))
       program.set(param.name, *flag ? 1 : 0);
-    } else if (param.integer) {
+    else if (param.integer)
       program.set(param.name, static_cast<int>(std::get<double>(value)));
-    } else {
+    else
       program.set(param.name, static_cast<float>(std::get<double>(value)));
-    }
   }
 }
 

@@ -11,9 +11,10 @@ namespace {
 Defines map_defines(const filters::FilterRequest& request, const MapSettings& map) {
   Defines defines = curve_defines(map.curve);
   if (defines.empty() || !request.spec.uses_samplers) return defines;
-  throw Error(ErrorKind::kUsage, fmt::format("{}: the filter '{}' reads the map's samplers itself, which do not hold "
-                                             "linear depth then; let it use compare_nearest, compare_2x2 or fetch_depth",
-                                             map.curve.reversed ? "--reversed-depth" : "--perspective-depth", request.spec.id));
+  throw Error(ErrorKind::kUsage,
+              fmt::format("{}: the filter '{}' reads the map's samplers itself, which do not hold "
+                          "linear depth then; let it use compare_nearest, compare_2x2 or fetch_depth",
+                          map.curve.reversed ? "--reversed-depth" : "--perspective-depth", request.spec.id));
 }
 
 }  // namespace
@@ -29,7 +30,8 @@ FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest&
 }
 
 gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, Defines defines) const {
-  for (const Defines& more : {map_defines_, range_defines(light_)}) defines.insert(defines.end(), more.begin(), more.end());
+  for (const Defines& more : {map_defines_, range_defines(light_)})
+    defines.insert(defines.end(), more.begin(), more.end());
   if (light_.bias.receiver_plane) defines.emplace_back("RECEIVER_PLANE", "1");
   gl::Program program =
       shaders.compile_filter(request_.spec.id + " lookup", "lookup.frag", defines, filter_pieces(request_));

@@ -36,20 +36,23 @@ class FilterPasses {
   FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, const ShadowMap& map,
                const LightSetup& light);
 
-  /// Takes other parameter values and another light, without compiling anything: what is drawn then equals what new passes draw.
-  /// Requires that only values change that are neither `const` nor texts, and a light with the same range rule and map size.
+  /// Takes other parameter values and another light, without compiling anything: what is drawn then equals what new
+  /// passes draw. Requires that only values change that are neither `const` nor texts, and a light with the same range
+  /// rule and map size.
   void retune(ShaderLibrary& shaders, const filters::ParamValues& values, const LightSetup& light);
 
-  /// Prepares another light, with the same range rule and map size. `encoded` is of encoded_format() and the map's size, or
-  /// null for filters that read depth; passes that take turns may share it. Passes draw with another light afterwards: turn
-  /// them to one.
+  /// Prepares another light, with the same range rule and map size. `encoded` is of encoded_format() and the map's
+  /// size, or null for filters that read depth; passes that take turns may share it. Passes draw with another light
+  /// afterwards: turn them to one.
   PreparedLight prepare(const LightSetup& light, std::shared_ptr<ImageTarget> encoded);
 
   /// Draws with another light from now on: what is drawn equals what new passes draw. Parameters stay.
   void turn_to(const PreparedLight& light);
 
   /// Gives the format of the encoded map; nothing for filters that read depth.
-  std::optional<GLenum> encoded_format() const { return prefilter_ ? std::optional(prefilter_->format()) : std::nullopt; }
+  std::optional<GLenum> encoded_format() const {
+    return prefilter_ ? std::optional(prefilter_->format()) : std::nullopt;
+  }
 
   bool has_prefilter() const { return prefilter_.has_value(); }
   int prefilter_passes() const { return prefilter_ ? prefilter_->passes() : 0; }  ///< encode and blur

@@ -16,8 +16,8 @@ class GBuffer {
   /// Draws the scene; near and far follow its bounds.
   void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::Scene& scene, const scene::Camera& camera);
 
-  /// Overwrites positions and geometric normals with receivers that nobody drew, four floats a pixel as in position() and
-  /// normal(), row 0 below; what shading alone reads stays undefined.
+  /// Overwrites positions and geometric normals with receivers that nobody drew, four floats a pixel as in position()
+  /// and normal(), row 0 below; what shading alone reads stays undefined.
   void upload(std::span<const float> positions, std::span<const float> normals) {
     position_.upload_floats(positions, 4);
     normal_.upload_floats(normals, 4);

@@ -27,9 +27,7 @@ void append_mesh(std::vector<GpuVertex>& vertices, const scene::Mesh& mesh) {
     const scene::Vertex& b = mesh.vertices[mesh.indices[i + 1]];
     const scene::Vertex& c = mesh.vertices[mesh.indices[i + 2]];
     const glm::vec3 normal = face_normal(a, b, c);
-    for (const scene::Vertex* v : {&a, &b, &c}) {
-      vertices.push_back({v->position_ws, v->normal_ws, normal, v->uv});
-    }
+    for (const scene::Vertex* v : {&a, &b, &c}) vertices.push_back({v->position_ws, v->normal_ws, normal, v->uv});
   }
 }
 
@@ -51,8 +49,8 @@ Geometry::Geometry(const scene::Scene& scene) : materials_(scene.materials) {
   for (const scene::Mesh& mesh : scene.meshes) {
     const int first = static_cast<int>(vertices.size());
     append_mesh(vertices, mesh);
-    ranges_.push_back({first, static_cast<int>(vertices.size()) - first, mesh.material, mesh.casts_shadow,
-                       mesh.may_cull_front});
+    ranges_.push_back(
+        {first, static_cast<int>(vertices.size()) - first, mesh.material, mesh.casts_shadow, mesh.may_cull_front});
   }
   triangles_ = static_cast<std::int64_t>(vertices.size() / 3);
   for (const scene::Texture& texture : scene.textures) textures_.push_back(upload(texture));

@@ -25,7 +25,8 @@ class Geometry {
   /// Draws with the variants of `<shader>.vert/.frag` that the materials need, and `more` defines; `prepare` sets a
   /// variant's own uniforms. Requires the framebuffer and all other state to be set.
   template <class Prepare>
-  void draw(ShaderLibrary& shaders, const std::string& shader, DrawSet set, Prepare prepare, const Defines& more = {}) const;
+  void draw(ShaderLibrary& shaders, const std::string& shader, DrawSet set, Prepare prepare,
+            const Defines& more = {}) const;
 
   std::int64_t triangle_count() const { return triangles_; }
 

@@ -16,7 +16,7 @@ struct LightSetup {
   scene::LightFrustum frustum;
   double light_size = 0.0;  ///< penumbra width per metre of distance to the occluder
   Bias bias;
-  std::uint32_t seed = 0;  ///< of the run: random rotations
+  std::uint32_t seed = 0;         ///< of the run: random rotations
   filters::RangeRule range = {};  ///< what becomes of receivers that the map does not hold
 };
 
@@ -27,8 +27,8 @@ LightSetup make_light_setup(const scene::LightFrustum& frustum, const scene::Lig
 /// Sets the uniforms of lib/light.glsl.
 void set_light(gl::Program& program, const LightSetup& light);
 
-/// Gives what programs that include lib/receiver.glsl need for this light; nothing for an orthographic map with the right
-/// range rule.
+/// Gives what programs that include lib/receiver.glsl need for this light; nothing for an orthographic map with the
+/// right range rule.
 Defines range_defines(const LightSetup& light);
 
 }  // namespace shadowbench::render

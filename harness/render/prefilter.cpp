@@ -12,8 +12,8 @@ constexpr GLuint kStoredUnit = 3;  // of lib/map_access.glsl
 
 GLenum store_format(const filters::ParamValues& values) {
   static const std::map<std::string, GLenum> formats = {
-      {"r16f", GL_R16F},       {"r32f", GL_R32F},       {"rg16f", GL_RG16F}, {"rg32f", GL_RG32F},  {"rgba16f", GL_RGBA16F},
-      {"rgba32f", GL_RGBA32F}, {"r16", GL_R16}, {"rg16", GL_RG16},   {"rgba16", GL_RGBA16}};
+      {"r16f", GL_R16F},       {"r32f", GL_R32F}, {"rg16f", GL_RG16F}, {"rg32f", GL_RG32F},  {"rgba16f", GL_RGBA16F},
+      {"rgba32f", GL_RGBA32F}, {"r16", GL_R16},   {"rg16", GL_RG16},   {"rgba16", GL_RGBA16}};
   return formats.at(filters::text_or(values, "store", ""));
 }
 
@@ -30,10 +30,12 @@ Defines blur_defines(const filters::FilterRequest& request, filters::Border bord
 
 Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
                      const LightSetup& light, const Defines& map_defines)
-    : stored_(std::make_shared<ImageTarget>(request.spec.id + " map", store_format(request.values), map_size, map_size)),
+    : stored_(
+          std::make_shared<ImageTarget>(request.spec.id + " map", store_format(request.values), map_size, map_size)),
       encode_(shaders.compile_filter(request.spec.id + " encode", "encode.frag", map_defines, filter_pieces(request))) {
   encode_.set("map_texel_uv", 1.0f / static_cast<float>(map_size));
-  const bool nearest = filters::combines_logs(request.values) || filters::text_or(request.values, "sample", "linear") == "nearest";
+  const bool nearest =
+      filters::combines_logs(request.values) || filters::text_or(request.values, "sample", "linear") == "nearest";
   sampler_.set_filter(nearest ? GL_NEAREST : GL_LINEAR, nearest ? GL_NEAREST : GL_LINEAR);
   sampler_.set_wrap(wrap_mode(light.range.border));
   reads_border_ = light.range.border == filters::Border::kBorder;
@@ -49,7 +51,8 @@ void Prefilter::retune(ShaderLibrary& shaders, const filters::FilterRequest& req
   radius_ = filters::prefilter_radius_texels(request.spec, request.values);
   weights_ = filters::gaussian_weights(radius_);
   if (radius_ == 0 || blur_) return;
-  scratch_.emplace(request.spec.id + " blur", store_format(request.values), stored_->texture().width(), stored_->texture().width());
+  scratch_.emplace(request.spec.id + " blur", store_format(request.values), stored_->texture().width(),
+                   stored_->texture().width());
   blur_ = &shaders.fullscreen("blur.frag", blur_defines(request, light.range.border));
 }
 

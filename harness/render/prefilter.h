@@ -17,7 +17,7 @@ namespace shadowbench::render {
 
 /// An encoded map as it was read back.
 struct EncodedTexels {
-  int side = 0;               ///< texels
+  int side = 0;  ///< texels
   int channels = 0;
   std::vector<float> values;  ///< side x side x channels, row 0 is v = 0
 };
@@ -29,14 +29,15 @@ class Prefilter {
   Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size, const LightSetup& light,
             const Defines& map_defines = {});
 
-  /// Takes other values of the parameters that are neither `const` nor texts, and another light with the same range rule.
+  /// Takes other values of the parameters that are neither `const` nor texts, and another light with the same range
+  /// rule.
   void retune(ShaderLibrary& shaders, const filters::FilterRequest& request, const LightSetup& light);
 
   /// Gives what the encoded map of a light holds outside the map. Reads one texel back.
   glm::vec4 find_border(const LightSetup& light);
 
-  /// Takes another light with the same range rule, whose border find_border() gave: what run() writes and bind() binds is
-  /// `stored`, of format() and the map's size, from now on. Reads nothing back.
+  /// Takes another light with the same range rule, whose border find_border() gave: what run() writes and bind() binds
+  /// is `stored`, of format() and the map's size, from now on. Reads nothing back.
   void turn_to(const LightSetup& light, const glm::vec4& border, std::shared_ptr<ImageTarget> stored);
 
   /// Encodes and blurs the depth map.
@@ -54,7 +55,9 @@ class Prefilter {
   int blur_radius_texels() const { return radius_; }
 
   /// Gives what the blur reads outside the map, where that is not the map itself.
-  std::optional<glm::vec4> blurred_border() const { return reads_border_ && radius_ > 0 ? std::optional(border_) : std::nullopt; }
+  std::optional<glm::vec4> blurred_border() const {
+    return reads_border_ && radius_ > 0 ? std::optional(border_) : std::nullopt;
+  }
 
   int passes() const { return radius_ > 0 ? 3 : 1; }
   std::int64_t bytes() const { return static_cast<std::int64_t>(stored_->texture().bytes()); }

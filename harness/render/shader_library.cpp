@@ -18,7 +18,8 @@ std::string variant_name(const std::string& file, const Defines& defines) {
 
 /// The line of a filter that first has a word; its last one where none has.
 std::ptrdiff_t find_line(const gl::Piece& filter, std::string_view word) {
-  const auto end = filter.text.begin() + static_cast<std::ptrdiff_t>(std::min(filter.text.find(word), filter.text.size()));
+  const auto end =
+      filter.text.begin() + static_cast<std::ptrdiff_t>(std::min(filter.text.find(word), filter.text.size()));
   return filter.first_line + std::count(filter.text.begin(), end, '\n');
 }
 
@@ -39,10 +40,12 @@ Error blame_filter(const Error& error, const gl::Piece& filter) {
   if (error.kind() != ErrorKind::kFilter || error.where().rfind(filter.display_name, 0) == 0) return error;
   if (error.message().find("recursion") != std::string::npos) return blame_recursion(error.message(), filter);
   const auto lines = std::count(filter.text.begin(), filter.text.end(), '\n');
-  return Error(ErrorKind::kFilter,
-               fmt::format("the GLSL breaks the code after it, at or before this line (a missing brace, or a name that the "
-                           "program uses itself?): {}", error.message()),
-               fmt::format("{}:{}", filter.display_name, filter.first_line + static_cast<int>(lines) - 1));
+  return Error(
+      ErrorKind::kFilter,
+      fmt::format("the GLSL breaks the code after it, at or before this line (a missing brace, or a name that the "
+                  "program uses itself?): {}",
+                  error.message()),
+      fmt::format("{}:{}", filter.display_name, filter.first_line + static_cast<int>(lines) - 1));
 }
 
 }  // namespace

@@ -33,9 +33,8 @@ double find_coarsest_step(const MapSettings& settings, double farthest) {
   const filters::DepthFormat format{is_float ? 32 : settings.format == GL_DEPTH_COMPONENT24 ? 24 : 16, is_float};
   constexpr int kSamples = 256;
   double coarsest = 0.0;
-  for (int i = 0; i <= kSamples; ++i) {
+  for (int i = 0; i <= kSamples; ++i)
     coarsest = std::max(coarsest, filters::depth_step(farthest * i / kSamples, settings.curve, format));
-  }
   return coarsest;
 }
 
@@ -62,11 +61,13 @@ void require_depth_bits(GLenum format, int bits) {
                                              gl::pixel_format(format).name, bits));
 }
 
-ShadowMap::Layer::Layer(const char* label, GLenum format, int size) : depth(label, format, size, size), framebuffer(label) {
+ShadowMap::Layer::Layer(const char* label, GLenum format, int size)
+    : depth(label, format, size, size), framebuffer(label) {
   framebuffer.attach_depth(depth);
 }
 
-ShadowMap::ShadowMap(int size, const MapSettings& settings) : settings_(settings), map_("shadow map", settings.format, size) {
+ShadowMap::ShadowMap(int size, const MapSettings& settings)
+    : settings_(settings), map_("shadow map", settings.format, size) {
   require_depth_bits(settings.format, map_.depth.depth_bits());
   const GLenum compare = settings.curve.reversed ? GL_GEQUAL : GL_LEQUAL;
   for (gl::Sampler* sampler : {&plain_, &compare_linear_, &compare_nearest_}) {
@@ -113,16 +114,16 @@ void ShadowMap::draw_casters(ShaderLibrary& shaders, const Geometry& geometry, c
   set_geometry_state();
 }
 
-void ShadowMap::draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum, const MapBias& bias) {
-  if (bias.midpoint) {
+void ShadowMap::draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
+                     const MapBias& bias) {
+  if (bias.midpoint)
     draw_midpoint(shaders, geometry, frustum, bias);
-  } else {
+  else
     draw_casters(shaders, geometry, frustum, bias, map_.framebuffer, {});
-  }
 }
 
-/// Woo 1992, The Shadow Depth Map Revisited, Graphics Gems III: the map lies between the first and the second surface, so
-/// that neither shadows itself. Where there is no second one it counts as the far plane.
+/// Woo 1992, The Shadow Depth Map Revisited, Graphics Gems III: the map lies between the first and the second surface,
+/// so that neither shadows itself. Where there is no second one it counts as the far plane.
 void ShadowMap::draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
                               const MapBias& bias) {
   if (surfaces_.empty()) {

@@ -43,10 +43,11 @@ class ShadowMap {
   /// Draws the casters as the light sees them; by default nothing is culled, nothing is biased.
   /// Cost: one pass over the casters, two and a full-screen pass for a midpoint map.
   /// Requires linear depth where the bias has a polygon offset, which the GL adds to depth as it is drawn.
-  void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum, const MapBias& bias = {});
+  void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
+            const MapBias& bias = {});
 
-  /// Overwrites the map with stored depths that nobody drew, row 0 at v = 0; what a fixed-point format cannot hold is clamped.
-  /// Requires size() * size() values.
+  /// Overwrites the map with stored depths that nobody drew, row 0 at v = 0; what a fixed-point format cannot hold is
+  /// clamped. Requires size() * size() values.
   void upload(std::span<const float> stored) { map_.depth.upload_floats(stored, 1); }
 
   /// Binds the map to the three units of lib/map_access.glsl that read depth.
@@ -80,9 +81,10 @@ class ShadowMap {
   filters::Border border_ = filters::Border::kBorder;
 
   /// Draws casters into a layer; both faces, but front faces of cullable ones where the bias says so.
-  void draw_casters(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum, const MapBias& bias,
-                    gl::Framebuffer& framebuffer, Defines defines) const;
-  void draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum, const MapBias& bias);
+  void draw_casters(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
+                    const MapBias& bias, gl::Framebuffer& framebuffer, Defines defines) const;
+  void draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
+                     const MapBias& bias);
 };
 
 }  // namespace shadowbench::render

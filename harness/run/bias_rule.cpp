@@ -76,7 +76,7 @@ template <class Table>
 [[noreturn]] void fail_unknown(const char* what, const std::string& name, const Table& table) {
   const std::vector<std::string> known = list_names(table);
   const auto near = nearest_name(name, known);
-  const std::string hint = near           ? fmt::format("did you mean '{}'?", *near)
+  const std::string hint = near            ? fmt::format("did you mean '{}'?", *near)
                            : known.empty() ? "this mode takes none"
                                            : fmt::format("known: {}", fmt::join(known, ", "));
   throw Error(ErrorKind::kUsage, fmt::format("--bias: unknown {} '{}'; {}", what, name, hint));
@@ -86,8 +86,10 @@ double parse_amount(const std::string& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value) || value < 0.0) {
-    throw Error(ErrorKind::kUsage, fmt::format("--bias: '{}' must be a finite number, 0 or more, without a unit: the unit is "
-                                               "in the key (depth, texels, world)", text));
+    throw Error(ErrorKind::kUsage,
+                fmt::format("--bias: '{}' must be a finite number, 0 or more, without a unit: the unit is "
+                            "in the key (depth, texels, world)",
+                            text));
   }
   return value;
 }
@@ -155,8 +157,9 @@ std::string list_bias_modes() {
   std::vector<std::string> texts;
   for (const auto& [name, mode] : modes()) {
     const std::vector<std::string> keys = list_names(mode.keys);
-    texts.push_back(keys.empty() ? name : fmt::format("{}{}:{}=X{}", name, mode.needs_amount ? "" : "[", fmt::join(keys, "=X,"),
-                                                      mode.needs_amount ? "" : "]"));
+    texts.push_back(keys.empty() ? name
+                                 : fmt::format("{}{}:{}=X{}", name, mode.needs_amount ? "" : "[",
+                                               fmt::join(keys, "=X,"), mode.needs_amount ? "" : "]"));
   }
   return fmt::format("{}", fmt::join(texts, " | "));
 }
@@ -169,14 +172,18 @@ std::string explain_unusable(const BiasRule& rule, const filters::FilterSpec& sp
 void require_usable(const BiasRule& rule, const filters::FilterSpec& spec) {
   const std::string why = explain_unusable(rule, spec);
   if (why.empty()) return;
-  throw Error(ErrorKind::kUsage, fmt::format("--bias receiver-plane cannot be used by the filter '{}', which {}; leave that "
-                                             "filter out of --filters, or choose another bias", spec.id, why));
+  throw Error(ErrorKind::kUsage,
+              fmt::format("--bias receiver-plane cannot be used by the filter '{}', which {}; leave that "
+                          "filter out of --filters, or choose another bias",
+                          spec.id, why));
 }
 
 void require_drawable(const BiasRule& rule, const render::MapSettings& map) {
   if (map.curve.is_linear() || (rule.map.polygon_factor == 0.0 && rule.map.polygon_units == 0.0)) return;
-  throw Error(ErrorKind::kUsage, "--bias polygon-offset cannot be drawn with --perspective-depth: the GL would add it to linear depth, before "
-                                 "the map bends it; leave one of the two out");
+  throw Error(
+      ErrorKind::kUsage,
+      "--bias polygon-offset cannot be drawn with --perspective-depth: the GL would add it to linear depth, before "
+      "the map bends it; leave one of the two out");
 }
 
 render::Bias resolve_bias(const BiasRule& rule, const scene::LightFrustum& frustum, const filters::FilterSpec& spec,

@@ -20,8 +20,8 @@ struct BiasAmount {
   double in_depth(const scene::LightFrustum& frustum) const;
 };
 
-/// The bias of a whole run. The parts add up; each filter gets its own share of `plane_kernels`, because the depth that a
-/// plane gains under a kernel grows with the kernel.
+/// The bias of a whole run. The parts add up; each filter gets its own share of `plane_kernels`, because the depth that
+/// a plane gains under a kernel grows with the kernel.
 struct BiasRule {
   BiasAmount constant{2e-5, 0.0, 0.0};
   BiasAmount slope;             ///< times 1 - n.l; the larger of this and `constant` holds
@@ -60,8 +60,9 @@ void require_drawable(const BiasRule& rule, const render::MapSettings& map);
 render::Bias resolve_bias(const BiasRule& rule, const scene::LightFrustum& frustum, const filters::FilterSpec& spec,
                           const filters::ParamValues& values);
 
-/// Gives the bias that a percentage-closer filter of the same kernel gets under a rule. Filters that compare get it anyway;
-/// a bound that takes the slope in by itself (`bias_texels` less than `radius_texels`) would show acne as a comparison.
+/// Gives the bias that a percentage-closer filter of the same kernel gets under a rule. Filters that compare get it
+/// anyway; a bound that takes the slope in by itself (`bias_texels` less than `radius_texels`) would show acne as a
+/// comparison.
 render::Bias resolve_comparison_bias(const BiasRule& rule, const scene::LightFrustum& frustum,
                                      const filters::FilterSpec& spec, const filters::ParamValues& values);
 

@@ -15,9 +15,9 @@
 #include "harness/run/scene_assets.h"
 #include "harness/run/scene_loading.h"
 #include "report/atomic_file.h"
-#include "report/folder_lock.h"
 #include "report/bias_chart.h"
 #include "report/bias_page.h"
+#include "report/folder_lock.h"
 #include "report/grid.h"
 #include "report/hardest_edge.h"
 
@@ -83,7 +83,9 @@ class BiasSweep {
     const SceneTruth& truth = assets_.truth(camera());
     const SceneTask task{&scene_, &camera(), options_.map_sizes.front(), options_.filters};
     const auto masks = CellAnalyser(renderer_, options_, task, assets_, truth).masks();
-    if (!masks) throw Error(ErrorKind::kInput, fmt::format("{}: no masks of artefacts: {}; choose another scene", scene_.name, truth.absent));
+    if (!masks)
+      throw Error(ErrorKind::kInput,
+                  fmt::format("{}: no masks of artefacts: {}; choose another scene", scene_.name, truth.absent));
     masks_ = *masks;
   }
 
@@ -98,17 +100,27 @@ class BiasSweep {
       return !masks_.acne[static_cast<std::size_t>((options_.height - 1 - r.pixel.y) * options_.width + r.pixel.x)];
     });
     if (static_cast<int>(lit_.size()) < reference::kFewestReceivers) {
-      throw Error(ErrorKind::kInput, fmt::format("{}: {} receivers are wholly lit, and {} are needed to reckon a theoretical amount; choose a larger "
-                                                 "--size, a larger --map-size or another scene", scene_.name, lit_.size(), reference::kFewestReceivers));
+      throw Error(
+          ErrorKind::kInput,
+          fmt::format(
+              "{}: {} receivers are wholly lit, and {} are needed to reckon a theoretical amount; choose a larger "
+              "--size, a larger --map-size or another scene",
+              scene_.name, lit_.size(), reference::kFewestReceivers));
     }
     const SweptMode& constant = swept_modes().front();
     if (find_theory(constant, 1.0, lit_, kPercentile).slope_per_texel > 0.0) return;
-    throw Error(ErrorKind::kInput, fmt::format("{}: the lit surfaces face the light squarely, where theory asks for no bias at all; choose another "
-                                               "scene", scene_.name));
+    throw Error(
+        ErrorKind::kInput,
+        fmt::format(
+            "{}: the lit surfaces face the light squarely, where theory asks for no bias at all; choose another "
+            "scene",
+            scene_.name));
   }
 
   void describe() {
-    const auto count = [](const std::vector<std::uint8_t>& mask) { return static_cast<long>(std::count(mask.begin(), mask.end(), 1)); };
+    const auto count = [](const std::vector<std::uint8_t>& mask) {
+      return static_cast<long>(std::count(mask.begin(), mask.end(), 1));
+    };
     record_.scene = scene_.name;
     record_.title = scene_.title;
     record_.view = camera().name;
@@ -140,7 +152,8 @@ class BiasSweep {
   /// Says why a filter has no say under a mode; empty where it has.
   std::string explain_left_out(const BiasRule& rule, const filters::FilterSpec& spec) {
     draw_map(rule.map);
-    if (rule.map.cull_front && !SceneAssets::has_casters(light_)) return "would read an empty map: all casters are open meshes, of which nothing stays";
+    if (rule.map.cull_front && !SceneAssets::has_casters(light_))
+      return "would read an empty map: all casters are open meshes, of which nothing stays";
     return explain_unusable(rule, spec);
   }
 
@@ -153,15 +166,18 @@ class BiasSweep {
     return render::read_image(target_.texture(), 1);
   }
 
-  Shot shoot(const SweptMode& mode, const filters::FilterRequest& request, std::optional<double> factor, double setting) {
+  Shot shoot(const SweptMode& mode, const filters::FilterRequest& request, std::optional<double> factor,
+             double setting) {
     Shot shot{{factor, setting, {}, {}}, draw(request, mode.make_rule(setting))};
     const std::vector<float>& image = shot.visibility.texels;
     shot.point.acne = reference::rate_below(image, masks_.acne, reference::kArtefactLimits.acne_below);
-    shot.point.contact_gap = reference::rate_above(image, masks_.contact_gap, reference::kArtefactLimits.contact_gap_above);
+    shot.point.contact_gap =
+        reference::rate_above(image, masks_.contact_gap, reference::kArtefactLimits.contact_gap_above);
     return shot;
   }
 
-  std::vector<Shot> shoot_curve(const SweptMode& mode, const filters::FilterRequest& request, report::BiasCurve& curve) {
+  std::vector<Shot> shoot_curve(const SweptMode& mode, const filters::FilterRequest& request,
+                                report::BiasCurve& curve) {
     std::vector<Shot> shots;
     if (mode.key.empty()) {
       shots.push_back(shoot(mode, request, std::nullopt, 0.0));
@@ -178,7 +194,8 @@ class BiasSweep {
 
   /// Gives the filter whose images are shown.
   const filters::FilterRequest* choose_shown(const std::vector<const filters::FilterRequest*>& usable) const {
-    const auto tent = std::find_if(usable.begin(), usable.end(), [](const auto* request) { return request->spec.id == kPictureFilter; });
+    const auto tent = std::find_if(usable.begin(), usable.end(),
+                                   [](const auto* request) { return request->spec.id == kPictureFilter; });
     return tent != usable.end() ? *tent : usable.empty() ? nullptr : usable.front();
   }
 
@@ -187,8 +204,10 @@ class BiasSweep {
     std::vector<const filters::FilterRequest*> usable;
     for (const filters::FilterRequest& request : options_.filters) {
       const std::string reason = explain_left_out(mode.make_rule(0.0), request.spec);
-      if (reason.empty()) usable.push_back(&request);
-      else record.left_out.push_back(fmt::format("Left out: {}, which {}.", request.label(), reason));
+      if (reason.empty())
+        usable.push_back(&request);
+      else
+        record.left_out.push_back(fmt::format("Left out: {}, which {}.", request.label(), reason));
     }
     const filters::FilterRequest* shown = choose_shown(usable);
     for (const filters::FilterRequest* request : usable) {
@@ -206,12 +225,15 @@ class BiasSweep {
   report::GridTile make_tile(const report::BiasModeRecord& mode, Shot& shot) {
     const report::BiasPoint& p = shot.point;
     const std::string which = p.factor == kTooLittle ? "too little: " : p.factor == kTooMuch ? "too much: " : "right: ";
-    const auto rate = [](const std::optional<double>& value) { return value ? fmt::format("{:.3g} %", 100.0 * *value) : "absent"; };
+    const auto rate = [](const std::optional<double>& value) {
+      return value ? fmt::format("{:.3g} %", 100.0 * *value) : "absent";
+    };
     report::GridTile tile;
     tile.label = p.factor ? which + report::name_factor(*p.factor) : mode.mode;
     tile.caption = (p.factor ? fmt::format("{} {:.4g} · ", mode.key, p.setting) : std::string()) +
                    fmt::format("acne {} · contact gap {}", rate(p.acne), rate(p.contact_gap));
-    tile.picture = render::shade(renderer_.shaders, assets_.gbuffer(camera()), render::upload_image(shot.visibility), scene_, camera());
+    tile.picture = render::shade(renderer_.shaders, assets_.gbuffer(camera()), render::upload_image(shot.visibility),
+                                 scene_, camera());
     tile.visibility = std::move(shot.visibility);
     return tile;
   }
@@ -230,11 +252,13 @@ class BiasSweep {
     for (const report::GridTile& tile : grid.tiles) images.push_back(&tile.visibility);
     const report::Image& truth = assets_.truth(camera()).area;
     images.push_back(&truth);
-    grid.crop = report::find_hardest_edge(images, images.size() - 1, report::choose_crop_size({truth.width, truth.height}));
+    grid.crop =
+        report::find_hardest_edge(images, images.size() - 1, report::choose_crop_size({truth.width, truth.height}));
     grid.columns = static_cast<int>(grid.tiles.size());
     mode.picture = fmt::format("bias.{}.png", mode.mode);
-    mode.picture_caption = fmt::format("{} under {}: picture and visibility{}, and the crop where it differs most; full size behind the link", curve.filter,
-                                       mode.mode, mode.key.empty() ? "" : " at too little, right and too much");
+    mode.picture_caption = fmt::format(
+        "{} under {}: picture and visibility{}, and the crop where it differs most; full size behind the link",
+        curve.filter, mode.mode, mode.key.empty() ? "" : " at too little, right and too much");
     report::write_grid(options_.out / mode.picture, grid);
   }
 };

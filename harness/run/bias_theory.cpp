@@ -16,21 +16,35 @@ std::vector<SweptMode> make_modes() {
   const auto slack = [](const BiasTheory&) { return BiasRule().constant.depth; };
   return {
       {"constant", "depth", "One depth for every receiver.", depth, depth},
-      {"slope", "depth", "An amount times 1 - n.l.", [](const BiasTheory& t) { return t.depth() / (1.0 - t.n_dot_l); }, depth},
-      {"plane", "texels", "The depth that the receiver's own plane gains over so many texels: theory holds at every slope up to 10:1.",
-       [](const BiasTheory& t) { return t.reach_texels; }, depth},
-      {"normal-offset", "texels", "The receiver is moved along its normal, by an amount times the sine of its angle to the light.",
-       // Moved along the normal by s r sin(theta), a point lies s r tan(theta) above the plane, measured along the light.
-       [](const BiasTheory& t) {
-         return t.depth() / std::hypot(t.larger_slope, t.slope_per_texel - t.larger_slope);
-       },
+      {"slope", "depth", "An amount times 1 - n.l.", [](const BiasTheory& t) { return t.depth() / (1.0 - t.n_dot_l); },
        depth},
-      {"polygon-offset", "factor", "glPolygonOffset while the map is drawn: an amount times the larger of the caster's two depth slopes.",
+      {"plane", "texels",
+       "The depth that the receiver's own plane gains over so many texels: theory holds at every slope up to 10:1.",
+       [](const BiasTheory& t) { return t.reach_texels; }, depth},
+      {"normal-offset", "texels",
+       "The receiver is moved along its normal, by an amount times the sine of its angle to the light.",
+       // Moved along the normal by s r sin(theta), a point lies s r tan(theta) above the plane, measured along the
+       // light.
+       [](const BiasTheory& t) { return t.depth() / std::hypot(t.larger_slope, t.slope_per_texel - t.larger_slope); },
+       depth},
+      {"polygon-offset", "factor",
+       "glPolygonOffset while the map is drawn: an amount times the larger of the caster's two depth slopes.",
        [](const BiasTheory& t) { return t.depth() / t.larger_slope; }, depth},
-      {"receiver-plane", "depth", "Every tap is compared with the depth of the receiver's plane there; theory asks for no more than the slack "
-       "that rounding needs.", slack, slack},
-      {"front-cull", "", "The map holds the faces turned away from the light, of objects that allow it; with the slack that rounding needs.", {}, {}},
-      {"midpoint", "", "The map holds what lies half-way between the first and the second surface; with the slack that rounding needs.", {}, {}}};
+      {"receiver-plane", "depth",
+       "Every tap is compared with the depth of the receiver's plane there; theory asks for no more than the slack "
+       "that rounding needs.",
+       slack, slack},
+      {"front-cull",
+       "",
+       "The map holds the faces turned away from the light, of objects that allow it; with the slack that rounding "
+       "needs.",
+       {},
+       {}},
+      {"midpoint",
+       "",
+       "The map holds what lies half-way between the first and the second surface; with the slack that rounding needs.",
+       {},
+       {}}};
 }
 
 }  // namespace
@@ -45,7 +59,8 @@ BiasTheory make_theory(double reach_texels, const filters::Receiver& receiver) {
   return {reach_texels, slopes.x + slopes.y, std::max(slopes.x, slopes.y), static_cast<double>(receiver.n_dot_l)};
 }
 
-BiasTheory find_theory(const SweptMode& mode, double reach_texels, const std::vector<filters::Receiver>& receivers, double share) {
+BiasTheory find_theory(const SweptMode& mode, double reach_texels, const std::vector<filters::Receiver>& receivers,
+                       double share) {
   struct Need {
     double amount;
     BiasTheory theory;

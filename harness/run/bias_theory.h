@@ -30,9 +30,9 @@ BiasTheory make_theory(double reach_texels, const filters::Receiver& receiver);
 
 /// One mode of bias as it is swept.
 struct SweptMode {
-  std::string name;     ///< as `--bias` has it
-  std::string key;      ///< whose amount is swept; empty: the mode takes none
-  std::string meaning;  ///< one sentence
+  std::string name;                                     ///< as `--bias` has it
+  std::string key;                                      ///< whose amount is swept; empty: the mode takes none
+  std::string meaning;                                  ///< one sentence
   std::function<double(const BiasTheory&)> amount;      ///< theoretical, in the key's unit
   std::function<double(const BiasTheory&)> lift_depth;  ///< how far that moves a receiver with these slopes, in depth
 
@@ -40,9 +40,10 @@ struct SweptMode {
   BiasRule make_rule(double amount) const;
 };
 
-/// Gives the theory of the receiver that needs more of a mode than `share` of the receivers do; of those that need the same,
-/// steeper planes count as needing more. Requires a mode with an amount, and receivers.
-BiasTheory find_theory(const SweptMode& mode, double reach_texels, const std::vector<filters::Receiver>& receivers, double share);
+/// Gives the theory of the receiver that needs more of a mode than `share` of the receivers do; of those that need the
+/// same, steeper planes count as needing more. Requires a mode with an amount, and receivers.
+BiasTheory find_theory(const SweptMode& mode, double reach_texels, const std::vector<filters::Receiver>& receivers,
+                       double share);
 
 /// Lists all modes: those with an amount first.
 const std::vector<SweptMode>& swept_modes();

@@ -45,8 +45,7 @@ class TilePainter {
 
   report::GridTile draw(const filters::FilterRequest& request, const Variant& variant) {
     const render::Bias bias = resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
-    const auto light =
-        render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed, variant.rule);
+    const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed, variant.rule);
     light_.map.set_border(variant.rule.border);
     render::FilterPasses passes(renderer_.shaders, request, light_.map, light);
     passes.prefilter(light_.map);
@@ -75,7 +74,8 @@ void write_border_page(const std::filesystem::path& file, Renderer& renderer, co
   TilePainter painter(renderer, options, task, assets);
   report::Grid grid;
   grid.title = fmt::format("{}: what lies outside the map", task.scene->name);
-  grid.subtitle = fmt::format("{} · view {} · map {} × {}", task.scene->title, task.camera->name, task.map_size, task.map_size);
+  grid.subtitle =
+      fmt::format("{} · view {} · map {} × {}", task.scene->title, task.camera->name, task.map_size, task.map_size);
   grid.columns = static_cast<int>(list_variants().size());
   for (const filters::FilterRequest& request : task.filters) {
     if (request.user_file) continue;

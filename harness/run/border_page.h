@@ -8,10 +8,10 @@
 
 namespace shadowbench::run {
 
-/// Draws what every filter of a task makes of the receivers outside the map, beside each other: the right rule, then each
-/// rule of an orthographic map that is wrong in one thing. Users' own filters, which have a process of their own, are left
-/// out. Leaves the map as the run has it.
-/// Writes a PNG file. Throws Error(kOutput). Cost: four untimed lookups a filter, and its prefilter as often.
+/// Draws what every filter of a task makes of the receivers outside the map, beside each other: the right rule, then
+/// each rule of an orthographic map that is wrong in one thing. Users' own filters, which have a process of their own,
+/// are left out. Leaves the map as the run has it. Writes a PNG file. Throws Error(kOutput). Cost: four untimed lookups
+/// a filter, and its prefilter as often.
 void write_border_page(const std::filesystem::path& file, Renderer& renderer, const RunOptions& options,
                        const SceneTask& task, SceneAssets& assets);
 

@@ -38,13 +38,14 @@ void note_parts(report::CellRecord& record, const reference::Attribution& attrib
     record.attribution.*report::list_error_parts()[p].record = {attribution.stats[p]->rms, attribution.stats[p]->share};
   }
   if (attribution.stats.front()) return;
-  record.absent["attribution"] = attribution.not_finite > 0 ? "no pixel of the image is finite" : "there is no error to take apart";
+  record.absent["attribution"] =
+      attribution.not_finite > 0 ? "no pixel of the image is finite" : "there is no error to take apart";
 }
 
 }  // namespace
 
-reference::ArtefactMasks find_artefact_masks(SceneTracer& tracer, const scene::LightFrustum& frustum, const SceneTruth& truth,
-                                             double widest_kernel_texels) {
+reference::ArtefactMasks find_artefact_masks(SceneTracer& tracer, const scene::LightFrustum& frustum,
+                                             const SceneTruth& truth, double widest_kernel_texels) {
   const double half_width = widest_kernel_texels + reference::kArtefactLimits.guard_texels;
   const reference::TracedVisibility around = tracer.trace_surroundings(truth.receivers, half_width, frustum);
   const std::vector<std::uint8_t> area_settled = find_settled(truth.rays.area), around_settled = find_settled(around);
@@ -55,7 +56,12 @@ reference::ArtefactMasks find_artefact_masks(SceneTracer& tracer, const scene::L
 
 CellAnalyser::CellAnalyser(Renderer& renderer, const RunOptions& options, const SceneTask& task, SceneAssets& assets,
                            const SceneTruth& truth)
-    : renderer_(renderer), options_(options), task_(task), assets_(assets), truth_(truth), light_(assets.light_map(*task.camera, task.map_size)) {
+    : renderer_(renderer),
+      options_(options),
+      task_(task),
+      assets_(assets),
+      truth_(truth),
+      light_(assets.light_map(*task.camera, task.map_size)) {
   if (!truth_.absent.empty()) return;
   masks_ = find_artefact_masks(assets_.tracer(), light_.frustum, truth_, widest_kernel_texels(options_));
 }
@@ -71,7 +77,8 @@ void CellAnalyser::analyse(MeasuredCell& cell) {
   report::CellRecord& record = cell.record;
   if (!masks_ || cell.visibility.empty()) {
     const std::string reason = truth_.absent.empty() ? record.message : truth_.absent;
-    for (const char* group : {"artefact", "attribution", "error.kernel_rmse", "excused", "images.attribution"}) record.absent[group] = reason;
+    for (const char* group : {"artefact", "attribution", "error.kernel_rmse", "excused", "images.attribution"})
+      record.absent[group] = reason;
     return;
   }
   count_artefacts(cell);
@@ -103,7 +110,8 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   const bool wanted = options_.attribution;
   if (!model || request.user_file || !wanted) {
     const char* reason = wanted ? "the filter has no scalar model" : "the run was made with --no-attribution";
-    for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused", "images.attribution"}) record.absent[field] = reason;
+    for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused", "images.attribution"})
+      record.absent[field] = reason;
     return;
   }
   if (!map_) map_ = light_.map.read();
@@ -112,12 +120,12 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   ModelReceivers receivers{read_receivers(own), {}};
   receivers.closer = own == comparison ? receivers.filter : read_receivers(comparison);
   const double plane_max_tangent = options_.bias.plane_max_tangent();
-  const ModelImages images = evaluate_model(request, *map_, receivers, plane_max_tangent, options_.seed, options_.width,
-                                             options_.height);
+  const ModelImages images =
+      evaluate_model(request, *map_, receivers, plane_max_tangent, options_.seed, options_.width, options_.height);
   const std::vector<float>& kernel = kernel_truth(model->kernel(request.values));
   const std::vector<float>& image = cell.visibility.texels;
-  reference::Attribution attribution = reference::attribute_error(
-      {image, images.model, images.closer, kernel, truth_.area.texels, truth_.mask});
+  reference::Attribution attribution =
+      reference::attribute_error({image, images.model, images.closer, kernel, truth_.area.texels, truth_.mask});
   record.excused = images.excused;
   record.absent.erase("excused");
   note_parts(record, attribution);

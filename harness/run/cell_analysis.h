@@ -14,8 +14,8 @@ namespace shadowbench::run {
 
 /// Finds where artefacts can occur in a view: the guard around a receiver is `widest_kernel_texels` and a little more.
 /// Requires a truth. Cost: traces the receivers' surroundings, or takes them from the cache.
-reference::ArtefactMasks find_artefact_masks(SceneTracer& tracer, const scene::LightFrustum& frustum, const SceneTruth& truth,
-                                             double widest_kernel_texels);
+reference::ArtefactMasks find_artefact_masks(SceneTracer& tracer, const scene::LightFrustum& frustum,
+                                             const SceneTruth& truth, double widest_kernel_texels);
 
 /// Says why the cells of one task are wrong: takes their errors apart, and counts the artefacts a person sees.
 class CellAnalyser {
@@ -25,8 +25,8 @@ class CellAnalyser {
                const SceneTruth& truth);
 
   /// Notes attribution and artefacts in the cell's record, or why there are none, and leaves the parts as images.
-  /// Cost: the filter's scalar model and its brute-force percentage-closer filter for every receiver, and its kernel traced
-  /// once for all cells that share it.
+  /// Cost: the filter's scalar model and its brute-force percentage-closer filter for every receiver, and its kernel
+  /// traced once for all cells that share it.
   void analyse(MeasuredCell& cell);
 
   /// The masks of the artefacts; nothing where there is no truth.

@@ -12,17 +12,19 @@ namespace {
 
 void add_options(ContentHash& hash, const RunOptions& options) {
   const RoundLimits& rounds = options.rounds;
-  hash.add(fmt::format("seed {} truth {} attribution {} stability {} uncertainty {} grids {} pad {} rounds {} {} {} {}", options.seed, options.truth, options.attribution, options.stability, options.uncertainty,
-                       options.grids, padding_texels(options), rounds.fewest, rounds.most,
-                       rounds.precision, rounds.budget_ms));
+  hash.add(fmt::format("seed {} truth {} attribution {} stability {} uncertainty {} grids {} pad {} rounds {} {} {} {}",
+                       options.seed, options.truth, options.attribution, options.stability, options.uncertainty,
+                       options.grids, padding_texels(options), rounds.fewest, rounds.most, rounds.precision,
+                       rounds.budget_ms));
   // The masks of artefacts reach as far as the widest kernel of the run.
-  hash.add(fmt::format("radius {} reference {} border page {}", widest_kernel_texels(options), options.reference.label(), options.border_page));
+  hash.add(fmt::format("radius {} reference {} border page {}", widest_kernel_texels(options),
+                       options.reference.label(), options.border_page));
   hash.add(fmt::format("lights {}", fmt::join(options.lights, " ")));
 }
 
 void add_material(ContentHash& hash, const scene::Material& m) {
-  hash.add(fmt::format("{} {} {} {} {} {} {}", m.base_color.r, m.base_color.g, m.base_color.b, m.base_color.a, m.base_color_texture,
-                       static_cast<int>(m.alpha_mode), m.alpha_cutoff));
+  hash.add(fmt::format("{} {} {} {} {} {} {}", m.base_color.r, m.base_color.g, m.base_color.b, m.base_color.a,
+                       m.base_color_texture, static_cast<int>(m.alpha_mode), m.alpha_cutoff));
 }
 
 void add_camera(ContentHash& hash, const scene::Camera& c) {
@@ -32,8 +34,8 @@ void add_camera(ContentHash& hash, const scene::Camera& c) {
 }
 
 void add_light(ContentHash& hash, const scene::Light& l) {
-  hash.add(fmt::format("{} {} {} {} {} {} {} {} {}", static_cast<int>(l.kind), l.direction_ws.x, l.direction_ws.y, l.direction_ws.z, l.color.r,
-                       l.color.g, l.color.b, l.intensity, l.angular_diameter_deg));
+  hash.add(fmt::format("{} {} {} {} {} {} {} {} {}", static_cast<int>(l.kind), l.direction_ws.x, l.direction_ws.y,
+                       l.direction_ws.z, l.color.r, l.color.g, l.color.b, l.intensity, l.angular_diameter_deg));
   if (!l.map_window) return;
   const scene::MapWindow& w = *l.map_window;
   hash.add(fmt::format("window {} {} {} {}", w.center_ws.x, w.center_ws.y, w.center_ws.z, w.width_m));
@@ -72,7 +74,8 @@ std::string name_cell_content(const std::string& scene_content, const filters::F
   hash.add(scene_content);
   hash.add(request.spec.body);
   hash.add(fmt::format("{} claims {}", request.user_file, fmt::join(request.spec.claims, " ")));
-  hash.add(fmt::format("moments {} exponent {} floor {}", request.spec.holds_moments, request.spec.exponent, request.spec.variance_floor));
+  hash.add(fmt::format("moments {} exponent {} floor {}", request.spec.holds_moments, request.spec.exponent,
+                       request.spec.variance_floor));
   return hash.name();
 }
 

@@ -30,9 +30,8 @@ struct Colors {
 report::Image drop_channel(const report::Image& image, int dropped) {
   report::Image rest(image.width, image.height, image.channels - 1);
   auto to = rest.texels.begin();
-  for (std::size_t i = 0; i < image.texels.size(); ++i) {
+  for (std::size_t i = 0; i < image.texels.size(); ++i)
     if (static_cast<int>(i % static_cast<std::size_t>(image.channels)) != dropped) *to++ = image.texels[i];
-  }
   return rest;
 }
 
@@ -84,9 +83,8 @@ bool is_finite(const report::Image& image, std::size_t pixel) {
 }
 
 Mask keep_finite(Mask mask, const Colors& a, const Colors& b) {
-  for (std::size_t i = 0; i < mask.size(); ++i) {
+  for (std::size_t i = 0; i < mask.size(); ++i)
     if (!is_finite(a.image, i) || !is_finite(b.image, i)) mask[i] = 0;
-  }
   return mask;
 }
 
@@ -145,9 +143,8 @@ using MetricValue = std::variant<double, std::string>;
 /// Gives FLIP, or why there is none.
 MetricValue measure_flip(const Pair& pair, double pixels_per_degree) {
   const int channels = pair.image.image.channels;
-  if (channels != 1 && channels != 3) {
+  if (channels != 1 && channels != 3)
     return fmt::format("FLIP is for pictures of 1 or 3 channels, these have {}", channels);
-  }
   const auto flip =
       measure_mean_flip(to_linear_rgb(pair.image), to_linear_rgb(pair.truth), pair.mask, pixels_per_degree);
   if (flip) return *flip;

@@ -28,9 +28,8 @@ class ExperimentReader {
     table.require_known_keys(known);
     Experiment experiment;
     experiment.title = table.string("title", std::string());
-    for (const std::string& key : keys) {
+    for (const std::string& key : keys)
       if (table.has(key)) experiment.settings.push_back(read_setting(key));
-    }
     for (const toml::node& node : filter_nodes()) experiment.filters.push_back(read_filter(node));
     return experiment;
   }
@@ -39,7 +38,9 @@ class ExperimentReader {
   std::filesystem::path file_;
   toml::table root_;
 
-  std::string where(const toml::node& node) const { return fmt::format("{}:{}", file_.string(), node.source().begin.line); }
+  std::string where(const toml::node& node) const {
+    return fmt::format("{}:{}", file_.string(), node.source().begin.line);
+  }
 
   [[noreturn]] void fail(const toml::node& node, const std::string& message) const {
     throw Error(ErrorKind::kInput, message, where(node));
@@ -67,7 +68,8 @@ class ExperimentReader {
     if (!list) return {text_of(node, key)};
     std::vector<std::string> texts;
     for (const toml::node& each : *list) texts.push_back(text_of(each, key));
-    if (texts.empty()) fail(node, fmt::format("'{}' is an empty list: nothing would be run; name a value, or leave the key out", key));
+    if (texts.empty())
+      fail(node, fmt::format("'{}' is an empty list: nothing would be run; name a value, or leave the key out", key));
     return texts;
   }
 
@@ -90,9 +92,8 @@ class ExperimentReader {
     const toml::table& entries = *node.as_table();
     const scene::TomlTable table(entries, "[[filter]]", file_.string());
     SweptFilter filter{table.string("id"), {}, where(node)};
-    for (const auto& [key, value] : entries) {
+    for (const auto& [key, value] : entries)
       if (key.str() != "id") filter.params.push_back(read_param(std::string(key.str()), value));
-    }
     return filter;
   }
 
@@ -104,9 +105,11 @@ class ExperimentReader {
     SweptParam param;
     param.name = name;
     param.logarithmic = table.has("log");
-    if (param.logarithmic == table.has("linear")) fail(node, fmt::format("'{}' needs 'linear' or 'log', one of them: the range's two ends", name));
+    if (param.logarithmic == table.has("linear"))
+      fail(node, fmt::format("'{}' needs 'linear' or 'log', one of them: the range's two ends", name));
     const glm::dvec2 ends = table.vec2(param.logarithmic ? "log" : "linear", scene::kAnyNumber);
-    if (param.logarithmic && !(std::min(ends.x, ends.y) > 0.0)) fail(node, fmt::format("'{}': the ends of a logarithmic range must be more than 0", name));
+    if (param.logarithmic && !(std::min(ends.x, ends.y) > 0.0))
+      fail(node, fmt::format("'{}': the ends of a logarithmic range must be more than 0", name));
     param.range = {ends.x, ends.y};
     param.count = table.integer("count", {2, kMostSteps});
     return param;
@@ -128,14 +131,13 @@ std::vector<double> spread(const SweptParam& param) {
 /// The texts of a parameter's values, each once.
 std::vector<std::string> list_values(const SweptParam& param, const filters::ParamSpec* spec) {
   std::vector<std::string> texts = param.values;
-  if (!param.range.empty()) {
-    for (const double value : spread(param)) texts.push_back(fmt::format("{}", spec && spec->integer ? std::round(value) : value));
-  }
+  if (!param.range.empty())
+    for (const double value : spread(param))
+      texts.push_back(fmt::format("{}", spec && spec->integer ? std::round(value) : value));
   std::vector<std::string> distinct;
   std::set<std::string> seen;
-  for (const std::string& text : texts) {
+  for (const std::string& text : texts)
     if (seen.insert(text).second) distinct.push_back(text);
-  }
   return distinct;
 }
 
@@ -152,16 +154,18 @@ double count_combinations(const SweptFilter& filter, const filters::FilterSpec& 
 /// Throws unless a run takes as many combinations as the filters up to this one have.
 void require_few(double combinations, const SweptFilter& filter) {
   if (combinations <= kMostCombinations) return;
-  throw Error(ErrorKind::kUsage, fmt::format("with the parameters of '{}' there are more than {:.0f} combinations, and a run takes {:.0f} at most; name fewer values",
+  throw Error(ErrorKind::kUsage, fmt::format("with the parameters of '{}' there are more than {:.0f} combinations, and "
+                                             "a run takes {:.0f} at most; name fewer values",
                                              filter.id, kMostCombinations, kMostCombinations));
 }
 
-/// Says what is wrong with a filter's values while it is known where they stand; each is tried once, not in every combination.
+/// Says what is wrong with a filter's values while it is known where they stand; each is tried once, not in every
+/// combination.
 void check_values(const SweptFilter& filter, const filters::Catalogue& catalogue) {
   const filters::FilterSpec& spec = catalogue.find(filter.id);
-  for (const SweptParam& param : filter.params) {
-    for (const std::string& value : list_values(param, spec.find_param(param.name))) filters::parse_value(spec, param.name, value);
-  }
+  for (const SweptParam& param : filter.params)
+    for (const std::string& value : list_values(param, spec.find_param(param.name)))
+      filters::parse_value(spec, param.name, value);
 }
 
 /// Every combination of one filter's values, as `--filters` has it.
@@ -172,9 +176,9 @@ std::vector<std::string> combine(const SweptFilter& filter, const filters::Catal
   for (const SweptParam& param : filter.params) {
     const std::vector<std::string> values = list_values(param, spec.find_param(param.name));
     std::vector<std::string> longer;
-    for (const std::string& request : requests) {
-      for (const std::string& value : values) longer.push_back(fmt::format("{}{}{}={}", request, separator, param.name, value));
-    }
+    for (const std::string& request : requests)
+      for (const std::string& value : values)
+        longer.push_back(fmt::format("{}{}{}={}", request, separator, param.name, value));
     requests = std::move(longer);
     separator = ',';
   }
@@ -187,9 +191,8 @@ std::filesystem::path find_experiment(const std::filesystem::path& folder, const
   if (std::filesystem::path(name).extension() == ".toml") return name;
   std::vector<std::string> known;
   std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
     if (entry.path().extension() == ".toml") known.push_back(entry.path().stem().string());
-  }
   std::sort(known.begin(), known.end());
   if (std::find(known.begin(), known.end(), name) != known.end()) return folder / (name + ".toml");
   const std::optional<std::string> nearest = nearest_name(name, known);

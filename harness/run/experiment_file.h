@@ -18,7 +18,7 @@ struct ExperimentSetting {
 /// One parameter of a filter with the values it is to take.
 struct SweptParam {
   std::string name;
-  std::vector<double> range;        ///< from, to; empty where `values` says all
+  std::vector<double> range;  ///< from, to; empty where `values` says all
   bool logarithmic = false;
   int count = 0;                    ///< values over the range, its ends included
   std::vector<std::string> values;  ///< as the command line would have them
@@ -42,15 +42,15 @@ struct Experiment {
 /// Throws Error(kUsage) for another name, with the nearest or all there are.
 std::filesystem::path find_experiment(const std::filesystem::path& folder, const std::string& name);
 
-/// Reads an experiment file. Keys are the long options of `shadowbench run` with '_' for '-', of which `keys` are known;
-/// a list stands for several values. Paths of scenes and filter files are relative to the file's folder.
-/// Throws Error(kInput), with file and line, where it is missing, malformed, or holds an unknown key.
+/// Reads an experiment file. Keys are the long options of `shadowbench run` with '_' for '-', of which `keys` are
+/// known; a list stands for several values. Paths of scenes and filter files are relative to the file's folder. Throws
+/// Error(kInput), with file and line, where it is missing, malformed, or holds an unknown key.
 Experiment read_experiment(const std::filesystem::path& file, const std::vector<std::string>& keys);
 
 /// Writes the filters of an experiment as `--filters` takes them: every combination of the values of each one's
-/// parameters. Values over a range are rounded for whole-numbered parameters; what is then there twice is left out once.
-/// Throws Error(kInput), with file and line, for an unknown filter or parameter, a value out of range, a range without
-/// an end, or more than 100 000 combinations.
+/// parameters. Values over a range are rounded for whole-numbered parameters; what is then there twice is left out
+/// once. Throws Error(kInput), with file and line, for an unknown filter or parameter, a value out of range, a range
+/// without an end, or more than 100 000 combinations.
 std::string expand_filters(const Experiment& experiment, const filters::Catalogue& catalogue);
 
 }  // namespace shadowbench::run

@@ -25,28 +25,33 @@ extern "C" void shadowbench_run_bias_sweep(const shadowbench::run::RunOptions& o
   shadowbench::run::run_bias_sweep(options, progress);
 }
 
-extern "C" void shadowbench_merge_runs(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out) {
+extern "C" void shadowbench_merge_runs(const std::vector<std::filesystem::path>& folders,
+                                       const std::filesystem::path& out) {
   shadowbench::report::merge_runs(folders, out);
 }
 
-extern "C" void shadowbench_tune_filters(const shadowbench::run::TuneOptions& options, shadowbench::run::Progress& progress,
-                                         std::string& text) {
+extern "C" void shadowbench_tune_filters(const shadowbench::run::TuneOptions& options,
+                                         shadowbench::run::Progress& progress, std::string& text) {
   text = shadowbench::run::tune_filters(options, progress);
 }
 
-extern "C" void shadowbench_run_stress(const shadowbench::stress::StressOptions& options, shadowbench::run::Progress& progress,
+extern "C" void shadowbench_run_stress(const shadowbench::stress::StressOptions& options,
+                                       shadowbench::run::Progress& progress,
                                        shadowbench::stress::StressOutcome& outcome) {
   outcome = shadowbench::stress::run_stress(options, progress);
 }
 
-extern "C" void shadowbench_describe_stress_axes(const std::vector<shadowbench::filters::FilterRequest>& filters, std::string& text) {
+extern "C" void shadowbench_describe_stress_axes(const std::vector<shadowbench::filters::FilterRequest>& filters,
+                                                 std::string& text) {
   text = shadowbench::stress::describe_axes(filters);
 }
 
-extern "C" void shadowbench_run_flicker(const shadowbench::flicker::FlickerOptions& options, shadowbench::run::Progress& progress) {
+extern "C" void shadowbench_run_flicker(const shadowbench::flicker::FlickerOptions& options,
+                                        shadowbench::run::Progress& progress) {
   shadowbench::flicker::run_flicker(options, progress);
 }
 
-extern "C" void shadowbench_run_regress(const shadowbench::regress::RegressOptions& options, shadowbench::regress::RegressOutcome& outcome) {
+extern "C" void shadowbench_run_regress(const shadowbench::regress::RegressOptions& options,
+                                        shadowbench::regress::RegressOutcome& outcome) {
   outcome = shadowbench::regress::run_regress(options);
 }

@@ -9,12 +9,13 @@
 namespace shadowbench::run {
 
 /// Gives a light as one filter sees it: with the run's bias, resolved for the filter's kernel.
-render::LightSetup make_filter_light(const RunOptions& options, const scene::Light& light, const scene::LightFrustum& frustum,
-                                     const filters::FilterRequest& request);
+render::LightSetup make_filter_light(const RunOptions& options, const scene::Light& light,
+                                     const scene::LightFrustum& frustum, const filters::FilterRequest& request);
 
 /// Compiles one filter over a light's map.
 /// Throws as render::FilterPasses.
-std::unique_ptr<render::FilterPasses> make_filter_passes(Renderer& renderer, const RunOptions& options, const scene::Scene& scene,
-                                                         const LightMap& light, const filters::FilterRequest& request);
+std::unique_ptr<render::FilterPasses> make_filter_passes(Renderer& renderer, const RunOptions& options,
+                                                         const scene::Scene& scene, const LightMap& light,
+                                                         const filters::FilterRequest& request);
 
 }  // namespace shadowbench::run

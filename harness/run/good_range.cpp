@@ -13,8 +13,14 @@ constexpr double kSameError = 1e-9;          // relative
 
 class RangeScan {
  public:
-  RangeScan(const std::vector<ParamScale>& params, std::size_t which, const std::vector<double>& best, double tolerance, SettingsDrawn& drawn)
-      : scale_(params[which]), which_(which), best_(best), drawn_(drawn), best_error_(drawn.error(best, "range")), limit_(best_error_ * (1.0 + tolerance)) {}
+  RangeScan(const std::vector<ParamScale>& params, std::size_t which, const std::vector<double>& best, double tolerance,
+            SettingsDrawn& drawn)
+      : scale_(params[which]),
+        which_(which),
+        best_(best),
+        drawn_(drawn),
+        best_error_(drawn.error(best, "range")),
+        limit_(best_error_ * (1.0 + tolerance)) {}
 
   GoodRange run() {
     const std::vector<double> values = list_values();
@@ -24,11 +30,13 @@ class RangeScan {
     });
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!is_good(values[i])) continue;
-      if (i == 0 || !is_good(values[i - 1])) range.intervals.push_back({i == 0 ? values[i] : find_edge(values[i], values[i - 1]), values[i]});
+      if (i == 0 || !is_good(values[i - 1]))
+        range.intervals.push_back({i == 0 ? values[i] : find_edge(values[i], values[i - 1]), values[i]});
       const bool ends = i + 1 == values.size() || !is_good(values[i + 1]);
       if (ends) range.intervals.back().high = i + 1 == values.size() ? values[i] : find_edge(values[i], values[i + 1]);
     }
-    for (const ValueInterval& interval : range.intervals) range.share += scale_.measure_share(interval.low, interval.high);
+    for (const ValueInterval& interval : range.intervals)
+      range.share += scale_.measure_share(interval.low, interval.high);
     return range;
   }
 
@@ -52,11 +60,11 @@ class RangeScan {
   std::vector<double> list_values() const {
     const SearchedParam& param = scale_.param();
     std::set<double> values = {best_[which_]};
-    if (param.integer && param.max - param.min <= kScanSteps) {
+    if (param.integer && param.max - param.min <= kScanSteps)
       for (double value = param.min; value <= param.max; value += 1.0) values.insert(value);
-    } else {
-      for (int step = 0; step <= kScanSteps; ++step) values.insert(scale_.to_value(static_cast<double>(step) / kScanSteps));
-    }
+    else
+      for (int step = 0; step <= kScanSteps; ++step)
+        values.insert(scale_.to_value(static_cast<double>(step) / kScanSteps));
     return {values.begin(), values.end()};
   }
 

@@ -22,7 +22,9 @@ class EncodedMaps {
   SharedTarget find(const render::FilterPasses& filter, std::size_t light) {
     if (!filter.encoded_format()) return nullptr;
     std::vector<SharedTarget>& maps = maps_[*filter.encoded_format()];
-    while (maps.size() < lights_) maps.push_back(std::make_shared<render::ImageTarget>("a light's map", *filter.encoded_format(), map_size_, map_size_));
+    while (maps.size() < lights_)
+      maps.push_back(
+          std::make_shared<render::ImageTarget>("a light's map", *filter.encoded_format(), map_size_, map_size_));
     return maps[light];
   }
 
@@ -32,7 +34,8 @@ class EncodedMaps {
   std::map<GLenum, std::vector<SharedTarget>> maps_;
 };
 
-report::LightCountRecord make_record(int count, const RoundTimes& times, std::size_t filter, const LightFrame& frame, std::uint64_t seed) {
+report::LightCountRecord make_record(int count, const RoundTimes& times, std::size_t filter, const LightFrame& frame,
+                                     std::uint64_t seed) {
   const FilterTimes &own = times.filters[filter], &reference = times.filters[frame.reference];
   const std::vector<double> moving = add_moving(times.map, own);
   report::LightCountRecord record;
@@ -46,15 +49,14 @@ report::LightCountRecord make_record(int count, const RoundTimes& times, std::si
 
 }  // namespace
 
-LightFrameBench::LightFrameBench(Renderer& renderer, const RunOptions& options, SceneAssets& assets, const LightFrame& frame, int count)
-    : renderer_(renderer),
-      options_(options),
-      assets_(assets),
-      frame_(frame),
-      gbuffer_(assets.gbuffer(*frame.camera)) {
+LightFrameBench::LightFrameBench(Renderer& renderer, const RunOptions& options, SceneAssets& assets,
+                                 const LightFrame& frame, int count)
+    : renderer_(renderer), options_(options), assets_(assets), frame_(frame), gbuffer_(assets.gbuffer(*frame.camera)) {
   const std::vector<scene::Light> lights = scene::make_light_ring(*frame.light, count);
   for (const scene::Light& light : lights) maps_.push_back(assets.make_light_map(light, *frame.camera, frame.map_size));
-  for (int i = 0; i < count; ++i) targets_.push_back(std::make_unique<render::ImageTarget>("visibility of a light", GL_R32F, options.width, options.height));
+  for (int i = 0; i < count; ++i)
+    targets_.push_back(
+        std::make_unique<render::ImageTarget>("visibility of a light", GL_R32F, options.width, options.height));
   prepare_filters(lights);
 }
 
@@ -63,7 +65,8 @@ void LightFrameBench::prepare_filters(const std::vector<scene::Light>& lights) {
   for (render::FilterPasses* filter : frame_.filters) {
     std::vector<render::PreparedLight>& prepared = prepared_.emplace_back();
     for (std::size_t i = 0; i < lights.size(); ++i) {
-      prepared.push_back(filter->prepare(make_filter_light(options_, lights[i], maps_[i].frustum, filter->request()), encoded.find(*filter, i)));
+      prepared.push_back(filter->prepare(make_filter_light(options_, lights[i], maps_[i].frustum, filter->request()),
+                                         encoded.find(*filter, i)));
     }
   }
 }
@@ -91,10 +94,16 @@ RoundTimes LightFrameBench::time() {
   std::vector<TimedFilter> timed;
   for (std::size_t i = 0; i < frame_.filters.size(); ++i) {
     TimedFilter& passes = timed.emplace_back();
-    if (frame_.filters[i]->has_prefilter()) passes.prefilter = [this, timer, i] { return gl::time_ms(timer, [&] { prefilter(i); }); };
+    if (frame_.filters[i]->has_prefilter())
+      passes.prefilter = [this, timer, i] {
+        return gl::time_ms(
+            timer, [&] { prefilter(i); });
+      };
     passes.lookup = [this, timer, i] { return gl::time_ms(timer, [&] { look_up(i); }); };
   }
-  return run_rounds(timed, frame_.reference, [&] { return gl::time_ms(timer, [&] { draw_maps(); }); }, options_.rounds, options_.seed);
+  return run_rounds(
+      timed, frame_.reference, [&] { return gl::time_ms(timer, [&] { draw_maps(); }); }, options_.rounds,
+      options_.seed);
 }
 
 std::vector<std::vector<float>> LightFrameBench::draw(std::size_t filter) {
@@ -108,14 +117,14 @@ std::vector<std::vector<float>> LightFrameBench::draw(std::size_t filter) {
   return pictures;
 }
 
-LightMeasurement measure_lights(Renderer& renderer, const RunOptions& options, SceneAssets& assets, const LightFrame& frame) {
+LightMeasurement measure_lights(Renderer& renderer, const RunOptions& options, SceneAssets& assets,
+                                const LightFrame& frame) {
   LightMeasurement result{std::vector<std::vector<report::LightCountRecord>>(frame.filters.size()), 0.0};
   for (const int count : options.lights) {
     const RoundTimes times = LightFrameBench(renderer, options, assets, frame, count).time();
     result.spent_ms += times.spent_ms;
-    for (std::size_t i = 0; i < frame.filters.size(); ++i) {
+    for (std::size_t i = 0; i < frame.filters.size(); ++i)
       result.filters[i].push_back(make_record(count, times, i, frame, options.seed));
-    }
   }
   return result;
 }

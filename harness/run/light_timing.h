@@ -22,16 +22,19 @@ struct LightFrame {
   std::size_t reference = 0;  ///< index of the filter that ratios refer to
 };
 
-/// Draws and times frames lit by one number of lights. Each light has its own frustum and depth map, fitted and biased as the
-/// scene's own light is, and each filter that encodes has a map for every light. Filters that store the same format take turns in
-/// the same encoded maps: in its turn a filter writes all of them before it reads them, so that sharing saves memory and no work.
+/// Draws and times frames lit by one number of lights. Each light has its own frustum and depth map, fitted and biased
+/// as the scene's own light is, and each filter that encodes has a map for every light. Filters that store the same
+/// format take turns in the same encoded maps: in its turn a filter writes all of them before it reads them, so that
+/// sharing saves memory and no work.
 class LightFrameBench {
  public:
   /// Everything must outlive this object; `count` is 1 or more. Cost: `count` maps and fits.
-  LightFrameBench(Renderer& renderer, const RunOptions& options, SceneAssets& assets, const LightFrame& frame, int count);
+  LightFrameBench(Renderer& renderer, const RunOptions& options, SceneAssets& assets, const LightFrame& frame,
+                  int count);
 
-  /// Times interleaved rounds as run_rounds(): `map` has the time of all lights' depth maps, a filter's `prefilter` that of all its
-  /// encoded maps, its `lookup` that of one lookup per light, each over the whole picture. Shading and adding up are left out.
+  /// Times interleaved rounds as run_rounds(): `map` has the time of all lights' depth maps, a filter's `prefilter`
+  /// that of all its encoded maps, its `lookup` that of one lookup per light, each over the whole picture. Shading and
+  /// adding up are left out.
   RoundTimes time();
 
   /// Runs a filter's prefilters and lookups; gives each light's visibility as the GL wrote it, rows bottom to top.
@@ -43,7 +46,8 @@ class LightFrameBench {
   SceneAssets& assets_;
   LightFrame frame_;
   render::GBuffer& gbuffer_;
-  std::vector<std::unique_ptr<render::ImageTarget>> targets_;  ///< one a light: what the next one overwrites need not be drawn
+  std::vector<std::unique_ptr<render::ImageTarget>>
+      targets_;  ///< one a light: what the next one overwrites need not be drawn
   std::vector<LightMap> maps_;
   std::vector<std::vector<render::PreparedLight>> prepared_;  ///< by filter and light
 
@@ -55,12 +59,14 @@ class LightFrameBench {
 
 /// What frames of every number of lights cost.
 struct LightMeasurement {
-  std::vector<std::vector<report::LightCountRecord>> filters;  ///< of each filter, in the order given, by ascending count
-  double spent_ms = 0.0;                                       ///< of all passes, rounds that warm up included
+  std::vector<std::vector<report::LightCountRecord>>
+      filters;            ///< of each filter, in the order given, by ascending count
+  double spent_ms = 0.0;  ///< of all passes, rounds that warm up included
 };
 
 /// Measures what frames lit by each of `options.lights` cost. The filters are left turned to the last light.
 /// Cost: rounds of map, prefilter and lookup, times the sum of the counts.
-LightMeasurement measure_lights(Renderer& renderer, const RunOptions& options, SceneAssets& assets, const LightFrame& frame);
+LightMeasurement measure_lights(Renderer& renderer, const RunOptions& options, SceneAssets& assets,
+                                const LightFrame& frame);
 
 }  // namespace shadowbench::run

@@ -53,7 +53,7 @@ class PixelProjector {
  private:
   glm::dvec3 eye_, forward_, right_, up_;
   bool orthographic_;
-  double pixel_;  ///< side of a pixel: per metre ahead, or in metres where the camera is orthographic
+  double pixel_;                 ///< side of a pixel: per metre ahead, or in metres where the camera is orthographic
   glm::dmat4 texel_from_world_;  ///< rigid; in metres
   double texels_per_metre_;
   double half_map_;
@@ -63,7 +63,8 @@ class PixelProjector {
 class CoverageCells {
  public:
   explicit CoverageCells(int map_size)
-      : side_(std::min(map_size, kMostCells)), per_texel_(static_cast<double>(side_) / map_size),
+      : side_(std::min(map_size, kMostCells)),
+        per_texel_(static_cast<double>(side_) / map_size),
         marked_(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_)) {}
 
   void mark(const Footprint& texels) {
@@ -73,13 +74,14 @@ class CoverageCells {
     if (std::max(reach.x, reach.y) > 0.5 * kWidest || f.area() < 1e-9) return;
     const glm::ivec2 first(glm::floor(f.centre - reach)), last(glm::floor(f.centre + reach));
     for (int y = first.y; y <= last.y; ++y) {
-      for (int x = first.x; x <= last.x; ++x) {
+      for (int x = first.x; x <= last.x; ++x)
         if (holds(f, glm::dvec2(x + 0.5, y + 0.5) - f.centre)) mark(x, y);
-      }
     }
   }
 
-  double share() const { return static_cast<double>(std::count(marked_.begin(), marked_.end(), 1)) / static_cast<double>(marked_.size()); }
+  double share() const {
+    return static_cast<double>(std::count(marked_.begin(), marked_.end(), 1)) / static_cast<double>(marked_.size());
+  }
 
  private:
   static constexpr int kMostCells = 512;
@@ -102,7 +104,8 @@ class CoverageCells {
 };
 
 double share_of_casters(const report::Image& depth_map) {
-  const auto filled = std::count_if(depth_map.texels.begin(), depth_map.texels.end(), [](float depth) { return depth < 1.0f; });
+  const auto filled =
+      std::count_if(depth_map.texels.begin(), depth_map.texels.end(), [](float depth) { return depth < 1.0f; });
   return static_cast<double>(filled) / static_cast<double>(depth_map.texels.size());
 }
 

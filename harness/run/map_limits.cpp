@@ -19,7 +19,9 @@ using reference::TexelHealth;
 
 std::string store_of(const ParamValues& values) { return filters::text_or(values, "store", ""); }
 
-double largest_number(const ParamValues& values) { return filters::largest_number(filters::store_precision(store_of(values))); }
+double largest_number(const ParamValues& values) {
+  return filters::largest_number(filters::store_precision(store_of(values)));
+}
 
 /// `up` away from 0, else towards it.
 double round_to_digits(double value, int digits, bool up) {
@@ -52,9 +54,8 @@ class Exponent {
 
   /// Some value without overflow; nothing where the whole range overflows.
   std::optional<double> find_sound() const {
-    for (double value = given(); value >= *spec_.min; value *= 0.25) {
+    for (double value = given(); value >= *spec_.min; value *= 0.25)
       if (health_at(value).broken() == 0) return value;
-    }
     return std::nullopt;
   }
 
@@ -107,44 +108,54 @@ std::string advise(const std::vector<std::string>& remedies) {
 
 std::string describe_broken(const TexelHealth& health) {
   const double share = 100.0 * static_cast<double>(health.broken()) / static_cast<double>(health.texels);
-  std::string text = fmt::format("{} of its map's {} texels ({} %) overflowed", health.broken(), health.texels, report::format_number(share));
+  std::string text = fmt::format("{} of its map's {} texels ({} %) overflowed", health.broken(), health.texels,
+                                 report::format_number(share));
   return health.nan > 0 ? text + fmt::format(", {} of them to NaN", health.nan) : text;
 }
 
 std::string warn_of_overflow(const FilterRequest& request, const TexelHealth& health, const MapTrial& trial) {
   std::vector<std::string> remedies;
-  if (const auto safe = find_safe_exponent(request, trial)) remedies.push_back(fmt::format("{} <= {:.4g}", request.spec.exponent, *safe));
+  if (const auto safe = find_safe_exponent(request, trial))
+    remedies.push_back(fmt::format("{} <= {:.4g}", request.spec.exponent, *safe));
   const auto sound = list_sound_choices(request, trial, [](const TexelHealth& tried) { return tried.broken() == 0; });
   remedies.insert(remedies.end(), sound.begin(), sound.end());
   const double largest = largest_number(request.values);
-  return fmt::format("{}, so its image is not to be trusted: {} holds numbers up to {:.6g}, which is e^{:.2f}; {}", describe_broken(health),
-                     store_of(request.values), largest, std::log(largest), advise(remedies));
+  return fmt::format("{}, so its image is not to be trusted: {} holds numbers up to {:.6g}, which is e^{:.2f}; {}",
+                     describe_broken(health), store_of(request.values), largest, std::log(largest), advise(remedies));
 }
 
 std::string warn_of_variance(const FilterRequest& request, const TexelHealth& health, const MapTrial& trial) {
   const ParamSpec& floor = *request.spec.find_param(request.spec.variance_floor);
-  const double given = filters::number(request.values, floor.name), needed = round_to_digits(-*health.lowest_variance, 2, true);
+  const double given = filters::number(request.values, floor.name),
+               needed = round_to_digits(-*health.lowest_variance, 2, true);
   std::vector<std::string> remedies;
   if (needed <= *floor.max) remedies.push_back(fmt::format("{} >= {:.2g}", floor.name, needed));
   const auto sound = list_sound_choices(request, trial, [given](const TexelHealth& tried) {
     return tried.broken() == 0 && tried.lowest_variance.value_or(0.0) >= -given;
   });
   remedies.insert(remedies.end(), sound.begin(), sound.end());
-  return fmt::format("rounding in {} takes the variance of {} of its map's {} texels below 0, down to {:.2g}, which {}={:g} does not make up "
-                     "for: expect acne; {}", store_of(request.values), *health.negative_variance, health.texels, *health.lowest_variance,
-                     floor.name, given, advise(remedies));
+  return fmt::format(
+      "rounding in {} takes the variance of {} of its map's {} texels below 0, down to {:.2g}, which {}={:g} does not "
+      "make up "
+      "for: expect acne; {}",
+      store_of(request.values), *health.negative_variance, health.texels, *health.lowest_variance, floor.name, given,
+      advise(remedies));
 }
 
 }  // namespace
 
 ReadMap::ReadMap(render::FilterPasses& filter, const render::ShadowMap& map)
-    : request_(filter.request()), texels_(filter.encoded_map()->read()), radius_(filter.encoded_map()->blur_radius_texels()), border_(filter.encoded_map()->blurred_border()) {
+    : request_(filter.request()),
+      texels_(filter.encoded_map()->read()),
+      radius_(filter.encoded_map()->blur_radius_texels()),
+      border_(filter.encoded_map()->blurred_border()) {
   const bool is_half = filters::store_precision(store_of(request_.values)) == filters::StorePrecision::kHalf;
   if (is_half) before_blur_ = filter.encoded_map()->read_before_blur(map);
 }
 
 reference::StoredMap ReadMap::stored() const {
-  reference::StoredMap stored{texels_.values, texels_.channels, largest_number(request_.values), request_.spec.holds_moments};
+  reference::StoredMap stored{texels_.values, texels_.channels, largest_number(request_.values),
+                              request_.spec.holds_moments};
   if (before_blur_) stored.before_blur = before_blur_->values;
   stored.blur_radius_texels = radius_;
   if (border_) stored.border = std::span(&border_->x, static_cast<std::size_t>(texels_.channels));
@@ -167,14 +178,13 @@ std::optional<double> find_safe_exponent(const FilterRequest& request, const Map
   return exponent.settle(exponent.extrapolate(exponent.confine(kClose * *rough)).value_or(*rough));
 }
 
-std::vector<std::string> list_exceeded_limits(const std::string& name, const FilterRequest& request, const TexelHealth& health,
-                                              const MapTrial& trial) {
+std::vector<std::string> list_exceeded_limits(const std::string& name, const FilterRequest& request,
+                                              const TexelHealth& health, const MapTrial& trial) {
   std::vector<std::string> warnings;
   if (health.broken() > 0) warnings.push_back(name + ": " + warn_of_overflow(request, health, trial));
   if (request.spec.variance_floor.empty() || !health.lowest_variance) return warnings;
-  if (*health.lowest_variance < -filters::number(request.values, request.spec.variance_floor)) {
+  if (*health.lowest_variance < -filters::number(request.values, request.spec.variance_floor))
     warnings.push_back(name + ": " + warn_of_variance(request, health, trial));
-  }
   return warnings;
 }
 

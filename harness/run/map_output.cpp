@@ -10,7 +10,8 @@
 namespace shadowbench::run {
 namespace {
 
-/// The picture to lay the texels over: unfiltered where there is one, so that aliasing shows; null where nothing was drawn.
+/// The picture to lay the texels over: unfiltered where there is one, so that aliasing shows; null where nothing was
+/// drawn.
 const MeasuredCell* choose_background(const std::vector<MeasuredCell>& cells) {
   const MeasuredCell* chosen = nullptr;
   for (const MeasuredCell& cell : cells) {
@@ -24,8 +25,8 @@ void write_depth(const std::filesystem::path& path, const std::string& scene, co
                  const render::MapSettings& map, const SceneMeasurement& measured, const scene::LightFrustum& frustum) {
   report::DepthPicture picture;
   picture.title = scene + ": the depth map, as the light sees the scene";
-  picture.note = fmt::format("{} · depth 1 is {} m from depth 0; the format holds depth in steps of {} m at most", settings,
-                             report::format_number(frustum.depth_range_ws),
+  picture.note = fmt::format("{} · depth 1 is {} m from depth 0; the format holds depth in steps of {} m at most",
+                             settings, report::format_number(frustum.depth_range_ws),
                              report::format_number(render::find_coarsest_step(map) * frustum.depth_range_ws));
   picture.stored = measured.stored_map;
   picture.curve = map.curve;
@@ -38,7 +39,8 @@ void write_depth(const std::filesystem::path& path, const std::string& scene, co
 void write_map_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured,
                         const MapCoverage& coverage, const scene::LightFrustum& frustum) {
   const std::string base = "images/" + task_stem(options, task);
-  const std::string depth = base + ".depth_map.png", density = base + ".texel_density.png", grid = base + ".texel_grid.png";
+  const std::string depth = base + ".depth_map.png", density = base + ".texel_density.png",
+                    grid = base + ".texel_grid.png";
   const std::string& scene = task.scene->name;
   const std::string settings = report::describe_settings(measured.cells.front().record);
   const std::string note = settings + " · " + report::describe_coverage(coverage.record);
@@ -46,9 +48,9 @@ void write_map_pictures(const RunOptions& options, const SceneTask& task, SceneM
   report::write_density_picture(options.out / density, {scene + ": map texels per pixel", note, coverage.density});
   const MeasuredCell* background = choose_background(measured.cells);
   if (background) {
-    report::write_texel_grid_picture(options.out / grid, {fmt::format("{}: the map's texels on the surfaces, over {}", scene, background->label),
-                                                          note,
-                                                          background->picture, coverage.texel, coverage.density});
+    report::write_texel_grid_picture(
+        options.out / grid, {fmt::format("{}: the map's texels on the surfaces, over {}", scene, background->label),
+                             note, background->picture, coverage.texel, coverage.density});
   }
   for (MeasuredCell& cell : measured.cells) {
     cell.record.images.depth_map = depth;

@@ -5,9 +5,9 @@
 
 namespace shadowbench::run {
 
-/// Writes what shows how a light's map lies on the scene, one file each for all cells of the task: the depth map with its
-/// histogram, the texels per pixel, and the texels on the surfaces; notes their paths in the records.
-/// Throws Error(kOutput).
+/// Writes what shows how a light's map lies on the scene, one file each for all cells of the task: the depth map with
+/// its histogram, the texels per pixel, and the texels on the surfaces; notes their paths in the records. Throws
+/// Error(kOutput).
 void write_map_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured,
                         const MapCoverage& coverage, const scene::LightFrustum& frustum);
 

@@ -17,7 +17,8 @@ reference::LinearPicture to_picture(const report::Image& image) {
 }
 
 bool is_finite(const report::Image& image) {
-  return std::all_of(image.texels.begin(), image.texels.end(), [](float value) { return std::isfinite(value); });
+  return std::all_of(
+      image.texels.begin(), image.texels.end(), [](float value) { return std::isfinite(value); });
 }
 
 }  // namespace
@@ -28,7 +29,8 @@ std::optional<reference::FlipView> view_picture(const report::Image& picture, do
   return reference::view_for_flip(to_picture(picture), pixels_per_degree);
 }
 
-std::optional<double> measure_mean_flip(const std::optional<reference::FlipView>& a, const std::optional<reference::FlipView>& b,
+std::optional<double> measure_mean_flip(const std::optional<reference::FlipView>& a,
+                                        const std::optional<reference::FlipView>& b,
                                         std::span<const std::uint8_t> mask) {
   if (!a || !b) return std::nullopt;
   const std::vector<float> flip = reference::measure_flip(*a, *b);
@@ -43,8 +45,8 @@ std::optional<double> measure_mean_flip(const std::optional<reference::FlipView>
   return sum / count;
 }
 
-std::optional<double> measure_mean_flip(const report::Image& a, const report::Image& b, std::span<const std::uint8_t> mask,
-                                        double pixels_per_degree) {
+std::optional<double> measure_mean_flip(const report::Image& a, const report::Image& b,
+                                        std::span<const std::uint8_t> mask, double pixels_per_degree) {
   return measure_mean_flip(view_picture(a, pixels_per_degree), view_picture(b, pixels_per_degree), mask);
 }
 

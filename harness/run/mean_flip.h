@@ -9,18 +9,21 @@
 
 namespace shadowbench::run {
 
-/// Looks at a linear RGB picture as FLIP does, clamped to [0,1] as a display does. Gives nothing where a pixel is not finite,
-/// which would spread over its neighbours. Requires three channels.
-std::optional<reference::FlipView> view_picture(const report::Image& picture, double pixels_per_degree = reference::kDefaultPixelsPerDegree);
+/// Looks at a linear RGB picture as FLIP does, clamped to [0,1] as a display does. Gives nothing where a pixel is not
+/// finite, which would spread over its neighbours. Requires three channels.
+std::optional<reference::FlipView> view_picture(const report::Image& picture,
+                                                double pixels_per_degree = reference::kDefaultPixelsPerDegree);
 
-/// Gives the mean LDR-FLIP of two pictures over the pixels where `mask` is not 0, or over all where it is empty; FLIP itself
-/// has seen the whole pictures. Gives nothing where one of them is missing, or where no pixel counts. Requires one size, and a
-/// mask of that size.
-std::optional<double> measure_mean_flip(const std::optional<reference::FlipView>& a, const std::optional<reference::FlipView>& b,
+/// Gives the mean LDR-FLIP of two pictures over the pixels where `mask` is not 0, or over all where it is empty; FLIP
+/// itself has seen the whole pictures. Gives nothing where one of them is missing, or where no pixel counts. Requires
+/// one size, and a mask of that size.
+std::optional<double> measure_mean_flip(const std::optional<reference::FlipView>& a,
+                                        const std::optional<reference::FlipView>& b,
                                         std::span<const std::uint8_t> mask = {});
 
 /// The same of pictures that are compared only once.
-std::optional<double> measure_mean_flip(const report::Image& a, const report::Image& b, std::span<const std::uint8_t> mask = {},
+std::optional<double> measure_mean_flip(const report::Image& a, const report::Image& b,
+                                        std::span<const std::uint8_t> mask = {},
                                         double pixels_per_degree = reference::kDefaultPixelsPerDegree);
 
 }  // namespace shadowbench::run

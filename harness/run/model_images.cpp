@@ -30,8 +30,8 @@ ModelImages evaluate_model(const filters::FilterRequest& request, const filters:
     }
     return excused;
   };
-  images.excused = tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, receivers.filter.size(), 1024), std::int64_t{0}, evaluate,
-                                        std::plus<>());
+  images.excused = tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, receivers.filter.size(), 1024),
+                                        std::int64_t{0}, evaluate, std::plus<>());
   return images;
 }
 

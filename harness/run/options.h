@@ -28,8 +28,8 @@ struct Resources {
 /// Throws Error(kUsage) when they are not there.
 Resources find_resources();
 
-/// Gives the folder for traced images: $XDG_CACHE_HOME/shadowbench, else ~/.cache/shadowbench; empty where neither is set.
-/// Source: XDG Base Directory Specification 0.8.
+/// Gives the folder for traced images: $XDG_CACHE_HOME/shadowbench, else ~/.cache/shadowbench; empty where neither is
+/// set. Source: XDG Base Directory Specification 0.8.
 std::filesystem::path default_cache_folder();
 
 /// Of a picture, in pixels.
@@ -75,22 +75,23 @@ struct RunOptions {
   filters::FilterRequest reference;  ///< what the others are timed against
   std::uint32_t seed = 1;
   gl::Backend backend = gl::Backend::kAuto;
-  bool truth = true;        ///< trace visibility and score every filter against it
-  bool attribution = true;  ///< take the errors apart; needs truth
-  bool stability = false;   ///< say where numbers break, per texel and per pixel
-  bool uncertainty = false; ///< say how far rounding and other seeds can move each pixel
-  bool grids = true;        ///< compare all filters of a view in one picture and keep their float images; else each cell's pictures alone
+  bool truth = true;         ///< trace visibility and score every filter against it
+  bool attribution = true;   ///< take the errors apart; needs truth
+  bool stability = false;    ///< say where numbers break, per texel and per pixel
+  bool uncertainty = false;  ///< say how far rounding and other seeds can move each pixel
+  bool grids = true;  ///< compare all filters of a view in one picture and keep their float images; else each cell's
+                      ///< pictures alone
   Shard shard;
-  std::string title;        ///< of the experiment
-  bool fresh = false;       ///< measure cells again that the report folder has
-  bool large_is_fine = false;  ///< run however many cells there are
+  std::string title;             ///< of the experiment
+  bool fresh = false;            ///< measure cells again that the report folder has
+  bool large_is_fine = false;    ///< run however many cells there are
   std::filesystem::path cache;   ///< keeps traced images between runs; empty: nothing is kept
   double cell_timeout_s = 60.0;  ///< for one user's filter on one scene
   std::filesystem::path out;
-  std::vector<std::string> command;      ///< the command line, for the record
-  std::vector<std::string> bias_texts;   ///< as given, for worker processes
-  std::vector<std::string> notes;        ///< what reading the options found that the user should know
-  bool worker = false;                   ///< runs user's filters itself and writes cells and float images only
+  std::vector<std::string> command;     ///< the command line, for the record
+  std::vector<std::string> bias_texts;  ///< as given, for worker processes
+  std::vector<std::string> notes;       ///< what reading the options found that the user should know
+  bool worker = false;                  ///< runs user's filters itself and writes cells and float images only
 };
 
 }  // namespace shadowbench::run

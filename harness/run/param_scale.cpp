@@ -10,7 +10,7 @@
 namespace shadowbench::run {
 namespace {
 
-constexpr double kRatioForLog = 100.0;        // two decades
+constexpr double kRatioForLog = 100.0;         // two decades
 constexpr double kRatioForLogFromZero = 10.0;  // of the largest value to the default
 
 double round_to_digits(double value) { return std::strtod(fmt::format("{:.4g}", value).c_str(), nullptr); }

@@ -15,15 +15,16 @@ struct SearchedParam {
 
 /// Lays a parameter's range on [0,1], so that a step means as much anywhere:
 /// logarithmic where min > 0 and max / min >= 100;
-/// log(1 + x / floor), floor = default^2 / max, where min = 0 < default and max / default >= 10: the default lies in the
-/// middle, values far below it at 0; linear elsewhere.
+/// log(1 + x / floor), floor = default^2 / max, where min = 0 < default and max / default >= 10: the default lies in
+/// the middle, values far below it at 0; linear elsewhere.
 class ParamScale {
  public:
   explicit ParamScale(SearchedParam param);
 
   const SearchedParam& param() const { return param_; }
 
-  /// Gives the value at a place in [0,1]: whole for integers, else rounded to four significant digits, within the range.
+  /// Gives the value at a place in [0,1]: whole for integers, else rounded to four significant digits, within the
+  /// range.
   double to_value(double unit) const;
 
   /// Gives the place of a value within the range.

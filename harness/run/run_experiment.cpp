@@ -10,8 +10,8 @@
 
 #include "filters/error.h"
 #include "harness/run/run_facts.h"
-#include "harness/run/scene_assets.h"
 #include "harness/run/run_plan.h"
+#include "harness/run/scene_assets.h"
 #include "harness/run/task_run.h"
 #include "harness/run/time_probe.h"
 #include "harness/scene/closed_mesh.h"
@@ -38,9 +38,7 @@ std::string describe_duration(double seconds) {
 }
 
 /// A folder that cannot be written is better found before the work than after it.
-void require_writable(const std::filesystem::path& folder) {
-  report::AtomicFile(folder / "cells" / "probe").write("");
-}
+void require_writable(const std::filesystem::path& folder) { report::AtomicFile(folder / "cells" / "probe").write(""); }
 
 /// More than that many cells are asked about: they take hours.
 constexpr int kManyCells = 2000;
@@ -55,7 +53,9 @@ struct TimeForecast {
 class Experiment {
  public:
   Experiment(const RunOptions& options, Progress& progress)
-      : options_(options), progress_(progress), renderer_(make_renderer(options.backend, options.resources)),
+      : options_(options),
+        progress_(progress),
+        renderer_(make_renderer(options.backend, options.resources)),
         cache_(options.cache, [this](const std::string& message) { warn(message); }) {
     run_.commit = build_commit();
     run_.command = options.command;
@@ -117,13 +117,13 @@ class Experiment {
     lock_->require_in_place();
     done_ += static_cast<int>(measured.cells.size());
     run_.work.timed_s += 1e-3 * measured.timed_ms;
-    if (options_.truth && options_.attribution) run_.work.attribution_s = run_.work.attribution_s.value_or(0.0) + measured.attribution_s;
+    if (options_.truth && options_.attribution)
+      run_.work.attribution_s = run_.work.attribution_s.value_or(0.0) + measured.attribution_s;
     run_.work.passes_run += measured.passes_run;
     run_.work.passes_skipped += measured.passes_skipped;
     for (const MeasuredCell& cell : measured.cells) {
-      for (const std::string& warning : cell.record.warnings) {
+      for (const std::string& warning : cell.record.warnings)
         if (told_.insert(warning).second) progress_.note("warning: " + warning);
-      }
     }
   }
 
@@ -133,8 +133,10 @@ class Experiment {
     if (options_.worker) return;
     const int left = plan.own_cells - plan.finished;
     std::string text = fmt::format("{} cells", plan.own_cells);
-    if (options_.shard.count > 1) text += fmt::format(" of {}, shard {}/{}", plan.cells, options_.shard.index + 1, options_.shard.count);
-    if (plan.finished > 0) text += fmt::format(", {} of them finished before (--fresh measures them again)", plan.finished);
+    if (options_.shard.count > 1)
+      text += fmt::format(" of {}, shard {}/{}", plan.cells, options_.shard.index + 1, options_.shard.count);
+    if (plan.finished > 0)
+      text += fmt::format(", {} of them finished before (--fresh measures them again)", plan.finished);
     const TimeForecast forecast = left > 0 ? forecast_time(plan, left) : TimeForecast();
     text += forecast.text;
     progress_.note(text);
@@ -149,11 +151,13 @@ class Experiment {
     if (!options_.rounds.is_fixed()) {
       const double timings = 1.0 + static_cast<double>(options_.lights.size());
       const double seconds = left * timings * 1e-3 * options_.rounds.budget_ms;
-      return {seconds, fmt::format("; {} of timed work at most, more where four rounds take longer; {}", describe_duration(seconds), on_top)};
+      return {seconds, fmt::format("; {} of timed work at most, more where four rounds take longer; {}",
+                                   describe_duration(seconds), on_top)};
     }
     const TimeFloor floor = probe_time_floor(renderer_, plan, cache_);
     return {floor.seconds, fmt::format("; {} {} of timed work, what --rounds {} of the unfiltered lookup take; {}",
-                                       floor.whole ? "at least" : "about", describe_duration(floor.seconds), options_.rounds.most, on_top)};
+                                       floor.whole ? "at least" : "about", describe_duration(floor.seconds),
+                                       options_.rounds.most, on_top)};
   }
 
   bool is_same(const report::ExperimentRecord& known) const {
@@ -187,9 +191,8 @@ class Experiment {
     const std::filesystem::path file = options_.out / "results.json";
     if (options_.worker || !std::filesystem::exists(file)) return false;
     const auto written = std::filesystem::last_write_time(file);
-    for (const std::string& key : list_keys(plan)) {
+    for (const std::string& key : list_keys(plan))
       if (std::filesystem::last_write_time(report::cell_path(options_.out, key)) > written) return false;
-    }
     try {
       return is_same(report::read_results(file).run.experiment);
     } catch (const Error&) {
@@ -208,15 +211,18 @@ class Experiment {
     progress_.note("warning: " + message);
   }
 
-  /// Single precision is spent on the distance from the origin: rays then start far off their surfaces, and miss contacts.
+  /// Single precision is spent on the distance from the origin: rays then start far off their surfaces, and miss
+  /// contacts.
   void warn_of_distance(const scene::Scene& scene) {
     const scene::Bounds bounds = scene.bounds();
     const glm::vec3 largest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max)), size = bounds.max - bounds.min;
     const float farthest = std::max({largest.x, largest.y, largest.z});
     const float offset = reference::origin_offset(farthest, farthest);
     if (offset < 1e-4f * std::max({size.x, size.y, size.z})) return;
-    warn(fmt::format("{}: {} m from the origin, single precision leaves positions uncertain, and rays start {} m off their "
-                     "surfaces: what is smaller is not seen; move the scene to the origin", scene.name, farthest, offset));
+    warn(fmt::format(
+        "{}: {} m from the origin, single precision leaves positions uncertain, and rays start {} m off their "
+        "surfaces: what is smaller is not seen; move the scene to the origin",
+        scene.name, farthest, offset));
   }
 
   /// Culling front faces leaves nothing, or less than a shadow, of a mesh that encloses no volume.
@@ -224,15 +230,18 @@ class Experiment {
     if (!options_.bias.map.cull_front) return;
     for (const scene::Mesh& mesh : scene.meshes) {
       if (!mesh.casts_shadow || !mesh.may_cull_front || scene::is_closed(mesh)) continue;
-      warn(fmt::format("{}: '{}' is open or single-sided: with front-cull it vanishes from the shadow map where it faces the "
-                       "light; set may_cull_front = false on it", scene.name, mesh.name));
+      warn(fmt::format(
+          "{}: '{}' is open or single-sided: with front-cull it vanishes from the shadow map where it faces the "
+          "light; set may_cull_front = false on it",
+          scene.name, mesh.name));
     }
   }
 
   void warn_of_tests_without_effect(const scene::Scene& scene) {
     if (options_.range.behind_test || options_.worker) return;
-    warn(scene.name + ": --behind-test off changes nothing: the light is directional, and only the map of a light that "
-                      "stands in the scene has a behind");
+    warn(scene.name +
+         ": --behind-test off changes nothing: the light is directional, and only the map of a light that "
+         "stands in the scene has a behind");
   }
 
   void note_scene(const PlannedScene& planned) {
@@ -252,9 +261,7 @@ class Experiment {
     std::optional<SceneAssets> assets;
     for (const PlannedTask& each : plan.tasks) {
       if (each.scene != index || each.task.filters.empty()) continue;
-      if (!assets) {
-        assets.emplace(renderer_, planned.options, planned.scene, cache_, padding_texels(options_));
-      }
+      if (!assets) assets.emplace(renderer_, planned.options, planned.scene, cache_, padding_texels(options_));
       TaskRun(renderer_, planned, each, *assets, run_.gl, listener_).run();
     }
   }

@@ -23,7 +23,8 @@ std::vector<PlannedScene> plan_scenes(const RunOptions& options) {
     framed.width = size.width;
     framed.height = size.height;
     std::vector<scene::Scene> scenes = load_scenes(framed);
-    for (std::size_t i = 0; i < scenes.size(); ++i) planned.push_back({framed, options.scenes[i], std::move(scenes[i])});
+    for (std::size_t i = 0; i < scenes.size(); ++i)
+      planned.push_back({framed, options.scenes[i], std::move(scenes[i])});
   }
   return planned;
 }
@@ -32,7 +33,8 @@ std::vector<PlannedScene> plan_scenes(const RunOptions& options) {
 std::vector<const scene::Camera*> choose_views(const RunOptions& options, const scene::Scene& scene) {
   std::vector<const scene::Camera*> views;
   for (const scene::Camera& camera : scene.cameras) {
-    const bool wanted = options.views.empty() || std::find(options.views.begin(), options.views.end(), camera.name) != options.views.end();
+    const bool wanted = options.views.empty() ||
+                        std::find(options.views.begin(), options.views.end(), camera.name) != options.views.end();
     if (wanted) views.push_back(&camera);
   }
   return views;
@@ -40,12 +42,12 @@ std::vector<const scene::Camera*> choose_views(const RunOptions& options, const 
 
 void require_views(const RunOptions& options, const std::vector<PlannedScene>& scenes) {
   std::set<std::string> known;
-  for (const PlannedScene& each : scenes) {
+  for (const PlannedScene& each : scenes)
     for (const scene::Camera& camera : each.scene.cameras) known.insert(camera.name);
-  }
   for (const std::string& view : options.views) {
     if (known.count(view) > 0) continue;
-    throw Error(ErrorKind::kUsage, fmt::format("--view: no scene has a view '{}'; there are {}", view, fmt::join(known, ", ")));
+    throw Error(ErrorKind::kUsage,
+                fmt::format("--view: no scene has a view '{}'; there are {}", view, fmt::join(known, ", ")));
   }
 }
 
@@ -71,9 +73,8 @@ class Planner {
   void add_scene(std::size_t index) {
     const PlannedScene& scene = plan_.scenes[index];
     const std::string content = name_scene_content(scene.options, scene.scene, renderer_);
-    for (const scene::Camera* camera : choose_views(options_, scene.scene)) {
+    for (const scene::Camera* camera : choose_views(options_, scene.scene))
       for (const int map_size : options_.map_sizes) add_task(index, {&scene.scene, camera, map_size, {}}, content);
-    }
   }
 
   void add_task(std::size_t scene, SceneTask task, const std::string& scene_content) {
@@ -96,7 +97,8 @@ class Planner {
 
   void leave_out_finished(PlannedTask& planned) {
     std::vector<char> finished;
-    for (std::size_t i = 0; i < planned.keys.size(); ++i) finished.push_back(is_finished(planned.keys[i], planned.contents[i]) ? 1 : 0);
+    for (std::size_t i = 0; i < planned.keys.size(); ++i)
+      finished.push_back(is_finished(planned.keys[i], planned.contents[i]) ? 1 : 0);
     const auto count = std::count(finished.begin(), finished.end(), 1);
     if (options_.grids && count < static_cast<std::ptrdiff_t>(finished.size())) return;
     plan_.finished += static_cast<int>(count);
@@ -108,7 +110,8 @@ class Planner {
 
   /// A file that cannot be read, or was made from something else, is measured anew.
   bool is_finished(const std::string& key, const std::string& content) const {
-    if (options_.worker || options_.fresh || !std::filesystem::exists(report::cell_path(options_.out, key))) return false;
+    if (options_.worker || options_.fresh || !std::filesystem::exists(report::cell_path(options_.out, key)))
+      return false;
     try {
       return report::read_cell(options_.out, key).content == content;
     } catch (const Error&) {
@@ -119,8 +122,8 @@ class Planner {
   void require_cells() const {
     if (plan_.cells == 0) throw Error(ErrorKind::kUsage, "there is nothing to run: no scene has one of these views");
     if (plan_.own_cells > 0) return;
-    throw Error(ErrorKind::kUsage, fmt::format("--shard {}/{} is empty: the experiment has {} cells", options_.shard.index + 1,
-                                               options_.shard.count, plan_.cells));
+    throw Error(ErrorKind::kUsage, fmt::format("--shard {}/{} is empty: the experiment has {} cells",
+                                               options_.shard.index + 1, options_.shard.count, plan_.cells));
   }
 };
 

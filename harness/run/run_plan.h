@@ -19,9 +19,9 @@ struct PlannedScene {
 
 /// The cells of one view through one shadow map that this run is to hold.
 struct PlannedTask {
-  std::size_t scene = 0;          ///< index into RunPlan::scenes
-  SceneTask task;                 ///< its filters are those still to be measured
-  std::vector<std::string> keys;  ///< of all its cells, measured or not
+  std::size_t scene = 0;              ///< index into RunPlan::scenes
+  SceneTask task;                     ///< its filters are those still to be measured
+  std::vector<std::string> keys;      ///< of all its cells, measured or not
   std::vector<std::string> contents;  ///< of those still to be measured; see name_cell_content()
 };
 
@@ -35,8 +35,8 @@ struct RunPlan {
   std::string settings;  ///< names all cells of the experiment: shards of one experiment agree
 };
 
-/// Loads the scenes and lays out the run. A cell counts as finished where the report folder holds one of its key and its
-/// content; with grids, which need every image of their view, only where all of the view's cells are finished.
+/// Loads the scenes and lays out the run. A cell counts as finished where the report folder holds one of its key and
+/// its content; with grids, which need every image of their view, only where all of the view's cells are finished.
 /// Throws Error for a scene that cannot be loaded, a view that no scene has, scenes or cells of one name, a shard of
 /// nothing.
 RunPlan make_plan(const RunOptions& options, const std::string& renderer);

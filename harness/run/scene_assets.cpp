@@ -12,7 +12,8 @@
 
 namespace shadowbench::run {
 
-SceneAssets::SceneAssets(Renderer& renderer, const RunOptions& options, const scene::Scene& scene, TruthCache& cache, double pad_texels)
+SceneAssets::SceneAssets(Renderer& renderer, const RunOptions& options, const scene::Scene& scene, TruthCache& cache,
+                         double pad_texels)
     : renderer_(renderer),
       options_(options),
       scene_(scene),
@@ -58,9 +59,11 @@ bool SceneAssets::has_casters(const LightMap& light) {
 void SceneAssets::require_casters(const LightMap& light) const {
   if (!options_.bias.map.cull_front) return;
   if (has_casters(light)) return;
-  throw Error(ErrorKind::kUsage, fmt::format("--bias front-cull leaves nothing of the scene '{}' in its shadow map: all its "
-                                             "casters are open meshes; choose another bias, or set may_cull_front = false on "
-                                             "some objects", scene_.name));
+  throw Error(ErrorKind::kUsage,
+              fmt::format("--bias front-cull leaves nothing of the scene '{}' in its shadow map: all its "
+                          "casters are open meshes; choose another bias, or set may_cull_front = false on "
+                          "some objects",
+                          scene_.name));
 }
 
 render::GBuffer& SceneAssets::gbuffer(const scene::Camera& camera) {
@@ -97,7 +100,8 @@ SceneTruth SceneAssets::make_truth(const scene::Camera& camera) {
 
 double largest_radius_texels(const std::vector<filters::FilterRequest>& requests) {
   double largest = 0.0;
-  for (const auto& request : requests) largest = std::max(largest, filters::radius_texels(request.spec, request.values));
+  for (const auto& request : requests)
+    largest = std::max(largest, filters::radius_texels(request.spec, request.values));
   return largest;
 }
 
@@ -105,7 +109,9 @@ double largest_padding_texels(const std::vector<filters::FilterRequest>& request
   return std::ceil(largest_radius_texels(requests)) + 1.0;
 }
 
-double padding_texels(const RunOptions& options) { return options.pad_texels.value_or(largest_padding_texels(options.filters)); }
+double padding_texels(const RunOptions& options) {
+  return options.pad_texels.value_or(largest_padding_texels(options.filters));
+}
 
 double widest_kernel_texels(const RunOptions& options) {
   return options.pad_texels ? std::max(*options.pad_texels - 1.0, 0.0) : largest_radius_texels(options.filters);

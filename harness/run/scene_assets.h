@@ -19,12 +19,13 @@ struct LightMap {
   render::ShadowMap map;
 };
 
-/// What all cells of one scene share: its geometry, one G-buffer per view, one depth map per size. Each is drawn when it
-/// is first asked for and kept, since neither light nor casters change during a run.
+/// What all cells of one scene share: its geometry, one G-buffer per view, one depth map per size. Each is drawn when
+/// it is first asked for and kept, since neither light nor casters change during a run.
 class SceneAssets {
  public:
   /// `pad_texels` is the half-width of the run's widest kernel: every filter sees the same map.
-  SceneAssets(Renderer& renderer, const RunOptions& options, const scene::Scene& scene, TruthCache& cache, double pad_texels);
+  SceneAssets(Renderer& renderer, const RunOptions& options, const scene::Scene& scene, TruthCache& cache,
+              double pad_texels);
 
   /// Gives the light's map; one for all cameras, unless the light is fitted to what each sees.
   /// Throws Error(kUsage) when the GL cannot give a map of this size.
@@ -76,7 +77,8 @@ double largest_radius_texels(const std::vector<filters::FilterRequest>& requests
 /// Gives the padding that the widest kernel of these filters needs, in whole texels.
 double largest_padding_texels(const std::vector<filters::FilterRequest>& requests);
 
-/// Give a run's padding, and the half-width of the widest kernel that it makes room for: as it was told, or of its own filters.
+/// Give a run's padding, and the half-width of the widest kernel that it makes room for: as it was told, or of its own
+/// filters.
 double padding_texels(const RunOptions& options);
 double widest_kernel_texels(const RunOptions& options);
 

@@ -17,7 +17,8 @@ scene::Scene load_scene(const RunOptions& options, const std::string& argument) 
   load.aspect = static_cast<double>(options.width) / options.height;
   scene::Scene scene = scene::load(argument, load);
   if (options.light) {
-    scene.light.direction_ws = glm::vec3(scene::light_direction(options.light->azimuth_deg, options.light->elevation_deg));
+    scene.light.direction_ws =
+        glm::vec3(scene::light_direction(options.light->azimuth_deg, options.light->elevation_deg));
   }
   return scene;
 }
@@ -28,7 +29,8 @@ std::vector<scene::Scene> load_scenes(const RunOptions& options) {
     scene::Scene scene = load_scene(options, argument);
     const auto same_name = [&](const scene::Scene& known) { return known.name == scene.name; };
     if (std::any_of(scenes.begin(), scenes.end(), same_name)) {
-      throw Error(ErrorKind::kUsage, fmt::format("two scenes are called '{}': rename one file, or run them apart", scene.name));
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("two scenes are called '{}': rename one file, or run them apart", scene.name));
     }
     scenes.push_back(std::move(scene));
   }

@@ -22,7 +22,8 @@ namespace shadowbench::run {
 namespace {
 
 std::int64_t count_not_finite(const report::Image& image) {
-  return std::count_if(image.texels.begin(), image.texels.end(), [](float v) { return !std::isfinite(v); });
+  return std::count_if(
+      image.texels.begin(), image.texels.end(), [](float v) { return !std::isfinite(v); });
 }
 
 /// Everything that one task draws with.
@@ -49,7 +50,8 @@ class SceneBench {
       stability.warn(result.cells.back(), *filters.back());
       warn_of_broken_pixels(result.cells.back());
       if (options_.stability) stability.measure(result.cells.back(), *filters.back());
-      if (options_.uncertainty) measure_uncertainty({renderer_, options_, task_, assets_}, result.cells.back(), *filters.back());
+      if (options_.uncertainty)
+        measure_uncertainty({renderer_, options_, task_, assets_}, result.cells.back(), *filters.back());
     }
     time(result, filters);
     result.stored_map = light_.map.read_picture();
@@ -99,19 +101,24 @@ class SceneBench {
   void warn_of_coarse_depth(SceneMeasurement& result) const {
     float farthest = 0.0f;
     for (const float depth : result.depth_map.texels) farthest = depth < 1.0f ? std::max(farthest, depth) : farthest;
-    const double step_m = render::find_coarsest_step(options_.map, static_cast<double>(farthest)) * light_.frustum.depth_range_ws;
+    const double step_m =
+        render::find_coarsest_step(options_.map, static_cast<double>(farthest)) * light_.frustum.depth_range_ws;
     const double bias_m = options_.bias.constant.in_world(light_.frustum);
     if (bias_m == 0.0 || bias_m >= 0.5 * step_m) return;
-    const std::string warning(fmt::format("{}: a map stored as {} holds depth in steps of up to {} m, but the constant bias is {} m: expect "
-                                          "acne on what faces the light; choose --bias with a constant of {} m or more, --reversed-depth with d32f, or a "
-                                          "smaller --perspective-depth", task_.scene->name, render::describe_map(options_.map),
-                                          report::format_number(step_m), report::format_number(bias_m), report::format_number(0.5 * step_m)));
+    const std::string warning(fmt::format(
+        "{}: a map stored as {} holds depth in steps of up to {} m, but the constant bias is {} m: expect "
+        "acne on what faces the light; choose --bias with a constant of {} m or more, --reversed-depth with d32f, or a "
+        "smaller --perspective-depth",
+        task_.scene->name, render::describe_map(options_.map), report::format_number(step_m),
+        report::format_number(bias_m), report::format_number(0.5 * step_m)));
     for (MeasuredCell& cell : result.cells) cell.record.warnings.push_back(warning);
   }
 
   void warn_of_broken_pixels(MeasuredCell& cell) const {
     const std::int64_t nan = cell.record.nan.value_or(0);
-    if (nan > 0) cell.record.warnings.push_back(fmt::format("{}: {}: {} pixels are not finite", task_.scene->name, cell.label, nan));
+    if (nan > 0)
+      cell.record.warnings.push_back(
+          fmt::format("{}: {}: {} pixels are not finite", task_.scene->name, cell.label, nan));
   }
 
   static void count_passes(SceneMeasurement& result, const render::FilterPasses& filter) {
@@ -123,21 +130,22 @@ class SceneBench {
   void time(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
     std::vector<render::FilterPasses*> pointers;
     for (const auto& filter : filters) pointers.push_back(filter.get());
-    const auto asked = std::find_if(task_.filters.begin(), task_.filters.end(), [&](const filters::FilterRequest& request) {
-      return request.spec.id == options_.reference.spec.id && request.values == options_.reference.values;
-    });
+    const auto asked =
+        std::find_if(task_.filters.begin(), task_.filters.end(), [&](const filters::FilterRequest& request) {
+          return request.spec.id == options_.reference.spec.id && request.values == options_.reference.values;
+        });
     const auto reference = static_cast<std::size_t>(asked - task_.filters.begin());
     std::unique_ptr<render::FilterPasses> added;
     if (asked == task_.filters.end()) {
       pointers.push_back((added = make_passes(options_.reference)).get());
       drawn_ms_ += time_once(*added, light_.map, gbuffer_, target_, renderer_.timer);
     }
-    const RoundTimes times = time_rounds(pointers, reference, [&] { assets_.redraw(light_); }, light_.map, gbuffer_,
-                                         renderer_.timer, options_.rounds, options_.seed, drawn_ms_);
+    const RoundTimes times = time_rounds(
+        pointers, reference, [&] { assets_.redraw(light_); }, light_.map, gbuffer_, renderer_.timer, options_.rounds,
+        options_.seed, drawn_ms_);
     result.timed_ms = times.spent_ms;
-    for (std::size_t i = 0; i < filters.size(); ++i) {
+    for (std::size_t i = 0; i < filters.size(); ++i)
       set_times(result.cells[i].record, times.map, times.filters[i], times.filters[reference]);
-    }
     time_lights(result, pointers, reference);
   }
 
@@ -146,12 +154,14 @@ class SceneBench {
       for (MeasuredCell& cell : result.cells) cell.record.absent["lights"] = "the run was made without --lights";
       return;
     }
-    LightMeasurement measured = measure_lights(renderer_, options_, assets_, {&task_.scene->light, task_.camera, task_.map_size, filters, reference});
+    LightMeasurement measured = measure_lights(renderer_, options_, assets_,
+                                               {&task_.scene->light, task_.camera, task_.map_size, filters, reference});
     result.timed_ms += measured.spent_ms;
     for (std::size_t i = 0; i < result.cells.size(); ++i) {
       report::CellRecord& record = result.cells[i].record;
       record.lights = std::move(measured.filters[i]);
-      for (report::LightCountRecord& each : *record.lights) each.maps_bytes = each.count * record.cost.map_bytes.value();
+      for (report::LightCountRecord& each : *record.lights)
+        each.maps_bytes = each.count * record.cost.map_bytes.value();
     }
   }
 
@@ -160,11 +170,10 @@ class SceneBench {
     record.time_ms.map = summarise({map.begin(), map.begin() + static_cast<std::ptrdiff_t>(times.lookup.size())});
     record.time_ms.lookup = summarise(times.lookup);
     record.time_ms.stopped = name_of(times.stopped);
-    if (times.prefilter.empty()) {
+    if (times.prefilter.empty())
       record.absent["time_ms.prefilter"] = "the filter reads the depth map itself";
-    } else {
+    else
       record.time_ms.prefilter = summarise(times.prefilter);
-    }
     record.ratio_to_none.lookup = bootstrap_ratio(times.lookup, reference.lookup, options_.seed);
     record.ratio_to_none.static_map = record.ratio_to_none.lookup;
     record.ratio_to_none.moving = bootstrap_ratio(add_moving(map, times), add_moving(map, reference), options_.seed);
@@ -175,15 +184,17 @@ class SceneBench {
 
 report::ParamMap record_params(const filters::ParamValues& values) {
   report::ParamMap params;
-  for (const auto& [name, value] : values) {
+  for (const auto& [name, value] : values)
     std::visit([&params, &key = name](const auto& v) { params[key] = v; }, value);
-  }
   return params;
 }
 
-std::string describe_light(const LightAngles& light) { return fmt::format("{},{}", light.azimuth_deg, light.elevation_deg); }
+std::string describe_light(const LightAngles& light) {
+  return fmt::format("{},{}", light.azimuth_deg, light.elevation_deg);
+}
 
-report::CellRecord make_record(const RunOptions& options, const SceneTask& task, const filters::FilterRequest& request) {
+report::CellRecord make_record(const RunOptions& options, const SceneTask& task,
+                               const filters::FilterRequest& request) {
   report::CellRecord record;
   record.scene = task.scene->name;
   record.view = task.camera->name;
@@ -197,19 +208,20 @@ report::CellRecord make_record(const RunOptions& options, const SceneTask& task,
   if (options.light) record.light = describe_light(*options.light);
   const BiasRule& bias = options.bias;
   const auto amount = [](const BiasAmount& a) { return report::BiasAmountRecord{a.depth, a.texels, a.world}; };
-  record.bias = {amount(bias.constant),      amount(bias.slope),      bias.plane_texels,   bias.plane_kernels,
-                 amount(bias.normal_offset), bias.receiver_plane,     bias.map.polygon_factor, bias.map.polygon_units,
+  record.bias = {amount(bias.constant),      amount(bias.slope),  bias.plane_texels,       bias.plane_kernels,
+                 amount(bias.normal_offset), bias.receiver_plane, bias.map.polygon_factor, bias.map.polygon_units,
                  bias.map.cull_front,        bias.map.midpoint};
   record.range = {filters::to_string(options.range.border), options.range.far_test, options.range.behind_test};
-  if (!options.stability) record.absent["stability"] = record.absent["images.stability"] = "the run was made without --stability";
+  if (!options.stability)
+    record.absent["stability"] = record.absent["images.stability"] = "the run was made without --stability";
   record.width = options.width;
   record.height = options.height;
   record.key = report::cell_key(record);
   return record;
 }
 
-SceneMeasurement measure_scene(Renderer& renderer, const RunOptions& options, const SceneTask& task, SceneAssets& assets,
-                               const std::function<void(const std::string&)>& on_cell) {
+SceneMeasurement measure_scene(Renderer& renderer, const RunOptions& options, const SceneTask& task,
+                               SceneAssets& assets, const std::function<void(const std::string&)>& on_cell) {
   return SceneBench(renderer, options, task, assets).run(on_cell);
 }
 

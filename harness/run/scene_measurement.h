@@ -19,22 +19,24 @@ namespace shadowbench::run {
 struct MeasuredCell {
   report::CellRecord record;
   filters::FilterRequest request;
-  std::string label;          ///< filter and the parameters that were asked for
-  report::Image picture;      ///< linear RGB
-  report::Image visibility;   ///< 1 lit .. 0 blocked
+  std::string label;                  ///< filter and the parameters that were asked for
+  report::Image picture;              ///< linear RGB
+  report::Image visibility;           ///< 1 lit .. 0 blocked
   report::StabilityImages stability;  ///< where its numbers break; empty unless the run asks for it
-  report::UncertaintyImages uncertainty;  ///< how far rounding and other seeds can move its pixels; empty unless the run asks for it
-  std::vector<report::Image> error_parts;  ///< in the order of reference::ErrorPart; empty where there is no attribution
+  report::UncertaintyImages
+      uncertainty;  ///< how far rounding and other seeds can move its pixels; empty unless the run asks for it
+  std::vector<report::Image>
+      error_parts;  ///< in the order of reference::ErrorPart; empty where there is no attribution
 };
 
 /// One scene seen by one camera through one shadow map, with every filter.
 struct SceneMeasurement {
   std::vector<MeasuredCell> cells;
-  report::Image stored_map;  ///< [0,1], row 0 is v = 1
-  report::Image depth_map;   ///< the same, linearised
+  report::Image stored_map;                       ///< [0,1], row 0 is v = 1
+  report::Image depth_map;                        ///< the same, linearised
   std::optional<reference::ArtefactMasks> masks;  ///< where artefacts can occur; nothing without truth
-  double timed_ms = 0.0;  ///< of the passes that were timed
-  double attribution_s = 0.0;  ///< that taking the errors apart took
+  double timed_ms = 0.0;                          ///< of the passes that were timed
+  double attribution_s = 0.0;                     ///< that taking the errors apart took
   int passes_run = 0;
   int passes_skipped = 0;  ///< encode and blur passes that no chosen filter needed
 };
@@ -49,8 +51,8 @@ struct SceneTask {
 
 /// Draws and times every filter of a task. `on_cell` hears of each filter before it is drawn.
 /// Throws Error(kFilter) for a filter's GLSL, Error(kUsage) for a map size that the GL cannot give.
-SceneMeasurement measure_scene(Renderer& renderer, const RunOptions& options, const SceneTask& task, SceneAssets& assets,
-                               const std::function<void(const std::string&)>& on_cell);
+SceneMeasurement measure_scene(Renderer& renderer, const RunOptions& options, const SceneTask& task,
+                               SceneAssets& assets, const std::function<void(const std::string&)>& on_cell);
 
 /// Writes a light's place as the command line reads it.
 std::string describe_light(const LightAngles& light);

@@ -45,7 +45,8 @@ std::string caption(const report::CellRecord& cell, const report::GlRecord& gl) 
   if (!cell.time_ms.lookup) return text;
   if (!text.empty()) text += " · ";
   text += fmt::format("lookup {} ms", report::format_number(cell.time_ms.lookup->median));
-  if (cell.time_ms.prefilter) text += fmt::format(" + prefilter {} ms", report::format_number(cell.time_ms.prefilter->median));
+  if (cell.time_ms.prefilter)
+    text += fmt::format(" + prefilter {} ms", report::format_number(cell.time_ms.prefilter->median));
   text += gl.software ? " (CPU)" : " (GPU)";
   if (cell.error.rmse) text += fmt::format(" · RMSE {}", report::format_number(*cell.error.rmse));
   return text;
@@ -64,19 +65,20 @@ report::Rect choose_crop(const RunOptions& options, const std::vector<MeasuredCe
 /// The truth comes first: what every filter would like to look like.
 std::vector<report::GridTile> make_truth_tiles(const SceneTask& task, const SceneTruth& truth) {
   if (!truth.absent.empty()) return {};
-  const std::string sun = fmt::format("rays to a sun of {} degrees, standard error {}",
-                                      report::format_number(static_cast<double>(task.scene->light.angular_diameter_deg)),
-                                      report::format_number(truth.standard_error));
-  return {{"truth, hard", "one ray to the light's centre", truth.hard_picture, truth.hard, make_error_image(truth.hard, truth), ""},
+  const std::string sun =
+      fmt::format("rays to a sun of {} degrees, standard error {}",
+                  report::format_number(static_cast<double>(task.scene->light.angular_diameter_deg)),
+                  report::format_number(truth.standard_error));
+  return {{"truth, hard", "one ray to the light's centre", truth.hard_picture, truth.hard,
+           make_error_image(truth.hard, truth), ""},
           {"truth, area", sun, truth.area_picture, truth.area, make_error_image(truth.area, truth), ""}};
 }
 
 /// One scale for the pictures of a task, so that they compare; nothing where there are no errors.
 std::optional<double> choose_error_scale(const std::vector<report::GridTile>& tiles) {
   std::vector<const report::Image*> errors;
-  for (const report::GridTile& tile : tiles) {
+  for (const report::GridTile& tile : tiles)
     if (!tile.error.empty()) errors.push_back(&tile.error);
-  }
   if (errors.empty()) return std::nullopt;
   return report::choose_error_scale(errors);
 }
@@ -84,7 +86,8 @@ std::optional<double> choose_error_scale(const std::vector<report::GridTile>& ti
 report::Grid make_grid(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
                        const SceneTruth& truth, const report::GlRecord& gl) {
   report::Grid grid;
-  grid.title = task.scene->title.empty() ? task.scene->name : fmt::format("{}: {}", task.scene->name, task.scene->title);
+  grid.title =
+      task.scene->title.empty() ? task.scene->name : fmt::format("{}: {}", task.scene->name, task.scene->title);
   grid.subtitle = report::describe_settings(measured.cells.front().record) + " · times: " + report::describe_clock(gl);
   const std::string coverage = report::describe_coverage(measured.cells.front().record.coverage);
   if (!coverage.empty()) grid.subtitle += " · " + coverage;
@@ -161,7 +164,8 @@ void write_attribution(const RunOptions& options, const std::string& stem, Measu
     picture.captions[p] = report::caption_part(cell.record.attribution.*report::list_error_parts()[p].record);
   }
   picture.scale = grid.error_scale;
-  cell.record.images.attribution = fmt::format("images/{}.{}.attribution.png", stem, report::make_file_stem(cell.label));
+  cell.record.images.attribution =
+      fmt::format("images/{}.{}.attribution.png", stem, report::make_file_stem(cell.label));
   report::write_attribution_picture(options.out / *cell.record.images.attribution, picture);
 }
 
@@ -184,7 +188,9 @@ std::string stability_part(const std::string& label, const report::StabilityImag
   return fmt::format("{}.stability.{}", label, image.id);
 }
 
-std::string uncertainty_part(const std::string& label, const report::UncertaintyImage& image) { return fmt::format("{}.{}", label, image.id); }
+std::string uncertainty_part(const std::string& label, const report::UncertaintyImage& image) {
+  return fmt::format("{}.{}", label, image.id);
+}
 
 void write_float_images(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
                         const SceneTruth& truth, const gl::GlInfo& info) {
@@ -194,7 +200,10 @@ void write_float_images(const RunOptions& options, const SceneTask& task, const 
     parts.push_back({visibility_part(cell.label), {"Y"}, cell.visibility, false});
     parts.push_back({picture_part(cell.label), {"R", "G", "B"}, cell.picture, true});
     for (std::size_t p = 0; p < cell.error_parts.size(); ++p) {
-      parts.push_back({fmt::format("{}.error.{}", cell.label, report::list_error_parts()[p].id), {"Y"}, cell.error_parts[p], false});
+      parts.push_back({fmt::format("{}.error.{}", cell.label, report::list_error_parts()[p].id),
+                       {"Y"},
+                       cell.error_parts[p],
+                       false});
     }
   }
   for (const MeasuredCell& cell : measured.cells) {

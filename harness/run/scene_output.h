@@ -26,9 +26,8 @@ std::string uncertainty_part(const std::string& label, const report::Uncertainty
 void write_float_images(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
                         const SceneTruth& truth, const gl::GlInfo& info);
 
-/// Writes each cell's picture and visibility and notes their paths in the records; in place of write_pictures() where the
-/// run has no grids. Safe for any part of a task's cells.
-/// Throws Error(kOutput).
+/// Writes each cell's picture and visibility and notes their paths in the records; in place of write_pictures() where
+/// the run has no grids. Safe for any part of a task's cells. Throws Error(kOutput).
 void write_single_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured);
 
 /// Writes what people look at: grid and single pictures; notes their paths in the records.

@@ -61,8 +61,8 @@ reference::MapGrid make_grid(const scene::LightFrustum& frustum) {
 }
 
 std::string name_grid(const reference::MapGrid& grid) {
-  return fmt::format("texel {} right {} {} {} up {} {} {}", grid.texel_size_ws, grid.right.x, grid.right.y, grid.right.z,
-                     grid.up.x, grid.up.y, grid.up.z);
+  return fmt::format("texel {} right {} {} {} up {} {} {}", grid.texel_size_ws, grid.right.x, grid.right.y,
+                     grid.right.z, grid.up.x, grid.up.y, grid.up.z);
 }
 
 template <class T>
@@ -78,12 +78,17 @@ std::vector<report::Part> to_parts(const reference::ReceiverImage& size, const r
 }
 
 const std::vector<std::string> kTracedParts = {"visibility", "standard_error", "unanimous", "rays"};
-const std::vector<std::string> kViewParts = {"visibility", "standard_error", "unanimous", "rays", "hard", "first_blockers"};
+const std::vector<std::string> kViewParts = {"visibility", "standard_error", "unanimous",
+                                             "rays",       "hard",           "first_blockers"};
 
-bool fits(const std::vector<report::Part>& parts, const std::vector<std::string>& names, const reference::ReceiverImage& size) {
-  return std::equal(parts.begin(), parts.end(), names.begin(), names.end(), [&](const report::Part& part, const std::string& name) {
-    return part.name == name && part.image.width == size.width && part.image.height == size.height && part.image.channels == 1;
-  });
+bool fits(const std::vector<report::Part>& parts, const std::vector<std::string>& names,
+          const reference::ReceiverImage& size) {
+  return std::equal(
+      parts.begin(), parts.end(), names.begin(), names.end(),
+      [&](const report::Part& part, const std::string& name) {
+        return part.name == name && part.image.width == size.width && part.image.height == size.height &&
+               part.image.channels == 1;
+      });
 }
 
 template <class T>
@@ -92,7 +97,8 @@ std::vector<T> convert(const report::Part& part) {
 }
 
 reference::TracedVisibility from_parts(const std::vector<report::Part>& parts) {
-  return {parts[0].image.texels, parts[1].image.texels, convert<std::uint8_t>(parts[2]), convert<std::uint32_t>(parts[3])};
+  return {parts[0].image.texels, parts[1].image.texels, convert<std::uint8_t>(parts[2]),
+          convert<std::uint32_t>(parts[3])};
 }
 
 }  // namespace
@@ -123,12 +129,13 @@ std::vector<report::Part> SceneTracer::find_or_trace(const ViewReceivers& receiv
                                                      const std::function<std::vector<report::Part>()>& trace) {
   ContentHash hash;
   const reference::TraceSettings s = settings();
-  for (const std::string& text : {geometry(), receivers.content, what,
-                                  fmt::format("{} {} {}", s.standard_error, s.max_points, s.seed)}) {
+  for (const std::string& text :
+       {geometry(), receivers.content, what, fmt::format("{} {} {}", s.standard_error, s.max_points, s.seed)})
     hash.add(text);
-  }
   const std::string name = hash.name();
-  const auto is_whole = [&](const std::vector<report::Part>& parts) { return fits(parts, part_names, receivers.image); };
+  const auto is_whole = [&](const std::vector<report::Part>& parts) {
+    return fits(parts, part_names, receivers.image);
+  };
   if (auto kept = cache_.load(name, is_whole)) return std::move(*kept);
   std::vector<report::Part> parts = trace();
   cache_.store(name, parts);
@@ -152,20 +159,24 @@ ViewRays SceneTracer::trace_view(const ViewReceivers& receivers) {
 reference::TracedVisibility SceneTracer::trace_kernel(const ViewReceivers& receivers, const filters::Kernel& kernel,
                                                       const scene::LightFrustum& frustum) {
   const reference::MapGrid grid = make_grid(frustum);
-  return from_parts(find_or_trace(receivers, fmt::format("kernel {} {}", kernel.name(), name_grid(grid)), kTracedParts, [&] {
-    return to_parts(receivers.image, reference::trace_kernel(occluders(), receivers.image, kernel, grid, settings()));
-  }));
+  return from_parts(
+      find_or_trace(receivers, fmt::format("kernel {} {}", kernel.name(), name_grid(grid)), kTracedParts, [&] {
+        return to_parts(receivers.image,
+                        reference::trace_kernel(occluders(), receivers.image, kernel, grid, settings()));
+      }));
 }
 
 reference::TracedVisibility SceneTracer::trace_surroundings(const ViewReceivers& receivers, double half_width_texels,
                                                             const scene::LightFrustum& frustum) {
   const reference::MapGrid grid = make_grid(frustum);
-  return from_parts(find_or_trace(receivers, fmt::format("square {} {}", half_width_texels, name_grid(grid)), kTracedParts, [&] {
-    reference::TraceSettings rough = settings();
-    rough.standard_error = 1.0;
-    rough.max_points = 16;  // none is asked for more
-    return to_parts(receivers.image, reference::trace_square(occluders(), receivers.image, half_width_texels, grid, rough));
-  }));
+  return from_parts(
+      find_or_trace(receivers, fmt::format("square {} {}", half_width_texels, name_grid(grid)), kTracedParts, [&] {
+        reference::TraceSettings rough = settings();
+        rough.standard_error = 1.0;
+        rough.max_points = 16;  // none is asked for more
+        return to_parts(receivers.image,
+                        reference::trace_square(occluders(), receivers.image, half_width_texels, grid, rough));
+      }));
 }
 
 }  // namespace shadowbench::run

@@ -44,9 +44,8 @@ SceneTruth trace_scene(SceneTracer& tracer, ViewReceivers receivers) {
 report::Image make_error_image(const report::Image& visibility, const SceneTruth& truth) {
   if (!truth.absent.empty() || visibility.empty()) return {};
   report::Image error(visibility.width, visibility.height, 1);
-  for (std::size_t i = 0; i < error.texels.size(); ++i) {
+  for (std::size_t i = 0; i < error.texels.size(); ++i)
     if (truth.mask[i]) error.texels[i] = visibility.texels[i] - truth.area.texels[i];
-  }
   return error;
 }
 
@@ -56,9 +55,9 @@ void score(report::CellRecord& record, const report::Image& visibility, const re
                          ? reference::measure_error(visibility.texels, truth.area.texels, truth.mask)
                          : std::nullopt;
   if (!stats) {
-    const std::string reason = !truth.absent.empty()  ? truth.absent
-                               : visibility.empty() ? record.message
-                                                    : "no pixel of the image is finite";
+    const std::string reason = !truth.absent.empty() ? truth.absent
+                               : visibility.empty()  ? record.message
+                                                     : "no pixel of the image is finite";
     record.absent["error"] = reason;
     record.absent["truth"] = reason;
     return;

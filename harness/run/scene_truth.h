@@ -15,17 +15,17 @@ namespace shadowbench::run {
 
 /// Ray-traced visibility of one view's receivers, rows top to bottom like every report image.
 struct SceneTruth {
-  std::string absent;              ///< why there is none; empty where there is
+  std::string absent;  ///< why there is none; empty where there is
   ViewReceivers receivers;
   ViewRays rays;
-  report::Image hard;              ///< the light as a point: 1 seen, 0 blocked
-  report::Image area;              ///< the fraction of the light that is seen
-  report::Image hard_picture;      ///< shaded with `hard`, linear RGB
-  report::Image area_picture;      ///< shaded with `area`, linear RGB
+  report::Image hard;                            ///< the light as a point: 1 seen, 0 blocked
+  report::Image area;                            ///< the fraction of the light that is seen
+  report::Image hard_picture;                    ///< shaded with `hard`, linear RGB
+  report::Image area_picture;                    ///< shaded with `area`, linear RGB
   std::optional<reference::FlipView> area_seen;  ///< that picture, rounded to half as it is saved, as FLIP sees it
-  std::vector<std::uint8_t> mask;  ///< 1 where a pixel counts: a surface that faces the light
-  double standard_error = 0.0;     ///< root mean square over the pixels that count
-  double unanimous = 0.0;          ///< share of them whose rays all agree, and which therefore have no standard error
+  std::vector<std::uint8_t> mask;                ///< 1 where a pixel counts: a surface that faces the light
+  double standard_error = 0.0;                   ///< root mean square over the pixels that count
+  double unanimous = 0.0;  ///< share of them whose rays all agree, and which therefore have no standard error
 };
 
 /// Traces the receivers of a view; the pictures are left empty.

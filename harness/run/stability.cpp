@@ -58,8 +58,13 @@ std::optional<std::string> find_other_store(const filters::FilterRequest& reques
   return std::nullopt;
 }
 
-StabilityMeter::StabilityMeter(Renderer& renderer, const RunOptions& options, const SceneTask& task, SceneAssets& assets)
-    : renderer_(renderer), options_(options), task_(task), assets_(assets), light_(assets.light_map(*task.camera, task.map_size)) {}
+StabilityMeter::StabilityMeter(Renderer& renderer, const RunOptions& options, const SceneTask& task,
+                               SceneAssets& assets)
+    : renderer_(renderer),
+      options_(options),
+      task_(task),
+      assets_(assets),
+      light_(assets.light_map(*task.camera, task.map_size)) {}
 
 MapTrial StabilityMeter::make_trial(const filters::FilterRequest& request) const {
   return [this, request](const filters::ParamValues& values) {
@@ -85,9 +90,8 @@ void StabilityMeter::warn(MeasuredCell& cell, render::FilterPasses& filter) cons
   if (!filter.encoded_map()) return;
   const reference::TexelHealth health = reference::check_texels(ReadMap(filter, light_.map).stored());
   const std::string name = fmt::format("{}: {}", task_.scene->name, cell.label);
-  for (std::string& warning : list_exceeded_limits(name, cell.request, health, make_trial(cell.request))) {
+  for (std::string& warning : list_exceeded_limits(name, cell.request, health, make_trial(cell.request)))
     cell.record.warnings.push_back(std::move(warning));
-  }
 }
 
 void StabilityMeter::measure(MeasuredCell& cell, render::FilterPasses& filter) {
@@ -99,7 +103,10 @@ void StabilityMeter::measure(MeasuredCell& cell, render::FilterPasses& filter) {
 void StabilityMeter::check_texels(MeasuredCell& cell, render::FilterPasses& filter) const {
   report::StabilityRecord& stability = cell.record.stability;
   if (!filter.encoded_map()) {
-    explain(cell.record, {"overflow_texels", "nan_texels", "negative_variance_texels", "lowest_variance", "headroom", "safe_exponent"}, kReadsDepth);
+    explain(
+        cell.record,
+        {"overflow_texels", "nan_texels", "negative_variance_texels", "lowest_variance", "headroom", "safe_exponent"},
+        kReadsDepth);
     return;
   }
   const ReadMap read(filter, light_.map);
@@ -108,12 +115,17 @@ void StabilityMeter::check_texels(MeasuredCell& cell, render::FilterPasses& filt
   stability.overflow_texels = health.overflowed;
   stability.nan_texels = health.nan;
   cell.stability.headroom = make_map_image(reference::measure_headroom(map), read.side());
-  if (health.largest && *health.largest > 0.0) stability.headroom = std::log(map.largest_number) - std::log(*health.largest);
-  else explain(cell.record, {"headroom"}, health.largest ? "the map holds nothing but 0" : "the map overflowed");
+  if (health.largest && *health.largest > 0.0)
+    stability.headroom = std::log(map.largest_number) - std::log(*health.largest);
+  else
+    explain(cell.record, {"headroom"}, health.largest ? "the map holds nothing but 0" : "the map overflowed");
   stability.safe_exponent = find_safe_exponent(cell.request, make_trial(cell.request));
-  if (!stability.safe_exponent) explain(cell.record, {"safe_exponent"}, "the map holds no exponentials, or none that a smaller exponent keeps finite");
+  if (!stability.safe_exponent)
+    explain(cell.record, {"safe_exponent"},
+            "the map holds no exponentials, or none that a smaller exponent keeps finite");
   if (!map.moments) {
-    explain(cell.record, {"negative_variance_texels", "lowest_variance"}, "the filter does not say that its map holds moments");
+    explain(cell.record, {"negative_variance_texels", "lowest_variance"},
+            "the filter does not say that its map holds moments");
     return;
   }
   stability.negative_variance_texels = health.negative_variance;
@@ -145,15 +157,18 @@ void StabilityMeter::compare_stores(MeasuredCell& cell) {
     cell.record.stability.half_difference_max = stats->max;
     cell.record.stability.half_difference_rms = stats->rmse;
   } else {
-    explain(cell.record, {"half_difference_max", "half_difference_rms"}, "no surface in view faces the light, or no pixel is finite");
+    explain(cell.record, {"half_difference_max", "half_difference_rms"},
+            "no surface in view faces the light, or no pixel is finite");
   }
   cell.stability.half_difference = std::move(difference);
 }
 
 void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filter) {
-  const std::initializer_list<const char*> fields = {"bound_shortfall_max", "bound_violations", "bound_exact_violations"};
+  const std::initializer_list<const char*> fields = {"bound_shortfall_max", "bound_violations",
+                                                     "bound_exact_violations"};
   if (cell.request.spec.kind != filters::FilterKind::kBound) {
-    explain(cell.record, fields, "only a filter of the kind 'bound' promises never to be darker than its percentage-closer filter");
+    explain(cell.record, fields,
+            "only a filter of the kind 'bound' promises never to be darker than its percentage-closer filter");
     return;
   }
   const auto model = filters::make_model(cell.request.spec.id);
@@ -178,25 +193,28 @@ void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filte
 reference::BoundCheck StabilityMeter::compare_with_closer(const MeasuredCell& cell, const filters::Model& model,
                                                           const std::vector<filters::Receiver>& receivers) {
   const double plane_max_tangent = options_.bias.plane_max_tangent();
-  const filters::ModelInput input{cell.request.spec, cell.request.values, depth_map(), measure_accuracy(renderer_), options_.seed, plane_max_tangent};
+  const filters::ModelInput input{cell.request.spec,           cell.request.values, depth_map(),
+                                  measure_accuracy(renderer_), options_.seed,       plane_max_tangent};
   const auto exact = model.prepare(input, filters::Precision::kDouble);
   const auto tracked = model.prepare(input, filters::Precision::kTracked);
   const filters::PercentageCloser closer(model.kernel(cell.request.values), depth_map(), plane_max_tangent);
   const std::size_t pixels = cell.visibility.texels.size();
   const bool overflowed = cell.record.stability.overflow_texels.value_or(0) > 0;
-  std::vector<double> of_model(pixels, 1.0), of_closer(pixels, 1.0), tolerance(pixels, std::numeric_limits<double>::quiet_NaN());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, receivers.size(), 1024), [&](const tbb::blocked_range<std::size_t>& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const filters::Receiver& r = receivers[i];
-      const filters::ModelResult bounded = tracked->at(r);
-      if (bounded.excused) continue;
-      const auto pixel = static_cast<std::size_t>((options_.height - 1 - r.pixel.y) * options_.width + r.pixel.x);
-      of_model[pixel] = exact->at(r).visibility;
-      of_closer[pixel] = closer.at(r);
-      // An overflow is no rounding: where a bound on that is infinite in such a map, nothing is explained by it.
-      tolerance[pixel] = std::isfinite(bounded.bound) ? bounded.bound : overflowed ? 0.0 : HUGE_VAL;
-    }
-  });
+  std::vector<double> of_model(pixels, 1.0), of_closer(pixels, 1.0),
+      tolerance(pixels, std::numeric_limits<double>::quiet_NaN());
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, receivers.size(), 1024), [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          const filters::Receiver& r = receivers[i];
+          const filters::ModelResult bounded = tracked->at(r);
+          if (bounded.excused) continue;
+          const auto pixel = static_cast<std::size_t>((options_.height - 1 - r.pixel.y) * options_.width + r.pixel.x);
+          of_model[pixel] = exact->at(r).visibility;
+          of_closer[pixel] = closer.at(r);
+          // An overflow is no rounding: where a bound on that is infinite in such a map, nothing is explained by it.
+          tolerance[pixel] = std::isfinite(bounded.bound) ? bounded.bound : overflowed ? 0.0 : HUGE_VAL;
+        }
+      });
   return reference::check_bound({cell.visibility.texels, of_model, of_closer, tolerance});
 }
 

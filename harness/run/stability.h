@@ -10,8 +10,8 @@
 
 namespace shadowbench::run {
 
-/// Says where the numbers of one task's cells break: in the encoded map as the GL made it, in visibility with the 16-bit
-/// store against the 32-bit one, and where a bound is darker than what it bounds.
+/// Says where the numbers of one task's cells break: in the encoded map as the GL made it, in visibility with the
+/// 16-bit store against the 32-bit one, and where a bound is darker than what it bounds.
 class StabilityMeter {
  public:
   /// Everything but the task must outlive this object.
@@ -22,8 +22,9 @@ class StabilityMeter {
   void warn(MeasuredCell& cell, render::FilterPasses& filter) const;
 
   /// Notes the cell's stability in its record, or why there is none, and leaves the maps as images.
-  /// Requires that the cell was drawn. Cost: the map read back, some maps more for the safe exponent, map and lookup again
-  /// with the other store, and for a bound its scalar model in two precisions and its brute-force percentage-closer filter.
+  /// Requires that the cell was drawn. Cost: the map read back, some maps more for the safe exponent, map and lookup
+  /// again with the other store, and for a bound its scalar model in two precisions and its brute-force
+  /// percentage-closer filter.
   void measure(MeasuredCell& cell, render::FilterPasses& filter);
 
  private:
@@ -41,7 +42,8 @@ class StabilityMeter {
   void check_texels(MeasuredCell& cell, render::FilterPasses& filter) const;
   void compare_stores(MeasuredCell& cell);
   void check_bound(MeasuredCell& cell, render::FilterPasses& filter);
-  reference::BoundCheck compare_with_closer(const MeasuredCell& cell, const filters::Model& model, const std::vector<filters::Receiver>& receivers);
+  reference::BoundCheck compare_with_closer(const MeasuredCell& cell, const filters::Model& model,
+                                            const std::vector<filters::Receiver>& receivers);
 };
 
 /// Names the store with as many channels and the other float precision; nothing where the filter does not offer it.

@@ -17,9 +17,9 @@ report::Quartiles summarise(std::vector<double> values);
 report::Ratio bootstrap_ratio(const std::vector<double>& numerator, const std::vector<double>& denominator,
                               std::uint64_t seed);
 
-/// Gives the same median with the distribution-free interval between two order statistics that covers it at least 95 times
-/// in a hundred (David and Nagaraja 2003, Order Statistics, section 7.1); from the least to the most where there are fewer
-/// than six ratios, which cover it less often. Microseconds.
+/// Gives the same median with the distribution-free interval between two order statistics that covers it at least 95
+/// times in a hundred (David and Nagaraja 2003, Order Statistics, section 7.1); from the least to the most where there
+/// are fewer than six ratios, which cover it less often. Microseconds.
 report::Ratio order_ratio(const std::vector<double>& numerator, const std::vector<double>& denominator);
 
 }  // namespace shadowbench::run

@@ -22,13 +22,21 @@ constexpr std::size_t kFiltersAtOnce = 8;
 
 TaskRun::TaskRun(Renderer& renderer, const PlannedScene& planned, const PlannedTask& task, SceneAssets& assets,
                  const report::GlRecord& gl, const TaskListener& listener)
-    : renderer_(renderer), options_(planned.options), planned_(planned), task_(task.task), assets_(assets), gl_(gl), listener_(listener) {
-  for (std::size_t i = 0; i < task_.filters.size(); ++i) contents_[make_record(options_, task_, task_.filters[i]).key] = task.contents[i];
+    : renderer_(renderer),
+      options_(planned.options),
+      planned_(planned),
+      task_(task.task),
+      assets_(assets),
+      gl_(gl),
+      listener_(listener) {
+  for (std::size_t i = 0; i < task_.filters.size(); ++i)
+    contents_[make_record(options_, task_, task_.filters[i]).key] = task.contents[i];
 }
 
 void TaskRun::run() {
   Requests built_in, of_users;
-  for (const filters::FilterRequest& request : task_.filters) (request.user_file && !options_.worker ? of_users : built_in).push_back(request);
+  for (const filters::FilterRequest& request : task_.filters)
+    (request.user_file && !options_.worker ? of_users : built_in).push_back(request);
   if (options_.grids) {
     run_group(built_in, of_users);
     return;
@@ -36,17 +44,23 @@ void TaskRun::run() {
   for (const filters::FilterRequest& request : of_users) run_group({}, {request});
   for (std::size_t begin = 0; begin < built_in.size(); begin += kFiltersAtOnce) {
     const std::size_t end = std::min(begin + kFiltersAtOnce, built_in.size());
-    run_group({built_in.begin() + static_cast<std::ptrdiff_t>(begin), built_in.begin() + static_cast<std::ptrdiff_t>(end)}, {});
+    run_group(
+        {built_in.begin() + static_cast<std::ptrdiff_t>(begin), built_in.begin() + static_cast<std::ptrdiff_t>(end)},
+        {});
   }
 }
 
-SceneTask TaskRun::task_of(const Requests& requests) const { return {task_.scene, task_.camera, task_.map_size, requests}; }
+SceneTask TaskRun::task_of(const Requests& requests) const {
+  return {task_.scene, task_.camera, task_.map_size, requests};
+}
 
 void TaskRun::run_group(const Requests& built_in, const Requests& of_users) {
   std::vector<MeasuredCell> user_cells;
   for (const filters::FilterRequest& request : of_users) user_cells.push_back(measure_user_cell(request));
   SceneMeasurement measured;
-  if (!built_in.empty()) measured = measure_scene(renderer_, options_, task_of(built_in), assets_, [&](const std::string& label) { show(label); });
+  if (!built_in.empty())
+    measured =
+        measure_scene(renderer_, options_, task_of(built_in), assets_, [&](const std::string& label) { show(label); });
   for (MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
   Requests all = built_in;
   all.insert(all.end(), of_users.begin(), of_users.end());
@@ -68,7 +82,8 @@ MeasuredCell TaskRun::measure_user_cell(const filters::FilterRequest& request) {
 void TaskRun::explain(SceneMeasurement& measured) {
   show("truth");
   const SceneTruth& truth = assets_.truth(*task_.camera);
-  tbb::parallel_for_each(measured.cells, [&](MeasuredCell& cell) { score(cell.record, cell.visibility, cell.picture, truth); });
+  tbb::parallel_for_each(measured.cells,
+                         [&](MeasuredCell& cell) { score(cell.record, cell.visibility, cell.picture, truth); });
   show("attribution");
   if (!analyser_) analyser_.emplace(renderer_, options_, task_, assets_, truth);
   const auto start = std::chrono::steady_clock::now();
@@ -83,8 +98,10 @@ void TaskRun::cover(SceneMeasurement& measured) {
     LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
     const SceneTruth& truth = assets_.truth(*task_.camera);
     std::optional<ViewReceivers> untraced;
-    if (truth.receivers.image.points.empty()) untraced = read_view_receivers(assets_.gbuffer(*task_.camera), -task_.scene->light.direction_ws);
-    coverage_ = measure_coverage(untraced ? *untraced : truth.receivers, *task_.camera, light.frustum, read_linear_depth(light.map));
+    if (truth.receivers.image.points.empty())
+      untraced = read_view_receivers(assets_.gbuffer(*task_.camera), -task_.scene->light.direction_ws);
+    coverage_ = measure_coverage(untraced ? *untraced : truth.receivers, *task_.camera, light.frustum,
+                                 read_linear_depth(light.map));
   }
   for (MeasuredCell& cell : measured.cells) {
     cell.record.coverage = coverage_->record;

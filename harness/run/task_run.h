@@ -16,21 +16,21 @@ namespace shadowbench::run {
 
 /// Is told how a task gets on.
 struct TaskListener {
-  std::function<void(const std::string& what)> show;                         ///< what is under way
-  std::function<void(const std::string& message)> note;                      ///< something the user should know, once
-  std::function<void(const SceneMeasurement& measured)> finished;            ///< cells that were written
+  std::function<void(const std::string& what)> show;               ///< what is under way
+  std::function<void(const std::string& message)> note;            ///< something the user should know, once
+  std::function<void(const SceneMeasurement& measured)> finished;  ///< cells that were written
 };
 
 /// Measures the cells of one task that are still to be measured, and writes them.
 class TaskRun {
  public:
   /// Everything must outlive this object.
-  TaskRun(Renderer& renderer, const PlannedScene& planned, const PlannedTask& task, SceneAssets& assets, const report::GlRecord& gl,
-          const TaskListener& listener);
+  TaskRun(Renderer& renderer, const PlannedScene& planned, const PlannedTask& task, SceneAssets& assets,
+          const report::GlRecord& gl, const TaskListener& listener);
 
-  /// With grids all cells are measured, drawn and written together; without, a few at a time, each written as soon as it
-  /// is finished. Users' filters come first, so that a mistake in one is heard of at once.
-  /// Throws Error; cells written by then stay.
+  /// With grids all cells are measured, drawn and written together; without, a few at a time, each written as soon as
+  /// it is finished. Users' filters come first, so that a mistake in one is heard of at once. Throws Error; cells
+  /// written by then stay.
   void run();
 
  private:

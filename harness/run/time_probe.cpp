@@ -66,7 +66,9 @@ class Probe {
 
   int rounds() const { return plan_.scenes.front().options.rounds.most; }
 
-  bool is_time_left() const { return std::chrono::duration<double>(Clock::now() - start_).count() < kMostProbe_s || drawn_ms_ == 0.0; }
+  bool is_time_left() const {
+    return std::chrono::duration<double>(Clock::now() - start_).count() < kMostProbe_s || drawn_ms_ == 0.0;
+  }
 
   void add_scene(std::size_t scene) {
     const PlannedScene& planned = plan_.scenes[scene];
@@ -78,9 +80,7 @@ class Probe {
         left_cells_ += each.task.filters.size();
         continue;
       }
-      if (!assets) {
-        assets.emplace(renderer_, options, planned.scene, cache_, padding_texels(options));
-      }
+      if (!assets) assets.emplace(renderer_, options, planned.scene, cache_, padding_texels(options));
       const RoundTime round = draw_round(renderer_, planned, each.task, *assets);
       drawn_ms_ += rounds() * round.of_cells_ms(each.task.filters.size());
       if (round.lookup_ms < quickest_.lookup_ms) quickest_ = {0.0, round.lookup_ms};

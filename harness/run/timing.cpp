@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kFewestOfAnyBudget = 3;
 constexpr int kSettlingLookups = 3;
-constexpr int kRoundsPerLook = 8;  ///< a bootstrap takes as long as a small lookup: it looks again after an eighth more rounds
+constexpr int kRoundsPerLook =
+    8;  ///< a bootstrap takes as long as a small lookup: it looks again after an eighth more rounds
 
 /// Fisher and Yates; std::shuffle differs between standard libraries.
 void shuffle(std::vector<std::size_t>& order, std::mt19937_64& generator) {
@@ -23,7 +24,12 @@ class Rounds {
  public:
   Rounds(const std::vector<TimedFilter>& filters, std::size_t reference, const std::function<double()>& draw_map,
          const RoundLimits& limits, std::uint64_t seed, double drawn_ms)
-      : filters_(filters), reference_(reference), draw_map_(draw_map), limits_(limits), seed_(seed), generator_(seed),
+      : filters_(filters),
+        reference_(reference),
+        draw_map_(draw_map),
+        limits_(limits),
+        seed_(seed),
+        generator_(seed),
         active_(filters.size()) {
     assert(!filters.empty() && reference < filters.size());
     std::iota(active_.begin(), active_.end(), std::size_t{0});
@@ -58,7 +64,8 @@ class Rounds {
     shuffle(active_, generator_);
     for (const std::size_t i : active_) {
       const double prefilter_ms = filters_[i].prefilter ? filters_[i].prefilter() : 0.0;
-      for (int settle = 0; filters_[i].prefilter && settle < kSettlingLookups; ++settle) times_.spent_ms += filters_[i].lookup();
+      for (int settle = 0; filters_[i].prefilter && settle < kSettlingLookups; ++settle)
+        times_.spent_ms += filters_[i].lookup();
       const double lookup_ms = filters_[i].lookup();
       times_.spent_ms += prefilter_ms + lookup_ms;
       if (!counted) continue;
@@ -97,7 +104,8 @@ class Rounds {
 
   bool is_precise(const FilterTimes& times) const {
     const FilterTimes& reference = times_.filters[reference_];
-    return is_narrow(times.lookup, reference.lookup) && is_narrow(add_moving(times_.map, times), add_moving(times_.map, reference));
+    return is_narrow(times.lookup, reference.lookup) &&
+           is_narrow(add_moving(times_.map, times), add_moving(times_.map, reference));
   }
 
   /// Order statistics are quick and sift out what the bootstrap, which is reported, would not call narrow.
@@ -125,30 +133,39 @@ std::vector<double> add_moving(const std::vector<double>& map, const FilterTimes
   return sum;
 }
 
-RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference, const std::function<double()>& draw_map,
-                      const RoundLimits& limits, std::uint64_t seed, double drawn_ms) {
+RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference,
+                      const std::function<double()>& draw_map, const RoundLimits& limits, std::uint64_t seed,
+                      double drawn_ms) {
   return Rounds(filters, reference, draw_map, limits, seed, drawn_ms).run();
 }
 
-double time_once(render::FilterPasses& filter, const render::ShadowMap& map, const render::GBuffer& gbuffer, render::ImageTarget& target,
-                 gl::TimerKind timer) {
-  return gl::time_ms(timer, [&] {
-    filter.prefilter(map);
-    filter.lookup(gbuffer, map, target);
-  });
+double time_once(render::FilterPasses& filter, const render::ShadowMap& map, const render::GBuffer& gbuffer,
+                 render::ImageTarget& target, gl::TimerKind timer) {
+  return gl::time_ms(
+      timer,
+      [&] {
+        filter.prefilter(map);
+        filter.lookup(gbuffer, map, target);
+      });
 }
 
 RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::size_t reference,
-                       const std::function<void()>& draw_map, const render::ShadowMap& map, const render::GBuffer& gbuffer,
-                       gl::TimerKind timer, const RoundLimits& limits, std::uint64_t seed, double drawn_ms) {
+                       const std::function<void()>& draw_map, const render::ShadowMap& map,
+                       const render::GBuffer& gbuffer, gl::TimerKind timer, const RoundLimits& limits,
+                       std::uint64_t seed, double drawn_ms) {
   render::ImageTarget target("timed visibility", GL_R32F, gbuffer.width(), gbuffer.height());
   std::vector<TimedFilter> timed;
   for (render::FilterPasses* filter : filters) {
     TimedFilter& passes = timed.emplace_back();
-    if (filter->has_prefilter()) passes.prefilter = [&map, timer, filter] { return gl::time_ms(timer, [&] { filter->prefilter(map); }); };
+    if (filter->has_prefilter())
+      passes.prefilter = [&map, timer, filter] {
+        return gl::time_ms(
+            timer, [&] { filter->prefilter(map); });
+      };
     passes.lookup = [&, filter] { return gl::time_ms(timer, [&] { filter->lookup(gbuffer, map, target); }); };
   }
-  return run_rounds(timed, reference, [&] { return gl::time_ms(timer, draw_map); }, limits, seed, drawn_ms);
+  return run_rounds(
+      timed, reference, [&] { return gl::time_ms(timer, draw_map); }, limits, seed, drawn_ms);
 }
 
 }  // namespace shadowbench::run

@@ -42,23 +42,26 @@ struct TimedFilter {
 };
 
 /// Times interleaved rounds: every round draws the map and runs each filter once, in a shuffled order, so that drift of
-/// the machine's speed hits all of them alike. After a prefilter three lookups go untimed, and the fourth is timed: right
-/// after one, a CPU's lookups are up to 1.6 times as slow, which in a frame of lookups alone they are not. One round warms up and is not counted; none where `drawn_ms`, which is what
-/// running every filter once has cost before, spends the budget already. A filter drops out when its ratios
-/// to the filter `reference`, of the lookup and of map, prefilter and lookup, are precise enough; `reference` stays as
-/// long as any other. When the budget is spent, all stop, but not before three rounds, or one where no more may be.
-/// Requires at least one filter. Cost: (rounds + 1) times the sum of all passes, lookups of prefiltered maps four times.
-RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference, const std::function<double()>& draw_map,
-                      const RoundLimits& limits, std::uint64_t seed, double drawn_ms = 0.0);
+/// the machine's speed hits all of them alike. After a prefilter three lookups go untimed, and the fourth is timed:
+/// right after one, a CPU's lookups are up to 1.6 times as slow, which in a frame of lookups alone they are not. One
+/// round warms up and is not counted; none where `drawn_ms`, which is what running every filter once has cost before,
+/// spends the budget already. A filter drops out when its ratios to the filter `reference`, of the lookup and of map,
+/// prefilter and lookup, are precise enough; `reference` stays as long as any other. When the budget is spent, all
+/// stop, but not before three rounds, or one where no more may be. Requires at least one filter. Cost: (rounds + 1)
+/// times the sum of all passes, lookups of prefiltered maps four times.
+RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference,
+                      const std::function<double()>& draw_map, const RoundLimits& limits, std::uint64_t seed,
+                      double drawn_ms = 0.0);
 
 /// Runs a filter's passes once, into `target`, and gives their time in milliseconds.
-double time_once(render::FilterPasses& filter, const render::ShadowMap& map, const render::GBuffer& gbuffer, render::ImageTarget& target,
-                 gl::TimerKind timer);
+double time_once(render::FilterPasses& filter, const render::ShadowMap& map, const render::GBuffer& gbuffer,
+                 render::ImageTarget& target, gl::TimerKind timer);
 
 /// Times the shadow map, prefilters and lookups of filters that were drawn once, as run_rounds().
 RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::size_t reference,
-                       const std::function<void()>& draw_map, const render::ShadowMap& map, const render::GBuffer& gbuffer,
-                       gl::TimerKind timer, const RoundLimits& limits, std::uint64_t seed, double drawn_ms = 0.0);
+                       const std::function<void()>& draw_map, const render::ShadowMap& map,
+                       const render::GBuffer& gbuffer, gl::TimerKind timer, const RoundLimits& limits,
+                       std::uint64_t seed, double drawn_ms = 0.0);
 
 /// Adds what a filter costs in a frame in which light or casters move: map, prefilter and lookup, round by round.
 std::vector<double> add_moving(const std::vector<double>& map, const FilterTimes& times);

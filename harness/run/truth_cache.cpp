@@ -63,7 +63,8 @@ void TruthCache::store(const std::string& name, const std::vector<report::Part>&
   try {
     report::write_exr(path_of(name), parts, {{kName, name}, {kChecksum, checksum(parts)}});
   } catch (const Error& error) {
-    note_(fmt::format("traced images are not kept for the next run: {}; choose another folder with --cache", error.what()));
+    note_(fmt::format("traced images are not kept for the next run: {}; choose another folder with --cache",
+                      error.what()));
     note_ = nullptr;  // one that cannot be written may still be read
   }
 }

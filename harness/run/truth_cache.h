@@ -14,13 +14,15 @@ namespace shadowbench::run {
 /// light, settings and the code that traced them. Files can be deleted at any time.
 class TruthCache {
  public:
-  /// An empty folder name keeps nothing. Clears away what killed processes left half-written. `note` hears, once, of a folder that cannot be written.
+  /// An empty folder name keeps nothing. Clears away what killed processes left half-written. `note` hears, once, of a
+  /// folder that cannot be written.
   TruthCache(std::filesystem::path folder, std::function<void(const std::string&)> note);
 
-  /// Gives what was kept under a name; nothing where there is none, or where the file is damaged, of another content, or not
-  /// what `is_wanted` says is wanted.
+  /// Gives what was kept under a name; nothing where there is none, or where the file is damaged, of another content,
+  /// or not what `is_wanted` says is wanted.
   std::optional<std::vector<report::Part>> load(
-      const std::string& name, const std::function<bool(const std::vector<report::Part>&)>& is_wanted = [](const auto&) { return true; });
+      const std::string& name,
+      const std::function<bool(const std::vector<report::Part>&)>& is_wanted = [](const auto&) { return true; });
 
   /// Keeps parts of one channel under a name.
   void store(const std::string& name, const std::vector<report::Part>& parts);

@@ -36,7 +36,8 @@ struct TunedFilter {
 
 std::vector<TuneView> select_views(bool training) {
   std::vector<TuneView> views;
-  std::ranges::copy_if(tune_views(), std::back_inserter(views), [&](const TuneView& view) { return view.training == training; });
+  std::ranges::copy_if(tune_views(), std::back_inserter(views),
+                       [&](const TuneView& view) { return view.training == training; });
   return views;
 }
 
@@ -44,9 +45,12 @@ std::vector<TuneView> select_views(bool training) {
 std::vector<std::vector<TuneView>> group_by_light(const std::vector<TuneView>& views) {
   std::vector<std::vector<TuneView>> groups;
   for (const TuneView& view : views) {
-    const auto same = std::ranges::find_if(groups, [&](const auto& group) { return group.front().light_turn_deg == view.light_turn_deg; });
-    if (same != groups.end()) same->push_back(view);
-    else groups.push_back({view});
+    const auto same = std::ranges::find_if(
+        groups, [&](const auto& group) { return group.front().light_turn_deg == view.light_turn_deg; });
+    if (same != groups.end())
+      same->push_back(view);
+    else
+      groups.push_back({view});
   }
   return groups;
 }
@@ -98,11 +102,17 @@ class Tuner {
     for (const filters::FilterRequest& request : requests) {
       const auto is_same = [&](const TunedFilter& known) { return known.request.spec.id == request.spec.id; };
       if (std::ranges::any_of(tuned, is_same)) {
-        throw Error(ErrorKind::kUsage, fmt::format("--filter names '{}' twice, and tuned.json holds one setting of each: tune them apart, with another --out", request.spec.id));
+        throw Error(ErrorKind::kUsage, fmt::format("--filter names '{}' twice, and tuned.json holds one setting of "
+                                                   "each: tune them apart, with another --out",
+                                                   request.spec.id));
       }
       if (list_searched_params(request).empty()) {
-        throw Error(ErrorKind::kUsage, fmt::format("there is nothing to tune of '{}': it has no numeric parameter with a range that is not const and not "
-                                                   "set already; choose another filter (see 'list filters')", request.label()));
+        throw Error(
+            ErrorKind::kUsage,
+            fmt::format(
+                "there is nothing to tune of '{}': it has no numeric parameter with a range that is not const and not "
+                "set already; choose another filter (see 'list filters')",
+                request.label()));
       }
       tuned.push_back({request, {}, {}});
     }
@@ -130,7 +140,8 @@ class Tuner {
   }
 
   std::unique_ptr<TuneStage> make_stage(const scene::Scene& scene, const std::vector<TuneView>& views) {
-    auto stage = std::make_unique<TuneStage>(renderer_, settings_, cache_, scene, views, [this](const std::string& what) { progress_.show(done_, what); });
+    auto stage = std::make_unique<TuneStage>(renderer_, settings_, cache_, scene, views,
+                                             [this](const std::string& what) { progress_.show(done_, what); });
     record_.notes.insert(record_.notes.end(), stage->left_out().begin(), stage->left_out().end());
     return stage;
   }
@@ -138,8 +149,10 @@ class Tuner {
   /// Throws where a scene cannot be scored in any view of one kind: a mean over the others would not be of all scenes.
   void require_views(const scene::Scene& scene, std::size_t views, const char* kind) const {
     if (views > 0) return;
-    throw Error(ErrorKind::kInput, fmt::format("no {} view of the scene '{}' can be scored by {} ({}); leave it out with --scene, or choose a larger --size or "
-                                               "another --metric", kind, scene.name, metric_.name, record_.notes.back()));
+    throw Error(ErrorKind::kInput, fmt::format("no {} view of the scene '{}' can be scored by {} ({}); leave it out "
+                                               "with --scene, or choose a larger --size or "
+                                               "another --metric",
+                                               kind, scene.name, metric_.name, record_.notes.back()));
   }
 
   /// Makes the training views of all scenes, and forgets the scenes that have none and may be skipped.
@@ -167,7 +180,8 @@ class Tuner {
     }
   }
 
-  static filters::ParamValues with_values(const filters::FilterRequest& request, const std::vector<SearchedParam>& params, const std::vector<double>& values) {
+  static filters::ParamValues with_values(const filters::FilterRequest& request,
+                                          const std::vector<SearchedParam>& params, const std::vector<double>& values) {
     filters::ParamValues all = request.values;
     for (std::size_t i = 0; i < params.size(); ++i) all[params[i].name] = values[i];
     return all;
@@ -193,11 +207,13 @@ class Tuner {
     search.budget = options_.budget;
     search.on_evaluation = [&](const Evaluation& evaluation) {
       done_ = before + std::min(evaluation.number, options_.budget);
-      progress_.show(done_, fmt::format("{} · {} · {} {:.4g}", filter.request.spec.id, evaluation.stage, metric_.name, evaluation.error));
+      progress_.show(done_, fmt::format("{} · {} · {} {:.4g}", filter.request.spec.id, evaluation.stage, metric_.name,
+                                        evaluation.error));
       note_evaluation(filter.request.spec.id, params, evaluation);
     };
-    const SearchResult result = search_parameters(
-        scales, search, [&](const std::vector<double>& values) { return evaluate(stages, passes, with_values(filter.request, params, values)); });
+    const SearchResult result = search_parameters(scales, search, [&](const std::vector<double>& values) {
+      return evaluate(stages, passes, with_values(filter.request, params, values));
+    });
     done_ = before + options_.budget;
     filter.found = with_values(filter.request, params, result.best);
     note_search(filter, scales, result);
@@ -205,8 +221,10 @@ class Tuner {
 
   void note_evaluation(const std::string& id, const std::vector<SearchedParam>& params, const Evaluation& evaluation) {
     std::string values;
-    for (std::size_t i = 0; i < params.size(); ++i) values += fmt::format("{}{}={}", i > 0 ? " " : "", params[i].name, evaluation.values[i]);
-    evaluations_ += fmt::format("{},{},{},{},{}\r\n", id, evaluation.number, evaluation.stage, report::quote_csv(values), evaluation.error);
+    for (std::size_t i = 0; i < params.size(); ++i)
+      values += fmt::format("{}{}={}", i > 0 ? " " : "", params[i].name, evaluation.values[i]);
+    evaluations_ += fmt::format("{},{},{},{},{}\r\n", id, evaluation.number, evaluation.stage,
+                                report::quote_csv(values), evaluation.error);
   }
 
   static void note_search(TunedFilter& filter, const std::vector<ParamScale>& scales, const SearchResult& result) {
@@ -220,8 +238,11 @@ class Tuner {
       const SearchedParam& param = scales[i].param();
       const GoodRange& range = result.ranges[i];
       report::TunedParamRecord& to = record.searched.emplace_back();
-      to = {param.name, filter.request.spec.find_param(param.name)->unit, scales[i].name(), param.min, param.max, param.default_value,
-            result.best[i], {}, range.share, range.no_effect};
+      to = {param.name,       filter.request.spec.find_param(param.name)->unit,
+            scales[i].name(), param.min,
+            param.max,        param.default_value,
+            result.best[i],   {},
+            range.share,      range.no_effect};
       for (const ValueInterval& interval : range.intervals) to.good.push_back({interval.low, interval.high});
     }
   }
@@ -234,7 +255,8 @@ class Tuner {
     const std::vector<double> tuned = stage.score(passes, filter.found).value_or(worst);
     for (std::size_t i = 0; i < worst.size(); ++i) {
       const TuneStage::View& view = stage.views()[i];
-      filter.record.views.push_back({stage.scene().name, view.camera->name, training, {at_default[i], tuned[i]}, view.truth->standard_error});
+      filter.record.views.push_back(
+          {stage.scene().name, view.camera->name, training, {at_default[i], tuned[i]}, view.truth->standard_error});
     }
   }
 
@@ -257,7 +279,8 @@ class Tuner {
       record_.filters.push_back(filter.record);
     }
     const std::string text = report::make_tuned_text(record_);
-    report::write_text_file(options_.run.out / "evaluations.csv", fmt::format("filter,evaluation,stage,parameters,{}\r\n", metric_.name) + evaluations_);
+    report::write_text_file(options_.run.out / "evaluations.csv",
+                            fmt::format("filter,evaluation,stage,parameters,{}\r\n", metric_.name) + evaluations_);
     report::write_text_file(options_.run.out / "tune.md", text);
     report::write_text_file(options_.run.out / "tuned.json", report::make_tuned_json(record_));
     return text;
@@ -270,7 +293,8 @@ std::vector<SearchedParam> list_searched_params(const filters::FilterRequest& re
   std::vector<SearchedParam> params;
   for (const filters::ParamSpec& param : request.spec.params) {
     const bool fixed = std::ranges::find(request.set_by_user, param.name) != request.set_by_user.end();
-    if (fixed || param.is_const || !param.choices.empty() || !param.min || !param.max || !(*param.min < *param.max)) continue;
+    if (fixed || param.is_const || !param.choices.empty() || !param.min || !param.max || !(*param.min < *param.max))
+      continue;
     params.push_back({param.name, *param.min, *param.max, std::get<double>(param.default_value), param.integer});
   }
   return params;
@@ -281,7 +305,8 @@ double find_widest_kernel(const std::vector<filters::FilterRequest>& requests) {
   for (const filters::FilterRequest& request : requests) {
     filters::ParamValues values = request.values;
     for (const SearchedParam& param : list_searched_params(request)) values[param.name] = param.max;
-    widest = std::max({widest, filters::radius_texels(request.spec, request.values), filters::radius_texels(request.spec, values)});
+    widest = std::max(
+        {widest, filters::radius_texels(request.spec, request.values), filters::radius_texels(request.spec, values)});
   }
   return widest;
 }

@@ -22,10 +22,10 @@ constexpr TuneMetric kMetrics[] = {
 }  // namespace
 
 const TuneMetric& find_tune_metric(const std::string& name) {
-  for (const TuneMetric& metric : kMetrics) {
+  for (const TuneMetric& metric : kMetrics)
     if (metric.name == name) return metric;
-  }
-  throw Error(ErrorKind::kUsage, fmt::format("--metric: nothing is tuned for '{}'; choose {}", name, fmt::join(list_tune_metrics(), ", ")));
+  throw Error(ErrorKind::kUsage, fmt::format("--metric: nothing is tuned for '{}'; choose {}", name,
+                                             fmt::join(list_tune_metrics(), ", ")));
 }
 
 std::vector<std::string> list_tune_metrics() {

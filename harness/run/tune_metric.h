@@ -15,7 +15,8 @@ enum class TuneMetricKind { kStatistic, kFlip, kAcne, kLeak };
 struct TuneMetric {
   std::string_view name;  ///< as `list metrics` has it, without its group
   TuneMetricKind kind = TuneMetricKind::kStatistic;
-  double reference::ErrorStats::*statistic = nullptr;  ///< of kStatistic, which are in units of visibility, as the truth's standard error
+  double reference::ErrorStats::*statistic =
+      nullptr;  ///< of kStatistic, which are in units of visibility, as the truth's standard error
 };
 
 /// Finds a metric. Throws Error(kUsage), with those there are, where there is none of that name.

@@ -8,8 +8,8 @@
 
 #include "harness/render/shade_pass.h"
 #include "harness/run/cell_analysis.h"
-#include "harness/run/map_limits.h"
 #include "harness/run/filter_setup.h"
+#include "harness/run/map_limits.h"
 #include "harness/run/mean_flip.h"
 #include "report/picture_io.h"
 
@@ -25,9 +25,8 @@ struct Shot {
 };
 
 double score_statistic(const TuneMetric& metric, report::Image visibility, const SceneTruth& truth) {
-  for (std::size_t i = 0; i < visibility.texels.size(); ++i) {
+  for (std::size_t i = 0; i < visibility.texels.size(); ++i)
     if (!std::isfinite(visibility.texels[i])) visibility.texels[i] = truth.area.texels[i] > 0.5f ? 0.0f : 1.0f;
-  }
   const auto stats = reference::measure_error(visibility.texels, truth.area.texels, truth.mask);
   return stats ? (*stats).*metric.statistic : kWorst;
 }
@@ -38,9 +37,12 @@ double score_shot(const TuneMetric& metric, const Shot& shot, const TuneStage::V
   switch (metric.kind) {
     case TuneMetricKind::kStatistic: return score_statistic(metric, shot.visibility, *view.truth);
     case TuneMetricKind::kFlip:
-      return measure_mean_flip(view_picture(report::round_to_half(shot.picture)), view.truth->area_seen).value_or(kWorst);
-    case TuneMetricKind::kAcne: return reference::rate_below(image, view.masks->acne, limits.acne_below).value_or(kWorst);
-    case TuneMetricKind::kLeak: return reference::rate_above(image, view.masks->leak, limits.leak_above).value_or(kWorst);
+      return measure_mean_flip(view_picture(report::round_to_half(shot.picture)), view.truth->area_seen)
+          .value_or(kWorst);
+    case TuneMetricKind::kAcne:
+      return reference::rate_below(image, view.masks->acne, limits.acne_below).value_or(kWorst);
+    case TuneMetricKind::kLeak:
+      return reference::rate_above(image, view.masks->leak, limits.leak_above).value_or(kWorst);
   }
   return kWorst;
 }
@@ -60,12 +62,13 @@ TuneStage::TuneStage(Renderer& renderer, const TuneSettings& settings, TruthCach
   for (const scene::Camera& camera : scene_.cameras) {
     on_view(fmt::format("truth of {}, {}", scene_.name, camera.name));
     View view{&camera, &assets_.truth(camera), std::nullopt};
-    if (view.truth->absent.empty() && is_artefact(settings.metric->kind)) {
+    if (view.truth->absent.empty() && is_artefact(settings.metric->kind))
       view.masks = find_artefact_masks(assets_.tracer(), light_->frustum, *view.truth, settings.pad_texels);
-    }
     const std::string reason = explain_absent(view);
-    if (reason.empty()) views_.push_back(std::move(view));
-    else left_out_.push_back(fmt::format("{}, {}: {}", scene_.name, camera.name, reason));
+    if (reason.empty())
+      views_.push_back(std::move(view));
+    else
+      left_out_.push_back(fmt::format("{}, {}: {}", scene_.name, camera.name, reason));
   }
 }
 
@@ -75,8 +78,8 @@ std::string TuneStage::explain_absent(const View& view) const {
   const std::vector<std::uint8_t>& mask = acne ? view.masks->acne : view.masks->leak;
   const auto count = std::count(mask.begin(), mask.end(), 1);
   if (count >= reference::kFewestReceivers) return {};
-  return fmt::format("{} receivers are wholly {} with their surroundings, and a rate of {} needs {}", count, acne ? "lit" : "blocked",
-                     settings_.metric->name, reference::kFewestReceivers);
+  return fmt::format("{} receivers are wholly {} with their surroundings, and a rate of {} needs {}", count,
+                     acne ? "lit" : "blocked", settings_.metric->name, reference::kFewestReceivers);
 }
 
 render::LightSetup TuneStage::make_light(const filters::FilterRequest& request) const {
@@ -102,7 +105,8 @@ std::optional<std::vector<double>> TuneStage::score(render::FilterPasses& passes
     shots[i].picture = render::shade(renderer_.shaders, gbuffer, target_.texture(), scene_, *views_[i].camera);
   }
   std::vector<double> scores(views_.size());
-  tbb::parallel_for(std::size_t{0}, scores.size(), [&](std::size_t i) { scores[i] = score_shot(*settings_.metric, shots[i], views_[i]); });
+  tbb::parallel_for(std::size_t{0}, scores.size(),
+                    [&](std::size_t i) { scores[i] = score_shot(*settings_.metric, shots[i], views_[i]); });
   return scores;
 }
 

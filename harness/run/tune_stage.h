@@ -17,16 +17,17 @@ namespace shadowbench::run {
 struct TuneSettings {
   const RunOptions* options = nullptr;  ///< one map size, no rounds
   const TuneMetric* metric = nullptr;
-  double pad_texels = 0.0;  ///< around the scene in the map, and the widest kernel that the guard of artefacts allows for
+  double pad_texels =
+      0.0;  ///< around the scene in the map, and the widest kernel that the guard of artefacts allows for
 };
 
-/// One scene under one light with some of its views, ready to score any setting of any filter. Draws the map and the views and
-/// traces their truth once; scoring draws the prefilter once and one lookup for each view, and times nothing.
+/// One scene under one light with some of its views, ready to score any setting of any filter. Draws the map and the
+/// views and traces their truth once; scoring draws the prefilter once and one lookup for each view, and times nothing.
 class TuneStage {
  public:
   /// `on_view` hears of each view before it is traced. All but the scene must outlive this object.
-  TuneStage(Renderer& renderer, const TuneSettings& settings, TruthCache& cache, const scene::Scene& scene, const std::vector<TuneView>& views,
-            const std::function<void(const std::string&)>& on_view);
+  TuneStage(Renderer& renderer, const TuneSettings& settings, TruthCache& cache, const scene::Scene& scene,
+            const std::vector<TuneView>& views, const std::function<void(const std::string&)>& on_view);
   TuneStage(const TuneStage&) = delete;
   TuneStage& operator=(const TuneStage&) = delete;
 
@@ -46,9 +47,9 @@ class TuneStage {
   /// Compiles a filter, to be scored by this and all other stages of the same settings.
   render::FilterPasses make_passes(const filters::FilterRequest& request);
 
-  /// Scores values of the filter's parameters in every view, in the order of views(). Gives nothing where the values overflow the
-  /// filter's map: infinite texels may hide in the image, and are not to be chosen for it.
-  /// A pixel that is not finite counts as wholly wrong.
+  /// Scores values of the filter's parameters in every view, in the order of views(). Gives nothing where the values
+  /// overflow the filter's map: infinite texels may hide in the image, and are not to be chosen for it. A pixel that is
+  /// not finite counts as wholly wrong.
   std::optional<std::vector<double>> score(render::FilterPasses& passes, const filters::ParamValues& values);
 
  private:

@@ -9,7 +9,9 @@
 namespace shadowbench::run {
 namespace {
 
-glm::vec3 turn(const glm::vec3& v, double degrees) { return glm::vec3(glm::rotateY(glm::dvec3(v), glm::radians(degrees))); }
+glm::vec3 turn(const glm::vec3& v, double degrees) {
+  return glm::vec3(glm::rotateY(glm::dvec3(v), glm::radians(degrees)));
+}
 
 }  // namespace
 
@@ -22,18 +24,16 @@ std::string TuneView::name() const {
 
 const std::vector<TuneView>& tune_views() {
   static const std::vector<TuneView> views = {
-      {-20.0, 0.0, true},   {0.0, 0.0, true},   {20.0, 0.0, true},
-      {-30.0, 0.0, false},  {-10.0, 0.0, false}, {10.0, 0.0, false}, {30.0, 0.0, false},
-      {0.0, -15.0, false},  {0.0, 15.0, false},
+      {-20.0, 0.0, true}, {0.0, 0.0, true},   {20.0, 0.0, true},   {-30.0, 0.0, false}, {-10.0, 0.0, false},
+      {10.0, 0.0, false}, {30.0, 0.0, false}, {0.0, -15.0, false}, {0.0, 15.0, false},
   };
   return views;
 }
 
 std::string describe_tune_views(bool training) {
   std::vector<std::string> names;
-  for (const TuneView& view : tune_views()) {
+  for (const TuneView& view : tune_views())
     if (view.training == training) names.push_back(view.name());
-  }
   return fmt::format("{}", fmt::join(names, ", "));
 }
 

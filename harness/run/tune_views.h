@@ -23,8 +23,8 @@ const std::vector<TuneView>& tune_views();
 /// Says in words which views those are.
 std::string describe_tune_views(bool training);
 
-/// Gives the point of a camera's central ray that is nearest to the middle of the scene's bounds; where that lies behind the
-/// camera, the middle itself.
+/// Gives the point of a camera's central ray that is nearest to the middle of the scene's bounds; where that lies
+/// behind the camera, the middle itself.
 glm::vec3 find_pivot(const scene::Scene& scene, const scene::Camera& camera);
 
 /// Gives a camera turned about the vertical axis through a point; positive turns it as an azimuth grows, from +z to +x.

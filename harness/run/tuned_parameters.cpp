@@ -20,13 +20,15 @@ decltype(auto) check_field(const std::filesystem::path& file, const std::string&
   }
 }
 
-filters::ParamValues read_values(const filters::FilterSpec& spec, const report::ParamMap& params, const std::filesystem::path& file,
-                                 const std::string& field) {
+filters::ParamValues read_values(const filters::FilterSpec& spec, const report::ParamMap& params,
+                                 const std::filesystem::path& file, const std::string& field) {
   filters::ParamValues values;
   for (const auto& [name, param] : params) {
     filters::ParamValue value;
     std::visit([&value](const auto& held) { value = held; }, param);
-    values[name] = check_field(file, field + "." + name, [&spec, &key = name, &value] { return filters::parse_value(spec, key, filters::to_string(value)); });
+    values[name] = check_field(file, field + "." + name, [&spec, &key = name, &value] {
+      return filters::parse_value(spec, key, filters::to_string(value));
+    });
   }
   return values;
 }
@@ -49,18 +51,23 @@ std::vector<std::string> apply_tuned(std::vector<filters::FilterRequest>& reques
   for (std::size_t i = 0; i < tuned.filters.size(); ++i) {
     const report::TunedSettings::Filter& filter = tuned.filters[i];
     const std::string field = fmt::format("filters[{}]", i);
-    const filters::FilterSpec& spec = check_field(file, field + ".id", [&]() -> const filters::FilterSpec& { return catalogue.find(filter.id); });
+    const filters::FilterSpec& spec =
+        check_field(file, field + ".id", [&]() -> const filters::FilterSpec& { return catalogue.find(filter.id); });
     found[filter.id] = read_values(spec, filter.params, file, field + ".params");
   }
   std::vector<std::string> notes;
   for (filters::FilterRequest& request : requests) {
     const auto values = found.find(request.spec.id);
-    if (values != found.end()) take_values(request, values->second);
-    else if (!request.spec.params.empty()) notes.push_back(fmt::format("{} has no parameters for {}, which keeps its own", file.string(), request.label()));
+    if (values != found.end())
+      take_values(request, values->second);
+    else if (!request.spec.params.empty())
+      notes.push_back(fmt::format("{} has no parameters for {}, which keeps its own", file.string(), request.label()));
   }
   for (const int map_size : map_sizes) {
     if (map_size == tuned.map_size) continue;
-    notes.push_back(fmt::format("{} was tuned on maps of {} texels, this run draws {}: a radius in texels is another one in metres", file.string(), tuned.map_size, map_size));
+    notes.push_back(
+        fmt::format("{} was tuned on maps of {} texels, this run draws {}: a radius in texels is another one in metres",
+                    file.string(), tuned.map_size, map_size));
   }
   return notes;
 }

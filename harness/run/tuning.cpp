@@ -8,10 +8,10 @@
 namespace shadowbench::run {
 namespace {
 
-constexpr double kGlobalShare = 0.6;       // of the budget
-constexpr double kFirstStep = 0.1;         // of Subplex, on the scaled range
-constexpr double kSmallestStep = 1e-3;     // likewise
-constexpr int kRepeatsPerSetting = 50;     // places that round to known settings cost nothing, but must not go on for ever
+constexpr double kGlobalShare = 0.6;    // of the budget
+constexpr double kFirstStep = 0.1;      // of Subplex, on the scaled range
+constexpr double kSmallestStep = 1e-3;  // likewise
+constexpr int kRepeatsPerSetting = 50;  // places that round to known settings cost nothing, but must not go on for ever
 constexpr int kRangeRounds = 3;
 constexpr double kWorthAnotherRound = 0.01;  // relative
 
@@ -45,7 +45,8 @@ class Search {
 
   std::vector<double> to_units(const std::vector<double>& values) const {
     std::vector<double> units;
-    for (std::size_t i = 0; i < values.size(); ++i) units.push_back(std::clamp(params_[i].to_unit(values[i]), 0.0, 1.0));
+    for (std::size_t i = 0; i < values.size(); ++i)
+      units.push_back(std::clamp(params_[i].to_unit(values[i]), 0.0, 1.0));
     return units;
   }
 
@@ -102,7 +103,8 @@ double SettingsDrawn::error(const std::vector<double>& values, const char* stage
   return error;
 }
 
-SearchResult search_parameters(const std::vector<ParamScale>& params, const SearchSettings& settings, const Objective& objective) {
+SearchResult search_parameters(const std::vector<ParamScale>& params, const SearchSettings& settings,
+                               const Objective& objective) {
   assert(!params.empty() && settings.budget >= 1);
   SearchResult result;
   SettingsDrawn drawn(objective, settings.on_evaluation);
@@ -113,9 +115,8 @@ SearchResult search_parameters(const std::vector<ParamScale>& params, const Sear
     result.best = drawn.best();
     result.best_error = drawn.best_error();
     result.ranges.clear();
-    for (std::size_t i = 0; i < params.size(); ++i) {
+    for (std::size_t i = 0; i < params.size(); ++i)
       result.ranges.push_back(find_good_range(params, i, result.best, settings.tolerance, drawn));
-    }
   }
   std::vector<double> defaults;
   for (const ParamScale& scale : params) defaults.push_back(scale.param().default_value);

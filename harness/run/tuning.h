@@ -33,8 +33,8 @@ struct GoodRange {
 };
 
 struct SearchSettings {
-  int budget = 80;          ///< settings that the search draws, the default included; the good ranges come on top
-  double tolerance = 0.1;   ///< good: an error of at most (1 + tolerance) times the best
+  int budget = 80;         ///< settings that the search draws, the default included; the good ranges come on top
+  double tolerance = 0.1;  ///< good: an error of at most (1 + tolerance) times the best
   std::function<void(const Evaluation&)> on_evaluation = {};  ///< hears of every setting drawn
 };
 
@@ -68,17 +68,18 @@ class SettingsDrawn {
 };
 
 /// Finds the values that make the objective least. First the default is drawn, then, on scaled parameters (ParamScale),
-/// DIRECT-L over the whole range with up to 60 % of the budget, then Subplex from the best with the rest, both from NLopt.
-/// Deterministic. The result is never worse than the default. Last come the good ranges (find_good_range()); where they
-/// find something better than the best by more than 1 %, that becomes the best, and they are looked for anew, at most twice.
-/// Requires at least one parameter and a budget of 1 or more. Throws what the objective throws.
-/// Source: Gablonsky and Kelley 2001, A Locally-Biased Form of the DIRECT Algorithm, J. Global Optimization 21; Rowan 1990,
-/// Functional Stability Analysis of Numerical Algorithms (Subplex).
-SearchResult search_parameters(const std::vector<ParamScale>& params, const SearchSettings& settings, const Objective& objective);
+/// DIRECT-L over the whole range with up to 60 % of the budget, then Subplex from the best with the rest, both from
+/// NLopt. Deterministic. The result is never worse than the default. Last come the good ranges (find_good_range());
+/// where they find something better than the best by more than 1 %, that becomes the best, and they are looked for
+/// anew, at most twice. Requires at least one parameter and a budget of 1 or more. Throws what the objective throws.
+/// Source: Gablonsky and Kelley 2001, A Locally-Biased Form of the DIRECT Algorithm, J. Global Optimization 21; Rowan
+/// 1990, Functional Stability Analysis of Numerical Algorithms (Subplex).
+SearchResult search_parameters(const std::vector<ParamScale>& params, const SearchSettings& settings,
+                               const Objective& objective);
 
-/// Scans one parameter, the others at `best`, at 17 places evenly over its scale (an integer with fewer values: at all of them)
-/// and bisects between good and bad neighbours to 1/256 of the scale, or to neighbouring integers. What is narrower than
-/// 1/16 of the scale, and does not hold the best, may be missed.
+/// Scans one parameter, the others at `best`, at 17 places evenly over its scale (an integer with fewer values: at all
+/// of them) and bisects between good and bad neighbours to 1/256 of the scale, or to neighbouring integers. What is
+/// narrower than 1/16 of the scale, and does not hold the best, may be missed.
 GoodRange find_good_range(const std::vector<ParamScale>& params, std::size_t which, const std::vector<double>& best,
                           double tolerance, SettingsDrawn& drawn);
 

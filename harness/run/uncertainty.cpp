@@ -20,18 +20,21 @@ report::Image bound_rounding(const DrawnTask& drawn, const filters::Model& model
   const RunOptions& options = drawn.options;
   const filters::DepthMap map = drawn.assets.light_map(*drawn.task.camera, drawn.task.map_size).map.read();
   const filters::FilterRequest& request = filter.request();
-  const auto tracked = model.prepare({request.spec, request.values, map, measure_accuracy(drawn.renderer), options.seed, options.bias.plane_max_tangent()},
+  const auto tracked = model.prepare({request.spec, request.values, map, measure_accuracy(drawn.renderer), options.seed,
+                                      options.bias.plane_max_tangent()},
                                      filters::Precision::kTracked);
-  const auto receivers = render::read_receivers(drawn.renderer.shaders, drawn.assets.gbuffer(*drawn.task.camera), filter.light());
+  const auto receivers =
+      render::read_receivers(drawn.renderer.shaders, drawn.assets.gbuffer(*drawn.task.camera), filter.light());
   report::Image image(options.width, options.height, 1);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, receivers.size(), 1024), [&](const tbb::blocked_range<std::size_t>& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const filters::Receiver& r = receivers[i];
-      const filters::ModelResult result = tracked->at(r);
-      const float bound = result.bound < 1.0 ? static_cast<float>(result.bound) : 1.0f;
-      *image.at(r.pixel.x, options.height - 1 - r.pixel.y) = result.excused ? report::kMayFlip : bound;
-    }
-  });
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, receivers.size(), 1024), [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          const filters::Receiver& r = receivers[i];
+          const filters::ModelResult result = tracked->at(r);
+          const float bound = result.bound < 1.0 ? static_cast<float>(result.bound) : 1.0f;
+          *image.at(r.pixel.x, options.height - 1 - r.pixel.y) = result.excused ? report::kMayFlip : bound;
+        }
+      });
   return image;
 }
 
@@ -61,7 +64,8 @@ void spread_seeds(const DrawnTask& drawn, MeasuredCell& cell, render::FilterPass
   for (std::size_t p = 0; p < sum.size(); ++p) {
     const double n = report::kSpreadSeeds, mean = sum[p] / n;
     cell.uncertainty.seed_mean.texels[p] = static_cast<float>(mean);
-    cell.uncertainty.seed_deviation.texels[p] = static_cast<float>(std::sqrt(std::max(squares[p] - n * mean * mean, 0.0) / (n - 1.0)));
+    cell.uncertainty.seed_deviation.texels[p] =
+        static_cast<float>(std::sqrt(std::max(squares[p] - n * mean * mean, 0.0) / (n - 1.0)));
   }
 }
 

@@ -13,8 +13,8 @@ struct DrawnTask {
   SceneAssets& assets;
 };
 
-/// Leaves in the cell how far rounding can move each pixel (filters with a scalar model), and how far other seeds move it
-/// (stochastic filters). Requires that the filter's map was made; its passes are turned back to the run's own seed.
+/// Leaves in the cell how far rounding can move each pixel (filters with a scalar model), and how far other seeds move
+/// it (stochastic filters). Requires that the filter's map was made; its passes are turned back to the run's own seed.
 /// Cost: the scalar model with its running error bound for every receiver, and report::kSpreadSeeds lookups.
 void measure_uncertainty(const DrawnTask& drawn, MeasuredCell& cell, render::FilterPasses& filter);
 

@@ -52,20 +52,22 @@ std::vector<std::string> round_arguments(const RoundLimits& limits) {
 std::vector<std::string> worker_arguments(const RunOptions& options, const SceneTask& task,
                                           const filters::FilterRequest& request, const std::string& scene_argument,
                                           const std::string& backend, const std::filesystem::path& folder) {
-  std::vector<std::string> arguments = {"run", "--worker", "--scene", scene_argument,
+  std::vector<std::string> arguments = {"run",           "--worker",
+                                        "--scene",       scene_argument,
                                         "--filter-file", request.spec.path,
-                                        "--filters", "none," + request_text(request),
-                                        "--map-size", fmt::format("{}", task.map_size),
-                                        "--size", fmt::format("{}x{}", options.width, options.height),
-                                        "--seed", fmt::format("{}", options.seed),
-                                        "--fit", std::string(scene::name_of(options.fit)),
-                                        "--snap", options.snap ? "on" : "off",
-                                        "--map-format", std::string(gl::pixel_format(options.map.format).name),
-                                        "--pad-texels", fmt::format("{}", padding_texels(options)),
-                                        "--border", filters::to_string(options.range.border),
-                                        "--far-test", options.range.far_test ? "on" : "off",
+                                        "--filters",     "none," + request_text(request),
+                                        "--map-size",    fmt::format("{}", task.map_size),
+                                        "--size",        fmt::format("{}x{}", options.width, options.height),
+                                        "--seed",        fmt::format("{}", options.seed),
+                                        "--fit",         std::string(scene::name_of(options.fit)),
+                                        "--snap",        options.snap ? "on" : "off",
+                                        "--map-format",  std::string(gl::pixel_format(options.map.format).name),
+                                        "--pad-texels",  fmt::format("{}", padding_texels(options)),
+                                        "--border",      filters::to_string(options.range.border),
+                                        "--far-test",    options.range.far_test ? "on" : "off",
                                         "--behind-test", options.range.behind_test ? "on" : "off",
-                                        "--gl", backend, "--out", folder.string()};
+                                        "--gl",          backend,
+                                        "--out",         folder.string()};
   const std::vector<std::string> rounds = round_arguments(options.rounds);
   arguments.insert(arguments.end(), rounds.begin(), rounds.end());
   if (options.ground) arguments.push_back("--ground");
@@ -111,12 +113,12 @@ MeasuredCell failed_cell(const RunOptions& options, const SceneTask& task, const
     cell.record.message = fmt::format("not finished after {:g} s (--cell-timeout)", options.cell_timeout_s);
   } else {
     cell.record.status = report::CellStatus::kCrashed;
-    cell.record.message = outcome.signal ? fmt::format("killed by signal {} ({})", outcome.signal, strsignal(outcome.signal))
-                                         : fmt::format("ended with exit code {}: {}", *outcome.exit_code, clean(outcome.error_text));
+    cell.record.message =
+        outcome.signal ? fmt::format("killed by signal {} ({})", outcome.signal, strsignal(outcome.signal))
+                       : fmt::format("ended with exit code {}: {}", *outcome.exit_code, clean(outcome.error_text));
   }
-  for (const char* group : {"time_ms", "ratio_to_none", "lights", "cost", "receivers", "nan", "stability", "images"}) {
+  for (const char* group : {"time_ms", "ratio_to_none", "lights", "cost", "receivers", "nan", "stability", "images"})
     cell.record.absent[group] = cell.record.message;
-  }
   return cell;
 }
 
@@ -134,12 +136,10 @@ MeasuredCell read_cell(const RunOptions& options, const SceneTask& task, const f
   for (const report::Part& part : file.parts) {
     if (part.name == visibility_part(cell.label)) cell.visibility = part.image;
     if (part.name == picture_part(cell.label)) cell.picture = part.image;
-    for (const report::UncertaintyImage& each : report::list_uncertainty_images()) {
+    for (const report::UncertaintyImage& each : report::list_uncertainty_images())
       if (part.name == uncertainty_part(cell.label, each)) cell.uncertainty.*each.image = part.image;
-    }
-    for (const report::StabilityImage& each : report::list_stability_images()) {
+    for (const report::StabilityImage& each : report::list_stability_images())
       if (part.name == stability_part(cell.label, each)) cell.stability.*each.image = part.image;
-    }
   }
   return cell;
 }
@@ -154,9 +154,8 @@ MeasuredCell measure_user_filter(const RunOptions& options, const SceneTask& tas
       worker_arguments(options, task, request, scene_argument, backend, folder.path()), options.cell_timeout_s);
   if (outcome.exit_code == 0) return read_cell(options, task, request, folder.path());
   const int code = outcome.exit_code.value_or(0);
-  if (code >= static_cast<int>(ErrorKind::kUsage) && code <= static_cast<int>(ErrorKind::kOutput)) {
+  if (code >= static_cast<int>(ErrorKind::kUsage) && code <= static_cast<int>(ErrorKind::kOutput))
     throw Error(static_cast<ErrorKind>(code), clean(outcome.error_text));
-  }
   return failed_cell(options, task, request, outcome);
 }
 

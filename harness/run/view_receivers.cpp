@@ -9,14 +9,14 @@
 namespace shadowbench::run {
 
 bool ViewReceivers::any_counts() const {
-  return std::any_of(image.points.begin(), image.points.end(), [](const auto& point) { return point.counts; });
+  return std::any_of(
+      image.points.begin(), image.points.end(), [](const auto& point) { return point.counts; });
 }
 
 report::Image ViewReceivers::to_image(const std::vector<float>& visibility) const {
   report::Image result(image.width, image.height, 1);
-  for (std::size_t i = 0; i < visibility.size(); ++i) {
+  for (std::size_t i = 0; i < visibility.size(); ++i)
     result.texels[i] = image.points[i].counts ? visibility[i] : is_surface[i] ? 0.0f : 1.0f;
-  }
   return result;
 }
 

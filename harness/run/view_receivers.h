@@ -18,7 +18,8 @@ struct ViewReceivers {
 
   bool any_counts() const;
 
-  /// Gives visibility as the lookup pass writes it: a surface turned away from the light is dark, the background is lit.
+  /// Gives visibility as the lookup pass writes it: a surface turned away from the light is dark, the background is
+  /// lit.
   report::Image to_image(const std::vector<float>& visibility) const;
 
   /// 1 where a pixel counts: a surface that faces the light.

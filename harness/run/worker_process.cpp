@@ -42,7 +42,8 @@ pid_t spawn_self(const std::vector<std::string>& arguments, int error_write_end)
   posix_spawn_file_actions_destroy(&files);
   posix_spawnattr_destroy(&attributes);
   if (error != 0) {
-    throw Error(ErrorKind::kOutput, fmt::format("cannot start a process for a user's filter: {}", std::strerror(error)));
+    throw Error(ErrorKind::kOutput,
+                fmt::format("cannot start a process for a user's filter: {}", std::strerror(error)));
   }
   return pid;
 }
@@ -65,9 +66,8 @@ bool read_until(int fd, Clock::time_point deadline, std::string& text) {
 
 WorkerOutcome run_worker(const std::vector<std::string>& arguments, double timeout_s) {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) {
+  if (pipe2(ends, O_CLOEXEC) != 0)
     throw Error(ErrorKind::kOutput, fmt::format("cannot make a pipe for a user's filter: {}", std::strerror(errno)));
-  }
   const auto deadline = Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(timeout_s * 1000.0));
   const pid_t pid = spawn_self(arguments, ends[1]);
   close(ends[1]);

@@ -34,7 +34,8 @@ bool is_closed(const Mesh& mesh) {
       balance[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
     }
   }
-  return !balance.empty() && std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
+  return !balance.empty() &&
+         std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
 }
 
 }  // namespace shadowbench::scene

@@ -72,7 +72,9 @@ struct Slab {
 
 }  // namespace
 
-glm::dvec3 light_direction(double azimuth_deg, double elevation_deg) { return -direction_to(azimuth_deg, elevation_deg); }
+glm::dvec3 light_direction(double azimuth_deg, double elevation_deg) {
+  return -direction_to(azimuth_deg, elevation_deg);
+}
 
 Camera frame_camera(const Scene& scene, double aspect, std::optional<float> ground_y) {
   const Bounds bounds = scene.bounds();

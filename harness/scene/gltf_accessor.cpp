@@ -26,13 +26,11 @@ Span checked_view(const tinygltf::Model& model, int index, const std::string& ow
   const auto fail = [&](const std::string& why) -> Span {
     throw Error(ErrorKind::kInput, fmt::format("{}: {}", owner, why), where);
   };
-  if (index < 0 || static_cast<std::size_t>(index) >= model.bufferViews.size()) {
+  if (index < 0 || static_cast<std::size_t>(index) >= model.bufferViews.size())
     return fail(fmt::format("there is no buffer view {} (of {})", index, model.bufferViews.size()));
-  }
   const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(index)];
-  if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model.buffers.size()) {
+  if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model.buffers.size())
     return fail(fmt::format("buffer view {} names buffer {} (of {})", index, view.buffer, model.buffers.size()));
-  }
   const std::vector<unsigned char>& bytes = model.buffers[static_cast<std::size_t>(view.buffer)].data;
   if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset) {
     return fail(fmt::format("buffer view {} runs past its buffer: offset {} + {} bytes of {}", index, view.byteOffset,
@@ -53,14 +51,11 @@ struct Elements {
 std::size_t component_size(int component_type, const std::string& owner, const std::string& where) {
   switch (component_type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return 1;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
     case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return 2;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      return 4;
+    case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
     default:
       throw Error(ErrorKind::kInput,
                   fmt::format("{} has component type {}, which glTF 2.0 does not know", owner, component_type), where);
@@ -91,13 +86,11 @@ Elements place(Elements layout, Span span, std::size_t offset, const std::string
 
 Elements checked_elements(const tinygltf::Model& model, int index, int components, const std::string& where) {
   const std::string owner = fmt::format("accessor {}", index);
-  if (index < 0 || static_cast<std::size_t>(index) >= model.accessors.size()) {
+  if (index < 0 || static_cast<std::size_t>(index) >= model.accessors.size())
     throw Error(ErrorKind::kInput, fmt::format("there is no {} (of {})", owner, model.accessors.size()), where);
-  }
   const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
-  if (tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)) != components) {
+  if (tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)) != components)
     throw Error(ErrorKind::kInput, fmt::format("{} must have {} component(s) per element", owner, components), where);
-  }
   if (accessor.count > kMostElements) {
     throw Error(ErrorKind::kInput,
                 fmt::format("{} has {} elements; at most {} are read", owner, accessor.count, kMostElements), where);
@@ -106,8 +99,8 @@ Elements checked_elements(const tinygltf::Model& model, int index, int component
   component_size(accessor.componentType, owner, where);
   if (accessor.bufferView < 0 && accessor.count > kMostZeros) {
     throw Error(ErrorKind::kInput,
-                fmt::format("{} has {} elements and no buffer view; at most {} such zeros are read", owner, accessor.count,
-                            kMostZeros),
+                fmt::format("{} has {} elements and no buffer view; at most {} such zeros are read", owner,
+                            accessor.count, kMostZeros),
                 where);
   }
   if (accessor.bufferView < 0) return elements;
@@ -125,33 +118,22 @@ T load(const unsigned char* bytes) {
 
 double load_component(const unsigned char* bytes, int component_type) {
   switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return load<std::int8_t>(bytes);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return load<std::uint8_t>(bytes);
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return load<std::int16_t>(bytes);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return load<std::uint16_t>(bytes);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-      return load<std::uint32_t>(bytes);
-    default:
-      return static_cast<double>(load<float>(bytes));
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return load<std::int8_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return load<std::uint8_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return load<std::int16_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load<std::uint16_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return load<std::uint32_t>(bytes);
+    default: return static_cast<double>(load<float>(bytes));
   }
 }
 
 double largest_value(int component_type) {
   switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return 127.0;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return 255.0;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return 32767.0;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return 65535.0;
-    default:
-      return 1.0;
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return 127.0;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 255.0;
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return 32767.0;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 65535.0;
+    default: return 1.0;
   }
 }
 
@@ -175,9 +157,8 @@ std::vector<double> with_sparse_values(std::vector<double> values, const tinyglt
   const auto& sparse = accessor.sparse;
   const std::string owner = fmt::format("sparse accessor '{}'", accessor.name);
   if (sparse.count < 0 || static_cast<std::size_t>(sparse.count) > base.count || sparse.indices.byteOffset < 0 ||
-      sparse.values.byteOffset < 0) {
+      sparse.values.byteOffset < 0)
     throw Error(ErrorKind::kInput, fmt::format("{} has a count or offset out of range", owner), where);
-  }
   const auto count = static_cast<std::size_t>(sparse.count);
   const Elements slots = place({nullptr, count, 0, sparse.indices.componentType, 1},
                                checked_view(model, sparse.indices.bufferView, owner, where),
@@ -215,9 +196,8 @@ std::vector<float> read_floats(const tinygltf::Model& model, int accessor, int c
   const double scale = source.normalized ? 1.0 / largest_value(source.componentType) : 1.0;
   std::vector<float> floats;
   floats.reserve(values.size());
-  for (const double value : values) {
+  for (const double value : values)
     floats.push_back(static_cast<float>(source.normalized ? std::max(value * scale, -1.0) : value));
-  }
   return floats;
 }
 

@@ -89,9 +89,8 @@ class GltfImporter {
   int add_texture(int index) {
     if (static_cast<std::size_t>(index) >= source_.textures.size()) fail(fmt::format("there is no texture {}", index));
     const int image = source_.textures[static_cast<std::size_t>(index)].source;
-    if (image < 0 || static_cast<std::size_t>(image) >= source_.images.size()) {
+    if (image < 0 || static_cast<std::size_t>(image) >= source_.images.size())
       fail(fmt::format("texture {} has no image that can be read", index));
-    }
     if (const auto known = texture_of_image_.find(image); known != texture_of_image_.end()) return known->second;
     result_.textures.push_back(read_image(image));
     return texture_of_image_[image] = static_cast<int>(result_.textures.size()) - 1;
@@ -101,7 +100,8 @@ class GltfImporter {
     const tinygltf::Image& image = source_.images[static_cast<std::size_t>(index)];
     const std::string fallback_name = image.uri.empty() ? fmt::format("image {}", index) : image.uri;
     const std::string name = image.name.empty() ? fallback_name : image.name;
-    if (image.bufferView >= 0) return decode_texture(read_buffer_view(source_, image.bufferView, where_), name, where_, result_.textures);
+    if (image.bufferView >= 0)
+      return decode_texture(read_buffer_view(source_, image.bufferView, where_), name, where_, result_.textures);
     if (image.image.empty()) fail(fmt::format("the image '{}' is missing or empty", fallback_name));
     return decode_texture(image.image, name, where_, result_.textures);
   }
@@ -120,7 +120,8 @@ class GltfImporter {
   /// Counts what is read and what is placed, since a small file can name the same numbers many times.
   void count_corners(std::size_t corners) {
     corner_count_ += corners;
-    if (corner_count_ > kMostCorners) fail(fmt::format("it has more than {} triangles, as read or as placed", kMostCorners / 3));
+    if (corner_count_ > kMostCorners)
+      fail(fmt::format("it has more than {} triangles, as read or as placed", kMostCorners / 3));
   }
 
   /// The primitives of a mesh, read once however often the mesh is placed.
@@ -129,9 +130,8 @@ class GltfImporter {
     const tinygltf::Mesh& source = source_.meshes[static_cast<std::size_t>(index)];
     const std::string name = source.name.empty() ? fmt::format("mesh {}", index) : source.name;
     std::vector<Mesh> meshes;
-    for (const tinygltf::Primitive& primitive : source.primitives) {
+    for (const tinygltf::Primitive& primitive : source.primitives)
       if (is_drawn(primitive, name)) meshes.push_back(read_primitive(primitive, name));
-    }
     return local_meshes_[index] = std::move(meshes);
   }
 
@@ -154,9 +154,8 @@ class GltfImporter {
     count_corners(mesh.vertices.size());
     mesh.indices = to_triangles(read_corners(primitive, mesh), primitive.mode);
     count_corners(mesh.indices.size());
-    if (mesh.indices.size() % 3 != 0) {
+    if (mesh.indices.size() % 3 != 0)
       fail(fmt::format("'{}' has {} corners, which is no multiple of 3", name, mesh.indices.size()));
-    }
     return primitive.attributes.contains("NORMAL") ? mesh : with_flat_normals(mesh);
   }
 
@@ -222,11 +221,10 @@ class GltfImporter {
     camera.position_ws = glm::vec3(world_from_node[3]);
     camera.forward_ws = glm::vec3(-world_from_node[2]);
     camera.up_ws = glm::vec3(world_from_node[1]);
-    if (source.type == "orthographic") {
+    if (source.type == "orthographic")
       camera.orthographic_height_m = static_cast<float>(2.0 * source.orthographic.ymag);
-    } else {
+    else
       camera.vertical_fov_rad = static_cast<float>(source.perspective.yfov);
-    }
     result_.cameras.push_back(camera);
   }
 
@@ -247,9 +245,8 @@ class GltfImporter {
     }
     Light light;
     light.direction_ws = glm::vec3(-world_from_node[2]);
-    if (source.color.size() == 3) {
+    if (source.color.size() == 3)
       for (int i = 0; i < 3; ++i) light.color[i] = static_cast<float>(source.color[static_cast<std::size_t>(i)]);
-    }
     result_.light = light;
   }
 

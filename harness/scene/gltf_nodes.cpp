@@ -24,9 +24,8 @@ void check_values(const std::vector<double>& values, std::size_t count, const st
     throw Error(ErrorKind::kInput, fmt::format("{} must have {} numbers, but has {}", what, count, values.size()),
                 where);
   }
-  for (const double value : values) {
+  for (const double value : values)
     if (!std::isfinite(value)) throw Error(ErrorKind::kInput, what + " is not finite", where);
-  }
 }
 
 glm::dmat4 rotation_of(const tinygltf::Node& node, const std::string& owner, const std::string& where) {
@@ -59,15 +58,13 @@ std::vector<int> root_nodes(const tinygltf::Model& model) {
   }
   std::vector<bool> is_child(model.nodes.size(), false);
   for (const tinygltf::Node& node : model.nodes) {
-    for (const int child : node.children) {
+    for (const int child : node.children)
       if (child >= 0 && static_cast<std::size_t>(child) < is_child.size())
         is_child[static_cast<std::size_t>(child)] = true;
-    }
   }
   std::vector<int> roots;
-  for (std::size_t i = 0; i < is_child.size(); ++i) {
+  for (std::size_t i = 0; i < is_child.size(); ++i)
     if (!is_child[i]) roots.push_back(static_cast<int>(i));
-  }
   return roots;
 }
 
@@ -78,18 +75,16 @@ std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, const std::str
   // The last one waiting is placed first, so they wait in reverse; the same holds for children.
   const std::vector<int> roots = root_nodes(model);
   for (auto root = roots.rbegin(); root != roots.rend(); ++root) waiting.push_back({*root, glm::dmat4(1.0)});
-  if (waiting.empty() && !model.nodes.empty()) {
+  if (waiting.empty() && !model.nodes.empty())
     throw Error(ErrorKind::kInput, "no node is a root: the scene lists none, or the nodes form a cycle", where);
-  }
   std::vector<bool> seen(model.nodes.size(), false);
   std::vector<PlacedNode> placed;
   while (!waiting.empty()) {
     const PlacedNode parent = waiting.back();
     waiting.pop_back();
     const auto index = static_cast<std::size_t>(parent.node);
-    if (parent.node < 0 || index >= seen.size()) {
+    if (parent.node < 0 || index >= seen.size())
       throw Error(ErrorKind::kInput, fmt::format("there is no node {} (of {})", parent.node, seen.size()), where);
-    }
     if (seen[index]) {
       throw Error(ErrorKind::kInput,
                   fmt::format("{} is reached twice: the nodes form a cycle, or it has two parents",
@@ -99,9 +94,8 @@ std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, const std::str
     seen[index] = true;
     placed.push_back({parent.node, parent.world_from_node * local_transform(model, parent.node, where)});
     const std::vector<int>& children = model.nodes[index].children;
-    for (auto child = children.rbegin(); child != children.rend(); ++child) {
+    for (auto child = children.rbegin(); child != children.rend(); ++child)
       waiting.push_back({*child, placed.back().world_from_node});
-    }
   }
   return placed;
 }

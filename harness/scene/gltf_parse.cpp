@@ -137,12 +137,10 @@ tinygltf::Model parse_gltf(const fs::path& file) {
   constexpr int kDeepestJson = 200;
   const std::string where = file.string();
   const std::vector<unsigned char> bytes = read_file_bytes(file);
-  if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) {
+  if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
     throw Error(ErrorKind::kInput, "the file is larger than 4 GiB", where);
-  }
-  if (nesting_depth(json_of(bytes)) > kDeepestJson) {
+  if (nesting_depth(json_of(bytes)) > kDeepestJson)
     throw Error(ErrorKind::kInput, fmt::format("its JSON is nested more than {} deep", kDeepestJson), where);
-  }
   FolderGuard guard{fs::absolute(file).lexically_normal().parent_path().string(), {}};
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(&keep_encoded, nullptr);

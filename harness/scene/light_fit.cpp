@@ -40,9 +40,8 @@ glm::dvec3 center_of(const Bounds& bounds) { return 0.5 * (glm::dvec3(bounds.min
 
 template <typename Visit>
 void for_each_position(const Scene& scene, const Visit& visit) {
-  for (const Mesh& mesh : scene.meshes) {
+  for (const Mesh& mesh : scene.meshes)
     for (const Vertex& vertex : mesh.vertices) visit(glm::dvec3(vertex.position_ws));
-  }
 }
 
 /// The scene's extent around `center`, along the light's axes.
@@ -95,7 +94,8 @@ void add_casters(Box& box, const Scene& scene, const glm::dmat3& rotation, const
     if (!mesh.casts_shadow) continue;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
       Box triangle;
-      for (std::size_t k = 0; k < 3; ++k) add(triangle, rotation * (glm::dvec3(mesh.vertices[mesh.indices[i + k]].position_ws) - center));
+      for (std::size_t k = 0; k < 3; ++k)
+        add(triangle, rotation * (glm::dvec3(mesh.vertices[mesh.indices[i + k]].position_ws) - center));
       if (overlap(triangle, wide)) box.max.z = std::max(box.max.z, triangle.max.z);
     }
   }
@@ -107,10 +107,12 @@ double square_side(const Box& box) {
   return std::max({extent.x, extent.y, 1e-3 * extent.z});
 }
 
-Box view_box(const Scene& scene, const FitRequest& request, const glm::dmat3& rotation, const glm::dvec3& center, double used_texels) {
+Box view_box(const Scene& scene, const FitRequest& request, const glm::dmat3& rotation, const glm::dvec3& center,
+             double used_texels) {
   assert(request.camera);
   Box box;
-  for (const glm::dvec3& p : list_visible_corners(scene, *request.camera, request.aspect)) add(box, rotation * (p - center));
+  for (const glm::dvec3& p : list_visible_corners(scene, *request.camera, request.aspect))
+    add(box, rotation * (p - center));
   if (box.min.x > box.max.x) return tight_box(scene, rotation, center);
   // The square map may reach beyond the box on its shorter side, snapping included.
   const double side = square_side(box);
@@ -119,14 +121,12 @@ Box view_box(const Scene& scene, const FitRequest& request, const glm::dmat3& ro
   return box;
 }
 
-Box choose_box(const Scene& scene, const FitRequest& request, const glm::dmat3& rotation, const glm::dvec3& center, double used_texels) {
+Box choose_box(const Scene& scene, const FitRequest& request, const glm::dmat3& rotation, const glm::dvec3& center,
+               double used_texels) {
   switch (request.mode) {
-    case FitMode::kSphere:
-      return sphere_box(scene, center);
-    case FitMode::kView:
-      return view_box(scene, request, rotation, center, used_texels);
-    case FitMode::kTight:
-      break;
+    case FitMode::kSphere: return sphere_box(scene, center);
+    case FitMode::kView: return view_box(scene, request, rotation, center, used_texels);
+    case FitMode::kTight: break;
   }
   return tight_box(scene, rotation, center);
 }
@@ -138,7 +138,9 @@ double round_up_texel(double texel_ws) {
 
 /// Moves a place in the light's space to a whole number of texels from the world's origin.
 glm::dvec3 snap_to_texels(const glm::dvec3& place, const glm::dvec3& world_origin, double texel_ws) {
-  const auto snapped = [&](int axis) { return std::round((place[axis] - world_origin[axis]) / texel_ws) * texel_ws + world_origin[axis]; };
+  const auto snapped = [&](int axis) {
+    return std::round((place[axis] - world_origin[axis]) / texel_ws) * texel_ws + world_origin[axis];
+  };
   return {snapped(0), snapped(1), place.z};
 }
 
@@ -179,7 +181,8 @@ std::string_view name_of(FitMode mode) { return kFitNames[static_cast<std::size_
 FitMode parse_fit_mode(std::string_view name) {
   const auto found = std::find(kFitNames.begin(), kFitNames.end(), name);
   if (found != kFitNames.end()) return static_cast<FitMode>(found - kFitNames.begin());
-  throw Error(ErrorKind::kUsage, fmt::format("--fit: unknown fit '{}'; there are {}", name, fmt::join(kFitNames, ", ")));
+  throw Error(ErrorKind::kUsage,
+              fmt::format("--fit: unknown fit '{}'; there are {}", name, fmt::join(kFitNames, ", ")));
 }
 
 LightFrustum fit_light(const Scene& scene, FitMode mode, int map_size, double pad_texels) {

@@ -22,9 +22,9 @@ FitMode parse_fit_mode(std::string_view name);
 /// What a light's frustum is fitted to, and how.
 struct FitRequest {
   FitMode mode = FitMode::kTight;
-  int map_size = 1024;        ///< texels along a side
-  double pad_texels = 0.0;    ///< stay free on every side
-  bool snap = false;          ///< keep the texel grid fixed in the world while the camera or the scene's extent moves
+  int map_size = 1024;      ///< texels along a side
+  double pad_texels = 0.0;  ///< stay free on every side
+  bool snap = false;        ///< keep the texel grid fixed in the world while the camera or the scene's extent moves
   const Camera* camera = nullptr;  ///< FitMode::kView only
   double aspect = 1.0;             ///< of its picture, width / height
   const Light* light = nullptr;    ///< in place of the scene's own
@@ -54,12 +54,12 @@ struct LightFrustum {
 LightFrustum fit_light(const Scene& scene, FitMode mode, int map_size, double pad_texels);
 
 /// Fits as the other; FitMode::kView encloses every point that the camera sees, in front of others or behind them. Its
-/// depth runs from the caster nearest to the light that can reach the map to the farthest point in view: what lies beyond
-/// throws no shadow on anything in view. A camera that sees nothing gets the tight fit.
+/// depth runs from the caster nearest to the light that can reach the map to the farthest point in view: what lies
+/// beyond throws no shadow on anything in view. A camera that sees nothing gets the tight fit.
 ///
 /// With `snap`, the map's origin lies a whole number of texels from the world's origin, as the light sees it, and the
-/// texel's size is rounded up to a power of 2^(1/8), at most 9 % larger: a camera that moves by less than a texel leaves
-/// the grid where it was, and shadows' edges do not crawl. One texel of the map's side is spent on that.
+/// texel's size is rounded up to a power of 2^(1/8), at most 9 % larger: a camera that moves by less than a texel
+/// leaves the grid where it was, and shadows' edges do not crawl. One texel of the map's side is spent on that.
 /// Requires a camera for FitMode::kView.
 LightFrustum fit_light(const Scene& scene, const FitRequest& request);
 

@@ -10,7 +10,8 @@ std::vector<Light> make_light_ring(const Light& first, int count) {
   std::vector<Light> lights(static_cast<std::size_t>(count), first);
   for (int i = 1; i < count; ++i) {
     const double turn_rad = glm::radians(360.0 * i / count);
-    lights[static_cast<std::size_t>(i)].direction_ws = glm::vec3(glm::rotateY(glm::dvec3(first.direction_ws), turn_rad));
+    lights[static_cast<std::size_t>(i)].direction_ws =
+        glm::vec3(glm::rotateY(glm::dvec3(first.direction_ws), turn_rad));
   }
   return lights;
 }

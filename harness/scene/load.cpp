@@ -29,9 +29,8 @@ std::vector<fs::path> scene_files(const fs::path& folder) {
                 folder.string());
   }
   std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : entries) {
+  for (const fs::directory_entry& entry : entries)
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
-  }
   std::ranges::sort(files);
   return files;
 }
@@ -93,9 +92,8 @@ Scene load_model(const fs::path& file, const LoadOptions& options) {
 
 Scene load_kind(const fs::path& file, const LoadOptions& options) {
   if (is_model_file(file)) return load_model(file, options);
-  if (file.extension() != ".toml") {
+  if (file.extension() != ".toml")
     throw Error(ErrorKind::kUsage, "this kind of file is no scene: use .toml, .gltf, .glb or .obj", file.string());
-  }
   Scene scene = load_scene(file);
   if (options.ground)
     scene.warnings.push_back("a floor is added to bare models only; this scene file has its own objects");
@@ -106,7 +104,9 @@ Scene load_file(const fs::path& file, const LoadOptions& options) {
   try {
     return load_kind(file, options);
   } catch (const std::bad_alloc&) {
-    throw Error(ErrorKind::kInput, "memory ran out while this scene was loaded; raise the limit (ulimit -v), or use a model with fewer vertices and smaller textures",
+    throw Error(ErrorKind::kInput,
+                "memory ran out while this scene was loaded; raise the limit (ulimit -v), or use a model with fewer "
+                "vertices and smaller textures",
                 file.string());
   }
 }

@@ -29,7 +29,8 @@ std::vector<SceneInfo> list_scenes(const std::filesystem::path& folder);
 /// Throws kInput where the folder or a title cannot be read; a folder that is not there has no scenes.
 std::vector<SceneInfo> list_teaching_scenes(const std::filesystem::path& folder);
 
-/// Loads a built-in scene, or a teaching scene, by its name, or a .toml, .gltf, .glb or .obj file by its path, and validates it.
+/// Loads a built-in scene, or a teaching scene, by its name, or a .toml, .gltf, .glb or .obj file by its path, and
+/// validates it.
 ///
 /// A bare model uses its own cameras and its first directional light; what it lacks is completed by frame_camera and
 /// make_default_sun. `ground` adds a floor in a material of its own; scene files have their own objects, and ignore it

@@ -97,9 +97,8 @@ Mesh with_smooth_normals(const Mesh& mesh, double crease_deg) {
   Mesh smooth = with_flat_normals(mesh);
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
     glm::dvec3 sum(0.0);
-    for (const std::size_t neighbour : faces_at[position_of(i)]) {
+    for (const std::size_t neighbour : faces_at[position_of(i)])
       if (glm::dot(faces[neighbour].normal, faces[i / 3].normal) >= least_cosine) sum += faces[neighbour].area_normal;
-    }
     if (glm::length(sum) > 0.0) smooth.vertices[i].normal_ws = glm::vec3(glm::normalize(sum));
   }
   return smooth;

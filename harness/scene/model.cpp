@@ -45,14 +45,19 @@ void require_usable_size(const std::vector<unsigned char>& bytes, const std::str
   if (!size) throw Error(ErrorKind::kInput, fmt::format("image '{}' cannot be decoded: use PNG or JPEG", name), where);
   const bool short_enough = std::max(size->width, size->height) <= kLongestSide;
   if (!short_enough || size->width * size->height > kMostPixels) {
-    throw Error(ErrorKind::kInput, fmt::format("image '{}' says that it has {} x {} pixels; at most {} a side and {} in all are read", name,
-                                               size->width, size->height, kLongestSide, kMostPixels), where);
+    throw Error(ErrorKind::kInput,
+                fmt::format("image '{}' says that it has {} x {} pixels; at most {} a side and {} in all are read",
+                            name, size->width, size->height, kLongestSide, kMostPixels),
+                where);
   }
   std::uint64_t pixels = size->width * size->height;
-  for (const Texture& other : others) pixels += static_cast<std::uint64_t>(other.width) * static_cast<std::uint64_t>(other.height);
+  for (const Texture& other : others)
+    pixels += static_cast<std::uint64_t>(other.width) * static_cast<std::uint64_t>(other.height);
   if (pixels <= kMostPixelsOfAll) return;
-  throw Error(ErrorKind::kInput, fmt::format("with image '{}' its textures have {} pixels; at most {} are read: use smaller ones", name, pixels,
-                                             kMostPixelsOfAll), where);
+  throw Error(ErrorKind::kInput,
+              fmt::format("with image '{}' its textures have {} pixels; at most {} are read: use smaller ones", name,
+                          pixels, kMostPixelsOfAll),
+              where);
 }
 
 }  // namespace
@@ -88,18 +93,16 @@ Scene add_model(Scene scene, ImportedModel model) {
 
 Texture decode_texture(const std::vector<unsigned char>& bytes, const std::string& name, const std::string& where,
                        const std::vector<Texture>& others) {
-  if (bytes.empty() || bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+  if (bytes.empty() || bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     throw Error(ErrorKind::kInput, fmt::format("image '{}' has no usable size: {} bytes", name, bytes.size()), where);
-  }
   require_usable_size(bytes, name, where, others);
   tinygltf::Image image;
   std::string failure;
   std::string warning;
   const bool decoded = tinygltf::LoadImageData(&image, 0, &failure, &warning, 0, 0, bytes.data(),
                                                static_cast<int>(bytes.size()), nullptr);
-  if (!decoded || image.component != 4) {
+  if (!decoded || image.component != 4)
     throw Error(ErrorKind::kInput, fmt::format("image '{}' cannot be decoded: use PNG or JPEG", name), where);
-  }
   return {name, image.width, image.height, to_8_bits(image)};
 }
 

@@ -29,9 +29,9 @@ ImportedModel import_model(const std::filesystem::path& file);
 Scene add_model(Scene scene, ImportedModel model);
 
 /// Decodes a PNG, JPEG, BMP, TGA or GIF picture to 8 bits and four channels.
-/// Its header is read first: no side may be longer than 16384 pixels, no picture larger than 2^26, and all of a model, of
-/// which `others` are decoded, no larger than 2^28 (1 GiB).
-/// Throws kInput, naming `name` and `where`, for anything else.
+/// Its header is read first: no side may be longer than 16384 pixels, no picture larger than 2^26, and all of a model,
+/// of which `others` are decoded, no larger than 2^28 (1 GiB). Throws kInput, naming `name` and `where`, for anything
+/// else.
 Texture decode_texture(const std::vector<unsigned char>& bytes, const std::string& name, const std::string& where,
                        const std::vector<Texture>& others);
 

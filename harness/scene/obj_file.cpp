@@ -109,9 +109,8 @@ class ObjImporter {
     result_.materials.push_back({.name = "default"});
     for (const tinyobj::shape_t& shape : source_.shapes) add_shape(shape);
     std::istringstream warnings(source_.warning);
-    for (std::string line; std::getline(warnings, line);) {
+    for (std::string line; std::getline(warnings, line);)
       if (!line.empty()) result_.warnings.push_back(line);
-    }
     return std::move(result_);
   }
 

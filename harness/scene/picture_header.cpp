@@ -36,10 +36,10 @@ std::uint64_t magnitude(std::uint64_t bits) { return bits > 0x7fffffffU ? 0x1000
 
 std::optional<PictureSize> bmp_size(Bytes bytes) {
   if (bytes.size() < 26) return std::nullopt;
-  if (from_little_endian(bytes.subspan(14, 4)) == 12) {
+  if (from_little_endian(bytes.subspan(14, 4)) == 12)
     return PictureSize{from_little_endian(bytes.subspan(18, 2)), from_little_endian(bytes.subspan(20, 2))};
-  }
-  return PictureSize{magnitude(from_little_endian(bytes.subspan(18, 4))), magnitude(from_little_endian(bytes.subspan(22, 4)))};
+  return PictureSize{magnitude(from_little_endian(bytes.subspan(18, 4))),
+                     magnitude(from_little_endian(bytes.subspan(22, 4)))};
 }
 
 std::optional<PictureSize> gif_size(Bytes bytes) {
@@ -63,9 +63,8 @@ std::optional<PictureSize> jpeg_size(Bytes bytes) {
       continue;
     }
     const unsigned char marker = bytes[at + 1];
-    if (marker >= 0xc0 && marker <= 0xc2) {
+    if (marker >= 0xc0 && marker <= 0xc2)
       return PictureSize{from_big_endian(bytes.subspan(at + 7, 2)), from_big_endian(bytes.subspan(at + 5, 2))};
-    }
     at += 2 + from_big_endian(bytes.subspan(at + 2, 2));
   }
   return std::nullopt;

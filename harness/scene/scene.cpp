@@ -10,9 +10,8 @@ void Bounds::add(const glm::vec3& p) {
 
 Bounds Scene::bounds() const {
   Bounds box;
-  for (const Mesh& mesh : meshes) {
+  for (const Mesh& mesh : meshes)
     for (const Vertex& vertex : mesh.vertices) box.add(vertex.position_ws);
-  }
   return box;
 }
 

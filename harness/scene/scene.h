@@ -74,7 +74,7 @@ struct Light {
   glm::vec3 direction_ws{0.0f, -1.0f, 0.0f};  ///< the way the light travels, unit length
   glm::vec3 color{1.0f};                      ///< linear
   float intensity = 1.0f;
-  float angular_diameter_deg = 0.53f;  ///< seen from the scene; 0: a point at infinity
+  float angular_diameter_deg = 0.53f;   ///< seen from the scene; 0: a point at infinity
   std::optional<MapWindow> map_window;  ///< none: the map is fitted to the scene
 };
 

@@ -43,9 +43,8 @@ class SceneBuilder {
   Light read_light() const {
     const std::optional<TomlTable> table = root_.table("light");
     if (!table) throw root_.error("light", "the scene has no [light]");
-    table->require_known_keys(
-        {"type", "direction", "azimuth_deg", "elevation_deg", "color", "intensity", "angular_diameter_deg",
-         "map_center", "map_width", "map_near", "map_far"});
+    table->require_known_keys({"type", "direction", "azimuth_deg", "elevation_deg", "color", "intensity",
+                               "angular_diameter_deg", "map_center", "map_width", "map_near", "map_far"});
     table->choice("type", {"directional"}, "directional");
     Light light;
     light.direction_ws = glm::vec3(read_direction(*table));
@@ -58,9 +57,8 @@ class SceneBuilder {
 
   static std::optional<MapWindow> read_map_window(const TomlTable& table) {
     if (!table.has("map_width")) {
-      for (const char* key : {"map_center", "map_near", "map_far"}) {
+      for (const char* key : {"map_center", "map_near", "map_far"})
         if (table.has(key)) throw table.error(key, fmt::format("'{}' in [light] needs 'map_width'", key));
-      }
       return std::nullopt;
     }
     MapWindow window;
@@ -95,10 +93,9 @@ class SceneBuilder {
     table.require_known_keys({"name", "position", "target", "up", "vertical_fov_deg"});
     Camera camera;
     camera.name = table.string("name", camera.name);
-    for (const Camera& other : scene_.cameras) {
+    for (const Camera& other : scene_.cameras)
       if (other.name == camera.name)
         throw table.error("name", fmt::format("two cameras have the name '{}'", camera.name));
-    }
     const glm::dvec3 position = table.vec3("position", kAnyNumber);
     const glm::dvec3 ahead = table.vec3("target", kAnyNumber) - position;
     if (glm::length(ahead) == 0.0) throw table.error("target", "the camera's target is its position");
@@ -149,8 +146,9 @@ class SceneBuilder {
     Mesh mesh = make_shape(table);
     corner_count_ += mesh.indices.size();
     if (corner_count_ <= kMostShapeCorners) return mesh;
-    throw table.error("shape", fmt::format("with {} the scene's shapes have more than {} triangles; lower 'cells' or 'segments'", table.title(),
-                                           kMostShapeCorners / 3));
+    throw table.error("shape",
+                      fmt::format("with {} the scene's shapes have more than {} triangles; lower 'cells' or 'segments'",
+                                  table.title(), kMostShapeCorners / 3));
   }
 
   ImportedModel read_model_object(const TomlTable& table) const {
@@ -164,9 +162,8 @@ class SceneBuilder {
   ImportedModel read_model(const TomlTable& table, const std::string& key) const {
     const std::filesystem::path file = file_.parent_path() / table.string(key);
     std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) {
+    if (!std::filesystem::exists(file, ignored))
       throw table.error(key, fmt::format("'{}' in {}: there is no file {}", key, table.title(), file.string()));
-    }
     return import_model(file);
   }
 
@@ -174,9 +171,8 @@ class SceneBuilder {
   int material_of(const TomlTable& table) {
     if (!table.has("material")) return default_material();
     const std::string name = table.string("material");
-    for (std::size_t i = 0; i < named_materials_.size(); ++i) {
+    for (std::size_t i = 0; i < named_materials_.size(); ++i)
       if (named_materials_[i] == name) return static_cast<int>(i);
-    }
     throw table.error("material", fmt::format("{} has the unknown material '{}'{}", table.title(), name,
                                               did_you_mean(name, named_materials_)));
   }

@@ -28,8 +28,9 @@ void require_few_corners(Bars bars, const TomlTable& object) {
   const int count = std::exchange(bars.count, 1);
   const std::size_t corners = make_bars(bars).indices.size() * static_cast<std::size_t>(count);
   if (corners <= kMostShapeCorners) return;
-  throw object.error("count", fmt::format("the {} bars in {} would have {} triangles; shapes may have {}: lower 'count' or 'cells'", count,
-                                          object.title(), corners / 3, kMostShapeCorners / 3));
+  throw object.error(
+      "count", fmt::format("the {} bars in {} would have {} triangles; shapes may have {}: lower 'count' or 'cells'",
+                           count, object.title(), corners / 3, kMostShapeCorners / 3));
 }
 
 Mesh make_bars_of(const TomlTable& object) {
@@ -89,8 +90,8 @@ glm::dvec3 read_scale(const TomlTable& object) {
 }  // namespace
 
 const std::vector<std::string>& common_object_keys() {
-  static const std::vector<std::string> keys{"shape",  "name",         "material", "casts_shadow", "may_cull_front",
-                                             "center", "rotation_deg", "scale"};
+  static const std::vector<std::string> keys{"shape",          "name",   "material",     "casts_shadow",
+                                             "may_cull_front", "center", "rotation_deg", "scale"};
   return keys;
 }
 

@@ -30,8 +30,8 @@ std::string text_of_scalar(const toml::node& node) {
   return all.size() <= kMostCharacters ? all : all.substr(0, kMostCharacters) + "...";
 }
 
-/// What a message says that a value is. Lists are put together here: toml++ breaks long ones into lines, and for inf in a
-/// list it computes an undefined width.
+/// What a message says that a value is. Lists are put together here: toml++ breaks long ones into lines, and for inf in
+/// a list it computes an undefined width.
 std::string text_of(const toml::node& node) {
   constexpr std::size_t kMostElements = 6;
   if (node.is_table()) return "a table";
@@ -51,7 +51,8 @@ toml::table parse_toml_file(const std::filesystem::path& file) {
   const std::vector<unsigned char> bytes = read_file_bytes(file);
   const std::string text(bytes.begin(), bytes.end());
   if (const int line = find_too_deep_key(text); line > 0) {
-    throw Error(ErrorKind::kInput, fmt::format("a key has more than {} dots", kMostDots), fmt::format("{}:{}", file.string(), line));
+    throw Error(ErrorKind::kInput, fmt::format("a key has more than {} dots", kMostDots),
+                fmt::format("{}:{}", file.string(), line));
   }
   try {
     return toml::parse(text, file.string());
@@ -69,7 +70,8 @@ void TomlTable::require_known_keys(const std::vector<std::string>& known) const 
   for (const auto& [key, node] : *table_) {
     const std::string name(key.str());
     if (std::ranges::find(known, name) != known.end()) continue;
-    throw Error(ErrorKind::kInput, fmt::format("unknown key '{}' in {}{}", name, title_, did_you_mean_or_known(name, known)),
+    throw Error(ErrorKind::kInput,
+                fmt::format("unknown key '{}' in {}{}", name, title_, did_you_mean_or_known(name, known)),
                 fmt::format("{}:{}", file_, key.source().begin.line));
   }
 }
@@ -141,9 +143,8 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
   if (node->is_table()) return {*table(key)};
   if (!node->is_array_of_tables()) fail_type(key, *node, fmt::format("tables, [[{}]]", key));
   std::vector<TomlTable> all;
-  for (const toml::node& element : *node->as_array()) {
+  for (const toml::node& element : *node->as_array())
     all.emplace_back(*element.as_table(), fmt::format("[[{}]] number {}", key, all.size() + 1), file_);
-  }
   return all;
 }
 

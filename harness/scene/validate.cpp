@@ -33,27 +33,24 @@ void check_vertices(const Mesh& mesh, const std::string& where) {
     };
     if (!is_finite(vertex.position_ws)) complain("not finite position", vertex.position_ws);
     if (!is_finite(vertex.normal_ws)) complain("not finite normal", vertex.normal_ws);
-    if (!std::isfinite(vertex.uv.x) || !std::isfinite(vertex.uv.y)) {
+    if (!std::isfinite(vertex.uv.x) || !std::isfinite(vertex.uv.y))
       complain("not finite texture coordinate", glm::vec3(vertex.uv, 0.0f));
-    }
     const glm::vec3 size = glm::abs(vertex.position_ws);
     if (std::max({size.x, size.y, size.z}) > kFarthest_m) complain("too distant position", vertex.position_ws);
   }
 }
 
 void check_indices(const Mesh& mesh, const Scene& scene, const std::string& where) {
-  if (mesh.indices.size() % 3 != 0) {
+  if (mesh.indices.size() % 3 != 0)
     fail(fmt::format("mesh '{}' has {} indices, which is no multiple of 3", mesh.name, mesh.indices.size()), where);
-  }
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
     if (mesh.indices[i] < mesh.vertices.size()) continue;
     fail(fmt::format("index {} of mesh '{}' is {}, but there are {} vertices", i, mesh.name, mesh.indices[i],
                      mesh.vertices.size()),
          where);
   }
-  if (mesh.material < 0 || static_cast<std::size_t>(mesh.material) >= scene.materials.size()) {
+  if (mesh.material < 0 || static_cast<std::size_t>(mesh.material) >= scene.materials.size())
     fail(fmt::format("mesh '{}' has material {} of {}", mesh.name, mesh.material, scene.materials.size()), where);
-  }
 }
 
 /// Zero but for the rounding of a cross product of its edges.
@@ -98,9 +95,7 @@ Mesh with_unit_normals(Mesh mesh) {
 glm::vec3 unit_direction(const glm::vec3& v, const std::string& owner, const std::string& where) {
   const glm::dvec3 direction(v);
   const double length = glm::length(direction);
-  if (!std::isfinite(length) || !(length > 0.0)) {
-    fail(fmt::format("{} has no direction: {}", owner, text_of(v)), where);
-  }
+  if (!std::isfinite(length) || !(length > 0.0)) fail(fmt::format("{} has no direction: {}", owner, text_of(v)), where);
   return glm::vec3(direction / length);
 }
 
@@ -129,12 +124,10 @@ Camera checked_camera(Camera camera, const std::string& where) {
   camera.up_ws = usable_up(camera.up_ws, camera.forward_ws);
   const bool orthographic = camera.orthographic_height_m != 0.0f;
   const float fov = camera.vertical_fov_rad;
-  if (orthographic && !(std::isfinite(camera.orthographic_height_m) && camera.orthographic_height_m > 0.0f)) {
+  if (orthographic && !(std::isfinite(camera.orthographic_height_m) && camera.orthographic_height_m > 0.0f))
     fail(fmt::format("{} sees a height of {} m", owner, camera.orthographic_height_m), where);
-  }
-  if (!orthographic && !(fov > 0.0f && fov < std::numbers::pi_v<float>)) {
+  if (!orthographic && !(fov > 0.0f && fov < std::numbers::pi_v<float>))
     fail(fmt::format("{} has a vertical field of view of {} rad; it must lie between 0 and pi", owner, fov), where);
-  }
   return camera;
 }
 
@@ -143,9 +136,8 @@ Light checked_light(Light light, const std::string& where) {
   const bool shines = is_finite(light.color) && glm::all(glm::greaterThanEqual(light.color, glm::vec3(0.0f))) &&
                       std::isfinite(light.intensity) && light.intensity >= 0.0f;
   if (!shines) fail(fmt::format("the light has colour {}, intensity {}", text_of(light.color), light.intensity), where);
-  if (!(light.angular_diameter_deg >= 0.0f && light.angular_diameter_deg < 180.0f)) {
+  if (!(light.angular_diameter_deg >= 0.0f && light.angular_diameter_deg < 180.0f))
     fail(fmt::format("the light's angular diameter is {} degrees", light.angular_diameter_deg), where);
-  }
   return light;
 }
 

@@ -19,7 +19,9 @@ std::vector<HalfSpace> bound_view(const Camera& camera, double aspect) {
   const double half_height = 0.5 * static_cast<double>(camera.orthographic_height_m);
   const double tangent = std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad));
   std::vector<HalfSpace> bounds;
-  const auto add = [&](const glm::dvec3& normal, double offset) { bounds.push_back({normal, offset - glm::dot(normal, eye)}); };
+  const auto add = [&](const glm::dvec3& normal, double offset) {
+    bounds.push_back({normal, offset - glm::dot(normal, eye)});
+  };
   for (const double side : {-1.0, 1.0}) {
     add(side * right + (half_height > 0.0 ? 0.0 : tangent * aspect) * forward, half_height * aspect);
     add(side * up + (half_height > 0.0 ? 0.0 : tangent) * forward, half_height);
@@ -50,9 +52,8 @@ std::vector<glm::dvec3> list_visible_corners(const Scene& scene, const Camera& c
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
       Polygon polygon;
       for (std::size_t k = 0; k < 3; ++k) polygon.emplace_back(mesh.vertices[mesh.indices[i + k]].position_ws);
-      for (const HalfSpace& bound : bounds) {
+      for (const HalfSpace& bound : bounds)
         if (!polygon.empty()) polygon = cut(polygon, bound);
-      }
       corners.insert(corners.end(), polygon.begin(), polygon.end());
     }
   }

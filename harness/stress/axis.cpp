@@ -27,26 +27,27 @@ const Axis& find_axis(const std::string& id, const char* option) {
 double parse_end(const std::string& text, const std::string& range) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
     fail(fmt::format("--range: '{}' of '{}' must be a finite number, as in --range esm-exponent=10,200", text, range));
-  }
   return value;
 }
 
 Range parse_ends(const std::string& ends, const std::string& range) {
   const std::size_t comma = ends.find(',');
-  if (comma == std::string::npos) fail(fmt::format("--range: '{}' must be AXIS=LO,HI, as in --range esm-exponent=10,200", range));
+  if (comma == std::string::npos)
+    fail(fmt::format("--range: '{}' must be AXIS=LO,HI, as in --range esm-exponent=10,200", range));
   return {parse_end(ends.substr(0, comma), range), parse_end(ends.substr(comma + 1), range)};
 }
 
 void require_usable(Range range, const Axis& axis, const std::string& text) {
   if (range.low == range.high) fail(fmt::format("--range: '{}' is empty: the ends must differ", text));
-  if (range.low > range.high) fail(fmt::format("--range: '{}' is reversed: write {}={},{}", text, axis.id, range.high, range.low));
+  if (range.low > range.high)
+    fail(fmt::format("--range: '{}' is reversed: write {}={},{}", text, axis.id, range.high, range.low));
   const bool whole = range.low == std::floor(range.low) && range.high == std::floor(range.high);
   if (axis.whole && !whole) fail(fmt::format("--range: '{}': the {} takes whole numbers", text, axis.quantity));
   if (range.low >= axis.limits.low && range.high <= axis.limits.high) return;
-  fail(fmt::format("--range: '{}' reaches beyond what the axis can do: the {} lies within {:g} .. {:g}", text, axis.quantity, axis.limits.low,
-                   axis.limits.high));
+  fail(fmt::format("--range: '{}' reaches beyond what the axis can do: the {} lies within {:g} .. {:g}", text,
+                   axis.quantity, axis.limits.low, axis.limits.high));
 }
 
 }  // namespace
@@ -84,7 +85,8 @@ std::vector<Axis> choose_axes(const std::string& text) {
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const Axis& axis = find_axis(text.substr(begin, end - begin), "--axes");
-    if (std::ranges::find(axes, axis.id, &Axis::id) != axes.end()) fail(fmt::format("--axes names '{}' twice; name it once", axis.id));
+    if (std::ranges::find(axes, axis.id, &Axis::id) != axes.end())
+      fail(fmt::format("--axes names '{}' twice; name it once", axis.id));
     axes.push_back(axis);
     begin = end + 1;
   }
@@ -93,12 +95,14 @@ std::vector<Axis> choose_axes(const std::string& text) {
 
 void apply_range(std::vector<Axis>& axes, const std::string& text) {
   const std::size_t equals = text.find('=');
-  if (equals == std::string::npos) fail(fmt::format("--range: '{}' must be AXIS=LO,HI, as in --range esm-exponent=10,200", text));
+  if (equals == std::string::npos)
+    fail(fmt::format("--range: '{}' must be AXIS=LO,HI, as in --range esm-exponent=10,200", text));
   const Axis& known = find_axis(text.substr(0, equals), "--range");
   const Range range = parse_ends(text.substr(equals + 1), text);
   require_usable(range, known, text);
   const auto chosen = std::ranges::find(axes, known.id, &Axis::id);
-  if (chosen == axes.end()) fail(fmt::format("--range: the axis '{}' is not among --axes; name it there too", known.id));
+  if (chosen == axes.end())
+    fail(fmt::format("--range: the axis '{}' is not among --axes; name it there too", known.id));
   chosen->range = range;
 }
 

@@ -31,8 +31,8 @@ enum class Level {
 struct Theory {
   std::optional<double> onset;  ///< value of the axis; empty: theory says that there is none
   TheoryKind kind = TheoryKind::kOverflow;
-  std::string formula;          ///< with its numbers: "ln(65504) / 1 = 11.09"
-  std::string source;           ///< author, year, title, equation; or "derived"
+  std::string formula;                  ///< with its numbers: "ln(65504) / 1 = 11.09"
+  std::string source;                   ///< author, year, title, equation; or "derived"
   Verdict predicts = Verdict::kBroken;  ///< the verdict that the case reaches at `onset`
 };
 
@@ -50,7 +50,8 @@ struct Case {
   Level level = Level::kGl;
   filters::ParamValues params;
   std::vector<Theory> theories;  ///< none: nothing is known
-  /// Tells why a theory is not met, from what was measured; empty where the reason that it knows does not apply. May be null.
+  /// Tells why a theory is not met, from what was measured; empty where the reason that it knows does not apply. May be
+  /// null.
   std::function<std::string(const Disagreement&)> explain;
   /// Says what else a record shows, and why, where its numbers bear that out; printed with the axis. May be null.
   std::function<std::vector<std::string>(const report::StressCase&)> remark;
@@ -60,29 +61,30 @@ struct Case {
   std::string not_available;
 };
 
-/// One way to drive filters to where their numbers break. Each lives in axes/<id>.cpp as `Axis make_<id>_axis()`, '-' in the id
-/// written '_'; CMake finds it there.
+/// One way to drive filters to where their numbers break. Each lives in axes/<id>.cpp as `Axis make_<id>_axis()`, '-'
+/// in the id written '_'; CMake finds it there.
 struct Axis {
-  std::string id;        ///< file stem; given by axis_table()
+  std::string id;  ///< file stem; given by axis_table()
   std::string title;
   std::string quantity;  ///< "exponent c"
   std::string unit;      ///< empty: a pure number
   Scale scale = Scale::kLog;
-  Range range;           ///< by default
-  Range limits;          ///< the widest that --range may ask for
+  Range range;   ///< by default
+  Range limits;  ///< the widest that --range may ask for
   int coarse_samples = 25;
-  bool whole = false;    ///< values are whole numbers
+  bool whole = false;  ///< values are whole numbers
   SearchFrom from = SearchFrom::kLow;
 
   std::string measured;       ///< what observations measure: "largest error of visibility"
   std::string measured_unit;  ///< empty: a pure number
   Scale measured_scale = Scale::kLog;
-  double bound = 0.0;         ///< `degraded` is said where what is measured is over it
-  std::string broken_when;    ///< in words: "infinities in the map; NaN, all lit or all dark"
+  double bound = 0.0;       ///< `degraded` is said where what is measured is over it
+  std::string broken_when;  ///< in words: "infinities in the map; NaN, all lit or all dark"
 
   DrivenParam driven_param = nullptr;  ///< for axes that drive a parameter of filters; else null
   std::function<std::vector<Case>(const StressContext&)> make_cases;
-  std::function<std::vector<Exhibit>(const StressContext&)> make_exhibits;  ///< tables and pictures of its own; may be null
+  std::function<std::vector<Exhibit>(const StressContext&)>
+      make_exhibits;  ///< tables and pictures of its own; may be null
 };
 
 /// Makes a case of a filter, with nothing known of it and nothing to observe yet.
@@ -91,7 +93,8 @@ Case start_case(const filters::FilterRequest& request, std::string variant, Leve
 /// Makes a case that reports why it was not measured.
 Case make_absent_case(std::string filter, std::string variant, Level level, std::string reason);
 
-/// Makes a case that reports that no chosen filter's front matter declares what an axis needs: "'exponent' without 'moments'".
+/// Makes a case that reports that no chosen filter's front matter declares what an axis needs: "'exponent' without
+/// 'moments'".
 Case make_undriven_case(const std::string& what);
 
 /// Names a level: "GL", "model", "arithmetic".
@@ -105,8 +108,8 @@ const std::vector<Axis>& axis_table();
 std::vector<Axis> choose_axes(const std::string& text);
 
 /// Sets the range of one of `axes` from AXIS=LO,HI.
-/// Throws Error(kUsage) where the text is not that, the axis is unknown or not among `axes`, an end is not a finite number,
-/// the range is empty or reversed, or it reaches beyond the axis' limits.
+/// Throws Error(kUsage) where the text is not that, the axis is unknown or not among `axes`, an end is not a finite
+/// number, the range is empty or reversed, or it reaches beyond the axis' limits.
 void apply_range(std::vector<Axis>& axes, const std::string& text);
 
 }  // namespace shadowbench::stress

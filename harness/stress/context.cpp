@@ -4,7 +4,9 @@
 
 namespace shadowbench::stress {
 
-std::string find_exponent(const filters::FilterSpec& spec) { return spec.holds_moments ? std::string() : spec.exponent; }
+std::string find_exponent(const filters::FilterSpec& spec) {
+  return spec.holds_moments ? std::string() : spec.exponent;
+}
 
 std::vector<DrivenFilter> find_driven(const StressContext& context, DrivenParam param_of) {
   std::vector<DrivenFilter> driven;

@@ -18,12 +18,13 @@ struct StressContext {
   run::Resources resources;
   std::vector<filters::FilterRequest> filters;  ///< the chosen ones, each with its parameter values
   std::uint32_t seed = 1;
-  std::filesystem::path cache;  ///< for traced truth; empty: nothing is kept
-  std::filesystem::path out;    ///< where exhibits write their pictures
+  std::filesystem::path cache;        ///< for traced truth; empty: nothing is kept
+  std::filesystem::path out;          ///< where exhibits write their pictures
   run::Progress* progress = nullptr;  ///< for exhibits' notes; may be null
 };
 
-/// Names the parameter of a filter that an axis drives, from what the front matter declares; empty: not for this filter.
+/// Names the parameter of a filter that an axis drives, from what the front matter declares; empty: not for this
+/// filter.
 using DrivenParam = std::string (*)(const filters::FilterSpec&);
 
 /// Names the exponent of a filter that stores exponentials and no moments of them.
@@ -38,8 +39,8 @@ struct DrivenFilter {
 /// Finds the chosen filters that have such a parameter, in the order they were chosen.
 std::vector<DrivenFilter> find_driven(const StressContext& context, DrivenParam param_of);
 
-/// Gives the choices of a filter's text parameter, such as `store`, for a case each: the chosen value alone where the user
-/// set it, all otherwise; empty where the filter has no such parameter.
+/// Gives the choices of a filter's text parameter, such as `store`, for a case each: the chosen value alone where the
+/// user set it, all otherwise; empty where the filter has no such parameter.
 std::vector<std::string> list_choices(const filters::FilterRequest& request, const std::string& param);
 
 }  // namespace shadowbench::stress

@@ -45,28 +45,33 @@ bool is_all(const Drawing& drawing, float of) {
 std::vector<glm::vec4> read_positions(const gl::Texture& texture) {
   const std::vector<float> values = texture.read_floats(4);
   std::vector<glm::vec4> positions;
-  for (std::size_t i = 0; i + 3 < values.size(); i += 4) positions.emplace_back(values[i], values[i + 1], values[i + 2], values[i + 3]);
+  for (std::size_t i = 0; i + 3 < values.size(); i += 4)
+    positions.emplace_back(values[i], values[i + 1], values[i + 2], values[i + 3]);
   return positions;
 }
 
 }  // namespace
 
 scene::Scene load_drawn_scene(const StressContext& context, const std::string& name, const DrawingSize& size) {
-  return scene::load(name, {.scenes_folder = context.resources.scenes, .aspect = static_cast<double>(size.width) / size.height});
+  return scene::load(
+      name, {.scenes_folder = context.resources.scenes, .aspect = static_cast<double>(size.width) / size.height});
 }
 
 SceneDrawer::SceneDrawer(const StressContext& context, filters::FilterRequest request, const DrawingSize& size)
     : shaders_(context.renderer->shaders), seed_(context.seed), request_(std::move(request)), size_(size) {}
 
 scene::LightFrustum SceneDrawer::fit(const scene::Scene& scene) const {
-  const double padding = std::min(std::ceil(filters::radius_texels(request_.spec, request_.values)) + 1.0, 0.25 * (size_.map - 1));
+  const double padding =
+      std::min(std::ceil(filters::radius_texels(request_.spec, request_.values)) + 1.0, 0.25 * (size_.map - 1));
   return scene::fit_light(scene, scene::FitMode::kTight, size_.map, padding);
 }
 
 void SceneDrawer::prepare(const render::LightSetup& light) {
   if (!stage_) stage_.emplace(size_);
-  if (passes_) passes_->retune(shaders_, request_.values, light);
-  else passes_.emplace(shaders_, request_, stage_->map, light);
+  if (passes_)
+    passes_->retune(shaders_, request_.values, light);
+  else
+    passes_.emplace(shaders_, request_, stage_->map, light);
 }
 
 Drawing SceneDrawer::draw(const scene::Scene& scene) {
@@ -83,14 +88,16 @@ Drawing SceneDrawer::draw(const scene::Scene& scene) {
 
 Observation judge_drawing(const Drawing& seen, const Drawing& expected, double bound) {
   const auto unusable = std::ranges::count_if(seen.visibility, [](float v) { return !std::isfinite(v); });
-  if (unusable > 0) return {Verdict::kBroken, std::nullopt, fmt::format("{} of {} pixels are NaN or infinite", unusable, seen.visibility.size())};
+  if (unusable > 0)
+    return {Verdict::kBroken, std::nullopt,
+            fmt::format("{} of {} pixels are NaN or infinite", unusable, seen.visibility.size())};
   const Differences found = count_differences(seen.visibility, expected.visibility);
   const double share = static_cast<double>(found.count()) / static_cast<double>(seen.visibility.size());
-  for (const auto& [of, name] : {std::pair(1.0f, "lit"), std::pair(0.0f, "dark")}) {
+  for (const auto& [of, name] : {std::pair(1.0f, "lit"), std::pair(0.0f, "dark")})
     if (is_all(seen, of) && !is_all(expected, of)) return {Verdict::kBroken, share, fmt::format("all is {}", name)};
-  }
   if (share <= bound) return {Verdict::kOk, share, {}};
-  return {Verdict::kDegraded, share, fmt::format("{:.2g} of the pixels differ, {} darker and {} brighter", share, found.darker, found.brighter)};
+  return {Verdict::kDegraded, share,
+          fmt::format("{:.2g} of the pixels differ, {} darker and {} brighter", share, found.darker, found.brighter)};
 }
 
 }  // namespace shadowbench::stress

@@ -24,7 +24,8 @@ struct DrawingSize {
 /// Loads a built-in scene, framed for drawings of this size. Throws Error as scene::load().
 scene::Scene load_drawn_scene(const StressContext& context, const std::string& name, const DrawingSize& size = {});
 
-/// One filter behind the whole chain that `run` has: light fit, depth pass, G-buffer, prefilter, lookup, with the default bias.
+/// One filter behind the whole chain that `run` has: light fit, depth pass, G-buffer, prefilter, lookup, with the
+/// default bias.
 class SceneDrawer {
  public:
   /// Requires context.renderer, which outlives the drawer. Nothing is compiled or allocated before the first drawing.
@@ -40,7 +41,8 @@ class SceneDrawer {
 
  private:
   struct Stage {
-    explicit Stage(const DrawingSize& size) : map(size.map), gbuffer(size.width, size.height), target("stress drawing", GL_R32F, size.width, size.height) {}
+    explicit Stage(const DrawingSize& size)
+        : map(size.map), gbuffer(size.width, size.height), target("stress drawing", GL_R32F, size.width, size.height) {}
     render::ShadowMap map;
     render::GBuffer gbuffer;
     render::ImageTarget target;
@@ -59,8 +61,9 @@ class SceneDrawer {
 /// A pixel of two drawings that should be equal differs where visibility does by more than this.
 inline constexpr double kVisibleDifference = 0.1;
 
-/// Judges a drawing by the share of its pixels that differ from what is expected: broken where a visibility is NaN or infinite, or
-/// where all that was drawn is lit or dark although it should not be; degraded where the share is over the bound.
+/// Judges a drawing by the share of its pixels that differ from what is expected: broken where a visibility is NaN or
+/// infinite, or where all that was drawn is lit or dark although it should not be; degraded where the share is over the
+/// bound.
 Observation judge_drawing(const Drawing& seen, const Drawing& expected, double bound);
 
 }  // namespace shadowbench::stress

@@ -60,7 +60,8 @@ void set_depths(EdgeScene& edge, const std::vector<EdgeDepths>& bands) {
   edge.scene.depths.resize(size * size);
   for (std::size_t y = 0; y < size; ++y) {
     const EdgeDepths& band = bands[y * bands.size() / size];
-    for (std::size_t x = 0; x < size; ++x) edge.scene.depths[y * size + x] = x < size / 2 ? band.occluder : band.receiver;
+    for (std::size_t x = 0; x < size; ++x)
+      edge.scene.depths[y * size + x] = x < size / 2 ? band.occluder : band.receiver;
   }
   for (std::size_t i = 0; i < edge.band.size(); ++i) edge.scene.receivers[i].z = bands[edge.band[i]].receiver;
 }

@@ -13,17 +13,18 @@ struct EdgeDepths {
   float receiver = 1.0f;
 };
 
-/// A map of horizontal bands, each split by an edge down the middle: left the occluder, right the receivers' surface. Across
-/// each edge stand receivers, at the depth of their band's surface, whose kernel holds both depths and nothing else.
+/// A map of horizontal bands, each split by an edge down the middle: left the occluder, right the receivers' surface.
+/// Across each edge stand receivers, at the depth of their band's surface, whose kernel holds both depths and nothing
+/// else.
 struct EdgeScene {
   ProbeScene scene;
-  std::vector<double> lit_share;   ///< of each receiver's kernel: the weight of its own surface, in (0,1)
-  std::vector<std::size_t> band;   ///< of each receiver
-  std::size_t run = 0;             ///< receivers per band, from dark to light
+  std::vector<double> lit_share;  ///< of each receiver's kernel: the weight of its own surface, in (0,1)
+  std::vector<std::size_t> band;  ///< of each receiver
+  std::size_t run = 0;            ///< receivers per band, from dark to light
 };
 
-/// Makes one for a Gaussian prefilter of `radius_texels` and a map read with the bilinear tent, at texel centres; with radius 0
-/// between them. The map has room for the kernel, and as many texels as the bands need, `least_size` or more.
+/// Makes one for a Gaussian prefilter of `radius_texels` and a map read with the bilinear tent, at texel centres; with
+/// radius 0 between them. The map has room for the kernel, and as many texels as the bands need, `least_size` or more.
 EdgeScene make_edge_scene(int radius_texels, const std::vector<EdgeDepths>& bands, int least_size = 64);
 
 /// Gives other depths to the same edges.

@@ -15,12 +15,14 @@ namespace shadowbench::stress {
 namespace {
 
 constexpr report::Size kPlot{880, 480};
-constexpr int kLeft = 76;       // room for the ticks of y
+constexpr int kLeft = 76;  // room for the ticks of y
 constexpr int kTick = 6, kBar = 16, kBarWidth = 320;
-constexpr int kPen = 3;         // width of the curve
+constexpr int kPen = 3;  // width of the curve
 
 /// Places a value between an axis' ends, [0,1].
-double place(const HeatAxis& axis, double value) { return (value - axis.range.low) / (axis.range.high - axis.range.low); }
+double place(const HeatAxis& axis, double value) {
+  return (value - axis.range.low) / (axis.range.high - axis.range.low);
+}
 
 class Drawing {
  public:
@@ -44,8 +46,12 @@ class Drawing {
   report::Figure figure_;
   report::Rect plot_;
 
-  int x_of(double value) const { return plot_.x + static_cast<int>(std::lround(place(map_.x, value) * (plot_.width - 1))); }
-  int y_of(double value) const { return plot_.y + static_cast<int>(std::lround((1.0 - place(map_.y, value)) * (plot_.height - 1))); }
+  int x_of(double value) const {
+    return plot_.x + static_cast<int>(std::lround(place(map_.x, value) * (plot_.width - 1)));
+  }
+  int y_of(double value) const {
+    return plot_.y + static_cast<int>(std::lround((1.0 - place(map_.y, value)) * (plot_.height - 1)));
+  }
 
   void place_values() {
     const report::Image& values = map_.values;
@@ -90,9 +96,9 @@ class Drawing {
 
   void draw_legend(int top) {
     report::Image ramp(kBarWidth, kBar, 3);
-    for (int y = 0; y < kBar; ++y) {
-      for (int x = 0; x < kBarWidth; ++x) std::ranges::copy(report::map_diverging(static_cast<float>(x) / (kBarWidth - 1), 1.0f), ramp.at(x, y));
-    }
+    for (int y = 0; y < kBar; ++y)
+      for (int x = 0; x < kBarWidth; ++x)
+        std::ranges::copy(report::map_diverging(static_cast<float>(x) / (kBarWidth - 1), 1.0f), ramp.at(x, y));
     figure_.place(plot_.x, top, ramp);
     figure_.write(plot_.x + kBarWidth + line_, top + (kBar - line_) / 2, map_.quantity);
     figure_.write_centred(plot_.x, top + kBar, "0");
@@ -109,6 +115,8 @@ report::Image draw_heat_map(const HeatMap& map) {
   return Drawing(map).draw();
 }
 
-void write_heat_map(const std::filesystem::path& path, const HeatMap& map) { report::write_display_png(path, draw_heat_map(map)); }
+void write_heat_map(const std::filesystem::path& path, const HeatMap& map) {
+  report::write_display_png(path, draw_heat_map(map));
+}
 
 }  // namespace shadowbench::stress

@@ -12,7 +12,7 @@ namespace shadowbench::stress {
 
 /// One axis of a heat map, linear.
 struct HeatAxis {
-  std::string label;          ///< quantity and unit
+  std::string label;  ///< quantity and unit
   report::StressRange range;
   std::vector<double> ticks;
 };
@@ -21,11 +21,11 @@ struct HeatAxis {
 struct HeatMap {
   std::string title;
   std::string note;
-  std::string quantity;   ///< what the colours mean
+  std::string quantity;  ///< what the colours mean
   HeatAxis x;
-  HeatAxis y;             ///< upwards
-  report::Image values;   ///< 1 channel, [0, scale]; row 0 is the highest y
-  double scale = 1.0;     ///< the value with the full colour
+  HeatAxis y;                           ///< upwards
+  report::Image values;                 ///< 1 channel, [0, scale]; row 0 is the highest y
+  double scale = 1.0;                   ///< the value with the full colour
   std::function<double(double)> curve;  ///< y of x
 };
 

@@ -17,7 +17,8 @@ double find_largest_error(const std::vector<double>& seen, const std::vector<dou
 }
 
 bool is_all(const std::vector<double>& values, double of) {
-  return std::ranges::all_of(values, [of](double value) { return std::abs(value - of) < kNearOne; });
+  return std::ranges::all_of(
+      values, [of](double value) { return std::abs(value - of) < kNearOne; });
 }
 
 /// Gives the largest fall within a run from any receiver to a later one.
@@ -38,18 +39,21 @@ double find_largest_fall(const std::vector<double>& values, std::size_t run) {
 Observation judge(const ProbeResult& result, const Expected& expected) {
   const auto unusable = std::ranges::count_if(result.visibility, [](double v) { return !std::isfinite(v); });
   const auto broken = [&](std::string why) {
-    const std::optional<double> error = unusable ? std::nullopt : std::optional(find_largest_error(result.visibility, expected.visibility));
+    const std::optional<double> error =
+        unusable ? std::nullopt : std::optional(find_largest_error(result.visibility, expected.visibility));
     return Observation{Verdict::kBroken, error, std::move(why)};
   };
   if (result.broken_texels > 0) return broken(fmt::format("{} texels of the map overflowed", result.broken_texels));
-  if (unusable) return broken(fmt::format("{} of {} receivers are NaN or infinite", unusable, result.visibility.size()));
-  for (const auto& [of, name] : {std::pair(1.0, "lit"), std::pair(0.0, "dark")}) {
-    if (is_all(result.visibility, of) && !is_all(expected.visibility, of)) return broken(fmt::format("all {} receivers are {}", result.visibility.size(), name));
-  }
+  if (unusable)
+    return broken(fmt::format("{} of {} receivers are NaN or infinite", unusable, result.visibility.size()));
+  for (const auto& [of, name] : {std::pair(1.0, "lit"), std::pair(0.0, "dark")})
+    if (is_all(result.visibility, of) && !is_all(expected.visibility, of))
+      return broken(fmt::format("all {} receivers are {}", result.visibility.size(), name));
   const double fall = find_largest_fall(result.visibility, expected.rising_run);
   if (fall > kLargestFall) return broken(fmt::format("visibility falls by {:.2g} where it must rise", fall));
   const double error = find_largest_error(result.visibility, expected.visibility);
-  if (error > expected.bound) return {Verdict::kDegraded, error, fmt::format("error {:.2g}, over {:g}", error, expected.bound)};
+  if (error > expected.bound)
+    return {Verdict::kDegraded, error, fmt::format("error {:.2g}, over {:g}", error, expected.bound)};
   return {Verdict::kOk, error, {}};
 }
 

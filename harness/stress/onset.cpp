@@ -74,7 +74,8 @@ class Search {
 
   /// Finds the first value, in the direction of the search, with this verdict or a worse one.
   std::optional<report::StressOnset> find_first(Verdict verdict) {
-    const auto first = std::ranges::find_if(coarse_, [&](double value) { return observer_.at(value).verdict >= verdict; });
+    const auto first =
+        std::ranges::find_if(coarse_, [&](double value) { return observer_.at(value).verdict >= verdict; });
     if (first == coarse_.end()) return std::nullopt;
     if (first == coarse_.begin()) return report::StressOnset{*first, std::nullopt, observer_.at(*first).why};
     double before = *(first - 1), with = *first;
@@ -87,10 +88,13 @@ class Search {
 
   /// Says where, on the coarse samples, a verdict got better again after `verdict` was met.
   std::optional<std::string> find_recovery(Verdict verdict, const char* name) {
-    const auto first = std::ranges::find_if(coarse_, [&](double value) { return observer_.at(value).verdict >= verdict; });
-    const auto better = std::find_if(first, coarse_.end(), [&](double value) { return observer_.at(value).verdict < verdict; });
+    const auto first = std::ranges::find_if(
+        coarse_, [&](double value) { return observer_.at(value).verdict >= verdict; });
+    const auto better =
+        std::find_if(first, coarse_.end(), [&](double value) { return observer_.at(value).verdict < verdict; });
     if (better == coarse_.end()) return std::nullopt;
-    return fmt::format("{} at {:.4g}, but {} again at {:.4g}", name, *first, report::name_of(observer_.at(*better).verdict), *better);
+    return fmt::format("{} at {:.4g}, but {} again at {:.4g}", name, *first,
+                       report::name_of(observer_.at(*better).verdict), *better);
   }
 
  private:
@@ -100,7 +104,8 @@ class Search {
 
   bool is_narrow(double a, double b) const {
     if (axis_.whole) return std::abs(a - b) <= 1.0;
-    return std::abs(a - b) <= kOnsetPrecision * std::min(std::abs(a), std::abs(b)) || halve(a, b) == a || halve(a, b) == b;
+    return std::abs(a - b) <= kOnsetPrecision * std::min(std::abs(a), std::abs(b)) || halve(a, b) == a ||
+           halve(a, b) == b;
   }
 
   double halve(double a, double b) const {
@@ -111,12 +116,13 @@ class Search {
 
 report::ParamMap to_record(const filters::ParamValues& values) {
   report::ParamMap params;
-  for (const auto& [name, value] : values) std::visit([&params, &key = name](const auto& v) { params[key] = v; }, value);
+  for (const auto& [name, value] : values)
+    std::visit([&params, &key = name](const auto& v) { params[key] = v; }, value);
   return params;
 }
 
-/// Says whether a theory that was met nowhere in the range, or right where the range begins, can be true: its onset, give
-/// or take the tolerance, lies beyond the range or before it.
+/// Says whether a theory that was met nowhere in the range, or right where the range begins, can be true: its onset,
+/// give or take the tolerance, lies beyond the range or before it.
 bool agrees_outside(double onset, double tolerance, bool met, const Axis& axis) {
   const bool lies_above = met ? onset > axis.range.low * tolerance : onset * tolerance > axis.range.high;
   const bool lies_below = met ? onset < axis.range.high / tolerance : onset / tolerance < axis.range.low;
@@ -154,7 +160,9 @@ report::StressCase find_onsets(const Case& item, const Axis& axis) {
   // A case that breaks at once was never merely degraded.
   if (record.degraded && observer.at(record.degraded->value).verdict == Verdict::kBroken) record.degraded.reset();
   const bool breaks = record.broken.has_value();
-  if (const auto note = search.find_recovery(breaks ? Verdict::kBroken : Verdict::kDegraded, breaks ? "broken" : "degraded")) record.notes.push_back(*note);
+  if (const auto note =
+          search.find_recovery(breaks ? Verdict::kBroken : Verdict::kDegraded, breaks ? "broken" : "degraded"))
+    record.notes.push_back(*note);
   record.samples = observer.samples();
   if (!item.remark) return record;
   for (std::string& sentence : item.remark(record)) record.notes.push_back(std::move(sentence));
@@ -166,12 +174,14 @@ std::vector<report::StressLimit> compare(const Case& item, const report::StressC
   if (!record.not_available.empty()) return limits;
   for (const Theory& theory : item.theories) {
     const report::StressOnset* met = report::find_onset(record, theory.predicts);
-    report::StressLimit limit{theory.onset, theory.kind, theory.predicts, theory.formula, theory.source, {}, {}, {}, {}};
+    report::StressLimit limit{theory.onset, theory.kind, theory.predicts, theory.formula, theory.source, {}, {},
+                              {},           {}};
     if (met) limit.measured = met->value;
     if (limit.onset && met && met->last_before) limit.ratio = met->value / *limit.onset;
     if (!agrees(limit, met, axis)) {
       limit.explanation = item.explain ? item.explain({theory, limit.measured, record}) : std::string();
-      limit.agreement = limit.explanation.empty() ? report::StressAgreement::kDisagrees : report::StressAgreement::kExplained;
+      limit.agreement =
+          limit.explanation.empty() ? report::StressAgreement::kDisagrees : report::StressAgreement::kExplained;
     }
     limits.push_back(std::move(limit));
   }

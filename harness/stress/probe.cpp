@@ -50,8 +50,10 @@ class GlProbe final : public Probe {
     if (!same_map || stage_->gbuffer.width() != receivers) stage_.emplace(settings_, scene.size, receivers);
     upload(*stage_, scene);
     request_.values = values;
-    if (passes_) passes_->retune(shaders_, values, light);
-    else passes_.emplace(shaders_, request_, stage_->map, light);
+    if (passes_)
+      passes_->retune(shaders_, values, light);
+    else
+      passes_.emplace(shaders_, request_, stage_->map, light);
     passes_->prefilter(stage_->map);
     passes_->lookup(stage_->gbuffer, stage_->map, stage_->target);
     const std::vector<float> image = stage_->target.texture().read_floats(1);
@@ -82,14 +84,18 @@ filters::Receiver make_receiver(const ProbeScene& scene, std::size_t i) {
 class ModelProbe final : public Probe {
  public:
   ModelProbe(const StressContext& context, filters::FilterRequest request, filters::Precision precision)
-      : seed_(context.seed), request_(std::move(request)), model_(filters::make_model(request_.spec.id)), precision_(precision) {}
+      : seed_(context.seed),
+        request_(std::move(request)),
+        model_(filters::make_model(request_.spec.id)),
+        precision_(precision) {}
 
   ProbeResult look(const ProbeScene& scene, const filters::ParamValues& values) override {
     const filters::DepthMap map{scene.size, scene.depths};
     const filters::ModelInput input{request_.spec, values, map, {}, seed_};
     const auto lookup = model_->prepare(input, precision_);
     ProbeResult result;
-    for (std::size_t i = 0; i < scene.receivers.size(); ++i) result.visibility.push_back(lookup->at(make_receiver(scene, i)).visibility);
+    for (std::size_t i = 0; i < scene.receivers.size(); ++i)
+      result.visibility.push_back(lookup->at(make_receiver(scene, i)).visibility);
     return result;
   }
 
@@ -102,11 +108,13 @@ class ModelProbe final : public Probe {
 
 }  // namespace
 
-std::unique_ptr<Probe> make_gl_probe(const StressContext& context, const filters::FilterRequest& request, const render::MapSettings& map) {
+std::unique_ptr<Probe> make_gl_probe(const StressContext& context, const filters::FilterRequest& request,
+                                     const render::MapSettings& map) {
   return std::make_unique<GlProbe>(context, request, map);
 }
 
-std::unique_ptr<Probe> make_model_probe(const StressContext& context, const filters::FilterRequest& request, filters::Precision precision) {
+std::unique_ptr<Probe> make_model_probe(const StressContext& context, const filters::FilterRequest& request,
+                                        filters::Precision precision) {
   return std::make_unique<ModelProbe>(context, request, precision);
 }
 

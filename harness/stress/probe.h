@@ -14,9 +14,10 @@ namespace shadowbench::stress {
 
 /// A depth map that nobody drew, and receivers that look into it.
 struct ProbeScene {
-  int size = 0;                   ///< texels per side of the map
-  std::vector<float> depths;      ///< size * size, row 0 at v = 0
-  std::vector<glm::vec3> receivers;  ///< u, v, depth, each in [0,1] inside the map; they face the light, and no bias is applied
+  int size = 0;               ///< texels per side of the map
+  std::vector<float> depths;  ///< size * size, row 0 at v = 0
+  std::vector<glm::vec3>
+      receivers;  ///< u, v, depth, each in [0,1] inside the map; they face the light, and no bias is applied
   /// For the GL alone: another way from receivers to u, v, depth; all that one probe sees are projective, or none.
   std::optional<scene::LightFrustum> frustum = {};
 
@@ -26,8 +27,8 @@ struct ProbeScene {
 
 /// What a filter makes of a probe scene.
 struct ProbeResult {
-  std::vector<double> visibility;     ///< of the receivers, in their order
-  std::int64_t broken_texels = 0;     ///< of the encoded map: overflown; 0 for models, which keep their map
+  std::vector<double> visibility;  ///< of the receivers, in their order
+  std::int64_t broken_texels = 0;  ///< of the encoded map: overflown; 0 for models, which keep their map
 };
 
 /// A filter that looks into probe scenes, compiled once.
@@ -39,8 +40,8 @@ class Probe {
 };
 
 /// Looks through the passes of harness/render: encode, blur, lookup. Depths are stored as `map` says.
-/// Requires context.renderer, which outlives the probe. Nothing is compiled or allocated before the first look, which throws
-/// Error as render::FilterPasses and render::ShadowMap.
+/// Requires context.renderer, which outlives the probe. Nothing is compiled or allocated before the first look, which
+/// throws Error as render::FilterPasses and render::ShadowMap.
 std::unique_ptr<Probe> make_gl_probe(const StressContext& context, const filters::FilterRequest& request,
                                      const render::MapSettings& map = {});
 
@@ -66,8 +67,9 @@ struct Expected {
 /// Falls of more than this along a run that must rise make a case broken.
 inline constexpr double kLargestFall = 0.1;
 
-/// Judges a result, measured by its largest error: broken where texels of the map overflowed or a visibility is NaN or infinite,
-/// where all is lit or all is dark although it should not be, or where a run falls; degraded where the error is over the bound.
+/// Judges a result, measured by its largest error: broken where texels of the map overflowed or a visibility is NaN or
+/// infinite, where all is lit or all is dark although it should not be, or where a run falls; degraded where the error
+/// is over the bound.
 Observation judge(const ProbeResult& result, const Expected& expected);
 
 }  // namespace shadowbench::stress

@@ -44,7 +44,8 @@ run::RunOptions make_options(const StressContext& context, const Mistake& mistak
   options.resources = context.resources;
   options.scenes = {mistake.scene};
   const filters::Catalogue catalogue(context.resources.filters);
-  for (const std::string& setup : list_setups(mistake)) options.filters.push_back(catalogue.parse_requests(setup).front());
+  for (const std::string& setup : list_setups(mistake))
+    options.filters.push_back(catalogue.parse_requests(setup).front());
   options.map_sizes = {kMapSize};
   options.width = kWidth;
   options.height = kHeight;
@@ -59,7 +60,10 @@ class Stage {
       : renderer_(*context.renderer),
         options_(make_options(context, mistake)),
         scene_(run::load_scene(options_, mistake.scene)),
-        cache_(context.cache, [progress = context.progress](const std::string& message) { if (progress) progress->note("warning: " + message); }),
+        cache_(context.cache,
+               [progress = context.progress](const std::string& message) {
+                 if (progress) progress->note("warning: " + message);
+               }),
         assets_(renderer_, options_, scene_, cache_, run::largest_padding_texels(options_.filters)),
         light_(assets_.light_map(camera(), kMapSize)),
         target_("replayed visibility", GL_R32F, kWidth, kHeight) {}
@@ -126,12 +130,14 @@ struct Parts {
 Parts split(const std::vector<Result>& results, const Mistake& mistake) {
   Parts parts;
   parts.wrong = &results.front();
-  for (std::size_t i = 1; i < results.size(); ++i) (i <= mistake.variants.size() ? parts.variants : parts.others).push_back(&results[i]);
+  for (std::size_t i = 1; i < results.size(); ++i)
+    (i <= mistake.variants.size() ? parts.variants : parts.others).push_back(&results[i]);
   return parts;
 }
 
 report::TextTable make_table(const std::vector<Result>& results, const Parts& parts) {
-  report::TextTable table{{"set-up", "overflown texels", "RMSE to area truth", "rank with the wrong set-up", "rank, corrected"}, {}};
+  report::TextTable table{
+      {"set-up", "overflown texels", "RMSE to area truth", "rank with the wrong set-up", "rank, corrected"}, {}};
   for (const Result& result : results) {
     const bool other = std::ranges::find(parts.others, &result) != parts.others.end();
     std::vector<const Result*> rivals = parts.others;
@@ -142,7 +148,8 @@ report::TextTable make_table(const std::vector<Result>& results, const Parts& pa
       return rank(result, all);
     };
     const bool wrong = &result == parts.wrong, corrected = &result == parts.variants.front();
-    table.rows.push_back({result.label, fmt::format("{} of {}", result.broken_texels, kMapSize * kMapSize), report::format_number(result.rmse),
+    table.rows.push_back({result.label, fmt::format("{} of {}", result.broken_texels, kMapSize * kMapSize),
+                          report::format_number(result.rmse),
                           other || wrong ? against(parts.wrong) : std::string(report::kNothing),
                           other || corrected ? against(parts.variants.front()) : std::string(report::kNothing)});
   }
@@ -151,17 +158,21 @@ report::TextTable make_table(const std::vector<Result>& results, const Parts& pa
 
 std::vector<std::string> describe(const Parts& parts, const Mistake& mistake) {
   std::vector<std::string> words = {
-      fmt::format("On '{}', {} ranks {} by its error (RMSE {}), and {} of the {} texels of its map overflowed: that number, which every run reports as a "
-                  "warning, says that the comparison is of an overflow, not of a filter.", mistake.scene, parts.wrong->label, rank(*parts.wrong, parts.others),
+      fmt::format("On '{}', {} ranks {} by its error (RMSE {}), and {} of the {} texels of its map overflowed: that "
+                  "number, which every run reports as a "
+                  "warning, says that the comparison is of an overflow, not of a filter.",
+                  mistake.scene, parts.wrong->label, rank(*parts.wrong, parts.others),
                   report::format_number(parts.wrong->rmse), parts.wrong->broken_texels, kMapSize * kMapSize)};
   for (const Result* variant : parts.variants) {
-    words.push_back(fmt::format("{} ranks {} (RMSE {}), with {} overflown texels.", variant->label, rank(*variant, parts.others), report::format_number(variant->rmse),
+    words.push_back(fmt::format("{} ranks {} (RMSE {}), with {} overflown texels.", variant->label,
+                                rank(*variant, parts.others), report::format_number(variant->rmse),
                                 variant->broken_texels));
   }
   return words;
 }
 
-void write_pictures(const std::filesystem::path& file, std::vector<Result> results, const run::SceneTruth& truth, const Mistake& mistake) {
+void write_pictures(const std::filesystem::path& file, std::vector<Result> results, const run::SceneTruth& truth,
+                    const Mistake& mistake) {
   report::Grid grid;
   grid.columns = 4;
   grid.title = "A famous mistake, replayed";
@@ -169,7 +180,8 @@ void write_pictures(const std::filesystem::path& file, std::vector<Result> resul
   for (Result& result : results) {
     report::GridTile tile;
     tile.label = result.label;
-    tile.caption = fmt::format("RMSE {} · {} overflown texels", report::format_number(result.rmse), result.broken_texels);
+    tile.caption =
+        fmt::format("RMSE {} · {} overflown texels", report::format_number(result.rmse), result.broken_texels);
     tile.error = run::make_error_image(result.visibility, truth);
     tile.picture = std::move(result.picture);
     tile.visibility = std::move(result.visibility);
@@ -189,7 +201,8 @@ Exhibit replay(const StressContext& context, const Mistake& mistake, const std::
   exhibit.title = "A famous mistake, replayed";
   exhibit.sentences = describe(parts, mistake);
   exhibit.table = make_table(results, parts);
-  exhibit.pictures.push_back({fmt::format("stress.{}.png", id), fmt::format("picture, visibility and error of each set-up on {}", mistake.scene)});
+  exhibit.pictures.push_back({fmt::format("stress.{}.png", id),
+                              fmt::format("picture, visibility and error of each set-up on {}", mistake.scene)});
   write_pictures(context.out / exhibit.pictures.front().file, std::move(results), stage.truth(), mistake);
   return exhibit;
 }

@@ -15,10 +15,10 @@ struct Mistake {
   std::vector<std::string> others;    ///< what it is compared with
 };
 
-/// Replays a mistake on the scene's first view: the error of every set-up against the area truth, the texels of its map that
-/// overflowed, its rank in the wrong comparison (`wrong` and `others`) and in the corrected one (the first of `variants` and `others`),
-/// and a grid of pictures in context.out.
-/// Requires context.renderer. Throws Error(kOutput). Cost: one traced view, kept in context.cache.
+/// Replays a mistake on the scene's first view: the error of every set-up against the area truth, the texels of its map
+/// that overflowed, its rank in the wrong comparison (`wrong` and `others`) and in the corrected one (the first of
+/// `variants` and `others`), and a grid of pictures in context.out. Requires context.renderer. Throws Error(kOutput).
+/// Cost: one traced view, kept in context.cache.
 Exhibit replay(const StressContext& context, const Mistake& mistake, const std::string& id);
 
 }  // namespace shadowbench::stress

@@ -43,7 +43,10 @@ std::vector<Axis> read_axes(const StressOptions& options) {
 class StressRun {
  public:
   StressRun(const StressOptions& options, run::Progress& progress)
-      : options_(options), progress_(progress), axes_(read_axes(options)), renderer_(run::make_renderer(options.backend, options.resources)) {
+      : options_(options),
+        progress_(progress),
+        axes_(read_axes(options)),
+        renderer_(run::make_renderer(options.backend, options.resources)) {
     context_ = {&renderer_, options.resources, options.filters, options.seed, options.cache, options.out, &progress};
   }
 
@@ -114,15 +117,19 @@ class StressRun {
 
   void warn() {
     for (const report::StressAxis& axis : record_.axes) {
-      for (const std::string& sentence : report::describe_disagreements(axis)) progress_.note(fmt::format("warning: {}: {}", axis.id, sentence));
-      for (const std::string& sentence : report::describe_absences(axis)) progress_.note(fmt::format("{}: not available: {}", axis.id, sentence));
+      for (const std::string& sentence : report::describe_disagreements(axis))
+        progress_.note(fmt::format("warning: {}: {}", axis.id, sentence));
+      for (const std::string& sentence : report::describe_absences(axis))
+        progress_.note(fmt::format("{}: not available: {}", axis.id, sentence));
     }
   }
 };
 
 }  // namespace
 
-StressOutcome run_stress(const StressOptions& options, run::Progress& progress) { return StressRun(options, progress).run(); }
+StressOutcome run_stress(const StressOptions& options, run::Progress& progress) {
+  return StressRun(options, progress).run();
+}
 
 std::string describe_axes(const std::vector<filters::FilterRequest>& filters) {
   std::string text;
@@ -130,12 +137,14 @@ std::string describe_axes(const std::vector<filters::FilterRequest>& filters) {
   context.filters = filters;
   for (const Axis& axis : axis_table()) {
     std::vector<std::string> driven;
-    if (axis.driven_param) {
-      for (const DrivenFilter& filter : find_driven(context, axis.driven_param)) driven.push_back(fmt::format("{}:{}", filter.request.spec.id, filter.param));
-    }
-    text += fmt::format("{}  {}\n  {}{}, {:g} .. {:g} (--range: within {:g} .. {:g})\n  measures {}; degraded over {:g}\n  broken: {}\n", axis.id, axis.title, axis.quantity,
-                        axis.unit.empty() ? "" : ", " + axis.unit, axis.range.low, axis.range.high, axis.limits.low, axis.limits.high, axis.measured, axis.bound,
-                        axis.broken_when);
+    if (axis.driven_param)
+      for (const DrivenFilter& filter : find_driven(context, axis.driven_param))
+        driven.push_back(fmt::format("{}:{}", filter.request.spec.id, filter.param));
+    text += fmt::format(
+        "{}  {}\n  {}{}, {:g} .. {:g} (--range: within {:g} .. {:g})\n  measures {}; degraded over {:g}\n  broken: "
+        "{}\n",
+        axis.id, axis.title, axis.quantity, axis.unit.empty() ? "" : ", " + axis.unit, axis.range.low, axis.range.high,
+        axis.limits.low, axis.limits.high, axis.measured, axis.bound, axis.broken_when);
     if (!driven.empty()) text += fmt::format("  drives: {}\n", fmt::join(driven, ", "));
     text += "\n";
   }

@@ -16,7 +16,8 @@ constexpr double kSurface_m = 0.01;    // points so near to a surface belong to 
 constexpr glm::dvec2 kHalfSlab_m{0.75, 0.5};
 
 glm::dmat4 local_from_slab() {
-  return glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(0.2, kHeight_m, -0.1)), glm::radians(kSlabTurnDeg), glm::dvec3(0.0, 1.0, 0.0));
+  return glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(0.2, kHeight_m, -0.1)), glm::radians(kSlabTurnDeg),
+                     glm::dvec3(0.0, 1.0, 0.0));
 }
 
 glm::dmat4 local_from_wall() {
@@ -42,7 +43,8 @@ scene::Scene make_slab_scene(const SlabSetting& setting) {
   scene::Scene scene;
   scene.name = "slab";
   scene.materials.emplace_back();
-  const glm::vec2 slab(2.0 * kHalfSlab_m), floor(static_cast<float>(kFloor_m)), wall(static_cast<float>(kWall_m), static_cast<float>(kFloor_m));
+  const glm::vec2 slab(2.0 * kHalfSlab_m), floor(static_cast<float>(kFloor_m)),
+      wall(static_cast<float>(kWall_m), static_cast<float>(kFloor_m));
   scene.meshes.push_back(scene::transform_mesh(scene::make_plane(floor, 8), world));
   scene.meshes.push_back(scene::transform_mesh(scene::make_plane(slab, 4), world * local_from_slab()));
   if (setting.wall) {

@@ -6,16 +6,18 @@
 namespace shadowbench::stress {
 namespace {
 
-constexpr int kSize = 64;            // of the texture
+constexpr int kSize = 64;  // of the texture
 constexpr int kCount = kSize * kSize;
-constexpr int kPerQuantum = 128;     // depths that are tried at a plane
+constexpr int kPerQuantum = 128;  // depths that are tried at a plane
 
 filters::DepthFormat describe(GLenum format) {
   const bool is_float = format == GL_DEPTH_COMPONENT32F;
   return {is_float ? 32 : format == GL_DEPTH_COMPONENT24 ? 24 : 16, is_float};
 }
 
-filters::DepthCurve make_curve(const DepthPlan& plan) { return {plan.reversed, plan.perspective ? plan.far_over_near : 1.0}; }
+filters::DepthCurve make_curve(const DepthPlan& plan) {
+  return {plan.reversed, plan.perspective ? plan.far_over_near : 1.0};
+}
 
 /// A third over the range, at equal ratios; a third at each end of depth, for as many quanta as that gives.
 std::vector<double> place_depths(const DepthPlan& plan, double quantum) {
@@ -23,9 +25,12 @@ std::vector<double> place_depths(const DepthPlan& plan, double quantum) {
   for (int i = 0; i < kCount; ++i) {
     const int third = kCount / 3, k = i % third;
     const double from_end = k * quantum / kPerQuantum;
-    if (i < third) depths.push_back(from_end);
-    else if (i < 2 * third) depths.push_back(1.0 - from_end);
-    else depths.push_back(depth_of(plan, std::pow(plan.far_over_near, static_cast<double>(k % third) / third)));
+    if (i < third)
+      depths.push_back(from_end);
+    else if (i < 2 * third)
+      depths.push_back(1.0 - from_end);
+    else
+      depths.push_back(depth_of(plan, std::pow(plan.far_over_near, static_cast<double>(k % third) / third)));
   }
   return depths;
 }
@@ -38,8 +43,11 @@ scene::Scene make_squares(const std::vector<double>& depths) {
   for (int i = 0; i < kCount; ++i) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (const auto& [dx, dy] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}}) {
-      mesh.vertices.push_back({{2.0f * static_cast<float>(i % kSize + dx) / kSize - 1.0f, 2.0f * static_cast<float>(i / kSize + dy) / kSize - 1.0f,
-                                static_cast<float>(depths[static_cast<std::size_t>(i)])}, {0.0f, 0.0f, -1.0f}, {}});
+      mesh.vertices.push_back({{2.0f * static_cast<float>(i % kSize + dx) / kSize - 1.0f,
+                                2.0f * static_cast<float>(i / kSize + dy) / kSize - 1.0f,
+                                static_cast<float>(depths[static_cast<std::size_t>(i)])},
+                               {0.0f, 0.0f, -1.0f},
+                               {}});
     }
     for (const std::uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(first + corner);
   }
@@ -59,14 +67,21 @@ scene::LightFrustum make_frustum() {
 
 }  // namespace
 
-double depth_of(const DepthPlan& plan, double distance) { return make_curve(plan).store((distance - 1.0) / (plan.far_over_near - 1.0)); }
+double depth_of(const DepthPlan& plan, double distance) {
+  return make_curve(plan).store((distance - 1.0) / (plan.far_over_near - 1.0));
+}
 
-double distance_of(const DepthPlan& plan, double depth) { return 1.0 + make_curve(plan).linear(depth) * (plan.far_over_near - 1.0); }
+double distance_of(const DepthPlan& plan, double depth) {
+  return 1.0 + make_curve(plan).linear(depth) * (plan.far_over_near - 1.0);
+}
 
-double largest_rounding(GLenum format, double depth) { return 0.5 * filters::depth_quantum(std::nextafter(depth, 0.0), describe(format)); }
+double largest_rounding(GLenum format, double depth) {
+  return 0.5 * filters::depth_quantum(std::nextafter(depth, 0.0), describe(format));
+}
 
 double find_distance_error(GLenum format, const DepthPlan& plan, double distance) {
-  const double ratio = plan.far_over_near, slope = plan.perspective ? distance * distance * (ratio - 1.0) / ratio : ratio - 1.0;
+  const double ratio = plan.far_over_near,
+               slope = plan.perspective ? distance * distance * (ratio - 1.0) / ratio : ratio - 1.0;
   return slope * largest_rounding(format, depth_of(plan, distance));
 }
 
@@ -87,7 +102,8 @@ DepthError StoredDepths::find_largest_error(const DepthPlan& plan) {
   const std::vector<double> depths = place_depths(plan, quantum), kept = keep(depths);
   DepthError largest;
   for (std::size_t i = 0; i < kept.size(); ++i) {
-    const double distance = distance_of(plan, depths[i]), relative = std::abs(distance_of(plan, kept[i]) / distance - 1.0);
+    const double distance = distance_of(plan, depths[i]),
+                 relative = std::abs(distance_of(plan, kept[i]) / distance - 1.0);
     if (!(relative <= largest.relative)) largest = {relative, distance};
   }
   return largest;
@@ -99,7 +115,8 @@ double StoredDepths::find_error_around(const DepthPlan& plan, double distance) {
   for (int i = 0; i < kCount; ++i) depths.push_back(std::clamp(middle + (i - kCount / 2) * step, 0.0, 1.0));
   const std::vector<double> kept = keep(depths);
   double largest = 0.0;
-  for (std::size_t i = 0; i < kept.size(); ++i) largest = std::max(largest, std::abs(distance_of(plan, kept[i]) - distance_of(plan, depths[i])));
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    largest = std::max(largest, std::abs(distance_of(plan, kept[i]) - distance_of(plan, depths[i])));
   return largest;
 }
 

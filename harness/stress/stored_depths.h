@@ -34,14 +34,15 @@ struct DepthError {
 /// A depth map that known distances are drawn into, as squares that face the light, and read back from.
 class StoredDepths {
  public:
-  /// Nothing is allocated before the first use, which throws Error as render::ShadowMap: where the GL lacks the format, or stores
-  /// it in other bits. `shaders` must outlive this object.
+  /// Nothing is allocated before the first use, which throws Error as render::ShadowMap: where the GL lacks the format,
+  /// or stores it in other bits. `shaders` must outlive this object.
   StoredDepths(render::ShaderLibrary& shaders, GLenum format) : shaders_(shaders), format_(format) {}
 
   /// Looks at distances between the planes, and densely at both planes, where a quantum of depth counts most.
   DepthError find_largest_error(const DepthPlan& plan);
 
-  /// Gives the largest error, in units of the near plane's distance, at distances whose depths lie within some quanta of one's.
+  /// Gives the largest error, in units of the near plane's distance, at distances whose depths lie within some quanta
+  /// of one's.
   double find_error_around(const DepthPlan& plan, double distance);
 
  private:

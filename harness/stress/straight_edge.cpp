@@ -8,7 +8,7 @@ namespace shadowbench::stress {
 namespace {
 
 constexpr int kSize = 2 * kWidestRadius + 4;  // a texel to spare: no rounding of a place reaches the border
-constexpr int kReceivers = 37;  // no divisor of the steps: none falls on a texel's border
+constexpr int kReceivers = 37;                // no divisor of the steps: none falls on a texel's border
 constexpr float kOccluder = 0.3f, kSurface = 0.6f;
 
 }  // namespace

@@ -26,7 +26,8 @@ struct LightAxes {
 
 LightAxes make_axes(const PlaneTilt& tilt) {
   const double angle = tilt.angle_deg * std::numbers::pi / 180.0;
-  const glm::dvec3 falling(std::cos(angle), std::sin(angle), 0.0), level(0.0, 0.0, 1.0), away(std::sin(angle), -std::cos(angle), 0.0);
+  const glm::dvec3 falling(std::cos(angle), std::sin(angle), 0.0), level(0.0, 0.0, 1.0),
+      away(std::sin(angle), -std::cos(angle), 0.0);
   if (!tilt.diagonal) return {falling, level, away};
   return {(falling + level) / std::numbers::sqrt2, (level - falling) / std::numbers::sqrt2, away};
 }
@@ -42,9 +43,8 @@ glm::dvec3 find_point(const PlaneTilt& tilt, const glm::dvec2& place) {
 std::vector<glm::dvec2> place_receivers() {
   std::vector<glm::dvec2> places;
   const auto place = [](int i) { return (i - 0.5 * (kReceivers - 1)) * kStep_texels * kPlaneTexel_m; };
-  for (int y = 0; y < kReceivers; ++y) {
+  for (int y = 0; y < kReceivers; ++y)
     for (int x = 0; x < kReceivers; ++x) places.emplace_back(place(x), place(y));
-  }
   return places;
 }
 
@@ -55,10 +55,13 @@ scene::LightFrustum make_frustum(const PlaneTilt& tilt) {
   frustum.texel_size_ws = kPlaneTexel_m;
   frustum.depth_range_ws = find_depth_range_m(tilt);
   frustum.direction_ws = glm::vec3(axes.away);
-  frustum.light_from_world = glm::transpose(glm::dmat4(glm::dvec4(axes.right, 0.0), glm::dvec4(axes.up, 0.0), glm::dvec4(-axes.away, 0.0), glm::dvec4(0.0, 0.0, 0.0, 1.0)));
+  frustum.light_from_world = glm::transpose(glm::dmat4(glm::dvec4(axes.right, 0.0), glm::dvec4(axes.up, 0.0),
+                                                       glm::dvec4(-axes.away, 0.0), glm::dvec4(0.0, 0.0, 0.0, 1.0)));
   const double depth = -1.0 / frustum.depth_range_ws;
-  frustum.clip_from_light = glm::dmat4(glm::dvec4(2.0, 0.0, 0.0, 0.0), glm::dvec4(0.0, 2.0, 0.0, 0.0), glm::dvec4(0.0, 0.0, depth, 0.0), glm::dvec4(0.0, 0.0, 0.5, 1.0));
-  const glm::dmat4 uv_from_light(glm::dvec4(1.0, 0.0, 0.0, 0.0), glm::dvec4(0.0, 1.0, 0.0, 0.0), glm::dvec4(0.0, 0.0, depth, 0.0), glm::dvec4(0.5, 0.5, 0.5, 1.0));
+  frustum.clip_from_light = glm::dmat4(glm::dvec4(2.0, 0.0, 0.0, 0.0), glm::dvec4(0.0, 2.0, 0.0, 0.0),
+                                       glm::dvec4(0.0, 0.0, depth, 0.0), glm::dvec4(0.0, 0.0, 0.5, 1.0));
+  const glm::dmat4 uv_from_light(glm::dvec4(1.0, 0.0, 0.0, 0.0), glm::dvec4(0.0, 1.0, 0.0, 0.0),
+                                 glm::dvec4(0.0, 0.0, depth, 0.0), glm::dvec4(0.5, 0.5, 0.5, 1.0));
   frustum.clip_from_world = glm::mat4(frustum.clip_from_light * frustum.light_from_world);
   frustum.uv_depth_from_world = glm::mat4(uv_from_light * frustum.light_from_world);
   return frustum;
@@ -69,7 +72,8 @@ scene::Scene make_scene(const PlaneTilt& tilt) {
   scene::Scene scene;
   scene.materials.emplace_back();
   scene::Mesh mesh;
-  for (const auto& [x, y] : {std::pair(-0.6, -0.6), {0.6, -0.6}, {0.6, 0.6}, {-0.6, 0.6}}) mesh.vertices.push_back({glm::vec3(find_point(tilt, {x, y})), {0.0f, 1.0f, 0.0f}, {}});
+  for (const auto& [x, y] : {std::pair(-0.6, -0.6), {0.6, -0.6}, {0.6, 0.6}, {-0.6, 0.6}})
+    mesh.vertices.push_back({glm::vec3(find_point(tilt, {x, y})), {0.0f, 1.0f, 0.0f}, {}});
   mesh.indices = {0, 1, 2, 0, 2, 3};
   scene.meshes.push_back(std::move(mesh));
   return scene;
@@ -97,7 +101,8 @@ class Plane : public TiltedPlane {
 
 class GlPlane final : public Plane {
  public:
-  GlPlane(const StressContext& context, filters::FilterRequest request) : shaders_(context.renderer->shaders), seed_(context.seed), request_(std::move(request)) {}
+  GlPlane(const StressContext& context, filters::FilterRequest request)
+      : shaders_(context.renderer->shaders), seed_(context.seed), request_(std::move(request)) {}
 
   void tilt(const PlaneTilt& tilt) override {
     tilt_ = tilt;
@@ -117,8 +122,10 @@ class GlPlane final : public Plane {
     render::Bias bias;
     bias.constant_depth = bias_m / frustum.depth_range_ws;
     const render::LightSetup light{frustum, 0.0, bias, seed_, {}};
-    if (passes_) passes_->retune(shaders_, request_.values, light);
-    else passes_.emplace(shaders_, request_, stage_->map, light);
+    if (passes_)
+      passes_->retune(shaders_, request_.values, light);
+    else
+      passes_.emplace(shaders_, request_, stage_->map, light);
     passes_->prefilter(stage_->map);
     passes_->lookup(stage_->gbuffer, stage_->map, stage_->target);
     return measure(stage_->target.texture().read_floats(1));
@@ -139,14 +146,16 @@ class GlPlane final : public Plane {
 
 class ModelPlane final : public Plane {
  public:
-  explicit ModelPlane(filters::FilterRequest request) : request_(std::move(request)), model_(filters::make_model(request_.spec.id)) {}
+  explicit ModelPlane(filters::FilterRequest request)
+      : request_(std::move(request)), model_(filters::make_model(request_.spec.id)) {}
 
   void tilt(const PlaneTilt& tilt) override {
     tilt_ = tilt;
     map_ = {kPlaneMapTexels, {}};
     for (int y = 0; y < kPlaneMapTexels; ++y) {
       for (int x = 0; x < kPlaneMapTexels; ++x) {
-        map_.stored.push_back(static_cast<float>(find_depth({(x + 0.5) * kPlaneTexel_m - 0.5, (y + 0.5) * kPlaneTexel_m - 0.5})));
+        map_.stored.push_back(
+            static_cast<float>(find_depth({(x + 0.5) * kPlaneTexel_m - 0.5, (y + 0.5) * kPlaneTexel_m - 0.5})));
       }
     }
   }
@@ -154,7 +163,8 @@ class ModelPlane final : public Plane {
   Acne find_acne(double bias_m) override {
     const auto lookup = model_->prepare({request_.spec, request_.values, map_, {}}, filters::Precision::kFloat);
     std::vector<float> visibility;
-    for (const glm::dvec2& place : place_receivers()) visibility.push_back(static_cast<float>(lookup->at(make_receiver(place, bias_m)).visibility));
+    for (const glm::dvec2& place : place_receivers())
+      visibility.push_back(static_cast<float>(lookup->at(make_receiver(place, bias_m)).visibility));
     return measure(visibility);
   }
 
@@ -183,9 +193,13 @@ double find_gain_m(const PlaneTilt& tilt, double reach_texels) {
   return reach_texels * kPlaneTexel_m * tangent(tilt) * (tilt.diagonal ? std::numbers::sqrt2 : 1.0);
 }
 
-std::unique_ptr<TiltedPlane> make_gl_plane(const StressContext& context, const filters::FilterRequest& request) { return std::make_unique<GlPlane>(context, request); }
+std::unique_ptr<TiltedPlane> make_gl_plane(const StressContext& context, const filters::FilterRequest& request) {
+  return std::make_unique<GlPlane>(context, request);
+}
 
-std::unique_ptr<TiltedPlane> make_model_plane(const filters::FilterRequest& request) { return std::make_unique<ModelPlane>(request); }
+std::unique_ptr<TiltedPlane> make_model_plane(const filters::FilterRequest& request) {
+  return std::make_unique<ModelPlane>(request);
+}
 
 std::optional<double> find_needed_bias(TiltedPlane& plane, double theory_m) {
   const auto has_acne = [&](double bias_m) { return plane.find_acne(bias_m).mean_shadow > kLeastAcne; };

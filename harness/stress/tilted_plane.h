@@ -17,8 +17,8 @@ struct PlaneTilt {
 inline constexpr int kPlaneMapTexels = 64;
 inline constexpr double kPlaneTexel_m = 1.0 / kPlaneMapTexels;
 
-/// Gives the depth that the plane gains over a kernel which reaches so many texels on each axis, in metres: s r tan(angle), and
-/// sqrt 2 times that on the diagonal. What a bias has to cover.
+/// Gives the depth that the plane gains over a kernel which reaches so many texels on each axis, in metres: s r
+/// tan(angle), and sqrt 2 times that on the diagonal. What a bias has to cover.
 double find_gain_m(const PlaneTilt& tilt, double reach_texels);
 
 /// The acne on a plane that is lit.
@@ -39,7 +39,8 @@ class TiltedPlane {
   virtual double rounding_m() const = 0;
 };
 
-/// Requires context.renderer, which outlives the plane. Throws Error as render::FilterPasses and render::ShadowMap, at tilt().
+/// Requires context.renderer, which outlives the plane. Throws Error as render::FilterPasses and render::ShadowMap, at
+/// tilt().
 std::unique_ptr<TiltedPlane> make_gl_plane(const StressContext& context, const filters::FilterRequest& request);
 
 /// Depths computed at the texels' centres, looked up by the filter's scalar model. Requires a filter that has one.

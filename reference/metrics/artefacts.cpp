@@ -29,9 +29,8 @@ class Window {
     const int x = static_cast<int>(i) % width_, y = static_cast<int>(i) / width_;
     if (x == 0 || y == 0 || x + 1 == width_ || y + 1 == height_) return false;
     for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
+      for (int dx = -1; dx <= 1; ++dx)
         if (!visit(static_cast<std::size_t>((y + dy) * width_ + x + dx))) return false;
-      }
     }
     return true;
   }
@@ -45,7 +44,8 @@ class Window {
 
 ArtefactMasks make_artefact_masks(const RaysAtReceivers& rays) {
   const std::size_t pixels = rays.counts.size();
-  ArtefactMasks masks{std::vector<std::uint8_t>(pixels), std::vector<std::uint8_t>(pixels), std::vector<std::uint8_t>(pixels)};
+  ArtefactMasks masks{std::vector<std::uint8_t>(pixels), std::vector<std::uint8_t>(pixels),
+                      std::vector<std::uint8_t>(pixels)};
   for (std::size_t i = 0; i < pixels; ++i) {
     if (!rays.counts[i]) continue;
     const bool settled = rays.area_settled[i] && rays.surroundings_settled[i];
@@ -58,11 +58,13 @@ ArtefactMasks make_artefact_masks(const RaysAtReceivers& rays) {
 }
 
 std::optional<double> rate_below(std::span<const float> image, std::span<const std::uint8_t> mask, double limit) {
-  return rate(image, mask, [&](float value) { return static_cast<double>(value) < limit; });
+  return rate(
+      image, mask, [&](float value) { return static_cast<double>(value) < limit; });
 }
 
 std::optional<double> rate_above(std::span<const float> image, std::span<const std::uint8_t> mask, double limit) {
-  return rate(image, mask, [&](float value) { return static_cast<double>(value) > limit; });
+  return rate(
+      image, mask, [&](float value) { return static_cast<double>(value) > limit; });
 }
 
 std::optional<double> rate_noise(std::span<const float> image, std::span<const double> closer,

@@ -7,18 +7,18 @@
 
 namespace shadowbench::reference {
 
-// The faults that a person sees, each as a rate over a mask of receivers. Masks follow from rays, the same for all filters of
-// one view and map; only the mask of noise follows from the filter's own kernel.
+// The faults that a person sees, each as a rate over a mask of receivers. Masks follow from rays, the same for all
+// filters of one view and map; only the mask of noise follows from the filter's own kernel.
 
 /// What rays say of each receiver of a view.
 struct RaysAtReceivers {
-  std::span<const std::uint8_t> counts;     ///< 0: background, or turned away from the light
-  std::span<const float> area;              ///< fraction of the light that is seen
-  std::span<const std::uint8_t> area_settled;          ///< all rays of the pixel and of its eight neighbours agree
-  std::span<const float> surroundings;      ///< fraction of a square, wider than any kernel of the run, that is lit
+  std::span<const std::uint8_t> counts;        ///< 0: background, or turned away from the light
+  std::span<const float> area;                 ///< fraction of the light that is seen
+  std::span<const std::uint8_t> area_settled;  ///< all rays of the pixel and of its eight neighbours agree
+  std::span<const float> surroundings;         ///< fraction of a square, wider than any kernel of the run, that is lit
   std::span<const std::uint8_t> surroundings_settled;  ///< likewise
-  std::span<const float> first_blocker_ws;  ///< metres along the light to the surface that light meets first
-  double contact_ws = 0.0;                  ///< metres: nearer blockers touch the receiver
+  std::span<const float> first_blocker_ws;             ///< metres along the light to the surface that light meets first
+  double contact_ws = 0.0;                             ///< metres: nearer blockers touch the receiver
 };
 
 /// Where each fault can occur; 1 inside.
@@ -30,12 +30,13 @@ struct ArtefactMasks {
 
 /// From which visibility on, and in which receivers, an image has a fault that a person sees.
 struct ArtefactLimits {
-  double acne_below = 0.9;         ///< visibility of a wholly lit receiver
-  double guard_texels = 1.0;       ///< the surroundings of a receiver are the run's widest kernel and this much around it
-  double leak_above = 0.1;         ///< visibility of a wholly blocked receiver
+  double acne_below = 0.9;    ///< visibility of a wholly lit receiver
+  double guard_texels = 1.0;  ///< the surroundings of a receiver are the run's widest kernel and this much around it
+  double leak_above = 0.1;    ///< visibility of a wholly blocked receiver
   double contact_gap_above = 0.5;  ///< visibility of a receiver that is blocked by what touches it (peter-panning)
-  double contact_texels = 8.0;     ///< how near along the light that is at most; what leaks is blocked by something farther
-  double noise_above = 0.05;       ///< image less its percentage-closer filter, away from its 3 x 3 mean
+  double contact_texels =
+      8.0;                    ///< how near along the light that is at most; what leaks is blocked by something farther
+  double noise_above = 0.05;  ///< image less its percentage-closer filter, away from its 3 x 3 mean
 };
 inline constexpr ArtefactLimits kArtefactLimits;
 
@@ -51,11 +52,11 @@ std::optional<double> rate_below(std::span<const float> image, std::span<const s
 /// The share of a mask's pixels whose value is greater than a limit, likewise.
 std::optional<double> rate_above(std::span<const float> image, std::span<const std::uint8_t> mask, double limit);
 
-/// The share of a filter's penumbra that is noisy: the image less the brute-force percentage-closer filter of its kernel
-/// deviates from its own mean over 3 x 3 pixels by more than noise_above. The penumbra is where the ray-traced kernel lies
-/// strictly between 0 and 1 and all nine pixels count. Edges that the map draws as stairs are in image and percentage-closer
-/// filter alike, and cancel. Meant for filters with random taps; others differ from their percentage-closer filter by more
-/// than noise. Gives nothing where the penumbra has fewer than kFewestReceivers.
+/// The share of a filter's penumbra that is noisy: the image less the brute-force percentage-closer filter of its
+/// kernel deviates from its own mean over 3 x 3 pixels by more than noise_above. The penumbra is where the ray-traced
+/// kernel lies strictly between 0 and 1 and all nine pixels count. Edges that the map draws as stairs are in image and
+/// percentage-closer filter alike, and cancel. Meant for filters with random taps; others differ from their
+/// percentage-closer filter by more than noise. Gives nothing where the penumbra has fewer than kFewestReceivers.
 std::optional<double> rate_noise(std::span<const float> image, std::span<const double> closer,
                                  std::span<const float> kernel, std::span<const std::uint8_t> counts, int width);
 

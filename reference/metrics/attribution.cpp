@@ -41,9 +41,8 @@ Attribution attribute_error(const AttributionStations& stations) {
     error_squares += error * error;
     count += 1.0;
   }
-  for (std::size_t p = 0; p < kErrorParts && error_squares > 0.0; ++p) {
+  for (std::size_t p = 0; p < kErrorParts && error_squares > 0.0; ++p)
     result.stats[p] = PartStats{std::sqrt(squares[p] / count), products[p] / error_squares};
-  }
   return result;
 }
 

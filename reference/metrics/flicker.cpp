@@ -12,11 +12,14 @@ double square_change(float now, float before) {
   return change * change;
 }
 
-double root_mean(double squares, std::int64_t count) { return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0; }
+double root_mean(double squares, std::int64_t count) {
+  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+}
 
 }  // namespace
 
-FlickerMeter::FlickerMeter(std::vector<std::uint8_t> mask) : mask_(std::move(mask)), excess_(mask_.size()), excess_steps_(mask_.size()) {}
+FlickerMeter::FlickerMeter(std::vector<std::uint8_t> mask)
+    : mask_(std::move(mask)), excess_(mask_.size()), excess_steps_(mask_.size()) {}
 
 void FlickerMeter::Turn::follow(float value) {
   const float gone = value - farthest;

@@ -13,16 +13,17 @@ inline constexpr float kReturn = 0.05f;
 /// How the visibility of fixed receivers changes from frame to frame, and how that differs from how the truth changes.
 /// Source: derived; with d and e the changes of image and truth from one frame to the next, at one receiver.
 struct FlickerStats {
-  std::int64_t receivers = 0;       ///< of the mask
-  std::int64_t not_finite = 0;      ///< pairs of a receiver and a step that are left out, because the image is NaN or infinite there
-  double change = 0.0;              ///< root mean square of d, over receivers and steps
-  double truth_change = 0.0;        ///< of e
-  double flicker = 0.0;             ///< of d - e: change that the truth does not have, or lacks
-  double returning = 0.0;           ///< share of the receivers that went back and forth by more than kReturn
-  double truth_returning = 0.0;     ///< the same of the truth
-  std::vector<double> mean_change;  ///< of each step, the mean of |d| over receivers
+  std::int64_t receivers = 0;  ///< of the mask
+  std::int64_t not_finite =
+      0;  ///< pairs of a receiver and a step that are left out, because the image is NaN or infinite there
+  double change = 0.0;                    ///< root mean square of d, over receivers and steps
+  double truth_change = 0.0;              ///< of e
+  double flicker = 0.0;                   ///< of d - e: change that the truth does not have, or lacks
+  double returning = 0.0;                 ///< share of the receivers that went back and forth by more than kReturn
+  double truth_returning = 0.0;           ///< the same of the truth
+  std::vector<double> mean_change;        ///< of each step, the mean of |d| over receivers
   std::vector<double> truth_mean_change;  ///< of each step, the mean of |e|
-  std::vector<float> by_pixel;      ///< root mean square of d - e over the steps; 0 outside the mask
+  std::vector<float> by_pixel;            ///< root mean square of d - e over the steps; 0 outside the mask
 };
 
 /// Takes frames one by one and keeps no more than the last.

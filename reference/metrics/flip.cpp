@@ -100,7 +100,8 @@ Plane filter_rows(const Plane& plane, int width, int height, const Weights& weig
     std::copy_n(row, width, padded.begin() + radius);
     std::fill_n(padded.begin() + radius + width, radius, row[width - 1]);
     for (int i = 0; i < taps; ++i) {
-      add_row(result.data() + static_cast<std::ptrdiff_t>(y) * width, padded.data() + i, weights[static_cast<std::size_t>(i)], width);
+      add_row(result.data() + static_cast<std::ptrdiff_t>(y) * width, padded.data() + i,
+              weights[static_cast<std::size_t>(i)], width);
     }
   }
   return result;
@@ -112,7 +113,8 @@ Plane filter_columns(const Plane& plane, int width, int height, const Weights& w
   for (int y = 0; y < height; ++y) {
     for (int i = 0; i < taps; ++i) {
       const std::ptrdiff_t from = std::clamp(y + i - radius, 0, height - 1);
-      add_row(result.data() + static_cast<std::ptrdiff_t>(y) * width, plane.data() + from * width, weights[static_cast<std::size_t>(i)], width);
+      add_row(result.data() + static_cast<std::ptrdiff_t>(y) * width, plane.data() + from * width,
+              weights[static_cast<std::size_t>(i)], width);
     }
   }
   return result;
@@ -125,7 +127,8 @@ Plane filter_both(const Plane& plane, int width, int height, const Weights& alon
 /// Blurs a channel with a sum of Gaussians that weighs 1 in all.
 Plane blur_channel(const Plane& plane, int width, int height, const std::vector<Gaussian>& sum, double ppd) {
   const double widest = kBlueYellow[0].b;  // the paper takes one radius for all channels
-  const int radius = static_cast<int>(std::ceil(3.0 * std::sqrt(widest / (2.0 * std::numbers::pi * std::numbers::pi)) * ppd));
+  const int radius =
+      static_cast<int>(std::ceil(3.0 * std::sqrt(widest / (2.0 * std::numbers::pi * std::numbers::pi)) * ppd));
   Plane result(plane.size(), 0.0);
   double total = 0.0;
   for (const Gaussian& gaussian : sum) {
@@ -177,9 +180,8 @@ Plane detect_features(const LinearPicture& picture, double ppd, int derivative) 
   const int radius = static_cast<int>(std::ceil(3.0 * deviation));
   const auto gaussian = [&](double i) { return std::exp(-0.5 * i * i / (deviation * deviation)); };
   const Weights across = balance(sample_weights(radius, gaussian));
-  const Weights along = balance(sample_weights(radius, [&](double i) {
-    return gaussian(i) * (derivative == 1 ? -i : i * i / (deviation * deviation) - 1.0);
-  }));
+  const Weights along = balance(sample_weights(
+      radius, [&](double i) { return gaussian(i) * (derivative == 1 ? -i : i * i / (deviation * deviation) - 1.0); }));
   const Plane x = filter_both(luminance, picture.width, picture.height, along, across);
   const Plane y = filter_both(luminance, picture.width, picture.height, across, along);
   Plane strength(luminance.size());
@@ -190,7 +192,8 @@ Plane detect_features(const LinearPicture& picture, double ppd, int derivative) 
 }  // namespace
 
 FlipView view_for_flip(const LinearPicture& picture, double ppd) {
-  return {picture.width, picture.height, perceive(picture, ppd), detect_features(picture, ppd, 1), detect_features(picture, ppd, 2)};
+  return {picture.width, picture.height, perceive(picture, ppd), detect_features(picture, ppd, 1),
+          detect_features(picture, ppd, 2)};
 }
 
 std::vector<float> measure_flip(const FlipView& a, const FlipView& b) {

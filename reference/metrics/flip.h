@@ -1,7 +1,6 @@
 #pragma once
 
 #include <glm/glm.hpp>
-
 #include <vector>
 
 namespace shadowbench::reference {
@@ -28,8 +27,8 @@ struct FlipView {
 /// Looks at a picture from a distance. Requires finite pixels. Cost: about 0.2 s per megapixel on one core.
 FlipView view_for_flip(const LinearPicture& picture, double pixels_per_degree = kDefaultPixelsPerDegree);
 
-/// Gives the LDR-FLIP difference of two pictures per pixel, in [0,1]: 0 where an observer who flips between them at this
-/// viewing distance sees no change. Symmetric in its arguments.
+/// Gives the LDR-FLIP difference of two pictures per pixel, in [0,1]: 0 where an observer who flips between them at
+/// this viewing distance sees no change. Symmetric in its arguments.
 ///
 /// Source: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild 2020, FLIP: A Difference Evaluator for
 /// Alternating Images, HPG; the constants are the published ones. Borders are replicated.

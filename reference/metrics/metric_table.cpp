@@ -54,7 +54,8 @@ constexpr Metric kTable[] = {
      "shows brighter than 0.5"},
     {"artefact.noise", "share", kZeroToOne, kRun, nullptr,
      "of the receivers in the filter's own penumbra (where its ray-traced kernel is strictly between 0 and 1): those "
-     "where image less the percentage-closer filter of that kernel differs by more than 0.05 from its mean over the 3x3 "
+     "where image less the percentage-closer filter of that kernel differs by more than 0.05 from its mean over the "
+     "3x3 "
      "neighbourhood; for filters of the kind 'stochastic' only"},
     {"attribution.numeric.rms", "visibility", kPositive, kRun, nullptr,
      "root mean square of image less double-precision model: precision, storage format, hardware filtering"},

@@ -28,15 +28,18 @@ float find_largest(std::span<const float> channels) {
 }
 
 /// Spreads what is marked to `radius` texels on either side, along rows or columns.
-std::vector<std::uint8_t> spread(const std::vector<std::uint8_t>& marked, std::size_t side, int radius, bool along_rows) {
+std::vector<std::uint8_t> spread(const std::vector<std::uint8_t>& marked, std::size_t side, int radius,
+                                 bool along_rows) {
   std::vector<std::uint8_t> result(marked.size(), 0);
   const auto last = static_cast<std::ptrdiff_t>(side) - 1;
   for (std::size_t i = 0; i < marked.size(); ++i) {
     if (!marked[i]) continue;
     const auto at = static_cast<std::ptrdiff_t>(along_rows ? i % side : i / side);
-    const std::ptrdiff_t from = std::max<std::ptrdiff_t>(at - radius, 0), to = std::min<std::ptrdiff_t>(at + radius, last);
+    const std::ptrdiff_t from = std::max<std::ptrdiff_t>(at - radius, 0),
+                         to = std::min<std::ptrdiff_t>(at + radius, last);
     for (std::ptrdiff_t t = from; t <= to; ++t) {
-      result[along_rows ? i - i % side + static_cast<std::size_t>(t) : static_cast<std::size_t>(t) * side + i % side] = 1;
+      result[along_rows ? i - i % side + static_cast<std::size_t>(t) : static_cast<std::size_t>(t) * side + i % side] =
+          1;
     }
   }
   return result;
@@ -56,7 +59,9 @@ std::vector<std::uint8_t> find_saturated(const StoredMap& map) {
   StoredMap before = map;
   before.values = map.before_blur;
   std::vector<std::uint8_t> marked(count_texels(before));
-  const auto is_saturated = [&](std::span<const float> channels) { return static_cast<double>(find_largest(channels)) >= map.largest_number; };
+  const auto is_saturated = [&](std::span<const float> channels) {
+    return static_cast<double>(find_largest(channels)) >= map.largest_number;
+  };
   bool any = false;
   for (std::size_t i = 0; i < marked.size(); ++i) {
     marked[i] = is_saturated(texel(before, i)) ? 1 : 0;
@@ -100,9 +105,12 @@ TexelHealth check_texels(const StoredMap& map) {
   for (std::size_t i = 0; i < count_texels(map); ++i) {
     const float here = find_largest(texel(map, i));
     ++health.texels;
-    if (std::isnan(here)) ++health.nan;
-    else if (std::isinf(here) || is_marked(saturated, i)) ++health.overflowed;
-    else largest = std::max(largest, static_cast<double>(here));
+    if (std::isnan(here))
+      ++health.nan;
+    else if (std::isinf(here) || is_marked(saturated, i))
+      ++health.overflowed;
+    else
+      largest = std::max(largest, static_cast<double>(here));
   }
   if (health.broken() == 0) health.largest = largest;
   if (map.moments) check_variances(map, health);

@@ -11,20 +11,21 @@ namespace shadowbench::reference {
 struct StoredMap {
   std::span<const float> values;  ///< texels x channels, interleaved
   int channels = 1;
-  double largest_number = 0.0;    ///< that the map's format holds
-  bool moments = false;           ///< channels in pairs, a mean and the mean of its square; requires an even number
-  /// Where a format may saturate instead of becoming infinite, which a GL is free to do: the same map before its blur, in which
-  /// the largest number of the format stands for overflow; a square. Empty: only infinity does.
+  double largest_number = 0.0;  ///< that the map's format holds
+  bool moments = false;         ///< channels in pairs, a mean and the mean of its square; requires an even number
+  /// Where a format may saturate instead of becoming infinite, which a GL is free to do: the same map before its blur,
+  /// in which the largest number of the format stands for overflow; a square. Empty: only infinity does.
   std::span<const float> before_blur = {};
   int blur_radius_texels = 0;
-  std::span<const float> border = {};  ///< what that blur reads outside the map, one value a channel; empty: nothing of its own
+  std::span<const float> border =
+      {};  ///< what that blur reads outside the map, one value a channel; empty: nothing of its own
 };
 
 /// What numbers became of in an encoded map. min() and clamp() in a lookup hide them in the image.
 struct TexelHealth {
   std::int64_t texels = 0;
   std::int64_t overflowed = 0;  ///< texels that overflowed, or into which the blur mixed one that did; none that is NaN
-  std::int64_t nan = 0;       ///< texels with a channel that is NaN
+  std::int64_t nan = 0;         ///< texels with a channel that is NaN
   std::optional<double> largest;                  ///< magnitude stored; nothing where a texel is broken
   std::optional<std::int64_t> negative_variance;  ///< texels whose variance is below 0 before any clamp; moments only
   std::optional<double> lowest_variance;          ///< moments only, and only where some texel is finite
@@ -36,12 +37,12 @@ struct TexelHealth {
 TexelHealth check_texels(const StoredMap& map);
 
 /// Gives, per texel, ln(largest number) - ln(largest magnitude of the texel's channels): how much larger an exponent
-/// could have been; the largest of a 32-bit float is e^88.72. Infinite where the texel is 0, negatively where it overflowed,
-/// NaN where it is NaN.
+/// could have been; the largest of a 32-bit float is e^88.72. Infinite where the texel is 0, negatively where it
+/// overflowed, NaN where it is NaN.
 std::vector<float> measure_headroom(const StoredMap& map);
 
-/// Gives, per texel, the mean of the square less the square of the mean, the lowest over the pairs of channels, in single
-/// precision as a lookup computes it. Requires moments.
+/// Gives, per texel, the mean of the square less the square of the mean, the lowest over the pairs of channels, in
+/// single precision as a lookup computes it. Requires moments.
 std::vector<float> measure_variance(const StoredMap& map);
 
 /// A bound's image with what it must not be darker than, one value per pixel each.
@@ -54,12 +55,13 @@ struct BoundStations {
 
 /// How far a bound is kept.
 struct BoundCheck {
-  std::int64_t receivers = 0;         ///< that were compared: image and tolerance are numbers
-  std::int64_t violations = 0;        ///< darker by more than rounding explains
-  std::int64_t exact_violations = 0;  ///< where the model in double precision is darker: the formula with these parameters is no bound
-  double shortfall_max = 0.0;         ///< largest closer - image, whether rounding explains it or not
-  std::vector<float> shortfall;       ///< per pixel: closer - image where that is positive, else 0
-  std::vector<float> violation;       ///< per pixel: what of that is more than the tolerance
+  std::int64_t receivers = 0;   ///< that were compared: image and tolerance are numbers
+  std::int64_t violations = 0;  ///< darker by more than rounding explains
+  std::int64_t exact_violations =
+      0;  ///< where the model in double precision is darker: the formula with these parameters is no bound
+  double shortfall_max = 0.0;    ///< largest closer - image, whether rounding explains it or not
+  std::vector<float> shortfall;  ///< per pixel: closer - image where that is positive, else 0
+  std::vector<float> violation;  ///< per pixel: what of that is more than the tolerance
 };
 
 /// Compares a bound with what it bounds; sums of weights may differ by 1e-6 on either side.

@@ -43,7 +43,8 @@ PixelTest test_pixels(std::span<const double> probabilities, double level) {
   test.tested = static_cast<std::int64_t>(probabilities.size());
   if (probabilities.empty()) return test;
   test.corrected_level = level / static_cast<double>(probabilities.size());
-  test.beyond = std::count_if(probabilities.begin(), probabilities.end(), [&](double p) { return p < test.corrected_level; });
+  test.beyond =
+      std::count_if(probabilities.begin(), probabilities.end(), [&](double p) { return p < test.corrected_level; });
   const auto worst = std::min_element(probabilities.begin(), probabilities.end());
   test.worst = static_cast<std::size_t>(worst - probabilities.begin());
   test.smallest_p = *worst;

@@ -26,9 +26,9 @@ struct Share {
   double lookups = 0.0;
 };
 
-/// Gives the probability, two-sided, that two shares differ so much or more where both are of one probability, whichever it is:
-/// right for few lookups, and where nearly all agree. Counts are rounded to whole numbers.
-/// Source: Fisher 1935, The Logic of Inductive Inference (the exact test), twice its one-sided value.
+/// Gives the probability, two-sided, that two shares differ so much or more where both are of one probability,
+/// whichever it is: right for few lookups, and where nearly all agree. Counts are rounded to whole numbers. Source:
+/// Fisher 1935, The Logic of Inductive Inference (the exact test), twice its one-sided value.
 double find_p(const Share& a, const Share& b);
 
 /// Says whether chance explains the differences of many pixels.
@@ -40,9 +40,8 @@ struct PixelTest {
   double corrected_level = 0.0;  ///< the level over the number of tests: what is below it is beyond chance
 };
 
-/// Tests every pixel's probability at `level`, corrected for their number: the probability that any is found where all are
-/// chance is at most `level`.
-/// Source: Bonferroni's inequality.
+/// Tests every pixel's probability at `level`, corrected for their number: the probability that any is found where all
+/// are chance is at most `level`. Source: Bonferroni's inequality.
 PixelTest test_pixels(std::span<const double> probabilities, double level);
 
 }  // namespace shadowbench::reference

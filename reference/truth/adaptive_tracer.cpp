@@ -58,9 +58,8 @@ class FanTracer {
 
   static void write(const SampleSets::Lanes& offsets, std::array<RayPacket::Lanes, 3>& to, const glm::vec3& base,
                     const glm::vec3& along_x, const glm::vec3& along_y) {
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < 3; ++axis)
       write_lanes(to[static_cast<std::size_t>(axis)], base[axis], along_x[axis], along_y[axis], offsets);
-    }
   }
 
   /// Rays below the receiver's own plane are blocked by it.
@@ -108,7 +107,8 @@ class AdaptiveTracer {
     tbb::parallel_for(all, [&](const tbb::blocked_range2d<int>& tile) {
       for (int y = tile.rows().begin(); y < tile.rows().end(); ++y) {
         for (int x = tile.cols().begin(); x < tile.cols().end(); ++x) {
-          const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(receivers_.width) + static_cast<std::size_t>(x);
+          const std::size_t i =
+              static_cast<std::size_t>(y) * static_cast<std::size_t>(receivers_.width) + static_cast<std::size_t>(x);
           if (receivers_.points[i].counts) work(i);
         }
       }

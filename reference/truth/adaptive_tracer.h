@@ -14,15 +14,14 @@ struct RayFan {
   glm::vec3 direction{0.0f};
   glm::vec3 direction_x{0.0f};
   glm::vec3 direction_y{0.0f};
-  glm::vec3 normal{0.0f};  ///< rays below this plane are blocked
-  float reach = 0.0f;      ///< in units of a direction's length
+  glm::vec3 normal{0.0f};       ///< rays below this plane are blocked
+  float reach = 0.0f;           ///< in units of a direction's length
   bool origin_moves = true;     ///< false: origin_x and origin_y are 0
   bool direction_moves = true;  ///< false: direction_x and direction_y are 0
 };
 
 /// Traces every receiver's fan over the same sample sets; see trace_area() for when a pixel stops.
 TracedVisibility trace_fans(const Occluders& occluders, const ReceiverImage& receivers, const SampleSets& samples,
-                            const TraceSettings& settings,
-                            const std::function<RayFan(const ReceiverPoint&)>& make_fan);
+                            const TraceSettings& settings, const std::function<RayFan(const ReceiverPoint&)>& make_fan);
 
 }  // namespace shadowbench::reference

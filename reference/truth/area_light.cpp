@@ -16,7 +16,9 @@ struct Tangents {
 
 Tangents make_tangents(const glm::dvec3& axis) {
   const glm::dvec3 n = glm::normalize(axis), a = glm::abs(n);
-  const glm::dvec3 least = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0) : a.y <= a.z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+  const glm::dvec3 least = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0)
+                           : a.y <= a.z             ? glm::dvec3(0, 1, 0)
+                                                    : glm::dvec3(0, 0, 1);
   const glm::dvec3 u = glm::normalize(glm::cross(n, least));
   return {u, glm::cross(n, u)};
 }

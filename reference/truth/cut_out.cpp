@@ -15,7 +15,8 @@ float read_alpha(const CutOut& cut_out, glm::vec2 uv) {
   const glm::vec2 at = uv * glm::vec2(cut_out.width, cut_out.height) - 0.5f;
   const glm::vec2 base = glm::floor(at), weight = at - base;
   const auto texel = [&](int dx, int dy) {
-    const int x = wrap(static_cast<int>(base.x) + dx, cut_out.width), y = wrap(static_cast<int>(base.y) + dy, cut_out.height);
+    const int x = wrap(static_cast<int>(base.x) + dx, cut_out.width),
+              y = wrap(static_cast<int>(base.y) + dy, cut_out.height);
     return static_cast<float>(cut_out.alpha[static_cast<std::size_t>(y * cut_out.width + x)]) / 255.0f;
   };
   const float low = glm::mix(texel(0, 0), texel(1, 0), weight.x), high = glm::mix(texel(0, 1), texel(1, 1), weight.x);
@@ -26,7 +27,8 @@ float read_alpha(const CutOut& cut_out, glm::vec2 uv) {
 
 bool HoleTest::is_hole(std::uint32_t triangle, float u, float v) const {
   const std::uint32_t* corner = &indices[3 * static_cast<std::size_t>(triangle)];
-  const glm::vec2 uv = (1.0f - u - v) * cut_out.uvs[corner[0]] + u * cut_out.uvs[corner[1]] + v * cut_out.uvs[corner[2]];
+  const glm::vec2 uv =
+      (1.0f - u - v) * cut_out.uvs[corner[0]] + u * cut_out.uvs[corner[1]] + v * cut_out.uvs[corner[2]];
   return cut_out.base_alpha * read_alpha(cut_out, uv) < cut_out.cutoff;
 }
 

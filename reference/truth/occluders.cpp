@@ -61,12 +61,13 @@ struct Occluders::Impl {
     rtcReleaseDevice(device);
   }
 
-  /// Embree reports what fails by a null pointer and a code of the device; without a look at them, rays would miss everything.
-  /// Throws std::bad_alloc, or std::runtime_error for what else may fail.
+  /// Embree reports what fails by a null pointer and a code of the device; without a look at them, rays would miss
+  /// everything. Throws std::bad_alloc, or std::runtime_error for what else may fail.
   void require(bool is_done) const {
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_OUT_OF_MEMORY || (!is_done && error == RTC_ERROR_NONE)) throw std::bad_alloc();
-    if (error != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot take the scene: error " + std::to_string(error));
+    if (error != RTC_ERROR_NONE)
+      throw std::runtime_error("Embree cannot take the scene: error " + std::to_string(error));
   }
 
   void add(const OccluderMesh& mesh) {
@@ -74,7 +75,8 @@ struct Occluders::Impl {
     triangles += static_cast<std::int64_t>(indices.size() / 3);
     degenerate += static_cast<std::int64_t>((mesh.indices.size() - indices.size()) / 3);
     if (indices.empty()) return;
-    const std::unique_ptr<RTCGeometryTy, decltype(&rtcReleaseGeometry)> owned(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE), &rtcReleaseGeometry);
+    const std::unique_ptr<RTCGeometryTy, decltype(&rtcReleaseGeometry)> owned(
+        rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE), &rtcReleaseGeometry);
     RTCGeometry geometry = owned.get();
     require(geometry != nullptr);
     void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <glm/glm.hpp>
-
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,12 +11,12 @@
 
 namespace shadowbench::reference {
 
-/// Says where a mesh has holes: a ray passes where the alpha of its texture is under the cutoff. The texture repeats and is
-/// read bilinearly, its first row at v = 0. The depth pass discards by the same rule, but reads a smaller mip level where
-/// the map has fewer texels than the texture: fine holes can be lost there, which is the map's error.
+/// Says where a mesh has holes: a ray passes where the alpha of its texture is under the cutoff. The texture repeats
+/// and is read bilinearly, its first row at v = 0. The depth pass discards by the same rule, but reads a smaller mip
+/// level where the map has fewer texels than the texture: fine holes can be lost there, which is the map's error.
 struct CutOut {
-  std::vector<glm::vec2> uvs;       ///< one per position
-  int width = 0;                    ///< of the texture; 0: none, alpha is `base_alpha` everywhere
+  std::vector<glm::vec2> uvs;  ///< one per position
+  int width = 0;               ///< of the texture; 0: none, alpha is `base_alpha` everywhere
   int height = 0;
   std::vector<std::uint8_t> alpha;  ///< width * height
   float base_alpha = 1.0f;          ///< factor
@@ -37,8 +36,8 @@ struct Box {
   glm::vec3 max{-1.0f};
 };
 
-/// Gives how far rays start off a surface whose coordinates, and whose scene's, are as large as these: a bound on the error
-/// that single precision may have left in an interpolated point. All in metres.
+/// Gives how far rays start off a surface whose coordinates, and whose scene's, are as large as these: a bound on the
+/// error that single precision may have left in an interpolated point. All in metres.
 float origin_offset(float largest_coordinate, float largest_of_scene);
 
 /// A scene to trace shadow rays in.

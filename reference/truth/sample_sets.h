@@ -1,9 +1,8 @@
 #pragma once
 
-#include <glm/glm.hpp>
-
 #include <cstdint>
 #include <functional>
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "reference/truth/ray_packet.h"
@@ -16,8 +15,8 @@ inline constexpr int kScrambles = RayPacket::kSize;
 /// Low-discrepancy points, mapped once to where rays go: 16 randomisations, of which neighbouring pixels take different
 /// ones, each with 16 independent scrambles side by side as the lanes of a packet.
 ///
-/// Each scramble is a Sobol sequence of its own Owen scrambling; the randomisations differ by digital shifts, which keep
-/// it uniform. The first 4^k points of a scramble are evenly spread.
+/// Each scramble is a Sobol sequence of its own Owen scrambling; the randomisations differ by digital shifts, which
+/// keep it uniform. The first 4^k points of a scramble are evenly spread.
 class SampleSets {
  public:
   static constexpr int kSets = 16;
@@ -35,7 +34,8 @@ class SampleSets {
   SampleSets(int max_points, std::uint32_t seed, const Mapping& mapping);
 
   const Lanes& at(int set, int point) const {
-    return lanes_[static_cast<std::size_t>(set) * static_cast<std::size_t>(max_points_) + static_cast<std::size_t>(point)];
+    return lanes_[static_cast<std::size_t>(set) * static_cast<std::size_t>(max_points_) +
+                  static_cast<std::size_t>(point)];
   }
 
   int max_points() const { return max_points_; }

@@ -29,9 +29,8 @@ std::uint32_t reverse_bits(std::uint32_t x) {
 std::uint32_t second_dimension(std::uint32_t index) {
   static constexpr std::array<std::uint32_t, kBits> kDirections = make_directions();
   std::uint32_t bits = 0;
-  for (std::size_t i = 0; index; index >>= 1, ++i) {
+  for (std::size_t i = 0; index; index >>= 1, ++i)
     if (index & 1u) bits ^= kDirections[i];
-  }
   return bits;
 }
 
@@ -40,7 +39,8 @@ std::uint32_t scramble(std::uint32_t bits, std::uint32_t seed) {
   std::uint32_t result = 0;
   for (int i = 0; i < kBits; ++i) {
     const std::uint32_t above = i == 0 ? 0u : bits >> (kBits - i);
-    const std::uint32_t flip = filters::hash_bits(above ^ filters::hash_bits(seed + 0x9e3779b9u * static_cast<std::uint32_t>(i + 1))) & 1u;
+    const std::uint32_t flip =
+        filters::hash_bits(above ^ filters::hash_bits(seed + 0x9e3779b9u * static_cast<std::uint32_t>(i + 1))) & 1u;
     result |= (((bits >> (kBits - 1 - i)) & 1u) ^ flip) << (kBits - 1 - i);
   }
   return result;

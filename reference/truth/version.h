@@ -4,7 +4,8 @@
 
 namespace shadowbench::reference {
 
-/// Names the code that traces: it changes with the sources of this folder and of the kernels, and with Embree's version.
+/// Names the code that traces: it changes with the sources of this folder and of the kernels, and with Embree's
+/// version.
 std::string truth_version();
 
 }  // namespace shadowbench::reference

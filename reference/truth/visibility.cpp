@@ -35,17 +35,20 @@ RayFan make_kernel_fan(const Occluders& occluders, const ReceiverPoint& point, c
 /// Calls `work` with up to a packet's number of receivers that count, row by row.
 template <class Work>
 void for_each_group(const ReceiverImage& receivers, Work work) {
-  tbb::parallel_for(0, receivers.height, [&](int y) {
-    std::vector<std::size_t> group;
-    for (int x = 0; x < receivers.width; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(receivers.width) + static_cast<std::size_t>(x);
-      if (receivers.points[i].counts) group.push_back(i);
-      const bool is_last = x + 1 == receivers.width;
-      if (group.size() < RayPacket::kSize && !(is_last && !group.empty())) continue;
-      work(group);
-      group.clear();
-    }
-  });
+  tbb::parallel_for(
+      0, receivers.height,
+      [&](int y) {
+        std::vector<std::size_t> group;
+        for (int x = 0; x < receivers.width; ++x) {
+          const std::size_t i =
+              static_cast<std::size_t>(y) * static_cast<std::size_t>(receivers.width) + static_cast<std::size_t>(x);
+          if (receivers.points[i].counts) group.push_back(i);
+          const bool is_last = x + 1 == receivers.width;
+          if (group.size() < RayPacket::kSize && !(is_last && !group.empty())) continue;
+          work(group);
+          group.clear();
+        }
+      });
 }
 
 }  // namespace
@@ -69,9 +72,9 @@ TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& rec
 
 TracedVisibility trace_kernel(const Occluders& occluders, const ReceiverImage& receivers, const filters::Kernel& kernel,
                               const MapGrid& grid, const TraceSettings& settings) {
-  const SampleSets samples(settings.max_points, settings.seed, [&](const glm::dvec2& shape, const glm::dvec2& between) {
-    return kernel.sample(shape, between);
-  });
+  const SampleSets samples(
+      settings.max_points, settings.seed,
+      [&](const glm::dvec2& shape, const glm::dvec2& between) { return kernel.sample(shape, between); });
   return trace_fans(occluders, receivers, samples, settings, [&](const ReceiverPoint& point) {
     return make_kernel_fan(occluders, point, grid, kernel.half_width());
   });
@@ -79,9 +82,9 @@ TracedVisibility trace_kernel(const Occluders& occluders, const ReceiverImage& r
 
 TracedVisibility trace_square(const Occluders& occluders, const ReceiverImage& receivers, double half_width_texels,
                               const MapGrid& grid, const TraceSettings& settings) {
-  const SampleSets samples(settings.max_points, settings.seed, [&](const glm::dvec2& u, const glm::dvec2&) {
-    return half_width_texels * (2.0 * u - 1.0);
-  });
+  const SampleSets samples(
+      settings.max_points, settings.seed,
+      [&](const glm::dvec2& u, const glm::dvec2&) { return half_width_texels * (2.0 * u - 1.0); });
   return trace_fans(occluders, receivers, samples, settings, [&](const ReceiverPoint& point) {
     return make_kernel_fan(occluders, point, grid, half_width_texels);
   });
@@ -99,9 +102,8 @@ std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& r
       if (!(glm::dot(direction, point.normal_ws) > 0.0f)) packet.active[lane] = 0;  // below the receiver's own plane
     }
     occluders.find_blocked(packet);
-    for (std::size_t lane = 0; lane < group.size(); ++lane) {
+    for (std::size_t lane = 0; lane < group.size(); ++lane)
       visibility[group[lane]] = packet.active[lane] != 0 && packet.reach[lane] >= 0.0f ? 1.0f : 0.0f;
-    }
   });
   return visibility;
 }
@@ -121,9 +123,8 @@ std::vector<float> trace_first_blockers(const Occluders& occluders, const Receiv
       packet.set(lane, origin + way, -way, 1.0f);
     }
     const RayPacket::Lanes hits = occluders.find_nearest(packet);
-    for (std::size_t lane = 0; lane < group.size(); ++lane) {
+    for (std::size_t lane = 0; lane < group.size(); ++lane)
       if (std::isfinite(hits[lane])) distances[group[lane]] = lengths[lane] * (1.0f - hits[lane]);
-    }
   });
   return distances;
 }

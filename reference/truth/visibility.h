@@ -34,10 +34,10 @@ inline constexpr std::uint32_t kRaysOfSettledPixel = 64;
 /// Traces the fraction of an area light that each receiver sees.
 ///
 /// Sixteen Owen-scrambled Sobol sets of 4 points each; a pixel stops there when it and its eight neighbours are
-/// unanimous, the others go on with 16 points and double them until the standard error over the scrambles is small enough
-/// or `max_points` is reached. The part of the light below a receiver's own plane is blocked by it. The result depends on
-/// neither the number of threads nor the order of pixels.
-/// Cost: 64 rays for a pixel away from edges, up to 16 * max_points at one.
+/// unanimous, the others go on with 16 points and double them until the standard error over the scrambles is small
+/// enough or `max_points` is reached. The part of the light below a receiver's own plane is blocked by it. The result
+/// depends on neither the number of threads nor the order of pixels. Cost: 64 rays for a pixel away from edges, up to
+/// 16 * max_points at one.
 TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
                             const TraceSettings& settings);
 
@@ -62,8 +62,8 @@ TracedVisibility trace_square(const Occluders& occluders, const ReceiverImage& r
 /// Traces one ray from each receiver to the light's centre: 1 seen, 0 blocked, 1 where a point does not count.
 std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light);
 
-/// Gives for each receiver how far along the light the surface lies that light from infinity meets first, in metres: what
-/// an ideal depth map would hold. Infinity where nothing blocks and where a point does not count.
+/// Gives for each receiver how far along the light the surface lies that light from infinity meets first, in metres:
+/// what an ideal depth map would hold. Infinity where nothing blocks and where a point does not count.
 std::vector<float> trace_first_blockers(const Occluders& occluders, const ReceiverImage& receivers,
                                         const glm::dvec3& to_light);
 

@@ -34,10 +34,12 @@ std::string read_log(const std::filesystem::path& file) {
 BaselineCell Accepter::make_cell(const ActualCell& cell) const {
   const report::CellRecord& record = cell.record;
   ComparedValues values = read_values(record);
-  const auto is_ignored = [&](const auto& value) { return std::isinf(tolerances_.find(record.filter, value.first).limit); };
+  const auto is_ignored = [&](const auto& value) {
+    return std::isinf(tolerances_.find(record.filter, value.first).limit);
+  };
   std::erase_if(values.ratios, is_ignored);
-  return {record.key, record.scene, record.view, record.filter, record.images.parts.value_or(record.filter), record.map_size, record.width, record.height,
-          cell.origin, std::move(values)};
+  return {record.key,      record.scene, record.view,   record.filter, record.images.parts.value_or(record.filter),
+          record.map_size, record.width, record.height, cell.origin,   std::move(values)};
 }
 
 /// What cannot be read of a file stays unreadable, but for what is taken over now.
@@ -73,9 +75,12 @@ void Accepter::take(Comparison& comparison, const ActualCell& cell) {
   if (!comparison.differs() || cell.images.visibility.empty()) return;
   CellFile& own = file(cell.record.scene, cell.record.filter);
   BaselineCell taken = make_cell(cell);
-  const auto same = std::find_if(own.cells.begin(), own.cells.end(), [&](const BaselineCell& each) { return each.key == taken.key; });
-  if (same == own.cells.end()) own.cells.push_back(std::move(taken));
-  else *same = std::move(taken);
+  const auto same =
+      std::find_if(own.cells.begin(), own.cells.end(), [&](const BaselineCell& each) { return each.key == taken.key; });
+  if (same == own.cells.end())
+    own.cells.push_back(std::move(taken));
+  else
+    *same = std::move(taken);
   own.images[cell.record.key] = keep_images(cell.images);
   log(comparison, comparison.outcome == Outcome::kExtra ? "added" : "replaced");
 }
@@ -107,10 +112,13 @@ std::vector<std::string> Accepter::write(const Origin& origin) {
   // Tolerances and log come first: whatever is written is then known to be a baseline, and why it is so.
   if (!baseline_.exists()) report::write_text_file(baseline_.tolerance_file(), write_tolerances(tolerances_));
   if (lines_.empty()) return lines_;
-  std::string entry = fmt::format("## {:%Y-%m-%d %H:%M} UTC, program {}, {}, seed {}\n\n", fmt::gmtime(std::chrono::system_clock::now()), origin.commit, origin.renderer, origin.seed);
+  std::string entry =
+      fmt::format("## {:%Y-%m-%d %H:%M} UTC, program {}, {}, seed {}\n\n",
+                  fmt::gmtime(std::chrono::system_clock::now()), origin.commit, origin.renderer, origin.seed);
   for (const std::string& line : lines_) entry += "- " + line + "\n";
   const std::string before = read_log(baseline_.log_file());
-  report::write_text_file(baseline_.log_file(), (before.empty() ? "# What was accepted into this baseline\n" : before) + "\n" + entry);
+  report::write_text_file(baseline_.log_file(),
+                          (before.empty() ? "# What was accepted into this baseline\n" : before) + "\n" + entry);
   for (const auto& [name, own] : files_) baseline_.write_cells(name.first, name.second, own);
   for (const auto& [scene, truths] : truths_) baseline_.write_truths(scene, truths);
   return lines_;

@@ -27,8 +27,8 @@ class Accepter {
  private:
   const Baseline& baseline_;
   const Tolerances& tolerances_;
-  std::map<std::pair<std::string, std::string>, CellFile> files_;           ///< by scene and filter
-  std::map<std::string, std::map<std::string, TruthImages>> truths_;        ///< by scene
+  std::map<std::pair<std::string, std::string>, CellFile> files_;     ///< by scene and filter
+  std::map<std::string, std::map<std::string, TruthImages>> truths_;  ///< by scene
   std::vector<std::string> lines_;
 
   BaselineCell make_cell(const ActualCell& cell) const;

@@ -24,9 +24,18 @@ constexpr const char* kTruthStem = "truth.area";
 constexpr const char* kVisibility = "visibility";
 
 ordered_json to_json(const BaselineCell& cell) {
-  ordered_json written = {{"key", cell.key},           {"scene", cell.scene}, {"view", cell.view},     {"filter", cell.filter}, {"label", cell.label},
-                          {"map_size", cell.map_size}, {"width", cell.width}, {"height", cell.height}, {"seed", cell.origin.seed},
-                          {"renderer", cell.origin.renderer}, {"machine", cell.origin.machine}, {"commit", cell.origin.commit}};
+  ordered_json written = {{"key", cell.key},
+                          {"scene", cell.scene},
+                          {"view", cell.view},
+                          {"filter", cell.filter},
+                          {"label", cell.label},
+                          {"map_size", cell.map_size},
+                          {"width", cell.width},
+                          {"height", cell.height},
+                          {"seed", cell.origin.seed},
+                          {"renderer", cell.origin.renderer},
+                          {"machine", cell.origin.machine},
+                          {"commit", cell.origin.commit}};
   written["values"] = ordered_json::object();
   for (const auto& [path, value] : cell.values.numbers) written["values"][path] = report::number_json(value);
   written["ratios"] = ordered_json::object();
@@ -36,39 +45,52 @@ ordered_json to_json(const BaselineCell& cell) {
 
 BaselineCell from_json(const json& read) {
   BaselineCell cell;
-  for (const auto& [name, text] : std::initializer_list<std::pair<const char*, std::string*>>{
-           {"key", &cell.key}, {"scene", &cell.scene}, {"view", &cell.view}, {"filter", &cell.filter}, {"label", &cell.label},
-           {"renderer", &cell.origin.renderer}, {"machine", &cell.origin.machine}, {"commit", &cell.origin.commit}}) {
+  for (const auto& [name, text] :
+       std::initializer_list<std::pair<const char*, std::string*>>{{"key", &cell.key},
+                                                                   {"scene", &cell.scene},
+                                                                   {"view", &cell.view},
+                                                                   {"filter", &cell.filter},
+                                                                   {"label", &cell.label},
+                                                                   {"renderer", &cell.origin.renderer},
+                                                                   {"machine", &cell.origin.machine},
+                                                                   {"commit", &cell.origin.commit}})
     *text = report::read_value<std::string>(read.at(name));
-  }
   cell.map_size = report::read_value<int>(read.at("map_size"));
   cell.width = report::read_value<int>(read.at("width"));
   cell.height = report::read_value<int>(read.at("height"));
   cell.origin.seed = report::read_value<std::uint64_t>(read.at("seed"));
-  for (const auto& [path, value] : read.at("values").items()) cell.values.numbers[path] = report::read_value<double>(value);
-  for (const auto& [path, value] : read.at("ratios").items()) cell.values.ratios[path] = report::read_value<report::Ratio>(value);
+  for (const auto& [path, value] : read.at("values").items())
+    cell.values.numbers[path] = report::read_value<double>(value);
+  for (const auto& [path, value] : read.at("ratios").items())
+    cell.values.ratios[path] = report::read_value<report::Ratio>(value);
   return cell;
 }
 
 std::vector<BaselineCell> read_cell_list(const std::filesystem::path& file) {
   try {
     std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw Error(ErrorKind::kInput, "the file cannot be read; restore it, or accept a run again", file.string());
+    if (!stream)
+      throw Error(ErrorKind::kInput, "the file cannot be read; restore it, or accept a run again", file.string());
     const json root = report::parse_json(stream);
-    if (root.at("baseline_version") != kBaselineVersion) throw std::invalid_argument(fmt::format("it is of another version than {}", kBaselineVersion));
+    if (root.at("baseline_version") != kBaselineVersion)
+      throw std::invalid_argument(fmt::format("it is of another version than {}", kBaselineVersion));
     std::vector<BaselineCell> cells;
     for (const json& cell : root.at("cells")) cells.push_back(from_json(cell));
     return cells;
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
-    throw Error(ErrorKind::kInput, fmt::format("this is no baseline of cells: {}; restore the file, or accept a run again", error.what()), file.string());
+    throw Error(ErrorKind::kInput,
+                fmt::format("this is no baseline of cells: {}; restore the file, or accept a run again", error.what()),
+                file.string());
   }
 }
 
 std::filesystem::path with_extension(std::filesystem::path stem, const char* extension) { return stem += extension; }
 
-report::Part make_part(const std::string& key, const char* id, const report::Image& image) { return {key + "." + id, {"Y"}, image, true}; }
+report::Part make_part(const std::string& key, const char* id, const report::Image& image) {
+  return {key + "." + id, {"Y"}, image, true};
+}
 
 std::vector<report::Part> make_parts(const CellFile& file) {
   std::vector<report::Part> parts;
@@ -91,18 +113,19 @@ void keep_part(std::map<std::string, CellImages>& images, report::Part part) {
   CellImages& cell = images[part.name.substr(0, dot)];
   const std::string id = part.name.substr(dot + 1);
   if (id == kVisibility) cell.visibility = std::move(part.image);
-  for (const report::UncertaintyImage& each : report::list_uncertainty_images()) {
+  for (const report::UncertaintyImage& each : report::list_uncertainty_images())
     if (id == each.id) cell.uncertainty.*each.image = std::move(part.image);
-  }
 }
 
 /// The entries of a folder, sorted; none where there is no such folder.
 std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> entries;
   std::error_code error;
-  for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) entries.push_back(at->path());
+  for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    entries.push_back(at->path());
   if (error && error != std::errc::no_such_file_or_directory) {
-    throw Error(ErrorKind::kInput, fmt::format("the folder cannot be listed ({}); check its rights", error.message()), folder.string());
+    throw Error(ErrorKind::kInput, fmt::format("the folder cannot be listed ({}); check its rights", error.message()),
+                folder.string());
   }
   std::sort(entries.begin(), entries.end());
   return entries;
@@ -111,7 +134,10 @@ std::vector<std::filesystem::path> list_folder(const std::filesystem::path& fold
 void remove_file(const std::filesystem::path& file) {
   std::error_code error;
   std::filesystem::remove(file, error);
-  if (error) throw Error(ErrorKind::kOutput, fmt::format("the file cannot be removed ({}); check the folder's rights", error.message()), file.string());
+  if (error)
+    throw Error(ErrorKind::kOutput,
+                fmt::format("the file cannot be removed ({}); check the folder's rights", error.message()),
+                file.string());
 }
 
 }  // namespace
@@ -123,7 +149,8 @@ std::string truth_key(const report::CellRecord& cell) {
 bool Baseline::exists() const {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(folder_, error);
-  if (std::filesystem::exists(status) && !std::filesystem::is_directory(status)) throw Error(ErrorKind::kInput, "this is a file: name the folder of a baseline", folder_.string());
+  if (std::filesystem::exists(status) && !std::filesystem::is_directory(status))
+    throw Error(ErrorKind::kInput, "this is a file: name the folder of a baseline", folder_.string());
   return std::filesystem::exists(tolerance_file(), error);
 }
 
@@ -155,12 +182,14 @@ std::vector<BaselineCell> Baseline::read_numbers(const std::string& scene, const
 CellFile Baseline::read_cells(const std::string& scene, const std::string& filter) const {
   CellFile file{read_numbers(scene, filter), {}};
   if (file.cells.empty()) return file;
-  for (report::Part& part : report::read_exr(with_extension(stem(scene, filter), ".exr")).parts) keep_part(file.images, std::move(part));
+  for (report::Part& part : report::read_exr(with_extension(stem(scene, filter), ".exr")).parts)
+    keep_part(file.images, std::move(part));
   return file;
 }
 
 void Baseline::write_cells(const std::string& scene, const std::string& filter, const CellFile& cells) const {
-  const std::filesystem::path numbers = with_extension(stem(scene, filter), ".json"), images = with_extension(stem(scene, filter), ".exr");
+  const std::filesystem::path numbers = with_extension(stem(scene, filter), ".json"),
+                              images = with_extension(stem(scene, filter), ".exr");
   if (cells.cells.empty()) {
     remove_file(numbers);
     remove_file(images);
@@ -169,8 +198,10 @@ void Baseline::write_cells(const std::string& scene, const std::string& filter, 
   ordered_json root = {{"baseline_version", kBaselineVersion}, {"cells", ordered_json::array()}};
   for (const BaselineCell& cell : cells.cells) root["cells"].push_back(to_json(cell));
   const std::vector<report::Part> parts = make_parts(cells);
-  if (parts.empty()) remove_file(images);
-  else report::write_exr(images, parts, {});
+  if (parts.empty())
+    remove_file(images);
+  else
+    report::write_exr(images, parts, {});
   report::write_text_file(numbers, root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }
 

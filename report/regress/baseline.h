@@ -87,7 +87,8 @@ class Baseline {
   /// Throws Error(kInput) where they cannot be read.
   CellFile read_cells(const std::string& scene, const std::string& filter) const;
 
-  /// Writes the cells of a filter, those without images too; removes the files where there are none left. Throws Error(kOutput).
+  /// Writes the cells of a filter, those without images too; removes the files where there are none left. Throws
+  /// Error(kOutput).
   void write_cells(const std::string& scene, const std::string& filter, const CellFile& cells) const;
 
   /// The same for the truths of a scene, by truth_key().

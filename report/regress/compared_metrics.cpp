@@ -9,15 +9,16 @@
 namespace shadowbench::regress {
 namespace {
 
-/// Says what a field's change means; nothing for fields that a baseline does not keep. The largest error of a single pixel,
-/// percentiles, which move in steps, and shares of errors, which divide by them, say less than the pixels themselves.
+/// Says what a field's change means; nothing for fields that a baseline does not keep. The largest error of a single
+/// pixel, percentiles, which move in steps, and shares of errors, which divide by them, say less than the pixels
+/// themselves.
 std::optional<MetricRole> role_of(const std::string& path) {
   if (path == "error.max" || path == "error.p95" || path.ends_with(".share")) return std::nullopt;
-  for (const char* group : {"error.", "artefact.", "attribution."}) {
+  for (const char* group : {"error.", "artefact.", "attribution."})
     if (path.starts_with(group)) return MetricRole::kError;
-  }
   if (path.starts_with("cost.")) return MetricRole::kCost;
-  if (path == "receivers" || path == "nan" || path == "truth.se" || path.starts_with("map_scale.")) return MetricRole::kCount;
+  if (path == "receivers" || path == "nan" || path == "truth.se" || path.starts_with("map_scale."))
+    return MetricRole::kCount;
   return std::nullopt;
 }
 
@@ -89,7 +90,8 @@ ComparedValues read_values(const report::CellRecord& cell) {
 
 std::string find_absence(const report::CellRecord& cell, const std::string& path) {
   if (path.starts_with("ratio_to_none.") && cell.time_ms.lookup && cell.time_ms.lookup->n < kFewestRounds) {
-    return fmt::format("it was timed over {} rounds, and {} are the fewest that give an interval", cell.time_ms.lookup->n, kFewestRounds);
+    return fmt::format("it was timed over {} rounds, and {} are the fewest that give an interval",
+                       cell.time_ms.lookup->n, kFewestRounds);
   }
   for (std::string name = path;; name.resize(name.rfind('.'))) {
     if (const auto reason = cell.absent.find(name); reason != cell.absent.end()) return reason->second;

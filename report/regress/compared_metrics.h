@@ -28,8 +28,8 @@ const std::vector<ComparedMetric>& list_compared_metrics();
 /// Lists the ratios to `none` that a baseline keeps: "ratio_to_none.lookup", ...
 const std::vector<std::string>& list_compared_ratios();
 
-/// Ratios of fewer rounds are no numbers to compare: six are the fewest whose whole range holds the median with 95 %, for
-/// all of them lie on one side of it with probability 2^-5.
+/// Ratios of fewer rounds are no numbers to compare: six are the fewest whose whole range holds the median with 95 %,
+/// for all of them lie on one side of it with probability 2^-5.
 inline constexpr int kFewestRounds = 6;
 
 /// What a baseline keeps of a cell's record: numbers by path; those that do not exist are missing.

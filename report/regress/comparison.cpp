@@ -17,8 +17,13 @@ using report::format_number;
 /// Compares one cell, finding by finding.
 class CellComparer {
  public:
-  CellComparer(const ActualCell& actual, const BaselineCell& expected, const CellImages& images, const Tolerances& tolerances)
-      : actual_(actual), expected_(expected), images_(images), tolerances_(tolerances), result_(name_comparison(expected)) {}
+  CellComparer(const ActualCell& actual, const BaselineCell& expected, const CellImages& images,
+               const Tolerances& tolerances)
+      : actual_(actual),
+        expected_(expected),
+        images_(images),
+        tolerances_(tolerances),
+        result_(name_comparison(expected)) {}
 
   Comparison compare() {
     compare_images();
@@ -47,37 +52,46 @@ class CellComparer {
     result_.pixels = compare_pixels(actual_.images, images_, tolerance(kPixel).limit);
     const PixelChange& change = *result_.pixels;
     limit_share(change);
-    limit(kLargest, change.max, fmt::format("the largest difference is {} at pixel ({}, {})", format_number(change.max), change.max_x, change.max_y));
+    limit(kLargest, change.max,
+          fmt::format("the largest difference is {} at pixel ({}, {})", format_number(change.max), change.max_x,
+                      change.max_y));
     limit(kMean, change.mean, fmt::format("the mean difference is {}", format_number(change.mean)));
     const double pixels = static_cast<double>(std::max<std::int64_t>(change.pixels(), 1));
     const std::int64_t excused = change.excused_flips + change.excused_rounding;
     limit(kExcused, static_cast<double>(excused - change.excused_expected) / pixels,
           fmt::format("{} pixels are excused, {} in the baseline alone", excused, change.excused_expected));
-    limit(kExcusedChanged, static_cast<double>(change.excused_changed) / pixels, fmt::format("{} excused pixels differ", change.excused_changed));
+    limit(kExcusedChanged, static_cast<double>(change.excused_changed) / pixels,
+          fmt::format("{} excused pixels differ", change.excused_changed));
     if (change.excused_changed > 0) {
-      result_.notes.push_back(fmt::format("{} excused pixels differ: a comparison may flip at {} pixels, rounding moves {} by 1/32 or more", change.excused_changed,
-                                          change.excused_flips, change.excused_rounding));
+      result_.notes.push_back(
+          fmt::format("{} excused pixels differ: a comparison may flip at {} pixels, rounding moves {} by 1/32 or more",
+                      change.excused_changed, change.excused_flips, change.excused_rounding));
     }
   }
 
   void limit_share(const PixelChange& change) {
     if (change.share() <= tolerance(kShare).limit) return;
     result_.add(Outcome::kChanged, {kShare, std::nullopt, change.share(), tolerance(kShare).limit,
-                                    fmt::format("{} of {} pixels differ by more than {} and what rounding explains; the largest difference is {} at pixel ({}, {})",
-                                                change.changed, change.compared, format_number(tolerance(kPixel).limit), format_number(change.max), change.max_x, change.max_y)});
+                                    fmt::format("{} of {} pixels differ by more than {} and what rounding explains; "
+                                                "the largest difference is {} at pixel ({}, {})",
+                                                change.changed, change.compared, format_number(tolerance(kPixel).limit),
+                                                format_number(change.max), change.max_x, change.max_y)});
   }
 
   void limit(const char* metric, double value, const std::string& text) {
     const Tolerance& allowed = tolerance(metric);
     if (value <= allowed.limit) return;
-    result_.add(Outcome::kChanged, {metric, std::nullopt, value, allowed.limit, fmt::format("{} (limit {})", text, format_number(allowed.limit))});
+    result_.add(Outcome::kChanged, {metric, std::nullopt, value, allowed.limit,
+                                    fmt::format("{} (limit {})", text, format_number(allowed.limit))});
   }
 
   void compare_spread() {
-    const double lookups = std::max(expected_.values.numbers.contains("cost.fetches") ? expected_.values.numbers.at("cost.fetches") : 1.0, 1.0);
+    const double lookups = std::max(
+        expected_.values.numbers.contains("cost.fetches") ? expected_.values.numbers.at("cost.fetches") : 1.0, 1.0);
     const double level = tolerance(kLevel).limit;
     const SpreadTest test = test_spread(actual_.images.visibility, images_.uncertainty, lookups, level);
-    result_.notes.push_back(fmt::format("drawn with seed {}, the baseline with {}: tested as noise, at level {}", actual_.origin.seed, expected_.origin.seed, format_number(level)));
+    result_.notes.push_back(fmt::format("drawn with seed {}, the baseline with {}: tested as noise, at level {}",
+                                        actual_.origin.seed, expected_.origin.seed, format_number(level)));
     add_noise(test.pixels, "pixels", "pixel", actual_.images.visibility.width);
     add_noise(test.blocks, "blocks of 8 x 8 pixels", "block", (actual_.images.visibility.width + 7) / 8);
   }
@@ -85,9 +99,11 @@ class CellComparer {
   void add_noise(const reference::PixelTest& test, const char* many, const char* one, int columns) {
     if (test.beyond == 0) return;
     const auto x = test.worst % static_cast<std::size_t>(columns), y = test.worst / static_cast<std::size_t>(columns);
-    result_.add(Outcome::kChanged, {kLevel, std::nullopt, test.smallest_p, test.corrected_level,
-                                    fmt::format("{} of {} {} are not explained by the filter's noise; the least likely is {} ({}, {}), p = {:.2g} (corrected level {:.2g})",
-                                                test.beyond, test.tested, many, one, x, y, test.smallest_p, test.corrected_level)});
+    result_.add(Outcome::kChanged,
+                {kLevel, std::nullopt, test.smallest_p, test.corrected_level,
+                 fmt::format("{} of {} {} are not explained by the filter's noise; the least likely is {} ({}, {}), p "
+                             "= {:.2g} (corrected level {:.2g})",
+                             test.beyond, test.tested, many, one, x, y, test.smallest_p, test.corrected_level)});
   }
 
   void compare_number(const ComparedMetric& metric, const ComparedValues& values) {
@@ -97,12 +113,16 @@ class CellComparer {
     const auto now = values.numbers.find(metric.path);
     if (before == expected_.values.numbers.end()) {
       if (now == values.numbers.end()) return;
-      result_.add(Outcome::kChanged, {metric.path, std::nullopt, now->second, allowed.limit, fmt::format("{} is {}, and missing in the baseline", metric.path, format_number(now->second))});
+      result_.add(Outcome::kChanged,
+                  {metric.path, std::nullopt, now->second, allowed.limit,
+                   fmt::format("{} is {}, and missing in the baseline", metric.path, format_number(now->second))});
       return;
     }
     if (now == values.numbers.end()) {
-      result_.add(Outcome::kChanged, {metric.path, before->second, std::nullopt, allowed.limit,
-                                      fmt::format("{} was {}, and is missing: {}", metric.path, format_number(before->second), find_absence(actual_.record, metric.path))});
+      result_.add(Outcome::kChanged,
+                  {metric.path, before->second, std::nullopt, allowed.limit,
+                   fmt::format("{} was {}, and is missing: {}", metric.path, format_number(before->second),
+                               find_absence(actual_.record, metric.path))});
       return;
     }
     compare_values(metric, before->second, now->second, allowed);
@@ -110,7 +130,8 @@ class CellComparer {
 
   void compare_values(const ComparedMetric& metric, double before, double now, const Tolerance& allowed) {
     if (metric.path.starts_with("artefact.") && has_spread() && !same_seed()) {
-      result_.notes.push_back(fmt::format("{} is not compared with that of another seed: {}, was {}", metric.path, format_number(now), format_number(before)));
+      result_.notes.push_back(fmt::format("{} is not compared with that of another seed: {}, was {}", metric.path,
+                                          format_number(now), format_number(before)));
       return;
     }
     const double limit = allowed.limit + (metric.role == MetricRole::kError ? explained_change() : 0.0);
@@ -121,11 +142,13 @@ class CellComparer {
     // Parts of an error may grow while the error itself does not: they say why, not how well.
     const bool regression = worse && !metric.path.starts_with("attribution.");
     result_.add(regression ? Outcome::kLessAccurate : Outcome::kChanged,
-                {metric.path, before, now, limit, fmt::format("{}: {}, was {} ({}; limit {}: {})", metric.path, format_number(now), format_number(before), kind, format_number(limit), allowed.reason)});
+                {metric.path, before, now, limit,
+                 fmt::format("{}: {}, was {} ({}; limit {}: {})", metric.path, format_number(now),
+                             format_number(before), kind, format_number(limit), allowed.reason)});
   }
 
-  /// What excused pixels, and the noise of truth and filter, may move a mean of errors by. The truth of one seed is the same, but for
-  /// what another machine's instructions make of its rays.
+  /// What excused pixels, and the noise of truth and filter, may move a mean of errors by. The truth of one seed is the
+  /// same, but for what another machine's instructions make of its rays.
   double explained_change() const {
     const auto find = [&](const std::map<std::string, double>& numbers, const char* path) {
       const auto found = numbers.find(path);
@@ -133,17 +156,22 @@ class CellComparer {
     };
     const double receivers = std::max(find(expected_.values.numbers, "receivers"), 1.0);
     const double excused = result_.pixels ? std::sqrt(result_.pixels->excused_squares / receivers) : 0.0;
-    const double noise = same_seed() && actual_.origin.machine == expected_.origin.machine ? 0.0 : 3.0 * std::hypot(find(expected_.values.numbers, "truth.se"), actual_.record.truth.se.value_or(0.0));
+    const double noise =
+        same_seed() && actual_.origin.machine == expected_.origin.machine
+            ? 0.0
+            : 3.0 * std::hypot(find(expected_.values.numbers, "truth.se"), actual_.record.truth.se.value_or(0.0));
     return excused + noise + (has_spread() && !same_seed() ? spread_of_errors(receivers) : 0.0);
   }
 
-  /// Three standard deviations of what another seed makes of the root mean square error, to first order: its slope in pixel i is
-  /// e_i / (n RMSE), and |e_i| is at most 1.
+  /// Three standard deviations of what another seed makes of the root mean square error, to first order: its slope in
+  /// pixel i is e_i / (n RMSE), and |e_i| is at most 1.
   double spread_of_errors(double receivers) const {
     double squares = 0.0;
-    for (const float deviation : images_.uncertainty.seed_deviation.texels) squares += static_cast<double>(deviation) * static_cast<double>(deviation);
+    for (const float deviation : images_.uncertainty.seed_deviation.texels)
+      squares += static_cast<double>(deviation) * static_cast<double>(deviation);
     const auto rmse = expected_.values.numbers.find("error.rmse");
-    return 3.0 * std::sqrt(squares) / (receivers * (rmse == expected_.values.numbers.end() ? 1.0 : std::clamp(rmse->second, 1e-3, 1.0)));
+    return 3.0 * std::sqrt(squares) /
+           (receivers * (rmse == expected_.values.numbers.end() ? 1.0 : std::clamp(rmse->second, 1e-3, 1.0)));
   }
 
   void compare_ratios(const ComparedValues& values) {
@@ -152,7 +180,8 @@ class CellComparer {
       return;
     }
     if (actual_.origin.machine != expected_.origin.machine || actual_.origin.renderer != expected_.origin.renderer) {
-      result_.notes.push_back(fmt::format("times are not compared: the baseline is of {} on {}", expected_.origin.renderer, expected_.origin.machine));
+      result_.notes.push_back(fmt::format("times are not compared: the baseline is of {} on {}",
+                                          expected_.origin.renderer, expected_.origin.machine));
       return;
     }
     for (const auto& [path, before] : expected_.values.ratios) {
@@ -161,11 +190,13 @@ class CellComparer {
       if (std::isinf(allowed.limit)) continue;
       if (now == values.ratios.end()) {
         result_.add(Outcome::kChanged, {path, before.median, std::nullopt, allowed.limit,
-                                        fmt::format("{} was {}, and is missing: {}", path, report::format_ratio(before), find_absence(actual_.record, path))});
+                                        fmt::format("{} was {}, and is missing: {}", path, report::format_ratio(before),
+                                                    find_absence(actual_.record, path))});
       } else if (now->second.ci95.low > before.ci95.high * (1.0 + allowed.limit)) {
         result_.add(Outcome::kSlower, {path, before.median, now->second.median, allowed.limit,
-                                       fmt::format("{}: {}, was {}: slower by more than {} of the interval's end", path, report::format_ratio(now->second),
-                                                   report::format_ratio(before), format_number(allowed.limit))});
+                                       fmt::format("{}: {}, was {}: slower by more than {} of the interval's end", path,
+                                                   report::format_ratio(now->second), report::format_ratio(before),
+                                                   format_number(allowed.limit))});
       }
     }
   }
@@ -182,7 +213,8 @@ std::string find_mismatch(const report::Image& actual, const report::Image& expe
   if (expected.empty()) return "the baseline has no image of it";
   if (actual.empty()) return "the run has no image of it";
   if (same_size(actual, expected)) return "";
-  return fmt::format("the image has {} x {} pixels, and {} x {} in the baseline", actual.width, actual.height, expected.width, expected.height);
+  return fmt::format("the image has {} x {} pixels, and {} x {} in the baseline", actual.width, actual.height,
+                     expected.width, expected.height);
 }
 
 /// Says what is wrong with one cell's images; empty where nothing is.
@@ -190,18 +222,20 @@ std::string find_damage(const CellImages& images, const char* whose) {
   const report::UncertaintyImages& uncertainty = images.uncertainty;
   for (const report::UncertaintyImage& each : report::list_uncertainty_images()) {
     const report::Image& image = uncertainty.*each.image;
-    if (!image.empty() && !same_size(image, images.visibility)) return fmt::format("{} image '{}' has another size than its visibility", whose, each.id);
+    if (!image.empty() && !same_size(image, images.visibility))
+      return fmt::format("{} image '{}' has another size than its visibility", whose, each.id);
   }
-  if (uncertainty.seed_mean.empty() != uncertainty.seed_deviation.empty()) return fmt::format("{} images lack the mean or the deviation over seeds", whose);
+  if (uncertainty.seed_mean.empty() != uncertainty.seed_deviation.empty())
+    return fmt::format("{} images lack the mean or the deviation over seeds", whose);
   return "";
 }
 
 /// Says why a cell cannot be compared; empty where it can.
 std::string find_obstacle(const ActualCell& actual, const CellImages& expected) {
   if (!actual.unreadable.empty()) return actual.unreadable;
-  for (const std::string& found : {find_mismatch(actual.images.visibility, expected.visibility), find_damage(actual.images, "the run's"), find_damage(expected, "the baseline's")}) {
+  for (const std::string& found : {find_mismatch(actual.images.visibility, expected.visibility),
+                                   find_damage(actual.images, "the run's"), find_damage(expected, "the baseline's")})
     if (!found.empty()) return found;
-  }
   return "";
 }
 
@@ -263,7 +297,8 @@ Comparison name_comparison(const BaselineCell& cell) {
   return comparison;
 }
 
-Comparison compare_cell(const ActualCell& actual, const BaselineCell& expected, const CellImages& expected_images, const Tolerances& tolerances) {
+Comparison compare_cell(const ActualCell& actual, const BaselineCell& expected, const CellImages& expected_images,
+                        const Tolerances& tolerances) {
   const std::string obstacle = find_obstacle(actual, expected_images);
   if (obstacle.empty()) return CellComparer(actual, expected, expected_images, tolerances).compare();
   Comparison comparison = name_comparison(expected);
@@ -280,9 +315,12 @@ Comparison compare_truth(const ActualTruth& actual, const TruthImages& expected,
   const reference::PixelTest test = test_truth(actual.images, expected, level);
   if (test.beyond == 0) return comparison;
   const auto width = static_cast<std::size_t>(actual.images.area.width);
-  comparison.add(Outcome::kChanged, {kLevel, std::nullopt, test.smallest_p, test.corrected_level,
-                                     fmt::format("{} of {} pixels of the truth differ by more than its standard errors explain; the least likely is pixel ({}, {}), p = {:.2g} (corrected level {:.2g})", test.beyond,
-                                                 test.tested, test.worst % width, test.worst / width, test.smallest_p, test.corrected_level)});
+  comparison.add(Outcome::kChanged,
+                 {kLevel, std::nullopt, test.smallest_p, test.corrected_level,
+                  fmt::format("{} of {} pixels of the truth differ by more than its standard errors explain; the least "
+                              "likely is pixel ({}, {}), p = {:.2g} (corrected level {:.2g})",
+                              test.beyond, test.tested, test.worst % width, test.worst / width, test.smallest_p,
+                              test.corrected_level)});
   return comparison;
 }
 

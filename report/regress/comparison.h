@@ -29,11 +29,11 @@ struct Comparison {
   std::string key;
   std::string scene;
   std::string view;
-  std::string filter;  ///< "truth" for a view's truth
-  std::string label;   ///< filter and the parameters that were asked for
+  std::string filter;    ///< "truth" for a view's truth
+  std::string label;     ///< filter and the parameters that were asked for
   std::string settings;  ///< "view main, map 512, 256 x 144"
   std::vector<Finding> findings;
-  std::vector<std::string> notes;      ///< what was not compared, and why
+  std::vector<std::string> notes;  ///< what was not compared, and why
   std::optional<PixelChange> pixels;
   std::optional<std::string> picture;  ///< below the folder of the comparison
   bool accepted = false;               ///< what differs has become the baseline
@@ -54,7 +54,8 @@ struct ActualCell {
 
 /// Compares a cell with its baseline; `expected` has the images of the cell.
 /// Requires equal keys.
-Comparison compare_cell(const ActualCell& actual, const BaselineCell& expected, const CellImages& expected_images, const Tolerances& tolerances);
+Comparison compare_cell(const ActualCell& actual, const BaselineCell& expected, const CellImages& expected_images,
+                        const Tolerances& tolerances);
 
 /// Is one view's truth of the run at hand.
 struct ActualTruth {

@@ -10,12 +10,13 @@ namespace {
 using reference::NoisyDifference;
 
 constexpr int kBlock = 8;
-constexpr double kScrambles = 16.0;        ///< that a truth's standard error is of (reference/truth)
+constexpr double kScrambles = 16.0;  ///< that a truth's standard error is of (reference/truth)
 constexpr double kUnanimousLimit = 3.0 / 64.0;
 constexpr double kHalfVariance = 0x1p-22 / 12.0;  ///< of rounding to 16 bits below 1, steps of 2^-11
 
-/// A pixel, or several together, as two tests see it: by the deviation that was measured over seeds, and as lookups that were
-/// counted. Few seeds do not tell the deviation of what hardly ever happens, and counts do not know of lookups that agree.
+/// A pixel, or several together, as two tests see it: by the deviation that was measured over seeds, and as lookups
+/// that were counted. Few seeds do not tell the deviation of what hardly ever happens, and counts do not know of
+/// lookups that agree.
 struct Noise {
   NoisyDifference difference;
   reference::Share drawn;
@@ -55,9 +56,9 @@ std::vector<double> test_blocks(const std::vector<Noise>& pixels, int width, int
   for (int top = 0; top < height; top += kBlock) {
     for (int left = 0; left < width; left += kBlock) {
       std::vector<const Noise*> block;
-      for (int y = top; y < std::min(top + kBlock, height); ++y) {
-        for (int x = left; x < std::min(left + kBlock, width); ++x) block.push_back(&pixels[static_cast<std::size_t>(y * width + x)]);
-      }
+      for (int y = top; y < std::min(top + kBlock, height); ++y)
+        for (int x = left; x < std::min(left + kBlock, width); ++x)
+          block.push_back(&pixels[static_cast<std::size_t>(y * width + x)]);
       probabilities.push_back(add(block).p());
     }
   }
@@ -66,21 +67,26 @@ std::vector<double> test_blocks(const std::vector<Noise>& pixels, int width, int
 
 }  // namespace
 
-SpreadTest test_spread(const report::Image& image, const report::UncertaintyImages& expected, double lookups, double level) {
+SpreadTest test_spread(const report::Image& image, const report::UncertaintyImages& expected, double lookups,
+                       double level) {
   const std::vector<Noise> pixels = list_noise(image, expected, lookups);
   std::vector<double> probabilities;
   for (const Noise& pixel : pixels) probabilities.push_back(pixel.p());
   // Two tests are made, at half the level each.
-  return {reference::test_pixels(probabilities, 0.5 * level), reference::test_pixels(test_blocks(pixels, image.width, image.height), 0.5 * level)};
+  return {reference::test_pixels(probabilities, 0.5 * level),
+          reference::test_pixels(test_blocks(pixels, image.width, image.height), 0.5 * level)};
 }
 
 reference::PixelTest test_truth(const TruthImages& a, const TruthImages& b, double level) {
   std::vector<double> probabilities(a.area.texels.size());
   for (std::size_t i = 0; i < probabilities.size(); ++i) {
-    const double of_a = static_cast<double>(a.standard_error.texels[i]), of_b = static_cast<double>(b.standard_error.texels[i]);
+    const double of_a = static_cast<double>(a.standard_error.texels[i]),
+                 of_b = static_cast<double>(b.standard_error.texels[i]);
     double difference = static_cast<double>(a.area.texels[i]) - static_cast<double>(b.area.texels[i]);
-    if (of_a == 0.0 || of_b == 0.0) difference = std::copysign(std::max(std::abs(difference) - kUnanimousLimit, 0.0), difference);
-    probabilities[i] = reference::find_p({difference, of_a * of_a + of_b * of_b + 2.0 * kHalfVariance, kScrambles - 1.0});
+    if (of_a == 0.0 || of_b == 0.0)
+      difference = std::copysign(std::max(std::abs(difference) - kUnanimousLimit, 0.0), difference);
+    probabilities[i] =
+        reference::find_p({difference, of_a * of_a + of_b * of_b + 2.0 * kHalfVariance, kScrambles - 1.0});
   }
   return reference::test_pixels(probabilities, level);
 }

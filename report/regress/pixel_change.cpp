@@ -30,14 +30,19 @@ report::Image coarsen_rounding(const report::Image& rounding) {
 PixelChange compare_pixels(const CellImages& actual, const CellImages& expected, double tolerance) {
   assert(actual.visibility.texels.size() == expected.visibility.texels.size());
   PixelChange change;
-  const report::Image bounds = coarsen_rounding(actual.uncertainty.rounding), known_bounds = coarsen_rounding(expected.uncertainty.rounding);
+  const report::Image bounds = coarsen_rounding(actual.uncertainty.rounding),
+                      known_bounds = coarsen_rounding(expected.uncertainty.rounding);
   const auto width = static_cast<std::size_t>(actual.visibility.width);
   for (std::size_t i = 0; i < actual.visibility.texels.size(); ++i) {
     const float own = bound_at(bounds, i), known = bound_at(known_bounds, i);
     // What is not finite on both sides is the same; how many such pixels there may be is a number of its own.
     const bool same = !std::isfinite(actual.visibility.texels[i]) && !std::isfinite(expected.visibility.texels[i]);
-    const bool finite = same || (std::isfinite(actual.visibility.texels[i]) && std::isfinite(expected.visibility.texels[i]));
-    const double difference = same ? 0.0 : finite ? std::abs(static_cast<double>(actual.visibility.texels[i]) - static_cast<double>(expected.visibility.texels[i])) : 1.0;
+    const bool finite =
+        same || (std::isfinite(actual.visibility.texels[i]) && std::isfinite(expected.visibility.texels[i]));
+    const double difference = same     ? 0.0
+                              : finite ? std::abs(static_cast<double>(actual.visibility.texels[i]) -
+                                                  static_cast<double>(expected.visibility.texels[i]))
+                                       : 1.0;
     if (known == report::kMayFlip || says_nothing(known)) ++change.excused_expected;
     const bool flips = own == report::kMayFlip || known == report::kMayFlip;
     if (finite && (flips || says_nothing(own) || says_nothing(known))) {

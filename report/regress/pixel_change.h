@@ -16,23 +16,23 @@ struct CellImages {
   report::UncertaintyImages uncertainty;
 };
 
-/// Coarsens rounding bounds to what a baseline keeps: 0 below 2^-14, which the pixel's own tolerance covers; the next power of
-/// two above; 1 from kWidestBound on; report::kMayFlip stays.
+/// Coarsens rounding bounds to what a baseline keeps: 0 below 2^-14, which the pixel's own tolerance covers; the next
+/// power of two above; 1 from kWidestBound on; report::kMayFlip stays.
 report::Image coarsen_rounding(const report::Image& rounding);
 
 /// How far an image is from what was expected.
 struct PixelChange {
-  std::int64_t compared = 0;           ///< pixels that were
-  std::int64_t changed = 0;            ///< that differ by more than their tolerance, or are not finite
-  std::int64_t excused_flips = 0;      ///< left out: a comparison may flip there, or another texel be read
-  std::int64_t excused_rounding = 0;   ///< left out: rounding alone may move them by kWidestBound or more
-  std::int64_t excused_expected = 0;   ///< pixels that the baseline alone leaves out
-  std::int64_t excused_changed = 0;    ///< of those left out, that do differ by more than the tolerance
-  double excused_squares = 0.0;        ///< sum of the squared differences of those left out
-  double max = 0.0;                    ///< largest difference of a pixel that was compared
-  int max_x = 0;                       ///< where, from the left and the top
+  std::int64_t compared = 0;          ///< pixels that were
+  std::int64_t changed = 0;           ///< that differ by more than their tolerance, or are not finite
+  std::int64_t excused_flips = 0;     ///< left out: a comparison may flip there, or another texel be read
+  std::int64_t excused_rounding = 0;  ///< left out: rounding alone may move them by kWidestBound or more
+  std::int64_t excused_expected = 0;  ///< pixels that the baseline alone leaves out
+  std::int64_t excused_changed = 0;   ///< of those left out, that do differ by more than the tolerance
+  double excused_squares = 0.0;       ///< sum of the squared differences of those left out
+  double max = 0.0;                   ///< largest difference of a pixel that was compared
+  int max_x = 0;                      ///< where, from the left and the top
   int max_y = 0;
-  double mean = 0.0;                   ///< mean magnitude over the compared pixels
+  double mean = 0.0;  ///< mean magnitude over the compared pixels
   double rms = 0.0;
 
   std::int64_t pixels() const { return compared + excused_flips + excused_rounding; }

@@ -35,20 +35,30 @@ struct ExpectedTruths {
 class Regression {
  public:
   explicit Regression(const RegressOptions& options)
-      : options_(options), baseline_(options.baseline), run_(options.run, options.selection), accepter_(baseline_, tolerances_) {
+      : options_(options),
+        baseline_(options.baseline),
+        run_(options.run, options.selection),
+        accepter_(baseline_, tolerances_) {
     const bool known = baseline_.exists();
     if (options.accept) lock_.emplace(options.baseline);
-    if (known) tolerances_ = read_tolerances(baseline_.tolerance_file());
-    else if (!options.accept) fail_without_baseline();
+    if (known)
+      tolerances_ = read_tolerances(baseline_.tolerance_file());
+    else if (!options.accept)
+      fail_without_baseline();
     index_ = baseline_.read_index();
-    require_known(options.selection.filters, "--filters", [](const auto& cell) { return cell.filter; });
-    require_known(options.selection.scenes, "--scene", [](const auto& cell) { return cell.scene; });
-    std::erase_if(index_.cells, [&](const BaselineCell& cell) { return !options.selection.holds(cell.scene, cell.filter); });
-    if (run_.cells().empty() && index_.cells.empty() && index_.unreadable.empty()) throw Error(ErrorKind::kInput, "neither the run nor the baseline has a cell", options.run.string());
+    require_known(
+        options.selection.filters, "--filters", [](const auto& cell) { return cell.filter; });
+    require_known(
+        options.selection.scenes, "--scene", [](const auto& cell) { return cell.scene; });
+    std::erase_if(index_.cells,
+                  [&](const BaselineCell& cell) { return !options.selection.holds(cell.scene, cell.filter); });
+    if (run_.cells().empty() && index_.cells.empty() && index_.unreadable.empty())
+      throw Error(ErrorKind::kInput, "neither the run nor the baseline has a cell", options.run.string());
   }
 
   RegressReport compare() {
-    run_.visit([&](const ActualCell& cell) { compare_cell(cell); }, [&](const ActualTruth& truth) { compare_truth(truth); });
+    run_.visit([&](const ActualCell& cell) { compare_cell(cell); },
+               [&](const ActualTruth& truth) { compare_truth(truth); });
     find_missing();
     find_missing_truths();
     name_unreadable_files();
@@ -66,18 +76,21 @@ class Regression {
   Tolerances tolerances_;
   Accepter accepter_;
   Baseline::Index index_;
-  std::set<std::string> seen_;             ///< keys of the run's cells
-  std::set<std::string> named_unreadable_;  ///< files of the baseline whose trouble a cell reports
-  std::set<std::string> seen_truths_;      ///< scene and key
+  std::set<std::string> seen_;                    ///< keys of the run's cells
+  std::set<std::string> named_unreadable_;        ///< files of the baseline whose trouble a cell reports
+  std::set<std::string> seen_truths_;             ///< scene and key
   std::map<std::string, ExpectedTruths> truths_;  ///< by scene
-  std::optional<report::FolderLock> lock_;  ///< of a baseline that may change
+  std::optional<report::FolderLock> lock_;        ///< of a baseline that may change
   RegressReport report_;
   CellFile file_;  ///< of the last cell's scene and filter
   std::pair<std::string, std::string> file_name_;
   int pictures_ = 0;
 
   [[noreturn]] void fail_without_baseline() const {
-    throw Error(ErrorKind::kInput, fmt::format("there is no baseline here (no baseline.toml); make one: {}", make_accept_command(options_)), options_.baseline.string());
+    throw Error(
+        ErrorKind::kInput,
+        fmt::format("there is no baseline here (no baseline.toml); make one: {}", make_accept_command(options_)),
+        options_.baseline.string());
   }
 
   /// A misspelt name would take cells out of the comparison, and nobody would notice.
@@ -90,8 +103,8 @@ class Regression {
     known.erase(std::unique(known.begin(), known.end()), known.end());
     for (const std::string& name : chosen) {
       if (std::binary_search(known.begin(), known.end(), name)) continue;
-      throw Error(ErrorKind::kInput, fmt::format("{}: neither the run nor the baseline has '{}'{}; they have: {}", option, name,
-                                                 did_you_mean(name, known), fmt::join(known, ", ")));
+      throw Error(ErrorKind::kInput, fmt::format("{}: neither the run nor the baseline has '{}'{}; they have: {}",
+                                                 option, name, did_you_mean(name, known), fmt::join(known, ", ")));
     }
   }
 
@@ -102,7 +115,8 @@ class Regression {
   }
 
   const BaselineCell* find(const std::string& key) const {
-    const auto found = std::find_if(index_.cells.begin(), index_.cells.end(), [&](const BaselineCell& cell) { return cell.key == key; });
+    const auto found = std::find_if(index_.cells.begin(), index_.cells.end(),
+                                    [&](const BaselineCell& cell) { return cell.key == key; });
     return found == index_.cells.end() ? nullptr : &*found;
   }
 
@@ -138,12 +152,17 @@ class Regression {
   }
 
   void add_unknown(Comparison& comparison, const ActualCell& cell) {
-    const std::string file = (std::filesystem::path(report::make_file_stem(cell.record.scene)) / report::make_file_stem(cell.record.filter)).string();
+    const std::string file =
+        (std::filesystem::path(report::make_file_stem(cell.record.scene)) / report::make_file_stem(cell.record.filter))
+            .string();
     const auto unreadable = index_.unreadable.find(file);
     if (unreadable != index_.unreadable.end()) named_unreadable_.insert(file);
-    if (unreadable != index_.unreadable.end()) comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, unreadable->second});
-    else if (!cell.unreadable.empty()) comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, cell.unreadable});
-    else comparison.add(Outcome::kExtra, {"", {}, {}, {}, "the baseline has no such cell"});
+    if (unreadable != index_.unreadable.end())
+      comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, unreadable->second});
+    else if (!cell.unreadable.empty())
+      comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, cell.unreadable});
+    else
+      comparison.add(Outcome::kExtra, {"", {}, {}, {}, "the baseline has no such cell"});
   }
 
   void compare_truth(const ActualTruth& truth) {
@@ -169,7 +188,8 @@ class Regression {
     const bool moved = comparison.outcome == Outcome::kChanged || comparison.outcome == Outcome::kLessAccurate;
     if (!moved || pictures_ >= kMostPictures) return;
     ++pictures_;
-    comparison.picture = report::make_file_stem(fmt::format("{}.{}.{}", comparison.scene, comparison.label, comparison.key)) + ".png";
+    comparison.picture =
+        report::make_file_stem(fmt::format("{}.{}.{}", comparison.scene, comparison.label, comparison.key)) + ".png";
     write_regress_picture(options_.out / *comparison.picture, comparison, expected, actual);
   }
 
@@ -217,7 +237,9 @@ class Regression {
   void name_unreadable_files() {
     for (const auto& [file, reason] : index_.unreadable) {
       const std::filesystem::path path(file);
-      if (named_unreadable_.contains(file) || !options_.selection.holds(path.parent_path().string(), path.filename().string())) continue;
+      if (named_unreadable_.contains(file) ||
+          !options_.selection.holds(path.parent_path().string(), path.filename().string()))
+        continue;
       Comparison comparison;
       comparison.scene = path.parent_path().string();
       comparison.filter = comparison.label = path.filename().string();
@@ -249,18 +271,21 @@ void remove_old_pictures(const std::filesystem::path& out) {
 /// Sums a comparison up. What was accepted is no failure; what could not be accepted is.
 std::string describe_failure(const RegressReport& report) {
   if (report.failed() == 0) return "";
-  if (report.options.accept) return fmt::format("{} could not be accepted; {}", report.failed(), describe_worst(report));
+  if (report.options.accept)
+    return fmt::format("{} could not be accepted; {}", report.failed(), describe_worst(report));
   return fmt::format("{}; worst: {}", describe_counts(report), describe_worst(report));
 }
 
 }  // namespace
 
 int RegressReport::count(Outcome outcome) const {
-  return static_cast<int>(std::count_if(comparisons.begin(), comparisons.end(), [&](const Comparison& each) { return each.outcome == outcome; }));
+  return static_cast<int>(std::count_if(
+      comparisons.begin(), comparisons.end(), [&](const Comparison& each) { return each.outcome == outcome; }));
 }
 
 int RegressReport::failed() const {
-  return static_cast<int>(std::count_if(comparisons.begin(), comparisons.end(), [](const Comparison& each) { return each.failed(); }));
+  return static_cast<int>(std::count_if(
+      comparisons.begin(), comparisons.end(), [](const Comparison& each) { return each.failed(); }));
 }
 
 RegressOutcome run_regress(const RegressOptions& options) {

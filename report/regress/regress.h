@@ -12,12 +12,12 @@ namespace shadowbench::regress {
 
 /// Everything that `shadowbench regress` is told.
 struct RegressOptions {
-  std::filesystem::path run;       ///< a run's report folder
+  std::filesystem::path run;  ///< a run's report folder
   std::filesystem::path baseline;
-  std::filesystem::path out;       ///< gets regress.json and the pictures
+  std::filesystem::path out;  ///< gets regress.json and the pictures
   Selection selection;
-  bool accept = false;             ///< what differs becomes the baseline
-  bool remove_missing = false;     ///< with `accept`: cells that the run lacks leave the baseline
+  bool accept = false;          ///< what differs becomes the baseline
+  bool remove_missing = false;  ///< with `accept`: cells that the run lacks leave the baseline
   std::optional<std::filesystem::path> junit;
   std::vector<std::string> command;  ///< the command line, to be given again with --accept
 };
@@ -25,8 +25,8 @@ struct RegressOptions {
 /// What a comparison found, the worst first.
 struct RegressReport {
   std::vector<Comparison> comparisons;
-  std::vector<std::string> accepted;   ///< what became of the baseline, one line each
-  std::string accept_command;          ///< what would accept the differences
+  std::vector<std::string> accepted;  ///< what became of the baseline, one line each
+  std::string accept_command;         ///< what would accept the differences
   RegressOptions options;
 
   int count(Outcome outcome) const;
@@ -40,10 +40,10 @@ struct RegressOutcome {
   std::string failure;  ///< one line; empty where nothing is left that differs
 };
 
-/// Compares a run with its baseline, and writes regress.json, a picture of each cell that moved, and what else was asked for.
-/// Throws Error(kInput) where run or tolerances cannot be read, where there is no baseline and nothing is to be accepted, or for a
-/// name that is chosen and nowhere found; Error(kOutput), also where another process accepts into the same baseline.
-/// Cost: memory of one image file of the run, of one of the baseline, and of all that is accepted.
+/// Compares a run with its baseline, and writes regress.json, a picture of each cell that moved, and what else was
+/// asked for. Throws Error(kInput) where run or tolerances cannot be read, where there is no baseline and nothing is to
+/// be accepted, or for a name that is chosen and nowhere found; Error(kOutput), also where another process accepts into
+/// the same baseline. Cost: memory of one image file of the run, of one of the baseline, and of all that is accepted.
 RegressOutcome run_regress(const RegressOptions& options);
 
 }  // namespace shadowbench::regress

@@ -38,7 +38,10 @@ struct Panel {
   Colors colors;
 };
 
-Rgb color_visibility(float v) { return std::isfinite(v) ? Rgb{std::clamp(v, 0.0f, 1.0f), std::clamp(v, 0.0f, 1.0f), std::clamp(v, 0.0f, 1.0f)} : kNotFinite; }
+Rgb color_visibility(float v) {
+  return std::isfinite(v) ? Rgb{std::clamp(v, 0.0f, 1.0f), std::clamp(v, 0.0f, 1.0f), std::clamp(v, 0.0f, 1.0f)}
+                          : kNotFinite;
+}
 
 float distance_from_lit(float v) { return std::isfinite(v) ? 1.0f - v : 2.0f; }
 float magnitude(float v) { return std::isfinite(v) ? std::abs(v) : 2.0f; }
@@ -52,10 +55,12 @@ Image cut(const Image& image, const Rect& rect) {
 /// Where the images differ most.
 Rect crop_worst(const Image& difference) {
   const auto smaller = [](float a, float b) { return magnitude(a) < magnitude(b); };
-  const int worst = static_cast<int>(std::max_element(difference.texels.begin(), difference.texels.end(), smaller) - difference.texels.begin());
+  const int worst = static_cast<int>(std::max_element(difference.texels.begin(), difference.texels.end(), smaller) -
+                                     difference.texels.begin());
   const report::Size size = report::choose_crop_size({difference.width, difference.height});
   return {std::clamp(worst % difference.width - size.width / 2, 0, difference.width - size.width),
-          std::clamp(worst / difference.width - size.height / 2, 0, difference.height - size.height), size.width, size.height};
+          std::clamp(worst / difference.width - size.height / 2, 0, difference.height - size.height), size.width,
+          size.height};
 }
 
 void outline(report::Figure& figure, const Rect& rect) {
@@ -73,45 +78,61 @@ void frame(report::Figure& figure, int x, int y, const Image& picture) {
 std::string describe_change(const Comparison& comparison) {
   if (!comparison.pixels) return comparison.findings.front().text;
   const PixelChange& change = *comparison.pixels;
-  return fmt::format("{} of {} pixels moved, by {} at most; excused by name: {} where a comparison may flip, {} for rounding", change.changed, change.compared,
-                     report::format_number(change.max), change.excused_flips, change.excused_rounding);
+  return fmt::format(
+      "{} of {} pixels moved, by {} at most; excused by name: {} where a comparison may flip, {} for rounding",
+      change.changed, change.compared, report::format_number(change.max), change.excused_flips,
+      change.excused_rounding);
 }
 
 void draw_panel(report::Figure& figure, int column, int y, const Panel& panel, const Rect& crop) {
   const int x = figure.body().x + column * (kPanelWidth + kGap);
   const int below = y + report::figure_line_height() + kPanelWidth * panel.values.height / panel.values.width + kGap;
   figure.write(x, y, panel.title, report::kFigureInk);
-  frame(figure, x, y + report::figure_line_height(), report::color_values(report::fit_worst(panel.values, kPanelWidth, panel.badness), panel.colors));
+  frame(figure, x, y + report::figure_line_height(),
+        report::color_values(report::fit_worst(panel.values, kPanelWidth, panel.badness), panel.colors));
   const auto scaled = [&](int place) { return place * kPanelWidth / panel.values.width; };
-  outline(figure, {x + scaled(crop.x), y + report::figure_line_height() + scaled(crop.y), scaled(crop.width), scaled(crop.height)});
-  const Image magnified = report::color_values(report::fit_worst(cut(panel.values, crop), kPanelWidth, panel.badness), panel.colors);
+  outline(figure, {x + scaled(crop.x), y + report::figure_line_height() + scaled(crop.y), scaled(crop.width),
+                   scaled(crop.height)});
+  const Image magnified =
+      report::color_values(report::fit_worst(cut(panel.values, crop), kPanelWidth, panel.badness), panel.colors);
   frame(figure, x, below, magnified);
   outline(figure, {x, below, magnified.width, magnified.height});
 }
 
 void draw_scale(report::Figure& figure, int top, double scale) {
   const Image bar = report::make_ramp(kBarWidth, report::figure_line_height() - 4);
-  figure.place(figure.body().x, top + 2, report::color_values(bar, [](float t) { return report::map_diverging(2.0f * t - 1.0f, 1.0f); }));
+  figure.place(figure.body().x, top + 2,
+               report::color_values(bar, [](float t) { return report::map_diverging(2.0f * t - 1.0f, 1.0f); }));
   figure.write(figure.body().x + kBarWidth + kGap, top,
-               fmt::format("actual less expected: -{0} (darker now) to +{0} (brighter now); below: the outlined part, with the largest difference", report::format_number(scale)));
+               fmt::format("actual less expected: -{0} (darker now) to +{0} (brighter now); below: the outlined part, "
+                           "with the largest difference",
+                           report::format_number(scale)));
 }
 
 }  // namespace
 
-void write_regress_picture(const std::filesystem::path& path, const Comparison& comparison, const Image& expected, const Image& actual) {
+void write_regress_picture(const std::filesystem::path& path, const Comparison& comparison, const Image& expected,
+                           const Image& actual) {
   const Image difference = subtract(actual, expected);
   const double scale = report::choose_error_scale({&difference});
   const Rect crop = crop_worst(difference);
   const std::vector<Panel> panels = {{"expected", expected, distance_from_lit, color_visibility},
                                      {"actual", actual, distance_from_lit, color_visibility},
-                                     {"difference", difference, magnitude, [scale](float v) { return std::isfinite(v) ? report::map_diverging(v, static_cast<float>(scale)) : kNotFinite; }}};
+                                     {"difference", difference, magnitude, [scale](float v) {
+                                        return std::isfinite(v) ? report::map_diverging(v, static_cast<float>(scale))
+                                                                : kNotFinite;
+                                      }}};
   const int line = report::figure_line_height(), width = 3 * kPanelWidth + 2 * kGap;
   const std::vector<std::string> notes = report::wrap_figure_text(describe_change(comparison), width);
-  const int top = line * static_cast<int>(notes.size()), height = top + line + kPanelWidth * actual.height / actual.width + kGap + kPanelWidth * crop.height / crop.width + kGap;
+  const int top = line * static_cast<int>(notes.size()), height = top + line +
+                                                                  kPanelWidth * actual.height / actual.width + kGap +
+                                                                  kPanelWidth * crop.height / crop.width + kGap;
   report::Figure figure(fmt::format("{} on {}: {}", comparison.label, comparison.scene, name_of(comparison.outcome)),
                         comparison.settings, {width, height + line});
-  for (std::size_t i = 0; i < notes.size(); ++i) figure.write(figure.body().x, figure.body().y + line * static_cast<int>(i), notes[i]);
-  for (std::size_t i = 0; i < panels.size(); ++i) draw_panel(figure, static_cast<int>(i), figure.body().y + top, panels[i], crop);
+  for (std::size_t i = 0; i < notes.size(); ++i)
+    figure.write(figure.body().x, figure.body().y + line * static_cast<int>(i), notes[i]);
+  for (std::size_t i = 0; i < panels.size(); ++i)
+    draw_panel(figure, static_cast<int>(i), figure.body().y + top, panels[i], crop);
   draw_scale(figure, figure.body().y + height, scale);
   report::write_display_png(path, figure.canvas());
 }

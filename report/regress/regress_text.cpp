@@ -12,12 +12,15 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::array kOutcomes = {Outcome::kUnreadable, Outcome::kMissing, Outcome::kExtra, Outcome::kLessAccurate, Outcome::kChanged, Outcome::kSlower};
+constexpr std::array kOutcomes = {Outcome::kUnreadable,   Outcome::kMissing, Outcome::kExtra,
+                                  Outcome::kLessAccurate, Outcome::kChanged, Outcome::kSlower};
 constexpr int kMostListed = 20;
 constexpr std::size_t kMostFindings = 8;
 
 std::string quote_word(const std::string& word) {
-  const auto plain = [](unsigned char c) { return std::isalnum(c) || std::string("_-./:=,+@%").find(static_cast<char>(c)) != std::string::npos; };
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) || std::string("_-./:=,+@%").find(static_cast<char>(c)) != std::string::npos;
+  };
   if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
   std::string quoted = "'";
   for (const char c : word) {
@@ -28,32 +31,53 @@ std::string quote_word(const std::string& word) {
   return quoted;
 }
 
-std::string name_cell(const Comparison& comparison) { return fmt::format("{} {} ({})", comparison.scene, comparison.label, comparison.settings); }
+std::string name_cell(const Comparison& comparison) {
+  return fmt::format("{} {} ({})", comparison.scene, comparison.label, comparison.settings);
+}
 
 std::string list_findings(const Comparison& comparison) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(comparison.findings.size(), kMostFindings); ++i) text += fmt::format("  {}\n", comparison.findings[i].text);
-  if (comparison.findings.size() > kMostFindings) text += fmt::format("  and {} more numbers\n", comparison.findings.size() - kMostFindings);
+  for (std::size_t i = 0; i < std::min(comparison.findings.size(), kMostFindings); ++i)
+    text += fmt::format("  {}\n", comparison.findings[i].text);
+  if (comparison.findings.size() > kMostFindings)
+    text += fmt::format("  and {} more numbers\n", comparison.findings.size() - kMostFindings);
   for (const std::string& note : comparison.notes) text += fmt::format("  note: {}\n", note);
   return text;
 }
 
-ordered_json optional_json(const std::optional<double>& value) { return value ? ordered_json(*value) : ordered_json(nullptr); }
+ordered_json optional_json(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
 
 ordered_json to_json(const PixelChange& change) {
-  return {{"compared", change.compared}, {"changed", change.changed}, {"share", change.share()}, {"max", change.max}, {"max_at", {change.max_x, change.max_y}},
-          {"mean", change.mean}, {"rms", change.rms}, {"excused_flips", change.excused_flips}, {"excused_rounding", change.excused_rounding},
+  return {{"compared", change.compared},
+          {"changed", change.changed},
+          {"share", change.share()},
+          {"max", change.max},
+          {"max_at", {change.max_x, change.max_y}},
+          {"mean", change.mean},
+          {"rms", change.rms},
+          {"excused_flips", change.excused_flips},
+          {"excused_rounding", change.excused_rounding},
           {"excused_changed", change.excused_changed}};
 }
 
 ordered_json to_json(const Comparison& comparison) {
-  ordered_json json = {{"outcome", name_of(comparison.outcome)}, {"key", comparison.key}, {"scene", comparison.scene}, {"view", comparison.view},
-                       {"filter", comparison.filter}, {"label", comparison.label}, {"settings", comparison.settings}};
+  ordered_json json = {{"outcome", name_of(comparison.outcome)},
+                       {"key", comparison.key},
+                       {"scene", comparison.scene},
+                       {"view", comparison.view},
+                       {"filter", comparison.filter},
+                       {"label", comparison.label},
+                       {"settings", comparison.settings}};
   json["accepted"] = comparison.accepted;
   json["findings"] = ordered_json::array();
   for (const Finding& finding : comparison.findings) {
-    json["findings"].push_back({{"metric", finding.metric}, {"expected", optional_json(finding.expected)}, {"actual", optional_json(finding.actual)},
-                                {"limit", optional_json(finding.limit)}, {"text", finding.text}});
+    json["findings"].push_back({{"metric", finding.metric},
+                                {"expected", optional_json(finding.expected)},
+                                {"actual", optional_json(finding.actual)},
+                                {"limit", optional_json(finding.limit)},
+                                {"text", finding.text}});
   }
   json["notes"] = comparison.notes;
   json["pixels"] = comparison.pixels ? to_json(*comparison.pixels) : ordered_json(nullptr);
@@ -71,14 +95,14 @@ std::string make_accept_command(const RegressOptions& options) {
 
 std::string describe_counts(const RegressReport& report) {
   std::string text = fmt::format("{} compared: {} same", report.comparisons.size(), report.count(Outcome::kSame));
-  for (const Outcome outcome : kOutcomes) {
+  for (const Outcome outcome : kOutcomes)
     if (const int count = report.count(outcome)) text += fmt::format(", {} {}", count, name_of(outcome));
-  }
   return text;
 }
 
 std::string describe_worst(const RegressReport& report) {
-  const Comparison& worst = *std::find_if(report.comparisons.begin(), report.comparisons.end(), [](const Comparison& each) { return each.failed(); });
+  const Comparison& worst = *std::find_if(report.comparisons.begin(), report.comparisons.end(),
+                                          [](const Comparison& each) { return each.failed(); });
   return fmt::format("{} is {}: {}", name_cell(worst), name_of(worst.outcome), worst.findings.front().text);
 }
 
@@ -91,10 +115,15 @@ std::string make_regress_text(const RegressReport& report) {
     text += fmt::format("{}: {}\n{}", name_of(comparison.outcome), name_cell(comparison), list_findings(comparison));
     if (comparison.picture) text += fmt::format("  picture: {}\n", (report.options.out / *comparison.picture).string());
   }
-  if (listed > kMostListed) text += fmt::format("and {} more cells: see {}\n", listed - kMostListed, (report.options.out / "regress.json").string());
+  if (listed > kMostListed)
+    text += fmt::format("and {} more cells: see {}\n", listed - kMostListed,
+                        (report.options.out / "regress.json").string());
   text += describe_counts(report) + "\n";
   if (report.options.accept) {
-    text += report.accepted.empty() ? "nothing to accept\n" : fmt::format("accepted: {} changes of the baseline, logged in {}\n", report.accepted.size(), (report.options.baseline / "accepted.md").string());
+    text += report.accepted.empty()
+                ? "nothing to accept\n"
+                : fmt::format("accepted: {} changes of the baseline, logged in {}\n", report.accepted.size(),
+                              (report.options.baseline / "accepted.md").string());
   } else if (report.failed() > 0) {
     text += fmt::format("if this is meant: {}\n", report.accept_command);
   }
@@ -102,8 +131,9 @@ std::string make_regress_text(const RegressReport& report) {
 }
 
 std::string make_regress_json(const RegressReport& report) {
-  ordered_json json = {{"run", report.options.run.string()}, {"baseline", report.options.baseline.string()}, {"compared", report.comparisons.size()},
-                       {"failed", report.failed()}, {"summary", describe_counts(report)}, {"accept_command", report.accept_command}};
+  ordered_json json = {{"run", report.options.run.string()},    {"baseline", report.options.baseline.string()},
+                       {"compared", report.comparisons.size()}, {"failed", report.failed()},
+                       {"summary", describe_counts(report)},    {"accept_command", report.accept_command}};
   json["accepted"] = report.accepted;
   json["cells"] = ordered_json::array();
   for (const Comparison& comparison : report.comparisons) json["cells"].push_back(to_json(comparison));

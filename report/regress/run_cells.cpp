@@ -47,7 +47,8 @@ void read_images(ActualCell& cell, const ImageFile& file) {
   }
   const std::string prefix = *cell.record.images.parts + ".";
   cell.images.visibility = find_part(file.parts, prefix + "visibility");
-  for (const report::UncertaintyImage& each : report::list_uncertainty_images()) cell.images.uncertainty.*each.image = find_part(file.parts, prefix + each.id);
+  for (const report::UncertaintyImage& each : report::list_uncertainty_images())
+    cell.images.uncertainty.*each.image = find_part(file.parts, prefix + each.id);
 }
 
 /// Says why a cell has no image; empty where it has one.
@@ -57,19 +58,24 @@ std::string explain_no_image(const report::CellRecord& cell) {
   return "";
 }
 
-std::map<std::string, std::vector<const report::CellRecord*>> group_by_file(const std::vector<report::CellRecord>& cells) {
+std::map<std::string, std::vector<const report::CellRecord*>> group_by_file(
+    const std::vector<report::CellRecord>& cells) {
   std::map<std::string, std::vector<const report::CellRecord*>> groups;
-  for (const report::CellRecord& cell : cells) groups[explain_no_image(cell).empty() ? *cell.images.exr : std::string()].push_back(&cell);
+  for (const report::CellRecord& cell : cells)
+    groups[explain_no_image(cell).empty() ? *cell.images.exr : std::string()].push_back(&cell);
   return groups;
 }
 
 }  // namespace
 
-bool Selection::holds(const std::string& scene, const std::string& filter) const { return chosen(scenes, scene) && chosen(filters, filter); }
+bool Selection::holds(const std::string& scene, const std::string& filter) const {
+  return chosen(scenes, scene) && chosen(filters, filter);
+}
 
 RunCells::RunCells(const std::filesystem::path& folder, const Selection& selection)
     : folder_(folder), results_(report::read_results(folder / "results.json")), all_(results_.cells) {
-  std::erase_if(results_.cells, [&](const report::CellRecord& cell) { return !selection.holds(cell.scene, cell.filter); });
+  std::erase_if(
+      results_.cells, [&](const report::CellRecord& cell) { return !selection.holds(cell.scene, cell.filter); });
 }
 
 Origin RunCells::origin() const {
@@ -77,7 +83,8 @@ Origin RunCells::origin() const {
   return {run.seed, run.gl.renderer, fmt::format("{}, {} cores", run.machine.cpu, run.machine.cores), run.commit};
 }
 
-void RunCells::visit(const std::function<void(const ActualCell&)>& on_cell, const std::function<void(const ActualTruth&)>& on_truth) const {
+void RunCells::visit(const std::function<void(const ActualCell&)>& on_cell,
+                     const std::function<void(const ActualTruth&)>& on_truth) const {
   std::set<std::string> seen;
   for (const auto& [name, cells] : group_by_file(results_.cells)) {
     const ImageFile file = name.empty() ? ImageFile() : read_image_file(folder_ / name);
@@ -86,8 +93,10 @@ void RunCells::visit(const std::function<void(const ActualCell&)>& on_cell, cons
       if (cell.unreadable.empty()) read_images(cell, file);
       on_cell(cell);
     }
-    const ActualTruth truth{*cells.front(), {find_part(file.parts, "truth.area"), find_part(file.parts, "truth.standard_error")}};
-    if (!truth.images.area.empty() && seen.insert(cells.front()->scene + " " + truth_key(*cells.front())).second) on_truth(truth);
+    const ActualTruth truth{*cells.front(),
+                            {find_part(file.parts, "truth.area"), find_part(file.parts, "truth.standard_error")}};
+    if (!truth.images.area.empty() && seen.insert(cells.front()->scene + " " + truth_key(*cells.front())).second)
+      on_truth(truth);
   }
 }
 

@@ -19,7 +19,8 @@ struct Selection {
   bool holds(const std::string& scene, const std::string& filter) const;
 };
 
-/// Reads the cells of a run with their images, file by file: an image file stays in memory while its cells are handed out.
+/// Reads the cells of a run with their images, file by file: an image file stays in memory while its cells are handed
+/// out.
 class RunCells {
  public:
   /// `folder` is the run's report folder. Throws Error(kInput) where its results cannot be read.
@@ -30,7 +31,8 @@ class RunCells {
   const std::vector<report::CellRecord>& all_cells() const { return all_; }  ///< those that are not compared, too
 
   /// Hands out every cell, and the truth of every view once, where there is one.
-  void visit(const std::function<void(const ActualCell&)>& on_cell, const std::function<void(const ActualTruth&)>& on_truth) const;
+  void visit(const std::function<void(const ActualCell&)>& on_cell,
+             const std::function<void(const ActualTruth&)>& on_truth) const;
 
  private:
   std::filesystem::path folder_;

@@ -18,10 +18,14 @@ namespace {
 constexpr double kHalfRounding = 0x1p-12;
 
 Tolerance tolerate(const ComparedMetric& metric) {
-  if (metric.path.starts_with("map_scale.")) return {1e-9, "a map of another scale is another map: the widest kernel of a run pads it, see --pad-texels"};
+  if (metric.path.starts_with("map_scale."))
+    return {1e-9, "a map of another scale is another map: the widest kernel of a run pads it, see --pad-texels"};
   if (metric.role != MetricRole::kError) return {0.0, "a count: it does not depend on rounding"};
-  if (metric.path.starts_with("artefact.")) return {0.01, "a rate counts over 100 receivers or more: one of them may fall on the other side of its limit"};
-  return {kHalfRounding, "no mean of errors moves by more than the pixels do; what excused pixels and the truth's noise move it by is allowed on top"};
+  if (metric.path.starts_with("artefact."))
+    return {0.01, "a rate counts over 100 receivers or more: one of them may fall on the other side of its limit"};
+  return {kHalfRounding,
+          "no mean of errors moves by more than the pixels do; what excused pixels and the truth's noise move it by is "
+          "allowed on top"};
 }
 
 /// Reads one file and says where in it something is wrong.
@@ -33,9 +37,12 @@ class ToleranceReader {
     Tolerances tolerances;
     for (const auto& [key, node] : root_) {
       const std::string name(key.str());
-      if (name == "all") read_filter(tolerances, "", node);
-      else if (name == "filter") read_filters(tolerances, node);
-      else fail(node, fmt::format("'{}' is not known here: write [all.\"METRIC\"] or [filter.ID.\"METRIC\"]", name));
+      if (name == "all")
+        read_filter(tolerances, "", node);
+      else if (name == "filter")
+        read_filters(tolerances, node);
+      else
+        fail(node, fmt::format("'{}' is not known here: write [all.\"METRIC\"] or [filter.ID.\"METRIC\"]", name));
     }
     return tolerances;
   }
@@ -49,7 +56,8 @@ class ToleranceReader {
       return toml::parse_file(file_);
     } catch (const toml::parse_error& error) {
       const auto line = error.source().begin.line;
-      throw Error(ErrorKind::kInput, std::string(error.description()), line > 0 ? fmt::format("{}:{}", file_, line) : file_);
+      throw Error(ErrorKind::kInput, std::string(error.description()),
+                  line > 0 ? fmt::format("{}:{}", file_, line) : file_);
     }
   }
 
@@ -77,17 +85,21 @@ class ToleranceReader {
   void require_known(const std::string& metric, const toml::node& node) const {
     const std::vector<std::string>& known = list_limited_metrics();
     if (std::find(known.begin(), known.end(), metric) != known.end()) return;
-    fail(node, fmt::format("there is no metric '{}'{}; known: {}", metric, did_you_mean(metric, known), fmt::join(known, ", ")));
+    fail(node, fmt::format("there is no metric '{}'{}; known: {}", metric, did_you_mean(metric, known),
+                           fmt::join(known, ", ")));
   }
 
   Tolerance read_tolerance(const std::string& metric, const toml::table& values) const {
-    for (const auto& [key, node] : values) {
-      if (key.str() != "limit" && key.str() != "reason") fail(node, fmt::format("'{}' is not known: a tolerance has a limit and a reason", std::string(key.str())));
-    }
+    for (const auto& [key, node] : values)
+      if (key.str() != "limit" && key.str() != "reason")
+        fail(node, fmt::format("'{}' is not known: a tolerance has a limit and a reason", std::string(key.str())));
     const auto limit = values["limit"].value<double>();
-    if (!limit || !(*limit >= 0.0)) fail(values, fmt::format("the tolerance of {} needs a limit of 0 or more; 'inf' compares it with nothing", metric));
+    if (!limit || !(*limit >= 0.0))
+      fail(values,
+           fmt::format("the tolerance of {} needs a limit of 0 or more; 'inf' compares it with nothing", metric));
     const auto reason = values["reason"].value<std::string>();
-    if (!reason || reason->empty()) fail(values, fmt::format("the tolerance of {} needs a reason: what limits the filter there", metric));
+    if (!reason || reason->empty())
+      fail(values, fmt::format("the tolerance of {} needs a reason: what limits the filter there", metric));
     return {*limit, *reason};
   }
 };
@@ -107,15 +119,20 @@ Tolerances::Tolerances() {
   auto& all = by_filter_[""];
   all[kPixel] = {kHalfRounding, "images are stored as 16-bit floats, which round visibility by up to 2^-12"};
   all[kShare] = {0.0, "what rounding can move is excused pixel by pixel, by name"};
-  all[kLargest] = {0.0625, "twice the widest tolerance of a pixel that is not excused: 1/32 in the baseline and 1/32 in the run"};
+  all[kLargest] = {
+      0.0625, "twice the widest tolerance of a pixel that is not excused: 1/32 in the baseline and 1/32 in the run"};
   all[kMean] = {kHalfRounding, "the mean of roundings to 16 bits is at most the largest"};
   all[kExcused] = {0.01, "ties and texel borders wander with the last bit of a depth, and are as many after it"};
-  all[kExcusedChanged] = {0.001, "of the pixels that a last bit decides few are decided otherwise elsewhere, and none on any llvmpipe that was measured"};
+  all[kExcusedChanged] = {0.001,
+                          "of the pixels that a last bit decides few are decided otherwise elsewhere, and none on any "
+                          "llvmpipe that was measured"};
   all[kLevel] = {0.01, "one comparison in a hundred of the same thing may fail by chance"};
   for (const ComparedMetric& metric : list_compared_metrics()) all[metric.path] = tolerate(metric);
   all["truth.se"] = {HUGE_VAL, "the truth itself is tested pixel by pixel"};
   for (const std::string& path : list_compared_ratios()) {
-    all[path] = {0.25, "ratios of one machine drift; the interval of the run must lie above that of the baseline by this share of it"};
+    all[path] = {
+        0.25,
+        "ratios of one machine drift; the interval of the run must lie above that of the baseline by this share of it"};
   }
 }
 
@@ -146,15 +163,18 @@ Tolerances read_tolerances(const std::filesystem::path& file) { return Tolerance
 
 std::string write_tolerances(const Tolerances& tolerances) {
   std::string text =
-      "# How far a run may be from this baseline. 'all' holds for every filter, [filter.ID.\"METRIC\"] for one; each with its reason.\n"
-      "# Pixels whose comparison may flip, or whose rounding bound is 1/32 or more, are counted and excused by name instead.\n";
+      "# How far a run may be from this baseline. 'all' holds for every filter, [filter.ID.\"METRIC\"] for one; each "
+      "with its reason.\n"
+      "# Pixels whose comparison may flip, or whose rounding bound is 1/32 or more, are counted and excused by name "
+      "instead.\n";
   for (const auto& [filter, metrics] : tolerances.by_filter_) {
     for (const std::string& name : list_limited_metrics()) {
       const auto found = metrics.find(name);
       if (found == metrics.end()) continue;
       const std::string table = filter.empty() ? "all" : "filter." + quote(filter);
       const std::string limit = std::isinf(found->second.limit) ? "inf" : fmt::format("{}", found->second.limit);
-      text += fmt::format("\n[{}.{}]\nlimit = {}\nreason = {}\n", table, quote(name), limit, quote(found->second.reason));
+      text +=
+          fmt::format("\n[{}.{}]\nlimit = {}\nreason = {}\n", table, quote(name), limit, quote(found->second.reason));
     }
   }
   return text;

@@ -14,13 +14,16 @@ struct Tolerance {
 };
 
 /// What of the pixels is limited, beside the numbers of list_compared_metrics() and the ratios:
-inline constexpr const char* kPixel = "visibility.pixel";      ///< what a pixel may differ by, beside what rounding explains
-inline constexpr const char* kShare = "visibility.share";      ///< share of the pixels that may differ by more
-inline constexpr const char* kLargest = "visibility.max";      ///< largest difference of a pixel that is not excused
-inline constexpr const char* kMean = "visibility.mean";        ///< mean magnitude of the differences of pixels not excused
-inline constexpr const char* kExcused = "visibility.excused";  ///< share of pixels excused, more than the baseline excuses
-inline constexpr const char* kExcusedChanged = "visibility.excused_changed";  ///< share of pixels excused that do differ
-inline constexpr const char* kLevel = "noise.level";           ///< probability that chance alone fails a test of noise
+inline constexpr const char* kPixel =
+    "visibility.pixel";  ///< what a pixel may differ by, beside what rounding explains
+inline constexpr const char* kShare = "visibility.share";  ///< share of the pixels that may differ by more
+inline constexpr const char* kLargest = "visibility.max";  ///< largest difference of a pixel that is not excused
+inline constexpr const char* kMean = "visibility.mean";    ///< mean magnitude of the differences of pixels not excused
+inline constexpr const char* kExcused =
+    "visibility.excused";  ///< share of pixels excused, more than the baseline excuses
+inline constexpr const char* kExcusedChanged =
+    "visibility.excused_changed";                     ///< share of pixels excused that do differ
+inline constexpr const char* kLevel = "noise.level";  ///< probability that chance alone fails a test of noise
 
 /// The tolerances of a baseline: those of all filters, and what single filters have in their place.
 class Tolerances {
@@ -44,8 +47,8 @@ class Tolerances {
 const std::vector<std::string>& list_limited_metrics();
 
 /// Reads a baseline's tolerances; what the file leaves out is as in a new baseline.
-/// Throws Error(kInput), with the line, where the file is malformed, names no such metric, has a limit below 0, or gives no
-/// reason.
+/// Throws Error(kInput), with the line, where the file is malformed, names no such metric, has a limit below 0, or
+/// gives no reason.
 Tolerances read_tolerances(const std::filesystem::path& file);
 
 /// Gives the text of such a file.

@@ -45,7 +45,8 @@ class LookupBench {
   run::RoundTimes time(int rounds) {
     std::vector<render::FilterPasses*> pointers;
     for (const auto& filter : filters_) pointers.push_back(filter.get());
-    return run::time_rounds(pointers, 0, [] {}, map_, gbuffer_, timer_, run::RoundLimits::exactly(rounds), 1);
+    return run::time_rounds(
+        pointers, 0, [] {}, map_, gbuffer_, timer_, run::RoundLimits::exactly(rounds), 1);
   }
 
  private:

@@ -38,9 +38,8 @@ double run_program(std::vector<std::string> arguments) {
 }
 
 void list_filters(benchmark::State& state) {
-  for (auto _ : state) {
+  for (auto _ : state)
     if (run_program({"list", "filters"}) < 0.0) state.SkipWithError("the program failed");
-  }
 }
 BENCHMARK(list_filters)->UseRealTime()->Unit(benchmark::kMillisecond);
 

@@ -14,8 +14,8 @@
 #include <numeric>
 #include <vector>
 
-#include "harness/render/gbuffer.h"
 #include "harness/gl/context.h"
+#include "harness/render/gbuffer.h"
 #include "harness/render/shader_library.h"
 #include "harness/run/options.h"
 #include "harness/run/scene_tracer.h"
@@ -67,15 +67,17 @@ class BareEmbree {
 
   /// Traces packets that lie ready, and resets what Embree overwrites.
   void trace(std::vector<RTCRay16>& packets, const std::vector<std::array<int, 16>>& valid) const {
-    tbb::parallel_for(std::size_t{0}, packets.size(), std::size_t{64}, [&](std::size_t begin) {
-      for (std::size_t i = begin; i < std::min(begin + std::size_t{64}, packets.size()); ++i) {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        alignas(64) std::array<int, 16> active = valid[i];
-        rtcOccluded16(active.data(), scene_, &context, &packets[i]);
-        std::fill(std::begin(packets[i].tfar), std::end(packets[i].tfar), std::numeric_limits<float>::infinity());
-      }
-    });
+    tbb::parallel_for(
+        std::size_t{0}, packets.size(), std::size_t{64},
+        [&](std::size_t begin) {
+          for (std::size_t i = begin; i < std::min(begin + std::size_t{64}, packets.size()); ++i) {
+            RTCIntersectContext context;
+            rtcInitIntersectContext(&context);
+            alignas(64) std::array<int, 16> active = valid[i];
+            rtcOccluded16(active.data(), scene_, &context, &packets[i]);
+            std::fill(std::begin(packets[i].tfar), std::end(packets[i].tfar), std::numeric_limits<float>::infinity());
+          }
+        });
   }
 
  private:
@@ -84,11 +86,11 @@ class BareEmbree {
 
   void add(const scene::Mesh& mesh) {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                     sizeof(glm::vec3), mesh.vertices.size()));
+    auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), mesh.vertices.size()));
     for (const scene::Vertex& vertex : mesh.vertices) *vertices++ = vertex.position_ws;
-    auto* corners = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                        3 * sizeof(std::uint32_t), mesh.indices.size() / 3));
+    auto* corners = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.indices.size() / 3));
     std::copy(mesh.indices.begin(), mesh.indices.end(), corners);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_, geometry);

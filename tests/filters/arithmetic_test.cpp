@@ -46,9 +46,7 @@ TEST(Gaussian, SumsToOne_IsSymmetric_AndFallsToItsEdge) {
     ASSERT_EQ(w.size(), static_cast<std::size_t>(2 * radius + 1));
     EXPECT_NEAR(std::accumulate(w.begin(), w.end(), 0.0), 1.0, 1e-6);
     for (std::size_t i = 0; i < w.size(); ++i) EXPECT_EQ(w[i], w[w.size() - 1 - i]);
-    if (radius > 0) {
-      EXPECT_NEAR(w.front() / w[static_cast<std::size_t>(radius)], std::exp(-2.0f), 1e-6f);
-    }
+    if (radius > 0) EXPECT_NEAR(w.front() / w[static_cast<std::size_t>(radius)], std::exp(-2.0f), 1e-6f);
   }
 }
 
@@ -117,7 +115,8 @@ TEST(StoreFormat, LargestNumber_IsTheLargest) {
   EXPECT_EQ(round_to_store(largest, StorePrecision::kHalf), largest);
   EXPECT_TRUE(std::isinf(round_to_store(largest * 1.001f, StorePrecision::kHalf)));
   EXPECT_TRUE(std::isinf(static_cast<float>(largest_number(StorePrecision::kSingle)) * 1.001f));
-  EXPECT_EQ(round_to_store(2.0f, StorePrecision::kUnorm16), static_cast<float>(largest_number(StorePrecision::kUnorm16)));
+  EXPECT_EQ(round_to_store(2.0f, StorePrecision::kUnorm16),
+            static_cast<float>(largest_number(StorePrecision::kUnorm16)));
 }
 
 TEST(StoreFormat, HalfOverflowsAbove65504) {

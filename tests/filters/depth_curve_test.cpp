@@ -21,7 +21,8 @@ TEST(DepthCurve, InSinglePrecision_IsExactAtItsEnds_Rises_AndGoesBack) {
       for (const float z : {0.001f, 0.2f, 0.5f, 0.93f}) {
         EXPECT_TRUE(curve.is_lit(curve.store(z), curve.store(1.5f * z)));
         const double step = depth_step(static_cast<double>(z), curve, {});
-        EXPECT_NEAR(static_cast<double>(curve.linear(curve.store(z))), static_cast<double>(z), 4.0 * step + 2e-7) << ratio << reversed << z;
+        EXPECT_NEAR(static_cast<double>(curve.linear(curve.store(z))), static_cast<double>(z), 4.0 * step + 2e-7)
+            << ratio << reversed << z;
       }
     }
   }
@@ -45,7 +46,8 @@ TEST(DepthCurve, ReversedIsOneLess_AndTheInverseGoesBack) {
   for (const double d : {0.02, 1.0, 37.0, 9000.0}) {
     EXPECT_NEAR(depth_of_distance(d, kPlanes, false) + depth_of_distance(d, kPlanes, true), 1.0, 1e-15);
     for (const bool reversed : {false, true}) {
-      EXPECT_NEAR(distance_of_depth(depth_of_distance(d, kPlanes, reversed), kPlanes, reversed), d, 1e-9 * d) << reversed;
+      EXPECT_NEAR(distance_of_depth(depth_of_distance(d, kPlanes, reversed), kPlanes, reversed), d, 1e-9 * d)
+          << reversed;
     }
   }
 }
@@ -56,7 +58,8 @@ TEST(DepthCurve, Step_IsWhatOneQuantumMovesTheDistance) {
     for (const bool reversed : {false, true}) {
       const double depth = depth_of_distance(d, kPlanes, reversed);
       const double quantum = depth_quantum(depth, {24, false});
-      const double moved = std::abs(distance_of_depth(depth + quantum, kPlanes, reversed) - distance_of_depth(depth - quantum, kPlanes, reversed));
+      const double moved = std::abs(distance_of_depth(depth + quantum, kPlanes, reversed) -
+                                    distance_of_depth(depth - quantum, kPlanes, reversed));
       EXPECT_NEAR(distance_step(d, kPlanes, {24, false}, reversed), 0.5 * moved, 0.01 * moved) << d;
     }
   }
@@ -64,13 +67,13 @@ TEST(DepthCurve, Step_IsWhatOneQuantumMovesTheDistance) {
 
 TEST(DepthCurve, Quantum_IsTheFormats) {
   EXPECT_EQ(depth_quantum(0.3, {16, false}), 1.0 / 65535.0);
-  for (const float depth : {0.3f, 0.75f, 1e-4f}) {
+  for (const float depth : {0.3f, 0.75f, 1e-4f})
     EXPECT_EQ(depth_quantum(static_cast<double>(depth), {}), static_cast<double>(std::nextafter(depth, 2.0f) - depth));
-  }
 }
 
 TEST(DepthCurve, ReversedFloat_IsRelativelyExactEverywhere_StandardIsNot) {
-  for (const double d : {0.02, 1.0, 100.0, 5000.0}) EXPECT_LE(distance_step(d, kPlanes, {}, true) / d, std::exp2(-22)) << d;
+  for (const double d : {0.02, 1.0, 100.0, 5000.0})
+    EXPECT_LE(distance_step(d, kPlanes, {}, true) / d, std::exp2(-22)) << d;
   EXPECT_GT(distance_step(5000.0, kPlanes, {}, false) / 5000.0, 0.01);
 }
 

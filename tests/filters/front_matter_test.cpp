@@ -29,7 +29,8 @@ void expect_error(const std::string& text, const std::string& where, const std::
 TEST(FrontMatter, GivesEveryField) {
   const FilterSpec spec = parse_filter(
       "/*+++\ntitle = \"Title\"\nsource = \"Source\"\nkind = \"bound\"\nstore = [\"rg32f\", \"rg16f\"]\n"
-      "combine = [\"linear\", \"log\"]\nsample = \"linear\"\nclaims = [\"contact-hardening\"]\nradius_texels = \"radius\"\n"
+      "combine = [\"linear\", \"log\"]\nsample = \"linear\"\nclaims = [\"contact-hardening\"]\nradius_texels = "
+      "\"radius\"\n"
       "[param.radius]\ndefault = 3\nmin = 0\nmax = 9\nunit = \"texels\"\ntext = \"help\"\n"
       "[param.amount]\ndefault = 0.5\nmin = 0.0\nmax = 1.0\ntext = \"help\"\nconst = true\n+++*/\n"
       "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n",
@@ -65,30 +66,39 @@ TEST(FrontMatter, BiasRadiusIsTheKernels_UnlessGiven) {
 }
 
 TEST(FrontMatter, SamplersInCode_NotInComments_MakeFetchesUnknown) {
-  EXPECT_TRUE(parse_filter(with("", "float visibility(Receiver r) { return texture(map_depth, r.uv).r; }"), "a.glsl").uses_samplers);
-  EXPECT_FALSE(parse_filter(with("", "// map_depth\nfloat visibility(Receiver r) { return 1.0; /* map_stored */ }"), "a.glsl").uses_samplers);
+  EXPECT_TRUE(parse_filter(with("", "float visibility(Receiver r) { return texture(map_depth, r.uv).r; }"), "a.glsl")
+                  .uses_samplers);
+  EXPECT_FALSE(
+      parse_filter(with("", "// map_depth\nfloat visibility(Receiver r) { return 1.0; /* map_stored */ }"), "a.glsl")
+          .uses_samplers);
 }
 
 TEST(FrontMatter, MissingOrMalformed_NamesTheLine) {
   expect_error("float visibility(Receiver r) { return 1.0; }", "dir/mine.glsl:1", "no front matter");
   expect_error("/*+++\ntitle = \"t\"\n", "dir/mine.glsl:1", "no front matter");
   expect_error(with("x = = 1\n"), "dir/mine.glsl:6", "malformed");
-  expect_error("/*+++\nsource = \"s\"\nkind = \"other\"\n+++*/\nfloat visibility(Receiver r) {}", "dir/mine.glsl:1", "'title'");
+  expect_error("/*+++\nsource = \"s\"\nkind = \"other\"\n+++*/\nfloat visibility(Receiver r) {}", "dir/mine.glsl:1",
+               "'title'");
 }
 
 TEST(FrontMatter, UnknownKeysAndValues_SuggestTheNearest) {
   expect_error(with("clams = []\n"), "dir/mine.glsl:6", "did you mean 'claims'");
-  expect_error(with("[param.a]\ndefault = 1.0\nmni = 0.0\nmax = 2.0\ntext = \"x\"\n"), "dir/mine.glsl:8", "did you mean 'min'");
-  expect_error("/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"fast\"\n+++*/\nfloat visibility(Receiver r) {}", "dir/mine.glsl:4", "'fast'");
+  expect_error(with("[param.a]\ndefault = 1.0\nmni = 0.0\nmax = 2.0\ntext = \"x\"\n"), "dir/mine.glsl:8",
+               "did you mean 'min'");
+  expect_error("/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"fast\"\n+++*/\nfloat visibility(Receiver r) {}",
+               "dir/mine.glsl:4", "'fast'");
 }
 
 TEST(FrontMatter, WrongTypes_AreRefused) {
   expect_error(with("claims = 3\n"), "dir/mine.glsl:6", "list of texts");
   expect_error(with("[param.a]\ndefault = nan\nmin = 0.0\nmax = 1.0\ntext = \"x\"\n"), "dir/mine.glsl:7", "finite");
-  expect_error(with("[param.a]\ndefault = 3.0\nmin = 0.0\nmax = 1.0\ntext = \"x\"\n"), "dir/mine.glsl:7", "outside 0 .. 1");
+  expect_error(with("[param.a]\ndefault = 3.0\nmin = 0.0\nmax = 1.0\ntext = \"x\"\n"), "dir/mine.glsl:7",
+               "outside 0 .. 1");
   expect_error(with("[param.a]\ndefault = 3.0\ntext = \"x\"\n"), "dir/mine.glsl:7", "needs 'min' and 'max'");
-  expect_error(with("[param.a]\ndefault = \"x\"\nchoices = [\"y\"]\ntext = \"x\"\n"), "dir/mine.glsl:7", "not one of its choices");
-  expect_error(with("[param.gl_a]\ndefault = 1.0\nmin = 0.0\nmax = 1.0\ntext = \"x\"\n"), "dir/mine.glsl:6", "GLSL uniform");
+  expect_error(with("[param.a]\ndefault = \"x\"\nchoices = [\"y\"]\ntext = \"x\"\n"), "dir/mine.glsl:7",
+               "not one of its choices");
+  expect_error(with("[param.gl_a]\ndefault = 1.0\nmin = 0.0\nmax = 1.0\ntext = \"x\"\n"), "dir/mine.glsl:6",
+               "GLSL uniform");
 }
 
 TEST(FrontMatter, StoreAndEncode_ComeTogether) {
@@ -100,51 +110,70 @@ TEST(FrontMatter, StoreAndEncode_ComeTogether) {
 }
 
 TEST(FrontMatter, WhatTheMapHolds_IsDeclared) {
-  const std::string glsl = "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }";
+  const std::string glsl =
+      "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }";
   const std::string param = "[param.c]\ndefault = 1.0\nmin = 0.0\nmax = 2.0\ntext = \"x\"\n";
-  const FilterSpec spec = parse_filter(with("store = \"rg32f\"\nmoments = true\nexponent = \"c\"\nvariance_floor = \"c\"\n" + param, glsl), "a.glsl");
+  const FilterSpec spec = parse_filter(
+      with("store = \"rg32f\"\nmoments = true\nexponent = \"c\"\nvariance_floor = \"c\"\n" + param, glsl), "a.glsl");
   EXPECT_TRUE(spec.holds_moments);
   EXPECT_EQ(spec.exponent, "c");
   EXPECT_EQ(spec.variance_floor, "c");
   EXPECT_FALSE(parse_filter(with("store = \"rg32f\"\n", glsl), "a.glsl").holds_moments);
   expect_error(with("store = [\"rg32f\", \"r32f\"]\nmoments = true\n", glsl), "dir/mine.glsl:7", "'r32f' has one");
-  expect_error(with("store = \"r32f\"\nexponent = \"d\"\n" + param, glsl), "dir/mine.glsl:7", "'d', which is not a numeric parameter");
-  expect_error(with("store = \"rg32f\"\nvariance_floor = \"c\"\n" + param, glsl), "dir/mine.glsl:7", "needs 'moments = true'");
+  expect_error(with("store = \"r32f\"\nexponent = \"d\"\n" + param, glsl), "dir/mine.glsl:7",
+               "'d', which is not a numeric parameter");
+  expect_error(with("store = \"rg32f\"\nvariance_floor = \"c\"\n" + param, glsl), "dir/mine.glsl:7",
+               "needs 'moments = true'");
   expect_error(with("exponent = \"c\"\n" + param), "dir/mine.glsl:6", "needs 'store'");
 }
 
-TEST(FrontMatter, NoVisibility_IsRefused) { expect_error(with("", "float lit() { return 1.0; }"), "dir/mine.glsl:1", "visibility"); }
+TEST(FrontMatter, NoVisibility_IsRefused) {
+  expect_error(with("", "float lit() { return 1.0; }"), "dir/mine.glsl:1", "visibility");
+}
 
 TEST(FrontMatter, PrefilterRadius_MustBeWhole) {
-  const std::string glsl = "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }";
-  expect_error("/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nstore = \"r32f\"\ncombine = \"linear\"\nradius_texels = 1.5\n+++*/\n" + glsl,
-               "dir/mine.glsl:6", "whole number");
+  const std::string glsl =
+      "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }";
+  expect_error(
+      "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nstore = \"r32f\"\ncombine = \"linear\"\nradius_texels = "
+      "1.5\n+++*/\n" +
+          glsl,
+      "dir/mine.glsl:6", "whole number");
 }
 
 TEST(FrontMatter, LongBlanksAndNames_DoNotExhaustTheStack) {
   const std::string blanks(1'000'000, ' ');
-  EXPECT_FALSE(parse_filter(with("", "float" + blanks + "visibility" + blanks + "(Receiver r) { return 1.0; }"), "mine.glsl").has_encode);
+  EXPECT_FALSE(
+      parse_filter(with("", "float" + blanks + "visibility" + blanks + "(Receiver r) { return 1.0; }"), "mine.glsl")
+          .has_encode);
   expect_error(with("", "float" + blanks + "visibility"), "dir/mine.glsl:1", "visibility");
   const std::string name(1'000'000, 'a');
-  EXPECT_EQ(parse_filter(with("[param." + name + "]\ndefault = 1.0\nmin = 0.0\nmax = 2.0\ntext = \"x\"\n"), "mine.glsl").params.size(), 1u);
+  EXPECT_EQ(parse_filter(with("[param." + name + "]\ndefault = 1.0\nmin = 0.0\nmax = 2.0\ntext = \"x\"\n"), "mine.glsl")
+                .params.size(),
+            1u);
   std::string key = "a";
   for (int i = 0; i < 1'000'000; ++i) key += ".a";
   expect_error(with(key + " = 1\n"), "dir/mine.glsl:6", "256 dots");
 }
 
 TEST(FrontMatter, FunctionsAreFoundAsWholeWords) {
-  for (const char* glsl : {"float my_visibility(Receiver r) {}", "myfloat visibility(Receiver r) {}", "float visibility_of(Receiver r) {}", "float visibility;"}) {
+  for (const char* glsl : {"float my_visibility(Receiver r) {}", "myfloat visibility(Receiver r) {}",
+                           "float visibility_of(Receiver r) {}", "float visibility;"})
     expect_error(with("", glsl), "dir/mine.glsl:1", "visibility");
-  }
   EXPECT_NO_THROW(parse_filter(with("", "int x; float\n\tvisibility\n(Receiver r) { return 1.0; }"), "mine.glsl"));
-  EXPECT_FALSE(parse_filter(with("", "float visibility(Receiver r) { return my_map_depth + map_depths; }"), "mine.glsl").uses_samplers);
+  EXPECT_FALSE(parse_filter(with("", "float visibility(Receiver r) { return my_map_depth + map_depths; }"), "mine.glsl")
+                   .uses_samplers);
 }
 
 TEST(FrontMatter, ChoicesAreOfOneType_AndBoundWhatTheyDrive) {
-  expect_error(with("[param.a]\ndefault = 1\nchoices = [1, \"x\"]\ntext = \"x\"\n"), "dir/mine.glsl:7", "different types");
+  expect_error(with("[param.a]\ndefault = 1\nchoices = [1, \"x\"]\ntext = \"x\"\n"), "dir/mine.glsl:7",
+               "different types");
   const auto with_radius = [](const std::string& choices) {
-    return "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nstore = \"r32f\"\ncombine = \"linear\"\nradius_texels = \"radius\"\n[param.radius]\ndefault = 1\nchoices = " +
-           choices + "\ntext = \"x\"\n+++*/\nvec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n";
+    return "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nstore = \"r32f\"\ncombine = "
+           "\"linear\"\nradius_texels = \"radius\"\n[param.radius]\ndefault = 1\nchoices = " +
+           choices +
+           "\ntext = \"x\"\n+++*/\nvec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { "
+           "return 1.0; }\n";
   };
   EXPECT_TRUE(parse_filter(with_radius("[1, 2]"), "mine.glsl").has_prefilter);
   expect_error(with_radius("[1, 100000]"), "dir/mine.glsl:6", "radius_texels");
@@ -153,7 +182,8 @@ TEST(FrontMatter, ChoicesAreOfOneType_AndBoundWhatTheyDrive) {
 
 TEST(FrontMatter, DisksOfTooManyPoints_AreRefused) {
   const auto with_disk = [](const std::string& param, const std::string& seed) {
-    return with("[param.taps]\ndefault = 4\n" + param + "const = true\ntext = \"x\"\n[disk.points]\ncount = \"taps\"\nseed = " + seed + "\n");
+    return with("[param.taps]\ndefault = 4\n" + param +
+                "const = true\ntext = \"x\"\n[disk.points]\ncount = \"taps\"\nseed = " + seed + "\n");
   };
   EXPECT_EQ(parse_filter(with_disk("min = 1\nmax = 64\n", "4294967295"), "mine.glsl").disks.front().seed, 4294967295u);
   expect_error(with_disk("min = 1\nmax = 2000000000\n", "1"), "dir/mine.glsl:13", "at most 4096 points");

@@ -1,4 +1,5 @@
-// Kernels: continuous shape and weights on the texel grid agree with each other, with the filters, and with closed forms.
+// Kernels: continuous shape and weights on the texel grid agree with each other, with the filters, and with closed
+// forms.
 
 #include "filters/kernel.h"
 
@@ -42,9 +43,9 @@ Receiver make_receiver(double x, double y, int size, float depth) {
 
 TEST(KernelNames, TellKernelsApart) {
   std::set<std::string> names;
-  for (const char* text : {"none", "pcf2x2", "box3x3", "tent3x3", "teach4x4", "box4x4", "poisson", "poisson:radius=2", "vsm", "vsm:radius=6", "esm:combine=log"}) {
+  for (const char* text : {"none", "pcf2x2", "box3x3", "tent3x3", "teach4x4", "box4x4", "poisson", "poisson:radius=2",
+                           "vsm", "vsm:radius=6", "esm:combine=log"})
     EXPECT_TRUE(names.insert(kernel_of(text).name()).second) << text;
-  }
   EXPECT_EQ(kernel_of("vsm").name(), kernel_of("esm").name()) << "one prefilter, one kernel";
 }
 
@@ -143,7 +144,8 @@ TEST(PercentageCloser, EqualsTheModelsThatCompare) {
 TEST(PercentageCloser, HasTheWeightsOfThePrefilter) {
   DepthMap map = make_random_map(48, 7);
   for (float& depth : map.stored) depth = depth < 0.5f ? 0.0f : 1.0f;
-  for (const char* text : {"esm:c=20,radius=3", "esm:c=20,radius=6", "esm:c=20,radius=0", "esm:c=20,radius=3,combine=log"}) {
+  for (const char* text :
+       {"esm:c=20,radius=3", "esm:c=20,radius=6", "esm:c=20,radius=0", "esm:c=20,radius=3,combine=log"}) {
     const FilterRequest request = catalogue().parse_requests(text).front();
     const ModelInput input{request.spec, request.values, map, {}, 0};
     const auto lookup = make_model("esm")->prepare(input, Precision::kDouble);
@@ -151,7 +153,8 @@ TEST(PercentageCloser, HasTheWeightsOfThePrefilter) {
     for (int i = 0; i < 200; ++i) {
       const double x = 12.3 + 0.11 * i, y = 30.7 - 0.07 * i;
       // With the receiver at depth 1, ESM is the mean of exp(-c (1 - z)), which is w + (1 - w) e^-c.
-      ASSERT_NEAR(closer.at(make_receiver(x, y, 48, 1.0f)), lookup->at(make_receiver(x, y, 48, 1.0f)).visibility, 1e-6) << text << i;
+      ASSERT_NEAR(closer.at(make_receiver(x, y, 48, 1.0f)), lookup->at(make_receiver(x, y, 48, 1.0f)).visibility, 1e-6)
+          << text << i;
     }
   }
 }
@@ -190,16 +193,13 @@ TEST(DiskWeights, InsideTheDisk_AreItsDensity_AndSumToOne) {
   for (const double radius : {0.3, 1.0, 3.0, 17.5, 64.0}) {
     const DiskWeights weights(radius);
     const double density = 1.0 / (std::numbers::pi * radius * radius);
-    if (radius > 2.0) {
-      EXPECT_NEAR(weights.at(0.2, -0.3), density, 1e-9);
-    }
+    if (radius > 2.0) EXPECT_NEAR(weights.at(0.2, -0.3), density, 1e-9);
     EXPECT_EQ(weights.at(radius + 1.0, 0.0), 0.0);
     for (const double shift : {0.0, 0.31, 0.5}) {
       double sum = 0.0;
       const int reach = static_cast<int>(radius) + 3;
-      for (int y = -reach; y <= reach; ++y) {
+      for (int y = -reach; y <= reach; ++y)
         for (int x = -reach; x <= reach; ++x) sum += weights.at(x + shift, y + 0.7 * shift);
-      }
       EXPECT_NEAR(sum, 1.0, 2e-4) << radius << " " << shift;
     }
   }

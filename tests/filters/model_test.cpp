@@ -28,7 +28,8 @@ DepthMap make_gap() {
 }
 
 /// Looks up a receiver at a position in texels.
-double look_up(const std::string& request_text, const DepthMap& map, double x, double y, float depth, Precision precision = Precision::kDouble) {
+double look_up(const std::string& request_text, const DepthMap& map, double x, double y, float depth,
+               Precision precision = Precision::kDouble) {
   static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
   const FilterRequest request = catalogue.parse_requests(request_text).front();
   const ModelInput input{request.spec, request.values, map, {}, 0};
@@ -79,7 +80,8 @@ TEST(NoneModel, CurveOfTheMap_ChangesNoComparison) {
     EXPECT_EQ(look_up("none", map, 4.5, 4.5, 0.251f), 0.0);
     EXPECT_EQ(look_up("none", map, 12.5, 4.5, 0.999f), 1.0);
     EXPECT_EQ(look_up("none", map, -3.0, 4.5, 0.999f), 1.0) << "outside";
-    EXPECT_NEAR(look_up("vsm:radius=0", map, 3.5, 4.5, 0.75f), look_up("vsm:radius=0", make_edge(16, 8, 0.25f, 1.0f), 3.5, 4.5, 0.75f), 1e-5)
+    EXPECT_NEAR(look_up("vsm:radius=0", map, 3.5, 4.5, 0.75f),
+                look_up("vsm:radius=0", make_edge(16, 8, 0.25f, 1.0f), 3.5, 4.5, 0.75f), 1e-5)
         << "moments are of linear depth";
   }
 }
@@ -138,9 +140,9 @@ TEST(Box3x3Model, HasStepsOfAThird) {
 
 TEST(Box3x3Model, WeighsItsTexelsAlike) {
   const DepthMap map = make_gap();
-  for (const double x : {7.1, 8.5, 9.9}) {
-    for (const double y : {7.9, 8.3, 9.2}) EXPECT_DOUBLE_EQ(look_up("box3x3", map, x, y, 0.5f), 1.0 / 9.0) << x << " " << y;
-  }
+  for (const double x : {7.1, 8.5, 9.9})
+    for (const double y : {7.9, 8.3, 9.2})
+      EXPECT_DOUBLE_EQ(look_up("box3x3", map, x, y, 0.5f), 1.0 / 9.0) << x << " " << y;
   EXPECT_EQ(look_up("box3x3", map, 6.9, 8.5, 0.5f), 0.0);
   EXPECT_EQ(look_up("box3x3", map, 8.5, 10.1, 0.5f), 0.0);
 }
@@ -156,12 +158,12 @@ TEST(Teach4x4Model, StaysAtAHalf_ForAWholeTexel) {
 }
 
 TEST(Teach4x4Model, HasAHoleBetweenTwoHumps) {
-  // Per axis, s past a texel's centre: (1-s)/2, s/2, (1-s)/2, s/2. At a centre the texel of the receiver does not count.
+  // Per axis, s past a texel's centre: (1-s)/2, s/2, (1-s)/2, s/2. At a centre the texel of the receiver does not
+  // count.
   const DepthMap map = make_gap();
   EXPECT_EQ(look_up("teach4x4", map, 8.5, 8.5, 0.5f), 0.0);
-  for (const double x : {7.5, 9.5}) {
+  for (const double x : {7.5, 9.5})
     for (const double y : {7.5, 9.5}) EXPECT_DOUBLE_EQ(look_up("teach4x4", map, x, y, 0.5f), 0.25) << x << " " << y;
-  }
   EXPECT_DOUBLE_EQ(look_up("teach4x4", map, 8.75, 7.5, 0.5f), 0.5 * 0.125);
   EXPECT_DOUBLE_EQ(look_up("teach4x4", map, 7.75, 7.5, 0.5f), 0.5 * 0.375);
 }
@@ -177,7 +179,9 @@ TEST(Box4x4Model, IsAStraightRamp) {
 
 TEST(Box4x4Model, WeighsATexel_AsItsPartUnderTheBox) {
   const DepthMap map = make_gap();
-  const auto part = [](double at) { return std::clamp(std::min(9.0, at + 1.5) - std::max(8.0, at - 1.5), 0.0, 1.0) / 3.0; };
+  const auto part = [](double at) {
+    return std::clamp(std::min(9.0, at + 1.5) - std::max(8.0, at - 1.5), 0.0, 1.0) / 3.0;
+  };
   for (int i = 0; i <= 160; ++i) {
     const double x = 6.0 + i / 32.0, y = 10.5 - i / 64.0;
     EXPECT_NEAR(look_up("box4x4", map, x, y, 0.5f), part(x) * part(y), 1e-12) << x << " " << y;
@@ -209,9 +213,8 @@ TEST(Box4x4Model, InSinglePrecision_KeepsItsBound) {
 
 TEST(PoissonModel, RadiusZero_IsItsBaseComparison) {
   const DepthMap map = make_edge(16, 8, 0.25f, 1.0f);
-  for (const double x : {7.2, 7.8, 8.3}) {
+  for (const double x : {7.2, 7.8, 8.3})
     EXPECT_NEAR(look_up("poisson:radius=0", map, x, 4.2, 0.5f), look_up("pcf2x2", map, x, 4.2, 0.5f), 1e-12);
-  }
 }
 
 TEST(VsmModel, TwoDepths_OneOfThemTheReceivers_IsExact) {
@@ -222,7 +225,8 @@ TEST(VsmModel, TwoDepths_OneOfThemTheReceivers_IsExact) {
 }
 
 TEST(VsmModel, DepthsThatAreNearlyEqual_NeedMoreThanDouble) {
-  // As above, exact for any gap; but E[z^2] - E[z]^2 is 2^-44 of its terms here, and double leaves it 1 part in a hundred.
+  // As above, exact for any gap; but E[z^2] - E[z]^2 is 2^-44 of its terms here, and double leaves it 1 part in a
+  // hundred.
   const float near = 0.75f - 0x1p-23f, far = 0.75f;
   const DepthMap map = make_edge(64, 32, near, far);
   const double exact = look_up("vsm:radius=0,min_variance=0", make_edge(64, 32, 0.25f, 0.75f), 31.8, 20.5, 0.75f);
@@ -254,9 +258,8 @@ TEST(EsmModel, TwoLayers_FollowTheClosedForm) {
 
 TEST(EsmModel, LogSpaceBlur_EqualsLinearBlur_WhereBothAreRead) {
   const DepthMap map = make_edge(64, 32, 0.3f, 0.7f);
-  for (const double x : {28.5, 31.5, 33.5}) {  // texel centres: nearest and bilinear reads agree
+  for (const double x : {28.5, 31.5, 33.5})  // texel centres: nearest and bilinear reads agree
     EXPECT_NEAR(look_up("esm:combine=log,c=30", map, x, 20.5, 0.7f), look_up("esm:c=30", map, x, 20.5, 0.7f), 1e-9);
-  }
 }
 
 TEST(EsmModel, LogSpace_DoesNotOverflow) {
@@ -294,10 +297,12 @@ TEST(EsmModel, OfASingleTexel_TendsToTheHardComparison) {
 }
 
 TEST(EsmModel, OfAWideKernel_GoesToOne_AsSoonAsATexelIsDeeper) {
-  // All block the receiver but one texel, which lies 0.0005 behind it: the percentage-closer filter is that texel's weight.
+  // All block the receiver but one texel, which lies 0.0005 behind it: the percentage-closer filter is that texel's
+  // weight.
   DepthMap map = make_edge(16, 16, 0.3f, 0.3f);
   map.stored[8 * 16 + 9] = 0.7005f;
-  const double weight = Kernel::make_gaussian(2, Reconstruction::kNearest).atoms()[2].weight * Kernel::make_gaussian(2, Reconstruction::kNearest).atoms()[3].weight;
+  const double weight = Kernel::make_gaussian(2, Reconstruction::kNearest).atoms()[2].weight *
+                        Kernel::make_gaussian(2, Reconstruction::kNearest).atoms()[3].weight;
   for (const double c : {100.0, 1000.0, 3000.0}) {
     const double gap = static_cast<double>(0.7005f) - static_cast<double>(0.7f);
     EXPECT_NEAR(look_up_esm(map, 2, c, 0.7f), std::min(1.0, weight * std::exp(c * gap)), 1e-9) << c;

@@ -10,8 +10,8 @@ namespace {
 void read_experiment(std::string_view text) {
   static const ScratchFolder folder;
   static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  const run::Experiment experiment =
-      run::read_experiment(folder.write("input.toml", text), {"scene", "map_size", "size", "seed", "grids", "filter_file"});
+  const run::Experiment experiment = run::read_experiment(
+      folder.write("input.toml", text), {"scene", "map_size", "size", "seed", "grids", "filter_file"});
   run::expand_filters(experiment, catalogue);
 }
 

@@ -24,9 +24,8 @@ constexpr rlim_t kMostBytes = rlim_t{1} << 30;
 
 std::vector<fs::path> list_files(int count, char** folders) {
   std::vector<fs::path> files;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < count; ++i)
     for (const fs::directory_entry& entry : fs::directory_iterator(folders[i])) files.push_back(entry.path());
-  }
   std::sort(files.begin(), files.end());
   return files;
 }

@@ -1,5 +1,5 @@
-// The project's own baseline, tests/golden, through the command that users have. To accept a change on purpose, look at the
-// pictures that `regress` draws, then:
+// The project's own baseline, tests/golden, through the command that users have. To accept a change on purpose, look at
+// the pictures that `regress` draws, then:
 //   shadowbench run golden --out OUT && shadowbench regress OUT --baseline tests/golden --accept
 
 #include <csignal>
@@ -28,35 +28,45 @@ class GoldenRun : public ProgramTest {
 
 class Golden : public GoldenRun, public ::testing::WithParamInterface<std::string> {};
 
-TEST_P(Golden, OutputIsUnchanged_OnEveryScene) { expect_unchanged("--gl osmesa --filters " + GetParam(), "--filters " + GetParam()); }
+TEST_P(Golden, OutputIsUnchanged_OnEveryScene) {
+  expect_unchanged("--gl osmesa --filters " + GetParam(), "--filters " + GetParam());
+}
 
-INSTANTIATE_TEST_SUITE_P(AllFilters, Golden, ::testing::ValuesIn(filter_ids()), [](const auto& each) { return each.param; });
+INSTANTIATE_TEST_SUITE_P(AllFilters, Golden, ::testing::ValuesIn(filter_ids()),
+                         [](const auto& each) { return each.param; });
 
 /// A context, the width of LLVM's vectors in bits, and the rasteriser's threads.
 using Platform = std::tuple<std::string, int, int>;
 class Portable : public GoldenRun, public ::testing::WithParamInterface<Platform> {};
 
-/// The driver's shader cache does not tell vector widths apart: with it, one width's code would run under another's name.
+/// The driver's shader cache does not tell vector widths apart: with it, one width's code would run under another's
+/// name.
 std::string make_environment(const Platform& platform) {
-  return "MESA_SHADER_CACHE_DISABLE=true LP_NATIVE_VECTOR_WIDTH=" + std::to_string(std::get<1>(platform)) + " LP_NUM_THREADS=" + std::to_string(std::get<2>(platform));
+  return "MESA_SHADER_CACHE_DISABLE=true LP_NATIVE_VECTOR_WIDTH=" + std::to_string(std::get<1>(platform)) +
+         " LP_NUM_THREADS=" + std::to_string(std::get<2>(platform));
 }
 
 TEST_P(Portable, TheSameBaselineHolds) {
   const std::string& backend = std::get<0>(GetParam());
-  const std::string options = "--gl " + backend + " --scene fence --no-truth --filters none", environment = make_environment(GetParam());
+  const std::string options = "--gl " + backend + " --scene fence --no-truth --filters none",
+                    environment = make_environment(GetParam());
   if (run("run golden " + options + " --out crash", environment).exit_code == 128 + SIGSEGV) {
-    GTEST_SKIP() << "this Mesa's llvmpipe crashes in its own code generator when it draws depth with vectors of " << std::get<1>(GetParam()) << " bits";
+    GTEST_SKIP() << "this Mesa's llvmpipe crashes in its own code generator when it draws depth with vectors of "
+                 << std::get<1>(GetParam()) << " bits";
   }
   const std::string some = "--scene fence --filters none,pcf2x2,poisson,esm,vsm";
   expect_unchanged("--gl " + backend + " " + some, some, environment);
-  EXPECT_NE(read_text(folder() / "out" / "results.json").find(std::to_string(std::get<1>(GetParam())) + " bits"), std::string::npos);
+  EXPECT_NE(read_text(folder() / "out" / "results.json").find(std::to_string(std::get<1>(GetParam())) + " bits"),
+            std::string::npos);
 }
 
 INSTANTIATE_TEST_SUITE_P(Llvmpipe, Portable,
-                         ::testing::Values(Platform("osmesa", 128, 1), Platform("osmesa", 256, 2), Platform("osmesa", 512, 2), Platform("egl", 128, 2),
-                                           Platform("egl", 256, 1), Platform("glfw", 128, 1), Platform("glfw", 256, 2)),
+                         ::testing::Values(Platform("osmesa", 128, 1), Platform("osmesa", 256, 2),
+                                           Platform("osmesa", 512, 2), Platform("egl", 128, 2), Platform("egl", 256, 1),
+                                           Platform("glfw", 128, 1), Platform("glfw", 256, 2)),
                          [](const auto& each) {
-                           return std::get<0>(each.param) + "_" + std::to_string(std::get<1>(each.param)) + "_bits_" + std::to_string(std::get<2>(each.param)) + "_threads";
+                           return std::get<0>(each.param) + "_" + std::to_string(std::get<1>(each.param)) + "_bits_" +
+                                  std::to_string(std::get<2>(each.param)) + "_threads";
                          });
 
 class GoldenOfScene : public ::testing::TestWithParam<std::string> {};
@@ -65,23 +75,29 @@ class GoldenOfScene : public ::testing::TestWithParam<std::string> {};
 TEST_P(GoldenOfScene, NoFilterPassesAsAnother) {
   const regress::Baseline baseline(kBaseline);
   const regress::Tolerances tolerances = regress::read_tolerances(baseline.tolerance_file());
-  const auto read_images = [&](const std::string& filter) { return baseline.read_cells(GetParam(), filter).images.begin()->second; };
+  const auto read_images = [&](const std::string& filter) {
+    return baseline.read_cells(GetParam(), filter).images.begin()->second;
+  };
   for (const std::string& expected : filter_ids()) {
     for (const std::string& actual : filter_ids()) {
       if (actual == expected) continue;
-      const regress::PixelChange change = regress::compare_pixels(read_images(actual), read_images(expected), tolerances.find(expected, regress::kPixel).limit);
-      EXPECT_GT(change.share(), tolerances.find(expected, regress::kShare).limit) << actual << " passes as " << expected;
+      const regress::PixelChange change = regress::compare_pixels(read_images(actual), read_images(expected),
+                                                                  tolerances.find(expected, regress::kPixel).limit);
+      EXPECT_GT(change.share(), tolerances.find(expected, regress::kShare).limit)
+          << actual << " passes as " << expected;
       EXPECT_GT(change.changed, 100) << actual << " against " << expected;
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(BuiltIn, GoldenOfScene, ::testing::ValuesIn(builtin_scenes()), [](const auto& each) { return each.param; });
+INSTANTIATE_TEST_SUITE_P(BuiltIn, GoldenOfScene, ::testing::ValuesIn(builtin_scenes()),
+                         [](const auto& each) { return each.param; });
 
 /// Says whether a filter's image is found not to be one of a stochastic filter's, drawn with another seed.
 bool is_told_apart(const regress::CellFile& expected, const report::Image& actual, double level) {
   const report::UncertaintyImages& spread = expected.images.begin()->second.uncertainty;
-  const regress::SpreadTest test = regress::test_spread(actual, spread, expected.cells.front().values.numbers.at("cost.fetches"), level);
+  const regress::SpreadTest test =
+      regress::test_spread(actual, spread, expected.cells.front().values.numbers.at("cost.fetches"), level);
   return test.pixels.beyond + test.blocks.beyond > 0;
 }
 
@@ -96,12 +112,14 @@ TEST(GoldenOfAllScenes, NoFilterPassesAsNoise) {
       if (file.images.begin()->second.uncertainty.seed_mean.empty()) continue;
       for (const std::string& actual : filter_ids()) {
         if (actual == expected) continue;
-        told_apart[{actual, expected}] += is_told_apart(file, baseline.read_cells(scene, actual).images.begin()->second.visibility, level) ? 1 : 0;
+        told_apart[{actual, expected}] +=
+            is_told_apart(file, baseline.read_cells(scene, actual).images.begin()->second.visibility, level) ? 1 : 0;
       }
     }
   }
   EXPECT_FALSE(told_apart.empty());
-  for (const auto& [pair, scenes] : told_apart) EXPECT_GE(scenes, 3) << pair.first << " passes as noise of " << pair.second;
+  for (const auto& [pair, scenes] : told_apart)
+    EXPECT_GE(scenes, 3) << pair.first << " passes as noise of " << pair.second;
 }
 
 }  // namespace

@@ -16,9 +16,8 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 const LimitSpec* find_limit(const std::string& option) {
-  for (const LimitSpec& spec : limit_table()) {
+  for (const LimitSpec& spec : limit_table())
     if (spec.option == option) return &spec;
-  }
   return nullptr;
 }
 
@@ -132,7 +131,8 @@ TEST(Advice, WhatWasNotMeasuredEverywhere_IsNotJudged) {
   cells[4].message = "no answer after 10 s";
   const Advice advice = advise_on(cells, {limit("--max-rmse", 1.0)});
   EXPECT_THAT(labels(advice.keeping), ElementsAre("none"));
-  EXPECT_THAT(reasons(advice), ElementsAre("not measured on stack", "did not finish on stack (timeout: no answer after 10 s)"));
+  EXPECT_THAT(reasons(advice),
+              ElementsAre("not measured on stack", "did not finish on stack (timeout: no answer after 10 s)"));
 }
 
 TEST(Advice, NeededValueThatIsNull_IsNotJudgedAndSaysWhy) {
@@ -198,10 +198,11 @@ TEST(Advice, ATie_NamesTheLowerMeanAndSaysWhoIsMoreAccurate) {
   std::vector<CellRecord> cells = {measure("cubes", "rough", 4.0, 0.03), measure("cubes", "fine", 4.02, 0.01),
                                    measure("cubes", "third", 4.03, 0.02), measure("cubes", "slow", 9.0, 0.001)};
   const Advice advice = advise_on(cells, {});
-  EXPECT_EQ(describe_runner_up(advice, make_run().gl),
-            "a tie, for their 95 % intervals overlap: rough, map 1024 × 1024 d32f is named first for its lower mean; "
-            "fine, map 1024 × 1024 d32f has the lower RMSE, 0.01 against 0.03 at worst; tied with it too: third, map 1024 "
-            "× 1024 d32f");
+  EXPECT_EQ(
+      describe_runner_up(advice, make_run().gl),
+      "a tie, for their 95 % intervals overlap: rough, map 1024 × 1024 d32f is named first for its lower mean; "
+      "fine, map 1024 × 1024 d32f has the lower RMSE, 0.01 against 0.03 at worst; tied with it too: third, map 1024 "
+      "× 1024 d32f");
 }
 
 TEST(Advice, EqualBytes_AreATieThatTimeOrders) {
@@ -215,9 +216,9 @@ TEST(Advice, EqualBytes_AreATieThatTimeOrders) {
 }
 
 TEST(Advice, RelaxedLimit_BuysEveryStepThatIsReallyCheaper) {
-  const std::vector<CellRecord> cells = {
-      measure("cubes", "best", 9.0, 0.01),  measure("cubes", "near", 6.0, 0.02), measure("cubes", "far", 3.0, 0.04),
-      measure("cubes", "worse", 7.0, 0.03), measure("cubes", "tied", 8.99, 0.015)};
+  const std::vector<CellRecord> cells = {measure("cubes", "best", 9.0, 0.01), measure("cubes", "near", 6.0, 0.02),
+                                         measure("cubes", "far", 3.0, 0.04), measure("cubes", "worse", 7.0, 0.03),
+                                         measure("cubes", "tied", 8.99, 0.015)};
   const Advice advice = advise_on(cells, {limit("--max-rmse", 0.012)});
   ASSERT_THAT(advice.relaxations, SizeIs(2));
   EXPECT_EQ(labels(advice.failing)[advice.relaxations[0].candidate], "near");
@@ -243,9 +244,10 @@ TEST(Advice, NothingFits_NamesTheLimitInTheWayAndTheNearestValue) {
   EXPECT_EQ(advice.obstacles[1].failing, 1U);
   EXPECT_EQ(advice.obstacles[1].alone, 0U);
   EXPECT_FALSE(advice.obstacles[1].nearest);
-  EXPECT_EQ(describe_failure(advice),
-            "none of 3 configurations keeps the limits; in the way: --max-rmse 0.03 (2 fail it alone; 0.0413 would let a, "
-            "map 1024 × 1024 d32f through)");
+  EXPECT_EQ(
+      describe_failure(advice),
+      "none of 3 configurations keeps the limits; in the way: --max-rmse 0.03 (2 fail it alone; 0.0413 would let a, "
+      "map 1024 × 1024 d32f through)");
 }
 
 TEST(Advice, NothingFits_WithoutASingleObstacleNamesTheClosest) {
@@ -268,7 +270,8 @@ TEST(Advice, RmseKeptByLessThanTheTruthsStandardError_IsMarked) {
   EXPECT_EQ(advise_on(cells, {limit("--max-rmse", 0.03)}).keeping.at(0).verdicts[0].lost_in_truth, &cells[0]);
   EXPECT_FALSE(advise_on(cells, {limit("--max-rmse", 0.031)}).keeping.at(0).verdicts[0].lost_in_truth);
   cells[1].truth.se = 0.04;
-  EXPECT_EQ(advise_on(cells, {limit("--max-rmse", 0.031)}).keeping.at(0).verdicts[0].lost_in_truth, &cells[1]) << "not the worst";
+  EXPECT_EQ(advise_on(cells, {limit("--max-rmse", 0.031)}).keeping.at(0).verdicts[0].lost_in_truth, &cells[1])
+      << "not the worst";
   EXPECT_FALSE(advise_on(cells, {limit("--max-fetches", 4.0)}).keeping.at(0).verdicts[0].lost_in_truth);
 }
 
@@ -325,12 +328,16 @@ TEST(Advice, SceneWithNothingToSee_BarsNothingAndIsNamed) {
   EXPECT_EQ(advice.keeping[0].verdicts[0].worst, 0.01);
   EXPECT_EQ(advice.keeping[0].verdicts[0].where, &cells[2]);
   EXPECT_THAT(advice.keeping[0].verdicts[0].nothing_to_see, ElementsAre(&cells[3]));
-  const std::string note = "--max-leak 0.1 could not be judged on fence, and cannot be broken there: nothing to see: fewer than 100 receivers "
-                           "are blocked.";
+  const std::string note =
+      "--max-leak 0.1 could not be judged on fence, and cannot be broken there: nothing to see: fewer than 100 "
+      "receivers "
+      "are blocked.";
   EXPECT_THAT(list_advice_notes(advice, make_run().gl), ::testing::Contains(note));
   EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-leak", 0.001)}), make_run().gl),
-              ::testing::Contains(HasSubstr("could not be judged on fence"))) << "nothing fits";
-  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-acne", 0.1)}), make_run().gl), ::testing::Each(::testing::Not(HasSubstr("fence"))));
+              ::testing::Contains(HasSubstr("could not be judged on fence")))
+      << "nothing fits";
+  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-acne", 0.1)}), make_run().gl),
+              ::testing::Each(::testing::Not(HasSubstr("fence"))));
 }
 
 TEST(Advice, EveryFaultWithoutReceivers_BarsNothing) {
@@ -357,7 +364,8 @@ TEST(Advice, NothingToSeeAnywhere_IsNotJudgedAndSaysSo) {
   cells[0].artefact.leak.reset();
   cells[0].absent = cells[1].absent;
   EXPECT_EQ(describe_failure(advise_on(cells, {limit("--max-leak", 0.1)})),
-            "none of 1 configurations can be judged: 1: no artefact.leak anywhere: nothing to see: fewer than 100 receivers are blocked");
+            "none of 1 configurations can be judged: 1: no artefact.leak anywhere: nothing to see: fewer than 100 "
+            "receivers are blocked");
 }
 
 TEST(Advice, ClaimThatNoFilterMakes_IsRefused) {
@@ -389,9 +397,10 @@ TEST(Advice, Size_ChoosesThePicture) {
   cells[0].height = 270;
   AdviceRequest request;
   EXPECT_THAT(advise(cells, request).keeping, SizeIs(2));
-  EXPECT_THAT(list_advice_notes(advise(cells, request), make_run().gl),
-              ::testing::Contains("Pictures of 480x270, 960x540 pixels compete here, and a smaller one costs less: --size "
-                                  "chooses."));
+  EXPECT_THAT(
+      list_advice_notes(advise(cells, request), make_run().gl),
+      ::testing::Contains("Pictures of 480x270, 960x540 pixels compete here, and a smaller one costs less: --size "
+                          "chooses."));
   request.size = {960, 540};
   ASSERT_THAT(advise(cells, request).keeping, SizeIs(1));
   EXPECT_DOUBLE_EQ(advise(cells, request).keeping.at(0).cost.mean, 5.0);

@@ -32,8 +32,9 @@ CellRecord measure(const std::string& scene, const std::string& filter, double m
 }
 
 std::vector<CellRecord> make_cells() {
-  return {measure("cubes", "none", 1.0, 0.04), measure("stack", "none", 1.0, 0.06), measure("cubes", "wide", 4.0, 0.02),
-          measure("stack", "wide", 6.0, 0.0295), measure("cubes", "huge", 9.0, 0.01), measure("stack", "huge", 9.0, 0.01)};
+  return {measure("cubes", "none", 1.0, 0.04), measure("stack", "none", 1.0, 0.06),
+          measure("cubes", "wide", 4.0, 0.02), measure("stack", "wide", 6.0, 0.0295),
+          measure("cubes", "huge", 9.0, 0.01), measure("stack", "huge", 9.0, 0.01)};
 }
 
 Advice advise_on(const std::vector<CellRecord>& cells, std::vector<Demand> demands) {
@@ -84,8 +85,8 @@ TEST(Configurations, Labels_NameTheMapAndWhatDiffers) {
   std::vector<CellRecord> cells = {measure("cubes", "vsm", 1.0, 0.1), measure("cubes", "vsm", 1.0, 0.1),
                                    measure("cubes", "none", 1.0, 0.1)};
   cells[1].params["radius"] = 8.0;
-  EXPECT_THAT(list_labels(cells), ElementsAre("vsm (radius 4), map 1024 × 1024 d32f", "vsm (radius 8), map 1024 × 1024 d32f",
-                                              "none, map 1024 × 1024 d32f"));
+  EXPECT_THAT(list_labels(cells), ElementsAre("vsm (radius 4), map 1024 × 1024 d32f",
+                                              "vsm (radius 8), map 1024 × 1024 d32f", "none, map 1024 × 1024 d32f"));
   cells[2].width = 480;
   cells[0].bias.plane_kernels = cells[1].bias.plane_kernels = cells[2].bias.plane_kernels = 1.0;
   EXPECT_EQ(list_labels(cells)[2], "none, map 1024 × 1024 d32f, picture 480 × 540");
@@ -114,9 +115,11 @@ TEST(AdviceText, FirstLine_IsTheAnswer) {
 TEST(AdviceText, Evidence_IsQuoted) {
   const auto cells = make_cells();
   const std::string text = make_advice_text(make_run(), advise_on(cells, {max_rmse(0.03)}));
-  EXPECT_THAT(text, HasSubstr("  --max-rmse 0.03  0.0295  stack  kept by less than the truth's own standard error, 0.001\n"));
+  EXPECT_THAT(text,
+              HasSubstr("  --max-rmse 0.03  0.0295  stack  kept by less than the truth's own standard error, 0.001\n"));
   EXPECT_THAT(text, HasSubstr("ms (CPU)"));
-  EXPECT_THAT(text, HasSubstr("  stack  9.5       9.13 .. 9.87  1.5 [1.46, 1.54]  0.0295  4194304  4        " + cells[3].key));
+  EXPECT_THAT(
+      text, HasSubstr("  stack  9.5       9.13 .. 9.87  1.5 [1.46, 1.54]  0.0295  4194304  4        " + cells[3].key));
   EXPECT_THAT(text, HasSubstr("Runner-up: huge, map 1024 × 1024 d32f, 12.5 ms (CPU); dearer by 4 ms (CPU) (47 %)"));
   EXPECT_THAT(text, HasSubstr("--max-rmse 0.03 -> 0.06  saves 4 ms (CPU) (47 %)  none, map"));
   EXPECT_THAT(text, HasSubstr("3 of 3 configurations judged, on cubes, stack.\n"));
@@ -141,9 +144,10 @@ TEST(AdviceText, WhatWasNotJudged_IsSaid) {
   auto cells = make_cells();
   cells[0].error.rmse.reset();
   cells[0].absent["error.rmse"] = "the cat slept on it";
-  EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {max_rmse(0.03)})),
-              HasSubstr("2 of 3 configurations judged, on cubes, stack.\nNot judged, 1: no error.rmse on cubes: the cat slept "
-                        "on it.\n"));
+  EXPECT_THAT(
+      make_advice_text(make_run(), advise_on(cells, {max_rmse(0.03)})),
+      HasSubstr("2 of 3 configurations judged, on cubes, stack.\nNot judged, 1: no error.rmse on cubes: the cat slept "
+                "on it.\n"));
 }
 
 TEST(AdviceText, Lines_FitATerminal) {
@@ -176,9 +180,8 @@ TEST(AdviceJson, Nulls_AreExplainedBesideThem) {
   cells[4].ratio_to_none = {};
   cells[4].time_ms.map.reset();
   cells[2].ratio_to_none.moving.reset();
-  for (const double most : {0.03, 0.001}) {
+  for (const double most : {0.03, 0.001})
     expect_nulls_explained(make_advice_json(make_run(), advise_on(cells, {max_rmse(most)})), "");
-  }
   AdviceRequest request;
   request.cheapest = CostKind::kBytes;
   request.demands = {{nullptr, 0.0, "soft"}};
@@ -188,14 +191,16 @@ TEST(AdviceJson, Nulls_AreExplainedBesideThem) {
 
 TEST(AdviceJson, LimitThatHasNothingToSeeInAScene_NamesIt) {
   auto cells = make_cells();
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (i % 2 == 0) cells[i].artefact.leak = 0.0;
-    else cells[i].absent["artefact.leak"] = explain_nothing_to_see("too few");
-  }
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (i % 2 == 0)
+      cells[i].artefact.leak = 0.0;
+    else
+      cells[i].absent["artefact.leak"] = explain_nothing_to_see("too few");
   const Demand leak{&*std::ranges::find(limit_table(), std::string("artefact.leak"), &LimitSpec::field), 0.1, {}};
   const auto limits = make_advice_json(make_run(), advise_on(cells, {max_rmse(0.03), leak}))["advised"]["limits"];
   EXPECT_TRUE(limits[0]["nothing_to_see"].empty());
-  EXPECT_EQ(limits[1]["nothing_to_see"].dump(), R"([{"scene":"stack","view":"main","reason":"nothing to see: too few"}])");
+  EXPECT_EQ(limits[1]["nothing_to_see"].dump(),
+            R"([{"scene":"stack","view":"main","reason":"nothing to see: too few"}])");
 }
 
 TEST(AdviceJson, Numbers_AreThoseOfTheCells) {

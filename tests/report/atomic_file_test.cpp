@@ -76,7 +76,8 @@ TEST(AtomicFile, FolderThatVanishes_IsSaid) {
     std::filesystem::rename(folder.path() / "cells", folder.path() / "moved");
     file.commit();
   });
-  EXPECT_THAT(message, HasSubstr((folder.path() / "cells" / "a.json").string() + ": its folder was removed or replaced"));
+  EXPECT_THAT(message,
+              HasSubstr((folder.path() / "cells" / "a.json").string() + ": its folder was removed or replaced"));
   EXPECT_THAT(message, HasSubstr("--out"));
 }
 

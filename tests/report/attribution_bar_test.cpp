@@ -24,9 +24,8 @@ double lightness(const Rgb& color) {
 TEST(ErrorParts, Colours_DifferInLightnessAloneAndFromTheHeatMaps) {
   const auto& parts = list_error_parts();
   for (std::size_t i = 0; i < kErrorParts; ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
+    for (std::size_t j = 0; j < i; ++j)
       EXPECT_GT(std::abs(lightness(parts[i].color) - lightness(parts[j].color)), 15.0) << i << " " << j;
-    }
     for (const float end : {-1.0f, 1.0f}) {
       const Rgb heat = map_diverging(end, 1.0f);
       const double distance =

@@ -39,9 +39,8 @@ int count_pixels(const Image& canvas, const Rgb& color) {
 TEST(AttributionPicture, ErrorAndPartsShareOneScale) {
   const Image canvas = draw_attribution_picture(make_picture());
   const int panel = 384 * 216;  // four times 96 x 54
-  for (const float value : {0.1f, 0.0f, 0.2f, -0.15f, 0.05f}) {
+  for (const float value : {0.1f, 0.0f, 0.2f, -0.15f, 0.05f})
     EXPECT_GE(count_pixels(canvas, map_diverging(value, 0.2f)), panel) << value;
-  }
 }
 
 TEST(AttributionPicture, GivenScale_IsTaken) {
@@ -52,9 +51,8 @@ TEST(AttributionPicture, GivenScale_IsTaken) {
 
 TEST(AttributionPicture, LargestPart_IsNotSaturatedByWideFaintOnes) {
   AttributionPicture picture = make_picture();
-  for (Image* image : {&picture.total, &picture.parts[0], &picture.parts[2], &picture.parts[3]}) {
+  for (Image* image : {&picture.total, &picture.parts[0], &picture.parts[2], &picture.parts[3]})
     *image = make_constant(0.002f);
-  }
   picture.parts[1] = make_constant(0.0f);
   const int texels = 4 * 96;
   std::fill_n(picture.parts[1].texels.begin(), texels, 0.15f);
@@ -77,9 +75,7 @@ TEST(AttributionPicture, File_HoldsTheDrawnPicture) {
   const Image back = read_picture(folder.path() / "a.png");
   const Image drawn = draw_attribution_picture(make_picture());
   ASSERT_EQ(back.texels.size(), drawn.texels.size());
-  for (std::size_t i = 0; i < drawn.texels.size(); ++i) {
-    ASSERT_NEAR(back.texels[i], drawn.texels[i], 0.51f / 255.0f);
-  }
+  for (std::size_t i = 0; i < drawn.texels.size(); ++i) ASSERT_NEAR(back.texels[i], drawn.texels[i], 0.51f / 255.0f);
 }
 
 }  // namespace

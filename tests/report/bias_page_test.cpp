@@ -18,9 +18,8 @@ const std::vector<double> kFactors = {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0}
 /// Acne goes to nothing at `enough`, contact opens from theory on.
 BiasCurve make_curve(const std::string& filter, double enough) {
   BiasCurve curve{filter, 0.5, 0.01, 2.0, 0.4, {}};
-  for (const double factor : kFactors) {
+  for (const double factor : kFactors)
     curve.points.push_back({factor, factor * 0.5, factor < enough ? 0.25 : 0.0, factor > 1.0 ? 0.5 : 0.01});
-  }
   return curve;
 }
 
@@ -31,7 +30,13 @@ BiasSweepRecord make_sweep() {
   sweep.acne_receivers = 5000;
   sweep.contact_receivers = 300;
   sweep.fewest_receivers = 100;
-  sweep.modes.push_back({"constant", "depth", "One depth.", {make_curve("none", 1.0), make_curve("pcf2x2", 0.5)}, {}, "bias.constant.png", "pictures"});
+  sweep.modes.push_back({"constant",
+                         "depth",
+                         "One depth.",
+                         {make_curve("none", 1.0), make_curve("pcf2x2", 0.5)},
+                         {},
+                         "bias.constant.png",
+                         "pictures"});
   BiasModeRecord fixed{"midpoint", "", "Half-way.", {}, {}, {}, {}};
   fixed.curves.push_back({"none", 0, 0, 0, 0, {{std::nullopt, 0.0, 0.125, std::nullopt}}});
   sweep.modes.push_back(fixed);
@@ -39,9 +44,8 @@ BiasSweepRecord make_sweep() {
 }
 
 void make_gap_absent(BiasSweepRecord& sweep) {
-  for (BiasCurve& curve : sweep.modes[0].curves) {
+  for (BiasCurve& curve : sweep.modes[0].curves)
     for (BiasPoint& point : curve.points) point.contact_gap.reset();
-  }
 }
 
 TEST(BiasChart, Factors_AreEquallyFarApart_AndRatesBySquareRoot) {
@@ -69,7 +73,8 @@ TEST(BiasChart, Svg_HasEachNumberAtItsPixel) {
 std::vector<double> list_attribute(const std::string& svg, const std::string& name) {
   const std::regex pattern(" " + name + "=\"(-?[0-9.]+)\"");
   std::vector<double> values;
-  for (std::sregex_iterator found(svg.begin(), svg.end(), pattern), end; found != end; ++found) values.push_back(std::stod((*found)[1]));
+  for (std::sregex_iterator found(svg.begin(), svg.end(), pattern), end; found != end; ++found)
+    values.push_back(std::stod((*found)[1]));
   return values;
 }
 
@@ -77,8 +82,10 @@ TEST(BiasChart, EverythingLiesWithinTheDrawing) {
   BiasSweepRecord sweep = make_sweep();
   sweep.modes[0].curves[0].points[0].acne = 1.0;
   const std::string svg = make_bias_chart(sweep.modes[0], sweep.filters);
-  for (const char* name : {"x", "cx", "x1", "x2"}) EXPECT_THAT(list_attribute(svg, name), ::testing::Each(::testing::AllOf(::testing::Ge(0.0), ::testing::Le(480.0))));
-  for (const char* name : {"y", "cy", "y1", "y2"}) EXPECT_THAT(list_attribute(svg, name), ::testing::Each(::testing::AllOf(::testing::Ge(0.0), ::testing::Le(300.0))));
+  for (const char* name : {"x", "cx", "x1", "x2"})
+    EXPECT_THAT(list_attribute(svg, name), ::testing::Each(::testing::AllOf(::testing::Ge(0.0), ::testing::Le(480.0))));
+  for (const char* name : {"y", "cy", "y1", "y2"})
+    EXPECT_THAT(list_attribute(svg, name), ::testing::Each(::testing::AllOf(::testing::Ge(0.0), ::testing::Le(300.0))));
 }
 
 TEST(BiasChart, FactorNames_AreFractions) {
@@ -110,7 +117,8 @@ TEST(BiasPage, Words_FollowFromNumbers) {
   const auto words = describe_bias_mode(mode);
   ASSERT_EQ(words.size(), 2u);
   EXPECT_THAT(words[0], HasSubstr("below 0.1 %"));
-  EXPECT_THAT(words[0], HasSubstr("none needs 1; pcf2x2 needs 1/2; vsm needs none; esm has more at every amount swept."));
+  EXPECT_THAT(words[0],
+              HasSubstr("none needs 1; pcf2x2 needs 1/2; vsm needs none; esm has more at every amount swept."));
   EXPECT_THAT(words[1], HasSubstr("acne lies between 0 % (none) and 25 % (esm); contact gap is 1 %."));
 }
 

@@ -13,7 +13,9 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-std::vector<RadiusChart> make_charts(const std::vector<CellRecord>& cells) { return make_radius_charts(cells, make_trade_scopes(cells)); }
+std::vector<RadiusChart> make_charts(const std::vector<CellRecord>& cells) {
+  return make_radius_charts(cells, make_trade_scopes(cells));
+}
 
 TEST(Crossover, IsFoundWhereTapsGrowDearer) {
   const auto charts = make_charts(make_crossing_cells("cubes"));
@@ -33,7 +35,8 @@ TEST(Crossover, OverlappingTimes_AreNotApart) {
   cells[2].ratio_to_none.lookup->ci95 = {1.9, 2.6};
   const auto comparison = compare_curves(make_charts(cells)[0], LightState::kStill)[0];
   EXPECT_THAT(comparison.signs, ElementsAre(1, 0, -1));
-  EXPECT_EQ(describe_comparison(comparison), "from a kernel radius of 8 texels on, of 2, 4, 8 compared, not to be told apart at 4");
+  EXPECT_EQ(describe_comparison(comparison),
+            "from a kernel radius of 8 texels on, of 2, 4, 8 compared, not to be told apart at 4");
 }
 
 TEST(Crossover, RadiiOutsideWhatWasMeasured_AreNotCompared) {
@@ -47,7 +50,8 @@ TEST(Crossover, RadiiOutsideWhatWasMeasured_AreNotCompared) {
 }
 
 TEST(Crossover, WithoutACommonRadius_NothingIsSaid) {
-  const std::vector<CellRecord> cells = {make_sweep_cell({}), make_taps_cell("cubes", 3.0, 2.0), make_blurred_cell("cubes", 4.0, 2.0)};
+  const std::vector<CellRecord> cells = {make_sweep_cell({}), make_taps_cell("cubes", 3.0, 2.0),
+                                         make_blurred_cell("cubes", 4.0, 2.0)};
   EXPECT_THAT(make_charts(cells), IsEmpty());
   EXPECT_THAT(describe_crossovers(make_charts(cells)), IsEmpty());
 }
@@ -83,8 +87,10 @@ TEST(Crossover, Words_NameThePlacesOnce) {
   for (const CellRecord& cell : make_crossing_cells("stack")) cells.push_back(cell);
   const auto words = describe_crossovers(make_charts(cells));
   ASSERT_THAT(words, SizeIs(2));
-  EXPECT_EQ(words[0], "Light still (lookup): vsm is cheaper than poisson from a kernel radius of 4 texels on, of 2, 4, 8 compared: "
-                      "cubes, stack, picture 960 × 540, map 1024.");
+  EXPECT_EQ(
+      words[0],
+      "Light still (lookup): vsm is cheaper than poisson from a kernel radius of 4 texels on, of 2, 4, 8 compared: "
+      "cubes, stack, picture 960 × 540, map 1024.");
   EXPECT_THAT(words[1], HasSubstr("Light moving"));
 }
 
@@ -104,7 +110,8 @@ TEST(Growth, IsSaidOnlyOfSizesThatWereMeasured) {
 }
 
 TEST(Growth, OfPrefilterAndLookup_IsOverTheMap) {
-  std::vector<CellRecord> cells = {make_cell("cubes", "vsm", 2.0), make_cell("cubes", "vsm", 2.0), make_cell("stack", "vsm", 2.0), make_cell("stack", "vsm", 4.0)};
+  std::vector<CellRecord> cells = {make_cell("cubes", "vsm", 2.0), make_cell("cubes", "vsm", 2.0),
+                                   make_cell("stack", "vsm", 2.0), make_cell("stack", "vsm", 4.0)};
   for (const std::size_t i : {1u, 3u}) cells[i].map_size = 2048;
   cells[0].time_ms.prefilter = Quartiles{1.0, 1.0, 1.0, 5};
   cells[1].time_ms.prefilter = Quartiles{4.0, 4.0, 4.0, 5};

@@ -31,9 +31,7 @@ TEST(FileName, LongNames_AreCutAndStayApart) {
 
 TEST(FileName, DifferentNames_NeverShareAFile) {
   std::set<std::string> stems;
-  for (const std::string name : {"a b", "a_b", "a/b", "a:b", "a?b"}) {
-    stems.insert(make_file_stem(name));
-  }
+  for (const std::string name : {"a b", "a_b", "a/b", "a:b", "a?b"}) stems.insert(make_file_stem(name));
   EXPECT_EQ(stems.size(), 5u);
 }
 

@@ -19,7 +19,9 @@ using ::testing::Not;
 
 constexpr double kTruth = 0.01;
 
-FlickerFilter make_filter(const std::string& name, double flicker) { return {name, flicker, flicker, 0.02, 0, {0.001, 0.002}}; }
+FlickerFilter make_filter(const std::string& name, double flicker) {
+  return {name, flicker, flicker, 0.02, 0, {0.001, 0.002}};
+}
 
 /// Two filters over a truth that moves: "a" flickers at `a` without snapping.
 FlickerMotion make_motion(double a, double a_snapped, double b = 0.01, double b_snapped = 0.01) {
@@ -28,29 +30,38 @@ FlickerMotion make_motion(double a, double a_snapped, double b = 0.01, double b_
   motion.title = "The light turns";
   motion.receivers = 1000000;
   motion.truth = {true, kTruth, 0.001, 0.0003, {0.001, 0.001}};
-  motion.variants = {{false, 0.02, 0.125, 2, {make_filter("a", a), make_filter("b", b)}}, {true, 0.02, 0.0, 0, {make_filter("a", a_snapped), make_filter("b", b_snapped)}}};
+  motion.variants = {{false, 0.02, 0.125, 2, {make_filter("a", a), make_filter("b", b)}},
+                     {true, 0.02, 0.0, 0, {make_filter("a", a_snapped), make_filter("b", b_snapped)}}};
   motion.picture = "flicker.light.png";
   return motion;
 }
 
 TEST(FlickerText, NamesWhoFlickersMostAndLeast_AgainstTheTruth) {
-  EXPECT_THAT(describe_flicker(make_motion(0.03, 0.02)), Contains("Without snapping a flickers most, 0.03, 3.00 times the truth's own change; b least, 0.01, 1.00 times the truth's own change."));
-  EXPECT_THAT(describe_flicker(make_motion(0.005, 0.005)), Contains(HasSubstr("Without snapping b flickers most, 0.01")));
+  EXPECT_THAT(describe_flicker(make_motion(0.03, 0.02)),
+              Contains("Without snapping a flickers most, 0.03, 3.00 times the truth's own change; b least, 0.01, 1.00 "
+                       "times the truth's own change."));
+  EXPECT_THAT(describe_flicker(make_motion(0.005, 0.005)),
+              Contains(HasSubstr("Without snapping b flickers most, 0.01")));
 }
 
 TEST(FlickerText, SaysWhatSnappingBuys) {
-  EXPECT_THAT(describe_flicker(make_motion(0.03, 0.02)), Contains("Snapping divides flicker by 1.50 (a); leaves it as it is, within 5 %, of b."));
-  EXPECT_THAT(describe_flicker(make_motion(0.03, 0.0)), Contains(HasSubstr("takes away all flicker but rounding of a;")));
-  EXPECT_THAT(describe_flicker(make_motion(0.03, 1e-6, 0.01, 0.0)), Contains("Snapping takes away all flicker but rounding of every filter."));
+  EXPECT_THAT(describe_flicker(make_motion(0.03, 0.02)),
+              Contains("Snapping divides flicker by 1.50 (a); leaves it as it is, within 5 %, of b."));
+  EXPECT_THAT(describe_flicker(make_motion(0.03, 0.0)),
+              Contains(HasSubstr("takes away all flicker but rounding of a;")));
+  EXPECT_THAT(describe_flicker(make_motion(0.03, 1e-6, 0.01, 0.0)),
+              Contains("Snapping takes away all flicker but rounding of every filter."));
   EXPECT_THAT(describe_flicker(make_motion(0.02, 0.03)), Contains(HasSubstr("multiplies flicker by 1.50 (a)")));
-  EXPECT_THAT(describe_flicker(make_motion(0.0, 0.0, 0.0, 0.0)), Contains("Snapping changes nothing: nothing flickers."));
+  EXPECT_THAT(describe_flicker(make_motion(0.0, 0.0, 0.0, 0.0)),
+              Contains("Snapping changes nothing: nothing flickers."));
 }
 
 TEST(FlickerText, StillTruth_IsNoYardstick) {
   FlickerMotion motion = make_motion(0.03, 0.02);
   motion.truth = {};
   motion.truth.mean_change = {0.0, 0.0};
-  for (const std::string& sentence : describe_flicker(motion)) EXPECT_THAT(sentence, Not(HasSubstr("times"))) << sentence;
+  for (const std::string& sentence : describe_flicker(motion))
+    EXPECT_THAT(sentence, Not(HasSubstr("times"))) << sentence;
   EXPECT_THAT(explain_motion(motion, 3), Contains(HasSubstr("all change is flicker")));
 }
 
@@ -58,7 +69,8 @@ TEST(FlickerText, WhatIsNotFinite_IsSaid) {
   FlickerMotion motion = make_motion(0.03, 0.02);
   for (const std::string& sentence : describe_flicker(motion)) EXPECT_THAT(sentence, Not(HasSubstr("not finite")));
   motion.variants[1].filters[0].not_finite = 7;
-  EXPECT_THAT(describe_flicker(motion), Contains("With snapping, changes left out because visibility is not finite there: a (7)."));
+  EXPECT_THAT(describe_flicker(motion),
+              Contains("With snapping, changes left out because visibility is not finite there: a (7)."));
 }
 
 TEST(FlickerFiles, HoldEveryNumber) {
@@ -79,7 +91,8 @@ TEST(FlickerFiles, HoldEveryNumber) {
 TEST(FlickerPlots, OfOneMotion_ShareTheirScales_AndHoldTheTruth) {
   FlickerMotion motion = make_motion(0.03, 0.02);
   motion.variants[0].filters[0].mean_change = {0.5, 0.1};
-  const Plot free = make_flicker_plot(motion, motion.variants[0]), snapped = make_flicker_plot(motion, motion.variants[1]);
+  const Plot free = make_flicker_plot(motion, motion.variants[0]),
+             snapped = make_flicker_plot(motion, motion.variants[1]);
   EXPECT_NE(free.file, snapped.file);
   EXPECT_EQ(free.y.high, snapped.y.high);
   EXPECT_GE(free.y.high, 0.5);

@@ -20,7 +20,8 @@ std::vector<Standing> list_standings(const std::vector<FrontPoint>& points) {
 TEST(Front, OfNothing_IsEmpty) { EXPECT_TRUE(find_front({}).empty()); }
 
 TEST(Front, HoldsWhatNothingBeats_CheapestFirst) {
-  const std::vector<FrontPoint> points = {make_point(0.1, 3.0), make_point(0.3, 1.0), make_point(0.2, 2.0), make_point(0.25, 2.5)};
+  const std::vector<FrontPoint> points = {make_point(0.1, 3.0), make_point(0.3, 1.0), make_point(0.2, 2.0),
+                                          make_point(0.25, 2.5)};
   const auto placements = find_front(points);
   EXPECT_THAT(list_members(points, placements), ElementsAre(1, 2, 0));
   EXPECT_EQ(placements[3].standing, Standing::kDominated);
@@ -33,12 +34,15 @@ TEST(Front, ADominatedCell_NamesTheCheapestThatBeatsIt) {
 }
 
 TEST(Front, EqualCostOrEqualError_IsBeatenByTheBetterOther) {
-  EXPECT_THAT(list_standings({make_point(0.2, 1.0), make_point(0.1, 1.0)}), ElementsAre(Standing::kDominated, Standing::kFront));
-  EXPECT_THAT(list_standings({make_point(0.2, 1.0), make_point(0.2, 2.0)}), ElementsAre(Standing::kFront, Standing::kDominated));
+  EXPECT_THAT(list_standings({make_point(0.2, 1.0), make_point(0.1, 1.0)}),
+              ElementsAre(Standing::kDominated, Standing::kFront));
+  EXPECT_THAT(list_standings({make_point(0.2, 1.0), make_point(0.2, 2.0)}),
+              ElementsAre(Standing::kFront, Standing::kDominated));
 }
 
 TEST(Front, CellsThatAreAlike_AreTied) {
-  EXPECT_THAT(list_standings({make_point(0.2, 1.0), make_point(0.2, 1.0)}), ElementsAre(Standing::kFront, Standing::kTied));
+  EXPECT_THAT(list_standings({make_point(0.2, 1.0), make_point(0.2, 1.0)}),
+              ElementsAre(Standing::kFront, Standing::kTied));
 }
 
 TEST(Front, OverlappingCostAndErrorWithinTheTruth_AreTied) {
@@ -64,14 +68,16 @@ TEST(Front, AnUncertainTime_BeatsNothingByBeingUncertain) {
 }
 
 TEST(Front, ChainsOfTies_DoNotJoinWhatIsFarApart) {
-  const auto placements = find_front({make_point(0.2, 1.0, 0.0, 0.15), make_point(0.2, 1.25, 0.0, 0.15), make_point(0.2, 1.5, 0.0, 0.15)});
+  const auto placements =
+      find_front({make_point(0.2, 1.0, 0.0, 0.15), make_point(0.2, 1.25, 0.0, 0.15), make_point(0.2, 1.5, 0.0, 0.15)});
   EXPECT_EQ(placements[1].standing, Standing::kTied);
   EXPECT_EQ(placements[2].standing, Standing::kDominated);
   EXPECT_EQ(placements[2].by, 0u);
 }
 
 TEST(Front, WhoIsTiedWithATiedCellOnly_IsOnTheFront) {
-  const auto placements = find_front({make_point(0.200, 1.0, 0.01, 0.15), make_point(0.193, 1.25, 0.01, 0.15), make_point(0.186, 1.4, 0.01, 0.15)});
+  const auto placements = find_front(
+      {make_point(0.200, 1.0, 0.01, 0.15), make_point(0.193, 1.25, 0.01, 0.15), make_point(0.186, 1.4, 0.01, 0.15)});
   EXPECT_EQ(placements[1].standing, Standing::kTied);
   EXPECT_EQ(placements[2].standing, Standing::kFront);
 }
@@ -85,12 +91,8 @@ TEST(Front, EveryCellOffTheFront_NamesAMember) {
   const auto placements = find_front(points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(placements[placements[i].by].standing, Standing::kFront);
-    if (placements[i].standing == Standing::kDominated) {
-      EXPECT_TRUE(dominates(points[placements[i].by], points[i]));
-    }
-    if (placements[i].standing == Standing::kTied) {
-      EXPECT_TRUE(is_tied(points[placements[i].by], points[i]));
-    }
+    if (placements[i].standing == Standing::kDominated) EXPECT_TRUE(dominates(points[placements[i].by], points[i]));
+    if (placements[i].standing == Standing::kTied) EXPECT_TRUE(is_tied(points[placements[i].by], points[i]));
   }
 }
 

@@ -23,7 +23,12 @@ using ::testing::Not;
 
 Plot make_plot(const std::string& title) {
   Plot plot{"plots/a.svg", title, "cost ’x’", "error <y> & more", {}, {}, {}, {"1: none"}};
-  plot.series.push_back({"it's `date` \"q\" \\n", "#0072b2", 7, PlotLine::kSteps, true, {{{1.0, 0.5, 2.0}, {0.5, 0.4, 0.6}, "7"}, {{2.0, 2.0, 2.0}, {0.25, 0.25, 0.25}}}});
+  plot.series.push_back({"it's `date` \"q\" \\n",
+                         "#0072b2",
+                         7,
+                         PlotLine::kSteps,
+                         true,
+                         {{{1.0, 0.5, 2.0}, {0.5, 0.4, 0.6}, "7"}, {{2.0, 2.0, 2.0}, {0.25, 0.25, 0.25}}}});
   plot.x = choose_axis({1.0, 2.0}, {}, TickKind::kNumber);
   plot.y = choose_axis({0.25, 0.5}, {}, TickKind::kNumber);
   return plot;
@@ -40,13 +45,17 @@ std::string draw(const TemporaryFolder& folder, const std::vector<Plot>& plots) 
 TEST(Gnuplot, Svg_HoldsTheTexts) {
   const TemporaryFolder folder("gnuplot_texts");
   const std::string svg = draw(folder, {make_plot("a title")});
-  for (const char* text : {"a title", "cost ’x’", "error &lt;y> &amp; more", "it’s `date`", "1: none"}) EXPECT_TRUE(has_text(svg, text)) << text;
+  for (const char* text : {"a title", "cost ’x’", "error &lt;y> &amp; more", "it’s `date`", "1: none"})
+    EXPECT_TRUE(has_text(svg, text)) << text;
   EXPECT_TRUE(has_text(svg, "</svg>"));
 }
 
 TEST(Gnuplot, HostileTexts_AreTexts) {
   const TemporaryFolder folder("gnuplot_hostile");
-  const std::string svg = draw(folder, {make_plot("'; set output 'plots/evil.svg'; system('touch evil')\nsystem('touch evil') #{/Bold x}_2</svg><script>")});
+  const std::string svg = draw(
+      folder,
+      {make_plot(
+          "'; set output 'plots/evil.svg'; system('touch evil')\nsystem('touch evil') #{/Bold x}_2</svg><script>")});
   EXPECT_TRUE(has_text(svg, "#{/Bold x}_2&lt;/svg>&lt;script>"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "evil"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "plots" / "evil.svg"));
@@ -59,12 +68,13 @@ TEST(Gnuplot, PlotsOfCells_HoldFiltersMembersAndTheClock) {
   const auto filters = list_filters(cells);
   auto plots = make_front_plots(scopes, filters, make_run().gl);
   const std::string svg = draw(folder, plots);
-  for (const char* text : {"none", "poisson", "vsm", "RMSE to the area truth", "1: none", "2: poisson (radius 2)", "3: vsm (radius 2)", "CPU time (software rasteriser)", "cubes · view main"}) {
+  for (const char* text : {"none", "poisson", "vsm", "RMSE to the area truth", "1: none", "2: poisson (radius 2)",
+                           "3: vsm (radius 2)", "CPU time (software rasteriser)", "cubes · view main"})
     EXPECT_TRUE(has_text(svg, text)) << text;
-  }
   const auto radius_plots = make_radius_plots(make_radius_charts(cells, scopes), filters, make_run().gl);
   const std::string radius_svg = draw(folder, radius_plots);
-  for (const char* text : {"crossing", "kernel half-width, texels", ">3<"}) EXPECT_TRUE(has_text(radius_svg, text)) << text;
+  for (const char* text : {"crossing", "kernel half-width, texels", ">3<"})
+    EXPECT_TRUE(has_text(radius_svg, text)) << text;
 }
 
 TEST(Gnuplot, WhereItFails_TheReasonIsGiven) {
@@ -93,11 +103,13 @@ TEST(Gnuplot, FullDisk_IsAnOutputError_AndNoPlotIsLeft) {
   }
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
-  EXPECT_THAT(message, testing::AllOf(HasSubstr((folder.path() / "plots" / "a.svg").string()), HasSubstr("free space"), HasSubstr("--out")));
+  EXPECT_THAT(message, testing::AllOf(HasSubstr((folder.path() / "plots" / "a.svg").string()), HasSubstr("free space"),
+                                      HasSubstr("--out")));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "plots" / "a.svg"));
   write_plot_files(folder.path(), "plots/plots.gp", plots);
   EXPECT_TRUE(has_text(read_text(folder.path() / "plots" / "a.svg"), "</svg>"));
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << "a folder that plots are drawn in stays";
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1)
+      << "a folder that plots are drawn in stays";
 }
 
 TEST(Gnuplot, WhereItIsMissing_ThatIsSaid) {
@@ -120,7 +132,8 @@ TEST(PlotAxis, IsLogarithmic_WhereValuesArePositiveAndFarApart) {
 }
 
 TEST(PlotAxis, HoldsItsTicks_WithZeroWrittenPlainly) {
-  for (const auto& values : {std::vector{0.0, 1.0}, std::vector{0.03, 7.0}, std::vector{5.0, 5.0}, std::vector{0.0, 0.0}, std::vector{1e-5, 1e5}}) {
+  for (const auto& values : {std::vector{0.0, 1.0}, std::vector{0.03, 7.0}, std::vector{5.0, 5.0},
+                             std::vector{0.0, 0.0}, std::vector{1e-5, 1e5}}) {
     const PlotAxis axis = choose_axis(values, {}, TickKind::kNumber);
     EXPECT_THAT(axis.ticks, Not(IsEmpty()));
     EXPECT_LE(axis.ticks.size(), 12u);

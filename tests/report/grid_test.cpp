@@ -31,29 +31,19 @@ Rect grow(const Rect& r, int by) { return {r.x - by, r.y - by, r.width + 2 * by,
 
 std::vector<Rect> list_boxes(const GridLayout& layout) {
   std::vector<Rect> boxes;
-  for (const Panel& panel : layout.panels) {
-    boxes.push_back(grow(panel.box, kFrameWidth));
-  }
-  for (const TextLine& line : layout.texts) {
-    if (line.role != TextRole::kMessage) {
-      boxes.push_back(line.box);
-    }
-  }
+  for (const Panel& panel : layout.panels) boxes.push_back(grow(panel.box, kFrameWidth));
+  for (const TextLine& line : layout.texts)
+    if (line.role != TextRole::kMessage) boxes.push_back(line.box);
   boxes.insert(boxes.end(), layout.message_boxes.begin(), layout.message_boxes.end());
-  for (const BarPlace& bar : layout.bars) {
-    boxes.push_back(bar.box);
-  }
-  for (const Swatch& swatch : layout.swatches) {
-    boxes.push_back(swatch.box);
-  }
-  if (layout.color_bar) {
-    boxes.push_back(grow(*layout.color_bar, 1));
-  }
+  for (const BarPlace& bar : layout.bars) boxes.push_back(bar.box);
+  for (const Swatch& swatch : layout.swatches) boxes.push_back(swatch.box);
+  if (layout.color_bar) boxes.push_back(grow(*layout.color_bar, 1));
   return boxes;
 }
 
 bool lies_in_any(const Rect& inner, const std::vector<Rect>& boxes) {
-  return std::any_of(boxes.begin(), boxes.end(), [&](const Rect& outer) { return contains(outer, inner); });
+  return std::any_of(
+      boxes.begin(), boxes.end(), [&](const Rect& outer) { return contains(outer, inner); });
 }
 
 void expect_sound(const Grid& grid) {
@@ -62,9 +52,7 @@ void expect_sound(const Grid& grid) {
   const std::vector<Rect> boxes = list_boxes(layout);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     EXPECT_TRUE(contains(canvas, boxes[i])) << i;
-    for (std::size_t j = 0; j < i; ++j) {
-      EXPECT_FALSE(overlaps(boxes[i], boxes[j])) << i << " " << j;
-    }
+    for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(overlaps(boxes[i], boxes[j])) << i << " " << j;
   }
   for (const TextLine& line : layout.texts) {
     EXPECT_LE(measure_text(line.text, font_of(line.role)), line.box.width) << line.text;
@@ -75,20 +63,15 @@ void expect_sound(const Grid& grid) {
 // Everything a grid says, spaces left out, so that wrapping does not matter.
 std::string all_text(const Grid& grid) {
   std::string text;
-  for (const TextLine& line : layout_grid(grid).texts) {
-    text += line.text;
-  }
+  for (const TextLine& line : layout_grid(grid).texts) text += line.text;
   text.erase(std::remove(text.begin(), text.end(), ' '), text.end());
   return text;
 }
 
 std::vector<Panel> panels_of(const Grid& grid, PanelKind kind) {
   std::vector<Panel> panels;
-  for (const Panel& panel : layout_grid(grid).panels) {
-    if (panel.kind == kind) {
-      panels.push_back(panel);
-    }
-  }
+  for (const Panel& panel : layout_grid(grid).panels)
+    if (panel.kind == kind) panels.push_back(panel);
   return panels;
 }
 
@@ -180,9 +163,7 @@ TEST(Grid, EveryFinishedFilter_HasItsFourPanels) {
   for (const PanelKind kind :
        {PanelKind::kPicture, PanelKind::kVisibility, PanelKind::kPictureCrop, PanelKind::kVisibilityCrop}) {
     std::vector<std::size_t> tiles;
-    for (const Panel& panel : panels_of(grid, kind)) {
-      tiles.push_back(panel.tile);
-    }
+    for (const Panel& panel : panels_of(grid, kind)) tiles.push_back(panel.tile);
     EXPECT_THAT(tiles, ::testing::ElementsAre(0, 1, 2, 3, 5, 6));
   }
   EXPECT_EQ(layout_grid(grid).message_boxes.size(), 1u);
@@ -241,11 +222,8 @@ TEST(Grid, ReducedPicture_KeepsLightAndAddsNoRinging) {
   Grid grid = make_grid(1, 960, 540);
   grid.crop = {};
   grid.tiles[0].picture = Image(960, 540, 3);
-  for (int y = 0; y < 540; ++y) {
-    for (int x = 0; x < 960; ++x) {
-      std::fill_n(grid.tiles[0].picture.at(x, y), 3, x < 480 ? 0.2f : 0.6f);
-    }
-  }
+  for (int y = 0; y < 540; ++y)
+    for (int x = 0; x < 960; ++x) std::fill_n(grid.tiles[0].picture.at(x, y), 3, x < 480 ? 0.2f : 0.6f);
   const Image canvas = draw_grid(grid);
   const Panel panel = panels_of(grid, PanelKind::kPicture).at(0);
   for (int x = 0; x < panel.box.width; ++x) {
@@ -271,12 +249,10 @@ TEST(Grid, TexelThatIsNotFinite_IsMagenta) {
 TEST(Grid, OutsideTheBoxes_TheCanvasIsEmpty) {
   for (const Grid& grid : {make_hard_grid(), make_hard_attributed_grid()}) {
     Image canvas = draw_grid(grid);
-    for (const Rect& box : list_boxes(layout_grid(grid))) {
-      for (int y = box.y; y < box.y + box.height; ++y) {
-        std::fill_n(canvas.at(box.x, y), box.width * 3, 1.0f);
-      }
-    }
-    const auto ink = std::find_if(canvas.texels.begin(), canvas.texels.end(), [](float value) { return value != 1.0f; });
+    for (const Rect& box : list_boxes(layout_grid(grid)))
+      for (int y = box.y; y < box.y + box.height; ++y) std::fill_n(canvas.at(box.x, y), box.width * 3, 1.0f);
+    const auto ink =
+        std::find_if(canvas.texels.begin(), canvas.texels.end(), [](float value) { return value != 1.0f; });
     const auto texel = static_cast<int>(ink - canvas.texels.begin()) / canvas.channels;
     EXPECT_TRUE(ink == canvas.texels.end()) << "ink at " << texel % canvas.width << ", " << texel / canvas.width;
   }
@@ -301,9 +277,7 @@ TEST(Grid, File_HoldsTheDrawnPicture) {
   const Image drawn = draw_grid(grid);
   ASSERT_EQ(back.width, drawn.width);
   ASSERT_EQ(back.height, drawn.height);
-  for (std::size_t i = 0; i < drawn.texels.size(); ++i) {
-    ASSERT_NEAR(back.texels[i], drawn.texels[i], 0.51f / 255.0f);
-  }
+  for (std::size_t i = 0; i < drawn.texels.size(); ++i) ASSERT_NEAR(back.texels[i], drawn.texels[i], 0.51f / 255.0f);
 }
 
 TEST(Grid, TilesWithErrors_GetAHeatMapAndOneColourBar) {
@@ -317,7 +291,9 @@ TEST(Grid, TilesWithErrors_GetAHeatMapAndOneColourBar) {
   const GridLayout layout = layout_grid(grid);
   ASSERT_TRUE(layout.color_bar);
   EXPECT_DOUBLE_EQ(layout.error_scale, 0.5);
-  EXPECT_EQ(std::count_if(layout.panels.begin(), layout.panels.end(), [](const Panel& p) { return p.kind == PanelKind::kError; }), 1);
+  EXPECT_EQ(std::count_if(layout.panels.begin(), layout.panels.end(),
+                          [](const Panel& p) { return p.kind == PanelKind::kError; }),
+            1);
   EXPECT_GT(layout.canvas.height, without.canvas.height);
   const Image drawn = draw_grid(grid);
   const Rect bar = *layout.color_bar;
@@ -330,9 +306,8 @@ TEST(Grid, TilesWithErrors_GetAHeatMapAndOneColourBar) {
 // How many pixels of a row have a colour.
 int count_in_row(const Image& canvas, const Rect& row, const Rgb& color) {
   int count = 0;
-  for (int x = row.x; x < row.x + row.width; ++x) {
+  for (int x = row.x; x < row.x + row.width; ++x)
     count += std::equal(color.begin(), color.end(), canvas.at(x, row.y)) ? 1 : 0;
-  }
   return count;
 }
 
@@ -395,9 +370,7 @@ TEST(Grid, BarsLength_IsWrittenWithoutRoundingErrors) {
 TEST(Grid, ReasonForNoBar_IsSaidOnlyWhereThereAreBars) {
   Grid grid = make_attributed_grid(4, 96, 54);
   EXPECT_THAT(all_text(grid), HasSubstr("noattribution:thisfilterhasnoscalarmodel"));
-  for (GridTile& tile : grid.tiles) {
-    tile.attribution.reset();
-  }
+  for (GridTile& tile : grid.tiles) tile.attribution.reset();
   EXPECT_THAT(all_text(grid), Not(HasSubstr("noattribution")));
   EXPECT_TRUE(layout_grid(grid).swatches.empty());
 }

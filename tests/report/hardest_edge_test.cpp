@@ -12,11 +12,8 @@ namespace {
 // Lit right of x = 20 and right of x = 60; blocked between 40 and 60.
 Image make_two_edges() {
   Image image(80, 40, 1);
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      *image.at(x, y) = (x >= 20 && x < 40) || x >= 60 ? 1.0f : 0.0f;
-    }
-  }
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) *image.at(x, y) = (x >= 20 && x < 40) || x >= 60 ? 1.0f : 0.0f;
   return image;
 }
 
@@ -41,11 +38,8 @@ TEST(HardestEdge, TheEdgeThatFiltersDisagreeOn_IsFound) {
 TEST(HardestEdge, DisagreementWithoutAnEdge_IsPassedOver) {
   const Image reference = make_two_edges();
   Image other = reference;
-  for (int y = 0; y < 10; ++y) {
-    for (int x = 66; x < 78; ++x) {
-      *other.at(x, y) = 0.0f;  // acne far from any edge
-    }
-  }
+  for (int y = 0; y < 10; ++y)
+    for (int x = 66; x < 78; ++x) *other.at(x, y) = 0.0f;  // acne far from any edge
   *other.at(20, 30) = 0.5f;
   EXPECT_TRUE(contains(find_hardest_edge({&reference, &other}, 0, {5, 5}), 20, 30));
 }

@@ -19,9 +19,8 @@ using ::testing::Not;
 std::set<std::string> list_links(const std::string& page) {
   static const std::regex kLink("(?:href|src)=\"([^\"]*)\"");
   std::set<std::string> links;
-  for (std::sregex_iterator found(page.begin(), page.end(), kLink), end; found != end; ++found) {
+  for (std::sregex_iterator found(page.begin(), page.end(), kLink), end; found != end; ++found)
     links.insert((*found)[1]);
-  }
   return links;
 }
 
@@ -45,9 +44,7 @@ void expect_balanced(const std::string& page) {
   std::vector<std::string> open;
   for (std::sregex_iterator found(page.begin(), page.end(), kTag), end; found != end; ++found) {
     const std::string name = (*found)[2];
-    if (kVoid.count(name) != 0) {
-      continue;
-    }
+    if (kVoid.count(name) != 0) continue;
     if ((*found)[1].length() == 0) {
       open.push_back(name);
     } else {
@@ -79,9 +76,8 @@ TEST(Html, HostileNames_AreEscaped) {
   run.warnings = {"<u>"};
   run.gl.renderer = "<s>";
   const std::string page = make_index_html(run, {cell});
-  for (const char* tag : {"<script", "<img src=x", "\"2\"", "<b>", "<i>", "<u>", "<s>"}) {
+  for (const char* tag : {"<script", "<img src=x", "\"2\"", "<b>", "<i>", "<u>", "<s>"})
     EXPECT_THAT(page, Not(HasSubstr(tag)));
-  }
   EXPECT_THAT(page, HasSubstr("&lt;script&gt;alert(&#39;1&#39;, &quot;2&quot;)"));
   expect_balanced(page);
 }
@@ -124,9 +120,8 @@ TEST(Html, HostileNamesInBarsAndPictures_AreEscaped) {
 
 TEST(Html, Page_LoadsNothingFromElsewhere) {
   const std::string page = make_index_html(make_run(), {make_illustrated_cell("cubes", "vsm")});
-  for (const std::string& url : list_links(page)) {
+  for (const std::string& url : list_links(page))
     EXPECT_THAT(url, Not(::testing::AnyOf(HasSubstr("//"), ::testing::StartsWith("/")))) << url;
-  }
   EXPECT_THAT(page, Not(HasSubstr("@import")));
   EXPECT_THAT(page, Not(HasSubstr("url(")));
   EXPECT_THAT(page, HasSubstr("prefers-color-scheme: dark"));
@@ -139,9 +134,8 @@ TEST(Html, EveryLink_LeadsToAFileOfTheReport) {
   for (const std::string scene : {"cubes", "we ird#%<scene>?"}) {
     const CellRecord cell = make_illustrated_cell(scene, "vsm");
     for (const auto& path : {cell.images.picture, cell.images.visibility, cell.images.depth_map, cell.images.grid,
-                             cell.images.attribution}) {
+                             cell.images.attribution})
       write_grey_png(folder.path() / *path, Image(2, 2, 1));
-    }
     write_exr(folder.path() / *cell.images.exr, {{"a", {"Y"}, Image(2, 2, 1)}}, {});
     write_cell(folder.path(), cell);
     keys.push_back(cell.key);
@@ -170,17 +164,15 @@ TEST(Html, Page_HoldsWhatTheReportIsOf) {
   for (const char* text :
        {"cubes: Three cubes on a floor", "Some CPU", "something is odd", "crashed: signal 11",
         "CPU time (software rasteriser)", "cubes.grid.png", "cubes.depth.png", "cubes.exr", "cubes.vsm.attribution.png",
-        "timings.csv", "results.json", "no truth in this run", "class=\"scroll\""}) {
+        "timings.csv", "results.json", "no truth in this run", "class=\"scroll\""})
     EXPECT_THAT(page, HasSubstr(text));
-  }
 }
 
 TEST(Report, OfNoCell_IsWritten) {
   const TemporaryFolder folder("report_empty");
   write_report(folder.path(), make_run(), {});
-  for (const char* name : {"results.json", "results.schema.json", "timings.csv", "summary.md", "index.html"}) {
+  for (const char* name : {"results.json", "results.schema.json", "timings.csv", "summary.md", "index.html"})
     EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
-  }
   expect_balanced(read_text(folder.path() / "index.html"));
 }
 

@@ -25,7 +25,8 @@ bool is_valid(const std::filesystem::path& file, const std::filesystem::path& sc
 }
 
 // Says of each document whether the schema accepts it; python is slow to start, so one judges them all.
-std::vector<bool> judge_all(const std::vector<json>& documents, const std::filesystem::path& schema, const std::filesystem::path& dir) {
+std::vector<bool> judge_all(const std::vector<json>& documents, const std::filesystem::path& schema,
+                            const std::filesystem::path& dir) {
   constexpr const char* kJudge =
       "import json, jsonschema, sys\n"
       "schema = json.load(open(sys.argv[1]))\n"
@@ -35,7 +36,8 @@ std::vector<bool> judge_all(const std::vector<json>& documents, const std::files
   for (const json& document : documents) lines += document.dump() + "\n";
   write_text_file(dir / "documents", lines);
   write_text_file(dir / "judge.py", kJudge);
-  const std::string command = "cd '" + dir.string() + "' && /usr/bin/python3 judge.py '" + schema.string() + "' documents > verdicts";
+  const std::string command =
+      "cd '" + dir.string() + "' && /usr/bin/python3 judge.py '" + schema.string() + "' documents > verdicts";
   EXPECT_EQ(std::system(command.c_str()), 0);
   std::vector<bool> verdicts;
   std::istringstream text(read_text(dir / "verdicts"));
@@ -84,7 +86,8 @@ CellRecord make_full_cell() {
   cell.fit = "view snapped";
   cell.light = "120,-35.5";
   cell.time_ms.stopped = "budget";
-  cell.lights = {{1, {1.5, 1.25, 1.75, 9}, {2.5, 2.25, 2.75, 9}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 1024}, {16, {24.0, 20.0, 28.0, 5}, {40.0, 36.0, 44.0, 5}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 16384}};
+  cell.lights = {{1, {1.5, 1.25, 1.75, 9}, {2.5, 2.25, 2.75, 9}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 1024},
+                 {16, {24.0, 20.0, 28.0, 5}, {40.0, 36.0, 44.0, 5}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 16384}};
   cell.content = "0123";
   cell.warnings = {"one", "two"};
   cell.absent.clear();
@@ -144,9 +147,7 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   EXPECT_EQ(std::get<std::string>(back.params.at("store")), "rg32f");
 }
 
-TEST(JsonIo, FullCell_HasNoNull) {
-  EXPECT_EQ(to_json(make_full_cell()).at("absent"), json::object());
-}
+TEST(JsonIo, FullCell_HasNoNull) { EXPECT_EQ(to_json(make_full_cell()).at("absent"), json::object()); }
 
 TEST(JsonIo, LaterFields_MayLack) {
   json written = to_json(make_full_cell());
@@ -204,13 +205,11 @@ TEST(JsonIo, NotFinite_IsNullWithItsReason) {
 void expect_explained(const json& value, const std::string& path, const json& absent) {
   const std::string group = path.substr(0, path.find('.'));
   const std::string middle = path.substr(0, path.rfind('.'));
-  if (value.is_null()) {
+  if (value.is_null())
     EXPECT_TRUE(absent.contains(path) || absent.contains(group) || absent.contains(middle)) << path;
-  } else if (value.is_object()) {
-    for (const auto& [name, child] : value.items()) {
+  else if (value.is_object())
+    for (const auto& [name, child] : value.items())
       expect_explained(child, path.empty() ? name : path + "." + name, absent);
-    }
-  }
 }
 
 TEST(JsonIo, EveryNull_HasAReason) {
@@ -379,12 +378,14 @@ TEST(JsonIo, NestedWithoutEnd_IsAnInputError) {
   const TemporaryFolder folder("json_deep");
   const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
   write_text_file(folder.path() / "results.json", R"({"schema_version": 2, "commit": )" + deep + "}");
-  EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }), HasSubstr("nested more than 100 deep"));
+  EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }),
+              HasSubstr("nested more than 100 deep"));
 }
 
 TEST(JsonIo, PathsAndKeysThatLeaveTheFolder_AreRefused) {
-  for (const std::string& path : {std::string("../outside.png"), std::string("/etc/passwd"), std::string("images/../../x.png"), std::string(".."), std::string(),
-                                  std::string("images/x.png\0/../..", 19)}) {
+  for (const std::string& path :
+       {std::string("../outside.png"), std::string("/etc/passwd"), std::string("images/../../x.png"), std::string(".."),
+        std::string(), std::string("images/x.png\0/../..", 19)}) {
     json written = to_json(make_full_cell());
     written["images"]["picture"] = path;
     EXPECT_THAT(message_of([&] { cell_from_json(written, "f.json"); }), HasSubstr("'images.picture'")) << path;

@@ -27,28 +27,39 @@ struct LitTimes {
 
 constexpr int kCounts[] = {1, 2, 4, 8};
 
-Ratio make_ratio(double value) { return value == 1.0 ? Ratio{1.0, {1.0, 1.0}} : Ratio{value, {0.99 * value, 1.01 * value}}; }
+Ratio make_ratio(double value) {
+  return value == 1.0 ? Ratio{1.0, {1.0, 1.0}} : Ratio{value, {0.99 * value, 1.01 * value}};
+}
 
 CellRecord make_lit_cell(const std::string& filter, const LitTimes& times, int map_size = 1024) {
-  CellRecord cell = make_sweep_cell({"cubes", filter, 4.0, filter == "none" ? 1.0 : 2.0, filter == "none" ? 0.0 : 0.01, 0.1, map_size});
+  CellRecord cell = make_sweep_cell(
+      {"cubes", filter, 4.0, filter == "none" ? 1.0 : 2.0, filter == "none" ? 0.0 : 0.01, 0.1, map_size});
   cell.lights.emplace();
   for (std::size_t i = 0; i < times.still.size(); ++i) {
     const double count = kCounts[i], still = times.still[i] * count, moving = 2.0 * times.moving[i] * count;
     // Medians drift; ratios do not.
     const double drift = filter == "none" ? 1.0 : 1.1;
-    cell.lights->push_back({kCounts[i], {drift * still, drift * still - 0.5, drift * still + 0.5, 9}, {drift * moving, drift * moving - 0.5, drift * moving + 0.5, 9},
-                            make_ratio(times.still[i]), make_ratio(times.moving[i]), kCounts[i] * 4194304});
+    cell.lights->push_back({kCounts[i],
+                            {drift * still, drift * still - 0.5, drift * still + 0.5, 9},
+                            {drift * moving, drift * moving - 0.5, drift * moving + 0.5, 9},
+                            make_ratio(times.still[i]),
+                            make_ratio(times.moving[i]),
+                            kCounts[i] * 4194304});
   }
   return cell;
 }
 
 /// Poisson is dear still; the prefilter of vsm is dear moving; esm becomes cheaper than vsm with many lights.
 std::vector<CellRecord> make_lit_cells(int map_size = 1024) {
-  return {make_lit_cell("none", {{1, 1, 1, 1}, {1, 1, 1, 1}}, map_size), make_lit_cell("poisson", {{3, 3, 3, 3}, {2, 2, 2, 2}}, map_size),
-          make_lit_cell("vsm", {{1.5, 1.5, 1.5, 1.5}, {4, 4, 4, 4}}, map_size), make_lit_cell("esm", {{1.6, 1.501, 1.4, 1.4}, {4.5, 4.5, 4.5, 4.5}}, map_size)};
+  return {make_lit_cell("none", {{1, 1, 1, 1}, {1, 1, 1, 1}}, map_size),
+          make_lit_cell("poisson", {{3, 3, 3, 3}, {2, 2, 2, 2}}, map_size),
+          make_lit_cell("vsm", {{1.5, 1.5, 1.5, 1.5}, {4, 4, 4, 4}}, map_size),
+          make_lit_cell("esm", {{1.6, 1.501, 1.4, 1.4}, {4.5, 4.5, 4.5, 4.5}}, map_size)};
 }
 
-std::vector<LightChart> make_charts(const std::vector<CellRecord>& cells) { return make_light_charts(cells, make_trade_scopes(cells)); }
+std::vector<LightChart> make_charts(const std::vector<CellRecord>& cells) {
+  return make_light_charts(cells, make_trade_scopes(cells));
+}
 
 TEST(LightGrowth, Times_AreRatiosTimesTheReference) {
   const auto charts = make_charts(make_lit_cells());
@@ -72,9 +83,14 @@ TEST(LightGrowth, WithoutTheReference_TimesAreMediansAndQuartiles) {
 }
 
 TEST(LightGrowth, IsTheSlopeAndTheExponent) {
-  const LightCurve curve{"vsm", "vsm", {{1, {}, {}, {3, 3, 3}, {2, 2, 2}, 0}, {4, {}, {}, {9, 9, 9}, {4, 4, 4}, 0}, {16, {}, {}, {33, 33, 33}, {8, 8, 8}, 0}}};
+  const LightCurve curve{"vsm",
+                         "vsm",
+                         {{1, {}, {}, {3, 3, 3}, {2, 2, 2}, 0},
+                          {4, {}, {}, {9, 9, 9}, {4, 4, 4}, 0},
+                          {16, {}, {}, {33, 33, 33}, {8, 8, 8}, 0}}};
   EXPECT_NEAR(find_light_growth(curve, LightState::kStill).per_light_ms.value, 2.0, 1e-12);
-  EXPECT_EQ(find_light_growth(curve, LightState::kStill).per_light_ms.low, find_light_growth(curve, LightState::kStill).per_light_ms.high);
+  EXPECT_EQ(find_light_growth(curve, LightState::kStill).per_light_ms.low,
+            find_light_growth(curve, LightState::kStill).per_light_ms.high);
   EXPECT_NEAR(find_light_growth(curve, LightState::kMoving).exponent.value, 0.5, 1e-12);
 }
 
@@ -93,7 +109,8 @@ TEST(LightGrowth, HasTheIntervalThatQuartilesAllow) {
 TEST(LightGrowth, IsSaidOfEveryFilter_StillAndMoving_WithItsClock) {
   const auto words = describe_light_growth(make_charts(make_lit_cells()), make_run().gl);
   ASSERT_THAT(words, SizeIs(2));
-  EXPECT_THAT(words[0], AllOf(HasSubstr("map 1024, 1 to 8 lights, casters still"), HasSubstr("ms (CPU): none 1 [0.843, 1.16]; poisson 3.3 ["), HasSubstr("vsm 1.00 [")));
+  EXPECT_THAT(words[0], AllOf(HasSubstr("map 1024, 1 to 8 lights, casters still"),
+                              HasSubstr("ms (CPU): none 1 [0.843, 1.16]; poisson 3.3 ["), HasSubstr("vsm 1.00 [")));
   EXPECT_THAT(words[1], AllOf(HasSubstr("casters moving"), HasSubstr("; vsm 8.8 ["), HasSubstr("poisson 1.00 [")));
 }
 
@@ -119,25 +136,33 @@ TEST(LightOrder, OverlappingTimes_AreNotApart) {
 TEST(LightOrder, SaysWhereOneOvertakesAnother_AndNoMore) {
   const auto words = describe_light_order(make_charts(make_lit_cells()));
   ASSERT_THAT(words, SizeIs(4));
-  EXPECT_EQ(words[0], "esm is cheaper than poisson with casters still at each of 1, 2, 4, 8 lights; with casters moving at none of 1, 2, 4, 8 lights (dearer at 1, "
-                      "2, 4, 8): cubes, picture 960 × 540, map 1024.");
-  EXPECT_EQ(words[1], "vsm is cheaper than esm with casters still at 1 light, of 1, 2, 4, 8 (dearer at 4, 8, not to be told apart at 2); with casters moving at each "
-                      "of 1, 2, 4, 8 lights: cubes, picture 960 × 540, map 1024.");
+  EXPECT_EQ(words[0],
+            "esm is cheaper than poisson with casters still at each of 1, 2, 4, 8 lights; with casters moving at none "
+            "of 1, 2, 4, 8 lights (dearer at 1, "
+            "2, 4, 8): cubes, picture 960 × 540, map 1024.");
+  EXPECT_EQ(words[1],
+            "vsm is cheaper than esm with casters still at 1 light, of 1, 2, 4, 8 (dearer at 4, 8, not to be told "
+            "apart at 2); with casters moving at each "
+            "of 1, 2, 4, 8 lights: cubes, picture 960 × 540, map 1024.");
   EXPECT_THAT(words[2], HasSubstr("vsm is cheaper than poisson with casters still at each of"));
-  EXPECT_THAT(words[3], HasSubstr("Of 6 pairs of filters, over all numbers of lights, casters still and moving, 3 change order, 3 keep it wherever the two can be told apart:"));
+  EXPECT_THAT(words[3], HasSubstr("Of 6 pairs of filters, over all numbers of lights, casters still and moving, 3 "
+                                  "change order, 3 keep it wherever the two can be told apart:"));
 }
 
 TEST(LightOrder, FromAnyNumberOn_IsSaidAsThat) {
-  const std::vector<CellRecord> cells = {make_lit_cell("none", {{1, 1, 1, 1}, {1, 1, 1, 1}}), make_lit_cell("vsm", {{2, 2, 2, 2}, {2, 2, 2, 2}}),
+  const std::vector<CellRecord> cells = {make_lit_cell("none", {{1, 1, 1, 1}, {1, 1, 1, 1}}),
+                                         make_lit_cell("vsm", {{2, 2, 2, 2}, {2, 2, 2, 2}}),
                                          make_lit_cell("esm", {{2.5, 2.0, 1.5, 1.5}, {2.5, 2.01, 2.0, 1.5}})};
   const auto words = describe_light_order(make_charts(cells));
   ASSERT_THAT(words, SizeIs(2));
-  EXPECT_THAT(words[0], HasSubstr("vsm is cheaper than esm with casters still at 1 light, of 1, 2, 4, 8 (dearer at 4, 8, not to be told apart at 2)"));
+  EXPECT_THAT(words[0], HasSubstr("vsm is cheaper than esm with casters still at 1 light, of 1, 2, 4, 8 (dearer at 4, "
+                                  "8, not to be told apart at 2)"));
   std::vector<CellRecord> turned = cells;
   for (LightCountRecord& each : *turned[2].lights) each.still_ratio = make_ratio(each.count > 1 ? 2.5 : 1.5);
   for (LightCountRecord& each : *turned[2].lights) each.moving_ratio = make_ratio(each.count > 1 ? 1.5 : 2.5);
   EXPECT_THAT(describe_light_order(make_charts(turned))[0],
-              HasSubstr("esm is cheaper than vsm with casters still at 1 light, of 1, 2, 4, 8 (dearer at 2, 4, 8); with casters moving from 2 lights on, of 1, 2, 4, 8 (dearer at 1)"));
+              HasSubstr("esm is cheaper than vsm with casters still at 1 light, of 1, 2, 4, 8 (dearer at 2, 4, 8); "
+                        "with casters moving from 2 lights on, of 1, 2, 4, 8 (dearer at 1)"));
 }
 
 TEST(LightOrder, WhereNothingChanges_ThatIsSaid_OfEveryMapAtOnce) {
@@ -148,7 +173,8 @@ TEST(LightOrder, WhereNothingChanges_ThatIsSaid_OfEveryMapAtOnce) {
     cells.push_back(make_lit_cell("esm", {{2.01, 2.01}, {2.01, 2.01}}, map_size));
   }
   EXPECT_THAT(describe_light_order(make_charts(cells)),
-              ElementsAre("Of 3 pairs of filters, over all numbers of lights, casters still and moving, none changes its order, 2 keep it wherever the two can be told "
+              ElementsAre("Of 3 pairs of filters, over all numbers of lights, casters still and moving, none changes "
+                          "its order, 2 keep it wherever the two can be told "
                           "apart, 1 cannot be told apart anywhere: cubes, picture 960 × 540, map 512, 1024."));
 }
 
@@ -171,9 +197,11 @@ TEST(LightCharts, HoldOnlyWhatWasTimed_WithParametersThatTell) {
 
 TEST(LightTable, HasBothStates) {
   const TextTable table = make_light_table(make_charts(make_lit_cells())[0]);
-  EXPECT_THAT(table.header, ElementsAre("filter", "casters", "1 light", "2 lights", "4 lights", "8 lights", "ms per added light", "exponent", "MiB of maps at the most lights"));
+  EXPECT_THAT(table.header, ElementsAre("filter", "casters", "1 light", "2 lights", "4 lights", "8 lights",
+                                        "ms per added light", "exponent", "MiB of maps at the most lights"));
   ASSERT_THAT(table.rows, SizeIs(8));
-  EXPECT_THAT(table.rows[4], ElementsAre("vsm", "still", "1.5 [1.48, 1.52]", "3 [2.97, 3.03]", "6 [5.94, 6.06]", "12 [11.9, 12.1]", "1.65 [1.49, 1.81]", "1.00 [0.84, 1.21]", "32"));
+  EXPECT_THAT(table.rows[4], ElementsAre("vsm", "still", "1.5 [1.48, 1.52]", "3 [2.97, 3.03]", "6 [5.94, 6.06]",
+                                         "12 [11.9, 12.1]", "1.65 [1.49, 1.81]", "1.00 [0.84, 1.21]", "32"));
   EXPECT_THAT(table.rows[5][1], "moving");
   EXPECT_THAT(table.rows[5][5], HasSubstr("64 ["));
 }
@@ -193,13 +221,16 @@ TEST(LightSection, ShowsPlotTableAndWords) {
   const auto out = write(folder, make_lit_cells());
   const std::string page = read_text(out / "index.html"), summary = read_text(out / "summary.md");
   const std::string plot = "plots/cubes.main.960x540.map1024.lights.svg";
-  for (const char* text : {"with its lights</h3>", "vsm is cheaper than poisson", "each added light costs", "time of a frame, ms: CPU time (software rasteriser)"}) EXPECT_THAT(page, HasSubstr(text));
+  for (const char* text : {"with its lights</h3>", "vsm is cheaper than poisson", "each added light costs",
+                           "time of a frame, ms: CPU time (software rasteriser)"})
+    EXPECT_THAT(page, HasSubstr(text));
   EXPECT_THAT(page, HasSubstr("<img src=\"" + plot + "\""));
-  for (const char* text : {"vsm is cheaper than poisson", "| vsm | still | 1.5 \\[1.48, 1.52\\] |"}) EXPECT_THAT(summary, HasSubstr(text));
+  for (const char* text : {"vsm is cheaper than poisson", "| vsm | still | 1.5 \\[1.48, 1.52\\] |"})
+    EXPECT_THAT(summary, HasSubstr(text));
   const std::string svg = read_text(out / plot);
-  for (const char* text : {"lights, each with a map of its own", "CPU time (software rasteriser)", "dashed: casters moving", "in proportion", "poisson", ">8<"}) {
+  for (const char* text : {"lights, each with a map of its own", "CPU time (software rasteriser)",
+                           "dashed: casters moving", "in proportion", "poisson", ">8<"})
     EXPECT_THAT(svg, HasSubstr(text));
-  }
 }
 
 /// Too few cells for a front, or none with an error: lights are there all the same.
@@ -221,7 +252,8 @@ TEST(LightSection, NeedsNoFront) {
 TEST(LightSection, IsNotThere_WhereNothingWasTimed) {
   const auto cells = make_crossing_cells("cubes");
   EXPECT_THAT(make_trade_html(make_run(), cells, *make_trade(make_run(), cells)), Not(HasSubstr("id=\"lights\"")));
-  EXPECT_THAT(make_trade_markdown(make_run(), cells, *make_trade(make_run(), cells)), Not(HasSubstr("with its lights")));
+  EXPECT_THAT(make_trade_markdown(make_run(), cells, *make_trade(make_run(), cells)),
+              Not(HasSubstr("with its lights")));
 }
 
 }  // namespace

@@ -12,18 +12,17 @@ namespace {
 /// A ramp on the left half, nothing on the right one.
 Image make_depth_map(int side) {
   Image depth(side, side, 1);
-  for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) *depth.at(x, y) = x < side / 2 ? 0.2f + 0.5f * static_cast<float>(y) / static_cast<float>(side) : 1.0f;
-  }
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x)
+      *depth.at(x, y) = x < side / 2 ? 0.2f + 0.5f * static_cast<float>(y) / static_cast<float>(side) : 1.0f;
   return depth;
 }
 
 std::size_t count_color(const Image& image, float r, float g, float b) {
   const auto near = [](float a, float c) { return std::abs(a - c) < 1e-5f; };
   std::size_t count = 0;
-  for (std::size_t i = 0; i < image.texels.size(); i += 3) {
+  for (std::size_t i = 0; i < image.texels.size(); i += 3)
     if (near(image.texels[i], r) && near(image.texels[i + 1], g) && near(image.texels[i + 2], b)) ++count;
-  }
   return count;
 }
 
@@ -33,7 +32,8 @@ TEST(DepthHistogram, CountsEveryTexelOnce_EmptyOnesApart) {
   EXPECT_EQ(std::accumulate(histogram.counts.begin(), histogram.counts.end(), std::int64_t{0}), 64 * 32);
   EXPECT_EQ(histogram.counts[1], 0);
   EXPECT_EQ(histogram.counts[7], 0);
-  for (std::size_t bin = 2; bin < 7; ++bin) EXPECT_NEAR(static_cast<double>(histogram.counts[bin]), 64 * 32 / 5.0, 40.0) << bin;
+  for (std::size_t bin = 2; bin < 7; ++bin)
+    EXPECT_NEAR(static_cast<double>(histogram.counts[bin]), 64 * 32 / 5.0, 40.0) << bin;
 }
 
 TEST(DepthHistogram, DepthsOutsideTheRange_GoToTheNearestBin) {
@@ -56,7 +56,8 @@ TEST(DepthPicture, ShowsTheMapAndABarForEveryFilledBin) {
 
 TEST(DepthPicture, MapThatDoesNotHoldLinearDepth_IsShownTwice_AsStoredAndLinearised) {
   const Image depth = make_depth_map(256);
-  for (const filters::DepthCurve& curve : {filters::DepthCurve{true}, filters::DepthCurve{false, 50.0}, filters::DepthCurve{true, 50.0}}) {
+  for (const filters::DepthCurve& curve :
+       {filters::DepthCurve{true}, filters::DepthCurve{false, 50.0}, filters::DepthCurve{true, 50.0}}) {
     DepthPicture stored{"map", "note", depth, curve, 12.0};
     for (float& d : stored.stored.texels) d = curve.store(d);
     const Image drawn = draw_depth_picture(stored);
@@ -120,7 +121,9 @@ TEST(TexelGrid, SmallTexels_AreGatheredInFieldsThatShow) {
   // Fields 8 pixels wide: along each of 64 rows 4 of them are dark, and have two sides.
   std::size_t sides = 0;
   for (std::size_t i = 3; i < drawn.texels.size(); i += 3) {
-    const auto is_dark = [&](std::size_t at) { return std::abs(drawn.texels[at] - 0.55f) < 1e-5f && drawn.texels[at] == drawn.texels[at + 1]; };
+    const auto is_dark = [&](std::size_t at) {
+      return std::abs(drawn.texels[at] - 0.55f) < 1e-5f && drawn.texels[at] == drawn.texels[at + 1];
+    };
     sides += is_dark(i) != is_dark(i - 3) ? 1u : 0u;
   }
   EXPECT_EQ(sides, 64u * 4u * 2u);
@@ -128,9 +131,8 @@ TEST(TexelGrid, SmallTexels_AreGatheredInFieldsThatShow) {
 
 TEST(TexelGrid, FieldsFarSmallerThanTheMedian_Fade) {
   TexelGridPicture picture = make_wall(64, 8.0f);
-  for (int y = 0; y < 16; ++y) {
+  for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 64; ++x) *picture.density.at(x, y) = 1.0f;
-  }
   EXPECT_EQ(count_color(draw_texel_grid_picture(picture), 0.55f, 0.55f, 0.55f), 64u * 48u / 2u);
 }
 

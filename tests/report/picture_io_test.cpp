@@ -18,9 +18,8 @@ namespace {
 
 Image make_noise(int width, int height, int channels) {
   Image image(width, height, channels);
-  for (std::size_t i = 0; i < image.texels.size(); ++i) {
+  for (std::size_t i = 0; i < image.texels.size(); ++i)
     image.texels[i] = std::sin(static_cast<float>(i) * 12.9898f) * 43758.547f;
-  }
   return image;
 }
 
@@ -148,9 +147,9 @@ TEST(PictureIo, HalfPart_IsRoundedToHalf) {
 TEST(PictureIo, RoundingToHalf_GivesWhatAHalfPartKeeps) {
   const TemporaryFolder folder("exr_round");
   Image image = make_noise(31, 17, 3);
-  image.texels[0] = 1e-7f;                                // below the smallest normal half
-  image.texels[1] = 1e6f;                                 // above the largest
-  image.texels[2] = 1.0f + 1.0f / 2048.0f;                // halfway between two
+  image.texels[0] = 1e-7f;                  // below the smallest normal half
+  image.texels[1] = 1e6f;                   // above the largest
+  image.texels[2] = 1.0f + 1.0f / 2048.0f;  // halfway between two
   image.texels[3] = std::numeric_limits<float>::infinity();
   write_exr(folder.path() / "a.exr", {{"picture", {"R", "G", "B"}, image, true}}, {});
   EXPECT_TRUE(has_same_bits(round_to_half(image), read_exr(folder.path() / "a.exr").parts.at(0).image));
@@ -198,9 +197,12 @@ TEST(PictureIo, DamagedFile_IsAnInputError) {
 TEST(PictureIo, FullDisk_IsAnOutputErrorAndLeavesNothing) {
   const TemporaryFolder folder("picture_full");
   const Image grey = make_noise(64, 64, 1), colour = make_noise(64, 64, 3);
-  const std::vector<std::function<void()>> actions = {[&] { write_grey_png(folder.path() / "a.png", grey); },
-                                                      [&] { write_picture_png(folder.path() / "b.png", colour); },
-                                                      [&] { write_exr(folder.path() / "c.exr", {{"x", {"Y"}, grey, false}, {"y", {"R", "G", "B"}, colour, false}}, {}); }};
+  const std::vector<std::function<void()>> actions = {
+      [&] { write_grey_png(folder.path() / "a.png", grey); },
+      [&] { write_picture_png(folder.path() / "b.png", colour); },
+      [&] {
+        write_exr(folder.path() / "c.exr", {{"x", {"Y"}, grey, false}, {"y", {"R", "G", "B"}, colour, false}}, {});
+      }};
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
@@ -215,7 +217,9 @@ TEST(PictureIo, FullDisk_IsAnOutputErrorAndLeavesNothing) {
         message = error.kind() == ErrorKind::kOutput ? error.what() : "another error";
       }
       setrlimit(RLIMIT_FSIZE, &before);
-      EXPECT_THAT(message, ::testing::AllOf(::testing::HasSubstr(folder.path().string()), ::testing::HasSubstr("File too large"), ::testing::HasSubstr("--out"))) << i << " " << bytes;
+      EXPECT_THAT(message, ::testing::AllOf(::testing::HasSubstr(folder.path().string()),
+                                            ::testing::HasSubstr("File too large"), ::testing::HasSubstr("--out")))
+          << i << " " << bytes;
       EXPECT_EQ(count_files(folder.path()), 0u) << i << " " << bytes;
     }
   }

@@ -74,7 +74,9 @@ TEST(Repeat, IsAFactOfTheRun_WhereItIsKnown) {
   RunRecord run = make_run();
   EXPECT_THAT(list_run_facts(run), Not(Contains(Pair("repeat", ::testing::_))));
   run.repeat = {40, 118, 120};
-  EXPECT_THAT(list_run_facts(run), Contains(Pair("repeat", "118 of 120 ratio intervals overlap those of the run that this one replaced (40 cells)")));
+  EXPECT_THAT(list_run_facts(run),
+              Contains(Pair("repeat",
+                            "118 of 120 ratio intervals overlap those of the run that this one replaced (40 cells)")));
 }
 
 }  // namespace

@@ -30,7 +30,9 @@ int count_pixels(const Image& canvas, const Rgb& color) {
   return count;
 }
 
-Image draw(const StabilityImages& images) { return draw_stability_picture({"odd on cubes", "note", images, "a", "b", "c", "d"}); }
+Image draw(const StabilityImages& images) {
+  return draw_stability_picture({"odd on cubes", "note", images, "a", "b", "c", "d"});
+}
 
 TEST(StabilityPicture, OnlyWhatExists_IsDrawn) {
   StabilityImages all;

@@ -22,11 +22,15 @@ StressCase make_case() {
   item.variant = "r16f, linear";
   item.level = "GL";
   item.params = {{"radius", 4.0}, {"store", std::string("r16f")}};
-  item.samples = {{1.0, StressVerdict::kOk, 1e-4, ""}, {11.0, StressVerdict::kDegraded, 0.05, "error 0.05"}, {20.0, StressVerdict::kBroken, std::nullopt, "7 texels overflowed"}};
+  item.samples = {{1.0, StressVerdict::kOk, 1e-4, ""},
+                  {11.0, StressVerdict::kDegraded, 0.05, "error 0.05"},
+                  {20.0, StressVerdict::kBroken, std::nullopt, "7 texels overflowed"}};
   item.degraded = StressOnset{11.0, 1.0, "error 0.05"};
   item.broken = StressOnset{20.0, 11.0, "7 texels overflowed"};
-  item.limits = {{11.09, StressTheoryKind::kOverflow, StressVerdict::kBroken, "ln(65504)", "derived", 20.0, 1.803, StressAgreement::kDisagrees, ""},
-                 {std::nullopt, StressTheoryKind::kRounding, StressVerdict::kDegraded, "none", "derived", 11.0, std::nullopt, StressAgreement::kExplained, "the blur adds"}};
+  item.limits = {{11.09, StressTheoryKind::kOverflow, StressVerdict::kBroken, "ln(65504)", "derived", 20.0, 1.803,
+                  StressAgreement::kDisagrees, ""},
+                 {std::nullopt, StressTheoryKind::kRounding, StressVerdict::kDegraded, "none", "derived", 11.0,
+                  std::nullopt, StressAgreement::kExplained, "the blur adds"}};
   item.notes = {"broken at 20, but ok again at 30"};
   return item;
 }
@@ -53,7 +57,11 @@ StressRecord make_record() {
   absent.level = "GL";
   absent.not_available = "this GL lacks r8";
   axis.cases.push_back(absent);
-  axis.exhibits.push_back({"mistake", "A mistake", {"It was made."}, TextTable{{"set-up"}, {{"a|b"}}}, {{"stress.mistake.png", "pictures"}}});
+  axis.exhibits.push_back({"mistake",
+                           "A mistake",
+                           {"It was made."},
+                           TextTable{{"set-up"}, {{"a|b"}}},
+                           {{"stress.mistake.png", "pictures"}}});
   record.axes.push_back(axis);
   return record;
 }
@@ -91,7 +99,7 @@ TEST(StressTables, SayWhatIsSafe_AndWhatIsNotAvailable) {
   const TextTable table = make_case_table(make_record().axes[0]);
   ASSERT_THAT(table.rows, SizeIs(2));
   EXPECT_EQ(table.rows[0][0], "esm: r16f, linear (GL)");
-  EXPECT_EQ(table.rows[0][1], "1");   // the last value that is ok
+  EXPECT_EQ(table.rows[0][1], "1");  // the last value that is ok
   EXPECT_EQ(table.rows[0][2], "11");
   EXPECT_EQ(table.rows[0][3], "20");
   EXPECT_EQ(table.rows[0][4], "7 texels overflowed");
@@ -108,7 +116,8 @@ TEST(StressTables, CaseThatNeverChanges_IsOkAllOver) {
 TEST(StressTables, LimitsStandBesideTheirTheory) {
   const TextTable table = make_limit_table(make_record());
   ASSERT_THAT(table.rows, SizeIs(2));
-  EXPECT_THAT(table.rows[0], ::testing::ElementsAre("esm-exponent", "esm: r16f, linear (GL)", "broken", "ln(65504)", "11.09", "20", "1.803", "overflow, 10 %", "disagrees"));
+  EXPECT_THAT(table.rows[0], ::testing::ElementsAre("esm-exponent", "esm: r16f, linear (GL)", "broken", "ln(65504)",
+                                                    "11.09", "20", "1.803", "overflow, 10 %", "disagrees"));
   EXPECT_EQ(table.rows[1][4], "none");
 }
 
@@ -122,25 +131,28 @@ TEST(StressTables, LimitsThatNobodyExpectsToSee_AreCountedInstead) {
   limits.push_back(limits[1]);
   limits.back().onset = 1e6;
   EXPECT_THAT(make_limit_table(record).rows, SizeIs(1));
-  EXPECT_THAT(describe_out_of_sight(record), ::testing::ElementsAre(
-      "esm-exponent: no limit within the range, as theory says: 1 where it says that there is none, 1 where it puts it beyond the range."));
+  EXPECT_THAT(describe_out_of_sight(record),
+              ::testing::ElementsAre("esm-exponent: no limit within the range, as theory says: 1 where it says that "
+                                     "there is none, 1 where it puts it beyond the range."));
 }
 
 TEST(StressWords, DisagreementsAreSaid_ExplainedOnesWithTheReason) {
   const StressRecord record = make_record();
   EXPECT_EQ(count_disagreements(record), 1);
   ASSERT_THAT(describe_disagreements(record.axes[0]), SizeIs(1));
-  EXPECT_THAT(describe_disagreements(record.axes[0])[0], AllOf(HasSubstr("broken at 20, where theory says 11.09 (ln(65504))"), HasSubstr("nothing explains it")));
+  EXPECT_THAT(describe_disagreements(record.axes[0])[0],
+              AllOf(HasSubstr("broken at 20, where theory says 11.09 (ln(65504))"), HasSubstr("nothing explains it")));
   ASSERT_THAT(describe_explanations(record.axes[0]), SizeIs(1));
-  EXPECT_THAT(describe_explanations(record.axes[0])[0], AllOf(HasSubstr("degraded at 11, where theory says none"), HasSubstr("the blur adds")));
+  EXPECT_THAT(describe_explanations(record.axes[0])[0],
+              AllOf(HasSubstr("degraded at 11, where theory says none"), HasSubstr("the blur adds")));
 }
 
 TEST(StressPage, HasTablesPlotsWordsAndWarnings) {
   const std::string page = make_stress_html(make_record());
-  for (const char* part : {"Measured against theoretical limits", "stress.esm-exponent.svg", "ln(65504)", "Warnings", "not available: this GL lacks r8", "the blur adds",
-                           "ok again at 30", "A mistake", "stress.mistake.png", "prefers-color-scheme: dark", "stress.csv"}) {
+  for (const char* part : {"Measured against theoretical limits", "stress.esm-exponent.svg", "ln(65504)", "Warnings",
+                           "not available: this GL lacks r8", "the blur adds", "ok again at 30", "A mistake",
+                           "stress.mistake.png", "prefers-color-scheme: dark", "stress.csv"})
     EXPECT_THAT(page, HasSubstr(part));
-  }
   EXPECT_THAT(page, Not(HasSubstr("http")));
 }
 
@@ -164,7 +176,8 @@ TEST(StressPage, Texts_AreEscaped) {
 
 TEST(StressText, HasTheTables_WithPipesEscaped) {
   const std::string text = make_stress_text(make_record());
-  EXPECT_THAT(text, AllOf(HasSubstr("## esm-exponent: Exponent"), HasSubstr("not explained"), HasSubstr("a\\|b"), HasSubstr("ratio")));
+  EXPECT_THAT(text, AllOf(HasSubstr("## esm-exponent: Exponent"), HasSubstr("not explained"), HasSubstr("a\\|b"),
+                          HasSubstr("ratio")));
 }
 
 TEST(StressPlot, HasCasesTheoryAndBound_BrokenAtTheTopWhereNothingIsMeasured) {

@@ -117,11 +117,12 @@ TEST(Summary, ExperimentLine_SaysItsTitleAndWhichShardItIs) {
 }
 
 TEST(Summary, WorkLine_CountsTruthsTracedAndReadFromTheCache) {
-  EXPECT_THAT(list_run_facts(make_run()),
-              Contains(::testing::Pair("work",
-                                       "12 shader variants compiled, 40 passes run, 3 passes skipped because no "
-                                       "filter needed them, 5 truths ray traced, 2 truths read from the cache; 1.5 s of timed "
-                                       "passes in 2 s, of which attribution took 0.5 s")));
+  EXPECT_THAT(
+      list_run_facts(make_run()),
+      Contains(::testing::Pair("work",
+                               "12 shader variants compiled, 40 passes run, 3 passes skipped because no "
+                               "filter needed them, 5 truths ray traced, 2 truths read from the cache; 1.5 s of timed "
+                               "passes in 2 s, of which attribution took 0.5 s")));
 }
 
 }  // namespace

@@ -88,9 +88,7 @@ inline Grid make_grid(int tiles, int width, int height) {
     grid.tiles.push_back(make_tile(name, width, height, 0.01f + 4.0f * static_cast<float>(i)));
   }
   std::vector<const Image*> visibility;
-  for (const GridTile& tile : grid.tiles) {
-    visibility.push_back(&tile.visibility);
-  }
+  for (const GridTile& tile : grid.tiles) visibility.push_back(&tile.visibility);
   grid.crop = find_hardest_edge(visibility, 0, choose_crop_size({width, height}));
   return grid;
 }
@@ -128,9 +126,8 @@ inline CellRecord make_attributed_cell(const std::string& filter, double rmse, c
   cell.absent.erase("error");
   cell.error = {rmse, rmse / 4.0, 2.0 * rmse, 1.0, -rmse / 8.0, 0.02, rmse / 2.0};
   cell.truth = {0.001, 0.9};
-  for (std::size_t i = 0; i < kErrorParts; ++i) {
+  for (std::size_t i = 0; i < kErrorParts; ++i)
     cell.attribution.*list_error_parts()[i].record = {std::abs(shares[i]) * rmse, shares[i]};
-  }
   return cell;
 }
 
@@ -143,11 +140,10 @@ inline Grid make_attributed_grid(int tiles, int width, int height) {
     GridTile& tile = grid.tiles[static_cast<std::size_t>(i)];
     tile.error = make_visibility(width, height, 9.0f);
     for (float& value : tile.error.texels) value = 0.3f * (value - 0.5f);
-    if (i == without && without > 1) {
+    if (i == without && without > 1)
       tile.no_attribution = "this filter has no scalar model, so nothing says what it should have computed";
-    } else {
+    else
       tile.attribution = AttributionBar{{0.0001, 0.03, -0.004 * i, 0.01}};
-    }
   }
   return grid;
 }

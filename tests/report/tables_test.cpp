@@ -97,9 +97,8 @@ TEST(SummaryMd, HoldsTheRunTheTablesAndTheReasons) {
   const std::string summary = make_summary(run, {make_cell("cubes", "vsm", 4.5), make_cell("stack", "vsm", 4.5)});
   for (const char* text : {"Some CPU", "llvmpipe", "All times are CPU time (software rasteriser)", "## cubes",
                            "## stack", "| vsm |", "something is odd", "error: no truth in this run (2 of 2 cells)",
-                           "`lookup_median_ms`: filtered lookup", "Debian GNU/Linux 12", "40 passes run"}) {
+                           "`lookup_median_ms`: filtered lookup", "Debian GNU/Linux 12", "40 passes run"})
     EXPECT_THAT(summary, HasSubstr(text));
-  }
 }
 
 TEST(SummaryMd, Names_CannotBreakTheTable) {
@@ -145,9 +144,8 @@ TEST(AccuracyCsv, HoldsArtefactsAndAttribution) {
 
 // The column of a record's field: "error.rmse" is rmse, "truth.se" is truth_se, "attribution.model.rms" is model_rms.
 std::string column_of(std::string path) {
-  for (const char* group : {"error.", "artefact.", "attribution."}) {
+  for (const char* group : {"error.", "artefact.", "attribution."})
     if (path.rfind(group, 0) == 0) path.erase(0, std::string(group).size());
-  }
   std::replace(path.begin(), path.end(), '.', '_');
   return path;
 }
@@ -161,20 +159,16 @@ TEST(AccuracyCsv, EveryFieldOfTheRecord_HasItsColumnAndItsMeaning) {
   }
   const CellRecord empty;
   visit_cell_fields(empty, [&](const std::string& path, const auto&) {
-    for (const char* group : {"error.", "truth.", "artefact.", "attribution."}) {
-      if (path.rfind(group, 0) == 0) {
-        EXPECT_THAT(names, ::testing::Contains(column_of(path)));
-      }
-    }
+    for (const char* group : {"error.", "truth.", "artefact.", "attribution."})
+      if (path.rfind(group, 0) == 0) EXPECT_THAT(names, ::testing::Contains(column_of(path)));
   });
 }
 
 TEST(SummaryMd, HasATableOfCostsAndOneOfErrors) {
   const std::string summary = make_summary(make_run(), {make_attributed_cell("vsm", 0.04, {0.001, 0.71, 0.089, 0.2})});
   for (const char* text : {"### What it costs", "### How wrong it is, and why", "| estimator 71 % |",
-                           "`estimator_share`:", "5 truths ray traced", "Most of the error of vsm"}) {
+                           "`estimator_share`:", "5 truths ray traced", "Most of the error of vsm"})
     EXPECT_THAT(summary, HasSubstr(text));
-  }
 }
 
 }  // namespace

@@ -51,9 +51,7 @@ TEST(AccuracyTable, HoldsErrorsPartsAndArtefacts) {
 TEST(AccuracyTable, WhatDoesNotExist_IsADash) {
   const TextTable table = make_accuracy_table({"cubes", {make_empty(), make_empty()}});
   ASSERT_THAT(table.rows, Each(SizeIs(table.header.size())));
-  for (std::size_t i = 1; i < table.header.size(); ++i) {
-    EXPECT_EQ(table.rows[0][i], kNothing) << table.header[i];
-  }
+  for (std::size_t i = 1; i < table.header.size(); ++i) EXPECT_EQ(table.rows[0][i], kNothing) << table.header[i];
 }
 
 TEST(AccuracyTable, DominatingPart_IsNamedOnlyWhereOneDoes) {

@@ -50,8 +50,8 @@ inline CellRecord make_taps_cell(const std::string& scene, double radius, double
 
 /// Taps grow dearer than the blurred map between the radii 2 and 4.
 inline std::vector<CellRecord> make_crossing_cells(const std::string& scene) {
-  return {make_sweep_cell({scene}),           make_taps_cell(scene, 2.0, 1.6), make_taps_cell(scene, 4.0, 2.5),
-          make_taps_cell(scene, 8.0, 5.0),    make_blurred_cell(scene, 2.0, 2.0), make_blurred_cell(scene, 4.0, 2.0),
+  return {make_sweep_cell({scene}),          make_taps_cell(scene, 2.0, 1.6),    make_taps_cell(scene, 4.0, 2.5),
+          make_taps_cell(scene, 8.0, 5.0),   make_blurred_cell(scene, 2.0, 2.0), make_blurred_cell(scene, 4.0, 2.0),
           make_blurred_cell(scene, 8.0, 2.0)};
 }
 

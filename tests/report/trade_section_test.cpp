@@ -27,7 +27,8 @@ nlohmann::json read_data(const std::string& page) {
   return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
 }
 
-std::string write_and_read(const TemporaryFolder& folder, const std::vector<CellRecord>& cells, const std::string& file) {
+std::string write_and_read(const TemporaryFolder& folder, const std::vector<CellRecord>& cells,
+                           const std::string& file) {
   std::vector<std::string> keys;
   for (const CellRecord& cell : cells) {
     write_cell(folder.path(), cell);
@@ -73,7 +74,8 @@ TEST(TradeSection, HostileTexts_EndNoElement) {
   EXPECT_EQ(std::distance(std::sregex_iterator(page.begin(), page.end(), opening), {}), 3);
   EXPECT_EQ(std::distance(std::sregex_iterator(page.begin(), page.end(), closing), {}), 3);
   EXPECT_EQ(read_data(page)["filters"][1]["id"], kHostile);
-  EXPECT_THAT(read_data(page)["scopes"][0]["configurations"][0]["pictures"][0]["picture"].get<std::string>(), Not(HasSubstr("<")));
+  EXPECT_THAT(read_data(page)["scopes"][0]["configurations"][0]["pictures"][0]["picture"].get<std::string>(),
+              Not(HasSubstr("<")));
 }
 
 TEST(TradeSection, Report_HasEveryFileItLinksTo) {
@@ -83,12 +85,12 @@ TEST(TradeSection, Report_HasEveryFileItLinksTo) {
   EXPECT_LT(page.find("id=\"trade\""), page.find("id=\"group-0\""));
   const std::regex links("(?:href|src)=\"((?:plots|chart|fronts)[^\"]*)\"");
   int count = 0;
-  for (std::sregex_iterator found(page.begin(), page.end(), links), end; found != end; ++found, ++count) {
+  for (std::sregex_iterator found(page.begin(), page.end(), links), end; found != end; ++found, ++count)
     EXPECT_TRUE(std::filesystem::exists(folder.path() / (*found)[1].str())) << (*found)[1];
-  }
   EXPECT_GE(count, 8);
   EXPECT_EQ(read_text(folder.path() / "chart.min.js"), chart_library());
-  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) EXPECT_NE(entry.path().filename().string().front(), '.');
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+    EXPECT_NE(entry.path().filename().string().front(), '.');
 }
 
 TEST(TradeSection, LoadsNothingFromElsewhere) {
@@ -104,15 +106,15 @@ TEST(TradeSection, PaperOfAFixedColour_HasInkOfAFixedColour) {
   const std::string style(trade_style());
   const std::regex rules("[{][^{}]*background: #[^{}]*[}]");
   int papers = 0;
-  for (std::sregex_iterator found(style.begin(), style.end(), rules), end; found != end; ++found, ++papers) {
+  for (std::sregex_iterator found(style.begin(), style.end(), rules), end; found != end; ++found, ++papers)
     EXPECT_THAT(found->str(), HasSubstr(" color: #"));
-  }
   EXPECT_EQ(papers, 1);
 }
 
 TEST(TradeSection, OfAFewCells_IsNotThere) {
   const TemporaryFolder folder("trade_small");
-  const std::string page = write_and_read(folder, {make_sweep_cell({}), make_sweep_cell({"cubes", "vsm"})}, "index.html");
+  const std::string page =
+      write_and_read(folder, {make_sweep_cell({}), make_sweep_cell({"cubes", "vsm"})}, "index.html");
   EXPECT_THAT(page, Not(HasSubstr("<script")));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "chart.min.js"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "plots"));
@@ -132,9 +134,9 @@ TEST(TradeSection, WithoutGnuplot_TheReportIsWrittenAndSaysSo) {
 TEST(TradeSection, Summary_SaysFrontsCrossoversAndColumns) {
   const TemporaryFolder folder("trade_summary");
   const std::string summary = write_and_read(folder, make_crossing_cells("cubes"), "summary.md");
-  for (const char* text : {"## The trade", "the front from the cheapest cell on: none", "from a kernel radius of 4 texels on", "`dominated_by`:"}) {
+  for (const char* text : {"## The trade", "the front from the cheapest cell on: none",
+                           "from a kernel radius of 4 texels on", "`dominated_by`:"})
     EXPECT_THAT(summary, HasSubstr(text));
-  }
   EXPECT_LT(summary.find("## The trade"), summary.find("### What it costs"));
 }
 

@@ -13,8 +13,12 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-const Estimate& error_of(const TradeScope& scope, std::size_t i, std::size_t measure) { return *scope.configurations[i].errors[measure].estimate; }
-const Estimate& cost_of(const TradeScope& scope, std::size_t i, std::size_t measure) { return *scope.configurations[i].costs[measure].estimate; }
+const Estimate& error_of(const TradeScope& scope, std::size_t i, std::size_t measure) {
+  return *scope.configurations[i].errors[measure].estimate;
+}
+const Estimate& cost_of(const TradeScope& scope, std::size_t i, std::size_t measure) {
+  return *scope.configurations[i].costs[measure].estimate;
+}
 
 TEST(TradeScopes, AreEachScene_AndAllTogetherFirst) {
   const auto scopes = make_trade_scopes({make_sweep_cell({"cubes"}), make_sweep_cell({"stack"})});
@@ -36,13 +40,15 @@ TEST(TradeScopes, MapSizesShareAFront_PicturesDoNot) {
 }
 
 TEST(TradeScopes, OfAll_HoldOnlyWhatEverySceneHas) {
-  const auto scopes = make_trade_scopes({make_sweep_cell({"cubes"}), make_sweep_cell({"cubes", "vsm", 4.0}), make_sweep_cell({"stack"})});
+  const auto scopes = make_trade_scopes(
+      {make_sweep_cell({"cubes"}), make_sweep_cell({"cubes", "vsm", 4.0}), make_sweep_cell({"stack"})});
   EXPECT_THAT(scopes[0].configurations, SizeIs(1));
   EXPECT_EQ(scopes[0].incomplete, 1u);
 }
 
 TEST(TradeScopes, Labels_NameOnlyWhatDiffers) {
-  std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "vsm", 2.0}), make_sweep_cell({"cubes", "vsm", 4.0}), make_sweep_cell({})};
+  std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "vsm", 2.0}), make_sweep_cell({"cubes", "vsm", 4.0}),
+                                   make_sweep_cell({})};
   for (CellRecord& cell : cells) cell.params["store"] = std::string("rg32f");
   const auto scopes = make_trade_scopes(cells);
   EXPECT_EQ(scopes[0].configurations[0].label, "vsm (radius 2)");
@@ -83,7 +89,8 @@ TEST(TradeMeasures, Rmse_HasTheTruthsStandardError) {
 }
 
 TEST(TradeMeasures, AllScenes_AreCombinedAsTheMeasureSays) {
-  std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.3}), make_sweep_cell({"stack", "none", 0.0, 1.0, 0.0, 0.4})};
+  std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.3}),
+                                   make_sweep_cell({"stack", "none", 0.0, 1.0, 0.0, 0.4})};
   cells[0].artefact.leak = 0.1;
   cells[1].artefact.leak = 0.5;
   cells[0].error.flip = 0.1;
@@ -111,7 +118,8 @@ TEST(TradeMeasures, IntervalsOfSeveralTimes_AddInQuadrature) {
 }
 
 TEST(TradeFronts, AbsentValues_AreLeftOutWithTheirReason) {
-  std::vector<CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({"cubes", "mine"}), make_sweep_cell({"cubes", "vsm"})};
+  std::vector<CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({"cubes", "mine"}),
+                                   make_sweep_cell({"cubes", "vsm"})};
   cells[1].cost.fetches.reset();
   cells[1].absent["cost.fetches"] = "the filter reads the map's samplers itself";
   cells[2].error.rmse.reset();
@@ -140,19 +148,23 @@ TEST(TradeFronts, OfFewerThanThreeCells_AreNotShown) {
 }
 
 TEST(FrontWords, SayMembersTiesAndWhatTheyBeat) {
-  const std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}), make_sweep_cell({"cubes", "vsm", 4.0, 2.0, 0.1, 0.05}),
-                                         make_sweep_cell({"cubes", "esm", 4.0, 2.1, 0.1, 0.0505}), make_sweep_cell({"cubes", "poisson", 4.0, 4.0, 0.1, 0.08})};
+  const std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}),
+                                         make_sweep_cell({"cubes", "vsm", 4.0, 2.0, 0.1, 0.05}),
+                                         make_sweep_cell({"cubes", "esm", 4.0, 2.1, 0.1, 0.0505}),
+                                         make_sweep_cell({"cubes", "poisson", 4.0, 4.0, 0.1, 0.08})};
   const TradeScope scope = make_trade_scopes(cells)[0];
   const auto words = describe_front(scope, make_trade_front(scope, 0, 0), make_run().gl);
   ASSERT_THAT(words, SizeIs(3));
-  EXPECT_THAT(words[0], HasSubstr("none (0.1 [0.099, 0.101] at 4 ms (CPU)); vsm (0.05 [0.049, 0.051] at 8 [7.2, 8.8] ms (CPU))"));
+  EXPECT_THAT(words[0],
+              HasSubstr("none (0.1 [0.099, 0.101] at 4 ms (CPU)); vsm (0.05 [0.049, 0.051] at 8 [7.2, 8.8] ms (CPU))"));
   EXPECT_EQ(words[1], "Not to be told apart in error or cost: vsm is tied with esm.");
   EXPECT_EQ(words[2], "Dominated are 1 of 4: vsm beats poisson.");
 }
 
 /// A sweep in which `none` and one `vsm` are the front and all else is dominated.
 std::vector<CellRecord> make_wide_sweep() {
-  std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}), make_sweep_cell({"cubes", "pcf2x2", 0.0, 1.5, 0.0, 0.1})};
+  std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}),
+                                   make_sweep_cell({"cubes", "pcf2x2", 0.0, 1.5, 0.0, 0.1})};
   for (int i = 0; i < 5; ++i) {
     const double more = 0.1 * i;
     cells.push_back(make_sweep_cell({"cubes", "vsm", 1.0 + i, 2.0 + more, 0.0, 0.05}));
@@ -167,33 +179,42 @@ TEST(FrontWords, ManyDominated_AreCountedByFilterWithTheReason) {
   const auto words = describe_front(scope, make_trade_front(scope, 0, 0), make_run().gl);
   ASSERT_THAT(words, SizeIs(2));
   EXPECT_EQ(words[1],
-            "Dominated are 11 of 13: pcf2x2, 4 of 5 of vsm, all 5 of esm, poisson. Of these, 5 cost more and err more, 5 cost more for "
+            "Dominated are 11 of 13: pcf2x2, 4 of 5 of vsm, all 5 of esm, poisson. Of these, 5 cost more and err more, "
+            "5 cost more for "
             "no less error, 1 err more for no less cost. none beats 7, vsm (radius 1) beats 4; fronts.csv has each.");
 }
 
 TEST(FrontWords, ManyTied_AreCountedByFilter) {
   std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1})};
-  for (int i = 0; i < 9; ++i) cells.push_back(make_sweep_cell({"cubes", i < 5 ? "vsm" : "esm", 1.0 + i, 1.0, 0.0, 0.1}));
+  for (int i = 0; i < 9; ++i)
+    cells.push_back(make_sweep_cell({"cubes", i < 5 ? "vsm" : "esm", 1.0 + i, 1.0, 0.0, 0.1}));
   const TradeScope scope = make_trade_scopes(cells)[0];
-  EXPECT_THAT(describe_front(scope, make_trade_front(scope, 0, 0), make_run().gl),
-              ::testing::Contains("Not to be told apart in error or cost from a cell of the front are 9 of 10: all 5 of vsm, all 4 of esm."));
+  EXPECT_THAT(
+      describe_front(scope, make_trade_front(scope, 0, 0), make_run().gl),
+      ::testing::Contains(
+          "Not to be told apart in error or cost from a cell of the front are 9 of 10: all 5 of vsm, all 4 of esm."));
 }
 
 TEST(FrontWords, NeighboursOfUncertainCost_AreNamed) {
-  const std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}), make_sweep_cell({"cubes", "vsm", 4.0, 1.1, 0.2, 0.05})};
+  const std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}),
+                                         make_sweep_cell({"cubes", "vsm", 4.0, 1.1, 0.2, 0.05})};
   const TradeScope scope = make_trade_scopes(cells)[0];
-  EXPECT_THAT(describe_front(scope, make_trade_front(scope, 0, 0), make_run().gl), ::testing::Contains(HasSubstr("may be free: none and vsm.")));
+  EXPECT_THAT(describe_front(scope, make_trade_front(scope, 0, 0), make_run().gl),
+              ::testing::Contains(HasSubstr("may be free: none and vsm.")));
 }
 
 TEST(FrontsCsv, HasARowPerCellOfEveryFront) {
-  const std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}), make_sweep_cell({"cubes", "vsm", 4.0, 2.0, 0.0, 0.2}),
+  const std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}),
+                                         make_sweep_cell({"cubes", "vsm", 4.0, 2.0, 0.0, 0.2}),
                                          make_sweep_cell({"cubes", "a,\"b", 4.0, 1.0, 0.0, 0.1})};
   const std::string csv = make_fronts_csv(cells, make_trade_scopes(cells));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 16 * 3);
-  EXPECT_THAT(csv, HasSubstr("rmse,lookup," + cells[1].key + ",vsm,\"{\"\"radius\"\":4}\",1024,0.2,0.199,0.201,8,8,8,0," + cells[0].key + ",,\r\n"));
+  EXPECT_THAT(csv, HasSubstr("rmse,lookup," + cells[1].key +
+                             ",vsm,\"{\"\"radius\"\":4}\",1024,0.2,0.199,0.201,8,8,8,0," + cells[0].key + ",,\r\n"));
   EXPECT_THAT(csv, HasSubstr(",0,," + cells[0].key + ",\r\n"));
   EXPECT_THAT(csv, HasSubstr("\"a,\"\"b\""));
-  EXPECT_THAT(csv, HasSubstr("leak,lookup," + cells[0].key + ",none,\"{\"\"radius\"\":0}\",1024,,,,4,4,4,,,,artefact.leak: not measured\r\n"));
+  EXPECT_THAT(csv, HasSubstr("leak,lookup," + cells[0].key +
+                             ",none,\"{\"\"radius\"\":0}\",1024,,,,4,4,4,,,,artefact.leak: not measured\r\n"));
 }
 
 }  // namespace

@@ -60,7 +60,8 @@ TEST(JudgeTuning, AGainWithinTheTruthsStandardError_IsNone) {
   EXPECT_EQ(radius_of(small), 4.0);
   EXPECT_THAT(describe_verdict(small, "rmse"), HasSubstr("within the truth's standard error"));
   EXPECT_EQ(make_filter({0.10, 0.10}, {0.08, 0.08}).verdict, TuneVerdict::kNoGain);
-  EXPECT_EQ(make_filter({0.10, 0.05}, {0.080, 0.079}, false).verdict, TuneVerdict::kBetter);  // that error is of another unit
+  EXPECT_EQ(make_filter({0.10, 0.05}, {0.080, 0.079}, false).verdict,
+            TuneVerdict::kBetter);  // that error is of another unit
 }
 
 TEST(JudgeTuning, Means_AreOfTheViewsOfOneKind) {
@@ -90,9 +91,9 @@ TEST(TunedJson, ReadsBackAsItWasWritten) {
 
 TEST(TunedText, SaysParametersScoresGainAndRanges) {
   const std::string text = make_tuned_text(make_record(make_filter({0.10, 0.05}, {0.12, 0.08})));
-  for (const char* part : {"+33.3 %", "rmse 0.12 to 0.08", "standard error is 0.002", "5 .. 9, and 20", "12.5 %", "all of it: no effect", "107 settings", "1 of 1 views"}) {
+  for (const char* part : {"+33.3 %", "rmse 0.12 to 0.08", "standard error is 0.002", "5 .. 9, and 20", "12.5 %",
+                           "all of it: no effect", "107 settings", "1 of 1 views"})
     EXPECT_THAT(text, HasSubstr(part));
-  }
   EXPECT_THAT(text, Not(HasSubstr("Overfitted")));
   EXPECT_THAT(text, Not(HasSubstr("Worse by them")));
   TunedRecord record = make_record(make_filter({0.10, 0.05}, {0.12, 0.08}));

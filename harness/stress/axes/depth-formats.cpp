@@ -11,9 +11,11 @@
 namespace shadowbench::stress {
 namespace {
 
-constexpr double kBound = 0.01;   // of a distance
+constexpr double kBound = 0.01;  // of a distance
 constexpr double kBroken = 0.5;
-constexpr const char* kSource = "derived from OpenGL 4.5 core specification, sections 2.3.5 (fixed point) and 13.6 (depth): d^2 (f - n) / (n f) times half a quantum, over d";
+constexpr const char* kSource =
+    "derived from OpenGL 4.5 core specification, sections 2.3.5 (fixed point) and 13.6 (depth): d^2 (f - n) / (n f) "
+    "times half a quantum, over d";
 
 struct Setting {
   GLenum format;
@@ -22,8 +24,11 @@ struct Setting {
 };
 
 std::string name(const Setting& setting) {
-  const char* format = setting.format == GL_DEPTH_COMPONENT16 ? "D16" : setting.format == GL_DEPTH_COMPONENT24 ? "D24" : "D32F";
-  return fmt::format("{}, {}{}", format, setting.perspective ? "perspective" : "orthographic", setting.reversed ? ", reversed" : "");
+  const char* format = setting.format == GL_DEPTH_COMPONENT16   ? "D16"
+                       : setting.format == GL_DEPTH_COMPONENT24 ? "D24"
+                                                                : "D32F";
+  return fmt::format("{}, {}{}", format, setting.perspective ? "perspective" : "orthographic",
+                     setting.reversed ? ", reversed" : "");
 }
 
 /// The relative error is (f/n - 1) times half a quantum at one end: orthographic at the near plane, where a distance is
@@ -37,16 +42,25 @@ Theory make_theory(const Setting& setting, double error, Verdict predicts) {
   const double rounding = find_quantum(setting);
   const char* where = setting.perspective ? "far" : "near";
   if (rounding < 0x1p-40) {
-    return {std::nullopt, TheoryKind::kQuantum, fmt::format("none: a float is finest where it is stored near 0, here at the {} plane", where), kSource, predicts};
+    return {std::nullopt, TheoryKind::kQuantum,
+            fmt::format("none: a float is finest where it is stored near 0, here at the {} plane", where), kSource,
+            predicts};
   }
-  // In perspective the true distance is the smaller one, n f / (n + (f - n) q / 2) that reads back as f; else the larger one, n + (f - n) q / 2.
+  // In perspective the true distance is the smaller one, n f / (n + (f - n) q / 2) that reads back as f; else the
+  // larger one, n + (f - n) q / 2.
   const double steps = setting.perspective ? error : error / (1.0 - error);
-  return {1.0 + steps / rounding, TheoryKind::kQuantum, fmt::format("1 + {:.4g} / {:.3g}, half a quantum at the {} plane", steps, rounding, where), kSource, predicts};
+  return {1.0 + steps / rounding, TheoryKind::kQuantum,
+          fmt::format("1 + {:.4g} / {:.3g}, half a quantum at the {} plane", steps, rounding, where), kSource,
+          predicts};
 }
 
 Observation judge_error(const DepthError& seen) {
-  const auto why = [&](double bound) { return fmt::format("off by {:.3g} of the distance at {:.4g} near-plane distances, over {:g}", seen.relative, seen.distance, bound); };
-  if (!std::isfinite(seen.relative)) return {Verdict::kBroken, std::nullopt, "a distance reads back as NaN or infinite"};
+  const auto why = [&](double bound) {
+    return fmt::format("off by {:.3g} of the distance at {:.4g} near-plane distances, over {:g}", seen.relative,
+                       seen.distance, bound);
+  };
+  if (!std::isfinite(seen.relative))
+    return {Verdict::kBroken, std::nullopt, "a distance reads back as NaN or infinite"};
   if (seen.relative > kBroken) return {Verdict::kBroken, seen.relative, why(kBroken)};
   if (seen.relative > kBound) return {Verdict::kDegraded, seen.relative, why(kBound)};
   return {Verdict::kOk, seen.relative, {}};
@@ -68,9 +82,8 @@ Case make_case(const StressContext& context, const Setting& setting) {
 std::vector<Setting> list_settings() {
   std::vector<Setting> settings;
   for (const bool perspective : {false, true}) {
-    for (const GLenum format : {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT32F}) {
+    for (const GLenum format : {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT32F})
       for (const bool reversed : {false, true}) settings.push_back({format, perspective, reversed});
-    }
   }
   return settings;
 }
@@ -93,7 +106,8 @@ report::TextTable make_growth_table(render::ShaderLibrary& shaders) {
       StoredDepths depths(shaders, setting.format);
       const DepthPlan plan{kShownRatio, setting.perspective, setting.reversed};
       for (const double distance : {2.0, 10.0, 100.0, 900.0}) {
-        const double error = depths.find_error_around(plan, distance), theory = find_distance_error(setting.format, plan, distance);
+        const double error = depths.find_error_around(plan, distance),
+                     theory = find_distance_error(setting.format, plan, distance);
         row.push_back(fmt::format("{:.3g} n = {:.2f} x theory", error, error / theory));
       }
     } catch (const Error& error) {
@@ -109,9 +123,12 @@ std::vector<Exhibit> make_exhibits(const StressContext& context) {
   Exhibit exhibit;
   exhibit.id = "growth";
   exhibit.title = "What a stored distance is off by, at most, against theory";
-  exhibit.sentences = {fmt::format("Far plane at {:g} n, n the near plane's distance. Theory: half a quantum where depth is linear; d^2 (f - n) / (n f) times that in perspective, "
-                                   "which grows with the square of the distance d, and is more where a step is no longer small against d. "
-                                   "The GL is handed 32-bit floats, whose own rounding adds up to as much again in D24.", kShownRatio)};
+  exhibit.sentences = {fmt::format(
+      "Far plane at {:g} n, n the near plane's distance. Theory: half a quantum where depth is linear; d^2 (f - n) / "
+      "(n f) times that in perspective, "
+      "which grows with the square of the distance d, and is more where a step is no longer small against d. "
+      "The GL is handed 32-bit floats, whose own rounding adds up to as much again in D24.",
+      kShownRatio)};
   exhibit.table = make_growth_table(context.renderer->shaders);
   return {exhibit};
 }

@@ -11,8 +11,8 @@
 namespace shadowbench::stress {
 namespace {
 
-constexpr double kBound = 0.02;       // of visibility: five steps of an 8-bit picture
-constexpr float kOccluder = 0.3f;     // of the largest depth
+constexpr double kBound = 0.02;    // of visibility: five steps of an 8-bit picture
+constexpr float kOccluder = 0.3f;  // of the largest depth
 constexpr const char* kSource = "derived: exp(c z) must stay below the largest finite number (IEEE 754)";
 
 /// What is varied besides the exponent.
@@ -26,7 +26,9 @@ struct Setting {
 bool is_log(const Setting& setting) { return setting.combine == "log"; }
 
 double largest_number(const std::string& store) {
-  return filters::store_precision(store) == filters::StorePrecision::kHalf ? 65504.0 : static_cast<double>(std::numeric_limits<float>::max());
+  return filters::store_precision(store) == filters::StorePrecision::kHalf
+             ? 65504.0
+             : static_cast<double>(std::numeric_limits<float>::max());
 }
 
 double unit_roundoff(const std::string& store) {
@@ -39,11 +41,13 @@ double find_deepest(const Setting& setting, Level level) {
 }
 
 Theory make_overflow(const Setting& setting, Level level) {
-  Theory theory{std::nullopt, TheoryKind::kOverflow, "none: the map holds c z, never exp(c z)", kSource, Verdict::kBroken};
+  Theory theory{std::nullopt, TheoryKind::kOverflow, "none: the map holds c z, never exp(c z)", kSource,
+                Verdict::kBroken};
   if (is_log(setting)) return theory;
   const double deepest = find_deepest(setting, level), largest = largest_number(setting.store);
   theory.onset = std::log(largest) / deepest;
-  theory.formula = fmt::format("ln({:.5g}) / {:g}{}", largest, deepest, deepest > static_cast<double>(setting.largest_depth) ? ", the border's depth" : "");
+  theory.formula = fmt::format("ln({:.5g}) / {:g}{}", largest, deepest,
+                               deepest > static_cast<double>(setting.largest_depth) ? ", the border's depth" : "");
   return theory;
 }
 
@@ -51,27 +55,32 @@ Theory make_overflow(const Setting& setting, Level level) {
 Theory make_rounding(const Setting& setting) {
   const double z = static_cast<double>(setting.largest_depth);
   return {kBound / (unit_roundoff(setting.store) * z), TheoryKind::kRounding,
-          fmt::format("{:g} / ({:.3g} x {:g}): where c z is rounded by as much as visibility may be off", kBound, unit_roundoff(setting.store), z),
+          fmt::format("{:g} / ({:.3g} x {:g}): where c z is rounded by as much as visibility may be off", kBound,
+                      unit_roundoff(setting.store), z),
           "derived: d ln V = c z u", Verdict::kDegraded};
 }
 
 /// Annen et al. 2008, eq. 5, of a kernel that holds two depths: exact where every exponent is a difference.
 std::vector<double> expect_visibility(const EdgeScene& edge, const Setting& setting, double c) {
   const double z = static_cast<double>(setting.largest_depth);
-  const double leak = std::exp(-static_cast<double>(static_cast<float>(c)) * (z - static_cast<double>(kOccluder * setting.largest_depth)));
+  const double leak = std::exp(-static_cast<double>(static_cast<float>(c)) *
+                               (z - static_cast<double>(kOccluder * setting.largest_depth)));
   std::vector<double> visibility;
   for (const double share : edge.lit_share) visibility.push_back(share + (1.0 - share) * leak);
   return visibility;
 }
 
-/// exp(-c z) of the lookup underflows before exp(c z) of the map overflows; where the GL flushes denormals, all is dark from there.
+/// exp(-c z) of the lookup underflows before exp(c z) of the map overflows; where the GL flushes denormals, all is dark
+/// from there.
 std::vector<std::string> remark_underflow(const Setting& setting, const report::StressCase& record) {
   constexpr double kSmallestNormal = 87.3365;  // -ln(2^-126)
   if (is_log(setting) || !record.broken || record.broken->why.find("dark") == std::string::npos) return {};
   const double ratio = record.broken->value * static_cast<double>(setting.largest_depth) / kSmallestNormal;
   if (ratio < 0.98 || ratio > 1.02) return {};
-  return {fmt::format("all is dark from {:.4g} on, before the map overflows: there exp(-c z) of the lookup leaves the normal 32-bit numbers ({:.2f} / {:g}), and is flushed to 0",
-                      record.broken->value, kSmallestNormal, setting.largest_depth)};
+  return {
+      fmt::format("all is dark from {:.4g} on, before the map overflows: there exp(-c z) of the lookup leaves the "
+                  "normal 32-bit numbers ({:.2f} / {:g}), and is flushed to 0",
+                  record.broken->value, kSmallestNormal, setting.largest_depth)};
 }
 
 filters::ParamValues make_values(const DrivenFilter& driven, const Setting& setting) {
@@ -83,8 +92,8 @@ filters::ParamValues make_values(const DrivenFilter& driven, const Setting& sett
 }
 
 std::string name(const Setting& setting) {
-  return fmt::format("{}{}{}, depths to {:g}{}", setting.store, setting.combine.empty() ? "" : ", ", setting.combine, setting.largest_depth,
-                     setting.radius == 0 ? ", no blur" : "");
+  return fmt::format("{}{}{}, depths to {:g}{}", setting.store, setting.combine.empty() ? "" : ", ", setting.combine,
+                     setting.largest_depth, setting.radius == 0 ? ", no blur" : "");
 }
 
 Case make_case(const StressContext& context, const DrivenFilter& driven, const Setting& setting, Level level) {
@@ -105,8 +114,8 @@ Case make_case(const StressContext& context, const DrivenFilter& driven, const S
   return item;
 }
 
-/// With the blur that the filter asks for, and without: then nothing but the map's own depths counts. Maps of logarithms are
-/// read with the nearest texel, and without a blur have no penumbra.
+/// With the blur that the filter asks for, and without: then nothing but the map's own depths counts. Maps of
+/// logarithms are read with the nearest texel, and without a blur have no penumbra.
 std::vector<Setting> list_settings(const DrivenFilter& driven) {
   const int radius = filters::prefilter_radius_texels(driven.request.spec, driven.request.values);
   std::vector<std::string> combines = list_choices(driven.request, "combine");
@@ -127,19 +136,21 @@ std::vector<Setting> list_settings(const DrivenFilter& driven) {
 std::vector<Case> make_cases(const StressContext& context) {
   std::vector<Case> cases;
   for (const DrivenFilter& driven : find_driven(context, find_exponent)) {
-    for (const Setting& setting : list_settings(driven)) {
+    for (const Setting& setting : list_settings(driven))
       for (const Level level : {Level::kGl, Level::kModel}) cases.push_back(make_case(context, driven, setting, level));
-    }
   }
   if (cases.empty()) cases.push_back(make_undriven_case("'exponent' without 'moments'"));
   return cases;
 }
 
-/// A published comparison let a 16-bit exponential variance map overflow, at exponent 10 where 5.54 is the limit, and ranked the
-/// filter by what came of it. The same with an exponent that is fine in 32 bits.
+/// A published comparison let a 16-bit exponential variance map overflow, at exponent 10 where 5.54 is the limit, and
+/// ranked the filter by what came of it. The same with an exponent that is fine in 32 bits.
 std::vector<Exhibit> make_exhibits(const StressContext& context) {
   if (!context.renderer || find_driven(context, find_exponent).empty()) return {};
-  const Mistake mistake{"stack", "esm:c=80,store=r16f", {"esm:c=80", "esm:c=80,store=r16f,combine=log", "esm:c=10,store=r16f", "esm:c=20,store=r16f"}, {"vsm", "poisson"}};
+  const Mistake mistake{"stack",
+                        "esm:c=80,store=r16f",
+                        {"esm:c=80", "esm:c=80,store=r16f,combine=log", "esm:c=10,store=r16f", "esm:c=20,store=r16f"},
+                        {"vsm", "poisson"}};
   return {replay(context, mistake, "mistake")};
 }
 
@@ -155,7 +166,9 @@ Axis make_esm_exponent_axis() {
   axis.coarse_samples = 34;
   axis.measured = "largest error of visibility across a two-depth edge";
   axis.bound = kBound;
-  axis.broken_when = "texels of the map overflowed (GL), or visibility is not finite, all lit, all dark, or falls by more than 0.1 from dark to light";
+  axis.broken_when =
+      "texels of the map overflowed (GL), or visibility is not finite, all lit, all dark, or falls by more than 0.1 "
+      "from dark to light";
   axis.driven_param = find_exponent;
   axis.make_cases = make_cases;
   axis.make_exhibits = make_exhibits;

@@ -13,14 +13,14 @@
 namespace shadowbench::stress {
 namespace {
 
-constexpr double kBound = 10.0;      // texels
-constexpr double kTolerance = 0.1;   // of what geometry says
+constexpr double kBound = 10.0;     // texels
+constexpr double kTolerance = 0.1;  // of what geometry says
 constexpr const char* kSource = "derived: the depth that a plane gains over the kernel, s (r + 1) tan(angle)";
 
 /// A kernel as theory sees it.
 struct Reach {
-  double shape = 0.0;   ///< r: half-width of the kernel's own shape, texels
-  double between = 1.0; ///< what reading between texels adds: 1 for the bilinear 2x2, half for the nearest texel
+  double shape = 0.0;    ///< r: half-width of the kernel's own shape, texels
+  double between = 1.0;  ///< what reading between texels adds: 1 for the bilinear 2x2, half for the nearest texel
 
   double texels() const { return shape + between; }
 };
@@ -40,20 +40,26 @@ std::string describe_theory(const Reach& reach, bool diagonal) {
 std::vector<Theory> make_theories(const Reach& reach, bool diagonal) {
   const double gain = find_gain_m({45.0, diagonal}, reach.texels()) / kPlaneTexel_m;
   const std::string law = describe_theory(reach, diagonal);
-  return {{std::atan(kBound / gain) * 180.0 / std::numbers::pi, TheoryKind::kSlope, fmt::format("{} = {:g} s", law, kBound), kSource, Verdict::kDegraded},
-          {std::nullopt, TheoryKind::kSlope, fmt::format("none: the bias is {} at every angle", law), kSource, Verdict::kBroken}};
+  return {{std::atan(kBound / gain) * 180.0 / std::numbers::pi, TheoryKind::kSlope,
+           fmt::format("{} = {:g} s", law, kBound), kSource, Verdict::kDegraded},
+          {std::nullopt, TheoryKind::kSlope, fmt::format("none: the bias is {} at every angle", law), kSource,
+           Verdict::kBroken}};
 }
 
 Observation observe_plane(TiltedPlane& plane, const PlaneTilt& tilt, const Reach& reach) {
   plane.tilt(tilt);
   const double theory = find_gain_m(tilt, reach.texels());
   const std::optional<double> needed = find_needed_bias(plane, theory);
-  if (!needed) return {Verdict::kBroken, std::nullopt, fmt::format("acne under twice the bias that theory asks for, {:.3g} texels", theory / kPlaneTexel_m)};
+  if (!needed)
+    return {Verdict::kBroken, std::nullopt,
+            fmt::format("acne under twice the bias that theory asks for, {:.3g} texels", theory / kPlaneTexel_m)};
   const double texels = *needed / kPlaneTexel_m;
   if (std::abs(*needed - theory) > kTolerance * theory + plane.rounding_m()) {
-    return {Verdict::kBroken, texels, fmt::format("needs {:.3g} texels, where theory asks for {:.3g}", texels, theory / kPlaneTexel_m)};
+    return {Verdict::kBroken, texels,
+            fmt::format("needs {:.3g} texels, where theory asks for {:.3g}", texels, theory / kPlaneTexel_m)};
   }
-  if (texels > kBound) return {Verdict::kDegraded, texels, fmt::format("needs a bias of {:.3g} texels, over {:g}", texels, kBound)};
+  if (texels > kBound)
+    return {Verdict::kDegraded, texels, fmt::format("needs a bias of {:.3g} texels, over {:g}", texels, kBound)};
   return {Verdict::kOk, texels, {}};
 }
 
@@ -69,26 +75,32 @@ std::vector<std::string> remark_ratio(const report::StressCase& record, const Re
   }
   if (most == 0.0) return {};
   const std::string low = fmt::format("{:.3f}", least), high = fmt::format("{:.3f}", most);
-  return {fmt::format("needs {} times {} at every angle, and {:.4g} texels at {:g} degrees", low == high ? low : low + " to " + high, describe_theory(reach, diagonal), steepest,
+  return {fmt::format("needs {} times {} at every angle, and {:.4g} texels at {:g} degrees",
+                      low == high ? low : low + " to " + high, describe_theory(reach, diagonal), steepest,
                       record.samples.back().value)};
 }
 
 Case make_case(const StressContext& context, const filters::FilterRequest& request, bool diagonal, Level level) {
   const std::string variant = diagonal ? "light along the diagonal" : "light along a row";
-  if (!filters::make_model(request.spec.id)) return make_absent_case(request.spec.id, variant, level, "the filter has no scalar model, which names its kernel");
-  if (level == Level::kGl && !context.renderer) return make_absent_case(request.spec.id, variant, level, "there is no GL");
+  if (!filters::make_model(request.spec.id))
+    return make_absent_case(request.spec.id, variant, level, "the filter has no scalar model, which names its kernel");
+  if (level == Level::kGl && !context.renderer)
+    return make_absent_case(request.spec.id, variant, level, "there is no GL");
   const Reach reach = find_reach(request);
   Case item = start_case(request, variant, level);
   item.theories = make_theories(reach, diagonal);
-  const std::shared_ptr<TiltedPlane> plane = level == Level::kGl ? make_gl_plane(context, request) : make_model_plane(request);
+  const std::shared_ptr<TiltedPlane> plane =
+      level == Level::kGl ? make_gl_plane(context, request) : make_model_plane(request);
   item.observe = [plane, reach, diagonal](double angle) { return observe_plane(*plane, {angle, diagonal}, reach); };
-  if (level == Level::kGl) item.remark = [reach, diagonal](const report::StressCase& record) { return remark_ratio(record, reach, diagonal); };
+  if (level == Level::kGl)
+    item.remark = [reach, diagonal](const report::StressCase& record) { return remark_ratio(record, reach, diagonal); };
   return item;
 }
 
 std::vector<filters::FilterRequest> list_comparisons(const StressContext& context) {
   std::vector<filters::FilterRequest> chosen;
-  std::ranges::copy_if(context.filters, std::back_inserter(chosen), [](const auto& request) { return request.spec.kind == filters::FilterKind::kComparison; });
+  std::ranges::copy_if(context.filters, std::back_inserter(chosen),
+                       [](const auto& request) { return request.spec.kind == filters::FilterKind::kComparison; });
   return chosen;
 }
 
@@ -108,8 +120,8 @@ std::vector<Case> make_cases(const StressContext& context) {
 constexpr int kColumns = 110, kRows = 60;
 constexpr double kHighestBias = 12.0;  // texels
 
-/// The share of receivers with acne, a column for each angle. More bias never brings more acne: above the first bias without,
-/// nothing needs to be drawn.
+/// The share of receivers with acne, a column for each angle. More bias never brings more acne: above the first bias
+/// without, nothing needs to be drawn.
 report::Image measure_acne(TiltedPlane& plane, bool diagonal) {
   report::Image acne(kColumns, kRows, 1);
   for (int x = 0; x < kColumns; ++x) {
@@ -132,15 +144,16 @@ std::string describe_growth(TiltedPlane& plane, const std::string& label, const 
     const std::optional<double> needed = find_needed_bias(plane, find_gain_m(tilt, reach.texels()));
     if (needed) needs.push_back(fmt::format("{:.3g} texels of bias at {:g} degrees", *needed / kPlaneTexel_m, angle));
   }
-  return fmt::format("{} needs {}: a bias that is enough at one angle is far from it at the next.", label, fmt::join(needs, ", "));
+  return fmt::format("{} needs {}: a bias that is enough at one angle is far from it at the next.", label,
+                     fmt::join(needs, ", "));
 }
 
 /// The filter with the widest kernel: its curve is the farthest from all others'.
 const filters::FilterRequest* choose_shown(const std::vector<filters::FilterRequest>& chosen) {
   const filters::FilterRequest* shown = nullptr;
-  for (const filters::FilterRequest& request : chosen) {
-    if (filters::make_model(request.spec.id) && (!shown || find_reach(request).texels() > find_reach(*shown).texels())) shown = &request;
-  }
+  for (const filters::FilterRequest& request : chosen)
+    if (filters::make_model(request.spec.id) && (!shown || find_reach(request).texels() > find_reach(*shown).texels()))
+      shown = &request;
   return shown;
 }
 
@@ -151,14 +164,19 @@ std::vector<Exhibit> make_exhibits(const StressContext& context) {
   const Reach reach = find_reach(*shown);
   HeatMap map;
   map.title = "Acne over angle and bias";
-  map.note = fmt::format("{} on an empty plane, light along a row, map {} · theory: {}", shown->label(), kPlaneMapTexels, describe_theory(reach, false));
+  map.note = fmt::format("{} on an empty plane, light along a row, map {} · theory: {}", shown->label(),
+                         kPlaneMapTexels, describe_theory(reach, false));
   map.quantity = "share of the lit plane that shows acne";
-  map.x = {"angle between the light and the plane's normal, degrees", {0.0, 90.0}, {0, 10, 20, 30, 40, 50, 60, 70, 80, 90}};
+  map.x = {
+      "angle between the light and the plane's normal, degrees", {0.0, 90.0}, {0, 10, 20, 30, 40, 50, 60, 70, 80, 90}};
   map.y = {"bias, texels along the light", {0.0, kHighestBias}, {0, 2, 4, 6, 8, 10, 12}};
   const auto plane = make_gl_plane(context, *shown);
   map.values = measure_acne(*plane, false);
   map.scale = 1.0;
-  map.curve = [reach](double angle) { return angle < 90.0 ? find_gain_m({angle, false}, reach.texels()) / kPlaneTexel_m : std::numeric_limits<double>::infinity(); };
+  map.curve = [reach](double angle) {
+    return angle < 90.0 ? find_gain_m({angle, false}, reach.texels()) / kPlaneTexel_m
+                        : std::numeric_limits<double>::infinity();
+  };
   Exhibit exhibit;
   exhibit.id = "acne";
   exhibit.title = map.title;

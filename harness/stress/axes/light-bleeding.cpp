@@ -11,9 +11,9 @@
 namespace shadowbench::stress {
 namespace {
 
-constexpr double kBound = 0.1;      // of visibility, where truth is 0
+constexpr double kBound = 0.1;  // of visibility, where truth is 0
 constexpr double kLit = 0.9;
-constexpr double kFirstGap = 0.1;   // of the depth range
+constexpr double kFirstGap = 0.1;  // of the depth range
 constexpr double kReceiver = 0.95;
 constexpr Range kRange{1e-4, 8.0};
 
@@ -27,12 +27,17 @@ struct ClosedForm {
 /// A filter's front matter tells its formula: what its map holds.
 ClosedForm find_closed_form(const filters::FilterRequest& request) {
   const filters::FilterSpec& spec = request.spec;
-  if (spec.holds_moments && !spec.exponent.empty()) return {};  // moments of a warp: as many formulas as there are warps
-  if (spec.holds_moments) return {find_chebyshev, "s2 / (s2 + (t - mu)^2)", "Donnelly and Lauritzen 2006, Variance Shadow Maps, I3D, eq. 5 (Chebyshev)"};
+  if (spec.holds_moments && !spec.exponent.empty())
+    return {};  // moments of a warp: as many formulas as there are warps
+  if (spec.holds_moments)
+    return {find_chebyshev, "s2 / (s2 + (t - mu)^2)",
+            "Donnelly and Lauritzen 2006, Variance Shadow Maps, I3D, eq. 5 (Chebyshev)"};
   if (spec.exponent.empty()) return {};
   const double c = filters::number(request.values, spec.exponent);
-  return {[c](const LayerStack& stack, const std::vector<double>& shares) { return find_exponential(stack, shares, c); },
-          fmt::format("mean of exp(-{:g} (t - z))", c), "Annen et al. 2008, Exponential Shadow Maps, Graphics Interface, eq. 5"};
+  return {
+      [c](const LayerStack& stack, const std::vector<double>& shares) { return find_exponential(stack, shares, c); },
+      fmt::format("mean of exp(-{:g} (t - z))", c),
+      "Annen et al. 2008, Exponential Shadow Maps, Graphics Interface, eq. 5"};
 }
 
 LayerStack make_stack(int occluders, double ratio) { return make_layer_stack(occluders, kFirstGap, ratio, kReceiver); }
@@ -47,7 +52,8 @@ double find_largest(const ClosedForm& form, const LayerScene& layers, const Laye
 /// The gap ratio at which the closed form crosses the bound: it falls as the gap grows.
 Theory make_theory(const ClosedForm& form, int radius, int occluders) {
   constexpr int kHalvings = 60;
-  Theory theory{std::nullopt, TheoryKind::kSlope, fmt::format("{} = {:g}", form.formula, kBound), form.source, Verdict::kDegraded};
+  Theory theory{std::nullopt, TheoryKind::kSlope, fmt::format("{} = {:g}", form.formula, kBound), form.source,
+                Verdict::kDegraded};
   const LayerScene layers = make_layer_scene(radius, make_stack(occluders, 1.0));  // whose shares hold for all ratios
   double low = 1e-9, high = 100.0;
   const auto bleeds = [&](double ratio) { return find_largest(form, layers, make_stack(occluders, ratio)) > kBound; };
@@ -64,24 +70,34 @@ Theory make_theory(const ClosedForm& form, int radius, int occluders) {
 }
 
 Observation judge_bleeding(const ProbeResult& seen) {
-  if (seen.broken_texels > 0) return {Verdict::kBroken, std::nullopt, fmt::format("{} texels of the map overflowed", seen.broken_texels)};
-  if (!std::ranges::all_of(seen.visibility, [](double v) { return std::isfinite(v); })) return {Verdict::kBroken, std::nullopt, "visibility is NaN or infinite"};
+  if (seen.broken_texels > 0)
+    return {Verdict::kBroken, std::nullopt, fmt::format("{} texels of the map overflowed", seen.broken_texels)};
+  if (!std::ranges::all_of(seen.visibility, [](double v) { return std::isfinite(v); }))
+    return {Verdict::kBroken, std::nullopt, "visibility is NaN or infinite"};
   const double largest = *std::ranges::max_element(seen.visibility);
-  const auto why = [&](double bound) { return fmt::format("visibility {:.3g} where nothing is lit, over {:g}", largest, bound); };
+  const auto why = [&](double bound) {
+    return fmt::format("visibility {:.3g} where nothing is lit, over {:g}", largest, bound);
+  };
   if (largest > kLit) return {Verdict::kBroken, largest, why(kLit)};
   if (largest > kBound) return {Verdict::kDegraded, largest, why(kBound)};
   return {Verdict::kOk, largest, {}};
 }
 
-/// A filter whose exact arithmetic says the same as what was drawn does not follow the formula, and is not wrong by rounding.
-std::string explain_by_model(const Disagreement& missed, Probe& exact, const filters::FilterRequest& request, int occluders) {
+/// A filter whose exact arithmetic says the same as what was drawn does not follow the formula, and is not wrong by
+/// rounding.
+std::string explain_by_model(const Disagreement& missed, Probe& exact, const filters::FilterRequest& request,
+                             int occluders) {
   if (std::string words = explain_broken_throughout(missed); !words.empty() || !missed.measured) return words;
-  const LayerScene layers = make_layer_scene(filters::prefilter_radius_texels(request.spec, request.values), make_stack(occluders, *missed.measured));
+  const LayerScene layers = make_layer_scene(filters::prefilter_radius_texels(request.spec, request.values),
+                                             make_stack(occluders, *missed.measured));
   const std::vector<double> visibility = exact.look(layers.scene, request.values).visibility;
   const double largest = *std::ranges::max_element(visibility);
   if (std::abs(largest / kBound - 1.0) > 0.1) return {};
-  return fmt::format("the filter's model in extended precision lets {:.3f} through there as well: with {} it is not the plain formula", largest,
-                     request.set_by_user.empty() ? "its defaults" : fmt::format("the chosen {}", fmt::join(request.set_by_user, ", ")));
+  return fmt::format(
+      "the filter's model in extended precision lets {:.3f} through there as well: with {} it is not the plain formula",
+      largest,
+      request.set_by_user.empty() ? "its defaults"
+                                  : fmt::format("the chosen {}", fmt::join(request.set_by_user, ", ")));
 }
 
 Case make_case(const StressContext& context, const filters::FilterRequest& request, int occluders, Level level) {
@@ -91,11 +107,18 @@ Case make_case(const StressContext& context, const filters::FilterRequest& reque
   const int radius = filters::prefilter_radius_texels(request.spec, request.values);
   const ClosedForm form = find_closed_form(request);
   Case item = start_case(request, variant, level);
-  if (form.visibility) item.theories = {make_theory(form, radius, occluders)};
-  else item.remark = [](const report::StressCase&) { return std::vector<std::string>{"its front matter tells of no formula: there is nothing to hold it against but truth"}; };
+  if (form.visibility)
+    item.theories = {make_theory(form, radius, occluders)};
+  else
+    item.remark = [](const report::StressCase&) {
+      return std::vector<std::string>{
+          "its front matter tells of no formula: there is nothing to hold it against but truth"};
+    };
   if (filters::make_model(request.spec.id)) {
     const std::shared_ptr<Probe> exact = make_model_probe(context, request, filters::Precision::kExtended);
-    item.explain = [exact, request, occluders](const Disagreement& missed) { return explain_by_model(missed, *exact, request, occluders); };
+    item.explain = [exact, request, occluders](const Disagreement& missed) {
+      return explain_by_model(missed, *exact, request, occluders);
+    };
   }
   item.observe = [probe = probe, values = request.values, radius, occluders](double ratio) {
     return judge_bleeding(probe->look(make_layer_scene(radius, make_stack(occluders, ratio)).scene, values));
@@ -107,11 +130,12 @@ std::vector<Case> make_cases(const StressContext& context) {
   std::vector<Case> cases;
   for (const filters::FilterRequest& request : context.filters) {
     if (request.spec.kind != filters::FilterKind::kBound || !request.spec.has_encode) continue;
-    for (const int occluders : {2, 4, 8, 16}) {
-      for (const Level level : {Level::kGl, Level::kModel}) cases.push_back(make_case(context, request, occluders, level));
-    }
+    for (const int occluders : {2, 4, 8, 16})
+      for (const Level level : {Level::kGl, Level::kModel})
+        cases.push_back(make_case(context, request, occluders, level));
   }
-  if (cases.empty()) cases.push_back(make_absent_case({}, "any", Level::kGl, "no chosen filter of kind bound encodes its map"));
+  if (cases.empty())
+    cases.push_back(make_absent_case({}, "any", Level::kGl, "no chosen filter of kind bound encodes its map"));
   return cases;
 }
 

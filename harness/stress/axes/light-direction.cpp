@@ -11,7 +11,7 @@
 namespace shadowbench::stress {
 namespace {
 
-constexpr double kBound = 0.005;  // of the receivers whose visibility is known
+constexpr double kBound = 0.005;    // of the receivers whose visibility is known
 constexpr double kPixels_m = 0.05;  // the widest pixel on the floor: nearer to an edge, a pixel's centre decides
 
 /// A way that light may go straight along, and the rotation that turns the scene's down to it; exact.
@@ -22,7 +22,12 @@ struct Way {
 
 std::array<Way, 6> list_ways() {
   const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  return {{{"-y (straight down)", {x, y, z}}, {"+y (straight up)", {-x, -y, z}}, {"-x", {-y, x, z}}, {"+x", {y, -x, z}}, {"-z", {x, z, -y}}, {"+z", {x, -z, y}}}};
+  return {{{"-y (straight down)", {x, y, z}},
+           {"+y (straight up)", {-x, -y, z}},
+           {"-x", {-y, x, z}},
+           {"+x", {y, -x, z}},
+           {"-z", {x, z, -y}},
+           {"+z", {x, -z, y}}}};
 }
 
 /// Ways to lean: along the scene's axes, where the light's basis may switch, and between them.
@@ -30,7 +35,9 @@ constexpr std::array<double, 4> kLeanTo{0.0, 0.5, 0.25, 1.3};  // of half a turn
 
 SlabSetting lean(const Way& way, double degrees, double to) {
   const double angle = glm::radians(degrees), about = to * 3.14159265358979323846;
-  return {way.world_from_local, {std::sin(angle) * std::cos(about), -std::cos(angle), std::sin(angle) * std::sin(about)}, true};
+  return {way.world_from_local,
+          {std::sin(angle) * std::cos(about), -std::cos(angle), std::sin(angle) * std::sin(about)},
+          true};
 }
 
 /// What came of one picture.
@@ -67,7 +74,9 @@ Tally count(const Drawing& drawing, const SlabSetting& setting, double margin_m)
 class Leaner {
  public:
   Leaner(std::shared_ptr<SceneDrawer> drawer, const filters::FilterRequest& request, const Way& way)
-      : drawer_(std::move(drawer)), reach_texels_(filters::radius_texels(request.spec, request.values) + 1.5), way_(way) {}
+      : drawer_(std::move(drawer)),
+        reach_texels_(filters::radius_texels(request.spec, request.values) + 1.5),
+        way_(way) {}
 
   Observation observe(double degrees) {
     if (!aligned_) aligned_ = look(0.0, 0.0);
@@ -90,8 +99,10 @@ class Leaner {
 
   static Observation judge(const Tally& tally) {
     const double share = static_cast<double>(tally.wrong) / std::max(tally.known, 1);
-    if (tally.unusable > 0) return {Verdict::kBroken, std::nullopt, fmt::format("{} pixels are not finite, or not in [0,1]", tally.unusable)};
-    const std::string why = fmt::format("{:.2g} of the receivers are wrong, {} too dark and {} too bright", share, tally.wrong_dark, tally.wrong - tally.wrong_dark);
+    if (tally.unusable > 0)
+      return {Verdict::kBroken, std::nullopt, fmt::format("{} pixels are not finite, or not in [0,1]", tally.unusable)};
+    const std::string why = fmt::format("{:.2g} of the receivers are wrong, {} too dark and {} too bright", share,
+                                        tally.wrong_dark, tally.wrong - tally.wrong_dark);
     if (tally.known == 0 || share > 0.5) return {Verdict::kBroken, share, why};
     if (share > kBound) return {Verdict::kDegraded, share, why};
     return {Verdict::kOk, share, {}};
@@ -102,15 +113,18 @@ std::vector<std::string> remark(const report::StressCase& record) {
   if (record.degraded || record.broken || record.samples.empty()) return {};
   double largest = 0.0;
   for (const report::StressSample& sample : record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
-  return {fmt::format("exactly along the axis, and from {:g} to {:g} degrees beside it, at most {:.2g} of the receivers are wrong", record.samples.front().value,
-                      record.samples.back().value, largest)};
+  return {fmt::format(
+      "exactly along the axis, and from {:g} to {:g} degrees beside it, at most {:.2g} of the receivers are wrong",
+      record.samples.front().value, record.samples.back().value, largest)};
 }
 
 Case make_case(const StressContext& context, const filters::FilterRequest& request, const Way& way) {
   const std::string variant = fmt::format("light along {}", way.name);
   if (!context.renderer) return make_absent_case(request.spec.id, variant, Level::kGl, "there is no GL");
   Case item = start_case(request, variant, Level::kGl);
-  item.theories = {{std::nullopt, TheoryKind::kSlope, "none: the light's axes are chosen beside the axis that its direction is least parallel to", "by construction: h tan(angle)", Verdict::kDegraded}};
+  item.theories = {{std::nullopt, TheoryKind::kSlope,
+                    "none: the light's axes are chosen beside the axis that its direction is least parallel to",
+                    "by construction: h tan(angle)", Verdict::kDegraded}};
   item.remark = remark;
   Leaner leaner(std::make_shared<SceneDrawer>(context, request), request, way);
   item.observe = [leaner](double degrees) mutable { return leaner.observe(degrees); };
@@ -122,7 +136,8 @@ std::vector<Case> make_cases(const StressContext& context) {
   std::vector<Case> cases;
   const auto ways = list_ways();
   for (const Way& way : ways) cases.push_back(make_case(context, context.filters.front(), way));
-  for (std::size_t i = 1; i < context.filters.size(); ++i) cases.push_back(make_case(context, context.filters[i], ways.front()));
+  for (std::size_t i = 1; i < context.filters.size(); ++i)
+    cases.push_back(make_case(context, context.filters[i], ways.front()));
   return cases;
 }
 
@@ -139,7 +154,9 @@ Axis make_light_direction_axis() {
   axis.measured = "share of the receivers that are wrong";  // by more than 0.1, away from shadows' edges
   axis.measured_scale = Scale::kLinear;
   axis.bound = kBound;
-  axis.broken_when = "visibility is not finite or not in [0,1], on the plane that is parallel to the light too, or more than half of it is wrong";
+  axis.broken_when =
+      "visibility is not finite or not in [0,1], on the plane that is parallel to the light too, or more than half of "
+      "it is wrong";
   axis.make_cases = make_cases;
   return axis;
 }

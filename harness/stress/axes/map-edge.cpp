@@ -11,9 +11,9 @@ namespace {
 constexpr double kBound = 1.0 / 255.0;  // of visibility: a step of an 8-bit picture
 constexpr int kMapSize = 128;
 constexpr float kOccluder = 0.3f, kReceiver = 0.6f;
-constexpr double kNear = 0.01;       // of the perspective map; its far plane is at 1
+constexpr double kNear = 0.01;  // of the perspective map; its far plane is at 1
 constexpr std::size_t kSides = 4;
-constexpr double kEarlier = 0.25;    // texels: light must not be less than so much nearer to the map
+constexpr double kEarlier = 0.25;  // texels: light must not be less than so much nearer to the map
 
 /// What stands at which border.
 enum class Place { kFloor, kOccluders, kFarPlane, kBehindLight };
@@ -45,13 +45,16 @@ scene::LightFrustum make_perspective() {
   return frustum;
 }
 
-/// Receivers beside all four sides in turn, `outside` texels from them, at places all over the texels; corners are left out.
+/// Receivers beside all four sides in turn, `outside` texels from them, at places all over the texels; corners are left
+/// out.
 std::vector<glm::vec3> place_beside(double outside, float depth) {
   std::vector<glm::vec3> receivers;
   const auto across = static_cast<float>(outside / kMapSize);
   for (double along = 0.25; along < 0.75; along += 0.7 / kMapSize) {
     const auto a = static_cast<float>(along);
-    for (const auto& [u, v] : {std::pair(1.0f + across, a), std::pair(-across, a), std::pair(a, 1.0f + across), std::pair(a, -across)}) receivers.emplace_back(u, v, depth);
+    for (const auto& [u, v] :
+         {std::pair(1.0f + across, a), std::pair(-across, a), std::pair(a, 1.0f + across), std::pair(a, -across)})
+      receivers.emplace_back(u, v, depth);
   }
   return receivers;
 }
@@ -60,7 +63,8 @@ std::vector<glm::vec3> place_beside(double outside, float depth) {
 std::vector<glm::vec3> place_beyond(double outside) {
   std::vector<glm::vec3> receivers;
   const auto depth = static_cast<float>(1.0 + outside / kMapSize);
-  for (double along = 0.25; along < 0.75; along += 0.7 / kMapSize) receivers.emplace_back(static_cast<float>(along), static_cast<float>(1.0 - along), depth);
+  for (double along = 0.25; along < 0.75; along += 0.7 / kMapSize)
+    receivers.emplace_back(static_cast<float>(along), static_cast<float>(1.0 - along), depth);
   return receivers;
 }
 
@@ -69,7 +73,8 @@ std::vector<glm::vec3> place_behind(double outside) {
   std::vector<glm::vec3> receivers;
   const double z = -outside / kMapSize;
   for (double along = -0.25; along < 0.25; along += 0.7 / kMapSize) {
-    receivers.emplace_back(static_cast<float>(0.5 + along * z), static_cast<float>(0.5 - along * z), static_cast<float>(z));
+    receivers.emplace_back(static_cast<float>(0.5 + along * z), static_cast<float>(0.5 - along * z),
+                           static_cast<float>(z));
   }
   return receivers;
 }
@@ -101,7 +106,8 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// Gives the largest difference along any side. Texels are half-open: on the very border two sides are inside, two outside.
+/// Gives the largest difference along any side. Texels are half-open: on the very border two sides are inside, two
+/// outside.
 double find_unevenness(const std::vector<double>& beside) {
   double largest = 0.0;
   for (std::size_t side = 0; side < kSides; ++side) {
@@ -129,13 +135,14 @@ const Observation& worse(const Observation& a, const Observation& b) {
   return a.measured.value_or(0.0) >= b.measured.value_or(0.0) ? a : b;
 }
 
-/// A map that goes on beyond the border, with nothing in it, for a blur to be held against: what it makes of texels inside must be
-/// the same. Filters that do not blur decide by the texel, and have nothing there to be wrong.
+/// A map that goes on beyond the border, with nothing in it, for a blur to be held against: what it makes of texels
+/// inside must be the same. Filters that do not blur decide by the texel, and have nothing there to be wrong.
 class WiderMap {
  public:
   WiderMap(const StressContext& context, const filters::FilterRequest& request)
       : values_(request.values), margin_(2 * filters::prefilter_radius_texels(request.spec, request.values)) {
-    if (margin_ > 0 && filters::make_model(request.spec.id)) probe_ = make_model_probe(context, request, filters::Precision::kDouble);
+    if (margin_ > 0 && filters::make_model(request.spec.id))
+      probe_ = make_model_probe(context, request, filters::Precision::kDouble);
   }
 
   /// Gives the largest difference of what is seen of a map of occluders; 0 where there is nothing to hold it against.
@@ -160,7 +167,9 @@ class WiderMap {
       const bool inside = std::min({x, y, scene.size - 1 - x, scene.size - 1 - y}) >= margin_;
       scene.depths.push_back(inside ? kOccluder : 1.0f);
     }
-    const auto widen_uv = [&](float uv) { return (uv * static_cast<float>(kMapSize) + static_cast<float>(margin_)) / static_cast<float>(scene.size); };
+    const auto widen_uv = [&](float uv) {
+      return (uv * static_cast<float>(kMapSize) + static_cast<float>(margin_)) / static_cast<float>(scene.size);
+    };
     for (const glm::vec3& r : receivers) scene.receivers.emplace_back(widen_uv(r.x), widen_uv(r.y), r.z);
     return scene;
   }
@@ -182,29 +191,34 @@ struct Looker {
   Observation observe(double outside) {
     const std::vector<double> seen = look(outside);
     const auto unusable = std::ranges::count_if(seen, [](double v) { return !std::isfinite(v); });
-    if (unusable > 0) return {Verdict::kBroken, std::nullopt, fmt::format("{} of {} receivers are NaN or infinite", unusable, seen.size())};
+    if (unusable > 0)
+      return {Verdict::kBroken, std::nullopt,
+              fmt::format("{} of {} receivers are NaN or infinite", unusable, seen.size())};
     const double reach = filters::radius_texels(request.spec, request.values) + 1.0;
     if (must_be_lit(where, outside, reach)) return judge_line(1.0 - *std::ranges::min_element(seen), "too dark");
     if (where != Place::kOccluders) return {};
     // Beyond the last texels' centres a bilinear read takes the border itself, not what the blur made of it.
     const bool reads_texels = outside <= -0.5;
-    const Observation blurred = judge_line(reads_texels ? wider->find_difference(scene.receivers, seen) : 0.0, "off from a map that goes on");
+    const Observation blurred =
+        judge_line(reads_texels ? wider->find_difference(scene.receivers, seen) : 0.0, "off from a map that goes on");
     return worse(blurred, judge_across(seen, look(outside - kEarlier)));
   }
 
-  /// Where a kernel holds both: even along the border, and never darker than nearer to the map. Its random turns make a stochastic
-  /// filter uneven anywhere.
+  /// Where a kernel holds both: even along the border, and never darker than nearer to the map. Its random turns make a
+  /// stochastic filter uneven anywhere.
   Observation judge_across(const std::vector<double>& seen, const std::vector<double>& nearer) const {
     const bool even = request.spec.kind != filters::FilterKind::kStochastic;
     const Observation along = judge_line(even ? find_unevenness(seen) : 0.0, "uneven along the border");
-    return worse(along, judge_line(mean(nearer) - mean(seen), "darker than nearer to the map", even ? kBound : kLargestFall));
+    return worse(along,
+                 judge_line(mean(nearer) - mean(seen), "darker than nearer to the map", even ? kBound : kLargestFall));
   }
 };
 
 Looker make_looker(Looker looker, Place where) {
   looker.where = where;
   looker.scene.size = kMapSize;
-  looker.scene.depths.assign(static_cast<std::size_t>(kMapSize) * kMapSize, where == Place::kFloor ? kReceiver : kOccluder);
+  looker.scene.depths.assign(static_cast<std::size_t>(kMapSize) * kMapSize,
+                             where == Place::kFloor ? kReceiver : kOccluder);
   if (where == Place::kBehindLight) looker.scene.frustum = make_perspective();
   return looker;
 }
@@ -228,12 +242,15 @@ Case make_case(const StressContext& context, const filters::FilterRequest& reque
   constexpr const char* kVariant = "all borders";
   if (!context.renderer) return make_absent_case(request.spec.id, kVariant, Level::kGl, "there is no GL");
   Case item = start_case(request, kVariant, Level::kGl);
-  item.theories = {{std::nullopt, TheoryKind::kSlope, "none: what the map does not hold is lit", "by definition: border = encode of depth 1", Verdict::kDegraded}};
+  item.theories = {{std::nullopt, TheoryKind::kSlope, "none: what the map does not hold is lit",
+                    "by definition: border = encode of depth 1", Verdict::kDegraded}};
   item.remark = remark;
-  const std::shared_ptr<Probe> orthographic = make_gl_probe(context, request), perspective = make_gl_probe(context, request);
+  const std::shared_ptr<Probe> orthographic = make_gl_probe(context, request),
+                               perspective = make_gl_probe(context, request);
   std::vector<Looker> lookers;
   const auto wider = std::make_shared<const WiderMap>(context, request);
-  for (const Place where : kPlaces) lookers.push_back(make_looker({where == Place::kBehindLight ? perspective : orthographic, request, wider}, where));
+  for (const Place where : kPlaces)
+    lookers.push_back(make_looker({where == Place::kBehindLight ? perspective : orthographic, request, wider}, where));
   item.observe = [lookers](double outside) mutable { return observe_all(lookers, outside); };
   return item;
 }

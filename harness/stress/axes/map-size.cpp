@@ -10,7 +10,7 @@
 namespace shadowbench::stress {
 namespace {
 
-constexpr double kBound = 0.02;      // of visibility: five steps of an 8-bit picture
+constexpr double kBound = 0.02;  // of visibility: five steps of an 8-bit picture
 constexpr int kReceivers = 65;
 constexpr int kLargestModelled = 256;  // texels per side; what lies beyond is told by construction
 constexpr float kOccluder = 0.3f, kReceiver = 0.6f;
@@ -32,7 +32,8 @@ ProbeScene make_halves(int size) {
   return scene;
 }
 
-/// Keeps the receivers from which neither the edge in the middle nor the border is within reach, and tells what they see.
+/// Keeps the receivers from which neither the edge in the middle nor the border is within reach, and tells what they
+/// see.
 std::vector<double> keep_clear(ProbeScene& scene, double reach_texels) {
   std::vector<glm::vec3> kept;
   std::vector<double> expected;
@@ -51,7 +52,9 @@ Observation observe(const StressContext& context, const filters::FilterRequest& 
   ProbeScene scene = make_halves(size);
   const double reach = filters::radius_texels(request.spec, request.values) + 1.0;
   const bool modelled = size <= kLargestModelled && filters::make_model(request.spec.id) != nullptr;
-  const std::vector<double> expected = modelled ? make_model_probe(context, request, filters::Precision::kDouble)->look(scene, request.values).visibility : keep_clear(scene, reach);
+  const std::vector<double> expected =
+      modelled ? make_model_probe(context, request, filters::Precision::kDouble)->look(scene, request.values).visibility
+               : keep_clear(scene, reach);
   if (scene.receivers.empty()) return {};  // without a model, a map that is smaller than the kernel tells nothing
   return judge(make_gl_probe(context, request)->look(scene, request.values), {expected, kBound, 0});
 }
@@ -60,7 +63,8 @@ Case make_case(const StressContext& context, const filters::FilterRequest& reque
   constexpr const char* kVariant = "half of the map dark";
   if (!context.renderer) return make_absent_case(request.spec.id, kVariant, Level::kGl, "there is no GL");
   Case item = start_case(request, kVariant, Level::kGl);
-  item.theories = {{std::nullopt, TheoryKind::kQuantum, "none: a map of one texel is a map", "by definition", Verdict::kDegraded}};
+  item.theories = {
+      {std::nullopt, TheoryKind::kQuantum, "none: a map of one texel is a map", "by definition", Verdict::kDegraded}};
   item.observe = [&context, request](double size) { return observe(context, request, static_cast<int>(size)); };
   return item;
 }
@@ -76,9 +80,8 @@ std::optional<double> find_available_bytes() {
   std::ifstream file("/proc/meminfo");
   std::string name;
   double kibibytes = 0.0;
-  for (std::string rest; file >> name >> kibibytes; std::getline(file, rest)) {
+  for (std::string rest; file >> name >> kibibytes; std::getline(file, rest))
     if (name == "MemAvailable:") return kibibytes * 1024.0;
-  }
   return std::nullopt;
 }
 
@@ -91,7 +94,8 @@ std::string look_once(const StressContext& context, int size) {
   scene::Scene square;
   square.materials.emplace_back();
   scene::Mesh mesh;
-  for (const auto& [x, y] : {std::pair(-0.5f, -0.5f), std::pair(-0.25f, -0.5f), std::pair(-0.5f, -0.25f)}) mesh.vertices.push_back({{x, y, kOccluder}, {}, {}});
+  for (const auto& [x, y] : {std::pair(-0.5f, -0.5f), std::pair(-0.25f, -0.5f), std::pair(-0.5f, -0.25f)})
+    mesh.vertices.push_back({{x, y, kOccluder}, {}, {}});
   mesh.indices = {0, 1, 2};
   square.meshes = {mesh};
   scene::LightFrustum frustum;  // clip space is the world
@@ -99,22 +103,28 @@ std::string look_once(const StressContext& context, int size) {
   frustum.texel_size_ws = 2.0 / size;
   frustum.depth_range_ws = 1.0;
   frustum.direction_ws = {0.0f, 0.0f, 1.0f};
-  frustum.uv_depth_from_world = {{0.5f, 0.0f, 0.0f, 0.0f}, {0.0f, 0.5f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f, 0.0f}, {0.5f, 0.5f, 0.0f, 1.0f}};
+  frustum.uv_depth_from_world = {
+      {0.5f, 0.0f, 0.0f, 0.0f}, {0.0f, 0.5f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f, 0.0f}, {0.5f, 0.5f, 0.0f, 1.0f}};
   render::ShaderLibrary& shaders = context.renderer->shaders;
   map.draw(shaders, render::Geometry(square), frustum);
   render::GBuffer gbuffer(2, 1);
-  gbuffer.upload(std::vector{-0.45f, -0.45f, kReceiver, 1.0f, 0.5f, 0.5f, kReceiver, 1.0f}, std::vector{0.0f, 0.0f, -1.0f, 0.0f, 0.0f, 0.0f, -1.0f, 0.0f});
+  gbuffer.upload(std::vector{-0.45f, -0.45f, kReceiver, 1.0f, 0.5f, 0.5f, kReceiver, 1.0f},
+                 std::vector{0.0f, 0.0f, -1.0f, 0.0f, 0.0f, 0.0f, -1.0f, 0.0f});
   render::ImageTarget target("lookup at the limit", GL_R32F, 2, 1);
-  render::FilterPasses(shaders, catalogue.parse_requests("none").front(), map, {frustum, 0.0, {}, context.seed, {}}).lookup(gbuffer, map, target);
+  render::FilterPasses(shaders, catalogue.parse_requests("none").front(), map, {frustum, 0.0, {}, context.seed, {}})
+      .lookup(gbuffer, map, target);
   const std::vector<float> seen = target.texture().read_floats(1);
-  return seen[0] == 0.0f && seen[1] == 1.0f ? "ok: dark behind an occluder, lit beside it" : fmt::format("wrong: {} behind an occluder, {} beside it", seen[0], seen[1]);
+  return seen[0] == 0.0f && seen[1] == 1.0f
+             ? "ok: dark behind an occluder, lit beside it"
+             : fmt::format("wrong: {} behind an occluder, {} beside it", seen[0], seen[1]);
 }
 
 std::string try_size(const StressContext& context, int size, int limit) {
   const double bytes = 4.0 * size * size;
   const std::optional<double> available = find_available_bytes();
   if (size <= limit && available && *available < kSpareMemory * bytes) {
-    return fmt::format("not available: it needs {} with what drivers keep beside it, and {} of memory are free", mebibytes(kSpareMemory * bytes), mebibytes(*available));
+    return fmt::format("not available: it needs {} with what drivers keep beside it, and {} of memory are free",
+                       mebibytes(kSpareMemory * bytes), mebibytes(*available));
   }
   try {
     return look_once(context, size);
@@ -129,10 +139,15 @@ std::vector<Exhibit> make_exhibits(const StressContext& context) {
   Exhibit exhibit;
   exhibit.id = "limit";
   exhibit.title = "At this GL's limit";
-  exhibit.sentences = {fmt::format("This GL gives textures of up to {} texels per side. One map of that size is allocated, drawn and looked up once, where memory allows; what is larger is an "
-                                   "error before anything is allocated.", limit)};
+  exhibit.sentences = {
+      fmt::format("This GL gives textures of up to {} texels per side. One map of that size is allocated, drawn and "
+                  "looked up once, where memory allows; what is larger is an "
+                  "error before anything is allocated.",
+                  limit)};
   exhibit.table = report::TextTable{{"map", "bytes of depth", "one allocation and one lookup, filter none"}, {}};
-  for (const int size : {limit, limit + 1, 2 * limit}) exhibit.table->rows.push_back({fmt::format("{}", size), mebibytes(4.0 * size * size), try_size(context, size, limit)});
+  for (const int size : {limit, limit + 1, 2 * limit})
+    exhibit.table->rows.push_back(
+        {fmt::format("{}", size), mebibytes(4.0 * size * size), try_size(context, size, limit)});
   return {exhibit};
 }
 
@@ -148,7 +163,8 @@ Axis make_map_size_axis() {
   axis.whole = true;
   axis.measured = "largest error of visibility";
   axis.bound = kBound;
-  axis.broken_when = "texels of the map overflowed, or visibility is not finite, all lit or all dark where it must not be";
+  axis.broken_when =
+      "texels of the map overflowed, or visibility is not finite, all lit or all dark where it must not be";
   axis.make_cases = make_cases;
   axis.make_exhibits = make_exhibits;
   return axis;

@@ -49,7 +49,8 @@ const Poison& overflows() {
   static const Poison poison{"overflow in the map", {{1.0f, kReceiver}}};
   return poison;
 }
-constexpr double kOverflowingExponent = 100.0;  // exp(100) is infinite in 32 bits, exp(60) of the receivers' own depth is not
+constexpr double kOverflowingExponent =
+    100.0;  // exp(100) is infinite in 32 bits, exp(60) of the receivers' own depth is not
 
 /// Spreads texels all over the map, in an order that does not depend on how many there are; no texel twice.
 glm::ivec2 place_texel(int i) {
@@ -74,7 +75,8 @@ ProbeScene make_scene() {
 void poison(ProbeScene& scene, int count, const Poison& poison, float Drop::*part) {
   for (int i = 0; i < count; ++i) {
     const glm::ivec2 texel = place_texel(i);
-    scene.depths[static_cast<std::size_t>(texel.y * kMapSize + texel.x)] = poison.drops[static_cast<std::size_t>(i) % poison.drops.size()].*part;
+    scene.depths[static_cast<std::size_t>(texel.y * kMapSize + texel.x)] =
+        poison.drops[static_cast<std::size_t>(i) % poison.drops.size()].*part;
   }
 }
 
@@ -87,9 +89,9 @@ std::vector<bool> find_reached(int count, int reach, int border) {
   }
   for (int i = 0; i < count; ++i) {
     const glm::ivec2 texel = place_texel(i);
-    for (int y = std::max(texel.y - reach, 0); y <= std::min(texel.y + reach, kMapSize - 1); ++y) {
-      for (int x = std::max(texel.x - reach, 0); x <= std::min(texel.x + reach, kMapSize - 1); ++x) reached[static_cast<std::size_t>(y * kMapSize + x)] = true;
-    }
+    for (int y = std::max(texel.y - reach, 0); y <= std::min(texel.y + reach, kMapSize - 1); ++y)
+      for (int x = std::max(texel.x - reach, 0); x <= std::min(texel.x + reach, kMapSize - 1); ++x)
+        reached[static_cast<std::size_t>(y * kMapSize + x)] = true;
   }
   return reached;
 }
@@ -102,7 +104,8 @@ struct Harm {
   int outside = 0;     ///< the same of all others
 };
 
-Harm count_harm(const std::vector<double>& seen, const std::vector<double>& harmless, const std::vector<bool>& reached) {
+Harm count_harm(const std::vector<double>& seen, const std::vector<double>& harmless,
+                const std::vector<bool>& reached) {
   constexpr double kSame = 1e-6;
   Harm harm;
   for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -116,19 +119,28 @@ Harm count_harm(const std::vector<double>& seen, const std::vector<double>& harm
 
 Observation judge_harm(const Harm& harm, int count, int reach) {
   const double share = static_cast<double>(harm.inside) / std::max(harm.reachable, 1);
-  if (harm.outside > 0) return {Verdict::kBroken, share, fmt::format("{} receivers are harmed farther than {} texels from all {} poisoned ones", harm.outside, reach, count)};
+  if (harm.outside > 0)
+    return {Verdict::kBroken, share,
+            fmt::format("{} receivers are harmed farther than {} texels from all {} poisoned ones", harm.outside, reach,
+                        count)};
   if (harm.inside == 0) return {Verdict::kOk, 0.0, {}};
-  return {Verdict::kDegraded, share, fmt::format("{} of the {} receivers within {} texels are harmed, {} of them not finite; none beyond", harm.inside, harm.reachable, reach, harm.not_finite)};
+  return {Verdict::kDegraded, share,
+          fmt::format("{} of the {} receivers within {} texels are harmed, {} of them not finite; none beyond",
+                      harm.inside, harm.reachable, reach, harm.not_finite)};
 }
 
 /// Which of its texels a kernel's bilinear reads touch, from a texel's centre.
-int find_reach(const filters::FilterRequest& request) { return static_cast<int>(std::ceil(filters::radius_texels(request.spec, request.values))) + 1; }
+int find_reach(const filters::FilterRequest& request) {
+  return static_cast<int>(std::ceil(filters::radius_texels(request.spec, request.values))) + 1;
+}
 
 std::vector<std::string> remark_spread(const report::StressCase& record) {
   double largest = 0.0;
   for (const report::StressSample& sample : record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
   if (record.broken || record.samples.empty() || largest == 0.0) return {};
-  return {fmt::format("up to {:.0f} % of the receivers whose kernel holds poison are harmed, and none beyond the kernel", 100.0 * largest)};
+  return {
+      fmt::format("up to {:.0f} % of the receivers whose kernel holds poison are harmed, and none beyond the kernel",
+                  100.0 * largest)};
 }
 
 /// What one filter's map is poisoned with.
@@ -145,9 +157,11 @@ std::string describe_stored(const Poison& poison) {
   for (const Drop& drop : poison.drops) {
     map.upload(std::span(&drop.value, 1));
     const float stored = map.read().stored.front();
-    if (std::isfinite(stored) && !std::isfinite(drop.value)) changed.push_back(fmt::format("{:g} as {:g}", drop.value, stored));
+    if (std::isfinite(stored) && !std::isfinite(drop.value))
+      changed.push_back(fmt::format("{:g} as {:g}", drop.value, stored));
   }
-  return changed.empty() ? std::string() : fmt::format("this GL stores {} when depths are uploaded", fmt::join(changed, ", "));
+  return changed.empty() ? std::string()
+                         : fmt::format("this GL stores {} when depths are uploaded", fmt::join(changed, ", "));
 }
 
 std::vector<std::string> remark_map(const MapSetting& setting, const report::StressCase& record) {
@@ -162,9 +176,11 @@ Case make_map_case(const StressContext& context, const filters::FilterRequest& r
   const auto [probe, reason] = make_probe(context, request, setting.level);
   if (!probe) return make_absent_case(request.spec.id, variant, setting.level, reason);
   Case item = start_case(request, variant, setting.level);
-  item.theories = {{std::nullopt, TheoryKind::kQuantum, "none: poison stays within the kernel", "derived: a blur of finite support", Verdict::kBroken}};
+  item.theories = {{std::nullopt, TheoryKind::kQuantum, "none: poison stays within the kernel",
+                    "derived: a blur of finite support", Verdict::kBroken}};
   item.remark = [setting](const report::StressCase& record) { return remark_map(setting, record); };
-  item.observe = [probe = probe, values = request.values, setting, reach = find_reach(request), scene = make_scene()](double number) {
+  item.observe = [probe = probe, values = request.values, setting, reach = find_reach(request),
+                  scene = make_scene()](double number) {
     const int count = static_cast<int>(number);
     ProbeScene poisoned = scene, harmless = scene;
     poison(poisoned, count, setting.poison, &Drop::value);
@@ -194,7 +210,8 @@ using PoisonScene = std::function<void(scene::Scene&, int count, double value)>;
 
 void poison_vertices(scene::Scene& scene, int count, double value) {
   std::vector<scene::Vertex>& vertices = scene.meshes.front().vertices;
-  for (int i = 0; i < count; ++i) vertices[static_cast<std::size_t>(i * 7) % vertices.size()].position_ws[i % 3] = static_cast<float>(value);
+  for (int i = 0; i < count; ++i)
+    vertices[static_cast<std::size_t>(i * 7) % vertices.size()].position_ws[i % 3] = static_cast<float>(value);
 }
 
 void poison_matrix(scene::Scene& scene, int count, double value) {
@@ -209,10 +226,15 @@ struct ScenePlace {
 };
 
 std::vector<ScenePlace> list_places() {
-  return {{"vertices", poison_vertices},
-          {"an object's matrix", poison_matrix},
-          {"the light's direction", [](scene::Scene& scene, int count, double value) { scene.light.direction_ws[count % 3] = static_cast<float>(value); }},
-          {"the camera's position", [](scene::Scene& scene, int count, double value) { scene.cameras.front().position_ws[count % 3] = static_cast<float>(value); }}};
+  return {
+      {"vertices", poison_vertices},
+      {"an object's matrix", poison_matrix},
+      {"the light's direction", [](scene::Scene& scene, int count,
+                                   double value) { scene.light.direction_ws[count % 3] = static_cast<float>(value); }},
+      {"the camera's position",
+       [](scene::Scene& scene, int count, double value) {
+         scene.cameras.front().position_ws[count % 3] = static_cast<float>(value);
+       }}};
 }
 
 /// A kind of poison; what is refused must be, of what is not something finite must come.
@@ -227,11 +249,16 @@ constexpr SceneInput kSceneInputs[] = {{"NaN in a scene", std::numeric_limits<do
                                        {"denormals in a scene", static_cast<double>(kDenormal), false}};
 
 bool is_finite(const scene::Scene& scene) {
-  return std::ranges::all_of(scene.meshes, [](const scene::Mesh& mesh) {
-    return std::ranges::all_of(mesh.vertices, [](const scene::Vertex& v) {
-      return std::isfinite(glm::dot(v.position_ws, v.position_ws)) && std::abs(glm::length(v.normal_ws) - 1.0f) < 1e-3f;
-    });
-  });
+  return std::ranges::all_of(
+      scene.meshes,
+      [](const scene::Mesh& mesh) {
+        return std::ranges::all_of(
+            mesh.vertices,
+            [](const scene::Vertex& v) {
+              return std::isfinite(glm::dot(v.position_ws, v.position_ws)) &&
+                     std::abs(glm::length(v.normal_ws) - 1.0f) < 1e-3f;
+            });
+      });
 }
 
 Observation observe_place(const SceneInput& input, const ScenePlace& place, int count) {
@@ -240,7 +267,8 @@ Observation observe_place(const SceneInput& input, const ScenePlace& place, int 
   try {
     const scene::Scene checked = scene::validate(std::move(scene), "poisoned scene");
     if (input.refused) return {Verdict::kBroken, 1.0, fmt::format("it is accepted in {}", place.name)};
-    if (!is_finite(checked)) return {Verdict::kBroken, 1.0, fmt::format("what is made of it in {} is not finite", place.name)};
+    if (!is_finite(checked))
+      return {Verdict::kBroken, 1.0, fmt::format("what is made of it in {} is not finite", place.name)};
   } catch (const Error& error) {
     // Of a scene that nothing but denormals was left of, saying so is right.
     if (error.kind() != ErrorKind::kInput) return {Verdict::kBroken, 1.0, error.what()};
@@ -258,14 +286,18 @@ Observation observe_input(const SceneInput& input, int count) {
 
 std::vector<std::string> remark_refusal(const SceneInput& input, const report::StressCase& record) {
   if (record.broken || record.samples.empty()) return {};
-  return {input.refused ? "in vertices, matrices, the light and the camera it is refused as the scene is loaded" : "accepted as the scene is loaded, or refused where no triangle keeps an area; nothing that is not finite comes of it"};
+  return {input.refused ? "in vertices, matrices, the light and the camera it is refused as the scene is loaded"
+                        : "accepted as the scene is loaded, or refused where no triangle keeps an area; nothing that "
+                          "is not finite comes of it"};
 }
 
 Case make_input_case(const SceneInput& input) {
   Case item;
   item.variant = input.name;
   item.level = Level::kArithmetic;
-  item.theories = {{std::nullopt, TheoryKind::kQuantum, input.refused ? "none: it is refused" : "none: they are numbers", "by definition", Verdict::kBroken}};
+  item.theories = {{std::nullopt, TheoryKind::kQuantum,
+                    input.refused ? "none: it is refused" : "none: they are numbers", "by definition",
+                    Verdict::kBroken}};
   item.remark = [input](const report::StressCase& record) { return remark_refusal(input, record); };
   item.observe = [input](double number) { return observe_input(input, static_cast<int>(number)); };
   return item;
@@ -273,11 +305,13 @@ Case make_input_case(const SceneInput& input) {
 
 std::vector<Case> make_cases(const StressContext& context) {
   std::vector<Case> cases;
-  for (const filters::FilterRequest& request : context.filters) cases.push_back(make_map_case(context, request, {not_numbers()}));
+  for (const filters::FilterRequest& request : context.filters)
+    cases.push_back(make_map_case(context, request, {not_numbers()}));
   for (const filters::FilterRequest& request : context.filters) {
     if (!request.spec.has_encode) continue;  // what compares has nothing to spread poison with
     for (const Poison& kind : {infinities(), denormals()}) cases.push_back(make_map_case(context, request, {kind}));
-    for (const Poison& kind : {not_numbers(), infinities()}) cases.push_back(make_map_case(context, request, {kind, Level::kModel}));
+    for (const Poison& kind : {not_numbers(), infinities()})
+      cases.push_back(make_map_case(context, request, {kind, Level::kModel}));
   }
   for (Case& item : make_overflow_cases(context)) cases.push_back(std::move(item));
   for (const SceneInput& input : kSceneInputs) cases.push_back(make_input_case(input));
@@ -297,7 +331,9 @@ Axis make_poisoned_input_axis() {
   axis.measured = "share harmed of the receivers whose kernel holds poison";
   axis.measured_scale = Scale::kLinear;
   axis.bound = 0.0;
-  axis.broken_when = "a receiver is harmed whose kernel holds no poison; of scenes: poison is accepted, or what was made of it is not finite";
+  axis.broken_when =
+      "a receiver is harmed whose kernel holds no poison; of scenes: poison is accepted, or what was made of it is not "
+      "finite";
   axis.make_cases = make_cases;
   return axis;
 }

@@ -12,17 +12,17 @@
 namespace shadowbench::stress {
 namespace {
 
-constexpr double kBound = 0.01;               // of the pixels
-constexpr glm::dvec3 kWay{0.8, 0.36, 0.48};   // the scene is moved along it; unit length
-constexpr double kSingleStep = 0x1p-23;       // ulp of a coordinate, relative
+constexpr double kBound = 0.01;              // of the pixels
+constexpr glm::dvec3 kWay{0.8, 0.36, 0.48};  // the scene is moved along it; unit length
+constexpr double kSingleStep = 0x1p-23;      // ulp of a coordinate, relative
 constexpr double kDoubleStep = 0x1p-52;
 constexpr const char* kSource = "derived: step of a float coordinate (IEEE 754)";
 
 /// Relative to what, and when, positions become floats.
 enum class Origin {
-  kWorld,        ///< the world's: where the scene stands
-  kSceneLate,    ///< the scene's, taken off what is float already
-  kSceneInDouble ///< the scene's, taken off in double
+  kWorld,         ///< the world's: where the scene stands
+  kSceneLate,     ///< the scene's, taken off what is float already
+  kSceneInDouble  ///< the scene's, taken off in double
 };
 
 struct Setting {
@@ -51,9 +51,8 @@ glm::vec3 move(const glm::vec3& p, const glm::dvec3& way, Origin origin) {
 }
 
 scene::Scene move(scene::Scene scene, const glm::dvec3& way, Origin origin) {
-  for (scene::Mesh& mesh : scene.meshes) {
+  for (scene::Mesh& mesh : scene.meshes)
     for (scene::Vertex& vertex : mesh.vertices) vertex.position_ws = move(vertex.position_ws, way, origin);
-  }
   for (scene::Camera& camera : scene.cameras) camera.position_ws = move(camera.position_ws, way, origin);
   return scene::validate(std::move(scene), "moved scene");
 }
@@ -63,35 +62,43 @@ double find_size(const scene::Scene& scene) {
   return glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
 }
 
-/// How far off a receiver may be along the light before the map's own surface shadows it: the constant bias, and what the plane's
-/// bias leaves of its texels over the half that the sampling grid needs.
-double find_slack(const scene::Scene& scene, const scene::LightFrustum& frustum, const filters::FilterRequest& request) {
+/// How far off a receiver may be along the light before the map's own surface shadows it: the constant bias, and what
+/// the plane's bias leaves of its texels over the half that the sampling grid needs.
+double find_slack(const scene::Scene& scene, const scene::LightFrustum& frustum,
+                  const filters::FilterRequest& request) {
   const glm::dvec3 normal(scene.meshes.front().vertices.front().normal_ws), light(frustum.direction_ws);
-  const double facing = std::abs(glm::dot(normal, light)), tangent = std::sqrt(std::max(1.0 - facing * facing, 0.0)) / facing;
+  const double facing = std::abs(glm::dot(normal, light)),
+               tangent = std::sqrt(std::max(1.0 - facing * facing, 0.0)) / facing;
   const render::Bias bias = run::resolve_bias({}, frustum, request.spec, request.values);
   return bias.constant_depth * frustum.depth_range_ws + 0.5 * frustum.texel_size_ws * tangent;
 }
 
 /// Shadows move by whole texels where a coordinate's step reaches half of one.
-Theory make_theory(const scene::Scene& scene, const scene::LightFrustum& frustum, const filters::FilterRequest& request, Origin origin) {
+Theory make_theory(const scene::Scene& scene, const scene::LightFrustum& frustum, const filters::FilterRequest& request,
+                   Origin origin) {
   const double slack = std::min(find_slack(scene, frustum, request), 0.5 * frustum.texel_size_ws);
   const double step = origin == Origin::kSceneInDouble ? kDoubleStep : kSingleStep;
   const char* what = slack < 0.5 * frustum.texel_size_ws ? "the bias" : "half a texel";
   return {slack / (step * kWay.x * find_size(scene)), TheoryKind::kRounding,
-          fmt::format("{:.3g} m / (2^{:.0f} x {:g} x {:.3g} m): where a coordinate's step is {}", slack, std::log2(step), kWay.x, find_size(scene), what), kSource,
-          Verdict::kDegraded};
+          fmt::format("{:.3g} m / (2^{:.0f} x {:g} x {:.3g} m): where a coordinate's step is {}", slack,
+                      std::log2(step), kWay.x, find_size(scene), what),
+          kSource, Verdict::kDegraded};
 }
 
 /// Nothing is left of a scene that is smaller than the step between the coordinates that it could have.
 Theory make_collapse() {
-  return {1.0 / (kSingleStep * kWay.x), TheoryKind::kRounding, fmt::format("1 / (2^-23 x {:g}): where a coordinate's step is the scene's size", kWay.x), kSource, Verdict::kBroken};
+  return {1.0 / (kSingleStep * kWay.x), TheoryKind::kRounding,
+          fmt::format("1 / (2^-23 x {:g}): where a coordinate's step is the scene's size", kWay.x), kSource,
+          Verdict::kBroken};
 }
 
 /// How much slack a bound has of its own is not known beforehand: it is soft where a comparison has acne.
-std::vector<Theory> list_theories(const scene::Scene& scene, const scene::LightFrustum& frustum, const filters::FilterRequest& request, Origin origin) {
+std::vector<Theory> list_theories(const scene::Scene& scene, const scene::LightFrustum& frustum,
+                                  const filters::FilterRequest& request, Origin origin) {
   if (origin == Origin::kSceneLate) return {};
   std::vector<Theory> theories;
-  if (origin == Origin::kSceneInDouble || request.spec.kind != filters::FilterKind::kBound) theories.push_back(make_theory(scene, frustum, request, origin));
+  if (origin == Origin::kSceneInDouble || request.spec.kind != filters::FilterKind::kBound)
+    theories.push_back(make_theory(scene, frustum, request, origin));
   if (origin == Origin::kWorld) theories.push_back(make_collapse());
   return theories;
 }
@@ -100,32 +107,41 @@ std::vector<std::string> remark(Origin origin, const report::StressCase& record)
   if (origin == Origin::kWorld || record.samples.empty()) return {};
   const report::StressOnset* met = record.degraded ? &*record.degraded : record.broken ? &*record.broken : nullptr;
   if (origin == Origin::kSceneInDouble && !met) {
-    return {fmt::format("the remedy holds to {:g} scene sizes, the end of the range: what is relative to the scene before it becomes float does not know how far away it is",
-                        record.samples.back().value)};
+    return {
+        fmt::format("the remedy holds to {:g} scene sizes, the end of the range: what is relative to the scene before "
+                    "it becomes float does not know how far away it is",
+                    record.samples.back().value)};
   }
   if (origin == Origin::kSceneLate && met) {
-    return {fmt::format("no remedy: subtracting what was rounded already keeps the rounded shapes, which differ from {:.3g} scene sizes on", met->value)};
+    return {
+        fmt::format("no remedy: subtracting what was rounded already keeps the rounded shapes, which differ from "
+                    "{:.3g} scene sizes on",
+                    met->value)};
   }
   return {};
 }
 
-Case make_case(const StressContext& context, const filters::FilterRequest& request, const scene::Scene& scene, const Setting& setting) {
+Case make_case(const StressContext& context, const filters::FilterRequest& request, const scene::Scene& scene,
+               const Setting& setting) {
   const std::string variant = fmt::format("{}, {}", setting.name, describe(setting.origin));
   if (!context.renderer) return make_absent_case(request.spec.id, variant, Level::kGl, "there is no GL");
   const auto drawer = std::make_shared<SceneDrawer>(context, request);
   Case item = start_case(request, variant, Level::kGl);
   item.theories = list_theories(scene, drawer->fit(scene), request, setting.origin);
   item.remark = [origin = setting.origin](const report::StressCase& record) { return remark(origin, record); };
-  item.observe = [drawer, scene, size = find_size(scene), origin = setting.origin, expected = std::optional<Drawing>()](double sizes) mutable {
+  item.observe = [drawer, scene, size = find_size(scene), origin = setting.origin,
+                  expected = std::optional<Drawing>()](double sizes) mutable {
     if (!expected) expected = drawer->draw(scene);
     return judge_drawing(drawer->draw(move(scene, kWay * (sizes * size), origin)), *expected, kBound);
   };
   return item;
 }
 
-/// A floor that the light meets at right angles has no bias but the constant one; turned, so that no axis of the light is the world's.
+/// A floor that the light meets at right angles has no bias but the constant one; turned, so that no axis of the light
+/// is the world's.
 scene::Scene make_facing_floor() {
-  const glm::dmat4 turned = glm::rotate(glm::rotate(glm::dmat4(1.0), 0.7, glm::dvec3(1.0, 0.0, 0.0)), 0.5, glm::dvec3(0.0, 0.0, 1.0));
+  const glm::dmat4 turned =
+      glm::rotate(glm::rotate(glm::dmat4(1.0), 0.7, glm::dvec3(1.0, 0.0, 0.0)), 0.5, glm::dvec3(0.0, 0.0, 1.0));
   return make_slab_scene({.world_from_local = glm::dmat3(turned)});
 }
 
@@ -133,11 +149,11 @@ std::vector<Case> make_cases(const StressContext& context) {
   const scene::Scene floor = scene::validate(make_facing_floor(), "facing floor");
   const scene::Scene cubes = load_drawn_scene(context, "cubes");
   std::vector<Case> cases;
-  for (const filters::FilterRequest& request : context.filters) cases.push_back(make_case(context, request, floor, {"floor", Origin::kWorld}));
+  for (const filters::FilterRequest& request : context.filters)
+    cases.push_back(make_case(context, request, floor, {"floor", Origin::kWorld}));
   cases.push_back(make_case(context, context.filters.front(), floor, {"floor", Origin::kSceneInDouble}));
-  for (const Origin origin : {Origin::kWorld, Origin::kSceneLate, Origin::kSceneInDouble}) {
+  for (const Origin origin : {Origin::kWorld, Origin::kSceneLate, Origin::kSceneInDouble})
     cases.push_back(make_case(context, context.filters.front(), cubes, {"cubes", origin}));
-  }
   return cases;
 }
 

@@ -11,9 +11,8 @@ constexpr double kBound = 0.01;  // of the pixels
 glm::vec3 scale(const glm::vec3& p, double factor) { return glm::vec3(glm::dvec3(p) * factor); }
 
 scene::Scene scale(scene::Scene scene, double factor) {
-  for (scene::Mesh& mesh : scene.meshes) {
+  for (scene::Mesh& mesh : scene.meshes)
     for (scene::Vertex& vertex : mesh.vertices) vertex.position_ws = scale(vertex.position_ws, factor);
-  }
   for (scene::Camera& camera : scene.cameras) {
     camera.position_ws = scale(camera.position_ws, factor);
     camera.orthographic_height_m *= static_cast<float>(factor);
@@ -23,14 +22,17 @@ scene::Scene scale(scene::Scene scene, double factor) {
 
 /// Every length in the chain is relative to the scene, the light's frustum or the map's texels.
 Theory make_theory() {
-  return {std::nullopt, TheoryKind::kRounding, "none: no length in the chain is absolute, and floats round alike at every scale", "derived: IEEE 754, normal numbers", Verdict::kDegraded};
+  return {std::nullopt, TheoryKind::kRounding,
+          "none: no length in the chain is absolute, and floats round alike at every scale",
+          "derived: IEEE 754, normal numbers", Verdict::kDegraded};
 }
 
 std::vector<std::string> remark(const report::StressCase& record) {
   double largest = 0.0;
   for (const report::StressSample& sample : record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
   if (record.degraded || record.broken || record.samples.empty()) return {};
-  return {fmt::format("from {:g} to {:g} times its size no more than {:.2g} of the pixels change", record.samples.front().value, record.samples.back().value, largest)};
+  return {fmt::format("from {:g} to {:g} times its size no more than {:.2g} of the pixels change",
+                      record.samples.front().value, record.samples.back().value, largest)};
 }
 
 Case make_case(const StressContext& context, const filters::FilterRequest& request, const scene::Scene& scene) {

@@ -21,9 +21,8 @@ struct TapsFilter {
 
 std::vector<TapsFilter> find_taps_filters(const StressContext& context) {
   std::vector<TapsFilter> found;
-  for (const filters::FilterRequest& request : context.filters) {
+  for (const filters::FilterRequest& request : context.filters)
     if (!request.spec.disks.empty()) found.push_back({request});
-  }
   return found;
 }
 
@@ -44,28 +43,34 @@ filters::FilterRequest with_count(const TapsFilter& filter, double wanted) {
 }
 
 ProbeScene make_scene(const filters::FilterRequest& request) {
-  return make_straight_edge(std::clamp(filters::radius_texels(request.spec, request.values), 0.0, double{kWidestRadius}));
+  return make_straight_edge(
+      std::clamp(filters::radius_texels(request.spec, request.values), 0.0, double{kWidestRadius}));
 }
 
 /// The number of taps is compiled in: every count is a program of its own.
 Observation observe_taps(const StressContext& context, const TapsFilter& filter, double wanted, Level level) {
   const filters::FilterRequest request = with_count(filter, wanted);
   const ProbeScene scene = make_scene(request);
-  const std::vector<double> expected = make_model_probe(context, request, filters::Precision::kExtended)->look(scene, request.values).visibility;
-  return judge_edge(make_probe(context, request, level).probe->look(scene, request.values), expected, kBound, request.spec.kind);
+  const std::vector<double> expected =
+      make_model_probe(context, request, filters::Precision::kExtended)->look(scene, request.values).visibility;
+  return judge_edge(make_probe(context, request, level).probe->look(scene, request.values), expected, kBound,
+                    request.spec.kind);
 }
 
 /// Gives how far the taps are from the kernel that they stand for, root mean square over an edge.
 double find_noise(const StressContext& context, const filters::FilterRequest& request) {
   const ProbeScene scene = make_scene(request);
-  const std::vector<double> seen = make_model_probe(context, request, filters::Precision::kDouble)->look(scene, request.values).visibility;
-  const std::vector<double> whole = compare_whole_kernel(scene, filters::make_model(request.spec.id)->kernel(request.values));
+  const std::vector<double> seen =
+      make_model_probe(context, request, filters::Precision::kDouble)->look(scene, request.values).visibility;
+  const std::vector<double> whole =
+      compare_whole_kernel(scene, filters::make_model(request.spec.id)->kernel(request.values));
   double sum = 0.0;
   for (std::size_t i = 0; i < seen.size(); ++i) sum += (seen[i] - whole[i]) * (seen[i] - whole[i]);
   return std::sqrt(sum / static_cast<double>(seen.size()));
 }
 
-std::vector<std::string> remark_noise(const StressContext& context, const TapsFilter& filter, const report::StressCase& record) {
+std::vector<std::string> remark_noise(const StressContext& context, const TapsFilter& filter,
+                                      const report::StressCase& record) {
   std::vector<std::string> parts;
   double before = 0.0;
   for (const report::StressSample& sample : record.samples) {
@@ -74,32 +79,41 @@ std::vector<std::string> remark_noise(const StressContext& context, const TapsFi
     parts.push_back(fmt::format("{:.2g} with {:g}", find_noise(context, with_count(filter, count)), count));
     before = count;
   }
-  return {fmt::format("taps that it allows are off the whole kernel by, root mean square over the edge: {}; counts in between stand for the next lower one", fmt::join(parts, ", "))};
+  return {
+      fmt::format("taps that it allows are off the whole kernel by, root mean square over the edge: {}; counts in "
+                  "between stand for the next lower one",
+                  fmt::join(parts, ", "))};
 }
 
 Case make_case(const StressContext& context, const TapsFilter& filter, Level level) {
   const filters::FilterRequest& request = filter.request;
-  const std::string variant = fmt::format("{} at radius {:g}", filter.find_param().name, filters::radius_texels(request.spec, request.values));
+  const std::string variant =
+      fmt::format("{} at radius {:g}", filter.find_param().name, filters::radius_texels(request.spec, request.values));
   const auto [probe, reason] = make_probe(context, request, level);
   if (!probe || !filters::make_model(request.spec.id)) {
-    return make_absent_case(request.spec.id, variant, level, probe ? "the filter has no scalar model to be held against" : reason);
+    return make_absent_case(request.spec.id, variant, level,
+                            probe ? "the filter has no scalar model to be held against" : reason);
   }
   Case item = start_case(request, variant, level);
   item.params.erase(filter.find_param().name);
   item.theories = {{std::nullopt, TheoryKind::kRounding, "none: more taps add more numbers, none of them above 1",
-                    "derived: a mean of n numbers is off by n unit round-offs of the largest at most", Verdict::kDegraded}};
+                    "derived: a mean of n numbers is off by n unit round-offs of the largest at most",
+                    Verdict::kDegraded}};
   item.explain = explain_broken_throughout;
   item.observe = [&context, filter, level](double taps) { return observe_taps(context, filter, taps, level); };
-  if (level == Level::kModel) item.remark = [&context, filter](const report::StressCase& record) { return remark_noise(context, filter, record); };
+  if (level == Level::kModel)
+    item.remark = [&context, filter](const report::StressCase& record) {
+      return remark_noise(context, filter, record);
+    };
   return item;
 }
 
 std::vector<Case> make_cases(const StressContext& context) {
   std::vector<Case> cases;
-  for (const TapsFilter& filter : find_taps_filters(context)) {
+  for (const TapsFilter& filter : find_taps_filters(context))
     for (const Level level : {Level::kGl, Level::kModel}) cases.push_back(make_case(context, filter, level));
-  }
-  if (cases.empty()) cases.push_back(make_absent_case({}, "any", Level::kGl, "no chosen filter takes a number of taps"));
+  if (cases.empty())
+    cases.push_back(make_absent_case({}, "any", Level::kGl, "no chosen filter takes a number of taps"));
   return cases;
 }
 

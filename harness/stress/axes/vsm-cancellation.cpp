@@ -9,12 +9,14 @@
 namespace shadowbench::stress {
 namespace {
 
-constexpr double kBound = 0.02;     // of visibility: five steps of an 8-bit picture
-constexpr int kBands = 12;          // depths at which a gap is tried: how a moment is rounded is luck
-constexpr int kDepths = 512;        // the same, where no map is needed
-constexpr int kTaps = 81;           // of a 9 x 9 box
+constexpr double kBound = 0.02;  // of visibility: five steps of an 8-bit picture
+constexpr int kBands = 12;       // depths at which a gap is tried: how a moment is rounded is luck
+constexpr int kDepths = 512;     // the same, where no map is needed
+constexpr int kTaps = 81;        // of a 9 x 9 box
 constexpr double kSingleRounding = 0x1p-24;
-constexpr const char* kSource = "derived; Higham 2002, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 1.9, on the textbook variance";
+constexpr const char* kSource =
+    "derived; Higham 2002, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 1.9, on the textbook "
+    "variance";
 
 /// The largest rounding of a number in [0,1] that is stored.
 double store_rounding(filters::StorePrecision store) {
@@ -26,8 +28,8 @@ double store_rounding(filters::StorePrecision store) {
   return 0.0;
 }
 
-/// How far off E[z^2] - E[z]^2 may be, z in [0,1]: both moments are stored `stores` times and are sums of `taps` products;
-/// an error of the mean counts twice.
+/// How far off E[z^2] - E[z]^2 may be, z in [0,1]: both moments are stored `stores` times and are sums of `taps`
+/// products; an error of the mean counts twice.
 double bound_variance_error(filters::StorePrecision store, int stores, int taps) {
   return 3.0 * (stores * store_rounding(store) + taps * kSingleRounding);
 }
@@ -35,16 +37,20 @@ double bound_variance_error(filters::StorePrecision store, int stores, int taps)
 /// Spreads depths over the far half of the range, where squares are rounded most.
 float place_depth(int i, int count) { return static_cast<float>(0.5 + 0.499 * (i + 0.618) / count); }
 
-double read_minimum(const DrivenFilter& driven, const filters::ParamValues& values) { return filters::number(values, driven.param); }
+double read_minimum(const DrivenFilter& driven, const filters::ParamValues& values) {
+  return filters::number(values, driven.param);
+}
 
-/// Variance shadow maps are exact where a kernel holds two depths and the receiver is at the farther one: visibility is that
-/// depth's share. With a minimum of the variance it is more.
+/// Variance shadow maps are exact where a kernel holds two depths and the receiver is at the farther one: visibility is
+/// that depth's share. With a minimum of the variance it is more.
 std::vector<double> expect_visibility(const EdgeScene& edge, const std::vector<EdgeDepths>& bands, double minimum) {
   std::vector<double> visibility;
   for (std::size_t i = 0; i < edge.lit_share.size(); ++i) {
     const EdgeDepths& band = bands[edge.band[i]];
-    const double gap = static_cast<double>(band.receiver) - static_cast<double>(band.occluder), share = edge.lit_share[i];
-    const double distance = (1.0 - share) * gap, variance = std::max(share * (1.0 - share) * gap * gap, static_cast<double>(static_cast<float>(minimum)));
+    const double gap = static_cast<double>(band.receiver) - static_cast<double>(band.occluder),
+                 share = edge.lit_share[i];
+    const double distance = (1.0 - share) * gap, variance = std::max(share * (1.0 - share) * gap * gap,
+                                                                     static_cast<double>(static_cast<float>(minimum)));
     visibility.push_back(distance > 0.0 ? variance / (variance + distance * distance) : 1.0);
   }
   return visibility;
@@ -59,7 +65,8 @@ std::vector<EdgeDepths> make_bands(double ratio) {
   return bands;
 }
 
-/// An error e of the variance moves visibility by e / gap^2 at most. With a minimum m it cannot move by more than e / (4 m).
+/// An error e of the variance moves visibility by e / gap^2 at most. With a minimum m it cannot move by more than e /
+/// (4 m).
 Theory make_theory(double error, double minimum, double bound, Verdict predicts) {
   Theory theory{std::nullopt, TheoryKind::kRounding, {}, kSource, predicts};
   if (minimum > 0.0 && error / (4.0 * minimum) < bound) {
@@ -75,13 +82,18 @@ Theory make_theory(double error, double minimum, double bound, Verdict predicts)
 std::string explain_unmet_bound(const Disagreement& missed) {
   if (missed.measured) return {};
   double largest = 0.0;
-  for (const report::StressSample& sample : missed.record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
+  for (const report::StressSample& sample : missed.record.samples)
+    largest = std::max(largest, sample.measured.value_or(0.0));
   const double bound = missed.theory.predicts == Verdict::kDegraded ? kBound : kLargestFall, factor = bound / largest;
   if (factor > report::tolerance_of(TheoryKind::kRounding)) return {};
-  return fmt::format("the minimum variance stops the error at {:.2g}, a factor {:.1f} below {:g}; theory adds all roundings up, which here partly cancel", largest, factor, bound);
+  return fmt::format(
+      "the minimum variance stops the error at {:.2g}, a factor {:.1f} below {:g}; theory adds all roundings up, which "
+      "here partly cancel",
+      largest, factor, bound);
 }
 
-Case make_filter_case(const StressContext& context, const DrivenFilter& driven, const std::string& store, double minimum, Level level) {
+Case make_filter_case(const StressContext& context, const DrivenFilter& driven, const std::string& store,
+                      double minimum, Level level) {
   filters::FilterRequest request = driven.request;
   request.values["store"] = store;
   request.values[driven.param] = minimum;
@@ -89,11 +101,14 @@ Case make_filter_case(const StressContext& context, const DrivenFilter& driven, 
   const auto [probe, reason] = make_probe(context, request, level);
   if (!probe) return make_absent_case(request.spec.id, variant, level, reason);
   const int radius = filters::prefilter_radius_texels(request.spec, request.values);
-  const double error = bound_variance_error(filters::store_precision(store), radius > 0 ? 3 : 1, radius > 0 ? 2 * (2 * radius + 1) : 2);
+  const double error =
+      bound_variance_error(filters::store_precision(store), radius > 0 ? 3 : 1, radius > 0 ? 2 * (2 * radius + 1) : 2);
   Case item = start_case(request, variant, level);
-  item.theories = {make_theory(error, minimum, kBound, Verdict::kDegraded), make_theory(error, minimum, kLargestFall, Verdict::kBroken)};
+  item.theories = {make_theory(error, minimum, kBound, Verdict::kDegraded),
+                   make_theory(error, minimum, kLargestFall, Verdict::kBroken)};
   item.explain = explain_unmet_bound;
-  item.observe = [probe = probe, edge = make_edge_scene(radius, make_bands(1.0)), values = request.values, minimum](double ratio) mutable {
+  item.observe = [probe = probe, edge = make_edge_scene(radius, make_bands(1.0)), values = request.values,
+                  minimum](double ratio) mutable {
     const std::vector<EdgeDepths> bands = make_bands(ratio);
     set_depths(edge, bands);
     return judge(probe->look(edge.scene, values), {expect_visibility(edge, bands, minimum), kBound, edge.run});
@@ -112,10 +127,13 @@ double find_variance(float depth, filters::StorePrecision store) {
   return static_cast<double>(mean_of_squares) - static_cast<double>(mean) * static_cast<double>(mean);
 }
 
-/// A wall that blocks everything, a gap before the receiver: what light passes is made by the variance that is not there.
+/// A wall that blocks everything, a gap before the receiver: what light passes is made by the variance that is not
+/// there.
 Observation observe_wall(double largest_variance, double ratio) {
   const double gap = 1.0 / ratio, leak = largest_variance / (largest_variance + gap * gap);
-  const std::string why = fmt::format("visibility {:.2g} behind a wall: its variance is {:.2g} instead of 0, the gap squared {:.2g}", leak, largest_variance, gap * gap);
+  const std::string why =
+      fmt::format("visibility {:.2g} behind a wall: its variance is {:.2g} instead of 0, the gap squared {:.2g}", leak,
+                  largest_variance, gap * gap);
   if (leak > 1.0 - kBound) return {Verdict::kBroken, leak, why + "; all is lit"};
   if (leak > kBound) return {Verdict::kDegraded, leak, why};
   return {Verdict::kOk, leak, {}};
@@ -129,7 +147,8 @@ Case make_wall_case(const char* name, filters::StorePrecision store) {
   item.variant = fmt::format("{}, {} taps of one depth, no minimum", name, kTaps);
   item.level = Level::kArithmetic;
   const auto theory = [&](double leak, Verdict predicts) {
-    return Theory{std::sqrt(leak / ((1.0 - leak) * error)), TheoryKind::kRounding, fmt::format("sqrt({:g} / ({:g} x {:.2g}))", leak, 1.0 - leak, error), kSource, predicts};
+    return Theory{std::sqrt(leak / ((1.0 - leak) * error)), TheoryKind::kRounding,
+                  fmt::format("sqrt({:g} / ({:g} x {:.2g}))", leak, 1.0 - leak, error), kSource, predicts};
   };
   item.theories = {theory(kBound, Verdict::kDegraded), theory(1.0 - kBound, Verdict::kBroken)};
   item.observe = [largest](double ratio) { return observe_wall(largest, ratio); };
@@ -143,15 +162,17 @@ std::vector<double> list_minima(const DrivenFilter& driven) {
   return set || chosen == 0.0 ? std::vector{chosen} : std::vector{chosen, 0.0};
 }
 
-std::string driven_param(const filters::FilterSpec& spec) { return spec.exponent.empty() ? spec.variance_floor : std::string(); }
+std::string driven_param(const filters::FilterSpec& spec) {
+  return spec.exponent.empty() ? spec.variance_floor : std::string();
+}
 
 std::vector<Case> make_cases(const StressContext& context) {
   std::vector<Case> cases;
   for (const DrivenFilter& driven : find_driven(context, driven_param)) {
     for (const std::string& store : list_choices(driven.request, "store")) {
-      for (const double minimum : list_minima(driven)) {
-        for (const Level level : {Level::kGl, Level::kModel}) cases.push_back(make_filter_case(context, driven, store, minimum, level));
-      }
+      for (const double minimum : list_minima(driven))
+        for (const Level level : {Level::kGl, Level::kModel})
+          cases.push_back(make_filter_case(context, driven, store, minimum, level));
     }
   }
   if (cases.empty()) cases.push_back(make_undriven_case("'variance_floor' without 'exponent'"));
@@ -172,7 +193,9 @@ Axis make_vsm_cancellation_axis() {
   axis.coarse_samples = 43;
   axis.measured = "largest error of visibility";
   axis.bound = kBound;
-  axis.broken_when = "visibility is not finite, all lit or all dark, or falls by more than 0.1 from dark to light; of arithmetic: over 0.98 behind a wall";
+  axis.broken_when =
+      "visibility is not finite, all lit or all dark, or falls by more than 0.1 from dark to light; of arithmetic: "
+      "over 0.98 behind a wall";
   axis.driven_param = driven_param;
   axis.make_cases = make_cases;
   return axis;

@@ -39,10 +39,13 @@ class Advise : public ProgramTest {
   /// Points the program at filters of our own, of which `soft` claims something.
   std::string with_claims() const {
     const std::filesystem::path root = folder() / "root";
-    for (const char* name : {"filters", "shaders", "harness/scenes", "harness/experiments"}) std::filesystem::create_directories(root / name);
-    const std::string body = "kind = \"other\"\nradius_texels = 0\n+++*/\nfloat visibility(Receiver r) { return 1.0; }\n";
+    for (const char* name : {"filters", "shaders", "harness/scenes", "harness/experiments"})
+      std::filesystem::create_directories(root / name);
+    const std::string body =
+        "kind = \"other\"\nradius_texels = 0\n+++*/\nfloat visibility(Receiver r) { return 1.0; }\n";
     write("root/filters/none.glsl", "/*+++\ntitle = \"N\"\nsource = \"s\"\n" + body);
-    write("root/filters/tent3x3.glsl", "/*+++\ntitle = \"T\"\nsource = \"s\"\nclaims = [\"contact-hardening\"]\n" + body);
+    write("root/filters/tent3x3.glsl",
+          "/*+++\ntitle = \"T\"\nsource = \"s\"\nclaims = [\"contact-hardening\"]\n" + body);
     return root.string();
   }
 };
@@ -56,7 +59,8 @@ TEST_F(Advise, GivesTheCheapestThatKeepsTheLimits) {
 }
 
 TEST_F(Advise, Options_ReachTheRequest) {
-  EXPECT_THAT(run("advise run --light static").out, StartsWith("none, map 1024 × 1024 d32f: 1 ms (CPU) a frame, static"));
+  EXPECT_THAT(run("advise run --light static").out,
+              StartsWith("none, map 1024 × 1024 d32f: 1 ms (CPU) a frame, static"));
   EXPECT_THAT(run("advise run --cheapest bytes").out, HasSubstr(": 4194304 bytes; cheapest of 2"));
   EXPECT_THAT(run("advise run --scene cubes --scene stack").out, HasSubstr("on cubes, stack."));
   EXPECT_THAT(run("advise --scene cubes run").out, HasSubstr("judged, on cubes."));
@@ -72,7 +76,8 @@ TEST_F(Advise, EveryLimitOfTheTable_IsAnOption) {
 }
 
 TEST_F(Advise, NothingFits_ExitsWithOneAndNamesTheLimit) {
-  expect_refusal("advise run --max-rmse 0.001", 1, {"none of 2 configurations", "--max-rmse 0.001", "0.02 would let tent3x3"});
+  expect_refusal("advise run --max-rmse 0.001", 1,
+                 {"none of 2 configurations", "--max-rmse 0.001", "0.02 would let tent3x3"});
   const Outcome outcome = run("advise run --max-rmse 0.001 --json");
   EXPECT_EQ(outcome.exit_code, 1);
   const nlohmann::json json = nlohmann::json::parse(outcome.out);
@@ -91,9 +96,8 @@ TEST_F(Advise, Json_HoldsTheAnswer) {
 }
 
 TEST_F(Advise, LimitsThatAreNotNumbers_AreUsageErrors) {
-  for (const char* value : {"abc", "nan", "inf", "-1", "-0.5", "1e999", "5ms", "' '", "0x10"}) {
+  for (const char* value : {"abc", "nan", "inf", "-1", "-0.5", "1e999", "5ms", "' '", "0x10"})
     expect_refusal(std::string("advise run --max-rmse=") + value, 2, {"--max-rmse", "must be a number, 0 or more"});
-  }
   expect_refusal("advise run --max-bytes -1", 2, {"--max-bytes: '-1' must be a number, 0 or more"});
   expect_refusal("advise run --max-rmse", 2, {"--max-rmse"});
   expect_refusal("advise run --max-rmse ''", 2, {"--max-rmse"});
@@ -131,18 +135,19 @@ TEST_F(Advise, Requires_ReadsTheClaimsOfTheBuiltInFilters) {
   EXPECT_THAT(outcome.out, StartsWith("tent3x3,")) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("--requires contact-hardening  claimed"));
   EXPECT_THAT(outcome.out, HasSubstr("without --requires contact-hardening  saves 3 ms (CPU)"));
-  expect_refusal("advise run --requires temporal", 2, {"no filter claims 'temporal'", "filters claim contact-hardening"});
+  expect_refusal("advise run --requires temporal", 2,
+                 {"no filter claims 'temporal'", "filters claim contact-hardening"});
   unsetenv("SHADOWBENCH_ROOT");
 }
 
 TEST_F(Advise, DoesNotLoadTheImageLibraries) {
-  const std::string command = "cd '" + folder().string() + "' && LD_DEBUG=files '" SHADOWBENCH_PROGRAM "' advise run >out.txt 2>debug.txt";
+  const std::string command =
+      "cd '" + folder().string() + "' && LD_DEBUG=files '" SHADOWBENCH_PROGRAM "' advise run >out.txt 2>debug.txt";
   ASSERT_EQ(std::system(command.c_str()), 0);
   const std::string files = read_text(folder() / "debug.txt");
   EXPECT_THAT(files, HasSubstr("libfmt"));
-  for (const char* library : {"OpenImageIO", "OpenEXR", "embree"}) {
+  for (const char* library : {"OpenImageIO", "OpenEXR", "embree"})
     EXPECT_EQ(files.find(library), std::string::npos) << library;
-  }
 }
 
 }  // namespace

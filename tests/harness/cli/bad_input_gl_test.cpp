@@ -21,7 +21,9 @@ TEST_F(BadInput, ParameterOutOfRange) {
   expect_refusal(small("--filters esm:c=1e9"), 2, {"esm:c=", "out of range", "1 .. 2000"});
 }
 TEST_F(BadInput, ParameterNotANumber) { expect_refusal(small("--filters esm:c=nan"), 2, {"'nan'", "finite number"}); }
-TEST_F(BadInput, ParameterNotAChoice) { expect_refusal(small("--filters poisson:taps=5"), 2, {"taps=5", "4, 8, 16, 32"}); }
+TEST_F(BadInput, ParameterNotAChoice) {
+  expect_refusal(small("--filters poisson:taps=5"), 2, {"taps=5", "4, 8, 16, 32"});
+}
 TEST_F(BadInput, SameFilterTwice) { expect_refusal(small("--filters none,none"), 2, {"'none' twice"}); }
 TEST_F(BadInput, SameParametersInOtherWords) { expect_refusal(small("--filters vsm,vsm:radius=4"), 2, {"twice"}); }
 TEST_F(BadInput, UnknownScene) { expect_refusal("run --out out --scene cube", 2, {"cube", "cubes"}); }
@@ -62,7 +64,9 @@ TEST_F(BadInput, SameMapSizeTwice) { expect_refusal("run --out out --map-size 64
 TEST_F(BadInput, PictureSizeMalformed) { expect_refusal("run --out out --size 64", 2, {"--size", "WIDTHxHEIGHT"}); }
 TEST_F(BadInput, PictureLargerThanTheGl) { expect_refusal("run --out out --size 100000x10", 2, {"100000"}); }
 TEST_F(BadInput, UnknownMapFormat) { expect_refusal(small("--map-format d32"), 2, {"'d32'", "d16, d24, d32f"}); }
-TEST_F(BadInput, ColourFormatForTheMap) { expect_refusal(small("--map-format r32f"), 2, {"unknown depth format 'r32f'"}); }
+TEST_F(BadInput, ColourFormatForTheMap) {
+  expect_refusal(small("--map-format r32f"), 2, {"unknown depth format 'r32f'"});
+}
 TEST_F(BadInput, UnknownFit) { expect_refusal(small("--fit box"), 2, {"'box'", "sphere, tight, view"}); }
 TEST_F(BadInput, SnapWithNothing) { expect_refusal(small("--snap"), 2, {"--snap"}); }
 TEST_F(BadInput, SnapUnknown) { expect_refusal(small("--snap perhaps"), 2, {"--snap", "perhaps"}); }
@@ -76,16 +80,19 @@ TEST_F(BadInput, SamplersOfAReversedMap) {
   text.insert(text.find("float visibility"), "float raw(Receiver r) { return texture(map_depth, r.uv).r; }\n");
   write("raw.glsl", text);
   expect_refusal(small("--reversed-depth --filter-file raw.glsl"), 2, {"--reversed-depth", "'raw'", "compare_nearest"});
-  expect_refusal(small("--perspective-depth 9 --filter-file raw.glsl"), 2, {"--perspective-depth", "'raw'", "compare_nearest"});
+  expect_refusal(small("--perspective-depth 9 --filter-file raw.glsl"), 2,
+                 {"--perspective-depth", "'raw'", "compare_nearest"});
 }
 TEST_F(BadInput, PerspectiveDepthOutOfRange) {
   for (const char* ratio : {"1", "0.5", "-3", "nan", "inf", "1e8"}) {
-    expect_refusal(small(std::string("--perspective-depth ") + ratio), 2, {"--perspective-depth", "more than 1, at most 1e+07"});
+    expect_refusal(small(std::string("--perspective-depth ") + ratio), 2,
+                   {"--perspective-depth", "more than 1, at most 1e+07"});
   }
   expect_refusal(small("--perspective-depth far"), 2, {"--perspective-depth", "far"});
 }
 TEST_F(BadInput, PolygonOffsetOnPerspectiveDepth) {
-  expect_refusal(small("--perspective-depth 9 --bias polygon-offset:factor=1"), 2, {"polygon-offset", "--perspective-depth"});
+  expect_refusal(small("--perspective-depth 9 --bias polygon-offset:factor=1"), 2,
+                 {"polygon-offset", "--perspective-depth"});
 }
 TEST_F(BadInput, NegativeBias) { expect_refusal(small("--bias plane:kernels=-1"), 2, {"--bias", "'-1'"}); }
 TEST_F(BadInput, BiasThatAFilterCannotUse) {
@@ -94,24 +101,36 @@ TEST_F(BadInput, BiasThatAFilterCannotUse) {
 
 TEST_F(BadInput, CullingThatEmptiesTheMap) {
   write("open.toml",
-        "title = \"open\"\n[camera]\nposition = [3, 5, 5]\ntarget = [0, 0, 0]\n[light]\nazimuth_deg = 40\nelevation_deg = 50\n"
+        "title = \"open\"\n[camera]\nposition = [3, 5, 5]\ntarget = [0, 0, 0]\n[light]\nazimuth_deg = "
+        "40\nelevation_deg = 50\n"
         "[[object]]\nshape = \"plane\"\nsize = [8, 8]\n");
-  expect_refusal("run --out out --size 64x36 --map-size 64 --rounds 1 --filters none --scene open.toml --bias front-cull", 2,
-                 {"front-cull", "'open'", "may_cull_front"});
+  expect_refusal(
+      "run --out out --size 64x36 --map-size 64 --rounds 1 --filters none --scene open.toml --bias front-cull", 2,
+      {"front-cull", "'open'", "may_cull_front"});
 }
 
 TEST_F(BadInput, UnknownBias) { expect_refusal(small("--bias slop:kernels=1"), 2, {"did you mean 'slope'"}); }
-TEST_F(BadInput, UnknownBorder) { expect_refusal(small("--border mirror"), 2, {"--border", "mirror", "border", "edge", "repeat"}); }
+TEST_F(BadInput, UnknownBorder) {
+  expect_refusal(small("--border mirror"), 2, {"--border", "mirror", "border", "edge", "repeat"});
+}
 TEST_F(BadInput, UnknownFarTest) { expect_refusal(small("--far-test yes"), 2, {"--far-test", "yes", "on", "off"}); }
-TEST_F(BadInput, UnknownBehindTest) { expect_refusal(small("--behind-test 0"), 2, {"--behind-test", "0", "on", "off"}); }
+TEST_F(BadInput, UnknownBehindTest) {
+  expect_refusal(small("--behind-test 0"), 2, {"--behind-test", "0", "on", "off"});
+}
 TEST_F(BadInput, NoRounds) { expect_refusal("run --out out --scene cubes --rounds 0", 2, {"--rounds", "'0'"}); }
-TEST_F(BadInput, RoundsThatAreNoNumber) { expect_refusal("run --out out --scene cubes --rounds some", 2, {"--rounds", "some"}); }
-TEST_F(BadInput, TooManyRounds) { expect_refusal("run --out out --scene cubes --rounds 10001", 2, {"--rounds", "10001", "10000"}); }
+TEST_F(BadInput, RoundsThatAreNoNumber) {
+  expect_refusal("run --out out --scene cubes --rounds some", 2, {"--rounds", "some"});
+}
+TEST_F(BadInput, TooManyRounds) {
+  expect_refusal("run --out out --scene cubes --rounds 10001", 2, {"--rounds", "10001", "10000"});
+}
 TEST_F(BadInput, PrecisionOutOfRange) {
-  for (const char* value : {"0", "-1", "nan", "1.5"}) expect_refusal(small(std::string("--precision ") + value), 2, {"--precision", "at most 1"});
+  for (const char* value : {"0", "-1", "nan", "1.5"})
+    expect_refusal(small(std::string("--precision ") + value), 2, {"--precision", "at most 1"});
 }
 TEST_F(BadInput, BudgetOutOfRange) {
-  for (const char* value : {"0", "-1", "nan", "inf"}) expect_refusal(small(std::string("--budget ") + value), 2, {"--budget", "3600"});
+  for (const char* value : {"0", "-1", "nan", "inf"})
+    expect_refusal(small(std::string("--budget ") + value), 2, {"--budget", "3600"});
 }
 TEST_F(BadInput, UnknownContext) { expect_refusal(small("--gl vulkan"), 2, {"vulkan"}); }
 TEST_F(BadInput, NoContext) {
@@ -126,9 +145,7 @@ TEST_F(BadInput, OutputFolderCannotBeWritten) {
   EXPECT_NE(outcome.err.find("out"), std::string::npos);
   EXPECT_EQ(read_text(folder() / "out"), "a file, not a folder");
 }
-TEST_F(BadInput, MissingFilterFile) {
-  expect_refusal(small("--filter-file no/such.glsl"), 5, {"no/such.glsl"});
-}
+TEST_F(BadInput, MissingFilterFile) { expect_refusal(small("--filter-file no/such.glsl"), 5, {"no/such.glsl"}); }
 TEST_F(BadInput, FrontMatterMistakeNamesFileAndLine) {
   expect_refusal(small("--filter-file " + user_filter("broken_front_matter.glsl")), 5,
                  {"broken_front_matter.glsl:7", "defualt", "did you mean 'default'"});
@@ -154,17 +171,21 @@ std::string with_front_matter(const std::string& glsl) {
 }
 
 TEST_F(BadInput, GlslThatCallsItself) {
-  write("itself.glsl", with_front_matter("float down(float x) { return x < 0.0 ? x : down(x - 1.0); }\nfloat visibility(Receiver r) { return down(r.depth); }\n"));
+  write("itself.glsl", with_front_matter("float down(float x) { return x < 0.0 ? x : down(x - 1.0); }\nfloat "
+                                         "visibility(Receiver r) { return down(r.depth); }\n"));
   expect_refusal(small("--filter-file itself.glsl"), 5, {"itself.glsl:7", "'down' calls itself", "write a loop"});
-  write("mutual.glsl", with_front_matter("float b(float x);\nfloat a(float x) { return b(x); }\nfloat b(float x) { return a(x); }\n"
-                                         "float visibility(Receiver r) { return a(r.depth); }\n"));
+  write("mutual.glsl",
+        with_front_matter("float b(float x);\nfloat a(float x) { return b(x); }\nfloat b(float x) { return a(x); }\n"
+                          "float visibility(Receiver r) { return a(r.depth); }\n"));
   expect_refusal(small("--filter-file mutual.glsl"), 5, {"mutual.glsl:", "calls itself, directly or through others"});
 }
 
 TEST_F(BadInput, GlslThatIncludesWhatIsNotItsOwn) {
   write("secret.txt", "the_secret\n");
-  for (const std::string& name : {(folder() / "secret.txt").string(), std::string("../../../../../../../../etc/passwd")}) {
-    write("reader.glsl", with_front_matter("#include \"" + name + "\"\nfloat visibility(Receiver r) { return 1.0; }\n"));
+  for (const std::string& name :
+       {(folder() / "secret.txt").string(), std::string("../../../../../../../../etc/passwd")}) {
+    write("reader.glsl",
+          with_front_matter("#include \"" + name + "\"\nfloat visibility(Receiver r) { return 1.0; }\n"));
     expect_refusal(small("--filter-file reader.glsl"), 5, {"reader.glsl:7", "outside the program's shader folder"});
     EXPECT_EQ(run(small("--filter-file reader.glsl")).err.find("the_secret"), std::string::npos);
   }
@@ -195,19 +216,29 @@ TEST_F(BadInput, ControlCharactersInAMessage_AreMadeVisible) {
 
 TEST_F(BadInput, HostileNamesOfSceneAndCamera_StayInTheReportAndAreEscaped) {
   const std::string name = "<script>alert('1')<\" onload=x \n..%2f";
-  write(name + ".toml", "title = \"</title><script>alert(2)</script>\\u0000\\u001b\"\n[light]\nazimuth_deg = 40\nelevation_deg = 50\n"
-                        "[camera]\nname = \"../../../<script>alert(3)</script>\\u0000\\n\\\"x\"\nposition = [3, 5, 5]\ntarget = [0, 0, 0]\n"
-                        "[[material]]\nname = \"<b>\"\ncolor = [1, 1, 1]\n[[object]]\nshape = \"box\"\nsize = [1, 1, 1]\nname = \"../x\"\nmaterial = \"<b>\"\n");
-  std::ofstream(folder() / "run.sh") << "exec '" SHADOWBENCH_PROGRAM "' run --out out/report --size 64x36 --map-size 64 --rounds 1 --filters none,vsm --scene *alert*.toml\n";
-  ASSERT_EQ(std::system(("cd '" + folder().string() + "' && XDG_CACHE_HOME='" + cache_folder().string() + "' sh run.sh >stdout.txt 2>stderr.txt").c_str()), 0)
+  write(name + ".toml",
+        "title = \"</title><script>alert(2)</script>\\u0000\\u001b\"\n[light]\nazimuth_deg = 40\nelevation_deg = 50\n"
+        "[camera]\nname = \"../../../<script>alert(3)</script>\\u0000\\n\\\"x\"\nposition = [3, 5, 5]\ntarget = [0, 0, "
+        "0]\n"
+        "[[material]]\nname = \"<b>\"\ncolor = [1, 1, 1]\n[[object]]\nshape = \"box\"\nsize = [1, 1, 1]\nname = "
+        "\"../x\"\nmaterial = \"<b>\"\n");
+  std::ofstream(folder() / "run.sh")
+      << "exec '" SHADOWBENCH_PROGRAM
+         "' run --out out/report --size 64x36 --map-size 64 --rounds 1 --filters none,vsm --scene *alert*.toml\n";
+  ASSERT_EQ(std::system(("cd '" + folder().string() + "' && XDG_CACHE_HOME='" + cache_folder().string() +
+                         "' sh run.sh >stdout.txt 2>stderr.txt")
+                            .c_str()),
+            0)
       << read_text(folder() / "stderr.txt");
   EXPECT_EQ(read_text(folder() / "stderr.txt").find('\x1b'), std::string::npos);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder() / "out"), {}), 1);
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder()), {}), 6);  // the scene, run.sh, both outputs, out, cache
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder()), {}),
+            6);  // the scene, run.sh, both outputs, out, cache
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder() / "out" / "report")) {
     EXPECT_EQ(entry.path().filename().string().find_first_of("<>'\"\n %"), std::string::npos) << entry.path();
     if (entry.path().extension() != ".html") continue;
-    for (const char* open : {"<script>alert", "<script&gt;alert", "</title&gt;"}) EXPECT_EQ(read_text(entry.path()).find(open), std::string::npos) << entry.path();
+    for (const char* open : {"<script>alert", "<script&gt;alert", "</title&gt;"})
+      EXPECT_EQ(read_text(entry.path()).find(open), std::string::npos) << entry.path();
   }
 }
 

@@ -25,9 +25,8 @@ class BiasCommand : public ProgramTest {
 
   /// The acne of a mode and filter at a factor; "" where it is absent.
   std::string acne(const std::string& mode, const std::string& filter, const std::string& factor) const {
-    for (const auto& row : read_csv()) {
+    for (const auto& row : read_csv())
       if (row.at(3) == mode && row.at(5) == filter && row.at(6) == factor) return row.at(11);
-    }
     return "no row";
   }
 };
@@ -38,7 +37,8 @@ TEST_F(BiasCommand, WritesPageTableAndPictures_ForEveryMode) {
   EXPECT_THAT(outcome.out, HasSubstr("out/bias.html"));
   std::map<std::string, int> rows;
   for (const auto& row : read_csv()) ++rows[row.at(3)];
-  for (const char* mode : {"constant", "slope", "plane", "normal-offset", "polygon-offset"}) EXPECT_EQ(rows[mode], 3 * 8) << mode;
+  for (const char* mode : {"constant", "slope", "plane", "normal-offset", "polygon-offset"})
+    EXPECT_EQ(rows[mode], 3 * 8) << mode;
   EXPECT_EQ(rows["receiver-plane"], 2 * 8);  // VSM reads a prefiltered map
   for (const char* mode : {"front-cull", "midpoint"}) EXPECT_EQ(rows[mode], 3) << mode;
   const std::string page = read_text(folder() / "out" / "bias.html");
@@ -53,7 +53,8 @@ TEST_F(BiasCommand, WritesPageTableAndPictures_ForEveryMode) {
 /// The legend names the filters that are drawn; nothing is said of a map that culling emptied.
 TEST_F(BiasCommand, FiltersThatAreLeftOut_HaveNoCurve) {
   write("open.toml",
-        "title = \"open\"\n[camera]\nposition = [3, 5, 5]\ntarget = [0, 0, 0]\n[light]\nazimuth_deg = 40\nelevation_deg = 50\n"
+        "title = \"open\"\n[camera]\nposition = [3, 5, 5]\ntarget = [0, 0, 0]\n[light]\nazimuth_deg = "
+        "40\nelevation_deg = 50\n"
         "[[object]]\nshape = \"plane\"\nsize = [8, 8]\n");
   ASSERT_EQ(run("bias --out out --scene open.toml --size 160x90 --map-size 128 --filters none,vsm").exit_code, 0);
   for (const auto& row : read_csv()) EXPECT_NE(row.at(3), "front-cull");
@@ -84,7 +85,8 @@ TEST_F(BiasCommand, BadInput_IsRefused) {
   expect_refusal("bias --out out --filters none,none", 2, {"names 'none' twice"});
   expect_refusal("bias --out out --map-size 0", 2, {"--map-size", "'0'"});
   expect_refusal("bias --out out --size 12", 2, {"--size", "'12'"});
-  expect_refusal("bias --out out --size 8x8 --map-size 64 --filters none", 3, {"wholly lit", "100 are needed", "--size"});
+  expect_refusal("bias --out out --size 8x8 --map-size 64 --filters none", 3,
+                 {"wholly lit", "100 are needed", "--size"});
   write("file", "");
   expect_refusal("bias --out file/out --size 64x36 --map-size 64", 6, {"file"});
 }

@@ -22,9 +22,8 @@ TEST_F(Recheck, DiffOfTheSavedPictures_GivesTheErrorsOfTheRun) {
                                ".visibility' 'out/cubes.exr#truth.area' --mask 'out/cubes.exr#truth.mask'");
     ASSERT_EQ(values.exit_code, 0) << values.err;
     const nlohmann::json diff = nlohmann::json::parse(values.out);
-    for (const char* name : {"rmse", "mae", "p95", "max", "mean"}) {
+    for (const char* name : {"rmse", "mae", "p95", "max", "mean"})
       EXPECT_EQ(diff[name].get<double>(), error[name].get<double>()) << label << " " << name;
-    }
     EXPECT_NE(error["rmse"], 0.0);
     EXPECT_EQ(diff["compared"], results["cells"][i]["receivers"]);
     EXPECT_EQ(diff["not_finite"], 0);

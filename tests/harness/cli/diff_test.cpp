@@ -171,9 +171,8 @@ TEST_F(Diff, Help_DoesNotLoadTheImageLibraries) {
 TEST_F(Diff, ListMetrics_DefinesWhatARunReports) {
   const Outcome outcome = run("list metrics");
   EXPECT_EQ(outcome.exit_code, 0);
-  for (const char* word : {"error.rmse", "truth.se", "artefact.contact_gap", "attribution.model.share", "0 .. 1"}) {
+  for (const char* word : {"error.rmse", "truth.se", "artefact.contact_gap", "attribution.model.share", "0 .. 1"})
     EXPECT_THAT(outcome.out, HasSubstr(word));
-  }
   const nlohmann::json json = nlohmann::json::parse(run("list metrics --json").out);
   for (const auto& metric : json) {
     EXPECT_FALSE(metric["definition"].get<std::string>().empty()) << metric;
@@ -192,7 +191,8 @@ class DiffRuns : public ProgramTest {
 
   void write_run(const std::string& name, double vsm_ms, double esm_ms) const {
     std::vector<std::string> keys;
-    for (const report::CellRecord& cell : {report::make_cell("cubes", "vsm", vsm_ms), report::make_cell("cubes", "esm", esm_ms)}) {
+    for (const report::CellRecord& cell :
+         {report::make_cell("cubes", "vsm", vsm_ms), report::make_cell("cubes", "esm", esm_ms)}) {
       report::write_cell(folder() / name, cell);
       keys.push_back(cell.key);
     }
@@ -203,9 +203,11 @@ class DiffRuns : public ProgramTest {
 TEST_F(DiffRuns, CountsIntervalsThatOverlapAndNamesTheOthers) {
   const Outcome outcome = run("diff a b");
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_EQ(outcome.out,
-            "cells        2 in both\noverlapping  1 of 2 95 % intervals of ratios to none\napart, the widest gap first:\n"
-            "  cubes (main), esm (radius 4, store rg32f), map 1024, picture 960 x 540: lookup 1 [0.99, 1.01] against 2 [1.98, 2.02]\n");
+  EXPECT_EQ(
+      outcome.out,
+      "cells        2 in both\noverlapping  1 of 2 95 % intervals of ratios to none\napart, the widest gap first:\n"
+      "  cubes (main), esm (radius 4, store rg32f), map 1024, picture 960 x 540: lookup 1 [0.99, 1.01] against 2 "
+      "[1.98, 2.02]\n");
   EXPECT_THAT(outcome.err, HasSubstr("1 of 2 ratio intervals overlap; widest apart: cubes (main), esm"));
   EXPECT_EQ(run("diff a/results.json b/results.json").out, outcome.out);
   EXPECT_EQ(run("diff a a").exit_code, 0);

@@ -13,7 +13,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr const char* kRun = "run --fresh --no-grids --size 64x36 --map-size 32 --rounds 1 --scene cubes --filters none,pcf2x2 --out out ";
+constexpr const char* kRun =
+    "run --fresh --no-grids --size 64x36 --map-size 32 --rounds 1 --scene cubes --filters none,pcf2x2 --out out ";
 
 class FaultCache : public FaultTest {
  protected:
@@ -37,9 +38,9 @@ class FaultCache : public FaultTest {
     const Outcome outcome = run(kRun + arguments);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_EQ(results()["work"]["truths_traced"], traced);
-    for (std::size_t i = 0; i < 2; ++i) {
-      for (const char* part : {"error", "attribution", "artefact", "truth"}) EXPECT_EQ(results()["cells"][i][part], results("whole")["cells"][i][part]) << part;
-    }
+    for (std::size_t i = 0; i < 2; ++i)
+      for (const char* part : {"error", "attribution", "artefact", "truth"})
+        EXPECT_EQ(results()["cells"][i][part], results("whole")["cells"][i][part]) << part;
   }
 
   static void flip_bit(const std::filesystem::path& path, std::uintmax_t at) {
@@ -92,7 +93,8 @@ TEST_F(FaultCache, AFolderOrAPipeInAFilesPlace_IsSaidOrReplaced) {
   std::filesystem::remove(all[0]);
   std::filesystem::create_directories(all[0] / "inside");
   expect_traced_again(1);
-  EXPECT_THAT(read_text(folder() / "stderr.txt"), HasSubstr("warning: traced images are not kept for the next run: " + all[0].string()));
+  EXPECT_THAT(read_text(folder() / "stderr.txt"),
+              HasSubstr("warning: traced images are not kept for the next run: " + all[0].string()));
   std::filesystem::remove_all(all[0]);
   ASSERT_EQ(mkfifo(all[0].c_str(), 0600), 0);
   expect_traced_again(1);
@@ -102,7 +104,8 @@ TEST_F(FaultCache, AFolderOrAPipeInAFilesPlace_IsSaidOrReplaced) {
 TEST_F(FaultCache, OnAReadOnlyMount_IsRead_AndNotWritten) {
   const auto shell = find_mounting_shell();
   if (!shell) GTEST_SKIP() << "no file system can be mounted here (neither as root nor with 'unshare -rm')";
-  const std::string script = "mount --bind cache cache && mount -o remount,bind,ro cache || exit 98\nrm -f cache/no 2>/dev/null\nshadowbench ";
+  const std::string script =
+      "mount --bind cache cache && mount -o remount,bind,ro cache || exit 98\nrm -f cache/no 2>/dev/null\nshadowbench ";
   EXPECT_EQ(run_script(*shell, script + kRun), 0);
   EXPECT_EQ(results()["work"]["truths_traced"], 0);
   EXPECT_THAT(read_text(folder() / "script.txt"), Not(HasSubstr("warning")));
@@ -115,14 +118,18 @@ TEST_F(FaultCache, ThatCannotBeCreated_IsSaid) {
   write("taken", "a file");
   const std::size_t all = files().size();
   expect_traced_again(all, "--cache taken/inner");
-  EXPECT_THAT(read_text(folder() / "stderr.txt"), HasSubstr("warning: traced images are not kept for the next run: taken/inner"));
+  EXPECT_THAT(read_text(folder() / "stderr.txt"),
+              HasSubstr("warning: traced images are not kept for the next run: taken/inner"));
 }
 
 /// What a killed run left is cleared away; what a living process is writing is not.
 TEST_F(FaultCache, HalfWrittenFilesOfTheDead_AreRemoved) {
   const auto path = files().front();
-  const auto of = [&](const std::string& process) { return path.parent_path() / ("x.shadowbench-tmp-" + process + ".exr"); };
-  for (const std::string& process : {std::string("99999999"), std::to_string(getpid())}) std::ofstream(of(process)) << "half";
+  const auto of = [&](const std::string& process) {
+    return path.parent_path() / ("x.shadowbench-tmp-" + process + ".exr");
+  };
+  for (const std::string& process : {std::string("99999999"), std::to_string(getpid())})
+    std::ofstream(of(process)) << "half";
   expect_traced_again(0);
   EXPECT_FALSE(std::filesystem::exists(of("99999999")));
   EXPECT_TRUE(std::filesystem::exists(of(std::to_string(getpid()))));

@@ -1,4 +1,5 @@
-// A disk that fills up while a report is written: one message, nothing half-written, and the run goes on where there is room.
+// A disk that fills up while a report is written: one message, nothing half-written, and the run goes on where there is
+// room.
 
 #include "tests/harness/cli/faults.h"
 
@@ -41,15 +42,18 @@ class FaultDisk : public FaultTest {
 
 TEST_F(FaultDisk, FullDuringAReport_LeavesNothingHalfWritten_AndGoesOnWithRoom) {
   const auto shell = find_mounting_shell();
-  if (!shell) GTEST_SKIP() << "no file system can be mounted here (neither as root nor with 'unshare -rm'); the limit on file sizes stands for it";
+  if (!shell)
+    GTEST_SKIP() << "no file system can be mounted here (neither as root nor with 'unshare -rm'); the limit on file "
+                    "sizes stands for it";
   const double bytes = static_cast<double>(count_bytes());
   for (const int percent : {8, 30, 55, 75, 88, 96}) {
     const std::string name = "full" + std::to_string(percent);
     const auto room = static_cast<std::uintmax_t>(bytes * percent / 100.0);
-    const std::string script = "mkdir -p disk && mount -t tmpfs -o size=" + std::to_string(room) + " none disk || exit 98\n" +
-                               "shadowbench " + kRun + "--out disk/out 2>" + name + ".txt\ncode=$?\ncp -r disk/out " + name +
-                               "\nmount -o remount,size=64m disk || exit 97\nshadowbench " + kRun + "--out disk/out 2>" + name + ".then.txt\necho $? >" + name +
-                               ".then\ncp -r disk/out " + name + "_whole\nexit $code\n";
+    const std::string script =
+        "mkdir -p disk && mount -t tmpfs -o size=" + std::to_string(room) + " none disk || exit 98\n" + "shadowbench " +
+        kRun + "--out disk/out 2>" + name + ".txt\ncode=$?\ncp -r disk/out " + name +
+        "\nmount -o remount,size=64m disk || exit 97\nshadowbench " + kRun + "--out disk/out 2>" + name +
+        ".then.txt\necho $? >" + name + ".then\ncp -r disk/out " + name + "_whole\nexit $code\n";
     expect_survived(name, run_script(*shell, script));
   }
 }
@@ -58,9 +62,11 @@ TEST_F(FaultDisk, FullDuringAReport_LeavesNothingHalfWritten_AndGoesOnWithRoom) 
 TEST_F(FaultDisk, FilesThatMayNotGrow_LeaveNothingHalfWritten_AndTheRunGoesOn) {
   for (const int blocks : {2, 16, 100}) {  // of 512 bytes
     const std::string name = "limit" + std::to_string(blocks);
-    const std::string script = std::string("mkdir ") + name + "\n(ulimit -f " + std::to_string(blocks) + "; shadowbench " + kRun + "--no-cache --out " + name + "/out) 2>" + name +
-                               ".txt\ncode=$?\ncp -r " + name + "/out kept\nshadowbench " + kRun + "--out " + name + "/out 2>" + name + ".then.txt\necho $? >" + name +
-                               ".then\nmv " + name + "/out " + name + "_whole\nrm -r " + name + "\nmv kept " + name + "\nexit $code\n";
+    const std::string script = std::string("mkdir ") + name + "\n(ulimit -f " + std::to_string(blocks) +
+                               "; shadowbench " + kRun + "--no-cache --out " + name + "/out) 2>" + name +
+                               ".txt\ncode=$?\ncp -r " + name + "/out kept\nshadowbench " + kRun + "--out " + name +
+                               "/out 2>" + name + ".then.txt\necho $? >" + name + ".then\nmv " + name + "/out " + name +
+                               "_whole\nrm -r " + name + "\nmv kept " + name + "\nexit $code\n";
     expect_survived(name, run_script("", script));
   }
 }
@@ -68,13 +74,15 @@ TEST_F(FaultDisk, FilesThatMayNotGrow_LeaveNothingHalfWritten_AndTheRunGoesOn) {
 TEST_F(FaultDisk, FullCache_IsSaid_AndCostsNothingElse) {
   const auto shell = find_mounting_shell();
   if (!shell) GTEST_SKIP() << "no file system can be mounted here (neither as root nor with 'unshare -rm')";
-  const std::string script = std::string("mkdir disk && mount -t tmpfs -o size=8k none disk || exit 98\nshadowbench ") + kRun +
-                             "--cache disk/cache --out out 2>messages.txt\ncode=$?\ncp -r disk/cache kept\nexit $code\n";
+  const std::string script =
+      std::string("mkdir disk && mount -t tmpfs -o size=8k none disk || exit 98\nshadowbench ") + kRun +
+      "--cache disk/cache --out out 2>messages.txt\ncode=$?\ncp -r disk/cache kept\nexit $code\n";
   EXPECT_EQ(run_script(*shell, script), 0) << read_text(folder() / "messages.txt");
   EXPECT_THAT(read_text(folder() / "messages.txt"), HasSubstr("traced images are not kept for the next run"));
   expect_whole("kept");
   expect_no_leftovers("kept");
-  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(results()["cells"][i]["error"], results("whole")["cells"][i]["error"]) << i;
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_EQ(results()["cells"][i]["error"], results("whole")["cells"][i]["error"]) << i;
 }
 
 /// What goes to a full disk by way of the shell is lost too, and must not pass for done.

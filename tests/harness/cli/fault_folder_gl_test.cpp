@@ -7,7 +7,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr const char* kSmall = "--size 32x18 --map-size 16 --rounds 1 --scene cubes --no-attribution --filters none,pcf2x2 ";
+constexpr const char* kSmall =
+    "--size 32x18 --map-size 16 --rounds 1 --scene cubes --no-attribution --filters none,pcf2x2 ";
 
 class FaultFolder : public FaultTest {
  protected:
@@ -15,7 +16,11 @@ class FaultFolder : public FaultTest {
 
   /// Starts a run that stays in the folder `out` until it is killed.
   pid_t start_endless() const {
-    return start("run --size 320x180 --map-size 64 --rounds 1 --scene cubes --filters none,endless --cell-timeout 600 --out out --filter-file " + user_filter("endless.glsl"), "first.txt");
+    return start(
+        "run --size 320x180 --map-size 64 --rounds 1 --scene cubes --filters none,endless --cell-timeout 600 --out out "
+        "--filter-file " +
+            user_filter("endless.glsl"),
+        "first.txt");
   }
 
   bool is_taken() const { return std::filesystem::exists(folder() / "out" / ".shadowbench-lock"); }
@@ -23,7 +28,9 @@ class FaultFolder : public FaultTest {
 
 /// Each command that writes a folder.
 std::vector<std::string> list_commands() {
-  return {std::string("run ") + kSmall, std::string("run --no-grids --fresh ") + kSmall, "merge whole",
+  return {std::string("run ") + kSmall,
+          std::string("run --no-grids --fresh ") + kSmall,
+          "merge whole",
           "bias --scene cubes --filters none --map-size 64 --size 160x90",
           "stress --axes taps --filters poisson:taps=8",
           "flicker --scene cubes --filters none --map-size 32 --size 32x18 --frames 2",
@@ -37,7 +44,8 @@ TEST_F(FaultFolder, OfARunThatGoesOn_IsRefusedToAllOthers_AndFreeOnceItIsKilled)
   for (const std::string& command : list_commands()) {
     const Outcome outcome = run(command + " --out out");
     EXPECT_EQ(outcome.exit_code, 6) << command << "\n" << outcome.err;
-    expect_one_message(outcome.err, {"out: ", "process " + std::to_string(first) + " writes into this folder", "--out"});
+    expect_one_message(outcome.err,
+                       {"out: ", "process " + std::to_string(first) + " writes into this folder", "--out"});
   }
   EXPECT_EQ(count_cells(), 0u) << "another wrote into it";
   kill(first, SIGKILL);
@@ -70,7 +78,8 @@ TEST_F(FaultFolder, OfAMergeThatWasStopped_IsGoneOnWith_AndThatOfAnotherIsNot) {
 TEST_F(FaultFolder, TakenByManyAtOnce_BelongsToOne) {
   run_whole();
   std::vector<pid_t> all;
-  for (int i = 0; i < 5; ++i) all.push_back(start("run " + std::string(kSmall) + "--no-grids --out out", "many" + std::to_string(i) + ".txt"));
+  for (int i = 0; i < 5; ++i)
+    all.push_back(start("run " + std::string(kSmall) + "--no-grids --out out", "many" + std::to_string(i) + ".txt"));
   int done = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Ending ending = wait_for(all[i]);
@@ -87,10 +96,13 @@ TEST_F(FaultFolder, TakenByManyAtOnce_BelongsToOne) {
 }
 
 TEST_F(FaultFolder, SharedCache_ServesManyAtOnce) {
-  const std::string arguments = "run --size 64x36 --map-size 32 --rounds 1 --scene cubes --scene stack --filters none,pcf2x2,vsm --no-grids ";
+  const std::string arguments =
+      "run --size 64x36 --map-size 32 --rounds 1 --scene cubes --scene stack --filters none,pcf2x2,vsm --no-grids ";
   std::vector<pid_t> all;
-  for (int i = 0; i < 4; ++i) all.push_back(start(arguments + "--out out" + std::to_string(i), "many" + std::to_string(i) + ".txt"));
-  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(wait_for(all[i]).exit_code, 0) << read_text(folder() / ("many" + std::to_string(i) + ".txt"));
+  for (int i = 0; i < 4; ++i)
+    all.push_back(start(arguments + "--out out" + std::to_string(i), "many" + std::to_string(i) + ".txt"));
+  for (std::size_t i = 0; i < all.size(); ++i)
+    EXPECT_EQ(wait_for(all[i]).exit_code, 0) << read_text(folder() / ("many" + std::to_string(i) + ".txt"));
   for (const char* other : {"out1", "out2", "out3"}) expect_same("out0", other);
   expect_whole("cache");
   expect_no_leftovers("cache");
@@ -98,7 +110,8 @@ TEST_F(FaultFolder, SharedCache_ServesManyAtOnce) {
 
 TEST_F(FaultFolder, ThatVanishesDuringARun_IsAnOutputError_AndTheCommandWorksAgain) {
   write("e.toml",
-        "scene = ['cubes', 'stack']\nmap_size = [32, 64, 96]\nsize = '64x36'\nrounds = 1\ngrids = false\nattribution = false\n"
+        "scene = ['cubes', 'stack']\nmap_size = [32, 64, 96]\nsize = '64x36'\nrounds = 1\ngrids = false\nattribution = "
+        "false\n"
         "[[filter]]\nid = 'none'\n[[filter]]\nid = 'vsm'\nradius = {linear = [1, 8], count = 8}\n");
   for (const char* way : {"removed", "renamed", "a file now"}) {
     const pid_t pid = start("run e.toml --out out");
@@ -124,10 +137,15 @@ TEST_F(FaultFolder, ThatVanishesDuringARun_IsAnOutputError_AndTheCommandWorksAga
 
 TEST_F(FaultFolder, OnAReadOnlyMount_IsAnOutputErrorForEveryCommand) {
   const auto shell = find_mounting_shell();
-  if (!shell) GTEST_SKIP() << "no file system can be mounted here (neither as root nor with 'unshare -rm'); root may write where rights forbid it";
+  if (!shell)
+    GTEST_SKIP() << "no file system can be mounted here (neither as root nor with 'unshare -rm'); root may write where "
+                    "rights forbid it";
   run_whole();
   for (const std::string& command : list_commands()) {
-    const std::string script = "mkdir -p disk && mount -t tmpfs none disk && mkdir disk/out && mount -o remount,ro disk || exit 98\nshadowbench " + command + " --out disk/out";
+    const std::string script =
+        "mkdir -p disk && mount -t tmpfs none disk && mkdir disk/out && mount -o remount,ro disk || exit "
+        "98\nshadowbench " +
+        command + " --out disk/out";
     EXPECT_EQ(run_script(*shell, script), 6) << command;
     expect_one_message(read_text(folder() / "script.txt"), {"disk/out: ", "Read-only file system", "--out"});
   }
@@ -137,13 +155,16 @@ TEST_F(FaultFolder, WithoutTheRightToWrite_IsAnOutputError) {
   std::filesystem::create_directories(folder() / "out");
   std::filesystem::create_directories(cache_folder());
   std::filesystem::permissions(cache_folder(), std::filesystem::perms::all);
-  std::filesystem::permissions(folder() / "out", std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec | std::filesystem::perms::others_read | std::filesystem::perms::others_exec);
+  std::filesystem::permissions(folder() / "out",
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec |
+                                   std::filesystem::perms::others_read | std::filesystem::perms::others_exec);
   const bool is_root = geteuid() == 0;
   const std::string as_nobody = "setpriv --reuid=65534 --regid=65534 --clear-groups ";
-  if (is_root && std::system((as_nobody + "test -x '" SHADOWBENCH_PROGRAM "' 2>/dev/null").c_str()) != 0) {
+  if (is_root && std::system((as_nobody + "test -x '" SHADOWBENCH_PROGRAM "' 2>/dev/null").c_str()) != 0)
     GTEST_SKIP() << "root may write everywhere, and 'setpriv' cannot run the program as nobody here";
-  }
-  EXPECT_EQ(run_script("", (is_root ? as_nobody + "'" SHADOWBENCH_PROGRAM "' run " : "shadowbench run ") + kSmall + "--out out"), 6);
+  EXPECT_EQ(run_script("", (is_root ? as_nobody + "'" SHADOWBENCH_PROGRAM "' run " : "shadowbench run ") + kSmall +
+                               "--out out"),
+            6);
   expect_one_message(read_text(folder() / "script.txt"), {"out: ", "Permission denied", "rights", "--out"});
 }
 

@@ -20,17 +20,20 @@ class FaultLimits : public FaultTest {
   /// Writes a model of one mesh with so many vertices, whose buffer is a hole in the file system.
   void write_large_model(std::uintmax_t vertices) const {
     const std::uintmax_t bytes = vertices * 12;
-    write("large.gltf", "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
-                        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"buffers\":[{\"uri\":\"large.bin\",\"byteLength\":" +
-                            std::to_string(bytes) + "}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":" + std::to_string(bytes) +
-                            "}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":" + std::to_string(vertices) +
-                            ",\"min\":[0,0,0],\"max\":[0,0,0]}]}");
+    write("large.gltf",
+          "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
+          "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"buffers\":[{\"uri\":\"large.bin\","
+          "\"byteLength\":" +
+              std::to_string(bytes) + "}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":" + std::to_string(bytes) +
+              "}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":" +
+              std::to_string(vertices) + ",\"min\":[0,0,0],\"max\":[0,0,0]}]}");
     write("large.bin", "");
     std::filesystem::resize_file(folder() / "large.bin", bytes);
   }
 
   int run_limited(std::size_t mebibytes, const std::string& arguments) const {
-    return run_script("", "export LP_NUM_THREADS=1 MALLOC_ARENA_MAX=2\nulimit -v " + std::to_string(1024 * mebibytes) + "\nshadowbench " + arguments);
+    return run_script("", "export LP_NUM_THREADS=1 MALLOC_ARENA_MAX=2\nulimit -v " + std::to_string(1024 * mebibytes) +
+                              "\nshadowbench " + arguments);
   }
 };
 
@@ -38,14 +41,16 @@ TEST_F(FaultLimits, MemoryThatALargeModelDoesNotFitInto_IsAnInputErrorThatNamesT
   if (kIsSanitized) GTEST_SKIP() << "address sanitizer needs more memory than a limit leaves";
   constexpr std::uintmax_t kVertices = 60'000'000;
   write_large_model(kVertices);
-  constexpr const char* kRest = " --gl osmesa --size 32x18 --map-size 16 --rounds 1 --filters none --no-attribution --out out";
+  constexpr const char* kRest =
+      " --gl osmesa --size 32x18 --map-size 16 --rounds 1 --filters none --no-attribution --out out";
   for (const std::size_t mebibytes : {1600, 2200, 3400}) {
     const int code = run_limited(mebibytes, std::string("run --scene large.gltf") + kRest);
     EXPECT_EQ(code, 3) << mebibytes << " " << read_text(folder() / "script.txt");
     expect_one_message(read_text(folder() / "script.txt"), {"large.gltf", "memory ran out", "ulimit -v"});
     EXPECT_FALSE(std::filesystem::exists(folder() / "out"));
   }
-  EXPECT_EQ(run_limited(1600, std::string("run --scene cubes") + kRest), 0) << "the limit alone is enough to stop a run: " << read_text(folder() / "script.txt");
+  EXPECT_EQ(run_limited(1600, std::string("run --scene cubes") + kRest), 0)
+      << "the limit alone is enough to stop a run: " << read_text(folder() / "script.txt");
 }
 
 TEST_F(FaultLimits, MemoryThatOtherThingsDoNotFitInto_IsSaidToo) {
@@ -62,16 +67,20 @@ TEST_F(FaultLimits, RefusedContext_IsOneMessage) {
     const char* backend;
     const char* word;
   };
-  const std::array refusals = {Refusal{"__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null", "egl", "egl: no device"},
-                               Refusal{"-u DISPLAY -u WAYLAND_DISPLAY", "glfw", "glfw: GLFW does not start"},
-                               Refusal{"-u WAYLAND_DISPLAY DISPLAY=:9999", "glfw", "glfw: GLFW does not start"},
-                               Refusal{"MESA_GL_VERSION_OVERRIDE=2.1", "osmesa", "osmesa: OSMesa gives no OpenGL 4.5 core context"},
-                               Refusal{"MESA_GL_VERSION_OVERRIDE=2.1 __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null DISPLAY=:9999", "auto", "osmesa: OSMesa gives"}};
+  const std::array refusals = {
+      Refusal{"__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null", "egl", "egl: no device"},
+      Refusal{"-u DISPLAY -u WAYLAND_DISPLAY", "glfw", "glfw: GLFW does not start"},
+      Refusal{"-u WAYLAND_DISPLAY DISPLAY=:9999", "glfw", "glfw: GLFW does not start"},
+      Refusal{"MESA_GL_VERSION_OVERRIDE=2.1", "osmesa", "osmesa: OSMesa gives no OpenGL 4.5 core context"},
+      Refusal{"MESA_GL_VERSION_OVERRIDE=2.1 __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null DISPLAY=:9999", "auto",
+              "osmesa: OSMesa gives"}};
   for (const Refusal& each : refusals) {
     std::vector<std::string> commands = {"run --scene cubes"};
-    if (each.backend == std::string("glfw")) commands.insert(commands.end(), {"bias", "flicker", "stress", "tune --filter vsm"});
+    if (each.backend == std::string("glfw"))
+      commands.insert(commands.end(), {"bias", "flicker", "stress", "tune --filter vsm"});
     for (const std::string& command : commands) {
-      const std::string line = std::string("env ") + each.environment + " '" SHADOWBENCH_PROGRAM "' " + command + " --out out --gl " + each.backend;
+      const std::string line = std::string("env ") + each.environment + " '" SHADOWBENCH_PROGRAM "' " + command +
+                               " --out out --gl " + each.backend;
       EXPECT_EQ(run_script("", line), 4) << line;
       expect_one_message(read_text(folder() / "script.txt"), {"no OpenGL 4.5 core context", each.word, "--gl"});
       EXPECT_FALSE(std::filesystem::exists(folder() / "out")) << line;

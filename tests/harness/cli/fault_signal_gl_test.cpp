@@ -24,18 +24,22 @@ class FaultSignal : public FaultTest {
   }
 
   std::string command(const std::string& out) const {
-    return "run e.toml --filter-file " + user_filter("stored_plane.glsl") + " --filters none,vsm,esm,pcf2x2,tent3x3,box4x4,box3x3,poisson,stored_plane --out " + out;
+    return "run e.toml --filter-file " + user_filter("stored_plane.glsl") +
+           " --filters none,vsm,esm,pcf2x2,tent3x3,box4x4,box3x3,poisson,stored_plane --out " + out;
   }
 
   /// What a stopped run may leave.
   void expect_intact() const {
     for (const auto& path : list_files("out")) {
-      if (path.parent_path().filename() != "cells" || path.string().find("tmp-") != std::string::npos || path.string().find(".worker-") != std::string::npos) continue;
+      if (path.parent_path().filename() != "cells" || path.string().find("tmp-") != std::string::npos ||
+          path.string().find(".worker-") != std::string::npos)
+        continue;
       const report::CellRecord cell = report::read_cell(folder() / "out", path.stem().string());
-      for (const auto& image : {cell.images.picture, cell.images.visibility}) {
-        if (!image) ADD_FAILURE() << path << " names no picture";
-        else EXPECT_FALSE(report::read_picture(folder() / "out" / *image).texels.empty()) << *image;
-      }
+      for (const auto& image : {cell.images.picture, cell.images.visibility})
+        if (!image)
+          ADD_FAILURE() << path << " names no picture";
+        else
+          EXPECT_FALSE(report::read_picture(folder() / "out" / *image).texels.empty()) << *image;
     }
     expect_whole("out");
     EXPECT_THAT(list_processes(), IsEmpty());
@@ -98,10 +102,14 @@ TEST_F(FaultSignal, TwentyTimesAtRandomMoments_NothingIsLost) {
 /// The worker of a user's filter has a process group of its own, and must not outlive the run.
 TEST_F(FaultSignal, WhileAUsersFilterIsMeasured_NoChildStays) {
   for (const int signal : {SIGINT, SIGTERM, SIGKILL}) {
-    const pid_t pid = start("run --size 320x180 --map-size 64 --rounds 1 --scene cubes --filters none,endless --cell-timeout 600 --out out --filter-file " + user_filter("endless.glsl"));
+    const pid_t pid = start(
+        "run --size 320x180 --map-size 64 --rounds 1 --scene cubes --filters none,endless --cell-timeout 600 --out out "
+        "--filter-file " +
+        user_filter("endless.glsl"));
     const std::filesystem::path worker = folder() / "out" / (".worker-" + std::to_string(pid));
     ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(worker); })) << read_text(folder() / "started.txt");
-    std::this_thread::sleep_for(std::chrono::milliseconds(1500));  // by now it says nothing more, and a closed pipe would not end it
+    std::this_thread::sleep_for(
+        std::chrono::milliseconds(1500));  // by now it says nothing more, and a closed pipe would not end it
     kill(pid, signal);
     expect_goodbye(wait_for(pid), signal);
     EXPECT_THAT(list_processes(), IsEmpty());
@@ -111,10 +119,13 @@ TEST_F(FaultSignal, WhileAUsersFilterIsMeasured_NoChildStays) {
 }
 
 TEST_F(FaultSignal, OtherCommands_SayThatTheyWereStopped) {
-  const char* commands[] = {"bias --size 320x180 --out out", "stress --out out", "flicker --out out", "tune --filter vsm --out out"};
+  const char* commands[] = {"bias --size 320x180 --out out", "stress --out out", "flicker --out out",
+                            "tune --filter vsm --out out"};
   for (const char* each : commands) {
     const pid_t pid = start(each);
-    ASSERT_TRUE(wait_until([&] { return !read_text(folder() / "started.txt").empty() || std::filesystem::exists(folder() / "out"); })) << each;
+    ASSERT_TRUE(wait_until([&] {
+      return !read_text(folder() / "started.txt").empty() || std::filesystem::exists(folder() / "out");
+    })) << each;
     kill(pid, SIGINT);
     EXPECT_EQ(wait_for(pid).signal, SIGINT) << each;
     expect_one_message(read_text(folder() / "started.txt"), {"stopped by SIGINT", "run the same command again"});
@@ -126,8 +137,11 @@ TEST_F(FaultSignal, OtherCommands_SayThatTheyWereStopped) {
 
 /// A program that was started to ignore a signal, as by nohup, goes on.
 TEST_F(FaultSignal, IgnoredSignals_StayIgnored) {
-  const int status = run_script("", "trap '' HUP\n'" SHADOWBENCH_PROGRAM "' run --size 64x36 --map-size 16 --rounds 1 --scene cubes --filters none --out out &\n"
-                                    "i=0\nwhile [ ! -e out/.shadowbench-lock ] && [ $i -lt 1000 ]; do sleep 0.01; i=$((i+1)); done\nkill -HUP $! && wait $!");
+  const int status =
+      run_script("", "trap '' HUP\n'" SHADOWBENCH_PROGRAM
+                     "' run --size 64x36 --map-size 16 --rounds 1 --scene cubes --filters none --out out &\n"
+                     "i=0\nwhile [ ! -e out/.shadowbench-lock ] && [ $i -lt 1000 ]; do sleep 0.01; i=$((i+1)); "
+                     "done\nkill -HUP $! && wait $!");
   EXPECT_EQ(status, 0) << read_text(folder() / "script.txt");
 }
 

@@ -33,7 +33,8 @@ class FaultTest : public ProgramTest {
 
   /// Starts `shadowbench ARGUMENTS` in the test's folder and does not wait; its messages go to a file there.
   pid_t start(const std::string& arguments, const std::string& messages = "started.txt") const {
-    const std::string command = "exec env XDG_CACHE_HOME='" + cache_folder().string() + "' '" SHADOWBENCH_PROGRAM "' " + arguments + " >/dev/null 2>'" + messages + "' </dev/null";
+    const std::string command = "exec env XDG_CACHE_HOME='" + cache_folder().string() + "' '" SHADOWBENCH_PROGRAM "' " +
+                                arguments + " >/dev/null 2>'" + messages + "' </dev/null";
     const std::string where = folder().string();
     std::filesystem::remove(folder() / messages);  // a signal may come before the shell makes it anew
     const pid_t pid = fork();
@@ -69,7 +70,8 @@ class FaultTest : public ProgramTest {
       for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
         std::error_code gone;
         const std::filesystem::path cwd = std::filesystem::read_symlink(entry.path() / "cwd", gone);
-        if (!gone && cwd.string().starts_with(folder().string())) found.push_back(entry.path().filename().string() + " " + read_text(entry.path() / "cmdline"));
+        if (!gone && cwd.string().starts_with(folder().string()))
+          found.push_back(entry.path().filename().string() + " " + read_text(entry.path() / "cmdline"));
       }
       if (found.empty()) break;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -80,7 +82,8 @@ class FaultTest : public ProgramTest {
   std::size_t count_cells(const std::string& out = "out") const {
     std::size_t cells = 0;
     std::error_code ignored;
-    for (const auto& entry : std::filesystem::directory_iterator(folder() / out / "cells", ignored)) cells += is_cell(entry.path()) ? 1 : 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder() / out / "cells", ignored))
+      cells += is_cell(entry.path()) ? 1 : 0;
     return cells;
   }
 
@@ -95,7 +98,8 @@ class FaultTest : public ProgramTest {
   /// Expects one message, at the end, with all the words.
   static void expect_one_message(const std::string& text, const std::vector<std::string>& words) {
     std::size_t count = 0;
-    for (std::size_t at = text.find("shadowbench: "); at != std::string::npos; at = text.find("shadowbench: ", at + 1)) ++count;
+    for (std::size_t at = text.find("shadowbench: "); at != std::string::npos; at = text.find("shadowbench: ", at + 1))
+      ++count;
     EXPECT_EQ(count, 1u) << text;
     EXPECT_THAT(last_line(text), ::testing::StartsWith("shadowbench: ")) << text;
     for (const std::string& word : words) EXPECT_THAT(last_line(text), ::testing::HasSubstr(word));
@@ -103,16 +107,19 @@ class FaultTest : public ProgramTest {
 
   /// Expects that no file below a folder is temporary.
   void expect_no_leftovers(const std::string& name) const {
-    for (const auto& path : list_files(name)) {
-      for (const char* mark : {"shadowbench-tmp", ".worker-", ".plots-", "shadowbench-lock"}) EXPECT_THAT(path.string(), ::testing::Not(::testing::HasSubstr(mark)));
-    }
+    for (const auto& path : list_files(name))
+      for (const char* mark : {"shadowbench-tmp", ".worker-", ".plots-", "shadowbench-lock"})
+        EXPECT_THAT(path.string(), ::testing::Not(::testing::HasSubstr(mark)));
   }
 
   /// Expects that every file below a folder that has a name of its own can be read to its end.
   void expect_whole(const std::string& name) const {
     for (const auto& path : list_files(name)) {
-      if (path.filename().string().starts_with(".shadowbench") || path.string().find("shadowbench-tmp") != std::string::npos) continue;
-      if (path.string().find("/.worker-") != std::string::npos || path.string().find("/.plots-") != std::string::npos) continue;
+      if (path.filename().string().starts_with(".shadowbench") ||
+          path.string().find("shadowbench-tmp") != std::string::npos)
+        continue;
+      if (path.string().find("/.worker-") != std::string::npos || path.string().find("/.plots-") != std::string::npos)
+        continue;
       EXPECT_EQ(find_damage(path), "") << path;
     }
   }
@@ -129,13 +136,15 @@ class FaultTest : public ProgramTest {
         EXPECT_EQ(read_text(folder() / a / image), read_text(folder() / b / image)) << image;
       }
     }
-    for (const char* key : {"experiment", "warnings", "scenes", "gl", "commit", "seed"}) EXPECT_EQ(first[key], second[key]) << key;
+    for (const char* key : {"experiment", "warnings", "scenes", "gl", "commit", "seed"})
+      EXPECT_EQ(first[key], second[key]) << key;
   }
 
   /// The start of a shell command in which file systems can be mounted; nothing where they cannot.
   std::optional<std::string> find_mounting_shell() const {
     for (const char* unshare : {"unshare -m", "unshare -rm"}) {
-      const std::string probe = std::string(unshare) + " sh -c 'mount -t tmpfs -o size=64k none \"" + folder().string() + "\"' >/dev/null 2>&1";
+      const std::string probe = std::string(unshare) + " sh -c 'mount -t tmpfs -o size=64k none \"" +
+                                folder().string() + "\"' >/dev/null 2>&1";
       if (std::system(probe.c_str()) == 0) return unshare;
     }
     return std::nullopt;
@@ -143,9 +152,12 @@ class FaultTest : public ProgramTest {
 
   /// Runs a script in such a shell, in the test's folder, with `shadowbench` in it; gives its exit code.
   int run_script(const std::string& shell, const std::string& script) const {
-    const std::string text = "cd '" + folder().string() + "' || exit 99\nexport XDG_CACHE_HOME='" + cache_folder().string() +
-                             "'\nshadowbench() { '" SHADOWBENCH_PROGRAM "' \"$@\"; }\n" + script;
-    const int status = std::system((shell + " sh '" + write("script.sh", text).string() + "' >/dev/null 2>'" + (folder() / "script.txt").string() + "'").c_str());
+    const std::string text = "cd '" + folder().string() + "' || exit 99\nexport XDG_CACHE_HOME='" +
+                             cache_folder().string() + "'\nshadowbench() { '" SHADOWBENCH_PROGRAM "' \"$@\"; }\n" +
+                             script;
+    const int status = std::system((shell + " sh '" + write("script.sh", text).string() + "' >/dev/null 2>'" +
+                                    (folder() / "script.txt").string() + "'")
+                                       .c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
@@ -157,19 +169,22 @@ class FaultTest : public ProgramTest {
   std::vector<std::filesystem::path> list_files(const std::string& name) const {
     std::vector<std::filesystem::path> files;
     if (!std::filesystem::is_directory(folder() / name)) return files;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder() / name)) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder() / name))
       if (entry.is_regular_file()) files.push_back(entry.path());
-    }
     return files;
   }
 
  private:
-  static bool is_cell(const std::filesystem::path& path) { return path.extension() == ".json" && path.stem().string().size() == 16; }
+  static bool is_cell(const std::filesystem::path& path) {
+    return path.extension() == ".json" && path.stem().string().size() == 16;
+  }
 
   /// Gives what is wrong with a file; empty: nothing.
   static std::string find_damage(const std::filesystem::path& path) {
     const std::string kind = path.extension().string(), text = read_text(path);
-    const auto ends_in = [&](const char* end) { return text.find(end, text.size() < 16 ? 0 : text.size() - 16) != std::string::npos ? "" : "cut off"; };
+    const auto ends_in = [&](const char* end) {
+      return text.find(end, text.size() < 16 ? 0 : text.size() - 16) != std::string::npos ? "" : "cut off";
+    };
     try {
       if (kind == ".exr") report::read_exr(path);
       if (kind == ".png") report::read_picture(path);

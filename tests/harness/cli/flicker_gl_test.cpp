@@ -17,16 +17,17 @@ TEST_F(FlickerCommand, WritesTheReport) {
   const Outcome outcome = run("flicker --out out --no-cache --filters none,vsm --frames 3 --map-size 128 --size 96x54");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("out/flicker.html"));
-  for (const char* name : {"flicker.json", "flicker.csv", "flicker.md", "flicker.html", "flicker.gp", "flicker.light.svg", "flicker.light.snapped.svg", "flicker.camera.svg",
-                           "flicker.camera.snapped.svg", "flicker.light.png", "flicker.camera.png"}) {
+  for (const char* name : {"flicker.json", "flicker.csv", "flicker.md", "flicker.html", "flicker.gp",
+                           "flicker.light.svg", "flicker.light.snapped.svg", "flicker.camera.svg",
+                           "flicker.camera.snapped.svg", "flicker.light.png", "flicker.camera.png"})
     EXPECT_TRUE(std::filesystem::exists(folder() / "out" / name)) << name;
-  }
   const nlohmann::json flicker = nlohmann::json::parse(read_text(folder() / "out" / "flicker.json"));
   ASSERT_EQ(flicker["motions"].size(), 2u);
   EXPECT_EQ(flicker["motions"][0]["id"], "light");
   EXPECT_EQ(flicker["motions"][1]["fit"], "view");
   EXPECT_EQ(flicker["motions"][1]["truth"]["traced"], false);
-  EXPECT_EQ(flicker["motions"][0]["variants"][0]["filters"][0]["mean_change"].size(), 2u) << "two steps between three frames";
+  EXPECT_EQ(flicker["motions"][0]["variants"][0]["filters"][0]["mean_change"].size(), 2u)
+      << "two steps between three frames";
 }
 
 TEST_F(FlickerCommand, BadInput_IsRefused) {

@@ -9,25 +9,27 @@
 namespace shadowbench::test {
 namespace {
 
+using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using nlohmann::json;
 
-constexpr const char* kSmall = "run --out out --size 64x36 --map-size 64 --rounds 3 --scene cubes --no-attribution --no-grids ";
+constexpr const char* kSmall =
+    "run --out out --size 64x36 --map-size 64 --rounds 3 --scene cubes --no-attribution --no-grids ";
 
 class Lights : public ProgramTest {
  protected:
   json results() const { return json::parse(read_text(folder() / "out" / "results.json")); }
 
   void expect_valid() const {
-    const std::string check = "/usr/bin/python3 -m jsonschema -i '" + (folder() / "out" / "results.json").string() + "' '" +
-                              (folder() / "out" / "results.schema.json").string() + "'";
+    const std::string check = "/usr/bin/python3 -m jsonschema -i '" + (folder() / "out" / "results.json").string() +
+                              "' '" + (folder() / "out" / "results.schema.json").string() + "'";
     EXPECT_EQ(std::system(check.c_str()), 0);
   }
 };
 
 TEST_F(Lights, AreTimedForEveryCell_ByAscendingCount_UsersFiltersToo) {
-  const Outcome outcome = run(std::string(kSmall) + "--lights 4,1,2 --filters none,vsm,nine_compares --filter-file " + user_filter("nine_compares.glsl"));
+  const Outcome outcome = run(std::string(kSmall) + "--lights 4,1,2 --filters none,vsm,nine_compares --filter-file " +
+                              user_filter("nine_compares.glsl"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   expect_valid();
   const json all = results();
@@ -72,7 +74,9 @@ TEST_F(Lights, AreNoticedWhenARunGoesOn) {
 }
 
 TEST_F(Lights, OfAnExperimentFile_AreOverriddenByTheCommandLine) {
-  write("e.toml", "scene = 'cubes'\nmap_size = 32\nsize = '32x18'\nrounds = 1\ntruth = false\nlights = [1, 3]\n[[filter]]\nid = 'none'\n");
+  write("e.toml",
+        "scene = 'cubes'\nmap_size = 32\nsize = '32x18'\nrounds = 1\ntruth = false\nlights = [1, 3]\n[[filter]]\nid = "
+        "'none'\n");
   ASSERT_EQ(run("run e.toml --out out").exit_code, 0);
   EXPECT_EQ(results()["cells"][0]["lights"][1]["count"], 3);
   ASSERT_EQ(run("run e.toml --out out --lights 2").exit_code, 0);
@@ -81,7 +85,8 @@ TEST_F(Lights, OfAnExperimentFile_AreOverriddenByTheCommandLine) {
 }
 
 TEST_F(Lights, AreCountedInTheTimeThatIsAnnounced) {
-  expect_refusal("run --out out --scene cubes --filters none --map-size 64 --size 64x36 --budget 1800 --lights 1,2", 2, {"1 h 30 min", "--yes"});
+  expect_refusal("run --out out --scene cubes --filters none --map-size 64 --size 64x36 --budget 1800 --lights 1,2", 2,
+                 {"1 h 30 min", "--yes"});
 }
 
 TEST_F(Lights, BadCounts_AreRefused) {
@@ -94,7 +99,8 @@ TEST_F(Lights, BadCounts_AreRefused) {
   expect_refusal(common + "''", 2, {"--lights", "missing"});
   expect_refusal(common + "2,1,2", 2, {"--lights", "2 twice"});
   expect_refusal(common + "1,17", 2, {"--lights", "17", "1 .. 16"});
-  expect_refusal("run --out out --scene cubes --filters none,vsm --map-size 64,4096 --lights 1,8", 2, {"--lights", "8 lights", "4096", "1536 MiB", "1024 MiB"});
+  expect_refusal("run --out out --scene cubes --filters none,vsm --map-size 64,4096 --lights 1,8", 2,
+                 {"--lights", "8 lights", "4096", "1536 MiB", "1024 MiB"});
   write("bad.toml", "scene = 'cubes'\nlights = [1, 2.5]\n");
   expect_refusal("run bad.toml --out out", 2, {"--lights", "'2.5'"});
 }

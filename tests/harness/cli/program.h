@@ -54,7 +54,8 @@ class ProgramTest : public ::testing::Test {
 
   /// Runs `shadowbench ARGUMENTS` through the shell; `environment` as in "NAME=value NAME=value".
   Outcome run(const std::string& arguments, const std::string& environment = "") const {
-    const std::string command = "cd '" + folder_.string() + "' && XDG_CACHE_HOME='" + cache_folder().string() + "' " + environment + " '" SHADOWBENCH_PROGRAM "' " + arguments +
+    const std::string command = "cd '" + folder_.string() + "' && XDG_CACHE_HOME='" + cache_folder().string() + "' " +
+                                environment + " '" SHADOWBENCH_PROGRAM "' " + arguments +
                                 " >stdout.txt 2>stderr.txt </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder_ / "stdout.txt"),

@@ -18,11 +18,15 @@ class Regress : public ProgramTest {
  protected:
   /// A run of two filters on one scene, small; no time counts.
   void draw(const std::string& out, const std::string& options = "--filters none,pcf2x2") const {
-    const Outcome outcome = run("run --gl osmesa --scene cubes --size 96x54 --rounds 1 --pad-texels 4 --uncertainty " + options + (options.find("--map-size") == std::string::npos ? " --map-size 128" : "") + " --out " + out);
+    const Outcome outcome =
+        run("run --gl osmesa --scene cubes --size 96x54 --rounds 1 --pad-texels 4 --uncertainty " + options +
+            (options.find("--map-size") == std::string::npos ? " --map-size 128" : "") + " --out " + out);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
 
-  Outcome compare(const std::string& out, const std::string& options = "") const { return run("regress " + out + " --baseline base " + options); }
+  Outcome compare(const std::string& out, const std::string& options = "") const {
+    return run("regress " + out + " --baseline base " + options);
+  }
 
   void make_baseline() {
     draw("a");
@@ -30,9 +34,13 @@ class Regress : public ProgramTest {
     ASSERT_EQ(compare("a").exit_code, 0);
   }
 
-  nlohmann::json report(const std::string& out) const { return nlohmann::json::parse(read_text(folder() / out / "regress" / "regress.json")); }
+  nlohmann::json report(const std::string& out) const {
+    return nlohmann::json::parse(read_text(folder() / out / "regress" / "regress.json"));
+  }
 
-  void cut(const std::string& file) const { std::filesystem::resize_file(folder() / file, std::filesystem::file_size(folder() / file) / 2); }
+  void cut(const std::string& file) const {
+    std::filesystem::resize_file(folder() / file, std::filesystem::file_size(folder() / file) / 2);
+  }
 
   /// Expects exit code 1 and that the worst cell is what it should be.
   void expect_failure(const std::string& out, const std::string& outcome) const {
@@ -44,9 +52,8 @@ class Regress : public ProgramTest {
 
   std::map<std::string, std::string> read_baseline() const {
     std::map<std::string, std::string> files;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder() / "base")) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder() / "base"))
       if (entry.is_regular_file()) files[entry.path().filename().string()] = read_text(entry.path());
-    }
     return files;
   }
 
@@ -54,12 +61,10 @@ class Regress : public ProgramTest {
   std::vector<std::string> list_changes(const std::map<std::string, std::string>& before) const {
     std::vector<std::string> names;
     const auto after = read_baseline();
-    for (const auto& [name, text] : after) {
+    for (const auto& [name, text] : after)
       if (!before.contains(name) || before.at(name) != text) names.push_back(name);
-    }
-    for (const auto& [name, text] : before) {
+    for (const auto& [name, text] : before)
       if (!after.contains(name)) names.push_back(name + " is gone");
-    }
     return names;
   }
 };
@@ -104,7 +109,8 @@ TEST_F(Regress, Accept_ChangesWhatMovedAlone_AndLogsIt) {
   EXPECT_THAT(accepted.out, HasSubstr("accepted: 1 change"));
   const std::string log = read_text(folder() / "base" / "accepted.md");
   ASSERT_THAT(log, ::testing::StartsWith(before.at("accepted.md")));
-  EXPECT_THAT(log.substr(before.at("accepted.md").size()), ::testing::AllOf(HasSubstr("replaced: cubes pcf2x2"), HasSubstr("error.rmse")));
+  EXPECT_THAT(log.substr(before.at("accepted.md").size()),
+              ::testing::AllOf(HasSubstr("replaced: cubes pcf2x2"), HasSubstr("error.rmse")));
   // The image holds the time at which it was written; the numbers are what they were.
   EXPECT_EQ(list_changes(before), (std::vector<std::string>{"accepted.md", "pcf2x2.exr"}));
 }
@@ -167,7 +173,8 @@ TEST_F(Regress, AcceptThatIsKilledWhileItWrites_IsMadeWholeByTheNext) {
   const std::string accept = "'" SHADOWBENCH_PROGRAM "' regress a --baseline base --accept >/dev/null 2>&1";
   for (const char* wait : {"0", "0.01", "0.02", "0.04"}) {
     std::filesystem::remove_all(folder() / "base");
-    const std::string script = "cd '" + folder().string() + "'; " + accept + " & while [ ! -e base/baseline.toml ]; do :; done; sleep " + wait + "; kill -9 $!; wait";
+    const std::string script = "cd '" + folder().string() + "'; " + accept +
+                               " & while [ ! -e base/baseline.toml ]; do :; done; sleep " + wait + "; kill -9 $!; wait";
     std::system(("bash -c \"" + script + "\" 2>/dev/null").c_str());
     EXPECT_EQ(compare("a", "--accept").exit_code, 0);
     EXPECT_EQ(compare("a").exit_code, 0);
@@ -243,7 +250,8 @@ TEST_F(Regress, ForBuildServers_JUnitAndJson) {
   EXPECT_EQ(printed, report("b"));
   EXPECT_EQ(printed["failed"], 2);
   const std::string count = "import xml.etree.ElementTree as e; r = e.parse('" + (folder() / "junit.xml").string() +
-                            "').getroot(); assert r.get('failures') == '2', r.attrib; assert len(r.findall('.//failure')) == 2; assert len(r.findall('.//testcase')) == 4";
+                            "').getroot(); assert r.get('failures') == '2', r.attrib; assert "
+                            "len(r.findall('.//failure')) == 2; assert len(r.findall('.//testcase')) == 4";
   EXPECT_EQ(std::system(("python3 -c \"" + count + "\"").c_str()), 0) << read_text(folder() / "junit.xml");
 }
 
@@ -254,7 +262,8 @@ TEST_F(Regress, BadInput_IsRefused) {
   expect_refusal("regress a --baseline base --remove-missing", 2, {"--remove-missing", "add --accept"});
   expect_refusal("regress a", 2, {"--baseline"});
   ASSERT_EQ(compare("a", "--accept").exit_code, 0);
-  expect_refusal("regress a --baseline base --filters nosuch", 3, {"--filters: neither the run nor the baseline has 'nosuch'"});
+  expect_refusal("regress a --baseline base --filters nosuch", 3,
+                 {"--filters: neither the run nor the baseline has 'nosuch'"});
   expect_refusal("regress a --baseline base --filters \"none, pcf2x3\"", 3, {"did you mean 'pcf2x2'?"});
   expect_refusal("regress a --baseline base --scene cubes --scene stakc", 3, {"'stakc'"});
   expect_refusal("regress a --baseline stdout.txt", 3, {"stdout.txt: this is a file"});

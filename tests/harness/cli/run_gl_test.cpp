@@ -24,17 +24,18 @@ TEST_F(Command, AllScenesAndFilters_WriteAValidReport) {
     EXPECT_TRUE(std::filesystem::exists(folder() / "out" / (std::string(scene) + ".grid.png")));
     EXPECT_TRUE(std::filesystem::exists(folder() / "out" / (std::string(scene) + ".exr")));
   }
-  for (const char* file : {"timings.csv", "summary.md", "index.html", "results.schema.json"}) {
+  for (const char* file : {"timings.csv", "summary.md", "index.html", "results.schema.json"})
     EXPECT_TRUE(std::filesystem::exists(folder() / "out" / file)) << file;
-  }
-  const std::string check = "/usr/bin/python3 -m jsonschema -i '" + (folder() / "out" / "results.json").string() + "' '" +
-                            (folder() / "out" / "results.schema.json").string() + "'";
+  const std::string check = "/usr/bin/python3 -m jsonschema -i '" + (folder() / "out" / "results.json").string() +
+                            "' '" + (folder() / "out" / "results.schema.json").string() + "'";
   EXPECT_EQ(std::system(check.c_str()), 0);
 }
 
 TEST_F(Command, UserFilter_GetsCellAndPictures) {
-  const Outcome outcome = run("run --out out --size 64x36 --map-size 64 --rounds 2 --scene cubes --filters none,nine_compares:weight=0.5 --filter-file " +
-                              user_filter("nine_compares.glsl"));
+  const Outcome outcome =
+      run("run --out out --size 64x36 --map-size 64 --rounds 2 --scene cubes --filters none,nine_compares:weight=0.5 "
+          "--filter-file " +
+          user_filter("nine_compares.glsl"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json json = results(folder());
   ASSERT_EQ(json["cells"].size(), 2u);
@@ -44,9 +45,8 @@ TEST_F(Command, UserFilter_GetsCellAndPictures) {
   EXPECT_EQ(cell["params"]["weight"], 0.5);
   EXPECT_EQ(cell["cost"]["fetches"], 9.0);
   EXPECT_TRUE(std::filesystem::exists(folder() / "out" / cell["images"]["picture"].get<std::string>()));
-  for (const auto& entry : std::filesystem::directory_iterator(folder() / "out")) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder() / "out"))
     EXPECT_NE(entry.path().filename().string().rfind(".worker", 0), 0u) << entry.path();
-  }
 }
 
 TEST_F(Command, UserFilter_SeesTheSameMapAsTheOthers_AtEverySize) {
@@ -66,13 +66,15 @@ TEST_F(Command, UserFilter_SeesTheSameMapAsTheOthers_AtEverySize) {
 
 /// Said where it can do harm: the step is of the depths that are drawn, and reversed floats have none to speak of.
 TEST_F(Command, PerspectiveDepthCoarserThanTheBias_IsWarnedOf) {
-  const std::string common = "run --size 96x54 --map-size 64 --rounds 1 --scene cubes --no-truth --filters none --out out ";
+  const std::string common =
+      "run --size 96x54 --map-size 64 --rounds 1 --scene cubes --no-truth --filters none --out out ";
   const auto warnings = [&](const std::string& more) {
     EXPECT_EQ(run(common + more).exit_code, 0);
     return results(folder())["warnings"].dump();
   };
   const std::string coarse = warnings("--perspective-depth 1e5");
-  for (const char* part : {"d32f perspective 100000", "holds depth in steps", "--reversed-depth"}) EXPECT_NE(coarse.find(part), std::string::npos) << coarse;
+  for (const char* part : {"d32f perspective 100000", "holds depth in steps", "--reversed-depth"})
+    EXPECT_NE(coarse.find(part), std::string::npos) << coarse;
   EXPECT_EQ(warnings("--perspective-depth 1e5 --reversed-depth"), "[]");
   EXPECT_EQ(warnings(""), "[]");
 }
@@ -80,9 +82,13 @@ TEST_F(Command, PerspectiveDepthCoarserThanTheBias_IsWarnedOf) {
 /// The settings reach the worker: a copy of a built-in filter sees the same map, and its cell the same key's settings.
 TEST_F(Command, MapAndLightSettings_AreRecordedAndReachUserFilters) {
   write("copied.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/pcf2x2.glsl"));
-  const std::string common = "run --size 96x54 --map-size 64 --rounds 1 --scene cubes --no-truth --filters none,pcf2x2,copied --filter-file copied.glsl ";
+  const std::string common =
+      "run --size 96x54 --map-size 64 --rounds 1 --scene cubes --no-truth --filters none,pcf2x2,copied --filter-file "
+      "copied.glsl ";
   ASSERT_EQ(run(common + "--out plain").exit_code, 0);
-  const Outcome outcome = run(common + "--out out --map-format d16 --perspective-depth 30.5 --reversed-depth --fit view --snap on --light 60,30.5");
+  const Outcome outcome =
+      run(common +
+          "--out out --map-format d16 --perspective-depth 30.5 --reversed-depth --fit view --snap on --light 60,30.5");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json json = results(folder());
   for (const auto& cell : json["cells"]) {
@@ -96,7 +102,9 @@ TEST_F(Command, MapAndLightSettings_AreRecordedAndReachUserFilters) {
     EXPECT_LE(cell["coverage"]["map_filled"], 1.0);
     for (const char* image : {"depth_map", "texel_density", "texel_grid"}) {
       EXPECT_TRUE(std::filesystem::exists(folder() / "out" / cell["images"][image].get<std::string>())) << image;
-      EXPECT_NE(read_text(folder() / "out" / "index.html").find(cell["images"][image].get<std::string>()), std::string::npos) << image;
+      EXPECT_NE(read_text(folder() / "out" / "index.html").find(cell["images"][image].get<std::string>()),
+                std::string::npos)
+          << image;
     }
   }
   const auto picture = [&](const char* out, const char* filter) {
@@ -104,14 +112,16 @@ TEST_F(Command, MapAndLightSettings_AreRecordedAndReachUserFilters) {
   };
   EXPECT_EQ(picture("out", "copied"), picture("out", "pcf2x2"));
   EXPECT_NE(picture("out", "pcf2x2"), picture("plain", "pcf2x2"));
-  const std::string check = "/usr/bin/python3 -m jsonschema -i '" + (folder() / "out" / "results.json").string() + "' '" +
-                            (folder() / "out" / "results.schema.json").string() + "'";
+  const std::string check = "/usr/bin/python3 -m jsonschema -i '" + (folder() / "out" / "results.json").string() +
+                            "' '" + (folder() / "out" / "results.schema.json").string() + "'";
   EXPECT_EQ(std::system(check.c_str()), 0);
 }
 
 TEST_F(Command, EndlessUserFilter_TimesOutAndTheRunGoesOn) {
-  const Outcome outcome = run("run --out out --size 320x180 --map-size 64 --rounds 2 --scene cubes --filters none,endless --cell-timeout 3 --filter-file " +
-                              user_filter("endless.glsl"));
+  const Outcome outcome =
+      run("run --out out --size 320x180 --map-size 64 --rounds 2 --scene cubes --filters none,endless --cell-timeout 3 "
+          "--filter-file " +
+          user_filter("endless.glsl"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json json = results(folder());
   ASSERT_EQ(json["cells"].size(), 2u);
@@ -132,7 +142,8 @@ TEST_F(Command, SameSeed_SamePictures) {
   const std::string first = read_text(folder() / "out" / "images" / "ball.poisson.visibility.png");
   ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene ball --filters poisson").exit_code, 0);
   EXPECT_EQ(read_text(folder() / "out" / "images" / "ball.poisson.visibility.png"), first);
-  ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene ball --filters poisson --seed 2").exit_code, 0);
+  ASSERT_EQ(
+      run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene ball --filters poisson --seed 2").exit_code, 0);
   EXPECT_NE(read_text(folder() / "out" / "images" / "ball.poisson.visibility.png"), first);
 }
 
@@ -159,7 +170,8 @@ TEST_F(Command, EveryCell_IsScoredAgainstTheTruth) {
 }
 
 TEST_F(Command, ASecondRun_TakesItsTruthFromTheCache) {
-  const std::string arguments = "run --out out --fresh --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none,pcf2x2";
+  const std::string arguments =
+      "run --out out --fresh --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none,pcf2x2";
   ASSERT_EQ(run(arguments).exit_code, 0);
   const nlohmann::json first = results(folder());
   EXPECT_EQ(first["work"]["truths_traced"], 3) << "the view, its surroundings, a kernel; the other is a point";
@@ -178,7 +190,8 @@ TEST_F(Command, ASecondRun_TakesItsTruthFromTheCache) {
 
 TEST_F(Command, ACacheThatCannotBeWritten_IsWarnedOf_AndTheRunGoesOn) {
   write("taken", "a file");
-  const Outcome outcome = run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --cache taken");
+  const Outcome outcome =
+      run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --cache taken");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("--cache"), std::string::npos) << outcome.err;
   EXPECT_EQ(results(folder())["warnings"].size(), 1u);
@@ -186,7 +199,8 @@ TEST_F(Command, ACacheThatCannotBeWritten_IsWarnedOf_AndTheRunGoesOn) {
 
 TEST_F(Command, ASceneFarFromTheOrigin_IsWarnedOf) {
   write("far.toml",
-        "title = \"far\"\n[camera]\nposition = [1000000, 5, 5]\ntarget = [1000000, 0, 0]\n[light]\nazimuth_deg = 40\nelevation_deg = 50\n"
+        "title = \"far\"\n[camera]\nposition = [1000000, 5, 5]\ntarget = [1000000, 0, 0]\n[light]\nazimuth_deg = "
+        "40\nelevation_deg = 50\n"
         "[[object]]\nshape = \"plane\"\nsize = [8, 8]\ncenter = [1000000, 0, 0]\n"
         "[[object]]\nshape = \"box\"\nsize = [1, 1, 1]\ncenter = [1000000, 0.5, 0]\n");
   const Outcome outcome = run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene far.toml --filters none");
@@ -195,7 +209,8 @@ TEST_F(Command, ASceneFarFromTheOrigin_IsWarnedOf) {
 }
 
 TEST_F(Command, FrontCull_NamesTheOpenMeshes) {
-  const Outcome outcome = run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --bias front-cull");
+  const Outcome outcome =
+      run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --bias front-cull");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json warnings = results(folder())["warnings"];
   ASSERT_EQ(warnings.size(), 1u);
@@ -203,7 +218,10 @@ TEST_F(Command, FrontCull_NamesTheOpenMeshes) {
 }
 
 TEST_F(Command, BiasAmounts_AreStatedInAllUnits) {
-  ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --bias constant:texels=2").exit_code, 0);
+  ASSERT_EQ(
+      run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --bias constant:texels=2")
+          .exit_code,
+      0);
   const nlohmann::json work = results(folder())["work"];
   EXPECT_GT(work["attribution_s"], 0.0);
   EXPECT_LT(work["attribution_s"], work["elapsed_s"]);
@@ -216,8 +234,9 @@ TEST_F(Command, BiasAmounts_AreStatedInAllUnits) {
 }
 
 TEST_F(Command, AUsersFilter_HasArtefactsButNoAttribution) {
-  const Outcome outcome = run("run --out out --size 128x72 --map-size 64 --rounds 1 --scene cubes --filters none,nine_compares --filter-file " +
-                              user_filter("nine_compares.glsl"));
+  const Outcome outcome = run(
+      "run --out out --size 128x72 --map-size 64 --rounds 1 --scene cubes --filters none,nine_compares --filter-file " +
+      user_filter("nine_compares.glsl"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json cell = results(folder())["cells"][1];
   EXPECT_EQ(cell["filter"], "nine_compares");
@@ -228,24 +247,27 @@ TEST_F(Command, AUsersFilter_HasArtefactsButNoAttribution) {
 }
 
 TEST_F(Command, WithoutTruth_SaysSo) {
-  ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --no-truth").exit_code, 0);
+  ASSERT_EQ(
+      run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --no-truth").exit_code, 0);
   const nlohmann::json json = results(folder());
   EXPECT_TRUE(json["cells"][0]["error"]["rmse"].is_null());
   EXPECT_EQ(json["cells"][0]["absent"]["error"], "the run was made with --no-truth");
 }
 
 TEST_F(Command, OverflowInTheMap_IsWarnedOf) {
-  const Outcome outcome = run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none,esm:c=2000");
+  const Outcome outcome =
+      run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none,esm:c=2000");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (const char* words : {"overflowed", "r32f holds numbers up to 3.40282e+38, which is e^88.72", "choose c <= 88.", "or combine=log"}) {
+  for (const char* words :
+       {"overflowed", "r32f holds numbers up to 3.40282e+38, which is e^88.72", "choose c <= 88.", "or combine=log"})
     EXPECT_NE(outcome.err.find(words), std::string::npos) << words << "\n" << outcome.err;
-  }
   ASSERT_EQ(results(folder())["warnings"].size(), 1u);
 }
 
 /// What the warning recommends, works; and it is of this very map.
 TEST_F(Command, OverflowWarning_NamesWhatKeepsTheLimit) {
-  const std::string common = "run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --no-truth --filters none,esm:";
+  const std::string common =
+      "run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --no-truth --filters none,esm:";
   const Outcome outcome = run(common + "c=20,store=r16f");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("choose c <= 11.0"), std::string::npos) << outcome.err;
@@ -257,12 +279,12 @@ TEST_F(Command, OverflowWarning_NamesWhatKeepsTheLimit) {
 }
 
 TEST_F(Command, VarianceThatRoundingTakesBelowItsFloor_IsWarnedOf) {
-  const std::string common = "run --out out --size 64x36 --map-size 256 --rounds 1 --scene cubes --no-truth --filters none,vsm:";
+  const std::string common =
+      "run --out out --size 64x36 --map-size 256 --rounds 1 --scene cubes --no-truth --filters none,vsm:";
   const Outcome outcome = run(common + "store=rg16f");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (const char* words : {"rounding in rg16f", "below 0", "choose min_variance >= 0.000", "store=rg32f"}) {
+  for (const char* words : {"rounding in rg16f", "below 0", "choose min_variance >= 0.000", "store=rg32f"})
     EXPECT_NE(outcome.err.find(words), std::string::npos) << words << "\n" << outcome.err;
-  }
   ASSERT_EQ(run(common + "store=rg32f").exit_code, 0);
   EXPECT_EQ(results(folder())["warnings"].size(), 0u);
 }
@@ -271,8 +293,9 @@ TEST_F(Command, VarianceThatRoundingTakesBelowItsFloor_IsWarnedOf) {
 TEST_F(Command, Stability_IsCountedDrawnAndLinked) {
   std::string copied = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/vsm.glsl");
   write("copied.glsl", copied);
-  const Outcome outcome = run("run --stability --out out --size 96x54 --map-size 64 --rounds 1 --scene cubes --no-truth --filters "
-                              "none,vsm,esm:c=20,store=r16f,copied --filter-file copied.glsl");
+  const Outcome outcome =
+      run("run --stability --out out --size 96x54 --map-size 64 --rounds 1 --scene cubes --no-truth --filters "
+          "none,vsm,esm:c=20,store=r16f,copied --filter-file copied.glsl");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json cells = results(folder())["cells"];
   ASSERT_EQ(cells.size(), 4u);
@@ -292,11 +315,12 @@ TEST_F(Command, Stability_IsCountedDrawnAndLinked) {
   EXPECT_NEAR(esm["safe_exponent"].get<double>(), 11.09, 0.02);
   EXPECT_TRUE(esm["lowest_variance"].is_null());
   const auto& user = cells[3]["stability"];
-  for (const char* field : {"overflow_texels", "negative_variance_texels", "lowest_variance", "headroom", "half_difference_max", "half_difference_rms"}) {
+  for (const char* field : {"overflow_texels", "negative_variance_texels", "lowest_variance", "headroom",
+                            "half_difference_max", "half_difference_rms"})
     EXPECT_EQ(user[field], vsm[field]) << field;
-  }
   EXPECT_EQ(cells[3]["absent"]["stability.bound_violations"], "the filter has no scalar model");
-  const std::string page = read_text(folder() / "out" / "index.html"), csv = read_text(folder() / "out" / "accuracy.csv");
+  const std::string page = read_text(folder() / "out" / "index.html"),
+                    csv = read_text(folder() / "out" / "accuracy.csv");
   for (const int i : {1, 2, 3}) {
     const std::string image = cells[static_cast<std::size_t>(i)]["images"]["stability"];
     EXPECT_TRUE(std::filesystem::exists(folder() / "out" / image)) << image;
@@ -307,7 +331,8 @@ TEST_F(Command, Stability_IsCountedDrawnAndLinked) {
 }
 
 TEST_F(Command, WithoutStability_SaysSo) {
-  ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters vsm --no-truth").exit_code, 0);
+  ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters vsm --no-truth").exit_code,
+            0);
   const nlohmann::json cell = results(folder())["cells"][0];
   EXPECT_TRUE(cell["stability"]["overflow_texels"].is_null());
   EXPECT_EQ(cell["absent"]["stability"], "the run was made without --stability");
@@ -323,9 +348,8 @@ TEST_F(Command, MapOfOneTexel_Works) {
 TEST_F(Command, ListFilters_ShowsWhatTheFrontMatterSays) {
   const Outcome outcome = run("list filters");
   EXPECT_EQ(outcome.exit_code, 0);
-  for (const char* word : {"min_variance", "1e-05", "depth^2", "Donnelly", "per-pixel"}) {
+  for (const char* word : {"min_variance", "1e-05", "depth^2", "Donnelly", "per-pixel"})
     EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
-  }
   const nlohmann::json json = nlohmann::json::parse(run("list filters --json").out);
   EXPECT_EQ(json.size(), 9u);
 }
@@ -333,8 +357,10 @@ TEST_F(Command, ListFilters_ShowsWhatTheFrontMatterSays) {
 TEST_F(Command, BorderSettings_ReachCellsPicturesAndUsersFilters) {
   // A user's copy of a built-in filter, in its own process, shows the same artefact.
   write("copied.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/pcf2x2.glsl"));
-  const std::string arguments = "run --size 64x36 --map-size 64 --rounds 1 --scene edge --filters pcf2x2,copied --filter-file copied.glsl ";
-  const std::vector<std::string> settings = {"--out out", "--out repeat --border repeat", "--out edge --border edge", "--out far --far-test off"};
+  const std::string arguments =
+      "run --size 64x36 --map-size 64 --rounds 1 --scene edge --filters pcf2x2,copied --filter-file copied.glsl ";
+  const std::vector<std::string> settings = {"--out out", "--out repeat --border repeat", "--out edge --border edge",
+                                             "--out far --far-test off"};
   std::set<std::string> keys, pictures;
   for (const std::string& setting : settings) {
     const Outcome outcome = run(arguments + setting);
@@ -349,7 +375,8 @@ TEST_F(Command, BorderSettings_ReachCellsPicturesAndUsersFilters) {
   }
   EXPECT_EQ(keys.size(), 8u);
   EXPECT_EQ(pictures.size(), 4u);
-  const nlohmann::json range = nlohmann::json::parse(read_text(folder() / "repeat" / "results.json"))["cells"][0]["range"];
+  const nlohmann::json range =
+      nlohmann::json::parse(read_text(folder() / "repeat" / "results.json"))["cells"][0]["range"];
   EXPECT_EQ(range, nlohmann::json::parse(R"({"border": "repeat", "far_test": true, "behind_test": true})"));
 }
 
@@ -362,10 +389,12 @@ TEST_F(Command, OnlyTheRightRule_LeavesNoErrorBeyondTheFarPlane) {
 }
 
 TEST_F(Command, BehindTestOff_SaysThatItChangesNothing) {
-  const Outcome outcome = run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene edge --filters none --behind-test off");
+  const Outcome outcome =
+      run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene edge --filters none --behind-test off");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   ASSERT_EQ(results(folder())["warnings"].size(), 1u);
-  EXPECT_NE(results(folder())["warnings"][0].get<std::string>().find("--behind-test off changes nothing"), std::string::npos);
+  EXPECT_NE(results(folder())["warnings"][0].get<std::string>().find("--behind-test off changes nothing"),
+            std::string::npos);
 }
 
 TEST_F(Command, BorderPage_IsDrawnWhereAskedFor_AndLeavesTheNextViewAsItWas) {
@@ -386,7 +415,8 @@ TEST_F(Command, BorderPage_IsDrawnWhereAskedFor_AndLeavesTheNextViewAsItWas) {
 }
 
 TEST_F(Command, BorderPage_OfAReversedMap_IsTheSame) {
-  const std::string arguments = " --size 160x90 --map-size 128 --rounds 1 --scene edge --filters none --no-truth --border-page";
+  const std::string arguments =
+      " --size 160x90 --map-size 128 --rounds 1 --scene edge --filters none --no-truth --border-page";
   ASSERT_EQ(run("run --out usual" + arguments).exit_code, 0);
   ASSERT_EQ(run("run --out reversed --reversed-depth" + arguments).exit_code, 0);
   const Outcome outcome = run("diff usual/edge.borders.png reversed/edge.borders.png --metric rmse --json");
@@ -400,7 +430,8 @@ TEST_F(Command, ListScenes_NamesTeachingScenesApart) {
   ASSERT_NE(heading, std::string::npos);
   EXPECT_GT(out.find("\nedge "), heading);
   EXPECT_LT(out.find("\nsteps "), heading);
-  for (const auto& scene : nlohmann::json::parse(run("list scenes --json").out)) EXPECT_EQ(scene["teaching"], scene["name"] == "edge");
+  for (const auto& scene : nlohmann::json::parse(run("list scenes --json").out))
+    EXPECT_EQ(scene["teaching"], scene["name"] == "edge");
 }
 
 TEST_F(Command, ListScenes_NamesAllFive) {

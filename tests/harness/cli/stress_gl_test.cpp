@@ -19,9 +19,9 @@ class StressCommand : public ProgramTest {
 TEST_F(StressCommand, WritesTheReport_WithLimitsBesideTheory) {
   const Outcome outcome = run("stress --out out --filters vsm --axes warp-exponent,vsm-cancellation");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (const char* name : {"stress.json", "stress.md", "stress.html", "stress.csv", "stress.gp", "stress.warp-exponent.svg", "stress.vsm-cancellation.svg"}) {
+  for (const char* name : {"stress.json", "stress.md", "stress.html", "stress.csv", "stress.gp",
+                           "stress.warp-exponent.svg", "stress.vsm-cancellation.svg"})
     EXPECT_TRUE(std::filesystem::exists(folder() / "out" / name)) << name;
-  }
   EXPECT_THAT(outcome.out, HasSubstr("out/stress.html"));
   const nlohmann::json stress = read_stress();
   ASSERT_EQ(stress["axes"].size(), 2u);
@@ -34,7 +34,8 @@ TEST_F(StressCommand, WritesTheReport_WithLimitsBesideTheory) {
 TEST_F(StressCommand, WhatIsNotAvailable_IsSaid) {
   const Outcome outcome = run("stress --out out --filters vsm --axes esm-exponent");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("not available: filters (GL): no chosen filter's front matter declares 'exponent'"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("not available: filters (GL): no chosen filter's front matter declares 'exponent'"));
   EXPECT_THAT(read_text(folder() / "out" / "stress.html"), HasSubstr("not available"));
 }
 
@@ -62,7 +63,8 @@ TEST_F(StressCommand, ReplaysTheMistake_AndFlagsIt) {
 TEST_F(StressCommand, List_NamesAxesAndParameters) {
   const Outcome outcome = run("stress --list");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (const char* word : {"esm-exponent", "warp-exponent", "vsm-cancellation", "esm:c", "vsm:min_variance"}) EXPECT_THAT(outcome.out, HasSubstr(word));
+  for (const char* word : {"esm-exponent", "warp-exponent", "vsm-cancellation", "esm:c", "vsm:min_variance"})
+    EXPECT_THAT(outcome.out, HasSubstr(word));
 }
 
 TEST_F(StressCommand, BadInput_IsRefused) {
@@ -76,7 +78,8 @@ TEST_F(StressCommand, BadInput_IsRefused) {
   expect_refusal("stress --out out --range nothing=1,10", 2, {"--range", "'nothing'"});
   expect_refusal("stress --out out --axes warp-exponent --range esm-exponent=1,10", 2, {"not among --axes"});
   expect_refusal("stress --out out --filters vsn", 2, {"'vsn'", "vsm"});
-  expect_refusal("stress --out out --filter-file " + user_filter("nine_compares.glsl"), 2, {"--filter-file", "no scalar model", "nine_compares.glsl"});
+  expect_refusal("stress --out out --filter-file " + user_filter("nine_compares.glsl"), 2,
+                 {"--filter-file", "no scalar model", "nine_compares.glsl"});
   expect_refusal("stress --out out --gl vulkan", 2, {"'vulkan'"});
   expect_refusal("stress --out /proc/none", 6, {"/proc/none"});
 }

@@ -9,12 +9,13 @@
 namespace shadowbench::test {
 namespace {
 
+using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using nlohmann::json;
 
 constexpr const char* kExperiment =
-    "title = 'small'\nscene = ['cubes', 'stack']\nmap_size = [32, 64]\nsize = '64x36'\nrounds = 1\ngrids = false\nattribution = false\n"
+    "title = 'small'\nscene = ['cubes', 'stack']\nmap_size = [32, 64]\nsize = '64x36'\nrounds = 1\ngrids = "
+    "false\nattribution = false\n"
     "[[filter]]\nid = 'none'\n[[filter]]\nid = 'vsm'\nradius = [1, 2, 3]\n[[filter]]\nid = 'poisson'\ntaps = [8, 16]\n"
     "radius = {linear = [1, 4], count = 4}\n";
 constexpr std::size_t kCells = 2 * 2 * (1 + 3 + 2 * 4);
@@ -38,21 +39,25 @@ class Sweep : public ProgramTest {
   void expect_same(const std::string& a, const std::string& b) const {
     const json first = results(a), second = results(b);
     ASSERT_EQ(first["cells"].size(), second["cells"].size());
-    for (std::size_t i = 0; i < first["cells"].size(); ++i) EXPECT_EQ(without_times(first["cells"][i]), without_times(second["cells"][i])) << i;
-    for (const char* name : {"experiment", "warnings", "scenes", "gl", "commit", "seed"}) EXPECT_EQ(first[name], second[name]) << name;
+    for (std::size_t i = 0; i < first["cells"].size(); ++i)
+      EXPECT_EQ(without_times(first["cells"][i]), without_times(second["cells"][i])) << i;
+    for (const char* name : {"experiment", "warnings", "scenes", "gl", "commit", "seed"})
+      EXPECT_EQ(first[name], second[name]) << name;
   }
 
   /// Runs the program until its folder `out` holds so many cells, and kills it.
   void run_and_kill(const std::string& arguments, int cells) const {
-    const std::string script = "cd '" + folder().string() + "'\nXDG_CACHE_HOME='" + cache_folder().string() + "' '" SHADOWBENCH_PROGRAM "' " +
-                               arguments + " >/dev/null 2>&1 &\ni=0\nwhile [ $i -lt 3000 ] && [ $(ls out/cells 2>/dev/null | wc -l) -lt " +
-                               std::to_string(cells) + " ]; do sleep 0.02; i=$((i+1)); done\nkill -9 $!\nwait\n";
+    const std::string script =
+        "cd '" + folder().string() + "'\nXDG_CACHE_HOME='" + cache_folder().string() + "' '" SHADOWBENCH_PROGRAM "' " +
+        arguments + " >/dev/null 2>&1 &\ni=0\nwhile [ $i -lt 3000 ] && [ $(ls out/cells 2>/dev/null | wc -l) -lt " +
+        std::to_string(cells) + " ]; do sleep 0.02; i=$((i+1)); done\nkill -9 $!\nwait\n";
     EXPECT_EQ(std::system(("sh '" + write("kill.sh", script).string() + "'").c_str()), 0);
   }
 
   std::map<std::string, std::filesystem::file_time_type> cell_times(const std::string& out = "out") const {
     std::map<std::string, std::filesystem::file_time_type> times;
-    for (const auto& entry : std::filesystem::directory_iterator(folder() / out / "cells")) times[entry.path().filename().string()] = entry.last_write_time();
+    for (const auto& entry : std::filesystem::directory_iterator(folder() / out / "cells"))
+      times[entry.path().filename().string()] = entry.last_write_time();
     return times;
   }
 };
@@ -61,7 +66,8 @@ TEST_F(Sweep, MeasuresTheProduct_AndTheCommandLineHasTheLastWord) {
   Outcome outcome = run("run e.toml --out out");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr(std::to_string(kCells) + " cells; "));
-  EXPECT_THAT(outcome.err, HasSubstr("of timed work, what --rounds 1 of the unfiltered lookup take; rays and pictures come on top"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("of timed work, what --rounds 1 of the unfiltered lookup take; rays and pictures come on top"));
   const json all = results();
   EXPECT_EQ(all["cells"].size(), kCells);
   EXPECT_EQ(all["experiment"]["title"], "small");
@@ -81,7 +87,8 @@ TEST_F(Sweep, MeasuresTheProduct_AndTheCommandLineHasTheLastWord) {
   EXPECT_EQ(one["cells"][0]["size"]["width"], 32);
   EXPECT_EQ(one["cells"][1]["size"]["width"], 16);
   EXPECT_NE(one["cells"][0]["images"]["visibility"], one["cells"][1]["images"]["visibility"]);
-  EXPECT_FALSE(one["cells"][0]["ratio_to_none"]["lookup"].is_null()) << "timed beside the reference, which is not in the run";
+  EXPECT_FALSE(one["cells"][0]["ratio_to_none"]["lookup"].is_null())
+      << "timed beside the reference, which is not in the run";
 }
 
 TEST_F(Sweep, Continued_MeasuresNothingTwice_UnlessSomethingChanged) {
@@ -124,9 +131,11 @@ TEST_F(Sweep, FreshOverAFinishedReport_SaysHowManyTimesRepeat) {
   const json repeat = results()["repeat"];
   EXPECT_EQ(repeat["cells"], 3);
   EXPECT_EQ(repeat["of"], 4);
-  const std::string said = std::to_string(repeat["overlapping"].get<int>()) + " of 4 ratio intervals overlap those of the run that this one replace";
+  const std::string said = std::to_string(repeat["overlapping"].get<int>()) +
+                           " of 4 ratio intervals overlap those of the run that this one replace";
   EXPECT_THAT(outcome.err, HasSubstr(said));
-  for (const char* file : {"out/summary.md", "out/index.html"}) EXPECT_THAT(read_text(folder() / file), HasSubstr(said)) << file;
+  for (const char* file : {"out/summary.md", "out/index.html"})
+    EXPECT_THAT(read_text(folder() / file), HasSubstr(said)) << file;
   ASSERT_EQ(run(few + "--fresh --seed 2").exit_code, 0);
   EXPECT_TRUE(results()["repeat"]["of"].is_null()) << "what was replaced was told something else";
 }
@@ -135,13 +144,16 @@ TEST_F(Sweep, ClaimsOfAUsersFilter_AreInItsCellsAndCount) {
   write("mine.glsl",
         "/*+++\ntitle = \"M\"\nsource = \"s\"\nkind = \"other\"\nclaims = [\"own-claim\"]\nradius_texels = 0\n+++*/\n"
         "float visibility(Receiver r) { return 1.0; }\n");
-  const Outcome outcome = run("run --scene cubes --map-size 32 --size 32x18 --rounds 1 --no-attribution --filters none,mine --filter-file mine.glsl --out out");
+  const Outcome outcome =
+      run("run --scene cubes --map-size 32 --size 32x18 --rounds 1 --no-attribution --filters none,mine --filter-file "
+          "mine.glsl --out out");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(results()["cells"][0]["claims"], json::array());
   EXPECT_EQ(results()["cells"][1]["claims"], json::array({"own-claim"}));
   EXPECT_THAT(run("advise out --requires own-claim").out, ::testing::StartsWith("mine, map 32"));
   // So small a picture has too few pixels for rates.
-  EXPECT_THAT(results()["cells"][0]["absent"]["artefact.leak"].get<std::string>(), ::testing::StartsWith("nothing to see: fewer than 100 receivers"));
+  EXPECT_THAT(results()["cells"][0]["absent"]["artefact.leak"].get<std::string>(),
+              ::testing::StartsWith("nothing to see: fewer than 100 receivers"));
   EXPECT_EQ(run("advise out --max-leak 1").exit_code, 1);
 }
 
@@ -185,7 +197,8 @@ TEST_F(Sweep, ShardsMerged_EqualTheWhole) {
 }
 
 TEST_F(Sweep, ShardsThatDoNotFit_AreRefused) {
-  const std::string few = "run e.toml --scene cubes --map-size 32 --filters none,vsm:radius=1,vsm:radius=2,pcf2x2,tent3x3 ";
+  const std::string few =
+      "run e.toml --scene cubes --map-size 32 --filters none,vsm:radius=1,vsm:radius=2,pcf2x2,tent3x3 ";
   for (const char* shard : {"1", "2"}) ASSERT_EQ(run(few + "--shard " + shard + "/2 --out s" + shard).exit_code, 0);
   ASSERT_EQ(run(few + "--shard 1/3 --out other").exit_code, 0);
   ASSERT_EQ(run(few + "--seed 5 --shard 2/2 --out seed").exit_code, 0);
@@ -229,11 +242,13 @@ TEST_F(Sweep, BadShards_AreRefused) {
 /// What would take hours is counted and asked about, before anything is written.
 TEST_F(Sweep, TooManyCells_AskForYes) {
   write("huge.toml",
-        "scene = 'cubes'\nsize = '16x9'\nmap_size = 16\nrounds = 1\ngrids = false\ntruth = false\n[[filter]]\nid = 'esm'\n"
+        "scene = 'cubes'\nsize = '16x9'\nmap_size = 16\nrounds = 1\ngrids = false\ntruth = false\n[[filter]]\nid = "
+        "'esm'\n"
         "c = {linear = [1, 2000], count = 2001}\n");
   expect_refusal("run huge.toml --out out", 2, {"2001 cells", "--yes"});
   expect_refusal("run e.toml --rounds auto --budget 100 --out out", 2, {"48 cells", "1 h 20 min", "--yes"});
-  expect_refusal("run e.toml --rounds 10000 --size 1280x720 --out out", 2, {"48 cells", "of timed work", "--rounds 10000", "--yes", "fewer --rounds"});
+  expect_refusal("run e.toml --rounds 10000 --size 1280x720 --out out", 2,
+                 {"48 cells", "of timed work", "--rounds 10000", "--yes", "fewer --rounds"});
   EXPECT_FALSE(std::filesystem::exists(folder() / "out"));
   EXPECT_EQ(run("run e.toml --rounds auto --budget 100 --precision 1 --yes --out out").exit_code, 0);
 }

@@ -25,9 +25,8 @@ class TuneCommand : public ProgramTest {
   double default_score(const std::string& metric) const {
     EXPECT_EQ(tune("--filter poisson --budget 1 --metric " + metric).exit_code, 0);
     const nlohmann::json tuned = read_tuned();
-    for (const auto& view : tuned["filters"][0]["views"]) {
+    for (const auto& view : tuned["filters"][0]["views"])
       if (view["view"] == "as it is") return view["score"]["default"].get<double>();
-    }
     return -1.0;
   }
 };
@@ -35,7 +34,9 @@ class TuneCommand : public ProgramTest {
 TEST_F(TuneCommand, FindsParametersThatAreBetterOnUnseenViews) {
   const Outcome outcome = tune("--filter vsm:bleed_reduction=0,esm --budget 30");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (const char* part : {"## vsm", "## esm", "Gain on unseen views", "within 10 % of the best", "out/tuned.json", "padded by 4"}) EXPECT_THAT(outcome.out, HasSubstr(part));
+  for (const char* part :
+       {"## vsm", "## esm", "Gain on unseen views", "within 10 % of the best", "out/tuned.json", "padded by 4"})
+    EXPECT_THAT(outcome.out, HasSubstr(part));
   EXPECT_EQ(read_text(folder() / "out" / "tune.md") + "parameters: out/tuned.json\n", outcome.out);
   const nlohmann::json tuned = read_tuned();
   ASSERT_EQ(tuned["filters"].size(), 2u);
@@ -71,7 +72,8 @@ TEST_F(TuneCommand, Evaluations_AreAllInTheTable) {
 
 TEST_F(TuneCommand, IsTheSameTwice) {
   ASSERT_EQ(tune("--filter poisson --budget 10").exit_code, 0);
-  const std::string first = read_text(folder() / "out" / "tuned.json"), table = read_text(folder() / "out" / "evaluations.csv");
+  const std::string first = read_text(folder() / "out" / "tuned.json"),
+                    table = read_text(folder() / "out" / "evaluations.csv");
   ASSERT_EQ(tune("--filter poisson --budget 10 --no-cache").exit_code, 0);
   EXPECT_EQ(read_text(folder() / "out" / "tuned.json"), first);
   EXPECT_EQ(read_text(folder() / "out" / "evaluations.csv"), table);
@@ -79,9 +81,13 @@ TEST_F(TuneCommand, IsTheSameTwice) {
 
 /// What is made small is what 'run' reports, of the same map.
 TEST_F(TuneCommand, Scores_AreThoseOfRun) {
-  ASSERT_EQ(run("run --out report --scene cubes --map-size 128 --size 96x54 --rounds 1 --no-attribution --filters poisson --pad-texels 4").exit_code, 0);
+  ASSERT_EQ(run("run --out report --scene cubes --map-size 128 --size 96x54 --rounds 1 --no-attribution --filters "
+                "poisson --pad-texels 4")
+                .exit_code,
+            0);
   const nlohmann::json error = read_results()["cells"][0]["error"];
-  for (const char* metric : {"rmse", "mae", "p95", "flip"}) EXPECT_EQ(default_score(metric), error[metric].get<double>()) << metric;
+  for (const char* metric : {"rmse", "mae", "p95", "flip"})
+    EXPECT_EQ(default_score(metric), error[metric].get<double>()) << metric;
 }
 
 TEST_F(TuneCommand, Acne_IsTunedOverItsMask) {
@@ -107,7 +113,9 @@ TEST_F(TuneCommand, ScenesWithoutTheMetric_AreSkipped_WhereNoneIsNamed) {
 TEST_F(TuneCommand, Run_TakesTheParameters_AndTheCommandLineGoesFirst) {
   ASSERT_EQ(tune("--filter vsm:bleed_reduction=0 --budget 20").exit_code, 0);
   const nlohmann::json params = read_tuned()["filters"][0]["params"];
-  const Outcome outcome = run("run --out report --scene cubes --map-size 64 --size 96x54 --rounds 1 --no-truth --tuned out/tuned.json --filters vsm,vsm:radius=9,esm");
+  const Outcome outcome =
+      run("run --out report --scene cubes --map-size 64 --size 96x54 --rounds 1 --no-truth --tuned out/tuned.json "
+          "--filters vsm,vsm:radius=9,esm");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("no parameters for esm"));
   EXPECT_THAT(outcome.err, HasSubstr("128 texels, this run draws 64"));
@@ -127,7 +135,8 @@ TEST_F(TuneCommand, BadInput_IsRefused) {
   expect_refusal("tune --out out --filter none", 2, {"nothing to tune", "'none'"});
   expect_refusal("tune --out out --filter poisson:radius=2", 2, {"nothing to tune", "poisson (radius=2)"});
   expect_refusal("tune --out out --filter vsm,vsm:store=rg16f", 2, {"names 'vsm' twice", "--out"});
-  expect_refusal("tune --out out --filter nine_compares --filter-file " + user_filter("nine_compares.glsl"), 2, {"--filter-file", "built-in"});
+  expect_refusal("tune --out out --filter nine_compares --filter-file " + user_filter("nine_compares.glsl"), 2,
+                 {"--filter-file", "built-in"});
   expect_refusal("tune --out out --filter vsm --metric ssim", 2, {"'ssim'", "rmse, mae, p95, flip, leak, acne"});
   expect_refusal("tune --out out --filter vsm --budget 0", 2, {"--budget", "'0'"});
   expect_refusal("tune --out out --filter vsm --budget 10001", 2, {"--budget", "10001", "1 .. 10000"});
@@ -135,7 +144,8 @@ TEST_F(TuneCommand, BadInput_IsRefused) {
   expect_refusal("tune --out out --filter vsm --bias receiver-plane", 2, {"vsm"});
   expect_refusal("tune --out out --filter vsm --scene stepz", 2, {"'stepz'", "steps"});
   expect_refusal("tune --out out --filter vsm --scene cubes --scene cubes", 2, {"two scenes", "'cubes'"});
-  expect_refusal("tune --filter vsm --metric leak" + std::string(kSmall), 3, {"'cubes'", "leak", "needs 100", "--scene"});
+  expect_refusal("tune --filter vsm --metric leak" + std::string(kSmall), 3,
+                 {"'cubes'", "leak", "needs 100", "--scene"});
   write("file", "");
   expect_refusal("tune --filter vsm --scene cubes --map-size 64 --size 32x18 --budget 1 --out file/out", 6, {"file"});
   EXPECT_FALSE(std::filesystem::exists(folder() / "out" / "tuned.json"));
@@ -145,8 +155,11 @@ TEST_F(TuneCommand, BadTunedFiles_AreRefused) {
   write("cut.json", "{\"schema_version\": 1,");
   expect_refusal("run --out out --scene cubes --tuned cut.json", 3, {"cut.json", "cut off"});
   expect_refusal("run --out out --scene cubes --tuned none.json", 3, {"none.json", "--tuned"});
-  write("wide.json", R"({"schema_version": 1, "metric": "rmse", "map_size": 64, "filters": [{"id": "vsm", "params": {"radius": 65}}]})");
-  expect_refusal("run --out out --scene cubes --tuned wide.json", 3, {"wide.json", "filters[0].params.radius", "0 .. 64"});
+  write(
+      "wide.json",
+      R"({"schema_version": 1, "metric": "rmse", "map_size": 64, "filters": [{"id": "vsm", "params": {"radius": 65}}]})");
+  expect_refusal("run --out out --scene cubes --tuned wide.json", 3,
+                 {"wide.json", "filters[0].params.radius", "0 .. 64"});
 }
 
 }  // namespace

@@ -1,9 +1,8 @@
-#include "harness/flicker/bench.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "harness/flicker/bench.h"
 #include "harness/run/scene_loading.h"
 
 namespace shadowbench::flicker {
@@ -16,7 +15,10 @@ const auto kIgnore = [](int) {};
 class FlickerBenchTest : public ::testing::Test {
  protected:
   FlickerBenchTest()
-      : options_(make_options()), scene_(run::load_scene(options_, "cubes")), renderer_(run::make_renderer(gl::Backend::kAuto, options_.resources)), cache_({}, [](const std::string&) {}),
+      : options_(make_options()),
+        scene_(run::load_scene(options_, "cubes")),
+        renderer_(run::make_renderer(gl::Backend::kAuto, options_.resources)),
+        cache_({}, [](const std::string&) {}),
         bench_(renderer_, options_, scene_, cache_) {}
 
   static run::RunOptions make_options() {
@@ -29,7 +31,9 @@ class FlickerBenchTest : public ::testing::Test {
     return options;
   }
 
-  double step_of(Motion motion) const { return choose_step(motion, scene_, bench_.receivers().image, bench_.following(false)); }
+  double step_of(Motion motion) const {
+    return choose_step(motion, scene_, bench_.receivers().image, bench_.following(false));
+  }
 
   std::vector<reference::FlickerStats> measure(Motion motion, bool snap, double step) {
     const auto frames = make_frames(motion, scene_, step, kFrames);
@@ -85,7 +89,8 @@ TEST_F(FlickerBenchTest, TurnedLight_MovesTheTruth_AndEveryFilter) {
 TEST_F(FlickerBenchTest, WiderKernel_FlickersLess) {
   const auto stats = measure(Motion::kCamera, false, step_of(Motion::kCamera));
   const auto flicker = [&](const std::string& id) {
-    const auto found = std::ranges::find_if(options_.filters, [&](const filters::FilterRequest& request) { return request.spec.id == id; });
+    const auto found = std::ranges::find_if(
+        options_.filters, [&](const filters::FilterRequest& request) { return request.spec.id == id; });
     return stats[static_cast<std::size_t>(found - options_.filters.begin())].flicker;
   };
   EXPECT_GT(flicker("none"), flicker("pcf2x2"));

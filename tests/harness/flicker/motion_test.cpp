@@ -26,7 +26,10 @@ scene::Scene load_cubes() {
 reference::ReceiverImage make_floor() {
   reference::ReceiverImage image{5, 5, {}};
   for (int y = 0; y < 5; ++y) {
-    for (int x = 0; x < 5; ++x) image.points.push_back({{-1.0f + 0.5f * static_cast<float>(x), 0.0f, -1.0f + 0.5f * static_cast<float>(y)}, {0.0f, 1.0f, 0.0f}, true});
+    for (int x = 0; x < 5; ++x)
+      image.points.push_back({{-1.0f + 0.5f * static_cast<float>(x), 0.0f, -1.0f + 0.5f * static_cast<float>(y)},
+                              {0.0f, 1.0f, 0.0f},
+                              true});
   }
   return image;
 }
@@ -61,7 +64,9 @@ TEST(Motion, FirstFrameIsTheScenes_AndOnlyOneThingMoves) {
   EXPECT_NEAR(glm::distance(moved[2].camera.position_ws, scene.cameras.front().position_ws), 1.0f, 1e-5f);
 }
 
-TEST(Motion, LightsStep_MovesTheMedianReceiverByTheShareOfATexel) { EXPECT_NEAR(grid_move(Motion::kLight, false), kStepTexels, 0.2 * kStepTexels); }
+TEST(Motion, LightsStep_MovesTheMedianReceiverByTheShareOfATexel) {
+  EXPECT_NEAR(grid_move(Motion::kLight, false), kStepTexels, 0.2 * kStepTexels);
+}
 
 TEST(Motion, SnappedGrid_StandsStillUnderACamera_AndAFreeOneDoesNot) {
   EXPECT_LT(grid_move(Motion::kCamera, true), 1e-6);

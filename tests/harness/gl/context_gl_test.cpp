@@ -11,7 +11,8 @@
 #include "tests/harness/gl/gl_fixture.h"
 
 #ifdef __SANITIZE_ADDRESS__
-/// Mesa unloads its driver with the last GLX context, and no leak could be traced to the driver, nor suppressed, after that.
+/// Mesa unloads its driver with the last GLX context, and no leak could be traced to the driver, nor suppressed, after
+/// that.
 extern "C" int dlclose(void* /*library*/) { return 0; }
 #endif
 

@@ -11,9 +11,8 @@ namespace shadowbench::gl {
 namespace {
 
 TEST(Backend, EveryName_ReadsBackAsItself) {
-  for (const Backend backend : {Backend::kAuto, Backend::kOsmesa, Backend::kEgl, Backend::kGlfw}) {
+  for (const Backend backend : {Backend::kAuto, Backend::kOsmesa, Backend::kEgl, Backend::kGlfw})
     EXPECT_EQ(parse_backend(backend_name(backend)), backend);
-  }
 }
 
 TEST(Backend, UnknownName_IsAUsageErrorThatListsTheOthers) {

@@ -43,9 +43,8 @@ TEST_P(TextureRoundTrip, Floats_ComeBackWithinTheFormatsStep) {
   constexpr int kWidth = 5;
   constexpr int kHeight = 3;
   std::vector<float> texels;
-  for (int i = 0; i < kWidth * kHeight * format.channels; ++i) {
+  for (int i = 0; i < kWidth * kHeight * format.channels; ++i)
     texels.push_back(static_cast<float>(i) / static_cast<float>(kWidth * kHeight * format.channels));
-  }
   Texture texture("round trip", format.format, kWidth, kHeight);
   texture.upload_floats(texels, format.channels);
   const auto back = texture.read_floats(format.channels);

@@ -138,7 +138,8 @@ TEST_F(ShaderSourceTest, IncludeOutsideTheFolders_IsRefused) {
   write("secret.txt", "SECRET\n");
   options_.roots = {folder_ / "lib"};
   write("lib/main.frag", "#include \"filter\"\n");
-  for (const std::string& name : {path("secret.txt"), std::string("../secret.txt"), std::string("x/../../secret.txt"), std::string("/etc/passwd")}) {
+  for (const std::string& name : {path("secret.txt"), std::string("../secret.txt"), std::string("x/../../secret.txt"),
+                                  std::string("/etc/passwd")}) {
     options_.pieces = {{"filter", "x\n#include \"" + name + "\"\n", "user.glsl", 20}};
     const Error error = catch_error([&] { build_source(options_); });
     EXPECT_EQ(error.kind(), ErrorKind::kFilter) << name;

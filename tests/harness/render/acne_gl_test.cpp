@@ -46,8 +46,8 @@ std::vector<int> trace(Bench& bench, const scene::Scene& scene, const std::vecto
   for (const filters::Receiver& r : receivers) {
     const glm::dvec3 origin = glm::dvec3(r.position_ws) + 1e-4 * glm::dvec3(r.normal_ws);
     const glm::dvec3 to_light = -glm::dvec3(bench.frustum().direction_ws);
-    const bool blocked = std::any_of(casters.begin(), casters.end(),
-                                     [&](const Triangle& t) { return hits(t, origin, to_light); });
+    const bool blocked =
+        std::any_of(casters.begin(), casters.end(), [&](const Triangle& t) { return hits(t, origin, to_light); });
     lit[bench.index(r)] = blocked ? 0 : 1;
   }
   return lit;
@@ -58,9 +58,8 @@ bool is_interior(const std::vector<int>& lit, int x, int y, int reach) {
   const auto at = [&](int px, int py) { return lit[static_cast<std::size_t>(py * kWidth + px)]; };
   if (x < reach || y < reach || x + reach >= kWidth || y + reach >= kHeight) return false;
   for (int dy = -reach; dy <= reach; ++dy) {
-    for (int dx = -reach; dx <= reach; ++dx) {
+    for (int dx = -reach; dx <= reach; ++dx)
       if (at(x + dx, y + dy) != at(x, y)) return false;
-    }
   }
   return true;
 }
@@ -128,8 +127,8 @@ TEST(DefaultBias, LeavesNoVisibleAcne_InAnyFormat) {
       Traced traced("steps", {format, {reversed}});
       for (const std::string& filter : filter_ids()) {
         const Rates rates = traced.measure(filter, {});
-        std::printf("%s %s: acne %.5f of %d, gap %.5f\n", render::describe_map({format, {reversed}}).c_str(), filter.c_str(),
-                    rates.acne, rates.lit, rates.gap);
+        std::printf("%s %s: acne %.5f of %d, gap %.5f\n", render::describe_map({format, {reversed}}).c_str(),
+                    filter.c_str(), rates.acne, rates.lit, rates.gap);
         EXPECT_LE(rates.acne, 0.001) << filter;
         EXPECT_LE(rates.gap, 0.05) << filter;
       }

@@ -16,12 +16,12 @@ struct Caster {
   float height = 24.0f;  ///< over the floor, as long as so many texels are wide
 };
 
-/// Pixels per texel, per axis. Their centres keep a sixteenth of a texel off every border of a texel and off its centre, so that no
-/// rounding decides which texel a filter reads, whichever way ties fall there.
+/// Pixels per texel, per axis. Their centres keep a sixteenth of a texel off every border of a texel and off its
+/// centre, so that no rounding decides which texel a filter reads, whichever way ties fall there.
 inline constexpr int kPixelsPerTexel = 8;
 
-/// A floor under a light from straight above, seen straight from above: a pixel is an eighth of a texel. A metre is a texel, and the
-/// light's frustum is frozen, so that it does not follow casters.
+/// A floor under a light from straight above, seen straight from above: a pixel is an eighth of a texel. A metre is a
+/// texel, and the light's frustum is frozen, so that it does not follow casters.
 class AnalyticFloor {
  public:
   /// Makes a floor with room for a kernel of `radius_texels` on both sides of the view's middle.
@@ -60,7 +60,8 @@ class AnalyticFloor {
     scene.materials.emplace_back();
     const glm::vec2 half(0.5f * static_cast<float>(map_));
     scene.meshes.push_back(make_rectangle(-half, half, 0.0f));
-    for (const Caster& c : casters) scene.meshes.push_back(make_rectangle(glm::max(c.low, -half), glm::min(c.high, half), c.height));
+    for (const Caster& c : casters)
+      scene.meshes.push_back(make_rectangle(glm::max(c.low, -half), glm::min(c.high, half), c.height));
     scene::Camera camera;
     camera.position_ws = {0.0f, kCamera, 0.0f};
     camera.forward_ws = {0.0f, -1.0f, 0.0f};
@@ -68,7 +69,8 @@ class AnalyticFloor {
     camera.vertical_fov_rad = 2.0f * std::atan(0.5f * static_cast<float>(view_) / kCamera);
     scene.cameras.push_back(camera);
     scene.light.direction_ws = {0.0f, -1.0f, 0.0f};
-    scene.light.map_window = scene::MapWindow{{0.0, 0.0, 0.0}, static_cast<double>(map_), scene::MapWindow::Planes{-kNear, kFar}};
+    scene.light.map_window =
+        scene::MapWindow{{0.0, 0.0, 0.0}, static_cast<double>(map_), scene::MapWindow::Planes{-kNear, kFar}};
     return scene::validate(scene, scene.name);
   }
 };

@@ -1,5 +1,5 @@
-// Every bias mode on an empty plane, over angles and map sizes: at the amount that theory asks for there is no acne, at half
-// of it there is.
+// Every bias mode on an empty plane, over angles and map sizes: at the amount that theory asks for there is no acne, at
+// half of it there is.
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +19,9 @@ scene::Scene make_plane(double tilt_deg, double azimuth_deg) {
   scene::Mesh floor;
   constexpr int kCells = 8;
   const auto coordinate = [](int i) { return -5.0f + 10.0f * static_cast<float>(i) / static_cast<float>(kCells); };
-  for (int j = 0; j <= kCells; ++j) {
-    for (int i = 0; i <= kCells; ++i) floor.vertices.push_back({{coordinate(i), 0.0f, coordinate(j)}, {0, 1, 0}, {0, 0}});
-  }
+  for (int j = 0; j <= kCells; ++j)
+    for (int i = 0; i <= kCells; ++i)
+      floor.vertices.push_back({{coordinate(i), 0.0f, coordinate(j)}, {0, 1, 0}, {0, 0}});
   for (std::uint32_t j = 0; j < kCells; ++j) {
     for (std::uint32_t i = 0; i < kCells; ++i) {
       const std::uint32_t a = j * (kCells + 1) + i, b = a + 1, c = a + kCells + 1;
@@ -30,7 +30,8 @@ scene::Scene make_plane(double tilt_deg, double azimuth_deg) {
   }
   scene.meshes = {floor};
   const double tilt = glm::radians(tilt_deg), azimuth = glm::radians(azimuth_deg);
-  scene.light.direction_ws = glm::normalize(glm::vec3(-std::sin(tilt) * std::cos(azimuth), -std::cos(tilt), -std::sin(tilt) * std::sin(azimuth)));
+  scene.light.direction_ws = glm::normalize(
+      glm::vec3(-std::sin(tilt) * std::cos(azimuth), -std::cos(tilt), -std::sin(tilt) * std::sin(azimuth)));
   scene::Camera camera;
   camera.position_ws = {0.37f, 10.0f, 0.21f};
   camera.forward_ws = {0, -1, 0};
@@ -93,12 +94,12 @@ TEST_P(PlaneSweep, NoAcneAtTheTheoreticalAmount_AcneAtHalfOfIt) {
         // Rounding of depths and of rasterised vertices: a fiftieth of the amount, and some steps of single precision.
         run::BiasRule enough = make_rule(find_mode(mode), theory, 1.02), half = make_rule(find_mode(mode), theory, 0.5);
         enough.constant.depth += 1e-6;
-        SCOPED_TRACE(mode + " " + filter + " at " + std::to_string(tilt) + " towards " + std::to_string(azimuth) + ", map " + std::to_string(size));
+        SCOPED_TRACE(mode + " " + filter + " at " + std::to_string(tilt) + " towards " + std::to_string(azimuth) +
+                     ", map " + std::to_string(size));
         EXPECT_EQ(sweep.acne(request, enough), 0.0);
         // Seen by the light, the floor must span some texels before anything can lie between two of them.
-        if (10.0 * theory.n_dot_l > 4.0 * sweep.bench.frustum().texel_size_ws) {
+        if (10.0 * theory.n_dot_l > 4.0 * sweep.bench.frustum().texel_size_ws)
           EXPECT_GT(sweep.acne(request, half), 0.0);
-        }
       }
     }
   }
@@ -107,9 +108,8 @@ TEST_P(PlaneSweep, NoAcneAtTheTheoreticalAmount_AcneAtHalfOfIt) {
 std::vector<std::string> mode_names() {
   std::vector<std::string> names;
   // Receiver-plane needs no amount but what rounding asks for.
-  for (const run::SweptMode& mode : run::swept_modes()) {
+  for (const run::SweptMode& mode : run::swept_modes())
     if (!mode.key.empty() && mode.name != "receiver-plane") names.push_back(mode.name);
-  }
   return names;
 }
 
@@ -121,7 +121,8 @@ std::string name_of(const testing::TestParamInfo<std::tuple<std::string, std::st
 
 INSTANTIATE_TEST_SUITE_P(Modes, PlaneSweep,
                          ::testing::Combine(::testing::ValuesIn(mode_names()),
-                                            ::testing::Values("none", "pcf2x2", "tent3x3", "box3x3", "poisson:taps=32,rotation=none")),
+                                            ::testing::Values("none", "pcf2x2", "tent3x3", "box3x3",
+                                                              "poisson:taps=32,rotation=none")),
                          name_of);
 
 class ReceiverPlane : public ::testing::TestWithParam<std::string> {};
@@ -144,8 +145,8 @@ TEST_P(ReceiverPlane, NeedsNoAmount_OnPlanes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Filters, ReceiverPlane,
-                         ::testing::Values("none", "pcf2x2", "tent3x3", "box3x3", "teach4x4", "box4x4", "poisson:radius=7",
-                                           "poisson:radius=15,taps=32"),
+                         ::testing::Values("none", "pcf2x2", "tent3x3", "box3x3", "teach4x4", "box4x4",
+                                           "poisson:radius=7", "poisson:radius=15,taps=32"),
                          [](const auto& test) {
                            std::string name = test.param;
                            for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';

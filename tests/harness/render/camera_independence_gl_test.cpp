@@ -1,4 +1,5 @@
-// The camera moves, and the visibility of places in the world stays what it was, whichever filter asks: on every built-in scene.
+// The camera moves, and the visibility of places in the world stays what it was, whichever filter asks: on every
+// built-in scene.
 
 #include <cstdio>
 #include <glm/gtc/matrix_transform.hpp>
@@ -19,9 +20,9 @@ constexpr double kShaded = 0.9;     // wide kernels leave much light behind thin
 constexpr double kTurn = 0.45;      // of the camera around the scene, rad
 constexpr double kDistance = 1.08;  // as far from it as before
 
-/// A place's visibility lies between its neighbours' in the other view, but for what it does within a pixel: curve, by a part of
-/// what it changes by from pixel to pixel, or jump where a silhouette in the map is narrower than that. Measured: 37
-/// of 125 929 places are seen otherwise at most.
+/// A place's visibility lies between its neighbours' in the other view, but for what it does within a pixel: curve, by
+/// a part of what it changes by from pixel to pixel, or jump where a silhouette in the map is narrower than that.
+/// Measured: 37 of 125 929 places are seen otherwise at most.
 constexpr double kBetweenPixels = 0.02, kCurvature = 0.25;
 constexpr double kLargestShare = 0.001;
 
@@ -54,9 +55,7 @@ class View {
         clip_(render::clip_from_world(scene.cameras.front(), scene.bounds(), static_cast<double>(kWidth) / kHeight)),
         pixels_(static_cast<std::size_t>(kWidth * kHeight)) {
     const auto images = draw_seeds(bench_, request, is_stochastic(request) ? kSeeds : 1);
-    for (const Receiver& r : bench_.receivers(request)) {
-      pixels_[bench_.index(r)] = average(r, images);
-    }
+    for (const Receiver& r : bench_.receivers(request)) pixels_[bench_.index(r)] = average(r, images);
   }
 
   const std::vector<std::optional<Place>>& pixels() const { return pixels_; }
@@ -98,8 +97,8 @@ class View {
 
   static bool is_same_surface(const Receiver& a, const Receiver& b) {
     const glm::vec3 way = b.position_ws - a.position_ws;
-    return glm::dot(a.normal_ws, b.normal_ws) > 0.9999f && std::abs(glm::dot(a.normal_ws, way)) < 0.1f * a.texel_size_ws &&
-           glm::length(way) < 4.0f * a.texel_size_ws;
+    return glm::dot(a.normal_ws, b.normal_ws) > 0.9999f &&
+           std::abs(glm::dot(a.normal_ws, way)) < 0.1f * a.texel_size_ws && glm::length(way) < 4.0f * a.texel_size_ws;
   }
 };
 
@@ -115,7 +114,9 @@ bool is_other(const Place& place, const std::vector<const Place*>& around) {
   return place.visibility < low - slack || place.visibility > high + slack;
 }
 
-double angle_between(const glm::vec3& a, const glm::vec3& b) { return std::acos(static_cast<double>(glm::dot(glm::normalize(a), glm::normalize(b)))); }
+double angle_between(const glm::vec3& a, const glm::vec3& b) {
+  return std::acos(static_cast<double>(glm::dot(glm::normalize(a), glm::normalize(b))));
+}
 
 class CameraIndependence : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
@@ -125,7 +126,8 @@ TEST_P(CameraIndependence, OtherCamera_SeesTheSameVisibilityInTheWorld) {
   scene::Scene seen_from_aside = scene;
   seen_from_aside.cameras.front() = move_around(scene);
   for (const scene::Scene* each : {&scene, &std::as_const(seen_from_aside)}) {
-    ASSERT_GT(angle_between(each->cameras.front().forward_ws, scene.light.direction_ws), 0.35) << "the camera looks along the light";
+    ASSERT_GT(angle_between(each->cameras.front().forward_ws, scene.light.direction_ws), 0.35)
+        << "the camera looks along the light";
   }
   const View first(scene, request_of(filter)), second(seen_from_aside, request_of(filter));
   ASSERT_EQ(first.frustum().uv_depth_from_world, second.frustum().uv_depth_from_world);
@@ -138,13 +140,15 @@ TEST_P(CameraIndependence, OtherCamera_SeesTheSameVisibilityInTheWorld) {
     other += is_other(*place, around) ? 1 : 0;
     shaded += place->visibility < kShaded ? 1 : 0;
   }
-  std::printf("%s %s: %d places in both views, %d shaded, %d seen otherwise\n", scene_name.c_str(), filter.c_str(), matched, shaded, other);
+  std::printf("%s %s: %d places in both views, %d shaded, %d seen otherwise\n", scene_name.c_str(), filter.c_str(),
+              matched, shaded, other);
   EXPECT_GT(matched, 10000);
   EXPECT_GT(shaded, matched / 100);
   EXPECT_LE(other, kLargestShare * matched);
 }
 
-INSTANTIATE_TEST_SUITE_P(AllFilters, CameraIndependence, ::testing::Combine(::testing::ValuesIn(builtin_scenes()), ::testing::ValuesIn(filter_ids())),
+INSTANTIATE_TEST_SUITE_P(AllFilters, CameraIndependence,
+                         ::testing::Combine(::testing::ValuesIn(builtin_scenes()), ::testing::ValuesIn(filter_ids())),
                          [](const auto& each) { return std::get<0>(each.param) + "_" + std::get<1>(each.param); });
 
 }  // namespace

@@ -12,21 +12,26 @@ using filters::FilterRequest;
 using filters::Kernel;
 using filters::Reconstruction;
 
-/// The largest error that single precision makes of a bound over the depths of these floors, where they keep their defaults: it is
-/// what the filters' models are held to as well (model_agreement_gl_test.cpp).
+/// The largest error that single precision makes of a bound over the depths of these floors, where they keep their
+/// defaults: it is what the filters' models are held to as well (model_agreement_gl_test.cpp).
 constexpr double kRounding = 2e-3;
 
-/// Gives the kernel that a filter averages with: its model names it; without one it is that of the prefilter that its front matter asks for.
+/// Gives the kernel that a filter averages with: its model names it; without one it is that of the prefilter that its
+/// front matter asks for.
 Kernel kernel_of(const FilterRequest& request) {
   if (const auto model = filters::make_model(request.spec.id)) return model->kernel(request.values);
   const bool nearest = filters::text_or(request.values, "sample", "nearest") == "nearest";
-  return Kernel::make_gaussian(filters::prefilter_radius_texels(request.spec, request.values), nearest ? Reconstruction::kNearest : Reconstruction::kBilinear);
+  return Kernel::make_gaussian(filters::prefilter_radius_texels(request.spec, request.values),
+                               nearest ? Reconstruction::kNearest : Reconstruction::kBilinear);
 }
 
-/// A corner, an edge below it that the corner's shadow crosses, and bars of one texel: up to three depths meet in a kernel.
+/// A corner, an edge below it that the corner's shadow crosses, and bars of one texel: up to three depths meet in a
+/// kernel.
 std::vector<Caster> make_layers() {
   constexpr float kFar = 1e4f;
-  return {{glm::vec2(-kFar), {0.0f, 2.0f}, 24.0f}, {{-kFar, -kFar}, {kFar, -1.0f}, 8.0f}, {{2.0f, -kFar}, {3.0f, kFar}, 16.0f}};
+  return {{glm::vec2(-kFar), {0.0f, 2.0f}, 24.0f},
+          {{-kFar, -kFar}, {kFar, -1.0f}, 8.0f},
+          {{2.0f, -kFar}, {3.0f, kFar}, 16.0f}};
 }
 
 class BoundContract : public ::testing::TestWithParam<std::string> {};
@@ -49,7 +54,8 @@ TEST_P(BoundContract, IsNeverDarkerThanPcfOfItsKernel_OnLayers) {
   EXPECT_GE(darkest, -kRounding);
 }
 
-INSTANTIATE_TEST_SUITE_P(AllFilters, BoundContract, ::testing::ValuesIn(ids_of({filters::FilterKind::kBound})), name_of);
+INSTANTIATE_TEST_SUITE_P(AllFilters, BoundContract, ::testing::ValuesIn(ids_of({filters::FilterKind::kBound})),
+                         name_of);
 
 }  // namespace
 }  // namespace shadowbench::test

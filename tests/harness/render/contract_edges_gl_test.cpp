@@ -1,5 +1,5 @@
-// What every linear kernel does to a straight edge and to a corner, one texel further and in the mirror: filters of the kind
-// `comparison` exactly, those of the kind `stochastic` in the mean over seeds.
+// What every linear kernel does to a straight edge and to a corner, one texel further and in the mirror: filters of the
+// kind `comparison` exactly, those of the kind `stochastic` in the mean over seeds.
 
 #include <functional>
 #include <numeric>
@@ -23,7 +23,8 @@ std::uint32_t seeds_of(const FilterRequest& request) { return is_stochastic(requ
 double radius_of(const FilterRequest& request) { return filters::radius_texels(request.spec, request.values); }
 
 /// Turns means into estimates: what chance may do to a stochastic filter, and the steps of the hardware's weights.
-std::vector<Estimate> estimate(const FilterRequest& request, const std::vector<MeanInUnitInterval>& means, std::size_t tests) {
+std::vector<Estimate> estimate(const FilterRequest& request, const std::vector<MeanInUnitInterval>& means,
+                               std::size_t tests) {
   std::vector<Estimate> estimates;
   for (const MeanInUnitInterval& each : means) {
     const double chance = is_stochastic(request) ? each.slack(static_cast<double>(tests)) : 0.0;
@@ -44,9 +45,9 @@ Edge draw_edge(const FilterRequest& request, Along along) {
   Edge edge{static_cast<std::size_t>(floor.pixels()), draw_seeds(floor.bench(), request, seeds_of(request))};
   if (along == Along::kU) return edge;
   for (std::vector<float>& image : edge.images) {
-    for (std::size_t i = 0; i < image.size(); ++i) {
-      if (const std::size_t turned = i % edge.side * edge.side + i / edge.side; turned > i) std::swap(image[i], image[turned]);
-    }
+    for (std::size_t i = 0; i < image.size(); ++i)
+      if (const std::size_t turned = i % edge.side * edge.side + i / edge.side; turned > i)
+        std::swap(image[i], image[turned]);
   }
   return edge;
 }
@@ -55,9 +56,8 @@ Edge draw_edge(const FilterRequest& request, Along along) {
 std::vector<Estimate> measure_profile(const FilterRequest& request, Along along) {
   const Edge edge = draw_edge(request, along);
   std::vector<MeanInUnitInterval> across(edge.side);
-  for (const std::vector<float>& image : edge.images) {
+  for (const std::vector<float>& image : edge.images)
     for (std::size_t i = 0; i < image.size(); ++i) across[i % edge.side].add(static_cast<double>(image[i]));
-  }
   return estimate(request, across, 2 * edge.side);
 }
 
@@ -67,7 +67,8 @@ Estimate measure_light(const FilterRequest& request, Along along) {
   MeanInUnitInterval lines;
   for (const std::vector<float>& image : edge.images) {
     for (auto line = image.begin(); line != image.end(); line += static_cast<std::ptrdiff_t>(edge.side)) {
-      lines.add(std::accumulate(line, line + static_cast<std::ptrdiff_t>(edge.side), 0.0) / static_cast<double>(edge.side));
+      lines.add(std::accumulate(line, line + static_cast<std::ptrdiff_t>(edge.side), 0.0) /
+                static_cast<double>(edge.side));
     }
   }
   return estimate(request, {lines}, 2).front();
@@ -87,7 +88,8 @@ Cells draw_cells(const FilterRequest& request, const std::vector<Caster>& caster
   std::vector<MeanInUnitInterval> means(static_cast<std::size_t>(side * side));
   for (const std::vector<float>& image : draw_seeds(floor.bench(), request, seeds_of(request))) {
     for (int i = 0; i < pixels * pixels; ++i) {
-      means[static_cast<std::size_t>((i / pixels / cell) * side + (i % pixels) / cell)].add(static_cast<double>(image[static_cast<std::size_t>(i)]));
+      means[static_cast<std::size_t>((i / pixels / cell) * side + (i % pixels) / cell)].add(
+          static_cast<double>(image[static_cast<std::size_t>(i)]));
     }
   }
   return {side, kPixelsPerTexel / cell, estimate(request, means, 3 * means.size())};
@@ -116,7 +118,8 @@ void expect_equal(const Cells& seen, const Cells& expected, const std::function<
   EXPECT_GT(dark, compared / 20) << "an image without shadow shows nothing";
 }
 
-/// Gives the kernel's positions along an axis, by its model; a filter without one has a symmetric kernel, as filters/kernel.h asks.
+/// Gives the kernel's positions along an axis, by its model; a filter without one has a symmetric kernel, as
+/// filters/kernel.h asks.
 std::vector<filters::Kernel::Atom> atoms_of(const FilterRequest& request) {
   const auto model = filters::make_model(request.spec.id);
   return model ? model->kernel(request.values).atoms() : std::vector<filters::Kernel::Atom>();
@@ -178,9 +181,9 @@ TEST_P(LinearKernel, CasterOneTexelFurther_MovesTheShadowOneTexel) {
   }
 }
 
-/// Pixels keep off the places where ties are broken to one side (see kPixelsPerTexel). Kernels of an even number of texels weigh their
-/// ends by where the receiver lies in its texel, and the mirror turns that, too. So nothing is excepted but kernels that their model
-/// says are not symmetric.
+/// Pixels keep off the places where ties are broken to one side (see kPixelsPerTexel). Kernels of an even number of
+/// texels weigh their ends by where the receiver lies in its texel, and the mirror turns that, too. So nothing is
+/// excepted but kernels that their model says are not symmetric.
 TEST_P(LinearKernel, MirroredCaster_GivesTheMirroredImage) {
   if (!is_symmetric(request())) GTEST_SKIP() << "the kernel of its model is not symmetric";
   const Cells straight = draw_cells(request(), make_corner());
@@ -197,7 +200,8 @@ TEST_P(LinearKernel, MirroredCaster_GivesTheMirroredImage) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(AllFilters, LinearKernel, ::testing::ValuesIn(ids_of({FilterKind::kComparison, FilterKind::kStochastic})), name_of);
+INSTANTIATE_TEST_SUITE_P(AllFilters, LinearKernel,
+                         ::testing::ValuesIn(ids_of({FilterKind::kComparison, FilterKind::kStochastic})), name_of);
 
 }  // namespace
 }  // namespace shadowbench::test

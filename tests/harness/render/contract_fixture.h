@@ -26,19 +26,21 @@ inline const filters::Catalogue& all_filters() {
 /// Gives the ids of all filters that keep one of these contracts; of all filters for none.
 inline std::vector<std::string> ids_of(const std::vector<filters::FilterKind>& kinds = {}) {
   std::vector<std::string> ids;
-  for (const filters::FilterSpec& spec : all_filters().filters()) {
+  for (const filters::FilterSpec& spec : all_filters().filters())
     if (kinds.empty() || std::ranges::find(kinds, spec.kind) != kinds.end()) ids.push_back(spec.id);
-  }
   return ids;
 }
 
 /// Gives a filter with its parameters as the command line takes them, "vsm:radius=9".
 inline filters::FilterRequest request_of(const std::string& text) { return all_filters().parse_requests(text).front(); }
 
-inline bool is_stochastic(const filters::FilterRequest& request) { return request.spec.kind == filters::FilterKind::kStochastic; }
+inline bool is_stochastic(const filters::FilterRequest& request) {
+  return request.spec.kind == filters::FilterKind::kStochastic;
+}
 
 /// Draws visibility once per seed 1, 2, ..., `seeds`, each as Bench::draw gives it.
-inline std::vector<std::vector<float>> draw_seeds(Bench& bench, const filters::FilterRequest& request, std::uint32_t seeds) {
+inline std::vector<std::vector<float>> draw_seeds(Bench& bench, const filters::FilterRequest& request,
+                                                  std::uint32_t seeds) {
   render::LightSetup light = bench.light(request);
   render::FilterPasses passes(bench.shaders(), request, bench.map(), light);
   render::ImageTarget target("visibility, by seed", GL_R32F, bench.gbuffer().width(), bench.gbuffer().height());

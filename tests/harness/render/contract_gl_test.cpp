@@ -36,7 +36,8 @@ class Contract : public ::testing::TestWithParam<std::string> {};
 
 /// Counts what no visibility can be: NaN, infinite, negative, over 1.
 std::ptrdiff_t count_impossible(const std::vector<float>& image) {
-  return std::ranges::count_if(image, [](float v) { return !(v >= 0.0f && v <= 1.0f); });
+  return std::ranges::count_if(
+      image, [](float v) { return !(v >= 0.0f && v <= 1.0f); });
 }
 
 TEST_P(Contract, VisibilityIsWithinZeroAndOne) {
@@ -68,8 +69,9 @@ TEST_P(Blocker, OfTheWholeFloor_IsDark) {
   for (const auto& r : receivers) ASSERT_NEAR(image[bench.index(r)], 0.0f, 1e-3f) << r.pixel.x << "," << r.pixel.y;
 }
 
-INSTANTIATE_TEST_SUITE_P(AllFilters, Blocker,
-                         ::testing::ValuesIn(ids_of({FilterKind::kComparison, FilterKind::kStochastic, FilterKind::kBound})), name_of);
+INSTANTIATE_TEST_SUITE_P(
+    AllFilters, Blocker,
+    ::testing::ValuesIn(ids_of({FilterKind::kComparison, FilterKind::kStochastic, FilterKind::kBound})), name_of);
 
 TEST_P(Contract, SameInput_SameBits) {
   const scene::Scene scene = load_builtin("cubes");

@@ -31,9 +31,9 @@ scene::Scene make_wall(float distance_m) {
   scene::Scene scene;
   scene::Mesh wall;
   const float half = 1.5f * distance_m;
-  for (const glm::vec2& corner : {glm::vec2(-half, -half), glm::vec2(half, -half), glm::vec2(half, half), glm::vec2(-half, half)}) {
+  for (const glm::vec2& corner :
+       {glm::vec2(-half, -half), glm::vec2(half, -half), glm::vec2(half, half), glm::vec2(-half, half)})
     wall.vertices.push_back({{corner.x, corner.y, -distance_m}, {0.0f, 0.0f, 1.0f}, {}});
-  }
   wall.indices = {0, 1, 2, 0, 2, 3};
   scene.meshes.push_back(wall);
   scene.materials.emplace_back();
@@ -41,7 +41,8 @@ scene::Scene make_wall(float distance_m) {
 }
 
 /// The largest |distance read from the map less the wall's| over the map.
-double measure_error(render::ShaderLibrary& shaders, render::ShadowMap& map, const filters::DepthPlanes& planes, double distance_m) {
+double measure_error(render::ShaderLibrary& shaders, render::ShadowMap& map, const filters::DepthPlanes& planes,
+                     double distance_m) {
   const auto distance = static_cast<float>(distance_m);
   const scene::Scene scene = make_wall(distance);
   map.draw(shaders, render::Geometry(scene), make_perspective(planes));
@@ -60,9 +61,10 @@ struct Case {
 };
 
 const std::vector<Case>& cases() {
-  static const std::vector<Case> all = {{GL_DEPTH_COMPONENT16, {16, false}, false}, {GL_DEPTH_COMPONENT16, {16, false}, true},
-                                        {GL_DEPTH_COMPONENT24, {24, false}, false}, {GL_DEPTH_COMPONENT24, {24, false}, true},
-                                        {GL_DEPTH_COMPONENT32F, {}, false},         {GL_DEPTH_COMPONENT32F, {}, true}};
+  static const std::vector<Case> all = {
+      {GL_DEPTH_COMPONENT16, {16, false}, false}, {GL_DEPTH_COMPONENT16, {16, false}, true},
+      {GL_DEPTH_COMPONENT24, {24, false}, false}, {GL_DEPTH_COMPONENT24, {24, false}, true},
+      {GL_DEPTH_COMPONENT32F, {}, false},         {GL_DEPTH_COMPONENT32F, {}, true}};
   return all;
 }
 
@@ -71,7 +73,8 @@ std::vector<double> spread_distances(const filters::DepthPlanes& planes) {
   std::vector<double> distances;
   constexpr int kCount = 24;
   for (int i = 0; i < kCount; ++i) {
-    distances.push_back(2.0 * planes.near_m * std::pow(0.25 * planes.far_m / planes.near_m, static_cast<double>(i) / (kCount - 1)));
+    distances.push_back(2.0 * planes.near_m *
+                        std::pow(0.25 * planes.far_m / planes.near_m, static_cast<double>(i) / (kCount - 1)));
   }
   return distances;
 }
@@ -83,7 +86,8 @@ double theoretical_error(double d, const filters::DepthPlanes& planes, const Cas
   const double ulp = std::exp2(-23);
   const double term = c.reversed ? n * f / (f - n) : f * d / (f - n);  // of clip z
   const double slope = d * d * (f - n) / (n * f);                      // of distance over depth
-  return filters::distance_step(d, planes, c.description, c.reversed) + slope * 2.0 * ulp * (term / d + filters::depth_of_distance(d, planes, c.reversed));
+  return filters::distance_step(d, planes, c.description, c.reversed) +
+         slope * 2.0 * ulp * (term / d + filters::depth_of_distance(d, planes, c.reversed));
 }
 
 TEST(DepthPrecision, EveryFormat_KeepsWhatTheoryAllows) {
@@ -101,7 +105,8 @@ TEST(DepthPrecision, EveryFormat_KeepsWhatTheoryAllows) {
         EXPECT_LE(error, allowed) << render::describe_map(map.settings()) << " far/near " << ratio << " at " << d;
         worst = std::max(worst, error / d);
       }
-      std::printf("far/near %g %s: largest relative error %.2g\n", ratio, render::describe_map(map.settings()).c_str(), worst);
+      std::printf("far/near %g %s: largest relative error %.2g\n", ratio, render::describe_map(map.settings()).c_str(),
+                  worst);
     }
   }
 }
@@ -117,11 +122,10 @@ TEST(DepthPrecision, ReversedFloatAtAMillion_IsExactToRounding_TheOthersAreNot) 
     for (const double d : spread_distances(planes)) worst = std::max(worst, measure_error(shaders, map, planes, d) / d);
     const std::string name = render::describe_map(map.settings());
     std::printf("%s: %.3g\n", name.c_str(), worst);
-    if (c.reversed && c.description.is_float) {
+    if (c.reversed && c.description.is_float)
       EXPECT_LE(worst, std::exp2(-22)) << name;
-    } else {
+    else
       EXPECT_GT(worst, 1e-3) << name;
-    }
   }
 }
 

@@ -10,9 +10,9 @@ namespace {
 
 scene::Mesh make_quad(float half, float height) {
   scene::Mesh mesh;
-  for (const glm::vec2 p : {glm::vec2(-half, -half), glm::vec2(half, -half), glm::vec2(-half, half), glm::vec2(half, half)}) {
+  for (const glm::vec2 p :
+       {glm::vec2(-half, -half), glm::vec2(half, -half), glm::vec2(-half, half), glm::vec2(half, half)})
     mesh.vertices.push_back({{p.x, height, p.y}, {0, 1, 0}, {0, 0}});
-  }
   mesh.indices = {0, 2, 1, 1, 2, 3};  // seen from above, anticlockwise
   return mesh;
 }
@@ -21,9 +21,11 @@ scene::Mesh make_quad(float half, float height) {
 scene::Mesh make_box(float half, float bottom, float top) {
   scene::Mesh mesh;
   for (int i = 0; i < 8; ++i) {
-    mesh.vertices.push_back({{(i & 1) ? half : -half, (i & 2) ? top : bottom, (i & 4) ? half : -half}, {0, 1, 0}, {0, 0}});
+    mesh.vertices.push_back(
+        {{(i & 1) ? half : -half, (i & 2) ? top : bottom, (i & 4) ? half : -half}, {0, 1, 0}, {0, 0}});
   }
-  mesh.indices = {2, 6, 3, 3, 6, 7, 0, 1, 4, 4, 1, 5, 0, 4, 2, 2, 4, 6, 1, 3, 5, 5, 3, 7, 0, 2, 1, 1, 2, 3, 4, 5, 6, 6, 5, 7};
+  mesh.indices = {2, 6, 3, 3, 6, 7, 0, 1, 4, 4, 1, 5, 0, 4, 2, 2, 4, 6,
+                  1, 3, 5, 5, 3, 7, 0, 2, 1, 1, 2, 3, 4, 5, 6, 6, 5, 7};
   return mesh;
 }
 
@@ -46,8 +48,10 @@ double height_in_map(Bench& bench, double x) {
   const filters::DepthMap map = bench.map().read();
   const scene::LightFrustum& frustum = bench.frustum();
   const glm::vec4 uv = frustum.uv_depth_from_world * glm::vec4(static_cast<float>(x), 0.0f, 0.3f, 1.0f);
-  const auto column = static_cast<std::size_t>(uv.x * static_cast<float>(map.size)), row = static_cast<std::size_t>(uv.y * static_cast<float>(map.size));
-  const double depth = static_cast<double>(map.curve.linear(map.stored[row * static_cast<std::size_t>(map.size) + column]));
+  const auto column = static_cast<std::size_t>(uv.x * static_cast<float>(map.size)),
+             row = static_cast<std::size_t>(uv.y * static_cast<float>(map.size));
+  const double depth =
+      static_cast<double>(map.curve.linear(map.stored[row * static_cast<std::size_t>(map.size) + column]));
   return (static_cast<double>(uv.z) - depth) * frustum.depth_range_ws;
 }
 
@@ -69,7 +73,8 @@ TEST(MapBias, FrontCull_KeepsBackFaces_AndWhatMayNotBeCulled) {
 
 TEST(MapBias, Midpoint_LiesBetweenFirstAndSecondSurface) {
   const scene::Scene scene = make_scene();
-  for (const filters::DepthCurve& curve : {filters::DepthCurve{}, filters::DepthCurve{true}, filters::DepthCurve{false, 20.0}, filters::DepthCurve{true, 20.0}}) {
+  for (const filters::DepthCurve& curve : {filters::DepthCurve{}, filters::DepthCurve{true},
+                                           filters::DepthCurve{false, 20.0}, filters::DepthCurve{true, 20.0}}) {
     SCOPED_TRACE(render::describe_map({GL_DEPTH_COMPONENT32F, curve}));
     Bench bench(shared_context(), scene, 128, 16, 16, {GL_DEPTH_COMPONENT32F, curve});
     bench.redraw({.midpoint = true});
@@ -88,13 +93,17 @@ TEST(MapBias, PolygonOffset_MovesByFactorTimesSlope_AndUnitsOfTheFormat) {
   scene.light.direction_ws = glm::normalize(glm::vec3(-1.0f, -1.0f, 0.0f));
   Bench bench(shared_context(), scene, 128, 16, 16);
   const double plain = height_in_map(bench, 3.0);
-  const filters::Receiver r = bench.receivers(catalogue().parse_requests("none").front(), run::BiasRule::none()).front();
-  const double slope = std::max(std::abs(static_cast<double>(r.depth_per_texel.x)), std::abs(static_cast<double>(r.depth_per_texel.y)));
+  const filters::Receiver r =
+      bench.receivers(catalogue().parse_requests("none").front(), run::BiasRule::none()).front();
+  const double slope =
+      std::max(std::abs(static_cast<double>(r.depth_per_texel.x)), std::abs(static_cast<double>(r.depth_per_texel.y)));
   bench.redraw({.polygon_factor = 2.0});
-  EXPECT_NEAR(plain - height_in_map(bench, 3.0), 2.0 * slope * bench.frustum().depth_range_ws, 0.02 * slope * bench.frustum().depth_range_ws);
+  EXPECT_NEAR(plain - height_in_map(bench, 3.0), 2.0 * slope * bench.frustum().depth_range_ws,
+              0.02 * slope * bench.frustum().depth_range_ws);
   // D32F: r is 2^(e - 23), e the exponent of the primitive's largest depth, which lies in [0.5, 1).
   bench.redraw({.polygon_units = 4096.0});
-  EXPECT_NEAR(plain - height_in_map(bench, 3.0), 4096.0 * 0x1p-24 * bench.frustum().depth_range_ws, 1e-5 * bench.frustum().depth_range_ws);
+  EXPECT_NEAR(plain - height_in_map(bench, 3.0), 4096.0 * 0x1p-24 * bench.frustum().depth_range_ws,
+              1e-5 * bench.frustum().depth_range_ws);
 }
 
 /// A wall on a floor, as thin as paper, under a sun that is `tilt` away from the zenith; seen from above.
@@ -102,7 +111,8 @@ scene::Scene make_wall(double tilt) {
   scene::Scene scene;
   scene.materials.emplace_back();
   scene::Mesh wall;
-  for (const glm::vec2 p : {glm::vec2(-2, 0), glm::vec2(2, 0), glm::vec2(-2, 3), glm::vec2(2, 3)}) wall.vertices.push_back({{0.0f, p.y, p.x}, {1, 0, 0}, {0, 0}});
+  for (const glm::vec2 p : {glm::vec2(-2, 0), glm::vec2(2, 0), glm::vec2(-2, 3), glm::vec2(2, 3)})
+    wall.vertices.push_back({{0.0f, p.y, p.x}, {1, 0, 0}, {0, 0}});
   wall.indices = {0, 1, 2, 2, 1, 3};
   scene.meshes = {make_quad(4.0f, 0.0f), wall};
   scene.light.direction_ws = glm::vec3(-std::sin(tilt), -std::cos(tilt), 0.0);
@@ -129,7 +139,8 @@ TEST(ContactGap, IsTheBiasTimesTheSineOfTheTilt_WithinATexel) {
       double gap = 0.0;
       for (const filters::Receiver& r : bench.receivers(request, rule)) {
         const double behind = -static_cast<double>(r.position_ws.x);
-        if (behind > 0.0 && behind < 1.0 && r.position_ws.y < 1e-3f && image[bench.index(r)] == 1.0f) gap = std::max(gap, behind);
+        if (behind > 0.0 && behind < 1.0 && r.position_ws.y < 1e-3f && image[bench.index(r)] == 1.0f)
+          gap = std::max(gap, behind);
       }
       const double texel_on_floor = bench.frustum().texel_size_ws / std::cos(tilt);
       EXPECT_NEAR(gap, bias_m * std::sin(tilt), texel_on_floor) << tilt_deg << " degrees, bias " << bias_m;

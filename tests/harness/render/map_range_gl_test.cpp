@@ -1,4 +1,5 @@
-// Each wrong way to treat what lies outside the map gives its own artefact on the scene made for it; the right way none.
+// Each wrong way to treat what lies outside the map gives its own artefact on the scene made for it; the right way
+// none.
 
 #include <functional>
 
@@ -71,8 +72,11 @@ TEST_P(MapRange, RightRule_LightsEverythingOutside) {
 TEST_P(MapRange, Repeat_TilesTheShadows) {
   EdgeScene edge;
   const RangeRule repeat{Border::kRepeat, true, true};
-  const auto inside = [](const Receiver& r) { return !is_beyond_far(r) && glm::all(glm::lessThan(glm::abs(r.uv - 0.5f), glm::vec2(0.45f))); };
-  const double in_map = edge.dark(GetParam(), repeat, inside), tiled = edge.dark(GetParam(), repeat, is_outside_before_far);
+  const auto inside = [](const Receiver& r) {
+    return !is_beyond_far(r) && glm::all(glm::lessThan(glm::abs(r.uv - 0.5f), glm::vec2(0.45f)));
+  };
+  const double in_map = edge.dark(GetParam(), repeat, inside),
+               tiled = edge.dark(GetParam(), repeat, is_outside_before_far);
   EXPECT_GT(in_map, 0.05);
   EXPECT_NEAR(tiled, in_map, 0.6 * in_map) << "as dark outside as inside, but for the views of the tiles";
 }
@@ -93,14 +97,16 @@ TEST_P(MapRange, NoFarTest_DarkensEverythingBeyond) {
   EXPECT_EQ(edge.dark(GetParam(), compared, is_outside_before_far), 0.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(AllFilters, MapRange, ::testing::ValuesIn(filter_ids()), [](const auto& each) { return each.param; });
+INSTANTIATE_TEST_SUITE_P(AllFilters, MapRange, ::testing::ValuesIn(filter_ids()),
+                         [](const auto& each) { return each.param; });
 
 TEST(MapRangeReceivers, LitByConvention_CountButAreNotAskedAbout) {
   EdgeScene edge;
   const auto request = catalogue().parse_requests("none").front();
   edge.bench().set_range({});
   const std::size_t asked = edge.bench().receivers(request).size();
-  const auto counted = render::count_receivers(edge.bench().shaders(), edge.bench().gbuffer(), edge.bench().light(request));
+  const auto counted =
+      render::count_receivers(edge.bench().shaders(), edge.bench().gbuffer(), edge.bench().light(request));
   EXPECT_LT(asked, edge.receivers());
   EXPECT_EQ(static_cast<std::size_t>(counted), edge.receivers());
 }

@@ -14,12 +14,12 @@ namespace {
 struct Agreement {
   std::size_t compared = 0;
   std::size_t excused = 0;
-  double worst_float = 0.0;          ///< |GL - float model|
-  double worst_double = 0.0;         ///< |GL - double model|
-  double worst_bound_ratio = 0.0;    ///< |GL - double model| / propagated bound
+  double worst_float = 0.0;        ///< |GL - float model|
+  double worst_double = 0.0;       ///< |GL - double model|
+  double worst_bound_ratio = 0.0;  ///< |GL - double model| / propagated bound
   double median_bound = 0.0;
-  std::size_t unbounded = 0;         ///< receivers whose bound says nothing: 1 or more
-  double shadowed = 0.0;             ///< share of receivers under 0.5: a test on lit pixels alone proves nothing
+  std::size_t unbounded = 0;  ///< receivers whose bound says nothing: 1 or more
+  double shadowed = 0.0;      ///< share of receivers under 0.5: a test on lit pixels alone proves nothing
 };
 
 filters::GlAccuracy measured_accuracy() {
@@ -35,7 +35,8 @@ double pcf_tolerance() {
 Agreement compare(Bench& bench, const filters::FilterRequest& request, const run::BiasRule& rule = {}) {
   const std::vector<float> image = bench.draw(request, rule);
   const filters::DepthMap map = bench.map().read();
-  const filters::ModelInput input{request.spec, request.values, map, measured_accuracy(), 7, rule.receiver_plane ? rule.max_tangent : 0.0};
+  const filters::ModelInput input{
+      request.spec, request.values, map, measured_accuracy(), 7, rule.receiver_plane ? rule.max_tangent : 0.0};
   const auto model = filters::make_model(request.spec.id);
   const auto in_float = model->prepare(input, filters::Precision::kFloat);
   const auto tracked = model->prepare(input, filters::Precision::kTracked);
@@ -55,7 +56,8 @@ Agreement compare(Bench& bench, const filters::FilterRequest& request, const run
     result.worst_float = std::max(result.worst_float, std::abs(gpu - single.visibility));
     result.worst_double = std::max(result.worst_double, std::abs(gpu - reference.visibility));
     if (reference.bound > 0.0) {
-      result.worst_bound_ratio = std::max(result.worst_bound_ratio, std::abs(gpu - reference.visibility) / reference.bound);
+      result.worst_bound_ratio =
+          std::max(result.worst_bound_ratio, std::abs(gpu - reference.visibility) / reference.bound);
     }
     bounds.push_back(reference.bound);
   }
@@ -72,10 +74,11 @@ class ModelAgreement : public ::testing::TestWithParam<std::tuple<std::string, s
     const scene::Scene scene = load_builtin(scene_name);
     Bench bench(shared_context(), scene);
     const Agreement a = compare(bench, catalogue().parse_requests(filter + parameters).front());
-    std::printf("%s %s%s: %zu receivers, %.3f %% excused, float %.2g, double %.2g (%.2f of its bound, median bound %.2g)\n",
-                scene_name.c_str(), filter.c_str(), parameters.c_str(), a.compared,
-                100.0 * static_cast<double>(a.excused) / static_cast<double>(a.compared), a.worst_float, a.worst_double,
-                a.worst_bound_ratio, a.median_bound);
+    std::printf(
+        "%s %s%s: %zu receivers, %.3f %% excused, float %.2g, double %.2g (%.2f of its bound, median bound %.2g)\n",
+        scene_name.c_str(), filter.c_str(), parameters.c_str(), a.compared,
+        100.0 * static_cast<double>(a.excused) / static_cast<double>(a.compared), a.worst_float, a.worst_double,
+        a.worst_bound_ratio, a.median_bound);
     EXPECT_GT(a.compared, 20000u);
     EXPECT_GT(a.shadowed, 0.01);
     EXPECT_LT(static_cast<double>(a.excused), 0.005 * static_cast<double>(a.compared));
@@ -135,7 +138,8 @@ std::string name_format_case(const FormatCase& values) {
 
 INSTANTIATE_TEST_SUITE_P(AllFormats, ModelFormats,
                          ::testing::Combine(::testing::Values("steps", "fence"),
-                                            ::testing::Values(GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT32F),
+                                            ::testing::Values(GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24,
+                                                              GL_DEPTH_COMPONENT32F),
                                             ::testing::Bool(), ::testing::Values(1.0, 100.0)),
                          [](const auto& each) { return name_format_case(each.param); });
 
@@ -180,9 +184,9 @@ TEST_P(ModelVariants, GlImageEqualsModel) {
 INSTANTIATE_TEST_SUITE_P(Parameters, ModelVariants,
                          ::testing::Values("poisson:rotation=none", "poisson:rotation=interleaved-gradient,taps=8",
                                            "poisson:radius=0,taps=4", "poisson:taps=32,radius=6", "vsm:radius=0",
-                                           "vsm:radius=12", "vsm:bleed_reduction=0.3", "vsm:min_variance=0.001,store=rg16f",
-                                           "esm:radius=0", "esm:c=20", "esm:combine=log,c=500", "esm:combine=log,radius=0",
-                                           "esm:c=8,store=r16f"),
+                                           "vsm:radius=12", "vsm:bleed_reduction=0.3",
+                                           "vsm:min_variance=0.001,store=rg16f", "esm:radius=0", "esm:c=20",
+                                           "esm:combine=log,c=500", "esm:combine=log,radius=0", "esm:c=8,store=r16f"),
                          [](const auto& each) {
                            std::string name = each.param;
                            for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
@@ -205,7 +209,8 @@ TEST_P(ReceiverPlaneModel, GlImageEqualsModel) {
 
 INSTANTIATE_TEST_SUITE_P(Filters, ReceiverPlaneModel,
                          ::testing::Combine(::testing::Values("cubes", "steps"),
-                                            ::testing::Values("none", "pcf2x2", "tent3x3", "box3x3", "teach4x4", "box4x4", "poisson")),
+                                            ::testing::Values("none", "pcf2x2", "tent3x3", "box3x3", "teach4x4",
+                                                              "box4x4", "poisson")),
                          [](const auto& each) { return std::get<0>(each.param) + "_" + std::get<1>(each.param); });
 
 /// What lies outside the map, on a scene with many receivers there.
@@ -236,15 +241,16 @@ std::vector<std::string> filters_of_borders() {
   return requests;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    AllFilters, BorderAgreement,
-    ::testing::Combine(::testing::Values(filters::Border::kBorder, filters::Border::kEdge, filters::Border::kRepeat),
-                       ::testing::ValuesIn(filters_of_borders())),
-    [](const auto& each) {
-      std::string name = filters::to_string(std::get<0>(each.param)) + "_" + std::get<1>(each.param);
-      for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-      return name;
-    });
+INSTANTIATE_TEST_SUITE_P(AllFilters, BorderAgreement,
+                         ::testing::Combine(::testing::Values(filters::Border::kBorder, filters::Border::kEdge,
+                                                              filters::Border::kRepeat),
+                                            ::testing::ValuesIn(filters_of_borders())),
+                         [](const auto& each) {
+                           std::string name =
+                               filters::to_string(std::get<0>(each.param)) + "_" + std::get<1>(each.param);
+                           for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace shadowbench::test

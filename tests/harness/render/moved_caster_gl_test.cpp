@@ -1,4 +1,5 @@
-// Casters that move take their shadows with them, and light and camera that stay change nothing: on every built-in scene.
+// Casters that move take their shadows with them, and light and camera that stay change nothing: on every built-in
+// scene.
 
 #include <cstdio>
 #include <tuple>
@@ -12,11 +13,12 @@ using filters::Receiver;
 
 constexpr int kMapSize = 512;
 constexpr int kWidth = 320, kHeight = 180;
-constexpr glm::dvec2 kStepTexels{4.0, 3.0};  // whole texels of the map: the texel grid lies on the moved casters as on the others
-constexpr double kRoom = 1.5;                // before and behind the planes that fit the scene, metres: for what moves
+constexpr glm::dvec2 kStepTexels{
+    4.0, 3.0};                 // whole texels of the map: the texel grid lies on the moved casters as on the others
+constexpr double kRoom = 1.5;  // before and behind the planes that fit the scene, metres: for what moves
 
-/// Coordinates that have moved are rounded otherwise: a silhouette that runs near a texel's centre may take one texel more or less. Measured: 3 of
-/// 38 845 receivers change at most.
+/// Coordinates that have moved are rounded otherwise: a silhouette that runs near a texel's centre may take one texel
+/// more or less. Measured: 3 of 38 845 receivers change at most.
 constexpr float kVisible = 0.02f;
 constexpr float kShaded = 0.9f;  // wide kernels leave much light behind thin casters
 constexpr double kLargestShare = 0.001;
@@ -43,13 +45,15 @@ void freeze_frustum(scene::Scene& scene) {
   const scene::LightFrustum fit = scene::fit_light(scene, scene::FitMode::kTight, kMapSize, 12.0);
   const double half = 0.5 * fit.depth_range_ws;
   const glm::dvec3 center(glm::inverse(fit.light_from_world) * glm::dvec4(0.0, 0.0, -half, 1.0));
-  scene.light.map_window = scene::MapWindow{center, fit.width_ws, scene::MapWindow::Planes{-half - kRoom, half + kRoom}};
+  scene.light.map_window =
+      scene::MapWindow{center, fit.width_ws, scene::MapWindow::Planes{-half - kRoom, half + kRoom}};
 }
 
 /// Gives a way along the floor that is kStepTexels in the map.
 glm::vec3 choose_way(const scene::LightFrustum& frustum) {
   const glm::dmat3 world_from_light = glm::transpose(glm::dmat3(frustum.light_from_world));
-  const glm::dvec3 across = frustum.texel_size_ws * (kStepTexels.x * world_from_light[0] + kStepTexels.y * world_from_light[1]);
+  const glm::dvec3 across =
+      frustum.texel_size_ws * (kStepTexels.x * world_from_light[0] + kStepTexels.y * world_from_light[1]);
   const glm::dvec3 light(frustum.direction_ws);
   return glm::vec3(across - light * (across.y / light.y));
 }
@@ -72,7 +76,8 @@ struct Picture {
 
 Picture draw(const scene::Scene& scene, const filters::FilterRequest& request) {
   Bench bench(shared_context(), scene, kMapSize, kWidth, kHeight);
-  Picture picture{bench.draw(request), std::vector<std::optional<Receiver>>(static_cast<std::size_t>(kWidth * kHeight))};
+  Picture picture{bench.draw(request),
+                  std::vector<std::optional<Receiver>>(static_cast<std::size_t>(kWidth * kHeight))};
   for (const Receiver& r : bench.receivers(request)) picture.receivers[bench.index(r)] = r;
   return picture;
 }
@@ -127,7 +132,8 @@ TEST_P(MovedCaster, LeavesNoShadowBehind) {
   EXPECT_GT(change.changed, change.compared / 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(AllFilters, MovedCaster, ::testing::Combine(::testing::ValuesIn(builtin_scenes()), ::testing::ValuesIn(filter_ids())),
+INSTANTIATE_TEST_SUITE_P(AllFilters, MovedCaster,
+                         ::testing::Combine(::testing::ValuesIn(builtin_scenes()), ::testing::ValuesIn(filter_ids())),
                          [](const auto& each) { return std::get<0>(each.param) + "_" + std::get<1>(each.param); });
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What the papers say of the prefiltered maps, on the built-in scenes: their memory, and that a bound is never darker than
-// percentage-closer filtering.
+// What the papers say of the prefiltered maps, on the built-in scenes: their memory, and that a bound is never darker
+// than percentage-closer filtering.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,8 @@ double mib_with_mips(const std::string& filter, int size) {
   const filters::FilterRequest request = catalogue().parse_requests(filter).front();
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
-  const std::int64_t bytes_per_texel = passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map()).bytes_per_texel;
+  const std::int64_t bytes_per_texel =
+      passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map()).bytes_per_texel;
   std::int64_t bytes = 0;
   for (std::int64_t side = size; side > 0; side /= 2) bytes += side * side * bytes_per_texel;
   return static_cast<double>(bytes) / 1048576.0;
@@ -42,7 +43,8 @@ TEST_P(Bound, IsNeverDarkerThanPercentageCloserFiltering) {
   const std::vector<float> image = bench.draw(request);
   const filters::DepthMap map = bench.map().read();
   static const gl::GlMeasurement measured = gl::measure_gl(shared_context());
-  const filters::GlAccuracy accuracy{measured.exp_ulp, static_cast<double>(std::min(measured.rg32f.bits, measured.r32f.bits))};
+  const filters::GlAccuracy accuracy{measured.exp_ulp,
+                                     static_cast<double>(std::min(measured.rg32f.bits, measured.r32f.bits))};
   const filters::ModelInput input{request.spec, request.values, map, accuracy, 7};
   const auto model = filters::make_model(request.spec.id);
   const auto tracked = model->prepare(input, filters::Precision::kTracked);
@@ -59,8 +61,8 @@ TEST_P(Bound, IsNeverDarkerThanPercentageCloserFiltering) {
     darker += below < -(result.bound + 1e-6) ? 1 : 0;
     between += pcf > 0.01 && pcf < 0.99 ? 1 : 0;
   }
-  std::printf("%s %s: darkest against PCF %.2g in double, %.2g on the GPU, %d receivers in penumbrae\n", scene_name.c_str(),
-              filter.c_str(), darkest_exact, darkest_gpu, between);
+  std::printf("%s %s: darkest against PCF %.2g in double, %.2g on the GPU, %d receivers in penumbrae\n",
+              scene_name.c_str(), filter.c_str(), darkest_exact, darkest_gpu, between);
   EXPECT_GT(between, 500);
   // The prefilter's weights are single precision and sum to 1 within their rounding.
   EXPECT_GE(darkest_exact, -1e-6);
@@ -69,7 +71,8 @@ TEST_P(Bound, IsNeverDarkerThanPercentageCloserFiltering) {
 
 INSTANTIATE_TEST_SUITE_P(BuiltIn, Bound,
                          ::testing::Combine(::testing::ValuesIn(builtin_scenes()),
-                                            ::testing::Values("vsm", "vsm:min_variance=0", "vsm:radius=9", "esm", "esm:c=20")),
+                                            ::testing::Values("vsm", "vsm:min_variance=0", "vsm:radius=9", "esm",
+                                                              "esm:c=20")),
                          [](const auto& each) {
                            std::string name = std::get<0>(each.param) + "_" + std::get<1>(each.param);
                            for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';

@@ -1,4 +1,5 @@
-// The lookup of a light that stands in the scene, with a map drawn through a perspective by hand: what is behind the light.
+// The lookup of a light that stands in the scene, with a map drawn through a perspective by hand: what is behind the
+// light.
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -60,7 +61,12 @@ scene::LightFrustum make_frustum() {
 class ProjectiveRange : public ::testing::Test {
  protected:
   ProjectiveRange()
-      : context_(shared_context()), scene_(make_scene()), shaders_(run::find_resources().shaders), geometry_(scene_), map_(256), gbuffer_(kSide, kSide) {
+      : context_(shared_context()),
+        scene_(make_scene()),
+        shaders_(run::find_resources().shaders),
+        geometry_(scene_),
+        map_(256),
+        gbuffer_(kSide, kSide) {
     map_.draw(shaders_, geometry_, make_frustum());
     gbuffer_.draw(shaders_, geometry_, scene_, scene_.cameras.front());
   }
@@ -82,15 +88,15 @@ class ProjectiveRange : public ::testing::Test {
 
   /// Visibility at a point of the picture, in metres.
   static float at(const std::vector<float>& image, double x, double z) {
-    const auto column = static_cast<std::size_t>((x + 4.0) / 8.0 * kSide), row = static_cast<std::size_t>((4.0 - z) / 8.0 * kSide);
+    const auto column = static_cast<std::size_t>((x + 4.0) / 8.0 * kSide),
+               row = static_cast<std::size_t>((4.0 - z) / 8.0 * kSide);
     return image[row * kSide + column];
   }
 
   static double dark_share_of_deck(const std::vector<float>& image) {
     double dark = 0.0;
-    for (int y = 0; y < kSide; ++y) {
+    for (int y = 0; y < kSide; ++y)
       for (int x = kSide / 2; x < kSide; ++x) dark += image[static_cast<std::size_t>(y * kSide + x)] < 0.5f ? 1.0 : 0.0;
-    }
     return dark / (kSide * kSide / 2);
   }
 
@@ -118,7 +124,8 @@ TEST_F(ProjectiveRange, BeforeTheLight_TheShadowIsWhereTheRaysFall) {
 }
 
 TEST_F(ProjectiveRange, RightRule_LightsWhatIsBehind) {
-  for (const char* filter : {"none", "clamped_reference"}) EXPECT_EQ(dark_share_of_deck(draw(filter, {})), 0.0) << filter;
+  for (const char* filter : {"none", "clamped_reference"})
+    EXPECT_EQ(dark_share_of_deck(draw(filter, {})), 0.0) << filter;
 }
 
 TEST_F(ProjectiveRange, EitherTestAlone_LightsWhatIsBehind) {
@@ -133,7 +140,8 @@ TEST_F(ProjectiveRange, NeitherTest_DarkensAllThatIsBehind) {
 
 TEST_F(ProjectiveRange, NeitherTestAndAClampedReference_MirrorsTheMapThroughTheLight) {
   const std::vector<float> image = draw("clamped_reference", {Border::kBorder, false, false});
-  // The board's top, 1.9 m below the light, at x = -1.2 .. -0.4, z = 0 .. 0.8; the deck, 2 m above, has it the other way.
+  // The board's top, 1.9 m below the light, at x = -1.2 .. -0.4, z = 0 .. 0.8; the deck, 2 m above, has it the other
+  // way.
   const double scale = -(kDeckHeight - kLightHeight) / 1.9;
   EXPECT_EQ(at(image, -0.8 * scale, 0.4 * scale), 0.0f);
   EXPECT_EQ(at(image, -0.8 * scale, -0.4 * scale), 1.0f);
@@ -141,7 +149,9 @@ TEST_F(ProjectiveRange, NeitherTestAndAClampedReference_MirrorsTheMapThroughTheL
 }
 
 TEST_F(ProjectiveRange, Receivers_AreThoseThatTheMapReaches) {
-  const auto count = [&](const RangeRule& rule) { return render::read_receivers(shaders(), gbuffer(), light(rule)).size(); };
+  const auto count = [&](const RangeRule& rule) {
+    return render::read_receivers(shaders(), gbuffer(), light(rule)).size();
+  };
   EXPECT_EQ(count({}), static_cast<std::size_t>(kSide * kSide / 2));
   EXPECT_EQ(count({Border::kBorder, false, true}), static_cast<std::size_t>(kSide * kSide / 2));
   EXPECT_EQ(count({Border::kBorder, false, false}), static_cast<std::size_t>(kSide * kSide));

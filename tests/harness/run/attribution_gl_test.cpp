@@ -24,7 +24,8 @@ class Attributed : public ::testing::Test {
  protected:
   void SetUp() override {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() / ("shadowbench." + std::string(info->name()) + "." + std::to_string(getpid()));
+    folder_ = std::filesystem::temp_directory_path() /
+              ("shadowbench." + std::string(info->name()) + "." + std::to_string(getpid()));
     options_.resources = run::find_resources();
     options_.sizes = {{240, 135}};
     options_.rounds = run::RoundLimits::exactly(1);
@@ -48,9 +49,8 @@ class Attributed : public ::testing::Test {
   std::vector<float> part(const std::string& name) const {
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
       if (entry.path().extension() != ".exr") continue;
-      for (const report::Part& part : report::read_exr(entry.path()).parts) {
+      for (const report::Part& part : report::read_exr(entry.path()).parts)
         if (part.name == name) return part.image.texels;
-      }
     }
     ADD_FAILURE() << "no part " << name;
     return {};
@@ -91,18 +91,18 @@ TEST_F(Attributed, PartsAddUp_InEveryPixel_OfEveryFilter) {
 TEST_F(Attributed, FiltersThatCompareTheirKernel_HaveNoEstimatorError) {
   for (const auto& cell : run("steps", "none,pcf2x2,box3x3,tent3x3,teach4x4,box4x4,poisson")) {
     const double rms = cell["attribution"]["estimator"]["rms"];
-    if (cell["filter"] == "poisson") {
+    if (cell["filter"] == "poisson")
       EXPECT_GT(rms, 1e-3) << "16 taps are not a disk";
-    } else {
+    else
       EXPECT_LT(rms, 1e-12) << cell["filter"];
-    }
   }
 }
 
 TEST_F(Attributed, MoreTaps_HaveLessNoise) {
   const nlohmann::json cells = run("ball", "poisson:taps=4,poisson:taps=32");
   EXPECT_GT(cells[0]["artefact"]["noise"], 4.0 * cells[1]["artefact"]["noise"].get<double>());
-  EXPECT_GT(cells[0]["attribution"]["estimator"]["rms"], 2.0 * cells[1]["attribution"]["estimator"]["rms"].get<double>());
+  EXPECT_GT(cells[0]["attribution"]["estimator"]["rms"],
+            2.0 * cells[1]["attribution"]["estimator"]["rms"].get<double>());
 }
 
 TEST_F(Attributed, OnStack_VsmFailsByItsEstimator_AndLeaks) {

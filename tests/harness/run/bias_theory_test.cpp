@@ -17,9 +17,8 @@ filters::Receiver make_receiver(float du, float dv, float n_dot_l) {
 }
 
 const SweptMode& find_mode(const std::string& name) {
-  for (const SweptMode& mode : swept_modes()) {
+  for (const SweptMode& mode : swept_modes())
     if (mode.name == name) return mode;
-  }
   throw std::runtime_error(name);
 }
 

@@ -162,9 +162,8 @@ TEST_F(ComparePictures, FlipOverAMask_SeesTheWholePictureAndAveragesTheMask) {
   const Image a = report::shade(report::make_visibility(48, 32, 3.0f));
   const Image b = report::shade(report::make_visibility(48, 32, 12.0f));
   Image left(48, 32, 1), right(48, 32, 1);
-  for (int y = 0; y < 32; ++y) {
+  for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 48; ++x) *(x < 20 ? left : right).at(x, y) = 1.0f;
-  }
   write("a.exr", a);
   write("b.exr", b);
   write("left.exr", left);
@@ -276,9 +275,8 @@ TEST(MetricTable, NamesEveryNumberOfACellsErrorGroups) {
   for (const reference::Metric& metric : reference::metric_table()) listed.emplace_back(metric.path);
   const report::CellRecord cell;
   report::visit_cell_fields(cell, [&](const std::string& path, const auto&) {
-    for (const char* group : {"error.", "truth.", "coverage.", "artefact.", "attribution."}) {
+    for (const char* group : {"error.", "truth.", "coverage.", "artefact.", "attribution."})
       if (path.rfind(group, 0) == 0) recorded.push_back(path);
-    }
   });
   EXPECT_EQ(listed, recorded);
 }

@@ -19,8 +19,15 @@ TEST(ContentHash, TellsBytesOrderAndPiecesApart) {
   const std::string name = name_of({"ab", "c"});
   ASSERT_EQ(name.size(), 32u);
   EXPECT_EQ(name_of({"ab", "c"}), name);
-  for (const std::vector<std::string>& other :
-       {std::vector<std::string>{"ab", "d"}, {"bb", "c"}, {"a", "bc"}, {"abc"}, {"c", "ab"}, {"ab", "c", ""}, {"", "ab", "c"}, {"ab"}, {}}) {
+  for (const std::vector<std::string>& other : {std::vector<std::string>{"ab", "d"},
+                                                {"bb", "c"},
+                                                {"a", "bc"},
+                                                {"abc"},
+                                                {"c", "ab"},
+                                                {"ab", "c", ""},
+                                                {"", "ab", "c"},
+                                                {"ab"},
+                                                {}}) {
     EXPECT_NE(name_of(other).substr(0, 16), name.substr(0, 16));
     EXPECT_NE(name_of(other).substr(16), name.substr(16));
   }

@@ -23,7 +23,9 @@ class ExperimentFile : public ::testing::Test {
     std::ofstream(folder_ / "e.toml") << text;
     return folder_ / "e.toml";
   }
-  Experiment read(const std::string& text) const { return read_experiment(write(text), {"map_size", "scene", "size", "grids", "seed"}); }
+  Experiment read(const std::string& text) const {
+    return read_experiment(write(text), {"map_size", "scene", "size", "grids", "seed"});
+  }
   std::string expand(const std::string& text) const {
     static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
     return expand_filters(read(text), catalogue);
@@ -39,17 +41,18 @@ class ExperimentFile : public ::testing::Test {
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("shadowbench.experiment." + std::to_string(getpid()));
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("shadowbench.experiment." + std::to_string(getpid()));
 };
 
 TEST_F(ExperimentFile, KeysAreOptions_ListsAreSeveralValues) {
-  const Experiment e = read("title = 'T'\nmap_size = [256, 512]\nsize = '64x36'\ngrids = false\nscene = ['cubes', 'my/a.glb']\n");
+  const Experiment e =
+      read("title = 'T'\nmap_size = [256, 512]\nsize = '64x36'\ngrids = false\nscene = ['cubes', 'my/a.glb']\n");
   EXPECT_EQ(e.title, "T");
   ASSERT_EQ(e.settings.size(), 4u);
   const auto values = [&](const std::string& option) {
-    for (const ExperimentSetting& s : e.settings) {
+    for (const ExperimentSetting& s : e.settings)
       if (s.option == option) return s.values;
-    }
     return std::vector<std::string>{"none"};
   };
   EXPECT_THAT(values("--map-size"), ElementsAre("256", "512"));
@@ -60,18 +63,22 @@ TEST_F(ExperimentFile, KeysAreOptions_ListsAreSeveralValues) {
 }
 
 TEST_F(ExperimentFile, FiltersAreTheProductOfTheirParameters) {
-  EXPECT_EQ(expand("[[filter]]\nid = 'none'\n[[filter]]\nid = 'poisson'\nradius = [1.5, 2]\ntaps = [8, 16]\n"),
-            "none,poisson:radius=1.5,taps=8,poisson:radius=1.5,taps=16,poisson:radius=2,taps=8,poisson:radius=2,taps=16");
+  EXPECT_EQ(
+      expand("[[filter]]\nid = 'none'\n[[filter]]\nid = 'poisson'\nradius = [1.5, 2]\ntaps = [8, 16]\n"),
+      "none,poisson:radius=1.5,taps=8,poisson:radius=1.5,taps=16,poisson:radius=2,taps=8,poisson:radius=2,taps=16");
 }
 
 TEST_F(ExperimentFile, RangesAreLinearOrLogarithmic_WholeNumbersAreRounded_AndStandOnce) {
-  EXPECT_EQ(expand("[[filter]]\nid = 'vsm'\nradius = {linear = [1, 3], count = 5}\n"), "vsm:radius=1,vsm:radius=2,vsm:radius=3");
-  EXPECT_EQ(expand("[[filter]]\nid = 'poisson'\nradius = {linear = [1, 2], count = 3}\n"), "poisson:radius=1,poisson:radius=1.5,poisson:radius=2");
+  EXPECT_EQ(expand("[[filter]]\nid = 'vsm'\nradius = {linear = [1, 3], count = 5}\n"),
+            "vsm:radius=1,vsm:radius=2,vsm:radius=3");
+  EXPECT_EQ(expand("[[filter]]\nid = 'poisson'\nradius = {linear = [1, 2], count = 3}\n"),
+            "poisson:radius=1,poisson:radius=1.5,poisson:radius=2");
   const std::string log = expand("[[filter]]\nid = 'esm'\nc = {log = [1, 100], count = 3}\n");
   EXPECT_THAT(log, HasSubstr("esm:c=1,esm:c=10"));
   EXPECT_THAT(log, HasSubstr(",esm:c=100"));
-  EXPECT_EQ(expand("[[filter]]\nid = 'vsm'\nstore = ['rg32f', 'rg16f']\nmin_variance = {log = [1e-5, 1e-5], count = 2}\n"),
-            "vsm:min_variance=1e-05,store=rg32f,vsm:min_variance=1e-05,store=rg16f");
+  EXPECT_EQ(
+      expand("[[filter]]\nid = 'vsm'\nstore = ['rg32f', 'rg16f']\nmin_variance = {log = [1e-5, 1e-5], count = 2}\n"),
+      "vsm:min_variance=1e-05,store=rg32f,vsm:min_variance=1e-05,store=rg16f");
 }
 
 TEST_F(ExperimentFile, Mistakes_NameFileAndLine) {
@@ -89,9 +96,11 @@ TEST_F(ExperimentFile, Mistakes_NameFileAndLine) {
       {"[[filter]]\nid = 'vsm'\nradius = {linear = [1, 2], log = [1, 2], count = 3}\n", "one of them", 3},
       {"[[filter]]\nid = 'vsm'\nradius = {count = 3}\n", "one of them", 3},
       {"[[filter]]\nid = 'esm'\nc = {log = [0, 2], count = 3}\n", "more than 0", 3},
-      {"[[filter]]\nid = 'esm'\nc = {linear = [1, 2000], count = 10000}\nradius = {linear = [0, 64], count = 64}\n", "combinations, and a run takes 100000", 1},
+      {"[[filter]]\nid = 'esm'\nc = {linear = [1, 2000], count = 10000}\nradius = {linear = [0, 64], count = 64}\n",
+       "combinations, and a run takes 100000", 1},
       {"[[filter]]\nid = 'esm'\nc = {linear = [1, 2000], count = 10000}\nradius = [1, 2, 3, 4, 5, 6]\n"
-       "[[filter]]\nid = 'esm'\nc = {linear = [1, 2000], count = 10000}\nradius = [1, 2, 3, 4, 5, 6]\n", "combinations, and a run takes 100000", 5},
+       "[[filter]]\nid = 'esm'\nc = {linear = [1, 2000], count = 10000}\nradius = [1, 2, 3, 4, 5, 6]\n",
+       "combinations, and a run takes 100000", 5},
       {"[[filter]]\nid = 'esm'\nc = {linear = [1, inf], count = 3}\n", "number", 3},
       {"map_size = = 3\n", "not valid TOML", 1},
   };
@@ -113,7 +122,8 @@ TEST_F(ExperimentFile, AreFoundByName_OrPath) {
   EXPECT_EQ(find_experiment(shipped, "quick"), shipped / "quick.toml");
   EXPECT_EQ(find_experiment(shipped, "my/own.toml"), "my/own.toml");
   EXPECT_THAT(error_of([&] { find_experiment(shipped, "quik"); }).what(), HasSubstr("did you mean 'quick'"));
-  EXPECT_THAT(error_of([&] { find_experiment(shipped, "xyzzy12"); }).what(), HasSubstr("default, golden, lights, quick, sweep"));
+  EXPECT_THAT(error_of([&] { find_experiment(shipped, "xyzzy12"); }).what(),
+              HasSubstr("default, golden, lights, quick, sweep"));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The traced scene is the drawn scene: as many triangles, the same bounds, and rays along the light hit what the depth map
-// holds, texel by texel.
+// The traced scene is the drawn scene: as many triangles, the same bounds, and rays along the light hit what the depth
+// map holds, texel by texel.
 
 #include <cmath>
 
@@ -75,7 +75,8 @@ TEST_P(Geometry, RaysHitWhatTheDepthMapSees) {
   EXPECT_EQ(different, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(BuiltIn, Geometry, ::testing::ValuesIn(builtin_scenes()), [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(BuiltIn, Geometry, ::testing::ValuesIn(builtin_scenes()),
+                         [](const auto& test) { return test.param; });
 
 }  // namespace
 }  // namespace shadowbench::test

@@ -31,7 +31,8 @@ TEST(LightMaps, TakeADepthMapPerLight_AndAnEncodedMapPerLightAndFormat) {
   constexpr std::int64_t kTexels = 8 * 100 * 100;
   EXPECT_EQ(count_light_map_bytes(make_options("none,poisson,pcf2x2"), 8, 100), 4 * kTexels);
   EXPECT_EQ(count_light_map_bytes(make_options("none,vsm"), 8, 100), (4 + 8) * kTexels);
-  EXPECT_EQ(count_light_map_bytes(make_options("vsm:radius=1,vsm:radius=2"), 8, 100), (4 + 8) * kTexels) << "they take turns";
+  EXPECT_EQ(count_light_map_bytes(make_options("vsm:radius=1,vsm:radius=2"), 8, 100), (4 + 8) * kTexels)
+      << "they take turns";
   EXPECT_EQ(count_light_map_bytes(make_options("vsm,vsm:store=rg16f,esm"), 8, 100), (4 + 8 + 4 + 4) * kTexels);
   RunOptions options = make_options("none");
   options.map.format = GL_DEPTH_COMPONENT16;
@@ -47,7 +48,8 @@ TEST(LightMaps, ThatTakeTooMuch_AreRefused_WithTheNumbers) {
   options.lights = {1, 16};
   EXPECT_EQ(message_of(options), "fits") << "exactly 1 GiB";
   options.filters = make_options("none,esm").filters;
-  EXPECT_THAT(message_of(options), AllOf(HasSubstr("--lights"), HasSubstr("16 lights at --map-size 4096 take 2048 MiB"), HasSubstr("1024 MiB"), HasSubstr("fewer lights")));
+  EXPECT_THAT(message_of(options), AllOf(HasSubstr("--lights"), HasSubstr("16 lights at --map-size 4096 take 2048 MiB"),
+                                         HasSubstr("1024 MiB"), HasSubstr("fewer lights")));
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 #include "harness/run/light_timing.h"
-
 #include "harness/run/truth_cache.h"
 #include "harness/scene/light_ring.h"
 #include "tests/harness/render/bench_fixture.h"
@@ -70,9 +69,12 @@ class LightFrames {
     return options;
   }
 
-  std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request, const run::LightMap& map, const scene::Light& light) {
+  std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request, const run::LightMap& map,
+                                                    const scene::Light& light) {
     const render::Bias bias = run::resolve_bias(options_.bias, map.frustum, request.spec, request.values);
-    return std::make_unique<render::FilterPasses>(renderer_.shaders, request, map.map, render::make_light_setup(map.frustum, light, bias, options_.seed, options_.range));
+    return std::make_unique<render::FilterPasses>(
+        renderer_.shaders, request, map.map,
+        render::make_light_setup(map.frustum, light, bias, options_.seed, options_.range));
   }
 };
 
@@ -88,7 +90,8 @@ TEST_P(LightFramesOf, EveryLight_DrawsTheSameBitsAsAlone) {
       SCOPED_TRACE(frames.requests()[filter].spec.id);
       const auto pictures = bench.draw(filter);
       ASSERT_EQ(pictures.size(), 3u);
-      for (std::size_t i = 0; i < lights.size(); ++i) EXPECT_EQ(pictures[i], frames.draw_alone(filter, lights[i])) << "light " << i;
+      for (std::size_t i = 0; i < lights.size(); ++i)
+        EXPECT_EQ(pictures[i], frames.draw_alone(filter, lights[i])) << "light " << i;
       EXPECT_NE(pictures[0], pictures[1]);
     }
   }

@@ -28,11 +28,13 @@ ViewReceivers look_at_floor(const scene::Camera& camera) {
   const glm::dvec3 forward(camera.forward_ws), right = glm::normalize(glm::cross(forward, glm::dvec3(camera.up_ws)));
   const glm::dvec3 up = glm::cross(right, forward);
   const bool flat = camera.orthographic_height_m > 0.0f;
-  const double half = flat ? 0.5 * static_cast<double>(camera.orthographic_height_m) : std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad));
+  const double half = flat ? 0.5 * static_cast<double>(camera.orthographic_height_m)
+                           : std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad));
   ViewReceivers view{{kWidth, kHeight, {}}, {}, {}};
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
-      const glm::dvec3 across = half * ((2.0 * (x + 0.5) - kWidth) / kHeight * right + (1.0 - 2.0 * (y + 0.5) / kHeight) * up);
+      const glm::dvec3 across =
+          half * ((2.0 * (x + 0.5) - kWidth) / kHeight * right + (1.0 - 2.0 * (y + 0.5) / kHeight) * up);
       const glm::dvec3 origin = glm::dvec3(camera.position_ws) + (flat ? across : glm::dvec3(0.0));
       const glm::dvec3 ray = flat ? forward : forward + across;
       const glm::dvec3 hit = origin - ray * (origin.y / ray.y);
@@ -70,7 +72,8 @@ TEST(MapCoverage, OrthographicViewAlongTheLight_IsTexelAreaOverPixelArea) {
 
 TEST(MapCoverage, TiltedLight_SpreadsATexelByOneOverTheCosine) {
   const scene::Camera camera = camera_above(5.0f, 3.0f);
-  const MapCoverage c = measure_coverage(look_at_floor(camera), camera, light_from_above(12.8, 256, 60.0f), half_filled_map(256));
+  const MapCoverage c =
+      measure_coverage(look_at_floor(camera), camera, light_from_above(12.8, 256, 60.0f), half_filled_map(256));
   EXPECT_NEAR(*c.record.texels_per_pixel, 2.0, 1e-4);
 }
 
@@ -101,7 +104,8 @@ TEST(MapCoverage, PerspectiveFootprints_AddUpToWhatThePictureShows) {
 
 TEST(MapCoverage, ReceiversPlaceInTheMap_IsWhereTheFrustumPutsIt) {
   const scene::Camera camera = camera_above(5.0f, 3.0f);
-  const MapCoverage c = measure_coverage(look_at_floor(camera), camera, light_from_above(12.8, 256), half_filled_map(256));
+  const MapCoverage c =
+      measure_coverage(look_at_floor(camera), camera, light_from_above(12.8, 256), half_filled_map(256));
   // The left upper pixel lies at x = -1.95 m, z = -1.45 m; +v is -z.
   EXPECT_NEAR(c.texel.at(0, 0)[0], 128.0 - 1.95 / 0.05, 1e-3);
   EXPECT_NEAR(c.texel.at(0, 0)[1], 128.0 + 1.45 / 0.05, 1e-3);

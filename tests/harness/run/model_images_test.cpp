@@ -25,7 +25,8 @@ ModelImages evaluate(const ModelReceivers& receivers) {
 
 TEST(ModelImages, HaveTheirTopRowFirst_AndAreLitWhereThereIsNoReceiver) {
   // GL counts rows from below: (2, 0) is the last pixel of the image, (0, 3) its first.
-  const std::vector<filters::Receiver> blocked = {make_receiver(2, 0, 0.75f), make_receiver(0, 3, 0.75f), make_receiver(1, 2, 0.25f)};
+  const std::vector<filters::Receiver> blocked = {make_receiver(2, 0, 0.75f), make_receiver(0, 3, 0.75f),
+                                                  make_receiver(1, 2, 0.25f)};
   const ModelImages images = evaluate({blocked, blocked});
   std::vector<double> expected(kWidth * kHeight, 1.0);
   expected.front() = expected.back() = 0.0;
@@ -42,7 +43,8 @@ TEST(ModelImages, AskEachStationWithItsOwnBias) {
 }
 
 TEST(ModelImages, CountWhatIsExcused) {
-  const std::vector<filters::Receiver> receivers = {make_receiver(0, 0, 0.5f), make_receiver(1, 0, 0.25f), make_receiver(2, 0, 0.5f)};
+  const std::vector<filters::Receiver> receivers = {make_receiver(0, 0, 0.5f), make_receiver(1, 0, 0.25f),
+                                                    make_receiver(2, 0, 0.5f)};
   EXPECT_EQ(evaluate({receivers, receivers}).excused, 2) << "ties";
 }
 

@@ -16,9 +16,8 @@ scene::Scene make_scene() {
   scene::Scene scene;
   scene.materials.emplace_back();
   scene::Mesh roof;
-  for (const glm::vec3 p : {glm::vec3(-2, 1, -2), glm::vec3(0, 1, -2), glm::vec3(-2, 1, 2), glm::vec3(0, 1, 2)}) {
+  for (const glm::vec3 p : {glm::vec3(-2, 1, -2), glm::vec3(0, 1, -2), glm::vec3(-2, 1, 2), glm::vec3(0, 1, 2)})
     roof.vertices.push_back({p, {0.0f, 1.0f, 0.0f}, {0.5f * p.x, 0.5f * p.z}});
-  }
   roof.indices = {0, 1, 2, 2, 1, 3};
   scene.meshes = {roof};
   scene.light.direction_ws = {0.0f, -1.0f, 0.0f};
@@ -29,8 +28,10 @@ scene::Scene make_scene() {
 ViewReceivers make_receivers() {
   ViewReceivers receivers{{32, 4, {}}, std::vector<std::uint8_t>(128, 1), "receivers"};
   for (int i = 0; i < 128; ++i) {
-    receivers.image.points.push_back({{-1.0f + 2.0f * (static_cast<float>(i % 32) + 0.5f) / 32.0f, 0.0f, 0.1f * static_cast<float>(i / 32)},
-                                      {0.0f, 1.0f, 0.0f}, true});
+    receivers.image.points.push_back(
+        {{-1.0f + 2.0f * (static_cast<float>(i % 32) + 0.5f) / 32.0f, 0.0f, 0.1f * static_cast<float>(i / 32)},
+         {0.0f, 1.0f, 0.0f},
+         true});
   }
   return receivers;
 }
@@ -47,7 +48,9 @@ scene::LightFrustum make_frustum() {
 
 class Tracer : public ::testing::Test {
  protected:
-  void SetUp() override { folder_ = std::filesystem::temp_directory_path() / ("shadowbench.tracer." + std::to_string(getpid())); }
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("shadowbench.tracer." + std::to_string(getpid()));
+  }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   /// Says how many images were traced, the others being in the cache.
@@ -63,7 +66,9 @@ class Tracer : public ::testing::Test {
 
 TEST_F(Tracer, ASecondRun_DoesNotTraceAgain_AndSeesTheSame) {
   ViewRays first, second;
-  EXPECT_EQ(count_traced(make_scene(), [&](SceneTracer& t) { first = t.trace_view(make_receivers()); }), 1);
+  EXPECT_EQ(count_traced(
+                make_scene(), [&](SceneTracer& t) { first = t.trace_view(make_receivers()); }),
+            1);
   EXPECT_EQ(count_traced(make_scene(), [&](SceneTracer& t) { second = t.trace_view(make_receivers()); }), 0);
   EXPECT_EQ(first.area.visibility, second.area.visibility);
   EXPECT_EQ(first.area.standard_error, second.area.standard_error);
@@ -146,7 +151,8 @@ TEST_F(Tracer, MeshesThatCastNoShadow_BlockNothing) {
 TEST_F(Tracer, Kernels_LieInTheMapsGrid) {
   // A slanted light whose map is turned about it.
   const glm::dvec3 to_light = glm::normalize(glm::dvec3(0.5, 1.0, 0.25));
-  const glm::dvec3 right = glm::normalize(glm::cross(to_light, glm::dvec3(1.0, 0.1, 0.7))), up = glm::cross(to_light, right);
+  const glm::dvec3 right = glm::normalize(glm::cross(to_light, glm::dvec3(1.0, 0.1, 0.7))),
+                   up = glm::cross(to_light, right);
   scene::LightFrustum frustum = make_frustum();
   frustum.direction_ws = -to_light;
   for (int i = 0; i < 3; ++i) frustum.light_from_world[i] = {right[i], up[i], to_light[i], 0.0};
@@ -154,12 +160,18 @@ TEST_F(Tracer, Kernels_LieInTheMapsGrid) {
   const reference::MapGrid grid = {-glm::dvec3(frustum.direction_ws), right, up, frustum.texel_size_ws};
   const ViewReceivers receivers = make_receivers();
   reference::TracedVisibility traced, turned;
-  EXPECT_EQ(count_traced(make_scene(), [&](SceneTracer& t) {
-    traced = t.trace_kernel(receivers, kernel, frustum);
-    for (int i = 0; i < 3; ++i) frustum.light_from_world[i] = {up[i], -right[i], to_light[i], 0.0};
-    turned = t.trace_kernel(receivers, kernel, frustum);
-  }), 2) << "a map turned about the light is another map";
-  EXPECT_EQ(traced.visibility, reference::trace_kernel(make_occluders(make_scene()), receivers.image, kernel, grid, {.seed = 1}).visibility);
+  EXPECT_EQ(count_traced(make_scene(),
+                         [&](SceneTracer& t) {
+                           traced = t.trace_kernel(receivers, kernel, frustum);
+                           for (int i = 0; i < 3; ++i)
+                             frustum.light_from_world[i] = {up[i], -right[i], to_light[i], 0.0};
+                           turned = t.trace_kernel(receivers, kernel, frustum);
+                         }),
+            2)
+      << "a map turned about the light is another map";
+  EXPECT_EQ(
+      traced.visibility,
+      reference::trace_kernel(make_occluders(make_scene()), receivers.image, kernel, grid, {.seed = 1}).visibility);
   EXPECT_NE(traced.visibility, std::vector<float>(traced.visibility.size(), 1.0f));
 }
 
@@ -173,9 +185,11 @@ TEST_F(Tracer, HolesOfAMaterial_LetRaysThrough) {
   // u runs from -1 to 0 under the roof, and from -0.5 above the receivers: the texture's second texel, then its first.
   scene.materials[0].base_color.a = 1.0f;
   scene.materials[0].base_color_texture = 0;
-  scene.textures.push_back({"striped", 4, 1, {255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 0, 255, 255, 255, 255}});
+  scene.textures.push_back(
+      {"striped", 4, 1, {255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 0, 255, 255, 255, 255}});
   count_traced(scene, [&](SceneTracer& t) { rays = t.trace_view(make_receivers()); });
-  EXPECT_NEAR(static_cast<double>(std::count(rays.hard.begin(), rays.hard.begin() + 16, 1.0f)), 8.0, 2.0) << "the transparent texel";
+  EXPECT_NEAR(static_cast<double>(std::count(rays.hard.begin(), rays.hard.begin() + 16, 1.0f)), 8.0, 2.0)
+      << "the transparent texel";
   EXPECT_EQ(rays.hard[15], 0.0f) << "an opaque one";
 }
 

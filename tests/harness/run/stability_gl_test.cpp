@@ -1,20 +1,20 @@
 // Where the numbers of real maps break, and that the defaults of every filter stay clear of it on every built-in scene.
 
-#include "harness/run/stability.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "harness/run/run_plan.h"
+#include "harness/run/stability.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {
 namespace {
 
 /// Draws cells with stability, without timing or truth to speak of.
-std::vector<run::MeasuredCell> measure(const std::string& scene_name, const std::string& filters, int map_size = 512, int width = 240, int height = 135) {
+std::vector<run::MeasuredCell> measure(const std::string& scene_name, const std::string& filters, int map_size = 512,
+                                       int width = 240, int height = 135) {
   static run::Renderer renderer = run::make_renderer(gl::Backend::kAuto, run::find_resources());
   const scene::Scene scene = load_builtin(scene_name);
   run::RunOptions options;
@@ -37,7 +37,8 @@ class Defaults : public ::testing::TestWithParam<std::string> {};
 TEST_P(Defaults, NothingBreaks) {
   for (const run::MeasuredCell& cell : measure(GetParam(), "", 1024)) {
     SCOPED_TRACE(cell.label);
-    EXPECT_TRUE(std::all_of(cell.visibility.texels.begin(), cell.visibility.texels.end(), [](float v) { return std::isfinite(v); }));
+    EXPECT_TRUE(std::all_of(cell.visibility.texels.begin(), cell.visibility.texels.end(),
+                            [](float v) { return std::isfinite(v); }));
     EXPECT_EQ(cell.record.nan, 0);
     EXPECT_TRUE(cell.record.warnings.empty()) << cell.record.warnings.front();
     const report::StabilityRecord& s = cell.record.stability;
@@ -46,9 +47,11 @@ TEST_P(Defaults, NothingBreaks) {
     EXPECT_EQ(s.bound_violations.value_or(0), 0);
     EXPECT_EQ(s.bound_exact_violations.value_or(0), 0);
     if (s.negative_variance_texels) {
-      std::printf("%s %s: %lld of %d texels with a variance below 0, the lowest %.3g; shortfall of the bound %.3g, 16 bits change %.3g\n",
-                  GetParam().c_str(), cell.label.c_str(), static_cast<long long>(*s.negative_variance_texels), 1024 * 1024, *s.lowest_variance,
-                  s.bound_shortfall_max.value_or(0.0), s.half_difference_max.value_or(0.0));
+      std::printf(
+          "%s %s: %lld of %d texels with a variance below 0, the lowest %.3g; shortfall of the bound %.3g, 16 bits "
+          "change %.3g\n",
+          GetParam().c_str(), cell.label.c_str(), static_cast<long long>(*s.negative_variance_texels), 1024 * 1024,
+          *s.lowest_variance, s.bound_shortfall_max.value_or(0.0), s.half_difference_max.value_or(0.0));
     }
   }
 }
@@ -71,11 +74,16 @@ TEST(Stability, SafeExponents_AreTheTheoreticalOnes) {
 /// Counts and pictures say the same.
 TEST(Stability, Images_HoldWhatIsCounted) {
   const auto cells = measure("stack", "vsm:store=rg16f,esm:c=20,store=r16f", 256);
-  const auto count = [](const report::Image& image, auto&& is) { return std::count_if(image.texels.begin(), image.texels.end(), is); };
+  const auto count = [](const report::Image& image, auto&& is) {
+    return std::count_if(image.texels.begin(), image.texels.end(), is);
+  };
   const report::StabilityRecord &vsm = cells[0].record.stability, &esm = cells[1].record.stability;
   EXPECT_GT(vsm.negative_variance_texels, 0);
-  EXPECT_EQ(count(cells[0].stability.variance, [](float v) { return v < 0.0f; }), *vsm.negative_variance_texels);
-  EXPECT_EQ(count(cells[1].stability.headroom, [](float v) { return std::isinf(v) && v < 0.0f; }), *esm.overflow_texels);
+  EXPECT_EQ(count(
+                cells[0].stability.variance, [](float v) { return v < 0.0f; }),
+            *vsm.negative_variance_texels);
+  EXPECT_EQ(count(cells[1].stability.headroom, [](float v) { return std::isinf(v) && v < 0.0f; }),
+            *esm.overflow_texels);
   EXPECT_TRUE(cells[1].stability.variance.empty());
   EXPECT_GT(*esm.bound_violations, 0) << "an overflow is no rounding";
   EXPECT_GT(vsm.half_difference_max, 0.01);
@@ -99,7 +107,8 @@ TEST(Stability, ReducedBleeding_IsNoBound) {
   EXPECT_GT(reduced.bound_violations, 100);
   EXPECT_GE(reduced.bound_exact_violations, reduced.bound_violations);
   EXPECT_GT(reduced.bound_shortfall_max, 0.05);
-  EXPECT_EQ(std::count_if(cells[0].stability.violation.texels.begin(), cells[0].stability.violation.texels.end(), [](float v) { return v > 0.0f; }),
+  EXPECT_EQ(std::count_if(cells[0].stability.violation.texels.begin(), cells[0].stability.violation.texels.end(),
+                          [](float v) { return v > 0.0f; }),
             *reduced.bound_violations);
   EXPECT_EQ(cells[1].record.stability.bound_violations, 0);
   EXPECT_FALSE(cells[2].record.stability.bound_violations);

@@ -1,6 +1,5 @@
-#include "harness/run/timing.h"
-
 #include "harness/run/statistics.h"
+#include "harness/run/timing.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {
@@ -13,11 +12,13 @@ TEST(Timing, TwiceTheTaps_TakeLonger) {
   std::vector<std::unique_ptr<render::FilterPasses>> filters;
   std::vector<render::FilterPasses*> pointers;
   for (const auto& request : requests) {
-    filters.push_back(std::make_unique<render::FilterPasses>(bench.shaders(), request, bench.map(), bench.light(request)));
+    filters.push_back(
+        std::make_unique<render::FilterPasses>(bench.shaders(), request, bench.map(), bench.light(request)));
     pointers.push_back(filters.back().get());
   }
   const gl::TimerKind timer = gl::choose_timer(shared_context());
-  const run::RoundTimes times = run::time_rounds(pointers, 0, [] {}, bench.map(), bench.gbuffer(), timer, run::RoundLimits::exactly(9), 1);
+  const run::RoundTimes times = run::time_rounds(
+      pointers, 0, [] {}, bench.map(), bench.gbuffer(), timer, run::RoundLimits::exactly(9), 1);
   const report::Ratio ratio = run::bootstrap_ratio(times.filters[2].lookup, times.filters[1].lookup, 1);
   std::printf("32 taps / 16 taps: %.2f [%.2f, %.2f] by %s\n", ratio.median, ratio.ci95.low, ratio.ci95.high,
               gl::timer_name(timer));

@@ -22,7 +22,8 @@ class FakeFilters {
   }
 
   RoundTimes run(const RoundLimits& limits) {
-    return run_rounds(filters_, 0, [] { return 1.0; }, limits, 3);
+    return run_rounds(
+        filters_, 0, [] { return 1.0; }, limits, 3);
   }
 
  private:
@@ -63,7 +64,8 @@ TEST(Rounds, NoisyFilter_GoesOnUntilItsIntervalIsNarrow_WhileQuietOnesDropOut) {
   EXPECT_EQ(times.map.size(), rounds);
   EXPECT_EQ(times.filters[2].stopped, StopReason::kPrecise);
   EXPECT_LE(width(bootstrap_ratio(times.filters[2].lookup, times.filters[0].lookup, 3)), 0.05);
-  EXPECT_LE(width(bootstrap_ratio(add_moving(times.map, times.filters[2]), add_moving(times.map, times.filters[0]), 3)), 0.05);
+  EXPECT_LE(width(bootstrap_ratio(add_moving(times.map, times.filters[2]), add_moving(times.map, times.filters[0]), 3)),
+            0.05);
 }
 
 TEST(Rounds, BudgetIsSpent_AllStop_AndSaySo) {
@@ -79,8 +81,10 @@ TEST(Rounds, BudgetIsSpent_AllStop_AndSaySo) {
 /// Lookups right after a prefilter are slow for a while; those of filters without one are timed as they come.
 TEST(Rounds, LookupsSettleAfterAPrefilter) {
   int since = 0, alone = 0;
-  const TimedFilter slow{[&] { return since = 0, 10.0; }, [&] { return ++since > 3 ? 2.0 : 7.0; }}, other{{}, [&] { return 1.0 + alone++; }};
-  const RoundTimes times = run_rounds({slow, other}, 0, [] { return 1.0; }, RoundLimits::exactly(2), 3);
+  const TimedFilter slow{[&] { return since = 0, 10.0; }, [&] { return ++since > 3 ? 2.0 : 7.0; }},
+      other{{}, [&] { return 1.0 + alone++; }};
+  const RoundTimes times = run_rounds(
+      {slow, other}, 0, [] { return 1.0; }, RoundLimits::exactly(2), 3);
   EXPECT_EQ(times.filters[0].lookup, (std::vector<double>{2.0, 2.0}));
   EXPECT_EQ(times.filters[1].lookup, (std::vector<double>{2.0, 3.0}));
   EXPECT_DOUBLE_EQ(times.spent_ms, 3.0 * (1.0 + 10.0 + 3.0 * 7.0 + 2.0) + 1.0 + 2.0 + 3.0);
@@ -100,7 +104,8 @@ TEST(Rounds, SlowFilters_AreWarm_OnceTheyWereDrawn) {
   const std::vector<TimedFilter> filters(2, TimedFilter{{}, [&] { return 1000.0 + lookups++; }});
   const auto run = [&](const RoundLimits& limits, double drawn_ms) {
     lookups = 0;
-    return run_rounds(filters, 0, [] { return 1.0; }, limits, 3, drawn_ms);
+    return run_rounds(
+        filters, 0, [] { return 1.0; }, limits, 3, drawn_ms);
   };
   const RoundTimes drawn = run({9, 100, 0.05, 500.0}, 2000.0);
   EXPECT_EQ(drawn.map.size(), 3u);

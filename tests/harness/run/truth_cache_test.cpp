@@ -84,7 +84,9 @@ TEST_F(Cache, AFlippedBit_IsNoticed) {
     const auto parts = cache.load("a");
     ++tried;
     // Bits that no value follows from may differ; values may not.
-    if (!parts || ((*parts)[0].image.texels == make_parts(0.5f)[0].image.texels && (*parts)[1].image.texels == make_parts(0.5f)[1].image.texels)) ++noticed;
+    if (!parts || ((*parts)[0].image.texels == make_parts(0.5f)[0].image.texels &&
+                   (*parts)[1].image.texels == make_parts(0.5f)[1].image.texels))
+      ++noticed;
   }
   EXPECT_GT(tried, 20);
   EXPECT_EQ(noticed, tried);

@@ -13,9 +13,13 @@
 namespace shadowbench::run {
 namespace {
 
-scene::Scene load_scene(const std::string& name) { return scene::load(name, {.scenes_folder = find_resources().scenes}); }
+scene::Scene load_scene(const std::string& name) {
+  return scene::load(name, {.scenes_folder = find_resources().scenes});
+}
 
-void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-5f) { EXPECT_LT(glm::length(a - b), tolerance); }
+void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-5f) {
+  EXPECT_LT(glm::length(a - b), tolerance);
+}
 
 TEST(TuneViews, UnseenOnes_AreNoneOfTheTrainingOnes) {
   std::set<std::tuple<double, double>> views;

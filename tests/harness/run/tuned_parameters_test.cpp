@@ -65,7 +65,8 @@ TEST_F(TunedParameters, AreTaken_AndShownByTheLabel) {
 }
 
 TEST_F(TunedParameters, YieldToTheCommandLine) {
-  const filters::FilterRequest request = apply("vsm:radius=9", write_filters(R"({"id": "vsm", "params": {"radius": 2, "min_variance": 1e-6}})"));
+  const filters::FilterRequest request =
+      apply("vsm:radius=9", write_filters(R"({"id": "vsm", "params": {"radius": 2, "min_variance": 1e-6}})"));
   EXPECT_EQ(filters::number(request.values, "radius"), 9.0);
   EXPECT_EQ(filters::number(request.values, "min_variance"), 1e-6);
 }
@@ -79,7 +80,8 @@ TEST_F(TunedParameters, OfOtherFilters_LeaveTheDefaults_WithANote) {
 
 TEST_F(TunedParameters, OfAnotherMapSize_AreTakenWithANote) {
   auto requests = catalogue_.parse_requests("vsm");
-  const auto notes = apply_tuned(requests, catalogue_, write_filters(R"({"id": "vsm", "params": {"radius": 2}})"), {512, 1024});
+  const auto notes =
+      apply_tuned(requests, catalogue_, write_filters(R"({"id": "vsm", "params": {"radius": 2}})"), {512, 1024});
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_THAT(notes.front(), HasSubstr("1024 texels, this run draws 512"));
 }
@@ -91,18 +93,27 @@ TEST_F(TunedParameters, BadFiles_AreRefusedWithTheField) {
   expect_refusal(write("[]"), "the file must be an object");
   expect_refusal(write("{}"), "schema_version is missing");
   expect_refusal(write(R"({"schema_version": 2})"), "schema_version is 2, and this program reads 1");
-  expect_refusal(write(R"({"schema_version": 1, "metric": "rmse", "map_size": "big", "filters": []})"), "map_size must be a whole number");
-  expect_refusal(write(R"({"schema_version": 1, "metric": "rmse", "map_size": 64, "filters": {}})"), "filters must be a list");
-  expect_refusal(write_filters(R"({"id": "vsn", "params": {}})"), "filters[0].id: unknown filter 'vsn'; did you mean 'vsm'?");
+  expect_refusal(write(R"({"schema_version": 1, "metric": "rmse", "map_size": "big", "filters": []})"),
+                 "map_size must be a whole number");
+  expect_refusal(write(R"({"schema_version": 1, "metric": "rmse", "map_size": 64, "filters": {}})"),
+                 "filters must be a list");
+  expect_refusal(write_filters(R"({"id": "vsn", "params": {}})"),
+                 "filters[0].id: unknown filter 'vsn'; did you mean 'vsm'?");
   expect_refusal(write_filters(R"({"id": "vsm"})"), "filters[0].params is missing");
-  expect_refusal(write_filters(R"({"id": "vsm", "params": {"radios": 2}})"), "filters[0].params.radios: filter 'vsm' has no parameter 'radios'; did you mean 'radius'?");
-  expect_refusal(write_filters(R"({"id": "vsm", "params": {"radius": 65}})"), "filters[0].params.radius: vsm:radius=65 is out of range");
+  expect_refusal(write_filters(R"({"id": "vsm", "params": {"radios": 2}})"),
+                 "filters[0].params.radios: filter 'vsm' has no parameter 'radios'; did you mean 'radius'?");
+  expect_refusal(write_filters(R"({"id": "vsm", "params": {"radius": 65}})"),
+                 "filters[0].params.radius: vsm:radius=65 is out of range");
   expect_refusal(write_filters(R"({"id": "vsm", "params": {"radius": 2.5}})"), "must be a whole number");
-  expect_refusal(write_filters(R"({"id": "vsm", "params": {"radius": "wide"}})"), "filters[0].params.radius: vsm:radius='wide' is not a finite number");
-  expect_refusal(write_filters(R"({"id": "vsm", "params": {"radius": [2]}})"), "filters[0].params.radius must be a number");
+  expect_refusal(write_filters(R"({"id": "vsm", "params": {"radius": "wide"}})"),
+                 "filters[0].params.radius: vsm:radius='wide' is not a finite number");
+  expect_refusal(write_filters(R"({"id": "vsm", "params": {"radius": [2]}})"),
+                 "filters[0].params.radius must be a number");
   expect_refusal(write_filters(R"({"id": "vsm", "params": {"store": "rgb"}})"), "filters[0].params.store");
-  expect_refusal(write_filters(R"({"id": "vsm", "params": {}}, {"id": "vsm", "params": {}})"), "filters[1].id names 'vsm' a second time");
-  expect_refusal(write_filters(R"({"id": "none", "params": {}}, {"id": "esm", "params": {"c": 0}})"), "filters[1].params.c");  // though not requested
+  expect_refusal(write_filters(R"({"id": "vsm", "params": {}}, {"id": "vsm", "params": {}})"),
+                 "filters[1].id names 'vsm' a second time");
+  expect_refusal(write_filters(R"({"id": "none", "params": {}}, {"id": "esm", "params": {"c": 0}})"),
+                 "filters[1].params.c");  // though not requested
 }
 
 }  // namespace

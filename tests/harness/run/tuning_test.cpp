@@ -13,7 +13,9 @@
 namespace shadowbench::run {
 namespace {
 
-SearchedParam make_param(double min, double max, double default_value, bool integer = false) { return {"p", min, max, default_value, integer}; }
+SearchedParam make_param(double min, double max, double default_value, bool integer = false) {
+  return {"p", min, max, default_value, integer};
+}
 
 /// What a search drew, beside what it found.
 struct Watched {
@@ -73,7 +75,8 @@ TEST(SearchParameters, FindsTheMinimum_OfWholeLogarithmicAndLinearNumbers) {
   const auto bowl = [](const std::vector<double>& v) {
     return 0.01 * std::pow(v[0] - 13.0, 2.0) + 0.1 * std::pow(std::log10(v[1]) + 3.0, 2.0) + std::pow(v[2] - 0.3, 2.0);
   };
-  const Watched found = search({make_param(0.0, 64.0, 4.0, true), make_param(1e-6, 1.0, 0.5), make_param(0.0, 1.0, 0.9)}, bowl, 150);
+  const Watched found =
+      search({make_param(0.0, 64.0, 4.0, true), make_param(1e-6, 1.0, 0.5), make_param(0.0, 1.0, 0.9)}, bowl, 150);
   EXPECT_EQ(found.result.best[0], 13.0);
   EXPECT_NEAR(std::log10(found.result.best[1]), -3.0, 0.1);
   EXPECT_NEAR(found.result.best[2], 0.3, 0.02);
@@ -92,13 +95,16 @@ TEST(SearchParameters, LeavesALocalMinimum) {
 
 TEST(SearchParameters, IsNeverWorseThanTheDefault) {
   const double hidden = 0.123456789;  // not of four digits: no step of the search comes there
-  const Watched found = search({make_param(0.0, 1.0, hidden)}, [&](const std::vector<double>& v) { return std::sqrt(std::abs(v[0] - hidden)); });
+  const Watched found = search({make_param(0.0, 1.0, hidden)},
+                               [&](const std::vector<double>& v) { return std::sqrt(std::abs(v[0] - hidden)); });
   EXPECT_EQ(found.result.best[0], hidden);
   EXPECT_EQ(found.result.default_error, found.result.best_error);
 }
 
 TEST(SearchParameters, KeepsTheBudget_AndDrawsNoSettingTwice) {
-  const auto bowl = [](const std::vector<double>& v) { return 1.0 + std::pow(v[0] - 3.0, 2.0) + std::pow(v[1] - 0.4, 2.0); };
+  const auto bowl = [](const std::vector<double>& v) {
+    return 1.0 + std::pow(v[0] - 3.0, 2.0) + std::pow(v[1] - 0.4, 2.0);
+  };
   for (const int budget : {1, 2, 7, 30}) {
     const Watched found = search({make_param(0.0, 20.0, 10.0, true), make_param(0.0, 1.0, 0.0)}, bowl, budget);
     int searched = 0;
@@ -116,7 +122,8 @@ TEST(SearchParameters, KeepsTheBudget_AndDrawsNoSettingTwice) {
 
 /// A few whole numbers are soon all known: the search ends.
 TEST(SearchParameters, EndsWhereAllSettingsAreDrawn) {
-  const Watched found = search({make_param(0.0, 3.0, 1.0, true)}, [](const std::vector<double>& v) { return 3.0 - v[0]; }, 1000);
+  const Watched found = search(
+      {make_param(0.0, 3.0, 1.0, true)}, [](const std::vector<double>& v) { return 3.0 - v[0]; }, 1000);
   EXPECT_EQ(found.result.best[0], 3.0);
   EXPECT_EQ(found.drawn.size(), 4u);
 }
@@ -140,7 +147,8 @@ TEST(SearchParameters, PassesOnWhatTheObjectiveThrows) {
 
 /// 1 + (u - 1/2)^2 <= 1.1 for |u - 1/2| <= sqrt(0.1).
 TEST(GoodRange, HasTheWidthOfTheClosedForm_OnALinearScale) {
-  const Watched found = search({make_param(0.0, 1.0, 0.5)}, [](const std::vector<double>& v) { return 1.0 + std::pow(v[0] - 0.5, 2.0); });
+  const Watched found =
+      search({make_param(0.0, 1.0, 0.5)}, [](const std::vector<double>& v) { return 1.0 + std::pow(v[0] - 0.5, 2.0); });
   const GoodRange& range = found.result.ranges.front();
   ASSERT_EQ(range.intervals.size(), 1u);
   EXPECT_NEAR(range.intervals[0].low, 0.5 - std::sqrt(0.1), 1.0 / 256.0);
@@ -150,7 +158,9 @@ TEST(GoodRange, HasTheWidthOfTheClosedForm_OnALinearScale) {
 }
 
 TEST(GoodRange, HasTheWidthOfTheClosedForm_OnALogarithmicScale) {
-  const Watched found = search({make_param(0.01, 1e4, 10.0)}, [](const std::vector<double>& v) { return 1.0 + std::pow(std::log10(v[0]) - 1.0, 2.0); });
+  const Watched found = search({make_param(0.01, 1e4, 10.0)}, [](const std::vector<double>& v) {
+    return 1.0 + std::pow(std::log10(v[0]) - 1.0, 2.0);
+  });
   const GoodRange& range = found.result.ranges.front();
   EXPECT_NEAR(std::log10(range.intervals.at(0).low), 1.0 - std::sqrt(0.1), 6.0 / 256.0);
   EXPECT_NEAR(std::log10(range.intervals.at(0).high), 1.0 + std::sqrt(0.1), 6.0 / 256.0);
@@ -159,7 +169,8 @@ TEST(GoodRange, HasTheWidthOfTheClosedForm_OnALogarithmicScale) {
 
 /// 1 + (n - 7)^2 / 25 <= 1.1 for n = 6, 7, 8: three of a hundred steps.
 TEST(GoodRange, OfWholeNumbers_IsExact) {
-  const Watched found = search({make_param(0.0, 100.0, 50.0, true)}, [](const std::vector<double>& v) { return 1.0 + 0.04 * std::pow(v[0] - 7.0, 2.0); });
+  const Watched found = search({make_param(0.0, 100.0, 50.0, true)},
+                               [](const std::vector<double>& v) { return 1.0 + 0.04 * std::pow(v[0] - 7.0, 2.0); });
   const GoodRange& range = found.result.ranges.front();
   ASSERT_EQ(range.intervals.size(), 1u);
   EXPECT_EQ(range.intervals[0].low, 6.0);
@@ -168,7 +179,9 @@ TEST(GoodRange, OfWholeNumbers_IsExact) {
 }
 
 TEST(GoodRange, WithAHole_HasTwoIntervals) {
-  const auto valleys = [](const std::vector<double>& v) { return 1.0 + 4.0 * std::min(std::pow(v[0] - 0.25, 2.0), std::pow(v[0] - 0.75, 2.0)); };
+  const auto valleys = [](const std::vector<double>& v) {
+    return 1.0 + 4.0 * std::min(std::pow(v[0] - 0.25, 2.0), std::pow(v[0] - 0.75, 2.0));
+  };
   const GoodRange range = search({make_param(0.0, 1.0, 0.5)}, valleys).result.ranges.front();
   ASSERT_EQ(range.intervals.size(), 2u);
   EXPECT_NEAR(range.intervals[0].high, 0.25 + std::sqrt(0.025), 1.0 / 256.0);
@@ -177,7 +190,8 @@ TEST(GoodRange, WithAHole_HasTwoIntervals) {
 }
 
 TEST(GoodRange, OfAParameterThatIsNotUsed_IsAllOfIt) {
-  const Watched found = search({make_param(0.0, 1.0, 0.5), make_param(0.0, 0.1, 1e-5)}, [](const std::vector<double>& v) { return 1.0 + v[0]; });
+  const Watched found = search({make_param(0.0, 1.0, 0.5), make_param(0.0, 0.1, 1e-5)},
+                               [](const std::vector<double>& v) { return 1.0 + v[0]; });
   EXPECT_FALSE(found.result.ranges[0].no_effect);
   EXPECT_TRUE(found.result.ranges[1].no_effect);
   EXPECT_NEAR(found.result.ranges[1].share, 1.0, 1e-12);
@@ -185,7 +199,8 @@ TEST(GoodRange, OfAParameterThatIsNotUsed_IsAllOfIt) {
 
 /// With a budget of 1 only the default is drawn; the scan then meets the valley, which becomes the best.
 TEST(GoodRange, ThatMeetsSomethingBetter_MovesTheBest) {
-  const Watched found = search({make_param(0.0, 1.0, 0.9)}, [](const std::vector<double>& v) { return 0.1 + std::abs(v[0] - 0.25); }, 1);
+  const Watched found = search(
+      {make_param(0.0, 1.0, 0.9)}, [](const std::vector<double>& v) { return 0.1 + std::abs(v[0] - 0.25); }, 1);
   EXPECT_NEAR(found.result.best[0], 0.25, 1e-9);
   EXPECT_LE(found.result.ranges[0].intervals.at(0).low, 0.25);
   EXPECT_NEAR(found.result.ranges[0].share, 0.02, 2.0 / 256.0);
@@ -205,7 +220,8 @@ TEST(SearchedParams, AreNumbersWithARange_NeitherConstNorSet) {
   const filters::Catalogue catalogue(find_resources().filters);
   const auto names = [&](const std::string& text) {
     std::string joined;
-    for (const SearchedParam& param : list_searched_params(catalogue.parse_requests(text).front())) joined += param.name + " ";
+    for (const SearchedParam& param : list_searched_params(catalogue.parse_requests(text).front()))
+      joined += param.name + " ";
     return joined;
   };
   EXPECT_EQ(names("none"), "");

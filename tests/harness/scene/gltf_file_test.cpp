@@ -56,9 +56,8 @@ std::string complaint_about(const Parts& parts) {
 
 Bounds bounds_of(const ImportedModel& model) {
   Bounds box;
-  for (const Mesh& mesh : model.meshes) {
+  for (const Mesh& mesh : model.meshes)
     for (const Vertex& vertex : mesh.vertices) box.add(vertex.position_ws);
-  }
   return box;
 }
 

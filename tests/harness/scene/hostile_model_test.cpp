@@ -27,9 +27,10 @@ struct Parts {
 };
 
 std::string json_of(const Parts& p) {
-  return fmt::format(R"({{"asset": {{"version": "2.0"}}, "scenes": [{{"nodes": [0]}}], "nodes": [{}], "meshes": [{{"primitives": [{}]}}],
+  return fmt::format(
+      R"({{"asset": {{"version": "2.0"}}, "scenes": [{{"nodes": [0]}}], "nodes": [{}], "meshes": [{{"primitives": [{}]}}],
     "accessors": [{}], "bufferViews": [{}], "buffers": [{{"byteLength": 36, "uri": "{}"}}]}})",
-                     p.nodes, p.primitives, p.accessor, p.view, p.uri);
+      p.nodes, p.primitives, p.accessor, p.view, p.uri);
 }
 
 ImportedModel import_parts(const TestFolder& folder, const Parts& parts) {
@@ -45,7 +46,8 @@ std::string complaint_about(const Parts& parts) {
 }
 
 TEST(HostileModel, CountsBeyondAllMemory_AreRefused) {
-  for (const char* count : {"2147483648", "4294967295", "9223372036854775807", "9223372036854775808", "18446744073709551615", "1e300", "-1"}) {
+  for (const char* count : {"2147483648", "4294967295", "9223372036854775807", "9223372036854775808",
+                            "18446744073709551615", "1e300", "-1"}) {
     Parts parts;
     parts.accessor = fmt::format(R"({{"bufferView": 0, "componentType": 5126, "count": {}, "type": "VEC3"}})", count);
     EXPECT_FALSE(complaint_about(parts).empty()) << count;
@@ -79,10 +81,11 @@ TEST(HostileModel, ChainOfManyNodes_IsRead) {
 TEST(HostileModel, ReferencesOutOfTheFolder_AreRefusedInEverySpelling) {
   const TestFolder folder;
   const std::string secret = folder.write("secret.bin", kPositions).string();
-  for (const std::string& uri : {secret, "file://" + secret, std::string("../secret.bin"), std::string("./.././secret.bin"), std::string("x/../../secret.bin"),
-                                 std::string("%2e%2e/secret.bin"), std::string("%2E%2E%2Fsecret.bin"), std::string("..%2fsecret.bin"), "/" + secret,
-                                 std::string("../../../../../../../../etc/passwd"), std::string("/etc/passwd"), std::string("..\\u0000/secret.bin"),
-                                 std::string("data.bin\\u0000../secret.bin")}) {
+  for (const std::string& uri :
+       {secret, "file://" + secret, std::string("../secret.bin"), std::string("./.././secret.bin"),
+        std::string("x/../../secret.bin"), std::string("%2e%2e/secret.bin"), std::string("%2E%2E%2Fsecret.bin"),
+        std::string("..%2fsecret.bin"), "/" + secret, std::string("../../../../../../../../etc/passwd"),
+        std::string("/etc/passwd"), std::string("..\\u0000/secret.bin"), std::string("data.bin\\u0000../secret.bin")}) {
     Parts parts;
     parts.uri = uri;
     const Error error = error_of([&] { import_parts(folder, parts); });

@@ -69,9 +69,8 @@ TEST_P(LightFitTest, View_IsRigidAndLooksAlongTheLight) {
     const glm::dmat3 rotation(fit.light_from_world);
     EXPECT_NEAR(glm::determinant(rotation), 1.0, 1e-12);
     const glm::dmat3 product = rotation * glm::transpose(rotation);
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 3; ++i)
       for (int k = 0; k < 3; ++k) EXPECT_NEAR(product[i][k], i == k ? 1.0 : 0.0, 1e-12);
-    }
     EXPECT_NEAR((rotation * glm::dvec3(fit.direction_ws)).z, -1.0, 1e-6);
   }
 }
@@ -162,7 +161,8 @@ TEST_P(LightFitTest, WindowWithoutPlanes_KeepsTheFittedDepth) {
   scene.light.map_window = MapWindow{glm::dvec3(1.0, 0.5, -2.0), 3.0, std::nullopt};
   const LightFrustum fit = fit_light(scene, GetParam(), 256, 2.0);
   EXPECT_EQ(fit.depth_range_ws, fitted.depth_range_ws);
-  for (const glm::dvec3& p : {glm::dvec3(0.0), glm::dvec3(3.0, -1.0, 2.0)}) EXPECT_NEAR(seen(fit, p).z, seen(fitted, p).z, 1e-6);
+  for (const glm::dvec3& p : {glm::dvec3(0.0), glm::dvec3(3.0, -1.0, 2.0)})
+    EXPECT_NEAR(seen(fit, p).z, seen(fitted, p).z, 1e-6);
 }
 
 TEST(LightFitTest, PaddingThatLeavesNoTexel_IsAUsageError) {
@@ -189,9 +189,11 @@ glm::dvec2 texel_of(const LightFrustum& fit, const glm::dvec3& p) {
 
 bool sees(const Camera& camera, const glm::dvec3& p) {
   const glm::dvec3 d = p - glm::dvec3(camera.position_ws), forward(camera.forward_ws);
-  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(camera.up_ws))), up = glm::cross(right, forward);
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(camera.up_ws))),
+                   up = glm::cross(right, forward);
   const double ahead = glm::dot(d, forward), tangent = std::tan(0.25);
-  return ahead > 0.0 && std::abs(glm::dot(d, right)) <= 1.5 * tangent * ahead && std::abs(glm::dot(d, up)) <= tangent * ahead;
+  return ahead > 0.0 && std::abs(glm::dot(d, right)) <= 1.5 * tangent * ahead &&
+         std::abs(glm::dot(d, up)) <= tangent * ahead;
 }
 
 TEST(LightFitView, HoldsEveryVisiblePointWithItsPadding_AndIsSmallerThanTight) {
@@ -215,9 +217,7 @@ TEST(LightFitView, HoldsEveryVisiblePointWithItsPadding_AndIsSmallerThanTight) {
         }
       }
       EXPECT_GT(seen, 500);
-      if (!snap) {
-        EXPECT_LT(fit.texel_size_ws, fit_light(scene, FitMode::kTight, 256, 3.0).texel_size_ws);
-      }
+      if (!snap) EXPECT_LT(fit.texel_size_ws, fit_light(scene, FitMode::kTight, 256, 3.0).texel_size_ws);
     }
   }
 }
@@ -245,7 +245,9 @@ TEST(LightFitView, CameraThatSeesNothing_GetsTheTightFit) {
 TEST(LightFitSnap, CameraMovedByLessThanATexel_LeavesTheGridWhereItWas) {
   const Scene scene = make_scene({1, -2, 0.5f});
   const glm::dvec3 mark(0.3, 0.0, -0.7);
-  const auto camera_at = [](int step) { return make_camera({-2.0f + 0.0031f * static_cast<float>(step), 3.0f, 4.0f}, {0.3f, -0.9f, -0.7f}); };
+  const auto camera_at = [](int step) {
+    return make_camera({-2.0f + 0.0031f * static_cast<float>(step), 3.0f, 4.0f}, {0.3f, -0.9f, -0.7f});
+  };
   const LightFrustum first = fit_view(scene, camera_at(0), true), loose = fit_view(scene, camera_at(0), false);
   ASSERT_LT(0.0031, 0.5 * first.texel_size_ws);
   double moved = 0.0;
@@ -264,12 +266,15 @@ TEST(LightFitSnap, CameraMovedByLessThanATexel_LeavesTheGridWhereItWas) {
 TEST_P(LightFitTest, Snapped_StillHoldsEveryVertexWithItsPadding) {
   for (const glm::vec3& direction : kDirections) {
     const Scene scene = make_scene(direction, {0.37f, 0.1f, -0.21f});
-    expect_inside(scene, fit_light(scene, FitRequest{.mode = GetParam(), .map_size = 256, .pad_texels = 5.5, .snap = true}), 5.5 / 256.0);
+    expect_inside(scene,
+                  fit_light(scene, FitRequest{.mode = GetParam(), .map_size = 256, .pad_texels = 5.5, .snap = true}),
+                  5.5 / 256.0);
   }
 }
 
 TEST(FitNames, GoBothWays_AndAnUnknownOneIsRefused) {
-  for (const FitMode mode : {FitMode::kSphere, FitMode::kTight, FitMode::kView}) EXPECT_EQ(parse_fit_mode(name_of(mode)), mode);
+  for (const FitMode mode : {FitMode::kSphere, FitMode::kTight, FitMode::kView})
+    EXPECT_EQ(parse_fit_mode(name_of(mode)), mode);
   EXPECT_EQ(name_of(FitMode::kView), "view");
   const Error error = error_of([] { parse_fit_mode("box"); });
   EXPECT_EQ(error.kind(), ErrorKind::kUsage);

@@ -24,7 +24,8 @@ TEST(LightRing, LightsAreEvenlySpaced_AllAsHighAsTheFirst) {
     EXPECT_EQ(lights[0].direction_ws, make_light(72.0, 38.0).direction_ws);
     for (int i = 0; i < count; ++i) {
       const glm::vec3 expected = make_light(72.0 + 360.0 * i / count, 38.0).direction_ws;
-      EXPECT_LT(glm::length(lights[static_cast<std::size_t>(i)].direction_ws - expected), 1e-6f) << i << " of " << count;
+      EXPECT_LT(glm::length(lights[static_cast<std::size_t>(i)].direction_ws - expected), 1e-6f)
+          << i << " of " << count;
       EXPECT_EQ(lights[static_cast<std::size_t>(i)].intensity, 3.0f);
       EXPECT_EQ(lights[static_cast<std::size_t>(i)].angular_diameter_deg, 2.0f);
     }

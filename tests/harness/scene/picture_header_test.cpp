@@ -40,23 +40,26 @@ TEST(PictureHeader, SizesOfEveryKind_AreRead) {
 }
 
 TEST(PictureHeader, OtherAndShortBytes_HaveNoSize) {
-  for (const auto& other : {bytes("8BPS\0\1\0\0\0\0\0\0\0\3\0\0\0\1\0\0\0\1"), bytes("P6 99999 99999 255\n"), bytes("#?RADIANCE\n-Y 9 +X 9\n"),
-                            bytes("\x89PNG\r\n\x1a\n\0\0\0\4CgBI\0\0\0\1\0\0\0\1"), bytes("\xff\xd8\xff\xff\xff"), bytes("BM"), bytes("")}) {
+  for (const auto& other : {bytes("8BPS\0\1\0\0\0\0\0\0\0\3\0\0\0\1\0\0\0\1"), bytes("P6 99999 99999 255\n"),
+                            bytes("#?RADIANCE\n-Y 9 +X 9\n"), bytes("\x89PNG\r\n\x1a\n\0\0\0\4CgBI\0\0\0\1\0\0\0\1"),
+                            bytes("\xff\xd8\xff\xff\xff"), bytes("BM"), bytes("")})
     EXPECT_FALSE(read_picture_size(other));
-  }
 }
 
 TEST(PictureHeader, ClaimsThatNoMemoryHolds_AreRefusedBeforeDecoding) {
   const auto complaint = [](const std::vector<unsigned char>& picture) {
     return error_of([&] { decode_texture(picture, "huge", "a.gltf", {}); }).message();
   };
-  EXPECT_THAT(complaint(bytes(kHugePng)), testing::AllOf(HasSubstr("'huge' says that it has 65536 x 65536"), HasSubstr("16384")));
+  EXPECT_THAT(complaint(bytes(kHugePng)),
+              testing::AllOf(HasSubstr("'huge' says that it has 65536 x 65536"), HasSubstr("16384")));
   EXPECT_THAT(complaint(bytes(kHugeTga)), HasSubstr("65535 x 65535"));
   EXPECT_THAT(complaint(bytes("\0\0\2\0\0\0\0\0\0\0\0\0\1\x20\1\x20\x20\x28")), HasSubstr("8193 x 8193"));
 }
 
 TEST(PictureHeader, AllTexturesOfAModel_AreCountedTogether) {
-  const auto small = bytes("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x20\x28""abcd");
+  const auto small = bytes(
+      "\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x20\x28"
+      "abcd");
   const Texture large{"large", 16384, 16384, {}};
   EXPECT_EQ(decode_texture(small, "small", "a.gltf", {}).rgba.size(), 4U);
   const Error error = error_of([&] { decode_texture(small, "small", "a.gltf", {large}); });

@@ -145,9 +145,8 @@ TEST(MeshToolsTest, FlatNormals_AreThoseOfTheFaces) {
 }
 
 TEST(MeshToolsTest, SmoothNormals_RoundASphereAndKeepABoxSharp) {
-  for (const Vertex& v : with_smooth_normals(make_sphere(1.0f, 64), 45.0).vertices) {
+  for (const Vertex& v : with_smooth_normals(make_sphere(1.0f, 64), 45.0).vertices)
     ASSERT_GT(glm::dot(v.normal_ws, glm::normalize(v.position_ws)), 0.999f);
-  }
   const Mesh box = make_box(glm::vec3(1.0f), 2);
   const Mesh smooth = with_smooth_normals(box, 45.0);
   for (std::size_t i = 0; i < box.indices.size(); ++i) {

@@ -248,7 +248,9 @@ TEST(SceneFileTest, ModelOutsideTheScenesFolder_IsTheUsersChoice) {
 }
 
 TEST(SceneFileTest, ShapesBeyondAllMemory_AreRefusedBeforeTheyAreMade) {
-  const std::string bars = "[[object]]\nshape = \"bars\"\ncount = 10000\nbar_width = 0.1\nspacing = 0.3\nlength = 2\ndirection = \"both\"\ncells = 512\n";
+  const std::string bars =
+      "[[object]]\nshape = \"bars\"\ncount = 10000\nbar_width = 0.1\nspacing = 0.3\nlength = 2\ndirection = "
+      "\"both\"\ncells = 512\n";
   const Complaint c = complaint_about(kBase + bars);
   EXPECT_THAT(c.message, testing::AllOf(HasSubstr("10000 bars"), HasSubstr("'count' or 'cells'")));
   EXPECT_EQ(c.line, "14");
@@ -266,7 +268,9 @@ TEST(SceneFileTest, KeyOfManyDots_DoesNotExhaustTheStack) {
 }
 
 TEST(SceneFileTest, ListsInMessages_AreShortAndOnOneLine) {
-  const std::string many = replaced(kBase, "size = [1, 2, 3]", "size = [1, 2, inf, -inf, nan, 1e300, 7" + std::string(3000, ' ') + ", -9223372036854775808]");
+  const std::string many =
+      replaced(kBase, "size = [1, 2, 3]",
+               "size = [1, 2, inf, -inf, nan, 1e300, 7" + std::string(3000, ' ') + ", -9223372036854775808]");
   const Complaint c = complaint_about(many);
   EXPECT_THAT(c.message, HasSubstr("but is [1, 2, inf, -inf, nan, 1e+300, ...]"));
   EXPECT_THAT(c.message, testing::Not(HasSubstr("\n")));

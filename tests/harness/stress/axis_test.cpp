@@ -40,7 +40,8 @@ TEST(AxisTable, EveryAxisSaysWhatItIs) {
   ASSERT_FALSE(axis_table().empty());
   for (const Axis& axis : axis_table()) {
     SCOPED_TRACE(axis.id);
-    for (const std::string* text : {&axis.id, &axis.title, &axis.quantity, &axis.measured, &axis.broken_when}) EXPECT_NE(*text, "");
+    for (const std::string* text : {&axis.id, &axis.title, &axis.quantity, &axis.measured, &axis.broken_when})
+      EXPECT_NE(*text, "");
     EXPECT_LT(axis.range.low, axis.range.high);
     EXPECT_LE(axis.limits.low, axis.range.low);
     EXPECT_GE(axis.limits.high, axis.range.high);
@@ -58,7 +59,8 @@ TEST(AxisTable, EveryCaseObserves_OrSaysWhyNot) {
     for (const Case& item : cases) {
       EXPECT_NE(item.observe == nullptr, item.not_available.empty()) << axis.id << " " << item.variant;
       EXPECT_NE(item.variant, "") << axis.id;
-      for (const Theory& theory : item.theories) EXPECT_FALSE(theory.formula.empty() || theory.source.empty()) << axis.id << " " << item.variant;
+      for (const Theory& theory : item.theories)
+        EXPECT_FALSE(theory.formula.empty() || theory.source.empty()) << axis.id << " " << item.variant;
     }
   }
 }
@@ -81,7 +83,9 @@ TEST(ChooseAxes, TakesThoseNamed_InThatOrder) {
 }
 
 TEST(ChooseAxes, UnknownOnes_AreRefusedWithTheNearest) {
-  for (const auto& [text, word] : {std::pair("esm-exponnet", "did you mean 'esm-exponent'"), std::pair("zzz", "known: "), std::pair("", ""), std::pair("esm-exponent,esm-exponent", "twice")}) {
+  for (const auto& [text, word] :
+       {std::pair("esm-exponnet", "did you mean 'esm-exponent'"), std::pair("zzz", "known: "), std::pair("", ""),
+        std::pair("esm-exponent,esm-exponent", "twice")}) {
     try {
       choose_axes(text);
       EXPECT_EQ(std::string(text), "");
@@ -114,7 +118,8 @@ TEST(ApplyRange, BadRanges_AreRefusedInOneLine) {
   EXPECT_THAT(refuse("esm-exponent=-5,10"), AllOf(HasSubstr("beyond"), HasSubstr("1 .. 1e+06")));
   EXPECT_THAT(refuse("esm-exponent=1,1e9"), HasSubstr("beyond"));
   EXPECT_THAT(refuse("esm-exp=1,10"), HasSubstr("did you mean 'esm-exponent'"));
-  EXPECT_THAT(refuse("esm-exponent=1,10", "warp-exponent"), AllOf(HasSubstr("not among --axes"), HasSubstr("esm-exponent")));
+  EXPECT_THAT(refuse("esm-exponent=1,10", "warp-exponent"),
+              AllOf(HasSubstr("not among --axes"), HasSubstr("esm-exponent")));
 }
 
 TEST(Driven, ComesFromTheFrontMatter_AndKeepsTheUsersValues) {
@@ -131,14 +136,15 @@ TEST(Driven, ComesFromTheFrontMatter_AndKeepsTheUsersValues) {
 TEST(Driven, FiltersThatWereNotChosen_AreReported) {
   for (const char* id : {"esm-exponent", "warp-exponent", "vsm-cancellation"}) {
     const std::vector<Case> cases = choose_axes(id)[0].make_cases(make_context("none"));
-    EXPECT_TRUE(std::ranges::any_of(cases, [](const Case& item) { return item.not_available.find("front matter declares '") != std::string::npos; })) << id;
+    EXPECT_TRUE(std::ranges::any_of(cases, [](const Case& item) {
+      return item.not_available.find("front matter declares '") != std::string::npos;
+    })) << id;
   }
 }
 
 TEST(Driven, WithoutAGl_GlCasesSayThatThereIsNone) {
-  for (const Case& item : choose_axes("esm-exponent")[0].make_cases(make_context())) {
+  for (const Case& item : choose_axes("esm-exponent")[0].make_cases(make_context()))
     EXPECT_EQ(item.not_available.find("no GL") != std::string::npos, item.level == Level::kGl) << item.variant;
-  }
 }
 
 TEST(DescribeAxes, NamesThemAll) {
@@ -156,17 +162,18 @@ TEST(Axes, ModelsAndArithmetic_MeetTheirTheories) {
       const report::StressCase found = find_onsets(item, axis);
       for (const report::StressLimit& limit : compare(item, found, axis)) {
         EXPECT_NE(limit.agreement, report::StressAgreement::kDisagrees)
-            << id << " " << item.filter << " " << item.variant << ": theory " << limit.onset.value_or(-1.0) << ", measured " << limit.measured.value_or(-1.0);
+            << id << " " << item.filter << " " << item.variant << ": theory " << limit.onset.value_or(-1.0)
+            << ", measured " << limit.measured.value_or(-1.0);
       }
     }
   }
 }
 
 /// The case of an axis that has this variant and level.
-Case find_case(const std::string& axis, const std::string& variant, Level level, const std::string& filters = "vsm,esm") {
-  for (Case& item : choose_axes(axis)[0].make_cases(make_context(filters))) {
+Case find_case(const std::string& axis, const std::string& variant, Level level,
+               const std::string& filters = "vsm,esm") {
+  for (Case& item : choose_axes(axis)[0].make_cases(make_context(filters)))
     if (item.variant == variant && item.level == level) return std::move(item);
-  }
   ADD_FAILURE() << "no case " << variant;
   return {};
 }
@@ -174,27 +181,38 @@ Case find_case(const std::string& axis, const std::string& variant, Level level,
 /// The papers' limits of the second moment of a warp on [-1,1]; a 16-bit map at exponent 10 is far beyond its own.
 TEST(WarpExponent, OverflowsWhereTheSecondMomentDoes) {
   const Axis axis = choose_axes("warp-exponent")[0];
-  for (const auto& [variant, limit] : {std::pair("32-bit float, one second moment", 44.36), std::pair("16-bit float, one second moment", 5.545),
-                                       std::pair("32-bit float, sum of 81 second moments", 42.16)}) {
-    EXPECT_NEAR(find_onsets(find_case("warp-exponent", variant, Level::kArithmetic), axis).broken->value / limit, 1.0, 0.011) << variant;
+  for (const auto& [variant, limit] :
+       {std::pair("32-bit float, one second moment", 44.36), std::pair("16-bit float, one second moment", 5.545),
+        std::pair("32-bit float, sum of 81 second moments", 42.16)}) {
+    EXPECT_NEAR(find_onsets(find_case("warp-exponent", variant, Level::kArithmetic), axis).broken->value / limit, 1.0,
+                0.011)
+        << variant;
   }
-  EXPECT_EQ(find_case("warp-exponent", "16-bit float, one second moment", Level::kArithmetic).observe(10.0).verdict, Verdict::kBroken);
+  EXPECT_EQ(find_case("warp-exponent", "16-bit float, one second moment", Level::kArithmetic).observe(10.0).verdict,
+            Verdict::kBroken);
 }
 
 TEST(EsmExponent, ModelOverflows_AtTheLogarithmOfTheLargestNumber) {
   const Axis axis = choose_axes("esm-exponent")[0];
-  for (const auto& [variant, limit] : {std::pair("r32f, linear, depths to 1", 88.72), std::pair("r16f, linear, depths to 1", 11.09),
-                                       std::pair("r32f, linear, depths to 0.5, no blur", 177.4), std::pair("r16f, linear, depths to 0.5, no blur", 22.18)}) {
-    EXPECT_NEAR(find_onsets(find_case("esm-exponent", variant, Level::kModel), axis).broken->value / limit, 1.0, 0.02) << variant;
+  for (const auto& [variant, limit] :
+       {std::pair("r32f, linear, depths to 1", 88.72), std::pair("r16f, linear, depths to 1", 11.09),
+        std::pair("r32f, linear, depths to 0.5, no blur", 177.4),
+        std::pair("r16f, linear, depths to 0.5, no blur", 22.18)}) {
+    EXPECT_NEAR(find_onsets(find_case("esm-exponent", variant, Level::kModel), axis).broken->value / limit, 1.0, 0.02)
+        << variant;
   }
   EXPECT_FALSE(find_onsets(find_case("esm-exponent", "r32f, log, depths to 1", Level::kModel), axis).broken);
 }
 
 /// NUMBERS: the variance of a constant depth that should be 0 reaches 7.2e-4 in 16-bit floats, 2.3e-5 in UNORM16.
 TEST(VsmCancellation, Wall_LeaksByTheVarianceThatIsNotThere) {
-  const Observation half = find_case("vsm-cancellation", "16-bit float, 81 taps of one depth, no minimum", Level::kArithmetic).observe(std::sqrt(1.0 / 7.2e-4));
+  const Observation half =
+      find_case("vsm-cancellation", "16-bit float, 81 taps of one depth, no minimum", Level::kArithmetic)
+          .observe(std::sqrt(1.0 / 7.2e-4));
   EXPECT_NEAR(*half.measured, 0.5, 0.06);
-  const Observation unorm = find_case("vsm-cancellation", "16-bit unorm, 81 taps of one depth, no minimum", Level::kArithmetic).observe(std::sqrt(1.0 / 2.3e-5));
+  const Observation unorm =
+      find_case("vsm-cancellation", "16-bit unorm, 81 taps of one depth, no minimum", Level::kArithmetic)
+          .observe(std::sqrt(1.0 / 2.3e-5));
   EXPECT_NEAR(*unorm.measured, 0.5, 0.06);
 }
 

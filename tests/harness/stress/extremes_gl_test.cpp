@@ -19,10 +19,11 @@ using ::testing::AllOf;
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
-Case find_case(const StressContext& context, const std::string& axis, const std::string& filter, const std::string& part) {
-  for (Case& item : choose_axes(axis)[0].make_cases(context)) {
-    if (item.filter == filter && item.level == Level::kGl && item.variant.find(part) != std::string::npos) return std::move(item);
-  }
+Case find_case(const StressContext& context, const std::string& axis, const std::string& filter,
+               const std::string& part) {
+  for (Case& item : choose_axes(axis)[0].make_cases(context))
+    if (item.filter == filter && item.level == Level::kGl && item.variant.find(part) != std::string::npos)
+      return std::move(item);
   ADD_FAILURE() << "no case " << part;
   return {};
 }
@@ -40,7 +41,8 @@ TEST_P(ExtremeAxis, GlCases_MeetTheirTheories) {
     EXPECT_EQ(found.not_available, "");
     for (const report::StressLimit& limit : compare(item, found, axis)) {
       EXPECT_EQ(limit.agreement, report::StressAgreement::kAgrees)
-          << item.filter << " " << item.variant << ": theory " << limit.onset.value_or(-1.0) << ", measured " << limit.measured.value_or(-1.0);
+          << item.filter << " " << item.variant << ": theory " << limit.onset.value_or(-1.0) << ", measured "
+          << limit.measured.value_or(-1.0);
     }
   }
 }
@@ -51,7 +53,10 @@ std::string name_axis(const ::testing::TestParamInfo<const char*>& info) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ExtremeAxis, ::testing::Values("position", "scale", "map-edge", "map-size", "light-direction", "poisoned-input"), name_axis);
+INSTANTIATE_TEST_SUITE_P(All, ExtremeAxis,
+                         ::testing::Values("position", "scale", "map-edge", "map-size", "light-direction",
+                                           "poisoned-input"),
+                         name_axis);
 
 TEST(Position, AcneComesFarAway_AndNotRelativeToTheScene) {
   const StressContext context = make_gl_context("none,vsm");
@@ -82,7 +87,9 @@ TEST(LightDirection, ShadowOfALeaningLight_IsWhereConstructionSays) {
   const Drawing drawing = drawer.draw(scene::validate(make_slab_scene(setting), "test"));
   int lit = 0, dark = 0;
   for (std::size_t i = 0; i < drawing.visibility.size(); ++i) {
-    const auto expected = drawing.position[i].w == 0.0f ? std::nullopt : find_slab_visibility(setting, glm::dvec3(drawing.position[i]), 0.1);
+    const auto expected = drawing.position[i].w == 0.0f
+                              ? std::nullopt
+                              : find_slab_visibility(setting, glm::dvec3(drawing.position[i]), 0.1);
     if (!expected) continue;
     EXPECT_EQ(static_cast<double>(drawing.visibility[i]), *expected);
     ++(*expected > 0.5 ? lit : dark);
@@ -105,8 +112,10 @@ TEST(MapSize, AboveTheLimit_IsRefusedBeforeAnythingIsAllocated) {
   ASSERT_EQ(exhibits.size(), 1u);
   const auto& rows = exhibits[0].table->rows;
   ASSERT_EQ(rows.size(), 3u);
-  EXPECT_THAT(rows[0][2], AnyOf(HasSubstr("ok: dark behind an occluder, lit beside it"), HasSubstr("not available: it needs")));
-  for (std::size_t i = 1; i < 3; ++i) EXPECT_THAT(rows[i][2], AllOf(HasSubstr("refused"), HasSubstr(fmt::format("at most {}", rows[0][0]))));
+  EXPECT_THAT(rows[0][2],
+              AnyOf(HasSubstr("ok: dark behind an occluder, lit beside it"), HasSubstr("not available: it needs")));
+  for (std::size_t i = 1; i < 3; ++i)
+    EXPECT_THAT(rows[i][2], AllOf(HasSubstr("refused"), HasSubstr(fmt::format("at most {}", rows[0][0]))));
 }
 
 }  // namespace

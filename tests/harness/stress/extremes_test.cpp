@@ -74,7 +74,8 @@ TEST(JudgeDrawing, NotFinite_AllLit_OrAllDark_IsBroken) {
 TEST(Extremes, WithoutAGl_GlCasesSayThatThereIsNone) {
   for (const char* id : {"position", "scale", "map-edge", "map-size", "light-direction", "poisoned-input"}) {
     for (const Case& item : choose_axes(id)[0].make_cases(make_context("none,vsm"))) {
-      EXPECT_EQ(item.not_available.find("no GL") != std::string::npos, item.level == Level::kGl) << id << " " << item.variant;
+      EXPECT_EQ(item.not_available.find("no GL") != std::string::npos, item.level == Level::kGl)
+          << id << " " << item.variant;
     }
   }
 }
@@ -87,7 +88,8 @@ TEST(PoisonedInput, Scenes_AreRefused_AndModelsKeepPoisonWithinTheKernel) {
     const report::StressCase found = find_onsets(item, axis);
     EXPECT_FALSE(found.broken) << item.filter << " " << item.variant << ": " << found.broken->why;
     if (item.level == Level::kModel && found.degraded) ++spread;
-    for (const std::string& note : found.notes) refused += note.find("is refused as the scene is loaded") != std::string::npos;
+    for (const std::string& note : found.notes)
+      refused += note.find("is refused as the scene is loaded") != std::string::npos;
   }
   EXPECT_EQ(refused, 2);
   EXPECT_GT(spread, 0) << "the poison does nothing, so nothing was shown";

@@ -20,7 +20,9 @@ TEST(GeometryAxes, GlCases_MeetTheirTheories) {
       const report::StressCase found = find_onsets(item, axis);
       EXPECT_EQ(found.not_available, "");
       for (const report::StressLimit& limit : compare(item, found, axis)) {
-        EXPECT_EQ(limit.agreement, report::StressAgreement::kAgrees) << id << " " << item.filter << " " << item.variant << ": theory " << limit.onset.value_or(-1.0) << ", measured " << limit.measured.value_or(-1.0);
+        EXPECT_EQ(limit.agreement, report::StressAgreement::kAgrees)
+            << id << " " << item.filter << " " << item.variant << ": theory " << limit.onset.value_or(-1.0)
+            << ", measured " << limit.measured.value_or(-1.0);
         ++limits;
       }
     }
@@ -35,7 +37,8 @@ TEST(TiltedPlane, DrawnAcne_EndsWhereTheModelsDoes) {
     drawn->tilt(tilt);
     model->tilt(tilt);
     const double theory = find_gain_m(tilt, 1.5);
-    EXPECT_NEAR(find_needed_bias(*drawn, theory).value() / find_needed_bias(*model, theory).value(), 1.0, 0.01) << tilt.angle_deg;
+    EXPECT_NEAR(find_needed_bias(*drawn, theory).value() / find_needed_bias(*model, theory).value(), 1.0, 0.01)
+        << tilt.angle_deg;
     EXPECT_NEAR(drawn->find_acne(0.4 * theory).mean_shadow, model->find_acne(0.4 * theory).mean_shadow, 0.01);
     EXPECT_NEAR(drawn->find_acne(0.4 * theory).share, model->find_acne(0.4 * theory).share, 0.03);
   }
@@ -43,12 +46,14 @@ TEST(TiltedPlane, DrawnAcne_EndsWhereTheModelsDoes) {
 
 /// Half a quantum: of 2^-16 and 2^-24, and of a float, which is finest near 0.
 TEST(StoredDepths, LinearDepth_IsOffByHalfAQuantum) {
-  for (const auto& [format, quantum] : {std::pair(GLenum{GL_DEPTH_COMPONENT16}, 1.0 / 65535.0), std::pair(GLenum{GL_DEPTH_COMPONENT24}, 1.0 / 16777215.0)}) {
+  for (const auto& [format, quantum] : {std::pair(GLenum{GL_DEPTH_COMPONENT16}, 1.0 / 65535.0),
+                                        std::pair(GLenum{GL_DEPTH_COMPONENT24}, 1.0 / 16777215.0)}) {
     StoredDepths depths(shared_renderer().shaders, format);
     EXPECT_NEAR(depths.find_error_around({1000.0, false, false}, 2.0) / (0.5 * quantum * 999.0), 1.0, 0.02);
   }
   StoredDepths floats(shared_renderer().shaders, GL_DEPTH_COMPONENT32F);
-  const double far = floats.find_error_around({1000.0, false, false}, 900.0), near = floats.find_error_around({1000.0, false, false}, 2.0);
+  const double far = floats.find_error_around({1000.0, false, false}, 900.0),
+               near = floats.find_error_around({1000.0, false, false}, 2.0);
   EXPECT_NEAR(far / (0x1p-25 * 999.0), 1.0, 0.02);
   EXPECT_LT(near, 0.01 * far);
 }
@@ -70,8 +75,10 @@ TEST(StoredDepths, ReversedFloats_KeepWhatOthersLose) {
 }
 
 TEST(StoredDepths, DistanceAndDepth_AreInverse) {
-  for (const DepthPlan& plan : {DepthPlan{100.0, false, false}, DepthPlan{100.0, true, false}, DepthPlan{100.0, true, true}}) {
-    for (const double distance : {1.0, 3.0, 100.0}) EXPECT_NEAR(distance_of(plan, depth_of(plan, distance)), distance, 1e-9);
+  for (const DepthPlan& plan :
+       {DepthPlan{100.0, false, false}, DepthPlan{100.0, true, false}, DepthPlan{100.0, true, true}}) {
+    for (const double distance : {1.0, 3.0, 100.0})
+      EXPECT_NEAR(distance_of(plan, depth_of(plan, distance)), distance, 1e-9);
     EXPECT_NEAR(depth_of(plan, 1.0), plan.reversed ? 1.0 : 0.0, 1e-12);
   }
 }

@@ -30,11 +30,13 @@ double find_model_bias(const std::string& filter, const PlaneTilt& tilt) {
 
 /// NUMBERS: s (r + 1) tan(angle), by sqrt 2 on the diagonal; the nearest texel's centre is half a texel away at most.
 TEST(TiltedPlane, ModelNeeds_WhatThePlaneGainsOverTheKernel) {
-  for (const auto& [filter, reach] : {std::pair("none", 0.5), std::pair("pcf2x2", 1.0), std::pair("tent3x3", 1.5), std::pair("box4x4", 2.0)}) {
+  for (const auto& [filter, reach] :
+       {std::pair("none", 0.5), std::pair("pcf2x2", 1.0), std::pair("tent3x3", 1.5), std::pair("box4x4", 2.0)}) {
     for (const double angle : {10.0, 45.0, 80.0, 89.9}) {
       const double gain = reach * std::tan(angle * std::numbers::pi / 180.0);
       EXPECT_NEAR(find_model_bias(filter, {angle, false}) / gain, 1.0, 0.03) << filter << " " << angle;
-      EXPECT_NEAR(find_model_bias(filter, {angle, true}) / (gain * std::numbers::sqrt2), 1.0, 0.06) << filter << " " << angle;
+      EXPECT_NEAR(find_model_bias(filter, {angle, true}) / (gain * std::numbers::sqrt2), 1.0, 0.06)
+          << filter << " " << angle;
     }
   }
 }
@@ -53,7 +55,8 @@ TEST(TiltedPlane, AcneGrowsAsTheBiasShrinks) {
   const PlaneTilt tilt{70.0, false};
   plane->tilt(tilt);
   const double theory = find_gain_m(tilt, 1.5);
-  const Acne none = plane->find_acne(0.0), half = plane->find_acne(0.5 * theory), enough = plane->find_acne(1.01 * theory);
+  const Acne none = plane->find_acne(0.0), half = plane->find_acne(0.5 * theory),
+             enough = plane->find_acne(1.01 * theory);
   EXPECT_NEAR(none.mean_shadow, 0.5, 0.02);
   EXPECT_GT(none.share, half.share);
   EXPECT_GT(half.share, half.mean_shadow);
@@ -81,7 +84,9 @@ TEST(LayerScene, SharesAreThoseOfTheFiltersKernel) {
     for (const int count : {2, 4, 16}) {
       const LayerStack stack = make_layer_stack(count, 0.2, 0.5, 0.9);
       const LayerScene layers = make_layer_scene(radius, stack);
-      const auto seen = make_model_probe(context, context.filters[0], filters::Precision::kExtended)->look(layers.scene, context.filters[0].values).visibility;
+      const auto seen = make_model_probe(context, context.filters[0], filters::Precision::kExtended)
+                            ->look(layers.scene, context.filters[0].values)
+                            .visibility;
       for (std::size_t i = 0; i < seen.size(); ++i) {
         EXPECT_NEAR(std::accumulate(layers.shares[i].begin(), layers.shares[i].end(), 0.0), 1.0, 1e-12);
         EXPECT_NEAR(seen[i], find_chebyshev(stack, layers.shares[i]), 1e-4) << radius << " " << count;
@@ -104,7 +109,9 @@ TEST(StraightEdge, WithoutAKernel_IsTheRampBetweenTwoTexels) {
 /// A kernel that met the border, which is deeper than all else, would light an exponential map up.
 TEST(StraightEdge, WidestKernel_StaysWithinTheMap) {
   const StressContext context = make_context(fmt::format("esm:radius={}", kWidestRadius));
-  const auto seen = make_model_probe(context, context.filters[0], filters::Precision::kExtended)->look(make_straight_edge(kWidestRadius), context.filters[0].values).visibility;
+  const auto seen = make_model_probe(context, context.filters[0], filters::Precision::kExtended)
+                        ->look(make_straight_edge(kWidestRadius), context.filters[0].values)
+                        .visibility;
   for (const double v : seen) EXPECT_NEAR(v, 0.5, 0.02);
 }
 
@@ -116,7 +123,14 @@ TEST(StraightEdge, FiltersThatFall_AreBroken_UnlessTheyAreStochastic) {
 }
 
 HeatMap make_heat_map() {
-  HeatMap map{"title", "note", "quantity", {"x", {0.0, 10.0}, {0, 10}}, {"y", {0.0, 4.0}, {0, 4}}, report::Image(2, 2, 1), 1.0, [](double) { return 2.0; }};
+  HeatMap map{"title",
+              "note",
+              "quantity",
+              {"x", {0.0, 10.0}, {0, 10}},
+              {"y", {0.0, 4.0}, {0, 4}},
+              report::Image(2, 2, 1),
+              1.0,
+              [](double) { return 2.0; }};
   *map.values.at(1, 0) = 1.0f;  // high x, high y
   return map;
 }
@@ -141,8 +155,8 @@ TEST(HeatMap, HighValuesLieAbove_AndTheCurveWhereItSays) {
     if (black > 600) curve_rows.push_back(y);
   }
   ASSERT_FALSE(red_rows.empty() || curve_rows.empty());
-  EXPECT_NEAR(static_cast<double>(red_rows.size()), 240.0, 4.0);      // the upper half of the plot
-  EXPECT_NEAR(curve_rows.front(), red_rows.back(), 4);                // y = 2 of 4: where that ends
+  EXPECT_NEAR(static_cast<double>(red_rows.size()), 240.0, 4.0);  // the upper half of the plot
+  EXPECT_NEAR(curve_rows.front(), red_rows.back(), 4);            // y = 2 of 4: where that ends
 }
 
 /// Every case that runs without a GL keeps to its theory.
@@ -155,7 +169,9 @@ TEST(GeometryAxes, Models_MeetTheirTheories) {
       const report::StressCase found = find_onsets(item, axis);
       EXPECT_EQ(found.not_available.empty(), item.level == Level::kModel) << id << " " << found.not_available;
       for (const report::StressLimit& limit : compare(item, found, axis)) {
-        EXPECT_EQ(limit.agreement, report::StressAgreement::kAgrees) << id << " " << item.filter << " " << item.variant << ": theory " << limit.onset.value_or(-1.0) << ", measured " << limit.measured.value_or(-1.0);
+        EXPECT_EQ(limit.agreement, report::StressAgreement::kAgrees)
+            << id << " " << item.filter << " " << item.variant << ": theory " << limit.onset.value_or(-1.0)
+            << ", measured " << limit.measured.value_or(-1.0);
         ++limits;
       }
     }
@@ -164,9 +180,8 @@ TEST(GeometryAxes, Models_MeetTheirTheories) {
 }
 
 Case find_model_case(const std::string& axis, const StressContext& context, const std::string& variant) {
-  for (Case& item : choose_axes(axis)[0].make_cases(context)) {
+  for (Case& item : choose_axes(axis)[0].make_cases(context))
     if (item.level == Level::kModel && item.variant == variant) return std::move(item);
-  }
   ADD_FAILURE() << "no case " << variant;
   return {};
 }
@@ -175,7 +190,8 @@ Case find_model_case(const std::string& axis, const StressContext& context, cons
 TEST(LightBleeding, TwoOccluders_FollowTheClosedForm) {
   const Case item = find_model_case("light-bleeding", make_context("vsm"), "2 occluders");
   EXPECT_NEAR(item.theories.at(0).onset.value(), 1.0, 0.01);
-  for (const double ratio : {1e-4, 0.01, 0.2, 1.0, 4.0}) EXPECT_NEAR(item.observe(ratio).measured.value(), 1.0 / (1.0 + std::pow(1.0 + 2.0 * ratio, 2.0)), 2e-3) << ratio;
+  for (const double ratio : {1e-4, 0.01, 0.2, 1.0, 4.0})
+    EXPECT_NEAR(item.observe(ratio).measured.value(), 1.0 / (1.0 + std::pow(1.0 + 2.0 * ratio, 2.0)), 2e-3) << ratio;
   EXPECT_EQ(item.observe(0.5).verdict, Verdict::kDegraded);
   EXPECT_EQ(item.observe(2.0).verdict, Verdict::kOk);
 }
@@ -217,23 +233,29 @@ TEST(Explain, WhatBreaksWithinTheRange_IsNotBrokenThroughout) {
 
 TEST(KernelRadius, RadiusZero_IsNamedForWhatItIs) {
   const Axis axis = choose_axes("kernel-radius")[0];
-  const report::StressCase disk = find_onsets(find_model_case("kernel-radius", make_context("poisson"), "disk of comparisons"), axis);
+  const report::StressCase disk =
+      find_onsets(find_model_case("kernel-radius", make_context("poisson"), "disk of comparisons"), axis);
   ASSERT_EQ(disk.notes.size(), 1u);
   EXPECT_THAT(disk.notes[0], HasSubstr("one hardware 2x2 comparison"));
-  const report::StressCase blurred = find_onsets(find_model_case("kernel-radius", make_context("vsm"), "blurred map"), axis);
+  const report::StressCase blurred =
+      find_onsets(find_model_case("kernel-radius", make_context("vsm"), "blurred map"), axis);
   ASSERT_EQ(blurred.notes.size(), 1u);
   EXPECT_THAT(blurred.notes[0], HasSubstr("its formula on one texel"));
 }
 
 TEST(Taps, MoreOfThem_AreNearerToTheDisk) {
   const StressContext context = make_context("poisson");
-  const report::StressCase found = find_onsets(find_model_case("taps", context, "taps at radius 3"), choose_axes("taps")[0]);
+  const report::StressCase found =
+      find_onsets(find_model_case("taps", context, "taps at radius 3"), choose_axes("taps")[0]);
   ASSERT_EQ(found.notes.size(), 1u);
-  for (const char* count : {"with 4,", "with 8,", "with 16,", "with 32;"}) EXPECT_THAT(found.notes[0], HasSubstr(count));
+  for (const char* count : {"with 4,", "with 8,", "with 16,", "with 32;"})
+    EXPECT_THAT(found.notes[0], HasSubstr(count));
 }
 
 TEST(GeometryAxes, FiltersThatTheyHaveNothingToAsk_AreReported) {
-  const auto sole = [](const char* axis, const char* filters) { return choose_axes(axis)[0].make_cases(make_context(filters)).at(0); };
+  const auto sole = [](const char* axis, const char* filters) {
+    return choose_axes(axis)[0].make_cases(make_context(filters)).at(0);
+  };
   EXPECT_THAT(sole("grazing-light", "vsm").not_available, HasSubstr("kind comparison"));
   EXPECT_THAT(sole("light-bleeding", "none").not_available, HasSubstr("encodes"));
   EXPECT_THAT(sole("kernel-radius", "none").not_available, HasSubstr("radius"));

@@ -60,7 +60,8 @@ double find_lit_share(const EdgeScene& edge, std::size_t i, int radius) {
   for (int dy = -radius; dy <= radius; ++dy) {
     for (int dx = -radius; dx <= radius; ++dx) {
       const float depth = edge.scene.depths[static_cast<std::size_t>((y + dy) * edge.scene.size + x + dx)];
-      const double weight = static_cast<double>(weights[static_cast<std::size_t>(dx + radius)] * weights[static_cast<std::size_t>(dy + radius)]);
+      const double weight = static_cast<double>(weights[static_cast<std::size_t>(dx + radius)] *
+                                                weights[static_cast<std::size_t>(dy + radius)]);
       if (depth == edge.scene.receivers[i].z) share += weight;
     }
   }

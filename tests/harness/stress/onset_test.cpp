@@ -97,7 +97,9 @@ TEST(FindOnsets, ObservesNoValueTwice_AndCountsAll) {
 
 TEST(FindOnsets, VerdictsThatGetBetterAgain_AreNoted) {
   Case item;
-  item.observe = [](double value) { return Observation{value > 10.0 && value < 200.0 ? Verdict::kBroken : Verdict::kOk, value, {}}; };
+  item.observe = [](double value) {
+    return Observation{value > 10.0 && value < 200.0 ? Verdict::kBroken : Verdict::kOk, value, {}};
+  };
   const report::StressCase found = find_onsets(item, make_axis(1.0, 1000.0));
   EXPECT_NEAR(found.broken->value, 10.0, 0.11);
   ASSERT_THAT(found.notes, SizeIs(1));
@@ -126,13 +128,15 @@ TEST(FindOnsets, ErrorAtTheFirstValue_IsNotAvailable_LaterOnesAreBroken) {
 }
 
 TEST(FindOnsets, AbsentCase_KeepsItsReason) {
-  const report::StressCase found = find_onsets(make_absent_case("vsm", "r8", Level::kGl, "no such format"), make_axis(1.0, 2.0));
+  const report::StressCase found =
+      find_onsets(make_absent_case("vsm", "r8", Level::kGl, "no such format"), make_axis(1.0, 2.0));
   EXPECT_EQ(found.not_available, "no such format");
   EXPECT_THAT(found.samples, SizeIs(0));
 }
 
 /// Gives how a case that breaks at `measured` compares with a theory.
-report::StressLimit compare_one(double measured, std::optional<double> onset, TheoryKind kind, double low = 1.0, double high = 1000.0) {
+report::StressLimit compare_one(double measured, std::optional<double> onset, TheoryKind kind, double low = 1.0,
+                                double high = 1000.0) {
   Case item = make_steps(measured, measured);
   item.theories = {{onset, kind, "formula", "source", Verdict::kBroken}};
   const Axis axis = make_axis(low, high);
@@ -157,7 +161,9 @@ TEST(Compare, RoundingBounds_AgreeWithinAFactorOfEight) {
   EXPECT_EQ(compare_one(12.0, 100.0, TheoryKind::kRounding).agreement, StressAgreement::kDisagrees);
 }
 
-TEST(Compare, RatioIsMeasuredOverTheory) { EXPECT_NEAR(*compare_one(50.0, 100.0, TheoryKind::kOverflow).ratio, 0.5, 0.006); }
+TEST(Compare, RatioIsMeasuredOverTheory) {
+  EXPECT_NEAR(*compare_one(50.0, 100.0, TheoryKind::kOverflow).ratio, 0.5, 0.006);
+}
 
 TEST(Compare, TheoryThatSaysNone_AgreesWhereNothingIsMet) {
   EXPECT_EQ(compare_one(1e9, std::nullopt, TheoryKind::kOverflow).agreement, StressAgreement::kAgrees);
@@ -167,7 +173,8 @@ TEST(Compare, TheoryThatSaysNone_AgreesWhereNothingIsMet) {
 TEST(Compare, TheoryBeyondTheRange_AgreesWhereNothingIsMet) {
   EXPECT_EQ(compare_one(1e9, 5000.0, TheoryKind::kOverflow).agreement, StressAgreement::kAgrees);
   EXPECT_EQ(compare_one(1e9, 500.0, TheoryKind::kOverflow).agreement, StressAgreement::kDisagrees);
-  EXPECT_EQ(compare_one(1e9, 500.0, TheoryKind::kRounding).agreement, StressAgreement::kAgrees);  // a factor of 8 reaches beyond
+  EXPECT_EQ(compare_one(1e9, 500.0, TheoryKind::kRounding).agreement,
+            StressAgreement::kAgrees);  // a factor of 8 reaches beyond
 }
 
 TEST(Compare, TheoryBeforeTheRange_AgreesWhereTheRangeBeginsWithIt) {
@@ -181,7 +188,8 @@ TEST(Compare, Explanation_IsAskedForOnlyWhereTheoryIsMissed_AndMayNotApply) {
   const Axis axis = make_axis(1.0, 1000.0);
   Case item = make_steps(50.0, 50.0);
   item.explain = [](const Disagreement& d) { return *d.measured < 60.0 ? "it is early" : ""; };
-  item.theories = {{100.0, TheoryKind::kOverflow, "f", "s", Verdict::kBroken}, {50.0, TheoryKind::kOverflow, "f", "s", Verdict::kBroken}};
+  item.theories = {{100.0, TheoryKind::kOverflow, "f", "s", Verdict::kBroken},
+                   {50.0, TheoryKind::kOverflow, "f", "s", Verdict::kBroken}};
   const auto limits = compare(item, find_onsets(item, axis), axis);
   EXPECT_EQ(limits[0].agreement, StressAgreement::kExplained);
   EXPECT_EQ(limits[0].explanation, "it is early");

@@ -15,7 +15,10 @@ ProbeScene make_scene() {
   scene.size = 8;
   scene.depths.assign(64, 0.5f);
   scene.depths[3 * 8 + 2] = 0.25f;
-  scene.receivers = {{scene.uv(2), scene.uv(3), 0.4f}, {scene.uv(3), scene.uv(2), 0.4f}, {scene.uv(2), scene.uv(3), 0.2f}, {scene.uv(0), scene.uv(0), 0.6f}};
+  scene.receivers = {{scene.uv(2), scene.uv(3), 0.4f},
+                     {scene.uv(3), scene.uv(2), 0.4f},
+                     {scene.uv(2), scene.uv(3), 0.2f},
+                     {scene.uv(0), scene.uv(0), 0.6f}};
   return scene;
 }
 
@@ -32,7 +35,8 @@ TEST(GlProbe, EqualsTheModel_ForEveryFilterThatHasOne) {
     const EdgeScene edge = make_edge_scene(4, {{0.3f, 0.6f}});
     const ProbeResult gl = make_gl_probe(context, request)->look(edge.scene, request.values);
     const ProbeResult model = make_model_probe(context, request)->look(edge.scene, request.values);
-    for (std::size_t i = 0; i < gl.visibility.size(); ++i) EXPECT_NEAR(gl.visibility[i], model.visibility[i], 1e-3) << request.spec.id << " " << i;
+    for (std::size_t i = 0; i < gl.visibility.size(); ++i)
+      EXPECT_NEAR(gl.visibility[i], model.visibility[i], 1e-3) << request.spec.id << " " << i;
   }
 }
 
@@ -51,7 +55,8 @@ TEST(GlProbe, MapThatTheGlCannotGive_IsAnError_AndSoNotAvailable) {
   ProbeScene scene = make_scene();
   scene.size = context.renderer->context->info().max_texture_size * 2;
   Case item;
-  item.observe = [probe = std::shared_ptr(make_gl_probe(context, context.filters[0])), scene, values = context.filters[0].values](double) {
+  item.observe = [probe = std::shared_ptr(make_gl_probe(context, context.filters[0])), scene,
+                  values = context.filters[0].values](double) {
     probe->look(scene, values);
     return Observation{};
   };
@@ -71,7 +76,8 @@ TEST(Axes, GlCases_MeetTheirTheories) {
       EXPECT_EQ(found.not_available, "");
       for (const report::StressLimit& limit : compare(item, found, axis)) {
         EXPECT_NE(limit.agreement, report::StressAgreement::kDisagrees)
-            << id << " " << item.variant << ": theory " << limit.onset.value_or(-1.0) << ", measured " << limit.measured.value_or(-1.0);
+            << id << " " << item.variant << ": theory " << limit.onset.value_or(-1.0) << ", measured "
+            << limit.measured.value_or(-1.0);
       }
     }
   }

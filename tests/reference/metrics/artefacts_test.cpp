@@ -12,7 +12,8 @@ namespace {
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
 TEST(ArtefactMasks, FollowTheRays) {
-  //                                     lit  lit, edge near  turned away  blocked  by a touching one  penumbra  edge of umbra
+  //                                     lit  lit, edge near  turned away  blocked  by a touching one  penumbra  edge of
+  //                                     umbra
   const std::vector<std::uint8_t> counts = {1, 1, 0, 1, 1, 1, 1};
   const std::vector<float> area = {1, 1, 1, 0, 0, 0.5f, 0};
   const std::vector<std::uint8_t> area_settled = {1, 1, 1, 1, 0, 0, 0};
@@ -26,8 +27,8 @@ TEST(ArtefactMasks, FollowTheRays) {
 }
 
 TEST(ArtefactMasks, LeaveOutWhatIsNotSettled) {
-  // Lit and blocked receivers, far from any blocker; in turn: all agree, a neighbour differs, the surroundings' neighbours
-  // differ, the surroundings themselves do.
+  // Lit and blocked receivers, far from any blocker; in turn: all agree, a neighbour differs, the surroundings'
+  // neighbours differ, the surroundings themselves do.
   const std::vector<std::uint8_t> counts(8, 1);
   const std::vector<float> area = {1, 1, 1, 1, 0, 0, 0, 0};
   const std::vector<std::uint8_t> area_settled = {1, 0, 1, 1, 1, 0, 1, 1};

@@ -31,12 +31,14 @@ TEST(Attribution, PartsAddUpToTheError_InEveryPixel) {
   std::mt19937 random(3);
   const auto draw = [&] { return static_cast<float>(random()) * 0x1p-32f; };
   Stations stations;
-  for (int i = 0; i < 5000; ++i) stations.add(draw(), static_cast<double>(draw()), static_cast<double>(draw()), draw(), draw(), i % 7 != 0);
+  for (int i = 0; i < 5000; ++i)
+    stations.add(draw(), static_cast<double>(draw()), static_cast<double>(draw()), draw(), draw(), i % 7 != 0);
   const Attribution result = stations.attribute();
   for (std::size_t i = 0; i < 5000; ++i) {
     double sum = 0.0;
     for (const auto& part : result.parts) sum += static_cast<double>(part[i]);
-    const double error = stations.mask[i] ? static_cast<double>(stations.image[i]) - static_cast<double>(stations.area[i]) : 0.0;
+    const double error =
+        stations.mask[i] ? static_cast<double>(stations.image[i]) - static_cast<double>(stations.area[i]) : 0.0;
     ASSERT_NEAR(sum, error, 1e-6);
   }
   double shares = 0.0;

@@ -30,7 +30,8 @@ TEST(Flip, EqualPictures_AreZero) {
 }
 
 TEST(Flip, IsSymmetric_AndWithinZeroAndOne) {
-  const std::vector<float> ab = measure_flip(make_noise(1), make_noise(2)), ba = measure_flip(make_noise(2), make_noise(1));
+  const std::vector<float> ab = measure_flip(make_noise(1), make_noise(2)),
+                           ba = measure_flip(make_noise(2), make_noise(1));
   EXPECT_EQ(ab, ba);
   for (const float value : ab) {
     EXPECT_GE(value, 0.0f);
@@ -43,15 +44,13 @@ TEST(Flip, BlackAgainstWhite_IsWhatTheFormulaGivesByHand) {
   // from CIELAB: green (87.735, -86.183, 83.180), blue (32.297, 79.188, -107.860); Hunt: green (-75.613, 72.978), blue
   // (25.575, -34.836); HyAB = 55.438 + sqrt(101.188^2 + 107.814^2) = 203.30; ^0.7 = 41.276. The knee lies at 16.511, so
   // the value is 0.95 + 0.05 (25.119 - 16.511) / (41.276 - 16.511) = 0.96738. Uniform pictures have no features.
-  for (const float value : measure_flip(make_uniform(glm::vec3(0.0f)), make_uniform(glm::vec3(1.0f)))) {
+  for (const float value : measure_flip(make_uniform(glm::vec3(0.0f)), make_uniform(glm::vec3(1.0f))))
     EXPECT_NEAR(value, 0.96738f, 2e-4f);
-  }
 }
 
 TEST(Flip, GreenAgainstBlue_IsOne) {
-  for (const float value : measure_flip(make_uniform({0.0f, 1.0f, 0.0f}), make_uniform({0.0f, 0.0f, 1.0f}))) {
+  for (const float value : measure_flip(make_uniform({0.0f, 1.0f, 0.0f}), make_uniform({0.0f, 0.0f, 1.0f})))
     EXPECT_NEAR(value, 1.0f, 1e-5f);
-  }
 }
 
 TEST(Flip, CloseGreys_AreBelowTheKnee) {
@@ -77,7 +76,8 @@ TEST(Flip, AnEdgeThatMoved_IsSeenMoreThanTheSameColourWithoutEdge) {
 }
 
 TEST(Flip, FartherAway_FineNoiseIsSeenLess) {
-  EXPECT_LT(mean(measure_flip(make_noise(1), make_noise(2), 134.0)), mean(measure_flip(make_noise(1), make_noise(2), 67.0)));
+  EXPECT_LT(mean(measure_flip(make_noise(1), make_noise(2), 134.0)),
+            mean(measure_flip(make_noise(1), make_noise(2), 67.0)));
 }
 
 }  // namespace

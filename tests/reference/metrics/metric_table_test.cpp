@@ -37,9 +37,8 @@ TEST(MetricTable, Statistics_AreTheOnesOfTheirNames) {
   stats.max = 4.0;
   stats.mean = 5.0;
   std::vector<double> values;
-  for (const Metric& metric : picture_metrics()) {
+  for (const Metric& metric : picture_metrics())
     if (metric.statistic) values.push_back(stats.*metric.statistic);
-  }
   EXPECT_THAT(values, ElementsAre(1.0, 2.0, 3.0, 4.0, 5.0));
 }
 
@@ -56,11 +55,8 @@ TEST(MetricTable, ArtefactLimits_AreTheOnesInUse) {
     std::string number = std::to_string(limit);
     number.erase(number.find_last_not_of('0') + 1);
     if (number.back() == '.') number.pop_back();
-    for (const Metric& metric : metric_table()) {
-      if (metric.path == path) {
-        EXPECT_THAT(std::string(metric.definition), ::testing::HasSubstr(" " + number)) << path;
-      }
-    }
+    for (const Metric& metric : metric_table())
+      if (metric.path == path) EXPECT_THAT(std::string(metric.definition), ::testing::HasSubstr(" " + number)) << path;
   }
 }
 

@@ -69,7 +69,8 @@ TEST(Headroom, OfOne_IsTheLargestExponent) {
   EXPECT_EQ(half[2], kInfinity);
   EXPECT_EQ(half[3], -kInfinity);
   EXPECT_TRUE(std::isnan(half[4]));
-  EXPECT_NEAR(measure_headroom({values, 1, static_cast<double>(std::numeric_limits<float>::max()), false})[0], 88.72f, 0.005f);
+  EXPECT_NEAR(measure_headroom({values, 1, static_cast<double>(std::numeric_limits<float>::max()), false})[0], 88.72f,
+              0.005f);
 }
 
 TEST(Bound, Darker_IsAViolationOnlyBeyondTheTolerance) {
@@ -81,8 +82,8 @@ TEST(Bound, Darker_IsAViolationOnlyBeyondTheTolerance) {
   EXPECT_EQ(check.violations, 1);
   EXPECT_EQ(check.exact_violations, 2) << "the second and the fifth, whose models are darker too";
   EXPECT_NEAR(check.shortfall_max, 0.5, 1e-6);
-  EXPECT_THAT(check.shortfall, ElementsAre(::testing::FloatNear(0.1f, 1e-6f), ::testing::FloatNear(0.1f, 1e-6f), 0.0f, 0.0f,
-                                           ::testing::FloatNear(0.5f, 1e-6f), 0.0f));
+  EXPECT_THAT(check.shortfall, ElementsAre(::testing::FloatNear(0.1f, 1e-6f), ::testing::FloatNear(0.1f, 1e-6f), 0.0f,
+                                           0.0f, ::testing::FloatNear(0.5f, 1e-6f), 0.0f));
   EXPECT_THAT(check.violation, ElementsAre(0.0f, ::testing::FloatNear(0.05f, 1e-6f), 0.0f, 0.0f, 0.0f, 0.0f));
 }
 

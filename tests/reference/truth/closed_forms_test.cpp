@@ -27,8 +27,8 @@ TEST(AreaTruth, HalfPlaneOverDisk_FollowsTheClosedForm) {
   const AreaLight light = AreaLight::make_disk({0.0, kLightHeight, 0.0}, {0.0, -1.0, 0.0}, 1.0);
   const ReceiverImage image = make_line(-0.35, 0.35, 240);
   // The light's centre is above x = 0, so the edge's shadow is centred there for every row.
-  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); }, image,
-                         [](const glm::dvec3& p) { return half_plane_over_disk(p.x, 1.0); }));
+  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); },
+                               image, [](const glm::dvec3& p) { return half_plane_over_disk(p.x, 1.0); }));
 }
 
 TEST(AreaTruth, HalfPlaneOverRectangle_IsALinearRamp) {
@@ -36,8 +36,8 @@ TEST(AreaTruth, HalfPlaneOverRectangle_IsALinearRamp) {
   const AreaLight light = AreaLight::make_rectangle({0.0, kLightHeight, 0.0}, {0.7, 0.0, 0.0}, {0.0, 0.0, 0.5});
   const ReceiverImage image = make_line(-0.25, 0.25, 240);
   const double width = 1.4 * kOccluderHeight / (kLightHeight - kOccluderHeight);
-  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); }, image,
-                         [&](const glm::dvec3& p) { return std::clamp(0.5 + p.x / width, 0.0, 1.0); }));
+  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); },
+                               image, [&](const glm::dvec3& p) { return std::clamp(0.5 + p.x / width, 0.0, 1.0); }));
 }
 
 TEST(AreaTruth, Slit_AddsUp) {
@@ -49,9 +49,11 @@ TEST(AreaTruth, Slit_AddsUp) {
   const ReceiverImage image = make_line(-0.45, 0.45, 240);
   // An edge at e shifts the shadow's centre to e H / (H - h) on the ground below a light above x = 0.
   const double shift = 0.1 * kLightHeight / (kLightHeight - kOccluderHeight);
-  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); }, image, [&](const glm::dvec3& p) {
-    return std::max(0.0, half_plane_over_disk(p.x + shift, 1.0) + half_plane_over_disk(shift - p.x, 1.0) - 1.0);
-  }));
+  expect_agreement(score_seeds(
+      [&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); }, image,
+      [&](const glm::dvec3& p) {
+        return std::max(0.0, half_plane_over_disk(p.x + shift, 1.0) + half_plane_over_disk(shift - p.x, 1.0) - 1.0);
+      }));
 }
 
 /// The area of two disks' overlap.
@@ -71,10 +73,12 @@ TEST(AreaTruth, DiskOverDisk_IsALens) {
   const ReceiverImage image = make_line(-0.7, 0.7, 240);
   // Seen from the ground, the occluder covers a disk of radius r H/h around p + (c - p) H/h in the light's plane.
   const double scale = kLightHeight / kOccluderHeight;
-  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); }, image, [&](const glm::dvec3& p) {
-    const double distance = std::hypot(p.x, p.z) * std::abs(1.0 - scale);
-    return 1.0 - lens_area(1.0, 0.3 * scale, distance) / std::numbers::pi;
-  }));
+  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); },
+                               image,
+                               [&](const glm::dvec3& p) {
+                                 const double distance = std::hypot(p.x, p.z) * std::abs(1.0 - scale);
+                                 return 1.0 - lens_area(1.0, 0.3 * scale, distance) / std::numbers::pi;
+                               }));
 }
 
 TEST(AreaTruth, SunOverHalfPlane_FollowsTheClosedForm) {
@@ -82,25 +86,30 @@ TEST(AreaTruth, SunOverHalfPlane_FollowsTheClosedForm) {
   const AreaLight light = AreaLight::make_sun({0.0, 1.0, 0.0}, 3.0);
   const double radius = kOccluderHeight * std::tan(glm::radians(1.5));
   const ReceiverImage image = make_line(-0.06, 0.06, 240);
-  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); }, image, [&](const glm::dvec3& p) {
-    const double t = std::clamp(-p.x / radius, -1.0, 1.0);
-    return (std::acos(t) - t * std::sqrt(1.0 - t * t)) / std::numbers::pi;
-  }));
+  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); },
+                               image,
+                               [&](const glm::dvec3& p) {
+                                 const double t = std::clamp(-p.x / radius, -1.0, 1.0);
+                                 return (std::acos(t) - t * std::sqrt(1.0 - t * t)) / std::numbers::pi;
+                               }));
 }
 
 TEST(AreaTruth, SphereOnItsAxis_CoversADisk) {
-  // Receivers on the axis from the sphere to the light's centre, from far below, where the light is wider than the sphere,
-  // to where it is wholly covered. Off the axis the sphere's projection is an ellipse.
+  // Receivers on the axis from the sphere to the light's centre, from far below, where the light is wider than the
+  // sphere, to where it is wholly covered. Off the axis the sphere's projection is an ellipse.
   constexpr double kRadius = 0.5, kCentre = 6.0, kLightRadius = 1.0;
   const std::vector<OccluderMesh> sphere = {make_sphere({0.0, kCentre, 0.0}, kRadius)};
   const Occluders occluders(sphere);
   const AreaLight light = AreaLight::make_disk({0.0, kLightHeight, 0.0}, {0.0, -1.0, 0.0}, kLightRadius);
   ReceiverImage image{120, 8, {}};
-  for (int i = 0; i < 120 * 8; ++i) image.points.push_back({{0.0f, 4.0f - 0.03f * static_cast<float>(i), 0.0f}, {0.0f, 1.0f, 0.0f}, true});
-  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); }, image, [](const glm::dvec3& p) {
-    const double tangent = std::tan(std::asin(kRadius / (kCentre - p.y)));
-    return 1.0 - std::min(1.0, std::pow((kLightHeight - p.y) * tangent / kLightRadius, 2.0));
-  }));
+  for (int i = 0; i < 120 * 8; ++i)
+    image.points.push_back({{0.0f, 4.0f - 0.03f * static_cast<float>(i), 0.0f}, {0.0f, 1.0f, 0.0f}, true});
+  expect_agreement(
+      score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); }, image,
+                  [](const glm::dvec3& p) {
+                    const double tangent = std::tan(std::asin(kRadius / (kCentre - p.y)));
+                    return 1.0 - std::min(1.0, std::pow((kLightHeight - p.y) * tangent / kLightRadius, 2.0));
+                  }));
 }
 
 }  // namespace

@@ -44,25 +44,29 @@ ReceiverImage make_receivers(double reach) {
 
 template <class Exact>
 void expect_kernel(const Kernel& kernel, Exact exact) {
-  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight), make_sheet(-40.0, 40.0, -40.0, 40.0, 0.0)};
+  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight),
+                                            make_sheet(-40.0, 40.0, -40.0, 40.0, 0.0)};
   const Occluders occluders(meshes);
   const ReceiverImage image = make_receivers(0.9 * kernel.half_width());
-  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_kernel(occluders, image, kernel, tilted_grid(), {.seed = seed}); }, image,
-                         [&](const glm::dvec3& p) { return exact(texels_from_edge(p)); }));
+  expect_agreement(score_seeds(
+      [&](std::uint32_t seed) { return trace_kernel(occluders, image, kernel, tilted_grid(), {.seed = seed}); }, image,
+      [&](const glm::dvec3& p) { return exact(texels_from_edge(p)); }));
 }
 
 TEST(KernelTruth, OfATent) { expect_kernel(Kernel::make_point(Reconstruction::kBilinear), tent_below); }
 
 TEST(KernelTruth, OfATrapezoid) {
-  expect_kernel(Kernel::make_grid({{-0.5, 0.5}, {0.5, 0.5}}, Reconstruction::kBilinear),
-                [](double t) { return 0.5 * (tent_below(t - 0.5) + tent_below(t + 0.5)); });
+  expect_kernel(
+      Kernel::make_grid({{-0.5, 0.5}, {0.5, 0.5}}, Reconstruction::kBilinear),
+      [](double t) { return 0.5 * (tent_below(t - 0.5) + tent_below(t + 0.5)); });
 }
 
 TEST(KernelTruth, OfAGaussian) {
   const std::vector<float> weights = filters::gaussian_weights(4);
   expect_kernel(Kernel::make_gaussian(4, Reconstruction::kBilinear), [&](double t) {
     double sum = 0.0;
-    for (int i = -4; i <= 4; ++i) sum += static_cast<double>(weights[static_cast<std::size_t>(i + 4)]) * tent_below(t - i);
+    for (int i = -4; i <= 4; ++i)
+      sum += static_cast<double>(weights[static_cast<std::size_t>(i + 4)]) * tent_below(t - i);
     return sum;
   });
 }
@@ -92,12 +96,14 @@ TEST(KernelTruth, OfAPoint_IsTheHardShadow) {
 TEST(KernelTruth, AnEmptySlantedPlane_IsLit_AtEveryAngle) {
   for (const double tilt : {0.0, 45.0, 80.0, 89.0, 89.9}) {
     const double angle = glm::radians(tilt);
-    const MapGrid grid = {{std::sin(angle), std::cos(angle), 0.0}, {std::cos(angle), -std::sin(angle), 0.0}, {0.0, 0.0, 1.0}, kTexel};
+    const MapGrid grid = {
+        {std::sin(angle), std::cos(angle), 0.0}, {std::cos(angle), -std::sin(angle), 0.0}, {0.0, 0.0, 1.0}, kTexel};
     const std::vector<OccluderMesh> meshes = {make_sheet(-5.0, 5.0, -5.0, 5.0, 0.1, 40)};
     const Occluders occluders(meshes);
     ReceiverImage image = make_line(-4.0, 4.0, 200);
     for (ReceiverPoint& point : image.points) point.position_ws.y = 0.1f;
-    for (const float v : trace_kernel(occluders, image, Kernel::make_disk(16.0), grid, {}).visibility) ASSERT_EQ(v, 1.0f) << tilt;
+    for (const float v : trace_kernel(occluders, image, Kernel::make_disk(16.0), grid, {}).visibility)
+      ASSERT_EQ(v, 1.0f) << tilt;
   }
 }
 
@@ -107,15 +113,19 @@ TEST(KernelTruth, IsAsWideAsTheTexelsAre) {
   MapGrid grid = tilted_grid();
   grid.texel_size_ws = 3.0 * kTexel;
   const ReceiverImage image = make_receivers(2.7);
-  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_kernel(occluders, image, Kernel::make_point(Reconstruction::kBilinear), grid, {.seed = seed}); }, image,
-                         [](const glm::dvec3& p) { return tent_below(texels_from_edge(p) / 3.0); }));
+  expect_agreement(score_seeds(
+      [&](std::uint32_t seed) {
+        return trace_kernel(occluders, image, Kernel::make_point(Reconstruction::kBilinear), grid, {.seed = seed});
+      },
+      image, [](const glm::dvec3& p) { return tent_below(texels_from_edge(p) / 3.0); }));
 }
 
 TEST(KernelTruth, AnEmptyPlane_IsLit_UnderALargeKernelOfGrazingLight) {
   // A step along u and one along v are metres long each and nearly cancel: their roundings do not.
   const glm::dvec3 normal = glm::normalize(glm::dvec3(-0.37, 1.0, 0.21));
   const glm::dvec3 along = glm::normalize(glm::cross(normal, glm::dvec3(0.3, 0.1, 1.0)));
-  const glm::dvec3 to_light = glm::normalize(along + 3e-3 * normal), across = glm::normalize(glm::cross(to_light, along));
+  const glm::dvec3 to_light = glm::normalize(along + 3e-3 * normal),
+                   across = glm::normalize(glm::cross(to_light, along));
   const glm::dvec3 back = glm::cross(across, to_light);
   const MapGrid grid = {to_light, glm::normalize(across + back), glm::normalize(across - back), kTexel};
   OccluderMesh plane = make_sheet(-1.0, 1.0, -1.0, 1.0, 0.0, 16);
@@ -133,9 +143,9 @@ TEST(SquareTruth, IsALinearRamp) {
   const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
   const Occluders occluders(meshes);
   const ReceiverImage image = make_receivers(2.5);
-  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_square(occluders, image, 2.5, tilted_grid(), {.seed = seed}); }, image, [](const glm::dvec3& p) {
-    return std::clamp(0.5 + texels_from_edge(p) / 5.0, 0.0, 1.0);
-  }));
+  expect_agreement(score_seeds(
+      [&](std::uint32_t seed) { return trace_square(occluders, image, 2.5, tilted_grid(), {.seed = seed}); }, image,
+      [](const glm::dvec3& p) { return std::clamp(0.5 + texels_from_edge(p) / 5.0, 0.0, 1.0); }));
 }
 
 }  // namespace

@@ -41,7 +41,8 @@ std::vector<OccluderMesh> half_plane() { return {make_sheet(-40.0, 0.0, -40.0, 4
   _exit(1);
 }
 
-// What Embree has no room for must not become a scene that rays miss. In a process of its own, which the limit ends with.
+// What Embree has no room for must not become a scene that rays miss. In a process of its own, which the limit ends
+// with.
 TEST(OccludersDeathTest, MemoryThatIsTooSmall_IsBadAlloc) {
 #if defined(__SANITIZE_ADDRESS__)
   GTEST_SKIP() << "address sanitizer needs more memory than a limit leaves";
@@ -65,11 +66,13 @@ TEST(AreaTruth, DoesNotDependOnTheOrderOfPixels) {
   const ReceiverImage image = make_line(-0.06, 0.06, 100);
   ReceiverImage reversed = image;
   std::reverse(reversed.points.begin(), reversed.points.end());
-  const TracedVisibility forth = trace_area(occluders, image, light, {}), back = trace_area(occluders, reversed, light, {});
+  const TracedVisibility forth = trace_area(occluders, image, light, {}),
+                         back = trace_area(occluders, reversed, light, {});
   const std::size_t last = image.points.size() - 1;
   for (std::size_t i = 0; i <= last; ++i) {
     const double error = static_cast<double>(std::hypot(forth.standard_error[i], back.standard_error[last - i]));
-    ASSERT_LE(std::abs(forth.visibility[i] - back.visibility[last - i]), 8.0 * error + 3.0 / 64.0 * (error == 0.0)) << i;
+    ASSERT_LE(std::abs(forth.visibility[i] - back.visibility[last - i]), 8.0 * error + 3.0 / 64.0 * (error == 0.0))
+        << i;
   }
 }
 
@@ -149,7 +152,8 @@ TEST(CutOut, HolesLetLightReachTheNextSurface) {
 }
 
 TEST(FirstBlockers, GiveTheSurfaceThatLightMeetsFirst) {
-  const std::vector<OccluderMesh> stacked = {make_sheet(-5.0, 5.0, -5.0, 5.0, 0.5), make_sheet(-1.0, 1.0, -5.0, 5.0, 2.0)};
+  const std::vector<OccluderMesh> stacked = {make_sheet(-5.0, 5.0, -5.0, 5.0, 0.5),
+                                             make_sheet(-1.0, 1.0, -5.0, 5.0, 2.0)};
   const Occluders occluders(stacked);
   const std::vector<float> distances = trace_first_blockers(occluders, make_line(-3.0, 3.0, 60, 1), {0.0, 2.0, 0.0});
   for (std::size_t i = 0; i < 60; ++i) EXPECT_NEAR(distances[i], i < 20 || i >= 40 ? 0.5f : 2.0f, 1e-5f) << i;
@@ -215,11 +219,11 @@ TEST(Occluders, ReceiversNearTheOriginOfALargeScene_DoNotHitTheirOwnSurface) {
 TEST(Occluders, NeitherSelfHitsNorLeaks_AtAnyScale) {
   for (const double scale : {1e-3, 1.0, 1e3, 1e6}) {
     // A tilted floor with a roof over half of it, away from the origin.
-    std::vector<OccluderMesh> meshes = {make_sheet(-1.0, 1.0, -1.0, 1.0, 0.0, 16), make_sheet(-1.0, 0.0, -1.0, 1.0, 0.01, 16)};
+    std::vector<OccluderMesh> meshes = {make_sheet(-1.0, 1.0, -1.0, 1.0, 0.0, 16),
+                                        make_sheet(-1.0, 0.0, -1.0, 1.0, 0.01, 16)};
     const auto place = [&](const glm::dvec3& p) { return glm::vec3(scale * (p + glm::dvec3(3.0, 0.37 * p.x, -7.0))); };
-    for (OccluderMesh& mesh : meshes) {
+    for (OccluderMesh& mesh : meshes)
       for (glm::vec3& p : mesh.positions) p = place(glm::dvec3(p));
-    }
     const Occluders occluders(meshes);
     ReceiverImage image{200, 200, {}};
     const glm::vec3 normal = glm::normalize(glm::vec3(-0.37f, 1.0f, 0.0f));

@@ -29,7 +29,8 @@ struct ZScores {
   int count = 0;
 };
 
-inline ZScores score(const TracedVisibility& truth, const ReceiverImage& image, const std::function<double(const glm::dvec3&)>& exact) {
+inline ZScores score(const TracedVisibility& truth, const ReceiverImage& image,
+                     const std::function<double(const glm::dvec3&)>& exact) {
   ZScores scores;
   for (std::size_t i = 0; i < image.points.size(); ++i) {
     const double expected = exact(glm::dvec3(image.points[i].position_ws));

@@ -49,7 +49,8 @@ ActualCell make_cell() {
 
 BaselineCell expect(const ActualCell& cell) {
   const report::CellRecord& r = cell.record;
-  return {r.key, r.scene, r.view, r.filter, *r.images.parts, r.map_size, r.width, r.height, cell.origin, read_values(r)};
+  return {r.key,      r.scene, r.view,   r.filter,    *r.images.parts,
+          r.map_size, r.width, r.height, cell.origin, read_values(r)};
 }
 
 /// Compares what `change` makes of a cell with the cell as it was.
@@ -120,17 +121,26 @@ TEST(Comparison, BrokenBoundOfTheBaseline_ExcusesNothing) {
 TEST(Comparison, DamagedImages_AreUnreadable) {
   const auto compare_damaged = [](const auto& damage) {
     ActualCell cell = make_cell();
-    for (const report::UncertaintyImage& each : report::list_uncertainty_images()) cell.images.uncertainty.*each.image = make_image(0.0f);
+    for (const report::UncertaintyImage& each : report::list_uncertainty_images())
+      cell.images.uncertainty.*each.image = make_image(0.0f);
     CellImages expected = cell.images;
     damage(cell.images, expected);
     return compare_cell(cell, expect(cell), expected, Tolerances()).outcome;
   };
   EXPECT_EQ(compare_damaged([](CellImages&, CellImages&) {}), Outcome::kSame);
   for (const report::UncertaintyImage& each : report::list_uncertainty_images()) {
-    EXPECT_EQ(compare_damaged([&](CellImages& run, CellImages&) { run.uncertainty.*each.image = report::Image(4, 4, 1); }), Outcome::kUnreadable) << each.id;
-    EXPECT_EQ(compare_damaged([&](CellImages&, CellImages& baseline) { baseline.uncertainty.*each.image = report::Image(4, 4, 1); }), Outcome::kUnreadable) << each.id;
+    EXPECT_EQ(
+        compare_damaged([&](CellImages& run, CellImages&) { run.uncertainty.*each.image = report::Image(4, 4, 1); }),
+        Outcome::kUnreadable)
+        << each.id;
+    EXPECT_EQ(compare_damaged([&](CellImages&, CellImages& baseline) {
+                baseline.uncertainty.*each.image = report::Image(4, 4, 1);
+              }),
+              Outcome::kUnreadable)
+        << each.id;
   }
-  EXPECT_EQ(compare_damaged([](CellImages&, CellImages& baseline) { baseline.uncertainty.seed_deviation = {}; }), Outcome::kUnreadable);
+  EXPECT_EQ(compare_damaged([](CellImages&, CellImages& baseline) { baseline.uncertainty.seed_deviation = {}; }),
+            Outcome::kUnreadable);
 }
 
 TEST(Comparison, ManyExcusedPixelsThatDiffer_AreAChange) {
@@ -189,7 +199,8 @@ TEST(Comparison, LargerError_IsARegressionOfAccuracy_SmallerOneIsNot) {
   EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.record.error.mean = -0.02; }).outcome, Outcome::kLessAccurate);
   EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.record.error.mean = 0.005; }).outcome, Outcome::kChanged);
   EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.record.artefact.leak = 0.3; }).outcome, Outcome::kLessAccurate);
-  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.record.attribution.model.rms = 0.05; }).outcome, Outcome::kChanged);
+  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.record.attribution.model.rms = 0.05; }).outcome,
+            Outcome::kChanged);
   EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.record.error.rmse = 0.05 + 0x1p-13; }).outcome, Outcome::kSame);
 }
 
@@ -248,14 +259,16 @@ TEST(Comparison, TooFewRounds_GiveNoRatio) {
   ActualCell before = make_cell();
   before.record.time_ms.lookup->n = kFewestRounds - 1;
   EXPECT_TRUE(expect(before).values.ratios.empty());
-  const Comparison missing = compare_changed([](ActualCell& cell) { cell.record.time_ms.lookup->n = kFewestRounds - 1; });
+  const Comparison missing =
+      compare_changed([](ActualCell& cell) { cell.record.time_ms.lookup->n = kFewestRounds - 1; });
   EXPECT_EQ(missing.outcome, Outcome::kChanged);
   EXPECT_THAT(missing.findings.front().text, HasSubstr("it was timed over 5 rounds"));
 }
 
 TEST(Comparison, EmptyOrOtherSizedImage_IsUnreadable) {
   EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.images.visibility = {}; }).outcome, Outcome::kUnreadable);
-  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.images.visibility = report::Image(4, 4, 1); }).outcome, Outcome::kUnreadable);
+  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.images.visibility = report::Image(4, 4, 1); }).outcome,
+            Outcome::kUnreadable);
   EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.unreadable = "timeout"; }).findings.front().text, "timeout");
   const ActualCell cell = make_cell();
   EXPECT_EQ(compare_cell(cell, expect(cell), {}, Tolerances()).outcome, Outcome::kUnreadable);
@@ -355,7 +368,9 @@ class Truth : public ::testing::Test {
     return truth;
   }
 
-  static Comparison compare(const TruthImages& a, const TruthImages& b) { return compare_truth({make_cell().record, a}, b, 0.01); }
+  static Comparison compare(const TruthImages& a, const TruthImages& b) {
+    return compare_truth({make_cell().record, a}, b, 0.01);
+  }
 };
 
 TEST_F(Truth, AnotherSeed_IsTheSame_AnotherTruthIsNot) {

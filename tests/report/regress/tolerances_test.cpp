@@ -32,7 +32,8 @@ class ToleranceFile : public ::testing::Test {
     }
   }
 
-  std::filesystem::path file_ = std::filesystem::temp_directory_path() / ("shadowbench.tolerances." + std::to_string(getpid()) + ".toml");
+  std::filesystem::path file_ =
+      std::filesystem::temp_directory_path() / ("shadowbench.tolerances." + std::to_string(getpid()) + ".toml");
 };
 
 TEST_F(ToleranceFile, WhatIsWritten_IsReadBack) {
@@ -57,7 +58,8 @@ TEST_F(ToleranceFile, OfOneFilter_LeavesTheOthersAsTheyAre) {
 
 TEST_F(ToleranceFile, EveryToleranceHasItsReason) {
   const Tolerances fresh;
-  for (const std::string& metric : list_limited_metrics()) EXPECT_FALSE(fresh.find("any", metric).reason.empty()) << metric;
+  for (const std::string& metric : list_limited_metrics())
+    EXPECT_FALSE(fresh.find("any", metric).reason.empty()) << metric;
 }
 
 TEST_F(ToleranceFile, BadFiles_AreRefusedWithTheirLine) {
