@@ -9,9 +9,9 @@
 #include <system_error>
 #include <tuple>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
+#include "filters/base/nearest_name.h"
 #include "filters/front_matter.h"
-#include "filters/nearest_name.h"
 
 namespace shadowbench::filters {
 namespace {

@@ -11,10 +11,10 @@
 #include <iterator>
 #include <sstream>
 
-#include "filters/error.h"
-#include "filters/nearest_name.h"
+#include "filters/base/error.h"
+#include "filters/base/nearest_name.h"
+#include "filters/base/toml_depth.h"
 #include "filters/store_format.h"
-#include "filters/toml_depth.h"
 
 namespace shadowbench::filters {
 namespace {

@@ -18,5 +18,5 @@ add_custom_target(coverage
   COMMAND ${SHADOWBENCH_GCOVR} --root ${PROJECT_SOURCE_DIR} ${_filters} --object-directory ${PROJECT_BINARY_DIR} --exclude-throw-branches
           --gcov-ignore-parse-errors --print-summary --fail-under-line 90 ${PROJECT_BINARY_DIR}
   WORKING_DIRECTORY ${PROJECT_BINARY_DIR}
-  DEPENDS ${_programs} shadowbench shadowbench_experiment
+  DEPENDS ${_programs} shadowbench
   USES_TERMINAL VERBATIM)

@@ -6,25 +6,25 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "filters/base/error.h"
 #include "filters/catalogue.h"
-#include "filters/error.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
-#include "harness/run/options.h"
-#include "report/advice.h"
-#include "report/advice_text.h"
-#include "report/advice_words.h"
-#include "report/json_io.h"
+#include "harness/options/options.h"
+#include "report/analysis/advice.h"
+#include "report/analysis/advice_words.h"
+#include "report/pages/advice_text.h"
+#include "report/records/json_io.h"
 
 namespace shadowbench::cli {
 namespace {
 
-using report::AdviceRequest;
+using analysis::AdviceRequest;
 
 struct AdviseArguments {
   std::string run;
   std::vector<std::optional<std::string>> limits =
-      std::vector<std::optional<std::string>>(report::limit_table().size());
+      std::vector<std::optional<std::string>>(analysis::limit_table().size());
   std::vector<std::string> claims;
   std::vector<std::string> scenes;
   std::string size;
@@ -52,7 +52,7 @@ T parse_choice(const std::string& text, const char* option, const std::vector<st
 
 std::map<std::string, std::vector<std::string>> list_claims() {
   std::map<std::string, std::vector<std::string>> claims;
-  const filters::Catalogue catalogue(run::find_resources().filters);
+  const filters::Catalogue catalogue(options::find_resources().filters);
   for (const filters::FilterSpec& spec : catalogue.filters()) claims[spec.id] = spec.claims;
   return claims;
 }
@@ -60,11 +60,11 @@ std::map<std::string, std::vector<std::string>> list_claims() {
 AdviceRequest make_request(const AdviseArguments& arguments) {
   AdviceRequest request;
   for (std::size_t i = 0; i < arguments.limits.size(); ++i) {
-    const report::LimitSpec& spec = report::limit_table()[i];
+    const analysis::LimitSpec& spec = analysis::limit_table()[i];
     if (arguments.limits[i]) request.demands.push_back({&spec, parse_limit(*arguments.limits[i], spec.option), {}});
   }
   for (const std::string& claim : arguments.claims) request.demands.push_back({nullptr, 0.0, claim});
-  using report::CostKind, report::LightMotion;
+  using analysis::CostKind, analysis::LightMotion;
   request.light = parse_choice<LightMotion>(arguments.light, "--light",
                                             {{"moving", LightMotion::kMoving}, {"static", LightMotion::kStatic}});
   request.cheapest =
@@ -78,15 +78,15 @@ AdviceRequest make_request(const AdviseArguments& arguments) {
 
 int advise(const AdviseArguments& arguments) {
   const AdviceRequest request = make_request(arguments);
-  const report::Results results = report::read_results(find_results(arguments.run));
-  const report::Advice advice = report::advise(results.cells, request);
+  const records::Results results = records::read_results(find_results(arguments.run));
+  const analysis::Advice advice = analysis::advise(results.cells, request);
   if (arguments.json) {
-    const auto json = report::make_advice_json(results.run, advice);
+    const auto json = pages::make_advice_json(results.run, advice);
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   } else {
-    fmt::print("{}", report::make_advice_text(results.run, advice));
+    fmt::print("{}", pages::make_advice_text(results.run, advice));
   }
-  if (advice.keeping.empty()) throw Error(ErrorKind::kLimit, report::describe_failure(advice));
+  if (advice.keeping.empty()) throw Error(ErrorKind::kLimit, analysis::describe_failure(advice));
   return 0;
 }
 
@@ -113,7 +113,7 @@ void add_advise_command(CLI::App& app, Action& action) {
   auto a = std::make_shared<AdviseArguments>();
   command->add_option("RUN", a->run, "a run's folder, or its results.json")->required();
   for (std::size_t i = 0; i < a->limits.size(); ++i) {
-    const report::LimitSpec& spec = report::limit_table()[i];
+    const analysis::LimitSpec& spec = analysis::limit_table()[i];
     command->add_option(spec.option, a->limits[i], spec.text);
   }
   command->add_option("--requires", a->claims, "what the filter must claim, such as contact-hardening; may be repeated")

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::cli {
@@ -56,14 +56,14 @@ void require_distinct(const std::vector<filters::FilterRequest>& requests) {
   }
 }
 
-run::LightAngles parse_light(const std::string& text) {
+options::LightAngles parse_light(const std::string& text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string::npos)
     fail(fmt::format("--light: '{}' must be AZIMUTH,ELEVATION in degrees, such as 120,35", text));
   return {parse_angle(text.substr(0, comma), "azimuth", 360.0), parse_angle(text.substr(comma + 1), "elevation", 90.0)};
 }
 
-std::vector<std::string> list_builtin_scenes(const run::Resources& resources) {
+std::vector<std::string> list_builtin_scenes(const options::Resources& resources) {
   std::vector<std::string> names;
   for (const scene::SceneInfo& info : scene::list_scenes(resources.scenes)) names.push_back(info.name);
   return names;
@@ -78,7 +78,7 @@ std::filesystem::path find_results(const std::filesystem::path& run) {
 
 std::filesystem::path choose_cache(const std::string& folder, bool no_cache) {
   if (no_cache) return {};
-  return folder.empty() ? run::default_cache_folder() : std::filesystem::path(folder);
+  return folder.empty() ? options::default_cache_folder() : std::filesystem::path(folder);
 }
 
 }  // namespace shadowbench::cli

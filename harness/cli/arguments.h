@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "filters/catalogue.h"
-#include "harness/run/options.h"
+#include "harness/options/options.h"
 
 namespace shadowbench::cli {
 
@@ -22,10 +22,10 @@ int parse_count(const std::string& text, const char* option);
 std::pair<int, int> parse_picture_size(const std::string& text);
 
 /// Parses the AZIMUTH,ELEVATION of `--light`, in degrees.
-run::LightAngles parse_light(const std::string& text);
+options::LightAngles parse_light(const std::string& text);
 
 /// Names the built-in scenes.
-std::vector<std::string> list_builtin_scenes(const run::Resources& resources);
+std::vector<std::string> list_builtin_scenes(const options::Resources& resources);
 
 /// Refuses filters that are named twice with the same parameters.
 void require_distinct(const std::vector<filters::FilterRequest>& requests);

@@ -3,9 +3,9 @@
 #include <memory>
 #include <tuple>
 
+#include "harness/bias/bias_sweep.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
-#include "harness/cli/experiment_loader.h"
 #include "harness/cli/interruption.h"
 #include "harness/cli/progress_bar.h"
 
@@ -23,9 +23,9 @@ struct BiasArguments {
   std::string out = "report/out/bias";
 };
 
-run::RunOptions make_options(const BiasArguments& arguments) {
-  run::RunOptions options;
-  options.resources = run::find_resources();
+options::RunOptions make_options(const BiasArguments& arguments) {
+  options::RunOptions options;
+  options.resources = options::find_resources();
   options.scenes = {arguments.scene};
   options.filters = filters::Catalogue(options.resources.filters).parse_requests(arguments.filters);
   require_distinct(options.filters);
@@ -39,11 +39,11 @@ run::RunOptions make_options(const BiasArguments& arguments) {
 }
 
 int sweep(const BiasArguments& arguments) {
-  const run::RunOptions options = make_options(arguments);
+  const options::RunOptions options = make_options(arguments);
   {
     const Interruption interruption(options.out, kStoppedAdvice);
-    const std::unique_ptr<run::Progress> progress = make_progress();
-    load_and_run_bias_sweep(options, *progress);
+    const std::unique_ptr<options::Progress> progress = make_progress();
+    bias::run_bias_sweep(options, *progress);
   }
   fmt::print("report: {}\n", (options.out / "bias.html").string());
   return 0;

@@ -5,11 +5,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "filters/error.h"
-#include "filters/nearest_name.h"
+#include "filters/base/error.h"
+#include "filters/base/nearest_name.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/diff_runs.h"
-#include "harness/cli/experiment_loader.h"
+#include "harness/run/compare_pictures.h"
 #include "reference/metrics/flip.h"
 
 namespace shadowbench::cli {
@@ -27,14 +27,14 @@ struct DiffArguments {
 
 std::vector<std::string> metric_names() {
   std::vector<std::string> names = {kAllMetrics};
-  for (const reference::Metric& metric : reference::picture_metrics()) names.emplace_back(metric.name());
+  for (const metrics::Metric& metric : metrics::picture_metrics()) names.emplace_back(metric.name());
   return names;
 }
 
-std::vector<reference::Metric> choose_metrics(const std::string& chosen) {
-  std::vector<reference::Metric> metrics = reference::picture_metrics();
+std::vector<metrics::Metric> choose_metrics(const std::string& chosen) {
+  std::vector<metrics::Metric> metrics = metrics::picture_metrics();
   if (chosen == kAllMetrics) return metrics;
-  std::erase_if(metrics, [&](const reference::Metric& metric) { return metric.name() != chosen; });
+  std::erase_if(metrics, [&](const metrics::Metric& metric) { return metric.name() != chosen; });
   if (!metrics.empty()) return metrics;
   throw Error(ErrorKind::kUsage, fmt::format("--metric: there is no '{}'{}; known: {}", chosen,
                                              did_you_mean(chosen, metric_names()), fmt::join(metric_names(), ", ")));
@@ -48,7 +48,7 @@ void check_pixels_per_degree(double value) {
 
 void print_text(const run::ComparisonOptions& options, const run::Comparison& result) {
   const auto print = [](std::string_view name, const std::string& value) { fmt::print("{:<11} {}\n", name, value); };
-  for (const reference::Metric& metric : options.metrics) {
+  for (const metrics::Metric& metric : options.metrics) {
     const std::string name(metric.name());
     const auto value = result.values.find(name);
     print(name, value != result.values.end() ? fmt::format("{}", value->second) : "absent: " + result.absent.at(name));
@@ -66,7 +66,7 @@ void print_json(const run::ComparisonOptions& options, const run::Comparison& re
                                  {"channels", result.channels},
                                  {"pixels_per_degree", options.pixels_per_degree}};
   if (options.mask) json["mask"] = *options.mask;
-  for (const reference::Metric& metric : options.metrics) {
+  for (const metrics::Metric& metric : options.metrics) {
     const std::string name(metric.name());
     const auto value = result.values.find(name);
     json[name] = value != result.values.end() ? nlohmann::ordered_json(value->second) : nullptr;
@@ -101,7 +101,7 @@ int diff(const CLI::App& command, DiffArguments arguments) {
   if (name_runs(command, options)) return diff_runs(options.image, options.truth, arguments.json);
   options.metrics = choose_metrics(arguments.metric);
   check_pixels_per_degree(options.pixels_per_degree);
-  const run::Comparison result = load_and_compare_pictures(options);
+  const run::Comparison result = run::compare_pictures(options);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
   if (arguments.json) print_json(options, result);
   if (result.values.empty()) {
@@ -129,7 +129,7 @@ void add_diff_command(CLI::App& app, Action& action) {
       "to\n"
       "'none' repeat: 95 % intervals that overlap. Exit code 1: some do not.");
   auto a = std::make_shared<DiffArguments>();
-  a->options.pixels_per_degree = reference::kDefaultPixelsPerDegree;
+  a->options.pixels_per_degree = metrics::kDefaultPixelsPerDegree;
   command->add_option("A", a->options.image, "the picture, or a run's folder")->required();
   command->add_option("B", a->options.truth, "what it should look like, or another run's folder")->required();
   command->add_option("--metric", a->metric, fmt::format("{} (see 'list metrics')", fmt::join(metric_names(), ", ")))

@@ -6,35 +6,36 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/cli/arguments.h"
-#include "report/json_io.h"
-#include "report/json_values.h"
-#include "report/repeat.h"
-#include "report/summary.h"
+#include "report/analysis/repeat.h"
+#include "report/analysis/summary.h"
+#include "report/records/format.h"
+#include "report/records/json_io.h"
+#include "report/records/json_values.h"
 
 namespace shadowbench::cli {
 namespace {
 
-using report::CellRecord;
-using report::RatioApart;
+using analysis::RatioApart;
+using records::CellRecord;
 
 constexpr std::size_t kNamed = 10;
 
-const std::optional<report::Ratio>& ratio_of(const CellRecord& cell, const std::string& name) {
-  const report::RatioRecord& ratios = cell.ratio_to_none;
+const std::optional<records::Ratio>& ratio_of(const CellRecord& cell, const std::string& name) {
+  const records::RatioRecord& ratios = cell.ratio_to_none;
   return name == "lookup" ? ratios.lookup : name == "moving" ? ratios.moving : ratios.static_map;
 }
 
 std::string describe(const RatioApart& apart) {
   const CellRecord& cell = *apart.a;
   return fmt::format("{} ({}), {}{}, map {}, picture {} x {}: {} {} against {}", cell.scene, cell.view, cell.filter,
-                     cell.params.empty() ? "" : " (" + report::describe_params(cell.params) + ")", cell.map_size,
-                     cell.width, cell.height, apart.ratio, report::format_ratio(ratio_of(cell, apart.ratio)),
-                     report::format_ratio(ratio_of(*apart.b, apart.ratio)));
+                     cell.params.empty() ? "" : " (" + records::describe_params(cell.params) + ")", cell.map_size,
+                     cell.width, cell.height, apart.ratio, records::format_ratio(ratio_of(cell, apart.ratio)),
+                     records::format_ratio(ratio_of(*apart.b, apart.ratio)));
 }
 
-void print_text(const report::RepeatComparison& found) {
+void print_text(const analysis::RepeatComparison& found) {
   fmt::print("cells        {} in both\n", *found.record.cells);
   fmt::print("overlapping  {} of {} 95 % intervals of ratios to none\n", *found.record.overlapping, *found.record.of);
   if (!found.apart.empty()) fmt::print("apart, the widest gap first:\n");
@@ -42,7 +43,7 @@ void print_text(const report::RepeatComparison& found) {
   if (found.apart.size() > kNamed) fmt::print("  and {} more\n", found.apart.size() - kNamed);
 }
 
-void print_json(const report::RepeatComparison& found) {
+void print_json(const analysis::RepeatComparison& found) {
   nlohmann::ordered_json json = {
       {"cells", *found.record.cells}, {"overlapping", *found.record.overlapping}, {"of", *found.record.of}};
   json["apart"] = nlohmann::ordered_json::array();
@@ -52,19 +53,19 @@ void print_json(const report::RepeatComparison& found) {
                              {"view", apart.a->view},
                              {"filter", apart.a->filter},
                              {"ratio", apart.ratio},
-                             {"a", report::value_json(*ratio_of(*apart.a, apart.ratio))},
-                             {"b", report::value_json(*ratio_of(*apart.b, apart.ratio))},
+                             {"a", records::value_json(*ratio_of(*apart.a, apart.ratio))},
+                             {"b", records::value_json(*ratio_of(*apart.b, apart.ratio))},
                              {"gap", apart.gap}});
   }
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 /// Says what else than chance may have moved the times.
-void warn_of_differences(const report::RunRecord& a, const report::RunRecord& b) {
+void warn_of_differences(const records::RunRecord& a, const records::RunRecord& b) {
   const auto warn = [](const char* what, const std::string& x, const std::string& y) {
     if (x != y) fmt::print(stderr, "warning: the runs differ in {}: {}, and {}\n", what, x, y);
   };
-  const auto machine = [](const report::RunRecord& run) {
+  const auto machine = [](const records::RunRecord& run) {
     return fmt::format("{} with {} cores", run.machine.cpu, run.machine.cores);
   };
   warn("their machine", machine(a), machine(b));
@@ -79,8 +80,9 @@ bool is_run(const std::filesystem::path& argument) {
 }
 
 int diff_runs(const std::filesystem::path& a, const std::filesystem::path& b, bool json) {
-  const report::Results first = report::read_results(find_results(a)), second = report::read_results(find_results(b));
-  const report::RepeatComparison found = report::compare_times(first.cells, second.cells);
+  const records::Results first = records::read_results(find_results(a)),
+                         second = records::read_results(find_results(b));
+  const analysis::RepeatComparison found = analysis::compare_times(first.cells, second.cells);
   if (found.record.of == 0) {
     throw Error(
         ErrorKind::kInput,
@@ -95,7 +97,7 @@ int diff_runs(const std::filesystem::path& a, const std::filesystem::path& b, bo
   else
     print_text(found);
   if (found.apart.empty()) return 0;
-  throw Error(ErrorKind::kLimit, fmt::format("{}; widest apart: {}", report::describe_overlap(found.record),
+  throw Error(ErrorKind::kLimit, fmt::format("{}; widest apart: {}", analysis::describe_overlap(found.record),
                                              describe(found.apart.front())));
 }
 

@@ -3,12 +3,12 @@
 #include <memory>
 #include <tuple>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
-#include "harness/cli/experiment_loader.h"
 #include "harness/cli/interruption.h"
 #include "harness/cli/progress_bar.h"
+#include "harness/flicker/run_flicker.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -38,8 +38,8 @@ flicker::FlickerOptions make_options(const FlickerArguments& arguments, const st
   flicker::FlickerOptions options;
   options.frames = parse_frames(arguments.frames);
   options.motions = arguments.motions;
-  run::RunOptions& run = options.run;
-  run.resources = run::find_resources();
+  options::RunOptions& run = options.run;
+  run.resources = options::find_resources();
   run.scenes = {arguments.scene};
   run.filters = filters::Catalogue(run.resources.filters).parse_requests(arguments.filters);
   require_distinct(run.filters);
@@ -56,8 +56,8 @@ int measure_flicker(const FlickerArguments& arguments, const std::vector<std::st
   const flicker::FlickerOptions options = make_options(arguments, words);
   {
     const Interruption interruption(options.run.out, kStoppedAdvice);
-    const std::unique_ptr<run::Progress> progress = make_progress();
-    load_and_run_flicker(options, *progress);
+    const std::unique_ptr<options::Progress> progress = make_progress();
+    flicker::run_flicker(options, *progress);
   }
   fmt::print("report: {}\n", (options.run.out / "flicker.html").string());
   return 0;

@@ -7,9 +7,9 @@
 #include "filters/catalogue.h"
 #include "filters/model.h"
 #include "harness/cli/commands.h"
-#include "harness/gl/measure.h"
+#include "harness/gl/survey/measure.h"
 #include "harness/gl/timer.h"
-#include "harness/run/options.h"
+#include "harness/options/options.h"
 #include "harness/scene/load.h"
 #include "reference/metrics/metric_table.h"
 
@@ -89,7 +89,7 @@ nlohmann::json to_json(const FilterSpec& spec) {
 }
 
 int list_filters(const ListArguments& arguments) {
-  const filters::Catalogue catalogue(run::find_resources().filters);
+  const filters::Catalogue catalogue(options::find_resources().filters);
   nlohmann::json json = nlohmann::json::array();
   for (const FilterSpec& spec : catalogue.filters())
     if (arguments.json)
@@ -101,7 +101,7 @@ int list_filters(const ListArguments& arguments) {
 }
 
 int list_scenes(const ListArguments& arguments) {
-  const std::filesystem::path folder = run::find_resources().scenes;
+  const std::filesystem::path folder = options::find_resources().scenes;
   nlohmann::json json = nlohmann::json::array();
   const auto show = [&](const std::vector<scene::SceneInfo>& scenes, bool teaching) {
     for (const scene::SceneInfo& info : scenes)
@@ -117,20 +117,20 @@ int list_scenes(const ListArguments& arguments) {
   return 0;
 }
 
-std::string describe_range(const reference::Metric& metric) {
+std::string describe_range(const metrics::Metric& metric) {
   const auto& [min, max] = metric.range;
   if (min && max) return fmt::format("{} .. {}", *min, *max);
   return min ? fmt::format("{} or more", *min) : "any number";
 }
 
-nlohmann::json to_json(const reference::Metric& metric) {
+nlohmann::json to_json(const metrics::Metric& metric) {
   nlohmann::json json = {{"path", metric.path},
                          {"name", metric.name()},
                          {"unit", metric.unit},
                          {"min", nullptr},
                          {"max", nullptr},
                          {"definition", metric.definition},
-                         {"diff", metric.source != reference::MetricSource::kRun}};
+                         {"diff", metric.source != metrics::MetricSource::kRun}};
   if (metric.range.min) json["min"] = *metric.range.min;
   if (metric.range.max) json["max"] = *metric.range.max;
   return json;
@@ -138,7 +138,7 @@ nlohmann::json to_json(const reference::Metric& metric) {
 
 int list_metrics(const ListArguments& arguments) {
   nlohmann::json json = nlohmann::json::array();
-  for (const reference::Metric& metric : reference::metric_table())
+  for (const metrics::Metric& metric : metrics::metric_table())
     if (arguments.json)
       json.push_back(to_json(metric));
     else

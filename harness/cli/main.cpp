@@ -8,7 +8,7 @@
 #include <new>
 #include <system_error>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/cli/commands.h"
 
 namespace {

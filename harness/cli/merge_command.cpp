@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "harness/cli/commands.h"
-#include "harness/cli/experiment_loader.h"
 #include "harness/cli/interruption.h"
+#include "harness/run/merge.h"
 
 namespace shadowbench::cli {
 
@@ -22,7 +22,7 @@ void add_merge_command(CLI::App& app, Action& action) {
     action = [a] {
       {
         const Interruption interruption(a->out, kStoppedAdvice);
-        load_and_merge_runs(a->folders, a->out);
+        run::merge_runs(a->folders, a->out);
       }
       fmt::print("report: {}\n", (a->out / "index.html").string());
       return 0;

@@ -46,7 +46,7 @@ std::string cut(const std::string& text, std::size_t room) {
 }
 
 /// Redraws one line.
-class TerminalBar final : public run::Progress {
+class TerminalBar final : public options::Progress {
  public:
   ~TerminalBar() override { fmt::print(stderr, "\n"); }
 
@@ -78,7 +78,7 @@ class TerminalBar final : public run::Progress {
 };
 
 /// Prints a line per step, for logs.
-class PlainLines final : public run::Progress {
+class PlainLines final : public options::Progress {
  public:
   void begin(int cells, int finished) override {
     cells_ = cells;
@@ -96,7 +96,7 @@ class PlainLines final : public run::Progress {
 
 }  // namespace
 
-std::unique_ptr<run::Progress> make_progress() {
+std::unique_ptr<options::Progress> make_progress() {
   if (isatty(STDERR_FILENO)) return std::make_unique<TerminalBar>();
   return std::make_unique<PlainLines>();
 }

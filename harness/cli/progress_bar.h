@@ -2,11 +2,11 @@
 
 #include <memory>
 
-#include "harness/run/progress.h"
+#include "harness/options/progress.h"
 
 namespace shadowbench::cli {
 
 /// Shows progress on standard error: one line that is redrawn on a terminal, plain lines elsewhere.
-std::unique_ptr<run::Progress> make_progress();
+std::unique_ptr<options::Progress> make_progress();
 
 }  // namespace shadowbench::cli

@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <memory>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
-#include "harness/cli/experiment_loader.h"
 #include "harness/cli/interruption.h"
+#include "report/regress/regress.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -53,7 +53,7 @@ int regress(const RegressArguments& arguments, const std::vector<std::string>& w
   regress::RegressOutcome outcome;
   {
     const Interruption interruption(options.accept ? options.baseline : options.out, kStoppedAdvice);
-    outcome = load_and_run_regress(options);
+    outcome = regress::run_regress(options);
   }
   fmt::print("{}", arguments.json ? outcome.json : outcome.text);
   if (outcome.failure.empty()) return 0;

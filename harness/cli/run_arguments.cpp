@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "filters/error.h"
-#include "harness/run/bias_rule.h"
-#include "harness/run/experiment_file.h"
-#include "harness/run/light_counts.h"
-#include "harness/run/options.h"
+#include "filters/base/error.h"
+#include "harness/options/experiment_file.h"
+#include "harness/options/light_counts.h"
+#include "harness/options/options.h"
+#include "harness/render/bias_rule.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -24,7 +24,7 @@ const std::vector<std::string>& experiment_keys() {
   return keys;
 }
 
-void apply_setting(CLI::App& command, const run::ExperimentSetting& setting) {
+void apply_setting(CLI::App& command, const options::ExperimentSetting& setting) {
   CLI::Option* option = command.get_option(setting.option);
   if (option->count() > 0) return;
   try {
@@ -112,7 +112,7 @@ void add_filter_options(CLI::App& command, RunArguments& a) {
   command
       .add_option(
           "--bias", a.bias,
-          "bias, MODE:KEY=X,...; repeat to add up: " + run::list_bias_modes() +
+          "bias, MODE:KEY=X,...; repeat to add up: " + render::list_bias_modes() +
               ". Units: depth (0..1 over the light's range), texels (their width), world (metres), kernels (half-width "
               "of "
               "the filter's kernel plus one texel). plane: what the receiver's plane gains over so many texels; slope: "
@@ -148,7 +148,7 @@ void add_run_options(CLI::App& command, RunArguments& a) {
       .add_option("--lights", a.lights,
                   fmt::format("also time frames lit by so many suns, each with a map of its own, casters still and "
                               "moving: counts of 1 .. {} with commas (default: none)",
-                              run::kMostLights))
+                              options::kMostLights))
       ->check([](const std::string& text) {
         return text.empty() ? std::string("counts of lights are missing, such as 1,2,4,8") : std::string();
       });
@@ -184,14 +184,14 @@ void add_run_options(CLI::App& command, RunArguments& a) {
 }
 
 std::string apply_experiment(CLI::App& command, RunArguments& arguments) {
-  const run::Resources resources = run::find_resources();
-  const run::Experiment experiment =
-      run::read_experiment(run::find_experiment(resources.experiments, arguments.experiment), experiment_keys());
-  for (const run::ExperimentSetting& setting : experiment.settings) apply_setting(command, setting);
+  const options::Resources resources = options::find_resources();
+  const options::Experiment experiment = options::read_experiment(
+      options::find_experiment(resources.experiments, arguments.experiment), experiment_keys());
+  for (const options::ExperimentSetting& setting : experiment.settings) apply_setting(command, setting);
   if (experiment.filters.empty() || command.get_option("--filters")->count() > 0) return experiment.title;
   filters::Catalogue catalogue(resources.filters);
   for (const std::string& file : arguments.filter_files) catalogue.add_user_file(file);
-  arguments.filters = run::expand_filters(experiment, catalogue);
+  arguments.filters = options::expand_filters(experiment, catalogue);
   return experiment.title;
 }
 

@@ -60,7 +60,8 @@ void add_run_options(CLI::App& command, RunArguments& arguments);
 
 /// Takes what an experiment file says for every option that was not given on the command line.
 /// `command` must have been parsed. Gives the experiment's title.
-/// Throws Error as run::read_experiment and run::expand_filters, and Error(kInput) for a value that its option refuses.
+/// Throws Error as options::read_experiment and options::expand_filters, and Error(kInput) for a value that its option
+/// refuses.
 std::string apply_experiment(CLI::App& command, RunArguments& arguments);
 
 }  // namespace shadowbench::cli

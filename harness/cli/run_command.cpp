@@ -9,16 +9,16 @@
 #include <optional>
 #include <tuple>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
-#include "harness/cli/experiment_loader.h"
 #include "harness/cli/interruption.h"
 #include "harness/cli/progress_bar.h"
 #include "harness/cli/run_arguments.h"
 #include "harness/gl/pixel_format.h"
-#include "harness/run/light_counts.h"
-#include "harness/run/tuned_parameters.h"
+#include "harness/options/light_counts.h"
+#include "harness/run/run_experiment.h"
+#include "harness/tune/tuned_parameters.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -46,12 +46,12 @@ std::vector<int> parse_lights(const std::string& text) {
   if (text.empty()) return {};
   std::vector<int> counts = parse_counts(text, "--lights");
   std::sort(counts.begin(), counts.end());
-  if (counts.back() > run::kMostLights)
-    fail(fmt::format("--lights: {} is out of range: choose counts of 1 .. {}", counts.back(), run::kMostLights));
+  if (counts.back() > options::kMostLights)
+    fail(fmt::format("--lights: {} is out of range: choose counts of 1 .. {}", counts.back(), options::kMostLights));
   return counts;
 }
 
-void add_filters(run::RunOptions& options, const RunArguments& arguments) {
+void add_filters(options::RunOptions& options, const RunArguments& arguments) {
   filters::Catalogue catalogue(options.resources.filters);
   for (const std::string& file : arguments.filter_files) catalogue.add_user_file(file);
   options.filters = catalogue.parse_requests(arguments.filters);
@@ -62,7 +62,7 @@ void add_filters(run::RunOptions& options, const RunArguments& arguments) {
     options.filters.push_back(catalogue.parse_requests(id).front());
   }
   if (!arguments.tuned.empty())
-    options.notes = run::apply_tuned(options.filters, catalogue, arguments.tuned, options.map_sizes);
+    options.notes = tune::apply_tuned(options.filters, catalogue, arguments.tuned, options.map_sizes);
   require_distinct(options.filters);
 }
 
@@ -85,7 +85,7 @@ void check(const RunArguments& arguments) {
   }
 }
 
-void set_map_and_light(run::RunOptions& options, const RunArguments& arguments) {
+void set_map_and_light(options::RunOptions& options, const RunArguments& arguments) {
   options.map = {gl::parse_depth_format(arguments.map_format).internal_format,
                  {arguments.reversed_depth, arguments.perspective_depth.value_or(1.0)}};
   options.fit = scene::parse_fit_mode(arguments.fit);
@@ -93,7 +93,7 @@ void set_map_and_light(run::RunOptions& options, const RunArguments& arguments) 
   if (!arguments.light.empty()) options.light = parse_light(arguments.light);
 }
 
-run::RoundLimits parse_rounds(const RunArguments& arguments) {
+options::RoundLimits parse_rounds(const RunArguments& arguments) {
   if (!(arguments.precision > 0.0 && arguments.precision <= 1.0))
     fail(fmt::format("--precision: {} is out of range: choose more than 0, at most 1", arguments.precision));
   if (!(arguments.budget_s > 0.0 && arguments.budget_s <= 3600.0))
@@ -102,40 +102,40 @@ run::RoundLimits parse_rounds(const RunArguments& arguments) {
     const int rounds = parse_count(arguments.rounds, "--rounds");
     if (rounds > kMostRounds)
       fail(fmt::format("--rounds: {} is out of range: choose 1 .. {}, or auto", rounds, kMostRounds));
-    return run::RoundLimits::exactly(rounds);
+    return options::RoundLimits::exactly(rounds);
   }
-  run::RoundLimits limits;
+  options::RoundLimits limits;
   limits.precision = arguments.precision;
   limits.budget_ms = 1e3 * arguments.budget_s;
   return limits;
 }
 
-std::vector<run::PictureSize> parse_sizes(const std::string& text) {
-  std::vector<run::PictureSize> sizes;
+std::vector<options::PictureSize> parse_sizes(const std::string& text) {
+  std::vector<options::PictureSize> sizes;
   for (const std::string& each : split_list(text)) {
     const auto [width, height] = parse_picture_size(each);
-    const run::PictureSize size{width, height};
+    const options::PictureSize size{width, height};
     if (std::find(sizes.begin(), sizes.end(), size) != sizes.end()) fail(fmt::format("--size names {} twice", each));
     sizes.push_back(size);
   }
   return sizes;
 }
 
-run::Shard parse_shard(const std::string& text) {
+options::Shard parse_shard(const std::string& text) {
   if (text.empty()) return {};
   const std::size_t slash = text.find('/');
   if (slash == std::string::npos) fail(fmt::format("--shard: '{}' must be I/N, such as 1/3", text));
-  const run::Shard shard{parse_count(text.substr(0, slash), "--shard") - 1,
-                         parse_count(text.substr(slash + 1), "--shard")};
+  const options::Shard shard{parse_count(text.substr(0, slash), "--shard") - 1,
+                             parse_count(text.substr(slash + 1), "--shard")};
   if (shard.index >= shard.count)
     fail(fmt::format("--shard: {} has no {} of {}; choose 1 .. {}", text, shard.index + 1, shard.count, shard.count));
   return shard;
 }
 
-run::RunOptions make_options(const RunArguments& arguments, std::vector<std::string> command) {
+options::RunOptions make_options(const RunArguments& arguments, std::vector<std::string> command) {
   check(arguments);
-  run::RunOptions options;
-  options.resources = run::find_resources();
+  options::RunOptions options;
+  options.resources = options::find_resources();
   options.scenes = arguments.scenes.empty() ? list_builtin_scenes(options.resources) : arguments.scenes;
   options.ground = arguments.ground;
   options.map_sizes = parse_counts(arguments.map_sizes, "--map-size");
@@ -143,15 +143,15 @@ run::RunOptions make_options(const RunArguments& arguments, std::vector<std::str
   options.sizes = parse_sizes(arguments.sizes);
   options.views = arguments.views;
   set_map_and_light(options, arguments);
-  options.bias = run::parse_bias(arguments.bias);
+  options.bias = render::parse_bias(arguments.bias);
   options.bias_texts = arguments.bias;
-  run::require_drawable(options.bias, options.map);
-  for (const filters::FilterRequest& request : options.filters) run::require_usable(options.bias, request.spec);
+  render::require_drawable(options.bias, options.map);
+  for (const filters::FilterRequest& request : options.filters) render::require_usable(options.bias, request.spec);
   options.range = {filters::parse_border(arguments.border), arguments.far_test == "on", arguments.behind_test == "on"};
   options.border_page = arguments.border_page;
   options.rounds = parse_rounds(arguments);
   options.lights = parse_lights(arguments.lights);
-  run::require_light_maps_fit(options);
+  options::require_light_maps_fit(options);
   options.reference = filters::Catalogue(options.resources.filters).parse_requests(kReferenceFilter).front();
   options.seed = arguments.seed;
   options.backend = gl::parse_backend(arguments.backend);
@@ -186,15 +186,15 @@ int run(CLI::App& command_line, RunArguments& arguments, std::vector<std::string
   if (arguments.worker) end_with_parent();
   // A worker is told everything by the run it belongs to.
   const std::string title = arguments.worker ? std::string() : apply_experiment(command_line, arguments);
-  run::RunOptions options = make_options(arguments, std::move(command));
+  options::RunOptions options = make_options(arguments, std::move(command));
   options.title = title;
   {
     std::optional<Interruption> interruption;
     if (!options.worker)
       interruption.emplace(options.out, "what was finished stays, and the same command goes on from there");
-    const std::unique_ptr<run::Progress> progress = make_progress();
+    const std::unique_ptr<options::Progress> progress = make_progress();
     for (const std::string& note : options.notes) progress->note("note: " + note);
-    load_and_run_experiment(options, *progress);
+    run::run_experiment(options, *progress);
   }
   if (!options.worker) fmt::print("report: {}\n", (options.out / "index.html").string());
   return 0;

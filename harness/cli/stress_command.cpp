@@ -2,12 +2,12 @@
 
 #include <memory>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
-#include "harness/cli/experiment_loader.h"
 #include "harness/cli/interruption.h"
 #include "harness/cli/progress_bar.h"
+#include "harness/stress/run_stress.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -32,7 +32,7 @@ stress::StressOptions make_options(const StressArguments& arguments, const std::
                                                arguments.filter_files.front()));
   }
   stress::StressOptions options;
-  options.resources = run::find_resources();
+  options.resources = options::find_resources();
   options.filters = filters::Catalogue(options.resources.filters).parse_requests(arguments.filters);
   require_distinct(options.filters);
   options.axes = arguments.axes;
@@ -48,14 +48,14 @@ stress::StressOptions make_options(const StressArguments& arguments, const std::
 int stress_filters(const StressArguments& arguments, const std::vector<std::string>& words) {
   const stress::StressOptions options = make_options(arguments, words);
   if (arguments.list) {
-    fmt::print("{}", load_and_describe_stress_axes(options.filters));
+    fmt::print("{}", stress::describe_axes(options.filters));
     return 0;
   }
   stress::StressOutcome outcome;
   {
     const Interruption interruption(options.out, kStoppedAdvice);
-    const std::unique_ptr<run::Progress> progress = make_progress();
-    outcome = load_and_run_stress(options, *progress);
+    const std::unique_ptr<options::Progress> progress = make_progress();
+    outcome = stress::run_stress(options, *progress);
   }
   fmt::print("{}report: {}\n", outcome.text, (options.out / "stress.html").string());
   return outcome.disagreements > 0 ? static_cast<int>(ErrorKind::kLimit) : 0;

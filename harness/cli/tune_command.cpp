@@ -4,15 +4,15 @@
 #include <memory>
 #include <tuple>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
-#include "harness/cli/experiment_loader.h"
 #include "harness/cli/interruption.h"
 #include "harness/cli/progress_bar.h"
-#include "harness/run/tune_metric.h"
-#include "harness/run/tune_views.h"
 #include "harness/scene/load.h"
+#include "harness/tune/tune_filters.h"
+#include "harness/tune/tune_metric.h"
+#include "harness/tune/tune_views.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -46,7 +46,7 @@ int parse_budget(const std::string& text) {
   return budget;
 }
 
-void add_filters(run::RunOptions& options, const TuneArguments& arguments) {
+void add_filters(options::RunOptions& options, const TuneArguments& arguments) {
   if (!arguments.filter_files.empty()) {
     fail(
         fmt::format("--filter-file: only built-in filters are tuned, and {} would run in this process, where an "
@@ -55,18 +55,18 @@ void add_filters(run::RunOptions& options, const TuneArguments& arguments) {
   }
   if (arguments.filters.empty()) fail("--filter: name at least one filter to tune, such as vsm (see 'list filters')");
   options.filters = filters::Catalogue(options.resources.filters).parse_requests(arguments.filters);
-  for (const filters::FilterRequest& request : options.filters) run::require_usable(options.bias, request.spec);
+  for (const filters::FilterRequest& request : options.filters) render::require_usable(options.bias, request.spec);
 }
 
-run::TuneOptions make_options(const TuneArguments& arguments) {
-  run::TuneOptions options;
-  run::RunOptions& run = options.run;
-  options.metric = run::find_tune_metric(arguments.metric).name;
+tune::TuneOptions make_options(const TuneArguments& arguments) {
+  tune::TuneOptions options;
+  options::RunOptions& run = options.run;
+  options.metric = tune::find_tune_metric(arguments.metric).name;
   options.budget = parse_budget(arguments.budget);
-  run.resources = run::find_resources();
-  run.bias = run::parse_bias(arguments.bias);
+  run.resources = options::find_resources();
+  run.bias = render::parse_bias(arguments.bias);
   run.bias_texts = arguments.bias;
-  run::require_drawable(run.bias, run.map);
+  render::require_drawable(run.bias, run.map);
   add_filters(run, arguments);
   run.scenes = arguments.scenes.empty() ? list_builtin_scenes(run.resources) : arguments.scenes;
   options.skip_scenes = arguments.scenes.empty();
@@ -83,12 +83,12 @@ run::TuneOptions make_options(const TuneArguments& arguments) {
 }
 
 int tune(const TuneArguments& arguments) {
-  const run::TuneOptions options = make_options(arguments);
+  const tune::TuneOptions options = make_options(arguments);
   std::string text;
   {
     const Interruption interruption(options.run.out, kStoppedAdvice);
-    const std::unique_ptr<run::Progress> progress = make_progress();
-    text = load_and_tune_filters(options, *progress);
+    const std::unique_ptr<options::Progress> progress = make_progress();
+    text = tune::tune_filters(options, *progress);
   }
   fmt::print("{}parameters: {}\n", text, (options.run.out / "tuned.json").string());
   return 0;
@@ -111,7 +111,7 @@ std::string describe_command() {
       "evaluations.csv. The budget is of the search; the good ranges (error within 10 % of the best, the other "
       "parameters at theirs)\n"
       "take some 25 settings more per parameter.",
-      run::describe_tune_views(true), run::describe_tune_views(false));
+      tune::describe_tune_views(true), tune::describe_tune_views(false));
 }
 
 void add_tune_options(CLI::App& command, TuneArguments& a) {
@@ -119,8 +119,9 @@ void add_tune_options(CLI::App& command, TuneArguments& a) {
       ->required();
   command.add_option("--filter-file", a.filter_files, "")->group("");
   command
-      .add_option("--metric", a.metric,
-                  fmt::format("what to make small: {} (see 'list metrics')", fmt::join(run::list_tune_metrics(), ", ")))
+      .add_option(
+          "--metric", a.metric,
+          fmt::format("what to make small: {} (see 'list metrics')", fmt::join(tune::list_tune_metrics(), ", ")))
       ->capture_default_str();
   command
       .add_option(

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 
 namespace shadowbench::flicker {
 namespace {
 
 /// As SceneAssets pads: a map smaller than the padding keeps half of its texels for the scene.
-double choose_padding(const run::RunOptions& options) {
-  return std::min(run::largest_padding_texels(options.filters), 0.25 * (options.map_sizes.front() - 1));
+double choose_padding(const options::RunOptions& options) {
+  return std::min(measure::largest_padding_texels(options.filters), 0.25 * (options.map_sizes.front() - 1));
 }
 
 double sum_squares(const std::vector<float>& errors, const std::vector<std::uint8_t>& mask) {
@@ -24,22 +24,22 @@ double sum_squares(const std::vector<float>& errors, const std::vector<std::uint
 
 }  // namespace
 
-FlickerBench::FlickerBench(run::Renderer& renderer, const run::RunOptions& options, const scene::Scene& scene,
-                           run::TruthCache& cache)
+FlickerBench::FlickerBench(measure::Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
+                           measure::TruthCache& cache)
     : renderer_(renderer),
       options_(options),
       scene_(scene),
       assets_(renderer, options, scene, cache, choose_padding(options)),
       map_(assets_.make_light_map(scene.light, scene.cameras.front(), options.map_sizes.front())),
       target_("visibility", GL_R32F, options.width, options.height),
-      receivers_(run::read_view_receivers(assets_.gbuffer(camera()), -scene.light.direction_ws)),
+      receivers_(measure::read_view_receivers(assets_.gbuffer(camera()), -scene.light.direction_ws)),
       turned_(scene),
       turned_tracer_(turned_, cache, options.seed) {
   if (!receivers_.any_counts())
     throw Error(ErrorKind::kInput,
                 fmt::format("{}: no surface in view faces the light; choose another scene", scene.name));
   for (const filters::FilterRequest& request : options.filters)
-    filters_.push_back(run::make_filter_passes(renderer, options, scene, map_, request));
+    filters_.push_back(measure::make_filter_passes(renderer, options, scene, map_, request));
 }
 
 MapFollowing FlickerBench::following(bool snap) const {
@@ -60,7 +60,7 @@ TruthFrames FlickerBench::trace(Motion motion, const std::vector<Frame>& frames,
     on_frame(static_cast<int>(t));
     turned_.light = frames[t].light;
     const auto rays =
-        turned_tracer_.trace_view(run::read_view_receivers(assets_.gbuffer(camera()), -turned_.light.direction_ws));
+        turned_tracer_.trace_view(measure::read_view_receivers(assets_.gbuffer(camera()), -turned_.light.direction_ws));
     const double errors = sum_squares(rays.area.standard_error, mask);
     if (t > 0) squares += before + errors;
     before = errors;
@@ -71,19 +71,19 @@ TruthFrames FlickerBench::trace(Motion motion, const std::vector<Frame>& frames,
   return truth;
 }
 
-report::Image FlickerBench::draw(render::FilterPasses& filter) {
+images::Image FlickerBench::draw(render::FilterPasses& filter) {
   filter.retune(renderer_.shaders, filter.request().values,
-                run::make_filter_light(options_, scene_.light, map_.frustum, filter.request()));
+                measure::make_filter_light(options_, scene_.light, map_.frustum, filter.request()));
   filter.prefilter(map_.map);
   filter.lookup(assets_.gbuffer(camera()), map_.map, target_);
   return render::read_image(target_.texture(), 1);
 }
 
-std::vector<reference::FlickerStats> FlickerBench::measure(const std::vector<scene::LightFrustum>& frusta,
-                                                           const std::vector<std::uint8_t>& mask,
-                                                           const TruthFrames& truth,
-                                                           const std::function<void(int)>& on_frame) {
-  std::vector<reference::FlickerMeter> meters(filters_.size(), reference::FlickerMeter(mask));
+std::vector<metrics::FlickerStats> FlickerBench::measure(const std::vector<scene::LightFrustum>& frusta,
+                                                         const std::vector<std::uint8_t>& mask,
+                                                         const TruthFrames& truth,
+                                                         const std::function<void(int)>& on_frame) {
+  std::vector<metrics::FlickerMeter> meters(filters_.size(), metrics::FlickerMeter(mask));
   for (std::size_t t = 0; t < frusta.size(); ++t) {
     on_frame(static_cast<int>(t));
     map_.frustum = frusta[t];
@@ -91,8 +91,8 @@ std::vector<reference::FlickerStats> FlickerBench::measure(const std::vector<sce
     for (std::size_t i = 0; i < filters_.size(); ++i) meters[i].add(draw(*filters_[i]).texels, truth.visibility[t]);
   }
   renderer_.context->require_no_gl_errors();
-  std::vector<reference::FlickerStats> stats;
-  for (const reference::FlickerMeter& meter : meters) stats.push_back(meter.finish().value());
+  std::vector<metrics::FlickerStats> stats;
+  for (const metrics::FlickerMeter& meter : meters) stats.push_back(meter.finish().value());
   return stats;
 }
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "harness/flicker/motion.h"
-#include "harness/run/filter_setup.h"
-#include "harness/run/scene_assets.h"
-#include "harness/run/view_receivers.h"
+#include "harness/measure/filter_setup.h"
+#include "harness/measure/scene_assets.h"
+#include "harness/measure/view_receivers.h"
 #include "reference/metrics/flicker.h"
 
 namespace shadowbench::flicker {
@@ -25,13 +25,13 @@ class FlickerBench {
  public:
   /// Compiles every filter of the options once. Everything must outlive this object.
   /// Throws Error(kInput) where no surface in view faces the light.
-  FlickerBench(run::Renderer& renderer, const run::RunOptions& options, const scene::Scene& scene,
-               run::TruthCache& cache);
+  FlickerBench(measure::Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
+               measure::TruthCache& cache);
 
   /// Gives how the map follows: the padding of the widest kernel, as a run has it.
   MapFollowing following(bool snap) const;
 
-  const run::ViewReceivers& receivers() const { return receivers_; }
+  const measure::ViewReceivers& receivers() const { return receivers_; }
 
   /// Traces every frame of a moving light; where the light stands still nothing changes, and nothing is traced.
   /// `on_frame` hears of each.
@@ -39,24 +39,24 @@ class FlickerBench {
                     const std::function<void(int)>& on_frame);
 
   /// Draws every frame with every filter. Requires a mask with a receiver in it, and a truth for every frustum.
-  std::vector<reference::FlickerStats> measure(const std::vector<scene::LightFrustum>& frusta,
-                                               const std::vector<std::uint8_t>& mask, const TruthFrames& truth,
-                                               const std::function<void(int)>& on_frame);
+  std::vector<metrics::FlickerStats> measure(const std::vector<scene::LightFrustum>& frusta,
+                                             const std::vector<std::uint8_t>& mask, const TruthFrames& truth,
+                                             const std::function<void(int)>& on_frame);
 
  private:
-  run::Renderer& renderer_;
-  const run::RunOptions& options_;
+  measure::Renderer& renderer_;
+  const options::RunOptions& options_;
   const scene::Scene& scene_;
-  run::SceneAssets assets_;
-  run::LightMap map_;
+  measure::SceneAssets assets_;
+  measure::LightMap map_;
   render::ImageTarget target_;
-  run::ViewReceivers receivers_;
+  measure::ViewReceivers receivers_;
   std::vector<std::unique_ptr<render::FilterPasses>> filters_;
   scene::Scene turned_;  ///< the scene under the frame's light
-  run::SceneTracer turned_tracer_;
+  measure::SceneTracer turned_tracer_;
 
   const scene::Camera& camera() const { return scene_.cameras.front(); }
-  report::Image draw(render::FilterPasses& filter);
+  images::Image draw(render::FilterPasses& filter);
 };
 
 }  // namespace shadowbench::flicker

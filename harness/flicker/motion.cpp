@@ -8,7 +8,7 @@
 #include <cmath>
 #include <glm/gtx/rotate_vector.hpp>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "filters/receiver.h"
 
 namespace shadowbench::flicker {
@@ -89,11 +89,11 @@ glm::dvec3 find_place(const scene::LightFrustum& frustum, int map_size, const gl
           -seen.z / frustum.depth_range_ws};
 }
 
-std::vector<std::uint8_t> mark_receivers(const reference::ReceiverImage& receivers,
+std::vector<std::uint8_t> mark_receivers(const truth::ReceiverImage& receivers,
                                          const std::vector<scene::LightFrustum>& frusta, int map_size,
                                          double pad_texels) {
   std::vector<std::uint8_t> marked;
-  for (const reference::ReceiverPoint& point : receivers.points) {
+  for (const truth::ReceiverPoint& point : receivers.points) {
     const bool counts = point.counts && std::ranges::all_of(frusta, [&](const scene::LightFrustum& frustum) {
                           return glm::dot(point.normal_ws, -frustum.direction_ws) > filters::kFacesLight &&
                                  lies_inside(find_place(frustum, map_size, point.position_ws), map_size, pad_texels);
@@ -103,8 +103,7 @@ std::vector<std::uint8_t> mark_receivers(const reference::ReceiverImage& receive
   return marked;
 }
 
-std::optional<double> measure_grid_move(const reference::ReceiverImage& receivers,
-                                        const std::vector<std::uint8_t>& marked,
+std::optional<double> measure_grid_move(const truth::ReceiverImage& receivers, const std::vector<std::uint8_t>& marked,
                                         const std::vector<scene::LightFrustum>& frusta, int map_size) {
   std::vector<double> moves;
   for (std::size_t i = 0; i < marked.size(); ++i) {
@@ -126,7 +125,7 @@ int count_resizes(const std::vector<scene::LightFrustum>& frusta) {
   return count;
 }
 
-double choose_step(Motion motion, const scene::Scene& scene, const reference::ReceiverImage& receivers,
+double choose_step(Motion motion, const scene::Scene& scene, const truth::ReceiverImage& receivers,
                    MapFollowing following) {
   constexpr double kTrial_rad = 1e-4;  // far below a texel's turn in any map that a GL can give
   following.snap = false;

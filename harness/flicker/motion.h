@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/scene/light_fit.h"
+#include "harness/scene/lights/light_fit.h"
 #include "harness/scene/scene.h"
 #include "reference/truth/receiver_image.h"
 
@@ -54,14 +54,13 @@ std::vector<scene::LightFrustum> fit_frames(Motion motion, const scene::Scene& s
 glm::dvec3 find_place(const scene::LightFrustum& frustum, int map_size, const glm::vec3& point_ws);
 
 /// Marks, with 1, the receivers that face the light and lie in the map, `pad_texels` from its edge, in every frame.
-std::vector<std::uint8_t> mark_receivers(const reference::ReceiverImage& receivers,
+std::vector<std::uint8_t> mark_receivers(const truth::ReceiverImage& receivers,
                                          const std::vector<scene::LightFrustum>& frusta, int map_size,
                                          double pad_texels);
 
 /// Gives the median, over marked receivers and steps, of how far a receiver moves against the map's grid, in texels;
 /// whole texels, which change no filter's weights, are left out along each axis. Nothing where no receiver is marked.
-std::optional<double> measure_grid_move(const reference::ReceiverImage& receivers,
-                                        const std::vector<std::uint8_t>& marked,
+std::optional<double> measure_grid_move(const truth::ReceiverImage& receivers, const std::vector<std::uint8_t>& marked,
                                         const std::vector<scene::LightFrustum>& frusta, int map_size);
 
 /// Counts the steps in which the texel's size changes by more than a millionth of it.
@@ -73,7 +72,7 @@ inline constexpr double kStepTexels = 0.125;
 /// Gives the step at which the grid moves by kStepTexels: for the light, at the median receiver that faces it; for the
 /// camera, which moves by that share of a texel. `following.snap` is not used. Throws Error(kInput) where turning the
 /// light moves nothing: no receiver faces it, or it stands overhead.
-double choose_step(Motion motion, const scene::Scene& scene, const reference::ReceiverImage& receivers,
+double choose_step(Motion motion, const scene::Scene& scene, const truth::ReceiverImage& receivers,
                    MapFollowing following);
 
 }  // namespace shadowbench::flicker

@@ -5,22 +5,22 @@
 #include <algorithm>
 #include <chrono>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/flicker/bench.h"
 #include "harness/run/run_facts.h"
 #include "harness/run/scene_loading.h"
-#include "report/flicker_files.h"
-#include "report/flicker_picture.h"
-#include "report/folder_lock.h"
+#include "report/files/folder_lock.h"
+#include "report/images/flicker_picture.h"
+#include "report/pages/flicker_files.h"
 
 namespace shadowbench::flicker {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Stats = std::vector<reference::FlickerStats>;
+using Stats = std::vector<metrics::FlickerStats>;
 
-report::FlickerMotion describe_motion(Motion motion, double step) {
-  report::FlickerMotion record;
+records::FlickerMotion describe_motion(Motion motion, double step) {
+  records::FlickerMotion record;
   record.id = name_of(motion);
   record.fit = scene::name_of(fit_of(motion));
   record.picture = fmt::format("flicker.{}.png", record.id);
@@ -43,29 +43,29 @@ report::FlickerMotion describe_motion(Motion motion, double step) {
   return record;
 }
 
-report::FlickerFilter make_record(const std::string& label, const reference::FlickerStats& stats) {
+records::FlickerFilter make_record(const std::string& label, const metrics::FlickerStats& stats) {
   return {label, stats.change, stats.flicker, stats.returning, stats.not_finite, stats.mean_change};
 }
 
-report::Image to_image(const reference::FlickerStats& stats, const run::RunOptions& options) {
-  report::Image image(options.width, options.height, 1);
+images::Image to_image(const metrics::FlickerStats& stats, const options::RunOptions& options) {
+  images::Image image(options.width, options.height, 1);
   image.texels = stats.by_pixel;
   return image;
 }
 
 class FlickerRun {
  public:
-  FlickerRun(const FlickerOptions& options, run::Progress& progress)
+  FlickerRun(const FlickerOptions& options, options::Progress& progress)
       : options_(options),
         progress_(progress),
         motions_(parse_motions(options.motions)),
         scene_(run::load_scene(options.run, options.run.scenes.front())),
-        renderer_(run::make_renderer(options.run.backend, options.run.resources)),
+        renderer_(measure::make_renderer(options.run.backend, options.run.resources)),
         cache_(options.run.cache, [&progress](const std::string& message) { progress.note("warning: " + message); }),
         bench_(renderer_, options.run, scene_, cache_) {}
 
   void run() {
-    const report::FolderLock lock(options_.run.out);  // a folder that cannot be written is better found now
+    const files::FolderLock lock(options_.run.out);  // a folder that cannot be written is better found now
     const auto start = Clock::now();
     describe();
     progress_.begin(count_frames(), 0);
@@ -73,18 +73,18 @@ class FlickerRun {
     record_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     progress_.show(done_, "writing");
     lock.require_in_place();
-    report::write_flicker_files(options_.run.out, record_);
+    pages::write_flicker_files(options_.run.out, record_);
   }
 
  private:
   const FlickerOptions& options_;
-  run::Progress& progress_;
+  options::Progress& progress_;
   std::vector<Motion> motions_;
   scene::Scene scene_;
-  run::Renderer renderer_;
-  run::TruthCache cache_;
+  measure::Renderer renderer_;
+  measure::TruthCache cache_;
   FlickerBench bench_;
-  report::FlickerRecord record_;
+  records::FlickerRecord record_;
   int done_ = 0;
 
   int count_frames() const {
@@ -107,7 +107,7 @@ class FlickerRun {
     record_.height = options_.run.height;
     record_.map_size = options_.run.map_sizes.front();
     record_.frames = options_.frames;
-    record_.return_above = reference::kReturn;
+    record_.return_above = metrics::kReturn;
   }
 
   std::function<void(int)> show(const std::string& what) {
@@ -116,9 +116,9 @@ class FlickerRun {
     };
   }
 
-  report::FlickerVariant describe_variant(bool snap, const std::vector<scene::LightFrustum>& frusta,
-                                          const std::vector<std::uint8_t>& mask) const {
-    report::FlickerVariant variant;
+  records::FlickerVariant describe_variant(bool snap, const std::vector<scene::LightFrustum>& frusta,
+                                           const std::vector<std::uint8_t>& mask) const {
+    records::FlickerVariant variant;
     variant.snap = snap;
     variant.texel_m = frusta.front().texel_size_ws;
     variant.grid_texels = measure_grid_move(bench_.receivers().image, mask, frusta, record_.map_size).value();
@@ -126,9 +126,9 @@ class FlickerRun {
     return variant;
   }
 
-  report::FlickerMotion measure(Motion motion) {
+  records::FlickerMotion measure(Motion motion) {
     const double step = choose_step(motion, scene_, bench_.receivers().image, bench_.following(false));
-    report::FlickerMotion record = describe_motion(motion, step);
+    records::FlickerMotion record = describe_motion(motion, step);
     const std::vector<Frame> frames = make_frames(motion, scene_, step, options_.frames);
     std::vector<std::vector<scene::LightFrustum>> frusta;
     for (const bool snap : {false, true}) frusta.push_back(fit_frames(motion, scene_, frames, bench_.following(snap)));
@@ -136,12 +136,12 @@ class FlickerRun {
     const TruthFrames truth = bench_.trace(motion, frames, mask, show(record.id + " · truth"));
     std::vector<Stats> stats;
     for (std::size_t v = 0; v < frusta.size(); ++v) {
-      report::FlickerVariant& variant = record.variants.emplace_back(describe_variant(v == 1, frusta[v], mask));
+      records::FlickerVariant& variant = record.variants.emplace_back(describe_variant(v == 1, frusta[v], mask));
       stats.push_back(bench_.measure(frusta[v], mask, truth, show(record.id + (variant.snap ? " · snapped" : ""))));
       for (std::size_t i = 0; i < stats[v].size(); ++i)
         variant.filters.push_back(make_record(options_.run.filters[i].label(), stats[v][i]));
     }
-    const reference::FlickerStats& any = stats.front().front();
+    const metrics::FlickerStats& any = stats.front().front();
     record.receivers = any.receivers;
     record.truth = {truth.traced, any.truth_change, any.truth_returning, truth.noise, any.truth_mean_change};
     write_picture(record, stats);
@@ -160,8 +160,8 @@ class FlickerRun {
                                                scene_.name, options_.frames));
   }
 
-  void write_picture(const report::FlickerMotion& motion, const std::vector<Stats>& stats) const {
-    report::FlickerPicture picture;
+  void write_picture(const records::FlickerMotion& motion, const std::vector<Stats>& stats) const {
+    images::FlickerPicture picture;
     picture.title = fmt::format("{}: flicker by pixel on {}", motion.title, scene_.name);
     picture.note = fmt::format(
         "root mean square, over {} steps, of the change of visibility less the truth's; map {}, {:.3g} {} a step",
@@ -170,12 +170,12 @@ class FlickerRun {
       picture.tiles.push_back(
           {options_.run.filters[i].label(), to_image(stats[0][i], options_.run), to_image(stats[1][i], options_.run)});
     }
-    report::write_flicker_picture(options_.run.out / motion.picture, picture);
+    images::write_flicker_picture(options_.run.out / motion.picture, picture);
   }
 };
 
 }  // namespace
 
-void run_flicker(const FlickerOptions& options, run::Progress& progress) { FlickerRun(options, progress).run(); }
+void run_flicker(const FlickerOptions& options, options::Progress& progress) { FlickerRun(options, progress).run(); }
 
 }  // namespace shadowbench::flicker

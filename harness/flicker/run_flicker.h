@@ -2,14 +2,14 @@
 
 #include <string>
 
-#include "harness/run/options.h"
-#include "harness/run/progress.h"
+#include "harness/options/options.h"
+#include "harness/options/progress.h"
 
 namespace shadowbench::flicker {
 
 /// Everything that `shadowbench flicker` is told.
 struct FlickerOptions {
-  run::RunOptions run;  ///< one scene, one map size; fit and snap are the motion's
+  options::RunOptions run;  ///< one scene, one map size; fit and snap are the motion's
   std::string motions = "light,camera";
   int frames = 64;  ///< 2 or more
 };
@@ -20,6 +20,6 @@ struct FlickerOptions {
 /// folder. Throws Error(kUsage) for motions that do not exist, Error(kInput) where nothing faces the light or turning
 /// it moves nothing, Error as scene::load, render::FilterPasses and render::ShadowMap. Cost: one map, prefilter and
 /// lookup per motion, snapping, frame and filter; the truth of every frame of the light, kept in the cache.
-void run_flicker(const FlickerOptions& options, run::Progress& progress);
+void run_flicker(const FlickerOptions& options, options::Progress& progress);
 
 }  // namespace shadowbench::flicker

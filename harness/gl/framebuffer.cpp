@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 
 namespace shadowbench::gl {
 namespace {

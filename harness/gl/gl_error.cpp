@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 
 namespace shadowbench::gl {
 

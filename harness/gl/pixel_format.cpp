@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 
 namespace shadowbench::gl {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/gl/handle.h"
 #include "harness/gl/shader_source.h"
 

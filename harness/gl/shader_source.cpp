@@ -10,7 +10,7 @@
 #include <set>
 #include <string_view>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 
 namespace shadowbench::gl {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/gl/gl_error.h"
 
 namespace shadowbench::gl {

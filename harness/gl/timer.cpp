@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "harness/gl/probe.h"
 #include "harness/gl/query.h"
+#include "harness/gl/survey/probe.h"
 
 namespace shadowbench::gl {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "harness/gl/context.h"
+#include "harness/gl/context/context.h"
 
 namespace shadowbench::gl {
 

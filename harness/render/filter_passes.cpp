@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/render/filter_glsl.h"
 
 namespace shadowbench::render {

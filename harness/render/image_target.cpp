@@ -24,13 +24,13 @@ std::vector<float> flip_rows(const std::vector<float>& rows, std::ptrdiff_t stri
 
 }  // namespace
 
-report::Image read_image(const gl::Texture& texture, int channels) {
-  report::Image image(texture.width(), texture.height(), channels);
+images::Image read_image(const gl::Texture& texture, int channels) {
+  images::Image image(texture.width(), texture.height(), channels);
   image.texels = flip_rows(texture.read_floats(channels), static_cast<std::ptrdiff_t>(texture.width()) * channels);
   return image;
 }
 
-gl::Texture upload_image(const report::Image& image) {
+gl::Texture upload_image(const images::Image& image) {
   gl::Texture texture("uploaded image", GL_R32F, image.width, image.height);
   texture.upload_floats(flip_rows(image.texels, image.width), 1);
   return texture;

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "harness/gl/objects.h"
-#include "report/image.h"
+#include "report/images/image.h"
 
 namespace shadowbench::render {
 
@@ -21,9 +21,9 @@ class ImageTarget {
 };
 
 /// Reads a texture back as an image, rows top to bottom.
-report::Image read_image(const gl::Texture& texture, int channels);
+images::Image read_image(const gl::Texture& texture, int channels);
 
 /// Makes an R32F texture of a one-channel image, rows top to bottom.
-gl::Texture upload_image(const report::Image& image);
+gl::Texture upload_image(const images::Image& image);
 
 }  // namespace shadowbench::render

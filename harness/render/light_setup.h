@@ -6,7 +6,7 @@
 #include "harness/gl/program.h"
 #include "harness/render/bias.h"
 #include "harness/render/shader_library.h"
-#include "harness/scene/light_fit.h"
+#include "harness/scene/lights/light_fit.h"
 #include "harness/scene/scene.h"
 
 namespace shadowbench::render {

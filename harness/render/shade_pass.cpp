@@ -9,7 +9,7 @@ constexpr GLuint kVisibilityUnit = 4;  // of shade.frag
 
 }  // namespace
 
-report::Image shade(ShaderLibrary& shaders, const GBuffer& gbuffer, const gl::Texture& visibility,
+images::Image shade(ShaderLibrary& shaders, const GBuffer& gbuffer, const gl::Texture& visibility,
                     const scene::Scene& scene, const scene::Camera& camera) {
   ImageTarget target("picture", GL_RGBA32F, gbuffer.width(), gbuffer.height());
   gl::Program& program = shaders.fullscreen("shade.frag");

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/gl/fullscreen.h"
 #include "harness/gl/pixel_format.h"
 #include "harness/render/gbuffer.h"
@@ -153,6 +153,6 @@ filters::DepthMap ShadowMap::read() const {
   return {size(), map_.depth.read_floats(1), settings_.curve, settings_.format != GL_DEPTH_COMPONENT32F, border_};
 }
 
-report::Image ShadowMap::read_picture() const { return read_image(map_.depth, 1); }
+images::Image ShadowMap::read_picture() const { return read_image(map_.depth, 1); }
 
 }  // namespace shadowbench::render

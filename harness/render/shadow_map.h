@@ -10,8 +10,8 @@
 #include "harness/render/bias.h"
 #include "harness/render/geometry.h"
 #include "harness/render/map_settings.h"
-#include "harness/scene/light_fit.h"
-#include "report/image.h"
+#include "harness/scene/lights/light_fit.h"
+#include "report/images/image.h"
 
 namespace shadowbench::render {
 
@@ -57,7 +57,7 @@ class ShadowMap {
   filters::DepthMap read() const;
 
   /// Reads the map back as a picture, rows top to bottom: row 0 is v = 1. As it is stored; see settings().curve.
-  report::Image read_picture() const;
+  images::Image read_picture() const;
 
   const gl::Texture& texture() const { return map_.depth; }
   int size() const { return map_.depth.width(); }

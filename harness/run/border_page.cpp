@@ -6,7 +6,7 @@
 
 #include "harness/render/filter_passes.h"
 #include "harness/render/shade_pass.h"
-#include "report/grid.h"
+#include "report/images/grid.h"
 
 namespace shadowbench::run {
 namespace {
@@ -31,7 +31,8 @@ const std::array<Variant, 4>& list_variants() {
 /// Draws tiles of one task.
 class TilePainter {
  public:
-  TilePainter(Renderer& renderer, const RunOptions& options, const SceneTask& task, SceneAssets& assets)
+  TilePainter(measure::Renderer& renderer, const options::RunOptions& options, const measure::SceneTask& task,
+              measure::SceneAssets& assets)
       : renderer_(renderer),
         options_(options),
         task_(task),
@@ -43,14 +44,14 @@ class TilePainter {
   TilePainter(const TilePainter&) = delete;
   TilePainter& operator=(const TilePainter&) = delete;
 
-  report::GridTile draw(const filters::FilterRequest& request, const Variant& variant) {
-    const render::Bias bias = resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
+  images::GridTile draw(const filters::FilterRequest& request, const Variant& variant) {
+    const render::Bias bias = render::resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
     const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed, variant.rule);
     light_.map.set_border(variant.rule.border);
     render::FilterPasses passes(renderer_.shaders, request, light_.map, light);
     passes.prefilter(light_.map);
     passes.lookup(gbuffer_, light_.map, target_);
-    report::GridTile tile;
+    images::GridTile tile;
     tile.label = request.label();
     tile.caption = variant.caption;
     tile.picture = render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera);
@@ -59,20 +60,21 @@ class TilePainter {
   }
 
  private:
-  Renderer& renderer_;
-  const RunOptions& options_;
-  const SceneTask& task_;
-  LightMap& light_;
+  measure::Renderer& renderer_;
+  const options::RunOptions& options_;
+  const measure::SceneTask& task_;
+  measure::LightMap& light_;
   render::GBuffer& gbuffer_;
   render::ImageTarget target_;
 };
 
 }  // namespace
 
-void write_border_page(const std::filesystem::path& file, Renderer& renderer, const RunOptions& options,
-                       const SceneTask& task, SceneAssets& assets) {
+void write_border_page(const std::filesystem::path& file, measure::Renderer& renderer,
+                       const options::RunOptions& options, const measure::SceneTask& task,
+                       measure::SceneAssets& assets) {
   TilePainter painter(renderer, options, task, assets);
-  report::Grid grid;
+  images::Grid grid;
   grid.title = fmt::format("{}: what lies outside the map", task.scene->name);
   grid.subtitle =
       fmt::format("{} · view {} · map {} × {}", task.scene->title, task.camera->name, task.map_size, task.map_size);
@@ -81,7 +83,7 @@ void write_border_page(const std::filesystem::path& file, Renderer& renderer, co
     if (request.user_file) continue;
     for (const Variant& variant : list_variants()) grid.tiles.push_back(painter.draw(request, variant));
   }
-  if (!grid.tiles.empty()) report::write_grid(file, grid);
+  if (!grid.tiles.empty()) images::write_grid(file, grid);
 }
 
 }  // namespace shadowbench::run

@@ -2,9 +2,9 @@
 
 #include <filesystem>
 
-#include "harness/run/renderer.h"
-#include "harness/run/scene_assets.h"
-#include "harness/run/scene_measurement.h"
+#include "harness/measure/renderer.h"
+#include "harness/measure/scene_assets.h"
+#include "harness/measure/scene_measurement.h"
 
 namespace shadowbench::run {
 
@@ -12,7 +12,8 @@ namespace shadowbench::run {
 /// each rule of an orthographic map that is wrong in one thing. Users' own filters, which have a process of their own,
 /// are left out. Leaves the map as the run has it. Writes a PNG file. Throws Error(kOutput). Cost: four untimed lookups
 /// a filter, and its prefilter as often.
-void write_border_page(const std::filesystem::path& file, Renderer& renderer, const RunOptions& options,
-                       const SceneTask& task, SceneAssets& assets);
+void write_border_page(const std::filesystem::path& file, measure::Renderer& renderer,
+                       const options::RunOptions& options, const measure::SceneTask& task,
+                       measure::SceneAssets& assets);
 
 }  // namespace shadowbench::run

@@ -3,37 +3,37 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "harness/run/content_hash.h"
+#include "harness/measure/content_hash.h"
+#include "harness/measure/scene_assets.h"
 #include "harness/run/run_facts.h"
-#include "harness/run/scene_assets.h"
 
 namespace shadowbench::run {
 namespace {
 
-void add_options(ContentHash& hash, const RunOptions& options) {
-  const RoundLimits& rounds = options.rounds;
+void add_options(measure::ContentHash& hash, const options::RunOptions& options) {
+  const options::RoundLimits& rounds = options.rounds;
   hash.add(fmt::format("seed {} truth {} attribution {} stability {} uncertainty {} grids {} pad {} rounds {} {} {} {}",
                        options.seed, options.truth, options.attribution, options.stability, options.uncertainty,
-                       options.grids, padding_texels(options), rounds.fewest, rounds.most, rounds.precision,
+                       options.grids, measure::padding_texels(options), rounds.fewest, rounds.most, rounds.precision,
                        rounds.budget_ms));
   // The masks of artefacts reach as far as the widest kernel of the run.
-  hash.add(fmt::format("radius {} reference {} border page {}", widest_kernel_texels(options),
+  hash.add(fmt::format("radius {} reference {} border page {}", measure::widest_kernel_texels(options),
                        options.reference.label(), options.border_page));
   hash.add(fmt::format("lights {}", fmt::join(options.lights, " ")));
 }
 
-void add_material(ContentHash& hash, const scene::Material& m) {
+void add_material(measure::ContentHash& hash, const scene::Material& m) {
   hash.add(fmt::format("{} {} {} {} {} {} {}", m.base_color.r, m.base_color.g, m.base_color.b, m.base_color.a,
                        m.base_color_texture, static_cast<int>(m.alpha_mode), m.alpha_cutoff));
 }
 
-void add_camera(ContentHash& hash, const scene::Camera& c) {
+void add_camera(measure::ContentHash& hash, const scene::Camera& c) {
   hash.add(c.name);
   for (const glm::vec3& v : {c.position_ws, c.forward_ws, c.up_ws}) hash.add(fmt::format("{} {} {}", v.x, v.y, v.z));
   hash.add(fmt::format("{} {}", c.vertical_fov_rad, c.orthographic_height_m));
 }
 
-void add_light(ContentHash& hash, const scene::Light& l) {
+void add_light(measure::ContentHash& hash, const scene::Light& l) {
   hash.add(fmt::format("{} {} {} {} {} {} {} {} {}", static_cast<int>(l.kind), l.direction_ws.x, l.direction_ws.y,
                        l.direction_ws.z, l.color.r, l.color.g, l.color.b, l.intensity, l.angular_diameter_deg));
   if (!l.map_window) return;
@@ -42,7 +42,7 @@ void add_light(ContentHash& hash, const scene::Light& l) {
   if (w.planes) hash.add(fmt::format("planes {} {}", w.planes->near_m, w.planes->far_m));
 }
 
-void add_scene(ContentHash& hash, const scene::Scene& scene) {
+void add_scene(measure::ContentHash& hash, const scene::Scene& scene) {
   for (const scene::Mesh& mesh : scene.meshes) {
     hash.add(fmt::format("mesh {} {} {}", mesh.material, mesh.casts_shadow, mesh.may_cull_front));
     hash.add_values(std::span<const scene::Vertex>(mesh.vertices));
@@ -60,8 +60,9 @@ void add_scene(ContentHash& hash, const scene::Scene& scene) {
 
 }  // namespace
 
-std::string name_scene_content(const RunOptions& options, const scene::Scene& scene, const std::string& renderer) {
-  ContentHash hash;
+std::string name_scene_content(const options::RunOptions& options, const scene::Scene& scene,
+                               const std::string& renderer) {
+  measure::ContentHash hash;
   hash.add(build_commit());
   hash.add(renderer);
   add_options(hash, options);
@@ -70,7 +71,7 @@ std::string name_scene_content(const RunOptions& options, const scene::Scene& sc
 }
 
 std::string name_cell_content(const std::string& scene_content, const filters::FilterRequest& request) {
-  ContentHash hash;
+  measure::ContentHash hash;
   hash.add(scene_content);
   hash.add(request.spec.body);
   hash.add(fmt::format("{} claims {}", request.user_file, fmt::join(request.spec.claims, " ")));

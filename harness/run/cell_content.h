@@ -2,14 +2,15 @@
 
 #include <string>
 
-#include "harness/run/options.h"
+#include "harness/options/options.h"
 #include "harness/scene/scene.h"
 
 namespace shadowbench::run {
 
 /// Names everything that a scene's cells are made from and their keys do not say: the program's commit, the OpenGL, the
 /// options of the run, and the scene itself with its geometry, textures, cameras and light. `renderer` is GL_RENDERER.
-std::string name_scene_content(const RunOptions& options, const scene::Scene& scene, const std::string& renderer);
+std::string name_scene_content(const options::RunOptions& options, const scene::Scene& scene,
+                               const std::string& renderer);
 
 /// Names everything that one cell is made from: the above, and the filter's GLSL. Two cells of one key and one content
 /// differ in their times alone.

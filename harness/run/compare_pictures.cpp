@@ -6,10 +6,10 @@
 #include <cmath>
 #include <variant>
 
-#include "filters/error.h"
-#include "harness/run/mean_flip.h"
-#include "report/picture_io.h"
-#include "report/stored_picture.h"
+#include "filters/base/error.h"
+#include "harness/measure/mean_flip.h"
+#include "report/images/picture_io.h"
+#include "report/images/stored_picture.h"
 
 namespace shadowbench::run {
 namespace {
@@ -19,7 +19,7 @@ using Mask = std::vector<std::uint8_t>;
 /// A picture without its alpha.
 struct Colors {
   std::string name;
-  report::Image image;
+  images::Image image;
   bool srgb = false;
   int origin_x = 0;
   int origin_y = 0;
@@ -27,8 +27,8 @@ struct Colors {
 
 [[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::kInput, message); }
 
-report::Image drop_channel(const report::Image& image, int dropped) {
-  report::Image rest(image.width, image.height, image.channels - 1);
+images::Image drop_channel(const images::Image& image, int dropped) {
+  images::Image rest(image.width, image.height, image.channels - 1);
   auto to = rest.texels.begin();
   for (std::size_t i = 0; i < image.texels.size(); ++i)
     if (static_cast<int>(i % static_cast<std::size_t>(image.channels)) != dropped) *to++ = image.texels[i];
@@ -36,7 +36,7 @@ report::Image drop_channel(const report::Image& image, int dropped) {
 }
 
 Colors read_colors(const std::string& name) {
-  report::StoredPicture stored = report::read_stored_picture(name);
+  images::StoredPicture stored = images::read_stored_picture(name);
   const bool has_alpha = stored.alpha_channel >= 0 && stored.image.channels > 1;
   return {name, has_alpha ? drop_channel(stored.image, stored.alpha_channel) : std::move(stored.image), stored.srgb,
           stored.origin_x, stored.origin_y};
@@ -76,7 +76,7 @@ Mask read_mask(const std::optional<std::string>& name, const Colors& image) {
   return mask;
 }
 
-bool is_finite(const report::Image& image, std::size_t pixel) {
+bool is_finite(const images::Image& image, std::size_t pixel) {
   const auto channels = static_cast<std::size_t>(image.channels);
   const float* texel = &image.texels[pixel * channels];
   return std::all_of(texel, texel + channels, [](float value) { return std::isfinite(value); });
@@ -95,12 +95,12 @@ Mask repeat(const Mask& mask, int channels) {
   return result;
 }
 
-report::Image to_linear_rgb(const Colors& colors) {
-  report::Image rgb(colors.image.width, colors.image.height, 3);
+images::Image to_linear_rgb(const Colors& colors) {
+  images::Image rgb(colors.image.width, colors.image.height, 3);
   const auto step = static_cast<std::size_t>(colors.image.channels);
   for (std::size_t i = 0; i < rgb.texels.size(); ++i) {
     const float value = colors.image.texels[step == 1 ? i / 3 : i];
-    rgb.texels[i] = colors.srgb ? report::decode_srgb(value) : value;
+    rgb.texels[i] = colors.srgb ? images::decode_srgb(value) : value;
   }
   return rgb;
 }
@@ -146,16 +146,16 @@ MetricValue measure_flip(const Pair& pair, double pixels_per_degree) {
   if (channels != 1 && channels != 3)
     return fmt::format("FLIP is for pictures of 1 or 3 channels, these have {}", channels);
   const auto flip =
-      measure_mean_flip(to_linear_rgb(pair.image), to_linear_rgb(pair.truth), pair.mask, pixels_per_degree);
+      measure::measure_mean_flip(to_linear_rgb(pair.image), to_linear_rgb(pair.truth), pair.mask, pixels_per_degree);
   if (flip) return *flip;
   return "a pixel is NaN or infinite, and FLIP would spread it over its neighbours";
 }
 
 void add_metrics(Comparison& result, const Pair& pair, const ComparisonOptions& options) {
-  const auto stats = reference::measure_error(pair.image.image.texels, pair.truth.image.texels,
-                                              repeat(pair.mask, pair.image.image.channels));
+  const auto stats = metrics::measure_error(pair.image.image.texels, pair.truth.image.texels,
+                                            repeat(pair.mask, pair.image.image.channels));
   const std::string nothing = result.not_finite ? "no pixel is finite in both pictures" : "the mask is 0 everywhere";
-  for (const reference::Metric& metric : options.metrics) {
+  for (const metrics::Metric& metric : options.metrics) {
     MetricValue value = nothing;
     if (stats && metric.statistic) value = *stats.*metric.statistic;
     if (stats && !metric.statistic) value = measure_flip(pair, options.pixels_per_degree);

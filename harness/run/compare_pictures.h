@@ -15,9 +15,9 @@ namespace shadowbench::run {
 struct ComparisonOptions {
   std::string image;
   std::string truth;
-  std::optional<std::string> mask;         ///< pixels count where it is not 0; empty: all do
-  std::vector<reference::Metric> metrics;  ///< out of reference::picture_metrics()
-  double pixels_per_degree = 0.0;          ///< for FLIP; positive
+  std::optional<std::string> mask;       ///< pixels count where it is not 0; empty: all do
+  std::vector<metrics::Metric> metrics;  ///< out of metrics::picture_metrics()
+  double pixels_per_degree = 0.0;        ///< for FLIP; positive
 };
 
 /// Holds what a comparison gave.

@@ -8,20 +8,21 @@
 #include <optional>
 #include <set>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
+#include "harness/measure/scene_assets.h"
 #include "harness/run/run_facts.h"
 #include "harness/run/run_plan.h"
-#include "harness/run/scene_assets.h"
 #include "harness/run/task_run.h"
 #include "harness/run/time_probe.h"
 #include "harness/scene/closed_mesh.h"
 #include "reference/truth/occluders.h"
-#include "report/atomic_file.h"
-#include "report/folder_lock.h"
-#include "report/json_io.h"
-#include "report/repeat.h"
-#include "report/report.h"
-#include "report/summary.h"
+#include "report/analysis/repeat.h"
+#include "report/analysis/summary.h"
+#include "report/files/atomic_file.h"
+#include "report/files/folder_lock.h"
+#include "report/pages/report.h"
+#include "report/records/format.h"
+#include "report/records/json_io.h"
 
 namespace shadowbench::run {
 namespace {
@@ -30,7 +31,7 @@ namespace {
 constexpr std::uintmax_t kMaxCacheBytes = std::uintmax_t{1} << 30;
 
 std::string describe_duration(double seconds) {
-  if (seconds < 10.0) return report::format_number(seconds) + " s";
+  if (seconds < 10.0) return records::format_number(seconds) + " s";
   const auto whole = static_cast<long>(std::ceil(seconds));
   if (whole < 60) return fmt::format("{} s", whole);
   if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
@@ -38,7 +39,7 @@ std::string describe_duration(double seconds) {
 }
 
 /// A folder that cannot be written is better found before the work than after it.
-void require_writable(const std::filesystem::path& folder) { report::AtomicFile(folder / "cells" / "probe").write(""); }
+void require_writable(const std::filesystem::path& folder) { files::AtomicFile(folder / "cells" / "probe").write(""); }
 
 /// More than that many cells are asked about: they take hours.
 constexpr int kManyCells = 2000;
@@ -52,10 +53,10 @@ struct TimeForecast {
 
 class Experiment {
  public:
-  Experiment(const RunOptions& options, Progress& progress)
+  Experiment(const options::RunOptions& options, options::Progress& progress)
       : options_(options),
         progress_(progress),
-        renderer_(make_renderer(options.backend, options.resources)),
+        renderer_(measure::make_renderer(options.backend, options.resources)),
         cache_(options.cache, [this](const std::string& message) { warn(message); }) {
     run_.commit = build_commit();
     run_.command = options.command;
@@ -84,20 +85,20 @@ class Experiment {
   }
 
  private:
-  const RunOptions& options_;
-  Progress& progress_;
-  Renderer renderer_;
-  TruthCache cache_;
-  report::RunRecord run_;
-  std::optional<report::FolderLock> lock_;
+  const options::RunOptions& options_;
+  options::Progress& progress_;
+  measure::Renderer renderer_;
+  measure::TruthCache cache_;
+  records::RunRecord run_;
+  std::optional<files::FolderLock> lock_;
   int done_ = 0;
   std::set<std::string> told_;  ///< what cells warn of, of which the user has heard
   TaskListener listener_{[this](const std::string& what) { progress_.show(done_, what); },
                          [this](const std::string& message) { progress_.note(message); },
-                         [this](const SceneMeasurement& measured) { count(measured); }};
+                         [this](const measure::SceneMeasurement& measured) { count(measured); }};
 
   void measure(const RunPlan& plan) {
-    const std::vector<report::CellRecord> replaced = read_replaced();
+    const std::vector<records::CellRecord> replaced = read_replaced();
     done_ = plan.finished;
     progress_.begin(plan.own_cells, plan.finished);
     const auto start = std::chrono::steady_clock::now();
@@ -109,11 +110,11 @@ class Experiment {
     cache_.prune(kMaxCacheBytes);
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
     progress_.show(done_, "writing the report");
-    if (!options_.worker) report::write_report(options_.out, run_, list_keys(plan));
+    if (!options_.worker) pages::write_report(options_.out, run_, list_keys(plan));
     progress_.show(done_, "done");
   }
 
-  void count(const SceneMeasurement& measured) {
+  void count(const measure::SceneMeasurement& measured) {
     lock_->require_in_place();
     done_ += static_cast<int>(measured.cells.size());
     run_.work.timed_s += 1e-3 * measured.timed_ms;
@@ -121,7 +122,7 @@ class Experiment {
       run_.work.attribution_s = run_.work.attribution_s.value_or(0.0) + measured.attribution_s;
     run_.work.passes_run += measured.passes_run;
     run_.work.passes_skipped += measured.passes_skipped;
-    for (const MeasuredCell& cell : measured.cells) {
+    for (const measure::MeasuredCell& cell : measured.cells) {
       for (const std::string& warning : cell.record.warnings)
         if (told_.insert(warning).second) progress_.note("warning: " + warning);
     }
@@ -160,17 +161,17 @@ class Experiment {
                                        options_.rounds.most, on_top)};
   }
 
-  bool is_same(const report::ExperimentRecord& known) const {
-    const report::ExperimentRecord& own = run_.experiment;
+  bool is_same(const records::ExperimentRecord& known) const {
+    const records::ExperimentRecord& own = run_.experiment;
     return known.settings == own.settings && known.shard == own.shard && known.shards == own.shards;
   }
 
   /// Gives the cells of the finished report of this very run that is measured anew; none where there is none.
-  std::vector<report::CellRecord> read_replaced() const {
+  std::vector<records::CellRecord> read_replaced() const {
     const std::filesystem::path file = options_.out / "results.json";
     if (!options_.fresh || options_.worker || !std::filesystem::exists(file)) return {};
     try {
-      report::Results results = report::read_results(file);
+      records::Results results = records::read_results(file);
       if (is_same(results.run.experiment)) return std::move(results.cells);
     } catch (const Error&) {
       // What cannot be read cannot be compared with.
@@ -178,12 +179,12 @@ class Experiment {
     return {};
   }
 
-  void compare_with(const std::vector<report::CellRecord>& replaced, const std::vector<std::string>& keys) {
-    std::vector<report::CellRecord> cells;
-    for (const std::string& key : keys) cells.push_back(report::read_cell(options_.out, key));
-    run_.repeat = report::compare_times(replaced, cells).record;
+  void compare_with(const std::vector<records::CellRecord>& replaced, const std::vector<std::string>& keys) {
+    std::vector<records::CellRecord> cells;
+    for (const std::string& key : keys) cells.push_back(records::read_cell(options_.out, key));
+    run_.repeat = analysis::compare_times(replaced, cells).record;
     if (run_.repeat.of == 0) return;
-    progress_.note(report::describe_overlap(run_.repeat) + " those of the run that this one replaces");
+    progress_.note(analysis::describe_overlap(run_.repeat) + " those of the run that this one replaces");
   }
 
   /// Says whether the folder has the whole report of this very run already, of the very cells that lie there.
@@ -192,9 +193,9 @@ class Experiment {
     if (options_.worker || !std::filesystem::exists(file)) return false;
     const auto written = std::filesystem::last_write_time(file);
     for (const std::string& key : list_keys(plan))
-      if (std::filesystem::last_write_time(report::cell_path(options_.out, key)) > written) return false;
+      if (std::filesystem::last_write_time(records::cell_path(options_.out, key)) > written) return false;
     try {
-      return is_same(report::read_results(file).run.experiment);
+      return is_same(records::read_results(file).run.experiment);
     } catch (const Error&) {
       return false;
     }
@@ -217,7 +218,7 @@ class Experiment {
     const scene::Bounds bounds = scene.bounds();
     const glm::vec3 largest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max)), size = bounds.max - bounds.min;
     const float farthest = std::max({largest.x, largest.y, largest.z});
-    const float offset = reference::origin_offset(farthest, farthest);
+    const float offset = truth::origin_offset(farthest, farthest);
     if (offset < 1e-4f * std::max({size.x, size.y, size.z})) return;
     warn(fmt::format(
         "{}: {} m from the origin, single precision leaves positions uncertain, and rays start {} m off their "
@@ -246,7 +247,7 @@ class Experiment {
 
   void note_scene(const PlannedScene& planned) {
     const scene::Scene& scene = planned.scene;
-    const auto is_it = [&](const report::SceneRecord& known) { return known.name == scene.name; };
+    const auto is_it = [&](const records::SceneRecord& known) { return known.name == scene.name; };
     if (std::any_of(run_.scenes.begin(), run_.scenes.end(), is_it)) return;
     run_.scenes.push_back({scene.name, scene.title});
     for (const std::string& warning : scene.warnings) warn(scene.name + ": " + warning);
@@ -258,10 +259,10 @@ class Experiment {
   void run_scene(const RunPlan& plan, std::size_t index) {
     const PlannedScene& planned = plan.scenes[index];
     note_scene(planned);
-    std::optional<SceneAssets> assets;
+    std::optional<measure::SceneAssets> assets;
     for (const PlannedTask& each : plan.tasks) {
       if (each.scene != index || each.task.filters.empty()) continue;
-      if (!assets) assets.emplace(renderer_, planned.options, planned.scene, cache_, padding_texels(options_));
+      if (!assets) assets.emplace(renderer_, planned.options, planned.scene, cache_, measure::padding_texels(options_));
       TaskRun(renderer_, planned, each, *assets, run_.gl, listener_).run();
     }
   }
@@ -269,6 +270,8 @@ class Experiment {
 
 }  // namespace
 
-void run_experiment(const RunOptions& options, Progress& progress) { Experiment(options, progress).run(); }
+void run_experiment(const options::RunOptions& options, options::Progress& progress) {
+  Experiment(options, progress).run();
+}
 
 }  // namespace shadowbench::run

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "harness/run/options.h"
-#include "harness/run/progress.h"
+#include "harness/options/options.h"
+#include "harness/options/progress.h"
 
 namespace shadowbench::run {
 
 /// Runs every filter on every scene and writes the report folder. Cells are written as they finish.
 /// Throws Error; what was finished by then stays.
-void run_experiment(const RunOptions& options, Progress& progress);
+void run_experiment(const options::RunOptions& options, options::Progress& progress);
 
 }  // namespace shadowbench::run

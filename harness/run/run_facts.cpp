@@ -24,8 +24,8 @@ std::string read_cpu_name() {
 
 std::string build_commit() { return SHADOWBENCH_COMMIT; }
 
-report::MachineRecord describe_machine() {
-  report::MachineRecord machine;
+records::MachineRecord describe_machine() {
+  records::MachineRecord machine;
   machine.cpu = read_cpu_name();
   machine.cores = static_cast<int>(std::thread::hardware_concurrency());
   double load = 0.0;
@@ -36,11 +36,11 @@ report::MachineRecord describe_machine() {
   return machine;
 }
 
-report::GlRecord describe_gl(const Renderer& renderer) {
+records::GlRecord describe_gl(const measure::Renderer& renderer) {
   const gl::GlInfo& info = renderer.context->info();
   const bool query = renderer.timer == gl::TimerKind::kQuery;
   return {info.backend, info.renderer, info.version, info.software,
-          query ? report::TimerKind::kTimerQuery : report::TimerKind::kWallClock};
+          query ? records::TimerKind::kTimerQuery : records::TimerKind::kWallClock};
 }
 
 }  // namespace shadowbench::run

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "harness/run/renderer.h"
-#include "report/records.h"
+#include "harness/measure/renderer.h"
+#include "report/records/records.h"
 
 namespace shadowbench::run {
 
@@ -11,9 +11,9 @@ namespace shadowbench::run {
 std::string build_commit();
 
 /// Describes processor, cores, load, compiler and operating system.
-report::MachineRecord describe_machine();
+records::MachineRecord describe_machine();
 
 /// Describes the GL and the clock that times come from.
-report::GlRecord describe_gl(const Renderer& renderer);
+records::GlRecord describe_gl(const measure::Renderer& renderer);
 
 }  // namespace shadowbench::run

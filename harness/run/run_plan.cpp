@@ -6,20 +6,20 @@
 #include <algorithm>
 #include <set>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
+#include "harness/measure/content_hash.h"
 #include "harness/run/cell_content.h"
-#include "harness/run/content_hash.h"
 #include "harness/run/scene_loading.h"
-#include "report/json_io.h"
+#include "report/records/json_io.h"
 
 namespace shadowbench::run {
 namespace {
 
 /// Every scene in every picture size.
-std::vector<PlannedScene> plan_scenes(const RunOptions& options) {
+std::vector<PlannedScene> plan_scenes(const options::RunOptions& options) {
   std::vector<PlannedScene> planned;
-  for (const PictureSize& size : options.sizes) {
-    RunOptions framed = options;
+  for (const options::PictureSize& size : options.sizes) {
+    options::RunOptions framed = options;
     framed.width = size.width;
     framed.height = size.height;
     std::vector<scene::Scene> scenes = load_scenes(framed);
@@ -30,7 +30,7 @@ std::vector<PlannedScene> plan_scenes(const RunOptions& options) {
 }
 
 /// The views that were asked for; all where none was.
-std::vector<const scene::Camera*> choose_views(const RunOptions& options, const scene::Scene& scene) {
+std::vector<const scene::Camera*> choose_views(const options::RunOptions& options, const scene::Scene& scene) {
   std::vector<const scene::Camera*> views;
   for (const scene::Camera& camera : scene.cameras) {
     const bool wanted = options.views.empty() ||
@@ -40,7 +40,7 @@ std::vector<const scene::Camera*> choose_views(const RunOptions& options, const 
   return views;
 }
 
-void require_views(const RunOptions& options, const std::vector<PlannedScene>& scenes) {
+void require_views(const options::RunOptions& options, const std::vector<PlannedScene>& scenes) {
   std::set<std::string> known;
   for (const PlannedScene& each : scenes)
     for (const scene::Camera& camera : each.scene.cameras) known.insert(camera.name);
@@ -53,7 +53,7 @@ void require_views(const RunOptions& options, const std::vector<PlannedScene>& s
 
 class Planner {
  public:
-  Planner(const RunOptions& options, const std::string& renderer) : options_(options), renderer_(renderer) {}
+  Planner(const options::RunOptions& options, const std::string& renderer) : options_(options), renderer_(renderer) {}
 
   RunPlan plan() {
     plan_.scenes = plan_scenes(options_);
@@ -65,10 +65,10 @@ class Planner {
   }
 
  private:
-  const RunOptions& options_;
+  const options::RunOptions& options_;
   const std::string& renderer_;
   RunPlan plan_;
-  ContentHash hash_;
+  measure::ContentHash hash_;
 
   void add_scene(std::size_t index) {
     const PlannedScene& scene = plan_.scenes[index];
@@ -77,11 +77,11 @@ class Planner {
       for (const int map_size : options_.map_sizes) add_task(index, {&scene.scene, camera, map_size, {}}, content);
   }
 
-  void add_task(std::size_t scene, SceneTask task, const std::string& scene_content) {
+  void add_task(std::size_t scene, measure::SceneTask task, const std::string& scene_content) {
     PlannedTask planned{scene, task, {}, {}};
     std::vector<filters::FilterRequest> missing;
     for (const filters::FilterRequest& request : options_.filters) {
-      const std::string key = make_record(plan_.scenes[scene].options, task, request).key;
+      const std::string key = measure::make_record(plan_.scenes[scene].options, task, request).key;
       const std::string content = name_cell_content(scene_content, request);
       hash_.add(key);
       hash_.add(content);
@@ -110,10 +110,10 @@ class Planner {
 
   /// A file that cannot be read, or was made from something else, is measured anew.
   bool is_finished(const std::string& key, const std::string& content) const {
-    if (options_.worker || options_.fresh || !std::filesystem::exists(report::cell_path(options_.out, key)))
+    if (options_.worker || options_.fresh || !std::filesystem::exists(records::cell_path(options_.out, key)))
       return false;
     try {
-      return report::read_cell(options_.out, key).content == content;
+      return records::read_cell(options_.out, key).content == content;
     } catch (const Error&) {
       return false;
     }
@@ -129,6 +129,8 @@ class Planner {
 
 }  // namespace
 
-RunPlan make_plan(const RunOptions& options, const std::string& renderer) { return Planner(options, renderer).plan(); }
+RunPlan make_plan(const options::RunOptions& options, const std::string& renderer) {
+  return Planner(options, renderer).plan();
+}
 
 }  // namespace shadowbench::run

@@ -4,23 +4,23 @@
 #include <string>
 #include <vector>
 
-#include "harness/run/options.h"
-#include "harness/run/scene_measurement.h"
+#include "harness/measure/scene_measurement.h"
+#include "harness/options/options.h"
 #include "harness/scene/scene.h"
 
 namespace shadowbench::run {
 
 /// A scene as one picture size frames it, with what the command line called it.
 struct PlannedScene {
-  RunOptions options;    ///< of the run, with one picture size
-  std::string argument;  ///< name or path
+  options::RunOptions options;  ///< of the run, with one picture size
+  std::string argument;         ///< name or path
   scene::Scene scene;
 };
 
 /// The cells of one view through one shadow map that this run is to hold.
 struct PlannedTask {
   std::size_t scene = 0;              ///< index into RunPlan::scenes
-  SceneTask task;                     ///< its filters are those still to be measured
+  measure::SceneTask task;            ///< its filters are those still to be measured
   std::vector<std::string> keys;      ///< of all its cells, measured or not
   std::vector<std::string> contents;  ///< of those still to be measured; see name_cell_content()
 };
@@ -39,6 +39,6 @@ struct RunPlan {
 /// its content; with grids, which need every image of their view, only where all of the view's cells are finished.
 /// Throws Error for a scene that cannot be loaded, a view that no scene has, scenes or cells of one name, a shard of
 /// nothing.
-RunPlan make_plan(const RunOptions& options, const std::string& renderer);
+RunPlan make_plan(const options::RunOptions& options, const std::string& renderer);
 
 }  // namespace shadowbench::run

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/scene/framing.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::run {
 
-scene::Scene load_scene(const RunOptions& options, const std::string& argument) {
+scene::Scene load_scene(const options::RunOptions& options, const std::string& argument) {
   scene::LoadOptions load;
   load.scenes_folder = options.resources.scenes;
   load.ground = options.ground;
@@ -23,7 +23,7 @@ scene::Scene load_scene(const RunOptions& options, const std::string& argument) 
   return scene;
 }
 
-std::vector<scene::Scene> load_scenes(const RunOptions& options) {
+std::vector<scene::Scene> load_scenes(const options::RunOptions& options) {
   std::vector<scene::Scene> scenes;
   for (const std::string& argument : options.scenes) {
     scene::Scene scene = load_scene(options, argument);

@@ -6,23 +6,24 @@
 
 #include <algorithm>
 
+#include "harness/measure/stability.h"
 #include "harness/run/run_facts.h"
-#include "harness/run/stability.h"
-#include "report/attribution_picture.h"
-#include "report/diverging.h"
-#include "report/file_name.h"
-#include "report/grid.h"
-#include "report/picture_io.h"
-#include "report/summary.h"
+#include "report/analysis/summary.h"
+#include "report/files/file_name.h"
+#include "report/images/attribution_picture.h"
+#include "report/images/diverging.h"
+#include "report/images/grid.h"
+#include "report/images/picture_io.h"
+#include "report/records/format.h"
 
 namespace shadowbench::run {
 namespace {
 
-report::Metadata describe(const RunOptions& options, const SceneTask& task, const gl::GlInfo& info) {
+images::Metadata describe(const options::RunOptions& options, const measure::SceneTask& task, const gl::GlInfo& info) {
   const scene::Camera& camera = *task.camera;
   const scene::Light& light = task.scene->light;
   const auto text = [](const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
-  report::Metadata metadata;
+  images::Metadata metadata;
   metadata["shadowbench:command"] = fmt::format("{}", fmt::join(options.command, " "));
   metadata["shadowbench:commit"] = build_commit();
   metadata["shadowbench:scene"] = task.scene->name;
@@ -40,63 +41,65 @@ report::Metadata describe(const RunOptions& options, const SceneTask& task, cons
   return metadata;
 }
 
-std::string caption(const report::CellRecord& cell, const report::GlRecord& gl) {
-  std::string text = report::describe_params(cell.params);
+std::string caption(const records::CellRecord& cell, const records::GlRecord& gl) {
+  std::string text = records::describe_params(cell.params);
   if (!cell.time_ms.lookup) return text;
   if (!text.empty()) text += " · ";
-  text += fmt::format("lookup {} ms", report::format_number(cell.time_ms.lookup->median));
+  text += fmt::format("lookup {} ms", records::format_number(cell.time_ms.lookup->median));
   if (cell.time_ms.prefilter)
-    text += fmt::format(" + prefilter {} ms", report::format_number(cell.time_ms.prefilter->median));
+    text += fmt::format(" + prefilter {} ms", records::format_number(cell.time_ms.prefilter->median));
   text += gl.software ? " (CPU)" : " (GPU)";
-  if (cell.error.rmse) text += fmt::format(" · RMSE {}", report::format_number(*cell.error.rmse));
+  if (cell.error.rmse) text += fmt::format(" · RMSE {}", records::format_number(*cell.error.rmse));
   return text;
 }
 
-report::Rect choose_crop(const RunOptions& options, const std::vector<MeasuredCell>& cells) {
-  std::vector<const report::Image*> visibility;
+images::Rect choose_crop(const options::RunOptions& options, const std::vector<measure::MeasuredCell>& cells) {
+  std::vector<const images::Image*> visibility;
   std::size_t reference = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     visibility.push_back(&cells[i].visibility);
     if (cells[i].record.filter == "none") reference = i;
   }
-  return report::find_hardest_edge(visibility, reference, report::choose_crop_size({options.width, options.height}));
+  return images::find_hardest_edge(visibility, reference, images::choose_crop_size({options.width, options.height}));
 }
 
 /// The truth comes first: what every filter would like to look like.
-std::vector<report::GridTile> make_truth_tiles(const SceneTask& task, const SceneTruth& truth) {
+std::vector<images::GridTile> make_truth_tiles(const measure::SceneTask& task, const measure::SceneTruth& truth) {
   if (!truth.absent.empty()) return {};
   const std::string sun =
       fmt::format("rays to a sun of {} degrees, standard error {}",
-                  report::format_number(static_cast<double>(task.scene->light.angular_diameter_deg)),
-                  report::format_number(truth.standard_error));
+                  records::format_number(static_cast<double>(task.scene->light.angular_diameter_deg)),
+                  records::format_number(truth.standard_error));
   return {{"truth, hard", "one ray to the light's centre", truth.hard_picture, truth.hard,
-           make_error_image(truth.hard, truth), ""},
-          {"truth, area", sun, truth.area_picture, truth.area, make_error_image(truth.area, truth), ""}};
+           measure::make_error_image(truth.hard, truth), ""},
+          {"truth, area", sun, truth.area_picture, truth.area, measure::make_error_image(truth.area, truth), ""}};
 }
 
 /// One scale for the pictures of a task, so that they compare; nothing where there are no errors.
-std::optional<double> choose_error_scale(const std::vector<report::GridTile>& tiles) {
-  std::vector<const report::Image*> errors;
-  for (const report::GridTile& tile : tiles)
+std::optional<double> choose_error_scale(const std::vector<images::GridTile>& tiles) {
+  std::vector<const images::Image*> errors;
+  for (const images::GridTile& tile : tiles)
     if (!tile.error.empty()) errors.push_back(&tile.error);
   if (errors.empty()) return std::nullopt;
-  return report::choose_error_scale(errors);
+  return images::choose_error_scale(errors);
 }
 
-report::Grid make_grid(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
-                       const SceneTruth& truth, const report::GlRecord& gl) {
-  report::Grid grid;
+images::Grid make_grid(const options::RunOptions& options, const measure::SceneTask& task,
+                       const measure::SceneMeasurement& measured, const measure::SceneTruth& truth,
+                       const records::GlRecord& gl) {
+  images::Grid grid;
   grid.title =
       task.scene->title.empty() ? task.scene->name : fmt::format("{}: {}", task.scene->name, task.scene->title);
-  grid.subtitle = report::describe_settings(measured.cells.front().record) + " · times: " + report::describe_clock(gl);
-  const std::string coverage = report::describe_coverage(measured.cells.front().record.coverage);
+  grid.subtitle =
+      records::describe_settings(measured.cells.front().record) + " · times: " + records::describe_clock(gl);
+  const std::string coverage = records::describe_coverage(measured.cells.front().record.coverage);
   if (!coverage.empty()) grid.subtitle += " · " + coverage;
   grid.tiles = make_truth_tiles(task, truth);
-  for (const MeasuredCell& cell : measured.cells) {
+  for (const measure::MeasuredCell& cell : measured.cells) {
     grid.tiles.push_back({cell.label, caption(cell.record, gl), cell.picture, cell.visibility,
-                          make_error_image(cell.visibility, truth), cell.record.message,
-                          report::make_attribution_bar(cell.record)});
-    if (!grid.tiles.back().attribution) grid.tiles.back().no_attribution = report::explain_no_attribution(cell.record);
+                          measure::make_error_image(cell.visibility, truth), cell.record.message,
+                          images::make_attribution_bar(cell.record)});
+    if (!grid.tiles.back().attribution) grid.tiles.back().no_attribution = records::explain_no_attribution(cell.record);
   }
   grid.error_scale = choose_error_scale(grid.tiles);
   grid.columns = truth.absent.empty() ? 4 : 3;
@@ -106,15 +109,15 @@ report::Grid make_grid(const RunOptions& options, const SceneTask& task, const S
 
 /// Turns values of the view's pixels into a part of one channel.
 template <class T>
-report::Part make_part(const std::string& name, const SceneTruth& truth, const std::vector<T>& values) {
-  report::Image image(truth.area.width, truth.area.height, 1);
+images::Part make_part(const std::string& name, const measure::SceneTruth& truth, const std::vector<T>& values) {
+  images::Image image(truth.area.width, truth.area.height, 1);
   std::copy(values.begin(), values.end(), image.texels.begin());
   return {name, {"Y"}, std::move(image), false};
 }
 
 /// The truth, how sure it is, and which pixels count for what.
-void add_truth_parts(std::vector<report::Part>& parts, const SceneTruth& truth,
-                     const std::optional<reference::ArtefactMasks>& masks) {
+void add_truth_parts(std::vector<images::Part>& parts, const measure::SceneTruth& truth,
+                     const std::optional<metrics::ArtefactMasks>& masks) {
   parts.push_back({"truth.hard", {"Y"}, truth.hard, false});
   parts.push_back({"truth.area", {"Y"}, truth.area, false});
   parts.push_back(make_part("truth.standard_error", truth, truth.rays.area.standard_error));
@@ -126,114 +129,120 @@ void add_truth_parts(std::vector<report::Part>& parts, const SceneTruth& truth,
   parts.push_back(make_part("truth.mask.contact_gap", truth, masks->contact_gap));
 }
 
-void add_stability_parts(std::vector<report::Part>& parts, const MeasuredCell& cell) {
-  for (const report::StabilityImage& each : report::list_stability_images()) {
-    const report::Image& image = cell.stability.*each.image;
+void add_stability_parts(std::vector<images::Part>& parts, const measure::MeasuredCell& cell) {
+  for (const images::StabilityImage& each : images::list_stability_images()) {
+    const images::Image& image = cell.stability.*each.image;
     if (!image.empty()) parts.push_back({stability_part(cell.label, each), {"Y"}, image, false});
   }
 }
 
-void add_uncertainty_parts(std::vector<report::Part>& parts, const MeasuredCell& cell) {
-  for (const report::UncertaintyImage& each : report::list_uncertainty_images()) {
-    const report::Image& image = cell.uncertainty.*each.image;
+void add_uncertainty_parts(std::vector<images::Part>& parts, const measure::MeasuredCell& cell) {
+  for (const images::UncertaintyImage& each : images::list_uncertainty_images()) {
+    const images::Image& image = cell.uncertainty.*each.image;
     if (!image.empty()) parts.push_back({uncertainty_part(cell.label, each), {"Y"}, image, false});
   }
 }
 
 /// Writes a cell's own pictures; no two labels share a file.
-void write_cell_pictures(const RunOptions& options, const std::string& stem, MeasuredCell& cell) {
+void write_cell_pictures(const options::RunOptions& options, const std::string& stem, measure::MeasuredCell& cell) {
   if (cell.picture.empty()) return;
-  const std::string base = "images/" + stem + "." + report::make_file_stem(cell.label);
+  const std::string base = "images/" + stem + "." + files::make_file_stem(cell.label);
   cell.record.images.picture = base + ".picture.png";
   cell.record.images.visibility = base + ".visibility.png";
-  report::write_picture_png(options.out / *cell.record.images.picture, cell.picture);
-  report::write_grey_png(options.out / *cell.record.images.visibility, cell.visibility);
+  images::write_picture_png(options.out / *cell.record.images.picture, cell.picture);
+  images::write_grey_png(options.out / *cell.record.images.visibility, cell.visibility);
 }
 
 /// Draws a cell's error and its parts, on the scale of its grid.
-void write_attribution(const RunOptions& options, const std::string& stem, MeasuredCell& cell, const SceneTruth& truth,
-                       const report::Grid& grid) {
+void write_attribution(const options::RunOptions& options, const std::string& stem, measure::MeasuredCell& cell,
+                       const measure::SceneTruth& truth, const images::Grid& grid) {
   if (cell.error_parts.empty()) return;
-  report::AttributionPicture picture;
+  images::AttributionPicture picture;
   picture.title = fmt::format("{} on {}: where its error comes from", cell.label, cell.record.scene);
-  picture.subtitle = report::describe_settings(cell.record);
-  picture.total = make_error_image(cell.visibility, truth);
-  picture.total_caption = report::caption_total(cell.record.error);
-  for (std::size_t p = 0; p < report::kErrorParts; ++p) {
+  picture.subtitle = records::describe_settings(cell.record);
+  picture.total = measure::make_error_image(cell.visibility, truth);
+  picture.total_caption = images::caption_total(cell.record.error);
+  for (std::size_t p = 0; p < metrics::kErrorParts; ++p) {
     picture.parts[p] = cell.error_parts[p];
-    picture.captions[p] = report::caption_part(cell.record.attribution.*report::list_error_parts()[p].record);
+    picture.captions[p] = images::caption_part(cell.record.attribution.*records::list_error_parts()[p].record);
   }
   picture.scale = grid.error_scale;
-  cell.record.images.attribution =
-      fmt::format("images/{}.{}.attribution.png", stem, report::make_file_stem(cell.label));
-  report::write_attribution_picture(options.out / *cell.record.images.attribution, picture);
+  cell.record.images.attribution = fmt::format("images/{}.{}.attribution.png", stem, files::make_file_stem(cell.label));
+  images::write_attribution_picture(options.out / *cell.record.images.attribution, picture);
 }
 
 }  // namespace
 
-std::string task_stem(const RunOptions& options, const SceneTask& task) {
+std::string task_stem(const options::RunOptions& options, const measure::SceneTask& task) {
   std::string name = task.scene->name;
   if (task.scene->cameras.size() > 1) name += "." + task.camera->name;
   if (options.map_sizes.size() > 1) name += fmt::format(".map{}", task.map_size);
   if (options.sizes.size() > 1) name += fmt::format(".{}x{}", options.width, options.height);
-  return report::make_file_stem(name);
+  return files::make_file_stem(name);
 }
 
-std::string exr_name(const RunOptions& options, const SceneTask& task) { return task_stem(options, task) + ".exr"; }
+std::string exr_name(const options::RunOptions& options, const measure::SceneTask& task) {
+  return task_stem(options, task) + ".exr";
+}
 
 std::string visibility_part(const std::string& label) { return label + ".visibility"; }
 std::string picture_part(const std::string& label) { return label + ".picture"; }
 
-std::string stability_part(const std::string& label, const report::StabilityImage& image) {
+std::string stability_part(const std::string& label, const images::StabilityImage& image) {
   return fmt::format("{}.stability.{}", label, image.id);
 }
 
-std::string uncertainty_part(const std::string& label, const report::UncertaintyImage& image) {
+std::string uncertainty_part(const std::string& label, const images::UncertaintyImage& image) {
   return fmt::format("{}.{}", label, image.id);
 }
 
-void write_float_images(const RunOptions& options, const SceneTask& task, const SceneMeasurement& measured,
-                        const SceneTruth& truth, const gl::GlInfo& info) {
-  std::vector<report::Part> parts;
-  for (const MeasuredCell& cell : measured.cells) {
+void write_float_images(const options::RunOptions& options, const measure::SceneTask& task,
+                        const measure::SceneMeasurement& measured, const measure::SceneTruth& truth,
+                        const gl::GlInfo& info) {
+  std::vector<images::Part> parts;
+  for (const measure::MeasuredCell& cell : measured.cells) {
     if (cell.visibility.empty()) continue;
     parts.push_back({visibility_part(cell.label), {"Y"}, cell.visibility, false});
     parts.push_back({picture_part(cell.label), {"R", "G", "B"}, cell.picture, true});
     for (std::size_t p = 0; p < cell.error_parts.size(); ++p) {
-      parts.push_back({fmt::format("{}.error.{}", cell.label, report::list_error_parts()[p].id),
+      parts.push_back({fmt::format("{}.error.{}", cell.label, records::list_error_parts()[p].id),
                        {"Y"},
                        cell.error_parts[p],
                        false});
     }
   }
-  for (const MeasuredCell& cell : measured.cells) {
+  for (const measure::MeasuredCell& cell : measured.cells) {
     add_stability_parts(parts, cell);
     add_uncertainty_parts(parts, cell);
   }
   if (truth.absent.empty()) add_truth_parts(parts, truth, measured.masks);
   parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});
-  report::write_exr(options.out / exr_name(options, task), parts, describe(options, task, info));
+  images::write_exr(options.out / exr_name(options, task), parts, describe(options, task, info));
 }
 
-void write_single_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured) {
+void write_single_pictures(const options::RunOptions& options, const measure::SceneTask& task,
+                           measure::SceneMeasurement& measured) {
   const std::string stem = task_stem(options, task);
-  tbb::parallel_for_each(measured.cells, [&](MeasuredCell& cell) { write_cell_pictures(options, stem, cell); });
-  for (MeasuredCell& cell : measured.cells) {
-    write_stability(options, stem, cell);
+  tbb::parallel_for_each(measured.cells,
+                         [&](measure::MeasuredCell& cell) { write_cell_pictures(options, stem, cell); });
+  for (measure::MeasuredCell& cell : measured.cells) {
+    measure::write_stability(options, stem, cell);
     cell.record.absent["images"] = "the run was made with --no-grids";
   }
 }
 
-void write_pictures(const RunOptions& options, const SceneTask& task, SceneMeasurement& measured,
-                    const SceneTruth& truth, const report::GlRecord& gl) {
+void write_pictures(const options::RunOptions& options, const measure::SceneTask& task,
+                    measure::SceneMeasurement& measured, const measure::SceneTruth& truth,
+                    const records::GlRecord& gl) {
   const std::string stem = task_stem(options, task);
   const std::string grid_name = stem + ".grid.png";
-  const report::Grid grid = make_grid(options, task, measured, truth, gl);
-  report::write_grid(options.out / grid_name, grid);
-  tbb::parallel_for_each(measured.cells, [&](MeasuredCell& cell) { write_cell_pictures(options, stem, cell); });
-  for (MeasuredCell& cell : measured.cells) {
+  const images::Grid grid = make_grid(options, task, measured, truth, gl);
+  images::write_grid(options.out / grid_name, grid);
+  tbb::parallel_for_each(measured.cells,
+                         [&](measure::MeasuredCell& cell) { write_cell_pictures(options, stem, cell); });
+  for (measure::MeasuredCell& cell : measured.cells) {
     write_attribution(options, stem, cell, truth, grid);
-    write_stability(options, stem, cell);
+    measure::write_stability(options, stem, cell);
     cell.record.images.grid = grid_name;
     cell.record.images.exr = exr_name(options, task);
     cell.record.images.parts = cell.label;

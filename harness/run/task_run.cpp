@@ -10,7 +10,7 @@
 #include "harness/run/map_output.h"
 #include "harness/run/scene_output.h"
 #include "harness/run/user_filter.h"
-#include "report/json_io.h"
+#include "report/records/json_io.h"
 
 namespace shadowbench::run {
 namespace {
@@ -20,8 +20,8 @@ constexpr std::size_t kFiltersAtOnce = 8;
 
 }  // namespace
 
-TaskRun::TaskRun(Renderer& renderer, const PlannedScene& planned, const PlannedTask& task, SceneAssets& assets,
-                 const report::GlRecord& gl, const TaskListener& listener)
+TaskRun::TaskRun(measure::Renderer& renderer, const PlannedScene& planned, const PlannedTask& task,
+                 measure::SceneAssets& assets, const records::GlRecord& gl, const TaskListener& listener)
     : renderer_(renderer),
       options_(planned.options),
       planned_(planned),
@@ -30,7 +30,7 @@ TaskRun::TaskRun(Renderer& renderer, const PlannedScene& planned, const PlannedT
       gl_(gl),
       listener_(listener) {
   for (std::size_t i = 0; i < task_.filters.size(); ++i)
-    contents_[make_record(options_, task_, task_.filters[i]).key] = task.contents[i];
+    contents_[measure::make_record(options_, task_, task_.filters[i]).key] = task.contents[i];
 }
 
 void TaskRun::run() {
@@ -50,18 +50,18 @@ void TaskRun::run() {
   }
 }
 
-SceneTask TaskRun::task_of(const Requests& requests) const {
+measure::SceneTask TaskRun::task_of(const Requests& requests) const {
   return {task_.scene, task_.camera, task_.map_size, requests};
 }
 
 void TaskRun::run_group(const Requests& built_in, const Requests& of_users) {
-  std::vector<MeasuredCell> user_cells;
+  std::vector<measure::MeasuredCell> user_cells;
   for (const filters::FilterRequest& request : of_users) user_cells.push_back(measure_user_cell(request));
-  SceneMeasurement measured;
+  measure::SceneMeasurement measured;
   if (!built_in.empty())
-    measured =
-        measure_scene(renderer_, options_, task_of(built_in), assets_, [&](const std::string& label) { show(label); });
-  for (MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
+    measured = measure::measure_scene(renderer_, options_, task_of(built_in), assets_,
+                                      [&](const std::string& label) { show(label); });
+  for (measure::MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
   Requests all = built_in;
   all.insert(all.end(), of_users.begin(), of_users.end());
   if (!options_.worker) {
@@ -73,48 +73,49 @@ void TaskRun::run_group(const Requests& built_in, const Requests& of_users) {
   write_cells(measured);
 }
 
-MeasuredCell TaskRun::measure_user_cell(const filters::FilterRequest& request) {
+measure::MeasuredCell TaskRun::measure_user_cell(const filters::FilterRequest& request) {
   show(request.label());
   return measure_user_filter(options_, task_, request, planned_.argument, renderer_.context->info().backend);
 }
 
 /// Says how wrong each cell is, and why.
-void TaskRun::explain(SceneMeasurement& measured) {
+void TaskRun::explain(measure::SceneMeasurement& measured) {
   show("truth");
-  const SceneTruth& truth = assets_.truth(*task_.camera);
-  tbb::parallel_for_each(measured.cells,
-                         [&](MeasuredCell& cell) { score(cell.record, cell.visibility, cell.picture, truth); });
+  const measure::SceneTruth& truth = assets_.truth(*task_.camera);
+  tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
+    measure::score(cell.record, cell.visibility, cell.picture, truth);
+  });
   show("attribution");
   if (!analyser_) analyser_.emplace(renderer_, options_, task_, assets_, truth);
   const auto start = std::chrono::steady_clock::now();
-  for (MeasuredCell& cell : measured.cells) analyser_->analyse(cell);
+  for (measure::MeasuredCell& cell : measured.cells) analyser_->analyse(cell);
   measured.attribution_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   measured.masks = analyser_->masks();
 }
 
 /// Says how the map's texels are spent on the view.
-void TaskRun::cover(SceneMeasurement& measured) {
+void TaskRun::cover(measure::SceneMeasurement& measured) {
   if (!coverage_) {
-    LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
-    const SceneTruth& truth = assets_.truth(*task_.camera);
-    std::optional<ViewReceivers> untraced;
+    measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
+    const measure::SceneTruth& truth = assets_.truth(*task_.camera);
+    std::optional<measure::ViewReceivers> untraced;
     if (truth.receivers.image.points.empty())
-      untraced = read_view_receivers(assets_.gbuffer(*task_.camera), -task_.scene->light.direction_ws);
-    coverage_ = measure_coverage(untraced ? *untraced : truth.receivers, *task_.camera, light.frustum,
-                                 read_linear_depth(light.map));
+      untraced = measure::read_view_receivers(assets_.gbuffer(*task_.camera), -task_.scene->light.direction_ws);
+    coverage_ = measure::measure_coverage(untraced ? *untraced : truth.receivers, *task_.camera, light.frustum,
+                                          measure::read_linear_depth(light.map));
   }
-  for (MeasuredCell& cell : measured.cells) {
+  for (measure::MeasuredCell& cell : measured.cells) {
     cell.record.coverage = coverage_->record;
     if (!coverage_->record.texels_per_pixel) cell.record.absent["coverage"] = "no surface in view faces the light";
   }
 }
 
-void TaskRun::write_images(const SceneTask& task, SceneMeasurement& measured) {
+void TaskRun::write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured) {
   if (!options_.grids && !options_.worker) {
     write_single_pictures(options_, task, measured);
     return;
   }
-  const SceneTruth& truth = assets_.truth(*task.camera);
+  const measure::SceneTruth& truth = assets_.truth(*task.camera);
   if (!options_.worker) {
     write_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size).frustum);
     write_pictures(options_, task, measured, truth, gl_);
@@ -123,18 +124,18 @@ void TaskRun::write_images(const SceneTask& task, SceneMeasurement& measured) {
   write_float_images(options_, task, measured, truth, renderer_.context->info());
 }
 
-void TaskRun::draw_border_page(const SceneTask& task) {
+void TaskRun::draw_border_page(const measure::SceneTask& task) {
   const std::filesystem::path file = options_.out / (task_stem(options_, task) + ".borders.png");
-  SceneTask built_in = task;
+  measure::SceneTask built_in = task;
   std::erase_if(built_in.filters, [&](const auto& request) { return request.user_file && !options_.worker; });
   write_border_page(file, renderer_, options_, built_in, assets_);
   listener_.note("border page: " + file.string());
 }
 
-void TaskRun::write_cells(SceneMeasurement& measured) {
-  for (MeasuredCell& cell : measured.cells) {
+void TaskRun::write_cells(measure::SceneMeasurement& measured) {
+  for (measure::MeasuredCell& cell : measured.cells) {
     cell.record.content = contents_.at(cell.record.key);
-    report::write_cell(options_.out, cell.record);
+    records::write_cell(options_.out, cell.record);
   }
   listener_.finished(measured);
 }

@@ -6,27 +6,27 @@
 #include <string>
 #include <vector>
 
-#include "harness/run/cell_analysis.h"
-#include "harness/run/map_coverage.h"
+#include "harness/measure/cell_analysis.h"
+#include "harness/measure/map_coverage.h"
+#include "harness/measure/scene_assets.h"
 #include "harness/run/run_plan.h"
-#include "harness/run/scene_assets.h"
-#include "report/records.h"
+#include "report/records/records.h"
 
 namespace shadowbench::run {
 
 /// Is told how a task gets on.
 struct TaskListener {
-  std::function<void(const std::string& what)> show;               ///< what is under way
-  std::function<void(const std::string& message)> note;            ///< something the user should know, once
-  std::function<void(const SceneMeasurement& measured)> finished;  ///< cells that were written
+  std::function<void(const std::string& what)> show;                        ///< what is under way
+  std::function<void(const std::string& message)> note;                     ///< something the user should know, once
+  std::function<void(const measure::SceneMeasurement& measured)> finished;  ///< cells that were written
 };
 
 /// Measures the cells of one task that are still to be measured, and writes them.
 class TaskRun {
  public:
   /// Everything must outlive this object.
-  TaskRun(Renderer& renderer, const PlannedScene& planned, const PlannedTask& task, SceneAssets& assets,
-          const report::GlRecord& gl, const TaskListener& listener);
+  TaskRun(measure::Renderer& renderer, const PlannedScene& planned, const PlannedTask& task,
+          measure::SceneAssets& assets, const records::GlRecord& gl, const TaskListener& listener);
 
   /// With grids all cells are measured, drawn and written together; without, a few at a time, each written as soon as
   /// it is finished. Users' filters come first, so that a mistake in one is heard of at once. Throws Error; cells
@@ -36,25 +36,25 @@ class TaskRun {
  private:
   using Requests = std::vector<filters::FilterRequest>;
 
-  Renderer& renderer_;
-  const RunOptions& options_;
+  measure::Renderer& renderer_;
+  const options::RunOptions& options_;
   const PlannedScene& planned_;
-  const SceneTask& task_;
-  SceneAssets& assets_;
-  const report::GlRecord& gl_;
+  const measure::SceneTask& task_;
+  measure::SceneAssets& assets_;
+  const records::GlRecord& gl_;
   const TaskListener& listener_;
   std::map<std::string, std::string> contents_;  ///< by key
-  std::optional<CellAnalyser> analyser_;
-  std::optional<MapCoverage> coverage_;
+  std::optional<measure::CellAnalyser> analyser_;
+  std::optional<measure::MapCoverage> coverage_;
 
   void run_group(const Requests& built_in, const Requests& of_users);
-  SceneTask task_of(const Requests& requests) const;
-  MeasuredCell measure_user_cell(const filters::FilterRequest& request);
-  void explain(SceneMeasurement& measured);
-  void cover(SceneMeasurement& measured);
-  void write_images(const SceneTask& task, SceneMeasurement& measured);
-  void draw_border_page(const SceneTask& task);
-  void write_cells(SceneMeasurement& measured);
+  measure::SceneTask task_of(const Requests& requests) const;
+  measure::MeasuredCell measure_user_cell(const filters::FilterRequest& request);
+  void explain(measure::SceneMeasurement& measured);
+  void cover(measure::SceneMeasurement& measured);
+  void write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured);
+  void draw_border_page(const measure::SceneTask& task);
+  void write_cells(measure::SceneMeasurement& measured);
   void show(const std::string& what) const;
 };
 

@@ -7,9 +7,9 @@
 #include <limits>
 #include <optional>
 
+#include "harness/measure/filter_setup.h"
+#include "harness/measure/scene_assets.h"
 #include "harness/render/filter_passes.h"
-#include "harness/run/filter_setup.h"
-#include "harness/run/scene_assets.h"
 
 namespace shadowbench::run {
 namespace {
@@ -31,11 +31,12 @@ double find_quickest_ms(gl::TimerKind timer, const std::function<void()>& work) 
   return quickest;
 }
 
-RoundTime draw_round(Renderer& renderer, const PlannedScene& planned, const SceneTask& task, SceneAssets& assets) {
-  const RunOptions& options = planned.options;
-  LightMap& light = assets.light_map(*task.camera, task.map_size);
+RoundTime draw_round(measure::Renderer& renderer, const PlannedScene& planned, const measure::SceneTask& task,
+                     measure::SceneAssets& assets) {
+  const options::RunOptions& options = planned.options;
+  measure::LightMap& light = assets.light_map(*task.camera, task.map_size);
   render::GBuffer& gbuffer = assets.gbuffer(*task.camera);
-  const auto reference = make_filter_passes(renderer, options, planned.scene, light, options.reference);
+  const auto reference = measure::make_filter_passes(renderer, options, planned.scene, light, options.reference);
   render::ImageTarget target("probed visibility", GL_R32F, options.width, options.height);
   return {find_quickest_ms(renderer.timer, [&] { assets.redraw(light); }),
           find_quickest_ms(renderer.timer, [&] { reference->lookup(gbuffer, light.map, target); })};
@@ -44,7 +45,8 @@ RoundTime draw_round(Renderer& renderer, const PlannedScene& planned, const Scen
 /// Draws the planned tasks scene by scene until that has taken long enough.
 class Probe {
  public:
-  Probe(Renderer& renderer, const RunPlan& plan, TruthCache& cache) : renderer_(renderer), plan_(plan), cache_(cache) {}
+  Probe(measure::Renderer& renderer, const RunPlan& plan, measure::TruthCache& cache)
+      : renderer_(renderer), plan_(plan), cache_(cache) {}
 
   TimeFloor run() {
     for (std::size_t scene = 0; scene < plan_.scenes.size(); ++scene) add_scene(scene);
@@ -56,9 +58,9 @@ class Probe {
  private:
   using Clock = std::chrono::steady_clock;
 
-  Renderer& renderer_;
+  measure::Renderer& renderer_;
   const RunPlan& plan_;
-  TruthCache& cache_;
+  measure::TruthCache& cache_;
   Clock::time_point start_ = Clock::now();
   double drawn_ms_ = 0.0;
   std::size_t left_cells_ = 0;
@@ -72,15 +74,15 @@ class Probe {
 
   void add_scene(std::size_t scene) {
     const PlannedScene& planned = plan_.scenes[scene];
-    const RunOptions& options = planned.options;
-    std::optional<SceneAssets> assets;
+    const options::RunOptions& options = planned.options;
+    std::optional<measure::SceneAssets> assets;
     for (const PlannedTask& each : plan_.tasks) {
       if (each.scene != scene || each.task.filters.empty()) continue;
       if (!is_time_left()) {
         left_cells_ += each.task.filters.size();
         continue;
       }
-      if (!assets) assets.emplace(renderer_, options, planned.scene, cache_, padding_texels(options));
+      if (!assets) assets.emplace(renderer_, options, planned.scene, cache_, measure::padding_texels(options));
       const RoundTime round = draw_round(renderer_, planned, each.task, *assets);
       drawn_ms_ += rounds() * round.of_cells_ms(each.task.filters.size());
       if (round.lookup_ms < quickest_.lookup_ms) quickest_ = {0.0, round.lookup_ms};
@@ -90,7 +92,7 @@ class Probe {
 
 }  // namespace
 
-TimeFloor probe_time_floor(Renderer& renderer, const RunPlan& plan, TruthCache& cache) {
+TimeFloor probe_time_floor(measure::Renderer& renderer, const RunPlan& plan, measure::TruthCache& cache) {
   assert(!plan.scenes.empty() && plan.scenes.front().options.rounds.is_fixed());
   return Probe(renderer, plan, cache).run();
 }

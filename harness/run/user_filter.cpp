@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <system_error>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/gl/pixel_format.h"
 #include "harness/run/scene_output.h"
 #include "harness/run/worker_process.h"
-#include "report/json_io.h"
-#include "report/picture_io.h"
-#include "report/temporary_files.h"
+#include "report/files/temporary_files.h"
+#include "report/images/picture_io.h"
+#include "report/records/json_io.h"
 
 namespace shadowbench::run {
 namespace {
@@ -44,12 +44,12 @@ std::string request_text(const filters::FilterRequest& request) {
   return text;
 }
 
-std::vector<std::string> round_arguments(const RoundLimits& limits) {
+std::vector<std::string> round_arguments(const options::RoundLimits& limits) {
   if (limits.is_fixed()) return {"--rounds", fmt::format("{}", limits.most)};
   return {"--precision", fmt::format("{}", limits.precision), "--budget", fmt::format("{}", 1e-3 * limits.budget_ms)};
 }
 
-std::vector<std::string> worker_arguments(const RunOptions& options, const SceneTask& task,
+std::vector<std::string> worker_arguments(const options::RunOptions& options, const measure::SceneTask& task,
                                           const filters::FilterRequest& request, const std::string& scene_argument,
                                           const std::string& backend, const std::filesystem::path& folder) {
   std::vector<std::string> arguments = {"run",           "--worker",
@@ -62,7 +62,7 @@ std::vector<std::string> worker_arguments(const RunOptions& options, const Scene
                                         "--fit",         std::string(scene::name_of(options.fit)),
                                         "--snap",        options.snap ? "on" : "off",
                                         "--map-format",  std::string(gl::pixel_format(options.map.format).name),
-                                        "--pad-texels",  fmt::format("{}", padding_texels(options)),
+                                        "--pad-texels",  fmt::format("{}", measure::padding_texels(options)),
                                         "--border",      filters::to_string(options.range.border),
                                         "--far-test",    options.range.far_test ? "on" : "off",
                                         "--behind-test", options.range.behind_test ? "on" : "off",
@@ -80,7 +80,7 @@ std::vector<std::string> worker_arguments(const RunOptions& options, const Scene
   }
   if (options.light) {
     arguments.push_back("--light");
-    arguments.push_back(describe_light(*options.light));
+    arguments.push_back(measure::describe_light(*options.light));
   }
   if (!options.lights.empty()) {
     arguments.push_back("--lights");
@@ -102,17 +102,17 @@ std::string clean(const std::string& text) {
   return message.empty() ? "no message" : message;
 }
 
-MeasuredCell failed_cell(const RunOptions& options, const SceneTask& task, const filters::FilterRequest& request,
-                         const WorkerOutcome& outcome) {
-  MeasuredCell cell;
-  cell.record = make_record(options, task, request);
+measure::MeasuredCell failed_cell(const options::RunOptions& options, const measure::SceneTask& task,
+                                  const filters::FilterRequest& request, const WorkerOutcome& outcome) {
+  measure::MeasuredCell cell;
+  cell.record = measure::make_record(options, task, request);
   cell.request = request;
   cell.label = request.label();
   if (outcome.timed_out) {
-    cell.record.status = report::CellStatus::kTimeout;
+    cell.record.status = records::CellStatus::kTimeout;
     cell.record.message = fmt::format("not finished after {:g} s (--cell-timeout)", options.cell_timeout_s);
   } else {
-    cell.record.status = report::CellStatus::kCrashed;
+    cell.record.status = records::CellStatus::kCrashed;
     cell.record.message =
         outcome.signal ? fmt::format("killed by signal {} ({})", outcome.signal, strsignal(outcome.signal))
                        : fmt::format("ended with exit code {}: {}", *outcome.exit_code, clean(outcome.error_text));
@@ -122,23 +122,23 @@ MeasuredCell failed_cell(const RunOptions& options, const SceneTask& task, const
   return cell;
 }
 
-MeasuredCell read_cell(const RunOptions& options, const SceneTask& task, const filters::FilterRequest& request,
-                       const std::filesystem::path& folder) {
-  MeasuredCell cell;
+measure::MeasuredCell read_cell(const options::RunOptions& options, const measure::SceneTask& task,
+                                const filters::FilterRequest& request, const std::filesystem::path& folder) {
+  measure::MeasuredCell cell;
   cell.request = request;
   cell.label = request.label();
-  cell.record = report::read_cell(folder, make_record(options, task, request).key);
+  cell.record = records::read_cell(folder, measure::make_record(options, task, request).key);
   cell.record.images = {};
-  RunOptions of_worker = options;
+  options::RunOptions of_worker = options;
   of_worker.map_sizes = {task.map_size};
   of_worker.sizes = {{options.width, options.height}};
-  const report::ExrFile file = report::read_exr(folder / exr_name(of_worker, task));
-  for (const report::Part& part : file.parts) {
+  const images::ExrFile file = images::read_exr(folder / exr_name(of_worker, task));
+  for (const images::Part& part : file.parts) {
     if (part.name == visibility_part(cell.label)) cell.visibility = part.image;
     if (part.name == picture_part(cell.label)) cell.picture = part.image;
-    for (const report::UncertaintyImage& each : report::list_uncertainty_images())
+    for (const images::UncertaintyImage& each : images::list_uncertainty_images())
       if (part.name == uncertainty_part(cell.label, each)) cell.uncertainty.*each.image = part.image;
-    for (const report::StabilityImage& each : report::list_stability_images())
+    for (const images::StabilityImage& each : images::list_stability_images())
       if (part.name == stability_part(cell.label, each)) cell.stability.*each.image = part.image;
   }
   return cell;
@@ -146,10 +146,10 @@ MeasuredCell read_cell(const RunOptions& options, const SceneTask& task, const f
 
 }  // namespace
 
-MeasuredCell measure_user_filter(const RunOptions& options, const SceneTask& task,
-                                 const filters::FilterRequest& request, const std::string& scene_argument,
-                                 const std::string& backend) {
-  const TemporaryFolder folder(report::make_temporary_folder_path(options.out, "worker"));
+measure::MeasuredCell measure_user_filter(const options::RunOptions& options, const measure::SceneTask& task,
+                                          const filters::FilterRequest& request, const std::string& scene_argument,
+                                          const std::string& backend) {
+  const TemporaryFolder folder(files::make_temporary_folder_path(options.out, "worker"));
   const WorkerOutcome outcome = run_worker(
       worker_arguments(options, task, request, scene_argument, backend, folder.path()), options.cell_timeout_s);
   if (outcome.exit_code == 0) return read_cell(options, task, request, folder.path());

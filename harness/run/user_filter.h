@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "harness/run/options.h"
-#include "harness/run/scene_measurement.h"
+#include "harness/measure/scene_measurement.h"
+#include "harness/options/options.h"
 
 namespace shadowbench::run {
 
@@ -12,8 +12,8 @@ namespace shadowbench::run {
 ///
 /// Returns the cell; its status says `timeout` or `crashed` where the process did not finish.
 /// Throws Error(kFilter) for the filter's GLSL, with the worker's message, and what else the worker refuses.
-MeasuredCell measure_user_filter(const RunOptions& options, const SceneTask& task,
-                                 const filters::FilterRequest& request, const std::string& scene_argument,
-                                 const std::string& backend);
+measure::MeasuredCell measure_user_filter(const options::RunOptions& options, const measure::SceneTask& task,
+                                          const filters::FilterRequest& request, const std::string& scene_argument,
+                                          const std::string& backend);
 
 }  // namespace shadowbench::run

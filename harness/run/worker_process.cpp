@@ -13,7 +13,7 @@
 #include <csignal>
 #include <cstring>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 
 extern char** environ;
 

@@ -8,10 +8,10 @@
 #include <optional>
 #include <utility>
 
-#include "filters/error.h"
-#include "filters/nearest_name.h"
+#include "filters/base/error.h"
+#include "filters/base/nearest_name.h"
+#include "harness/scene/files/model.h"
 #include "harness/scene/framing.h"
-#include "harness/scene/model.h"
 #include "harness/scene/scene_file.h"
 #include "harness/scene/validate.h"
 

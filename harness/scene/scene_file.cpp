@@ -4,10 +4,10 @@
 
 #include <utility>
 
-#include "filters/nearest_name.h"
+#include "filters/base/nearest_name.h"
+#include "harness/scene/files/model.h"
 #include "harness/scene/framing.h"
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/model.h"
 #include "harness/scene/scene_object.h"
 #include "harness/scene/toml_reader.h"
 #include "harness/scene/validate.h"

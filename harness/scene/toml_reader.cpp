@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <sstream>
 
-#include "filters/nearest_name.h"
-#include "filters/toml_depth.h"
-#include "harness/scene/file_bytes.h"
+#include "filters/base/nearest_name.h"
+#include "filters/base/toml_depth.h"
+#include "harness/scene/files/file_bytes.h"
 
 namespace shadowbench::scene {
 namespace {

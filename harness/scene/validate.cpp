@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/scene/mesh_tools.h"
 
 namespace shadowbench::scene {

@@ -7,8 +7,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "filters/error.h"
-#include "filters/nearest_name.h"
+#include "filters/base/error.h"
+#include "filters/base/nearest_name.h"
 
 namespace shadowbench::stress {
 namespace {

@@ -10,9 +10,9 @@
 
 namespace shadowbench::stress {
 
-using Range = report::StressRange;
-using Exhibit = report::StressExhibit;
-using TheoryKind = report::StressTheoryKind;
+using Range = records::StressRange;
+using Exhibit = records::StressExhibit;
+using TheoryKind = records::StressTheoryKind;
 
 /// How an axis is sampled, and how values are drawn.
 enum class Scale { kLinear, kLog };
@@ -39,8 +39,8 @@ struct Theory {
 /// What a theory was measured against: the first value with the verdict that it predicts.
 struct Disagreement {
   const Theory& theory;
-  std::optional<double> measured;    ///< empty: nowhere in the range
-  const report::StressCase& record;  ///< everything that was observed
+  std::optional<double> measured;     ///< empty: nowhere in the range
+  const records::StressCase& record;  ///< everything that was observed
 };
 
 /// One filter in one variant on an axis.
@@ -54,7 +54,7 @@ struct Case {
   /// null.
   std::function<std::string(const Disagreement&)> explain;
   /// Says what else a record shows, and why, where its numbers bear that out; printed with the axis. May be null.
-  std::function<std::vector<std::string>(const report::StressCase&)> remark;
+  std::function<std::vector<std::string>(const records::StressCase&)> remark;
   /// Null where `not_available` says why. An Error thrown at the first value makes the case not available; later ones
   /// count as broken there.
   std::function<Observation(double)> observe;

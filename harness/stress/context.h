@@ -6,21 +6,22 @@
 #include <vector>
 
 #include "filters/catalogue.h"
-#include "harness/run/options.h"
-#include "harness/run/progress.h"
-#include "harness/run/renderer.h"
+#include "harness/measure/renderer.h"
+#include "harness/options/options.h"
+#include "harness/options/progress.h"
 
 namespace shadowbench::stress {
 
 /// What axes make their cases from. Outlives all cases.
 struct StressContext {
-  run::Renderer* renderer = nullptr;  ///< null: no GL (tests of scalar cases); GL cases are reported as not available
-  run::Resources resources;
+  measure::Renderer* renderer =
+      nullptr;  ///< null: no GL (tests of scalar cases); GL cases are reported as not available
+  options::Resources resources;
   std::vector<filters::FilterRequest> filters;  ///< the chosen ones, each with its parameter values
   std::uint32_t seed = 1;
-  std::filesystem::path cache;        ///< for traced truth; empty: nothing is kept
-  std::filesystem::path out;          ///< where exhibits write their pictures
-  run::Progress* progress = nullptr;  ///< for exhibits' notes; may be null
+  std::filesystem::path cache;            ///< for traced truth; empty: nothing is kept
+  std::filesystem::path out;              ///< where exhibits write their pictures
+  options::Progress* progress = nullptr;  ///< for exhibits' notes; may be null
 };
 
 /// Names the parameter of a filter that an axis drives, from what the front matter declares; empty: not for this

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/run/bias_rule.h"
-#include "harness/scene/light_fit.h"
+#include "harness/render/bias_rule.h"
+#include "harness/scene/lights/light_fit.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::stress {
@@ -76,7 +76,7 @@ void SceneDrawer::prepare(const render::LightSetup& light) {
 
 Drawing SceneDrawer::draw(const scene::Scene& scene) {
   const scene::LightFrustum frustum = fit(scene);
-  const render::Bias bias = run::resolve_bias({}, frustum, request_.spec, request_.values);
+  const render::Bias bias = render::resolve_bias({}, frustum, request_.spec, request_.values);
   prepare(render::make_light_setup(frustum, scene.light, bias, seed_));
   const render::Geometry geometry(scene);
   stage_->map.draw(shaders_, geometry, frustum);

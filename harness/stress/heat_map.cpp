@@ -7,14 +7,14 @@
 #include <cmath>
 #include <optional>
 
-#include "report/diverging.h"
-#include "report/figure.h"
-#include "report/picture_io.h"
+#include "report/images/diverging.h"
+#include "report/images/figure.h"
+#include "report/images/picture_io.h"
 
 namespace shadowbench::stress {
 namespace {
 
-constexpr report::Size kPlot{880, 480};
+constexpr images::Size kPlot{880, 480};
 constexpr int kLeft = 76;  // room for the ticks of y
 constexpr int kTick = 6, kBar = 16, kBarWidth = 320;
 constexpr int kPen = 3;  // width of the curve
@@ -28,11 +28,11 @@ class Drawing {
  public:
   explicit Drawing(const HeatMap& map)
       : map_(map),
-        line_(report::figure_line_height()),
+        line_(images::figure_line_height()),
         figure_(map.title, map.note, {kLeft + kPlot.width + line_, kPlot.height + 6 * line_ + kTick + kBar}),
         plot_{figure_.body().x + kLeft, figure_.body().y + line_ + line_ / 2, kPlot.width, kPlot.height} {}
 
-  report::Image draw() {
+  images::Image draw() {
     place_values();
     draw_curve();
     draw_ticks();
@@ -43,8 +43,8 @@ class Drawing {
  private:
   const HeatMap& map_;
   int line_;
-  report::Figure figure_;
-  report::Rect plot_;
+  images::Figure figure_;
+  images::Rect plot_;
 
   int x_of(double value) const {
     return plot_.x + static_cast<int>(std::lround(place(map_.x, value) * (plot_.width - 1)));
@@ -54,12 +54,12 @@ class Drawing {
   }
 
   void place_values() {
-    const report::Image& values = map_.values;
-    report::Image colors(plot_.width, plot_.height, 3);
+    const images::Image& values = map_.values;
+    images::Image colors(plot_.width, plot_.height, 3);
     for (int y = 0; y < plot_.height; ++y) {
       for (int x = 0; x < plot_.width; ++x) {
         const float value = *values.at(x * values.width / plot_.width, y * values.height / plot_.height);
-        std::ranges::copy(report::map_diverging(value, static_cast<float>(map_.scale)), colors.at(x, y));
+        std::ranges::copy(images::map_diverging(value, static_cast<float>(map_.scale)), colors.at(x, y));
       }
     }
     figure_.place(plot_.x, plot_.y, colors);
@@ -74,7 +74,7 @@ class Drawing {
       const bool inside = value <= map_.y.range.high;
       const int y = inside ? y_of(value) : plot_.y;
       const int top = std::min(y, before.value_or(y)), bottom = std::max(y, before.value_or(y));
-      figure_.fill({x - kPen / 2, top - kPen / 2, kPen, bottom - top + kPen}, report::kFigureInk);
+      figure_.fill({x - kPen / 2, top - kPen / 2, kPen, bottom - top + kPen}, images::kFigureInk);
       if (!inside) return;
       before = y;
     }
@@ -83,40 +83,40 @@ class Drawing {
   void draw_ticks() {
     figure_.write(figure_.body().x, figure_.body().y, map_.y.label);
     for (const double tick : map_.y.ticks) {
-      figure_.fill({plot_.x - kTick, y_of(tick), kTick, 1}, report::kFigureSecondInk);
+      figure_.fill({plot_.x - kTick, y_of(tick), kTick, 1}, images::kFigureSecondInk);
       figure_.write_before(plot_.x - 2 * kTick, y_of(tick) - line_ / 2, fmt::format("{:g}", tick));
     }
     const int under = plot_.y + plot_.height;
     for (const double tick : map_.x.ticks) {
-      figure_.fill({x_of(tick), under, 1, kTick}, report::kFigureSecondInk);
+      figure_.fill({x_of(tick), under, 1, kTick}, images::kFigureSecondInk);
       figure_.write_centred(x_of(tick), under + kTick, fmt::format("{:g}", tick));
     }
     figure_.write_centred(plot_.x + plot_.width / 2, under + kTick + line_, map_.x.label);
   }
 
   void draw_legend(int top) {
-    report::Image ramp(kBarWidth, kBar, 3);
+    images::Image ramp(kBarWidth, kBar, 3);
     for (int y = 0; y < kBar; ++y)
       for (int x = 0; x < kBarWidth; ++x)
-        std::ranges::copy(report::map_diverging(static_cast<float>(x) / (kBarWidth - 1), 1.0f), ramp.at(x, y));
+        std::ranges::copy(images::map_diverging(static_cast<float>(x) / (kBarWidth - 1), 1.0f), ramp.at(x, y));
     figure_.place(plot_.x, top, ramp);
     figure_.write(plot_.x + kBarWidth + line_, top + (kBar - line_) / 2, map_.quantity);
     figure_.write_centred(plot_.x, top + kBar, "0");
     figure_.write_centred(plot_.x + kBarWidth, top + kBar, fmt::format("{:g}", map_.scale));
-    figure_.fill({plot_.x, top + kBar + line_ + line_ / 2, 3 * line_, kPen}, report::kFigureInk);
+    figure_.fill({plot_.x, top + kBar + line_ + line_ / 2, 3 * line_, kPen}, images::kFigureInk);
     figure_.write(plot_.x + 4 * line_, top + kBar + line_, "theory");
   }
 };
 
 }  // namespace
 
-report::Image draw_heat_map(const HeatMap& map) {
+images::Image draw_heat_map(const HeatMap& map) {
   assert(map.values.channels == 1 && map.curve);
   return Drawing(map).draw();
 }
 
 void write_heat_map(const std::filesystem::path& path, const HeatMap& map) {
-  report::write_display_png(path, draw_heat_map(map));
+  images::write_display_png(path, draw_heat_map(map));
 }
 
 }  // namespace shadowbench::stress

@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "report/image.h"
-#include "report/stress_record.h"
+#include "report/images/image.h"
+#include "report/records/stress_record.h"
 
 namespace shadowbench::stress {
 
 /// One axis of a heat map, linear.
 struct HeatAxis {
   std::string label;  ///< quantity and unit
-  report::StressRange range;
+  records::StressRange range;
   std::vector<double> ticks;
 };
 
@@ -24,13 +24,13 @@ struct HeatMap {
   std::string quantity;  ///< what the colours mean
   HeatAxis x;
   HeatAxis y;                           ///< upwards
-  report::Image values;                 ///< 1 channel, [0, scale]; row 0 is the highest y
+  images::Image values;                 ///< 1 channel, [0, scale]; row 0 is the highest y
   double scale = 1.0;                   ///< the value with the full colour
   std::function<double(double)> curve;  ///< y of x
 };
 
 /// Draws a heat map: a value of 0 is nearly white.
-report::Image draw_heat_map(const HeatMap& map);
+images::Image draw_heat_map(const HeatMap& map);
 
 /// Writes it as a PNG. Throws Error(kOutput).
 void write_heat_map(const std::filesystem::path& path, const HeatMap& map);

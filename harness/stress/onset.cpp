@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 
 namespace shadowbench::stress {
 namespace {
@@ -41,8 +41,8 @@ class Observer {
     return seen_.emplace(value, observe(value)).first->second;
   }
 
-  std::vector<report::StressSample> samples() const {
-    std::vector<report::StressSample> samples;
+  std::vector<records::StressSample> samples() const {
+    std::vector<records::StressSample> samples;
     for (const auto& [value, seen] : seen_) samples.push_back({value, seen.verdict, seen.measured, seen.why});
     return samples;
   }
@@ -73,17 +73,17 @@ class Search {
   }
 
   /// Finds the first value, in the direction of the search, with this verdict or a worse one.
-  std::optional<report::StressOnset> find_first(Verdict verdict) {
+  std::optional<records::StressOnset> find_first(Verdict verdict) {
     const auto first =
         std::ranges::find_if(coarse_, [&](double value) { return observer_.at(value).verdict >= verdict; });
     if (first == coarse_.end()) return std::nullopt;
-    if (first == coarse_.begin()) return report::StressOnset{*first, std::nullopt, observer_.at(*first).why};
+    if (first == coarse_.begin()) return records::StressOnset{*first, std::nullopt, observer_.at(*first).why};
     double before = *(first - 1), with = *first;
     for (int i = 0; i < kMostHalvings && !is_narrow(before, with); ++i) {
       const double middle = halve(before, with);
       (observer_.at(middle).verdict >= verdict ? with : before) = middle;
     }
-    return report::StressOnset{with, before, observer_.at(with).why};
+    return records::StressOnset{with, before, observer_.at(with).why};
   }
 
   /// Says where, on the coarse samples, a verdict got better again after `verdict` was met.
@@ -94,7 +94,7 @@ class Search {
         std::find_if(first, coarse_.end(), [&](double value) { return observer_.at(value).verdict < verdict; });
     if (better == coarse_.end()) return std::nullopt;
     return fmt::format("{} at {:.4g}, but {} again at {:.4g}", name, *first,
-                       report::name_of(observer_.at(*better).verdict), *better);
+                       records::name_of(observer_.at(*better).verdict), *better);
   }
 
  private:
@@ -114,8 +114,8 @@ class Search {
   }
 };
 
-report::ParamMap to_record(const filters::ParamValues& values) {
-  report::ParamMap params;
+records::ParamMap to_record(const filters::ParamValues& values) {
+  records::ParamMap params;
   for (const auto& [name, value] : values)
     std::visit([&params, &key = name](const auto& v) { params[key] = v; }, value);
   return params;
@@ -130,17 +130,17 @@ bool agrees_outside(double onset, double tolerance, bool met, const Axis& axis) 
   return lies_after != met;
 }
 
-bool agrees(const report::StressLimit& limit, const report::StressOnset* met, const Axis& axis) {
+bool agrees(const records::StressLimit& limit, const records::StressOnset* met, const Axis& axis) {
   if (!limit.onset) return met == nullptr;
-  const double tolerance = report::tolerance_of(limit.kind);
+  const double tolerance = records::tolerance_of(limit.kind);
   if (!met || !met->last_before) return agrees_outside(*limit.onset, tolerance, met != nullptr, axis);
   return *limit.ratio <= tolerance && *limit.ratio >= 1.0 / tolerance;
 }
 
 }  // namespace
 
-report::StressCase find_onsets(const Case& item, const Axis& axis) {
-  report::StressCase record;
+records::StressCase find_onsets(const Case& item, const Axis& axis) {
+  records::StressCase record;
   record.filter = item.filter;
   record.variant = item.variant;
   record.level = name_of(item.level);
@@ -169,19 +169,19 @@ report::StressCase find_onsets(const Case& item, const Axis& axis) {
   return record;
 }
 
-std::vector<report::StressLimit> compare(const Case& item, const report::StressCase& record, const Axis& axis) {
-  std::vector<report::StressLimit> limits;
+std::vector<records::StressLimit> compare(const Case& item, const records::StressCase& record, const Axis& axis) {
+  std::vector<records::StressLimit> limits;
   if (!record.not_available.empty()) return limits;
   for (const Theory& theory : item.theories) {
-    const report::StressOnset* met = report::find_onset(record, theory.predicts);
-    report::StressLimit limit{theory.onset, theory.kind, theory.predicts, theory.formula, theory.source, {}, {},
-                              {},           {}};
+    const records::StressOnset* met = records::find_onset(record, theory.predicts);
+    records::StressLimit limit{theory.onset, theory.kind, theory.predicts, theory.formula, theory.source, {}, {},
+                               {},           {}};
     if (met) limit.measured = met->value;
     if (limit.onset && met && met->last_before) limit.ratio = met->value / *limit.onset;
     if (!agrees(limit, met, axis)) {
       limit.explanation = item.explain ? item.explain({theory, limit.measured, record}) : std::string();
       limit.agreement =
-          limit.explanation.empty() ? report::StressAgreement::kDisagrees : report::StressAgreement::kExplained;
+          limit.explanation.empty() ? records::StressAgreement::kDisagrees : records::StressAgreement::kExplained;
     }
     limits.push_back(std::move(limit));
   }

@@ -2,8 +2,8 @@
 
 #include <optional>
 
+#include "harness/measure/map_limits.h"
 #include "harness/render/image_target.h"
-#include "harness/run/map_limits.h"
 
 namespace shadowbench::stress {
 namespace {
@@ -57,7 +57,7 @@ class GlProbe final : public Probe {
     passes_->prefilter(stage_->map);
     passes_->lookup(stage_->gbuffer, stage_->map, stage_->target);
     const std::vector<float> image = stage_->target.texture().read_floats(1);
-    return {{image.begin(), image.end()}, run::count_broken_texels(*passes_, stage_->map)};
+    return {{image.begin(), image.end()}, measure::count_broken_texels(*passes_, stage_->map)};
   }
 
  private:

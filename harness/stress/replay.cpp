@@ -6,16 +6,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/measure/filter_setup.h"
+#include "harness/measure/map_limits.h"
+#include "harness/measure/scene_assets.h"
+#include "harness/measure/truth_cache.h"
 #include "harness/render/shade_pass.h"
-#include "harness/run/filter_setup.h"
-#include "harness/run/map_limits.h"
-#include "harness/run/scene_assets.h"
 #include "harness/run/scene_loading.h"
-#include "harness/run/truth_cache.h"
 #include "reference/metrics/error_stats.h"
-#include "report/grid.h"
-#include "report/hardest_edge.h"
-#include "report/summary.h"
+#include "report/analysis/summary.h"
+#include "report/images/grid.h"
+#include "report/images/hardest_edge.h"
+#include "report/records/format.h"
+#include "report/records/text_table.h"
 
 namespace shadowbench::stress {
 namespace {
@@ -28,8 +30,8 @@ struct Result {
   double rmse = 0.0;
   std::int64_t broken_texels = 0;
   std::int64_t broken_pixels = 0;
-  report::Image visibility;
-  report::Image picture;
+  images::Image visibility;
+  images::Image picture;
 };
 
 std::vector<std::string> list_setups(const Mistake& mistake) {
@@ -39,8 +41,8 @@ std::vector<std::string> list_setups(const Mistake& mistake) {
   return setups;
 }
 
-run::RunOptions make_options(const StressContext& context, const Mistake& mistake) {
-  run::RunOptions options;
+options::RunOptions make_options(const StressContext& context, const Mistake& mistake) {
+  options::RunOptions options;
   options.resources = context.resources;
   options.scenes = {mistake.scene};
   const filters::Catalogue catalogue(context.resources.filters);
@@ -64,7 +66,7 @@ class Stage {
                [progress = context.progress](const std::string& message) {
                  if (progress) progress->note("warning: " + message);
                }),
-        assets_(renderer_, options_, scene_, cache_, run::largest_padding_texels(options_.filters)),
+        assets_(renderer_, options_, scene_, cache_, measure::largest_padding_texels(options_.filters)),
         light_(assets_.light_map(camera(), kMapSize)),
         target_("replayed visibility", GL_R32F, kWidth, kHeight) {}
 
@@ -74,26 +76,26 @@ class Stage {
     return results;
   }
 
-  const run::SceneTruth& truth() { return assets_.truth(camera()); }
+  const measure::SceneTruth& truth() { return assets_.truth(camera()); }
 
  private:
-  run::Renderer& renderer_;
-  run::RunOptions options_;
+  measure::Renderer& renderer_;
+  options::RunOptions options_;
   scene::Scene scene_;
-  run::TruthCache cache_;
-  run::SceneAssets assets_;
-  run::LightMap& light_;
+  measure::TruthCache cache_;
+  measure::SceneAssets assets_;
+  measure::LightMap& light_;
   render::ImageTarget target_;
 
   const scene::Camera& camera() const { return scene_.cameras.front(); }
 
   Result draw(const filters::FilterRequest& request) {
-    const auto passes = run::make_filter_passes(renderer_, options_, scene_, light_, request);
+    const auto passes = measure::make_filter_passes(renderer_, options_, scene_, light_, request);
     passes->prefilter(light_.map);
     passes->lookup(assets_.gbuffer(camera()), light_.map, target_);
     Result result;
     result.label = request.label();
-    result.broken_texels = run::count_broken_texels(*passes, light_.map);
+    result.broken_texels = measure::count_broken_texels(*passes, light_.map);
     result.visibility = render::read_image(target_.texture(), 1);
     result.picture = render::shade(renderer_.shaders, assets_.gbuffer(camera()), target_.texture(), scene_, camera());
     score(result);
@@ -103,13 +105,13 @@ class Stage {
   /// A pixel that is not finite counts as wholly wrong.
   void score(Result& result) {
     std::vector<float> image = result.visibility.texels;
-    const run::SceneTruth& known = truth();
+    const measure::SceneTruth& known = truth();
     for (std::size_t i = 0; i < image.size(); ++i) {
       if (std::isfinite(image[i])) continue;
       image[i] = known.area.texels[i] > 0.5f ? 0.0f : 1.0f;
       result.broken_pixels += known.mask[i];
     }
-    const auto stats = reference::measure_error(image, known.area.texels, known.mask);
+    const auto stats = metrics::measure_error(image, known.area.texels, known.mask);
     result.rmse = stats ? stats->rmse : 1.0;
   }
 };
@@ -135,8 +137,8 @@ Parts split(const std::vector<Result>& results, const Mistake& mistake) {
   return parts;
 }
 
-report::TextTable make_table(const std::vector<Result>& results, const Parts& parts) {
-  report::TextTable table{
+records::TextTable make_table(const std::vector<Result>& results, const Parts& parts) {
+  records::TextTable table{
       {"set-up", "overflown texels", "RMSE to area truth", "rank with the wrong set-up", "rank, corrected"}, {}};
   for (const Result& result : results) {
     const bool other = std::ranges::find(parts.others, &result) != parts.others.end();
@@ -149,9 +151,9 @@ report::TextTable make_table(const std::vector<Result>& results, const Parts& pa
     };
     const bool wrong = &result == parts.wrong, corrected = &result == parts.variants.front();
     table.rows.push_back({result.label, fmt::format("{} of {}", result.broken_texels, kMapSize * kMapSize),
-                          report::format_number(result.rmse),
-                          other || wrong ? against(parts.wrong) : std::string(report::kNothing),
-                          other || corrected ? against(parts.variants.front()) : std::string(report::kNothing)});
+                          records::format_number(result.rmse),
+                          other || wrong ? against(parts.wrong) : std::string(records::kNothing),
+                          other || corrected ? against(parts.variants.front()) : std::string(records::kNothing)});
   }
   return table;
 }
@@ -162,32 +164,32 @@ std::vector<std::string> describe(const Parts& parts, const Mistake& mistake) {
                   "number, which every run reports as a "
                   "warning, says that the comparison is of an overflow, not of a filter.",
                   mistake.scene, parts.wrong->label, rank(*parts.wrong, parts.others),
-                  report::format_number(parts.wrong->rmse), parts.wrong->broken_texels, kMapSize * kMapSize)};
+                  records::format_number(parts.wrong->rmse), parts.wrong->broken_texels, kMapSize * kMapSize)};
   for (const Result* variant : parts.variants) {
     words.push_back(fmt::format("{} ranks {} (RMSE {}), with {} overflown texels.", variant->label,
-                                rank(*variant, parts.others), report::format_number(variant->rmse),
+                                rank(*variant, parts.others), records::format_number(variant->rmse),
                                 variant->broken_texels));
   }
   return words;
 }
 
-void write_pictures(const std::filesystem::path& file, std::vector<Result> results, const run::SceneTruth& truth,
+void write_pictures(const std::filesystem::path& file, std::vector<Result> results, const measure::SceneTruth& truth,
                     const Mistake& mistake) {
-  report::Grid grid;
+  images::Grid grid;
   grid.columns = 4;
   grid.title = "A famous mistake, replayed";
   grid.subtitle = fmt::format("scene {}, map {}", mistake.scene, kMapSize);
   for (Result& result : results) {
-    report::GridTile tile;
+    images::GridTile tile;
     tile.label = result.label;
     tile.caption =
-        fmt::format("RMSE {} · {} overflown texels", report::format_number(result.rmse), result.broken_texels);
-    tile.error = run::make_error_image(result.visibility, truth);
+        fmt::format("RMSE {} · {} overflown texels", records::format_number(result.rmse), result.broken_texels);
+    tile.error = measure::make_error_image(result.visibility, truth);
     tile.picture = std::move(result.picture);
     tile.visibility = std::move(result.visibility);
     grid.tiles.push_back(std::move(tile));
   }
-  report::write_grid(file, grid);
+  images::write_grid(file, grid);
 }
 
 }  // namespace

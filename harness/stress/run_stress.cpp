@@ -6,20 +6,20 @@
 #include <algorithm>
 #include <chrono>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/run/run_facts.h"
 #include "harness/stress/onset.h"
-#include "report/folder_lock.h"
-#include "report/stress_files.h"
-#include "report/stress_text.h"
+#include "report/files/folder_lock.h"
+#include "report/pages/stress_files.h"
+#include "report/pages/stress_text.h"
 
 namespace shadowbench::stress {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-report::StressAxis make_record(const Axis& axis) {
-  report::StressAxis record;
+records::StressAxis make_record(const Axis& axis) {
+  records::StressAxis record;
   record.id = axis.id;
   record.title = axis.title;
   record.quantity = axis.quantity;
@@ -42,16 +42,16 @@ std::vector<Axis> read_axes(const StressOptions& options) {
 
 class StressRun {
  public:
-  StressRun(const StressOptions& options, run::Progress& progress)
+  StressRun(const StressOptions& options, options::Progress& progress)
       : options_(options),
         progress_(progress),
         axes_(read_axes(options)),
-        renderer_(run::make_renderer(options.backend, options.resources)) {
+        renderer_(measure::make_renderer(options.backend, options.resources)) {
     context_ = {&renderer_, options.resources, options.filters, options.seed, options.cache, options.out, &progress};
   }
 
   StressOutcome run() {
-    const report::FolderLock lock(options_.out);  // a folder that cannot be written is better found now
+    const files::FolderLock lock(options_.out);  // a folder that cannot be written is better found now
     const auto start = Clock::now();
     describe_run();
     make_all_cases();
@@ -60,18 +60,18 @@ class StressRun {
     warn();
     progress_.show(done_, "writing");
     lock.require_in_place();
-    report::write_stress_files(options_.out, record_);
-    return {report::make_limit_tables(record_), report::count_disagreements(record_)};
+    pages::write_stress_files(options_.out, record_);
+    return {pages::make_limit_tables(record_), records::count_disagreements(record_)};
   }
 
  private:
   const StressOptions& options_;
-  run::Progress& progress_;
+  options::Progress& progress_;
   std::vector<Axis> axes_;
-  run::Renderer renderer_;
+  measure::Renderer renderer_;
   StressContext context_;
   std::vector<std::vector<Case>> cases_;  ///< of each axis; gone before the renderer
-  report::StressRecord record_;
+  records::StressRecord record_;
   int done_ = 0;
 
   void describe_run() {
@@ -93,11 +93,11 @@ class StressRun {
     progress_.begin(count, 0);
   }
 
-  report::StressAxis drive(const Axis& axis, std::vector<Case>& cases) {
-    report::StressAxis record = make_record(axis);
+  records::StressAxis drive(const Axis& axis, std::vector<Case>& cases) {
+    records::StressAxis record = make_record(axis);
     for (const Case& item : cases) {
       progress_.show(done_, fmt::format("{} · {}", axis.id, describe(item)));
-      report::StressCase found = find_onsets(item, axis);
+      records::StressCase found = find_onsets(item, axis);
       found.limits = compare(item, found, axis);
       record.cases.push_back(std::move(found));
       renderer_.context->require_no_gl_errors();
@@ -116,10 +116,10 @@ class StressRun {
   }
 
   void warn() {
-    for (const report::StressAxis& axis : record_.axes) {
-      for (const std::string& sentence : report::describe_disagreements(axis))
+    for (const records::StressAxis& axis : record_.axes) {
+      for (const std::string& sentence : pages::describe_disagreements(axis))
         progress_.note(fmt::format("warning: {}: {}", axis.id, sentence));
-      for (const std::string& sentence : report::describe_absences(axis))
+      for (const std::string& sentence : pages::describe_absences(axis))
         progress_.note(fmt::format("{}: not available: {}", axis.id, sentence));
     }
   }
@@ -127,7 +127,7 @@ class StressRun {
 
 }  // namespace
 
-StressOutcome run_stress(const StressOptions& options, run::Progress& progress) {
+StressOutcome run_stress(const StressOptions& options, options::Progress& progress) {
   return StressRun(options, progress).run();
 }
 

@@ -6,15 +6,15 @@
 #include <vector>
 
 #include "filters/catalogue.h"
-#include "harness/gl/context.h"
-#include "harness/run/options.h"
-#include "harness/run/progress.h"
+#include "harness/gl/context/context.h"
+#include "harness/options/options.h"
+#include "harness/options/progress.h"
 
 namespace shadowbench::stress {
 
 /// Everything that `shadowbench stress` is told.
 struct StressOptions {
-  run::Resources resources;
+  options::Resources resources;
   std::vector<filters::FilterRequest> filters;
   std::string axes;                 ///< comma-separated ids; empty: all
   std::vector<std::string> ranges;  ///< AXIS=LO,HI
@@ -34,7 +34,7 @@ struct StressOutcome {
 /// Drives the chosen filters along the chosen axes and writes stress.json, .md, .html, .csv and a plot for each axis.
 /// Bad axes and ranges are found before anything is made. Cost: about a second per axis and filter in software.
 /// Throws Error(kUsage) as choose_axes and apply_range, Error(kContext), Error(kOutput).
-StressOutcome run_stress(const StressOptions& options, run::Progress& progress);
+StressOutcome run_stress(const StressOptions& options, options::Progress& progress);
 
 /// Lists the axes with range, bound and filters that name them, for people.
 std::string describe_axes(const std::vector<filters::FilterRequest>& filters);

@@ -3,11 +3,11 @@
 #include <optional>
 #include <string>
 
-#include "report/stress_record.h"
+#include "report/records/stress_record.h"
 
 namespace shadowbench::stress {
 
-using Verdict = report::StressVerdict;
+using Verdict = records::StressVerdict;
 
 /// What a case saw at one value of its axis.
 struct Observation {

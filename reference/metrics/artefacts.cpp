@@ -3,7 +3,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 namespace {
 
 template <class IsFault>
@@ -87,4 +87,4 @@ std::optional<double> rate_noise(std::span<const float> image, std::span<const d
   return noisy / count;
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 
 // The faults that a person sees, each as a rate over a mask of receivers. Masks follow from rays, the same for all
 // filters of one view and map; only the mask of noise follows from the filter's own kernel.
@@ -60,4 +60,4 @@ std::optional<double> rate_above(std::span<const float> image, std::span<const s
 std::optional<double> rate_noise(std::span<const float> image, std::span<const double> closer,
                                  std::span<const float> kernel, std::span<const std::uint8_t> counts, int width);
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

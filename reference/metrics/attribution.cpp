@@ -3,7 +3,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 namespace {
 
 using Parts = std::array<double, kErrorParts>;
@@ -46,4 +46,4 @@ Attribution attribute_error(const AttributionStations& stations) {
   return result;
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 
 /// The stations between a filter's image and the truth, one value per pixel each; 1 lit, 0 blocked.
 struct AttributionStations {
@@ -39,4 +39,4 @@ struct Attribution {
 /// Requires spans of one length.
 Attribution attribute_error(const AttributionStations& stations);
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

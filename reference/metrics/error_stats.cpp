@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 
 std::optional<ErrorStats> measure_error(std::span<const float> image, std::span<const float> truth,
                                         std::span<const std::uint8_t> mask) {
@@ -37,4 +37,4 @@ std::optional<ErrorStats> measure_error(std::span<const float> image, std::span<
   return stats;
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 
 /// Says how far an image is from the truth, over the pixels of a mask.
 struct ErrorStats {
@@ -22,4 +22,4 @@ struct ErrorStats {
 std::optional<ErrorStats> measure_error(std::span<const float> image, std::span<const float> truth,
                                         std::span<const std::uint8_t> mask);
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

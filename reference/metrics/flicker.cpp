@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 namespace {
 
 double square_change(float now, float before) {
@@ -119,4 +119,4 @@ std::optional<FlickerStats> FlickerMeter::finish() const {
   return stats;
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

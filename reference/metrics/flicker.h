@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 
 /// A receiver's visibility went back and forth once it came back by more than this from where it had gone.
 inline constexpr float kReturn = 0.05f;
@@ -69,4 +69,4 @@ class FlickerMeter {
   double share_returned(const Track& track) const;
 };
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

@@ -6,7 +6,7 @@
 #include <functional>
 #include <numbers>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 namespace {
 
 using Plane = std::vector<double>;
@@ -213,4 +213,4 @@ std::vector<float> measure_flip(const LinearPicture& a, const LinearPicture& b, 
   return measure_flip(view_for_flip(a, pixels_per_degree), view_for_flip(b, pixels_per_degree));
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

@@ -3,7 +3,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 
 /// A low-dynamic-range picture: linear RGB (Rec. 709 primaries, D65), clamped to [0,1], row by row.
 struct LinearPicture {
@@ -39,4 +39,4 @@ std::vector<float> measure_flip(const FlipView& a, const FlipView& b);
 std::vector<float> measure_flip(const LinearPicture& a, const LinearPicture& b,
                                 double pixels_per_degree = kDefaultPixelsPerDegree);
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

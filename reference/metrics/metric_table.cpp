@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 namespace {
 
 using enum MetricSource;
@@ -84,4 +84,4 @@ std::vector<Metric> picture_metrics() {
   return metrics;
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

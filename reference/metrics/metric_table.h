@@ -8,7 +8,7 @@
 
 #include "reference/metrics/error_stats.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 
 /// Says what a number is measured from.
 enum class MetricSource {
@@ -42,4 +42,4 @@ std::span<const Metric> metric_table();
 /// Gives the metrics that two pictures are enough for, in the order of the table.
 std::vector<Metric> picture_metrics();
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 namespace {
 
 constexpr double kWeightSlack = 1e-6;  // of the kernel's weights, which are single precision
@@ -158,4 +158,4 @@ BoundCheck check_bound(const BoundStations& stations) {
   return check;
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 
 /// An encoded map as the GL made it.
 struct StoredMap {
@@ -69,4 +69,4 @@ struct BoundCheck {
 /// Source: Cantelli's inequality for VSM, Markov's for ESM; equality of kernel, map and depth is the caller's part.
 BoundCheck check_bound(const BoundStations& stations);
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 
 double find_p(const NoisyDifference& d) {
   if (!std::isfinite(d.difference) || !std::isfinite(d.variance)) return 0.0;
@@ -51,4 +51,4 @@ PixelTest test_pixels(std::span<const double> probabilities, double level) {
   return test;
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 
 /// Is what two measurements of one pixel differ by, with what chance makes of it.
 struct NoisyDifference {
@@ -44,4 +44,4 @@ struct PixelTest {
 /// are chance is at most `level`. Source: Bonferroni's inequality.
 PixelTest test_pixels(std::span<const double> probabilities, double level);
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

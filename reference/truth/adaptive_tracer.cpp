@@ -12,7 +12,7 @@
 
 #include "filters/random.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 namespace {
 
 constexpr int kFirstPoints = 4;
@@ -172,4 +172,4 @@ TracedVisibility trace_fans(const Occluders& occluders, const ReceiverImage& rec
   return AdaptiveTracer(occluders, receivers, samples, settings, make_fan).run();
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

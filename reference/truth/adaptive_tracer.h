@@ -4,7 +4,7 @@
 
 #include "reference/truth/visibility.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 
 /// The rays of one receiver: origin and direction are affine in a sample's offset.
 struct RayFan {
@@ -24,4 +24,4 @@ struct RayFan {
 TracedVisibility trace_fans(const Occluders& occluders, const ReceiverImage& receivers, const SampleSets& samples,
                             const TraceSettings& settings, const std::function<RayFan(const ReceiverPoint&)>& make_fan);
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

@@ -5,7 +5,7 @@
 
 #include "filters/disk_points.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 namespace {
 
 /// Two unit vectors perpendicular to an axis and to each other.
@@ -64,4 +64,4 @@ glm::dvec3 AreaLight::centre_direction(const glm::dvec3& from) const {
 
 float AreaLight::reach() const { return shape_ == Shape::kSun ? std::numeric_limits<float>::infinity() : 1.0f; }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

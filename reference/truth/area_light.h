@@ -2,7 +2,7 @@
 
 #include <glm/glm.hpp>
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 
 /// A light with a size, for tracing: a disk at infinity (the sun), or a disk or rectangle in the scene.
 class AreaLight {
@@ -36,4 +36,4 @@ class AreaLight {
   glm::dvec3 v_{0.0};
 };
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 namespace {
 
 int wrap(int i, int size) { return ((i % size) + size) % size; }
@@ -42,4 +42,4 @@ void forgive_holes(const RTCFilterFunctionNArguments* arguments) {
   }
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

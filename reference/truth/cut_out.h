@@ -7,7 +7,7 @@
 
 struct RTCFilterFunctionNArguments;
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 
 /// What Embree calls for hits on a mesh with holes.
 struct HoleTest {
@@ -21,4 +21,4 @@ struct HoleTest {
 /// Forgives hits in holes; the geometry's user data is a HoleTest.
 void forgive_holes(const RTCFilterFunctionNArguments* arguments);
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

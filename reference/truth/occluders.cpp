@@ -13,7 +13,7 @@
 
 #include "reference/truth/cut_out.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 namespace {
 
 /// Roundings of a point that was interpolated from its triangle's corners, in units of the largest coordinate.
@@ -157,4 +157,4 @@ Box Occluders::bounds() const {
   return {{bounds.lower_x, bounds.lower_y, bounds.lower_z}, {bounds.upper_x, bounds.upper_y, bounds.upper_z}};
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

@@ -9,7 +9,7 @@
 
 #include "reference/truth/ray_packet.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 
 /// Says where a mesh has holes: a ray passes where the alpha of its texture is under the cutoff. The texture repeats
 /// and is read bilinearly, its first row at v = 0. The depth pass discards by the same rule, but reads a smaller mip
@@ -75,4 +75,4 @@ class Occluders {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 
 /// Sixteen rays, traced together; world space. The fields before `active` lie as Embree wants them.
 struct alignas(64) RayPacket {
@@ -42,4 +42,4 @@ struct alignas(64) RayPacket {
   }
 };
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

@@ -3,7 +3,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 
 /// A receiver point of the G-buffer.
 struct ReceiverPoint {
@@ -19,4 +19,4 @@ struct ReceiverImage {
   std::vector<ReceiverPoint> points;  ///< width * height
 };
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

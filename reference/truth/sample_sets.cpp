@@ -5,7 +5,7 @@
 #include "filters/random.h"
 #include "reference/truth/sobol.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 namespace {
 
 /// Two pairs of dimensions of one point.
@@ -51,4 +51,4 @@ SampleSets::SampleSets(int max_points, std::uint32_t seed, const Mapping& mappin
   });
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

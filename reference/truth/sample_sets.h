@@ -7,7 +7,7 @@
 
 #include "reference/truth/ray_packet.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 
 /// The number of independent scrambles; a standard error over them has one degree of freedom less.
 inline constexpr int kScrambles = RayPacket::kSize;
@@ -45,4 +45,4 @@ class SampleSets {
   std::vector<Lanes> lanes_;  ///< set by set
 };
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

@@ -4,7 +4,7 @@
 
 #include "filters/random.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 namespace {
 
 constexpr int kBits = 32;
@@ -57,4 +57,4 @@ std::uint32_t shuffle_index(std::uint32_t index, std::uint32_t seed) {
   return scramble(index, filters::hash_bits(seed ^ 0xc2b2ae35u));  // a bit depends on the bits above it only
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

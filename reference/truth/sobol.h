@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 
 /// Gives point `index` of the Sobol sequence's first two dimensions, Owen-scrambled by `seed`, as 32-bit fractions.
 ///
@@ -22,4 +22,4 @@ std::uint32_t shuffle_index(std::uint32_t index, std::uint32_t seed);
 /// Reads 32-bit fractions as a point of [0,1)^2.
 inline glm::dvec2 to_unit_square(glm::uvec2 bits) { return {bits.x * 0x1p-32, bits.y * 0x1p-32}; }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

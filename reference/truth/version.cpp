@@ -2,8 +2,8 @@
 
 #include <embree3/rtcore.h>
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 
 std::string truth_version() { return SHADOWBENCH_TRUTH_SOURCES " Embree " RTC_VERSION_STRING; }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

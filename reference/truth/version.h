@@ -2,10 +2,10 @@
 
 #include <string>
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 
 /// Names the code that traces: it changes with the sources of this folder and of the kernels, and with Embree's
 /// version.
 std::string truth_version();
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

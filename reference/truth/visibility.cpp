@@ -8,7 +8,7 @@
 
 #include "reference/truth/adaptive_tracer.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 namespace {
 
 /// A kernel's fan: rays start on the receiver's tangent plane, below the texels they stand for, and are parallel.
@@ -129,4 +129,4 @@ std::vector<float> trace_first_blockers(const Occluders& occluders, const Receiv
   return distances;
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

@@ -10,7 +10,7 @@
 #include "reference/truth/receiver_image.h"
 #include "reference/truth/sample_sets.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 
 /// Says how sure a traced fraction is to be.
 struct TraceSettings {
@@ -67,4 +67,4 @@ std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& r
 std::vector<float> trace_first_blockers(const Occluders& occluders, const ReceiverImage& receivers,
                                         const glm::dvec3& to_light);
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "filters/error.h"
-#include "report/atomic_file.h"
+#include "filters/base/error.h"
+#include "report/files/atomic_file.h"
 
 namespace shadowbench::regress {
 namespace {
@@ -32,7 +32,7 @@ std::string read_log(const std::filesystem::path& file) {
 
 /// What nothing is compared with is not kept: it would only make the files differ.
 BaselineCell Accepter::make_cell(const ActualCell& cell) const {
-  const report::CellRecord& record = cell.record;
+  const records::CellRecord& record = cell.record;
   ComparedValues values = read_values(record);
   const auto is_ignored = [&](const auto& value) {
     return std::isinf(tolerances_.find(record.filter, value.first).limit);
@@ -110,15 +110,15 @@ void Accepter::log(Comparison& comparison, const std::string& what) {
 
 std::vector<std::string> Accepter::write(const Origin& origin) {
   // Tolerances and log come first: whatever is written is then known to be a baseline, and why it is so.
-  if (!baseline_.exists()) report::write_text_file(baseline_.tolerance_file(), write_tolerances(tolerances_));
+  if (!baseline_.exists()) files::write_text_file(baseline_.tolerance_file(), write_tolerances(tolerances_));
   if (lines_.empty()) return lines_;
   std::string entry =
       fmt::format("## {:%Y-%m-%d %H:%M} UTC, program {}, {}, seed {}\n\n",
                   fmt::gmtime(std::chrono::system_clock::now()), origin.commit, origin.renderer, origin.seed);
   for (const std::string& line : lines_) entry += "- " + line + "\n";
   const std::string before = read_log(baseline_.log_file());
-  report::write_text_file(baseline_.log_file(),
-                          (before.empty() ? "# What was accepted into this baseline\n" : before) + "\n" + entry);
+  files::write_text_file(baseline_.log_file(),
+                         (before.empty() ? "# What was accepted into this baseline\n" : before) + "\n" + entry);
   for (const auto& [name, own] : files_) baseline_.write_cells(name.first, name.second, own);
   for (const auto& [scene, truths] : truths_) baseline_.write_truths(scene, truths);
   return lines_;

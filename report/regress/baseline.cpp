@@ -6,12 +6,12 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "filters/error.h"
-#include "report/atomic_file.h"
-#include "report/file_name.h"
-#include "report/json_values.h"
-#include "report/picture_io.h"
-#include "report/temporary_files.h"
+#include "filters/base/error.h"
+#include "report/files/atomic_file.h"
+#include "report/files/file_name.h"
+#include "report/files/temporary_files.h"
+#include "report/images/picture_io.h"
+#include "report/records/json_values.h"
 
 namespace shadowbench::regress {
 namespace {
@@ -37,9 +37,9 @@ ordered_json to_json(const BaselineCell& cell) {
                           {"machine", cell.origin.machine},
                           {"commit", cell.origin.commit}};
   written["values"] = ordered_json::object();
-  for (const auto& [path, value] : cell.values.numbers) written["values"][path] = report::number_json(value);
+  for (const auto& [path, value] : cell.values.numbers) written["values"][path] = records::number_json(value);
   written["ratios"] = ordered_json::object();
-  for (const auto& [path, ratio] : cell.values.ratios) written["ratios"][path] = report::value_json(ratio);
+  for (const auto& [path, ratio] : cell.values.ratios) written["ratios"][path] = records::value_json(ratio);
   return written;
 }
 
@@ -54,15 +54,15 @@ BaselineCell from_json(const json& read) {
                                                                    {"renderer", &cell.origin.renderer},
                                                                    {"machine", &cell.origin.machine},
                                                                    {"commit", &cell.origin.commit}})
-    *text = report::read_value<std::string>(read.at(name));
-  cell.map_size = report::read_value<int>(read.at("map_size"));
-  cell.width = report::read_value<int>(read.at("width"));
-  cell.height = report::read_value<int>(read.at("height"));
-  cell.origin.seed = report::read_value<std::uint64_t>(read.at("seed"));
+    *text = records::read_value<std::string>(read.at(name));
+  cell.map_size = records::read_value<int>(read.at("map_size"));
+  cell.width = records::read_value<int>(read.at("width"));
+  cell.height = records::read_value<int>(read.at("height"));
+  cell.origin.seed = records::read_value<std::uint64_t>(read.at("seed"));
   for (const auto& [path, value] : read.at("values").items())
-    cell.values.numbers[path] = report::read_value<double>(value);
+    cell.values.numbers[path] = records::read_value<double>(value);
   for (const auto& [path, value] : read.at("ratios").items())
-    cell.values.ratios[path] = report::read_value<report::Ratio>(value);
+    cell.values.ratios[path] = records::read_value<records::Ratio>(value);
   return cell;
 }
 
@@ -71,7 +71,7 @@ std::vector<BaselineCell> read_cell_list(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream)
       throw Error(ErrorKind::kInput, "the file cannot be read; restore it, or accept a run again", file.string());
-    const json root = report::parse_json(stream);
+    const json root = records::parse_json(stream);
     if (root.at("baseline_version") != kBaselineVersion)
       throw std::invalid_argument(fmt::format("it is of another version than {}", kBaselineVersion));
     std::vector<BaselineCell> cells;
@@ -88,32 +88,32 @@ std::vector<BaselineCell> read_cell_list(const std::filesystem::path& file) {
 
 std::filesystem::path with_extension(std::filesystem::path stem, const char* extension) { return stem += extension; }
 
-report::Part make_part(const std::string& key, const char* id, const report::Image& image) {
+images::Part make_part(const std::string& key, const char* id, const images::Image& image) {
   return {key + "." + id, {"Y"}, image, true};
 }
 
-std::vector<report::Part> make_parts(const CellFile& file) {
-  std::vector<report::Part> parts;
+std::vector<images::Part> make_parts(const CellFile& file) {
+  std::vector<images::Part> parts;
   for (const BaselineCell& cell : file.cells) {
     const auto found = file.images.find(cell.key);
     if (found == file.images.end() || found->second.visibility.empty()) continue;
     const CellImages& images = found->second;
     parts.push_back(make_part(cell.key, kVisibility, images.visibility));
-    for (const report::UncertaintyImage& each : report::list_uncertainty_images()) {
-      const report::Image& image = images.uncertainty.*each.image;
+    for (const images::UncertaintyImage& each : images::list_uncertainty_images()) {
+      const images::Image& image = images.uncertainty.*each.image;
       if (!image.empty()) parts.push_back(make_part(cell.key, each.id, image));
     }
   }
   return parts;
 }
 
-void keep_part(std::map<std::string, CellImages>& images, report::Part part) {
+void keep_part(std::map<std::string, CellImages>& images, images::Part part) {
   const std::size_t dot = part.name.rfind('.');
   if (dot == std::string::npos) return;
   CellImages& cell = images[part.name.substr(0, dot)];
   const std::string id = part.name.substr(dot + 1);
   if (id == kVisibility) cell.visibility = std::move(part.image);
-  for (const report::UncertaintyImage& each : report::list_uncertainty_images())
+  for (const images::UncertaintyImage& each : images::list_uncertainty_images())
     if (id == each.id) cell.uncertainty.*each.image = std::move(part.image);
 }
 
@@ -142,8 +142,8 @@ void remove_file(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::string truth_key(const report::CellRecord& cell) {
-  return fmt::format("{} {}x{} {}", report::make_file_stem(cell.view), cell.width, cell.height, cell.light);
+std::string truth_key(const records::CellRecord& cell) {
+  return fmt::format("{} {}x{} {}", files::make_file_stem(cell.view), cell.width, cell.height, cell.light);
 }
 
 bool Baseline::exists() const {
@@ -155,7 +155,7 @@ bool Baseline::exists() const {
 }
 
 std::filesystem::path Baseline::stem(const std::string& scene, const std::string& filter) const {
-  return folder_ / report::make_file_stem(scene) / report::make_file_stem(filter);
+  return folder_ / files::make_file_stem(scene) / files::make_file_stem(filter);
 }
 
 Baseline::Index Baseline::read_index() const {
@@ -163,7 +163,7 @@ Baseline::Index Baseline::read_index() const {
   for (const std::filesystem::path& folder : list_folder(folder_)) {
     if (!std::filesystem::is_directory(folder)) continue;
     for (const std::filesystem::path& file : list_folder(folder)) {
-      if (file.extension() != ".json" || report::is_temporary(file)) continue;
+      if (file.extension() != ".json" || files::is_temporary(file)) continue;
       try {
         for (BaselineCell& cell : read_cell_list(file)) index.cells.push_back(std::move(cell));
       } catch (const Error& error) {
@@ -182,7 +182,7 @@ std::vector<BaselineCell> Baseline::read_numbers(const std::string& scene, const
 CellFile Baseline::read_cells(const std::string& scene, const std::string& filter) const {
   CellFile file{read_numbers(scene, filter), {}};
   if (file.cells.empty()) return file;
-  for (report::Part& part : report::read_exr(with_extension(stem(scene, filter), ".exr")).parts)
+  for (images::Part& part : images::read_exr(with_extension(stem(scene, filter), ".exr")).parts)
     keep_part(file.images, std::move(part));
   return file;
 }
@@ -197,19 +197,19 @@ void Baseline::write_cells(const std::string& scene, const std::string& filter, 
   }
   ordered_json root = {{"baseline_version", kBaselineVersion}, {"cells", ordered_json::array()}};
   for (const BaselineCell& cell : cells.cells) root["cells"].push_back(to_json(cell));
-  const std::vector<report::Part> parts = make_parts(cells);
+  const std::vector<images::Part> parts = make_parts(cells);
   if (parts.empty())
     remove_file(images);
   else
-    report::write_exr(images, parts, {});
-  report::write_text_file(numbers, root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+    images::write_exr(images, parts, {});
+  files::write_text_file(numbers, root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }
 
 std::map<std::string, TruthImages> Baseline::read_truths(const std::string& scene) const {
   std::map<std::string, TruthImages> truths;
   const std::filesystem::path file = with_extension(stem(scene, kTruthStem), ".exr");
   if (!std::filesystem::exists(file)) return truths;
-  for (report::Part& part : report::read_exr(file).parts) {
+  for (images::Part& part : images::read_exr(file).parts) {
     const std::size_t dot = part.name.rfind('.');
     TruthImages& truth = truths[part.name.substr(0, dot)];
     (part.name.substr(dot + 1) == "area" ? truth.area : truth.standard_error) = std::move(part.image);
@@ -223,12 +223,12 @@ void Baseline::write_truths(const std::string& scene, const std::map<std::string
     remove_file(file);
     return;
   }
-  std::vector<report::Part> parts;
+  std::vector<images::Part> parts;
   for (const auto& [key, truth] : truths) {
     parts.push_back(make_part(key, "area", truth.area));
     parts.push_back(make_part(key, "standard_error", truth.standard_error));
   }
-  report::write_exr(file, parts, {});
+  images::write_exr(file, parts, {});
 }
 
 }  // namespace shadowbench::regress

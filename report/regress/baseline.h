@@ -40,15 +40,15 @@ struct BaselineCell {
 
 /// The area truth of one view, with its standard error.
 struct TruthImages {
-  report::Image area;
-  report::Image standard_error;
+  images::Image area;
+  images::Image standard_error;
 };
 
 /// Stands for the filter in comparisons of a view's truth.
 inline constexpr const char* kTruthName = "truth";
 
 /// Names a view's truth in a baseline: of all that it depends on, what tells truths of one scene apart.
-std::string truth_key(const report::CellRecord& cell);
+std::string truth_key(const records::CellRecord& cell);
 
 /// The cells of one filter on one scene, with their images by key.
 struct CellFile {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "report/record_fields.h"
+#include "report/records/record_fields.h"
 
 namespace shadowbench::regress {
 namespace {
@@ -44,7 +44,7 @@ struct ValueReader {
   void operator()(const std::string& path, const std::optional<std::int64_t>& value) const {
     if (value && role_of(path)) values.numbers[path] = static_cast<double>(*value);
   }
-  void operator()(const std::string& path, const std::optional<report::Ratio>& value) const {
+  void operator()(const std::string& path, const std::optional<records::Ratio>& value) const {
     if (value) values.ratios[path] = *value;
   }
   template <class T>
@@ -54,7 +54,7 @@ struct ValueReader {
 struct RatioLister {
   std::vector<std::string>& paths;
 
-  void operator()(const std::string& path, const std::optional<report::Ratio>&) const { paths.push_back(path); }
+  void operator()(const std::string& path, const std::optional<records::Ratio>&) const { paths.push_back(path); }
   template <class T>
   void operator()(const std::string&, const T&) const {}
 };
@@ -64,8 +64,8 @@ struct RatioLister {
 const std::vector<ComparedMetric>& list_compared_metrics() {
   static const std::vector<ComparedMetric> metrics = [] {
     std::vector<ComparedMetric> all;
-    const report::CellRecord cell;
-    report::visit_cell_fields(cell, MetricLister{all});
+    const records::CellRecord cell;
+    records::visit_cell_fields(cell, MetricLister{all});
     return all;
   }();
   return metrics;
@@ -74,21 +74,21 @@ const std::vector<ComparedMetric>& list_compared_metrics() {
 const std::vector<std::string>& list_compared_ratios() {
   static const std::vector<std::string> paths = [] {
     std::vector<std::string> all;
-    const report::CellRecord cell;
-    report::visit_cell_fields(cell, RatioLister{all});
+    const records::CellRecord cell;
+    records::visit_cell_fields(cell, RatioLister{all});
     return all;
   }();
   return paths;
 }
 
-ComparedValues read_values(const report::CellRecord& cell) {
+ComparedValues read_values(const records::CellRecord& cell) {
   ComparedValues values;
-  report::visit_cell_fields(cell, ValueReader{values});
+  records::visit_cell_fields(cell, ValueReader{values});
   if (!cell.time_ms.lookup || cell.time_ms.lookup->n < kFewestRounds) values.ratios.clear();
   return values;
 }
 
-std::string find_absence(const report::CellRecord& cell, const std::string& path) {
+std::string find_absence(const records::CellRecord& cell, const std::string& path) {
   if (path.starts_with("ratio_to_none.") && cell.time_ms.lookup && cell.time_ms.lookup->n < kFewestRounds) {
     return fmt::format("it was timed over {} rounds, and {} are the fewest that give an interval",
                        cell.time_ms.lookup->n, kFewestRounds);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "report/records.h"
+#include "report/records/records.h"
 
 namespace shadowbench::regress {
 
@@ -35,13 +35,13 @@ inline constexpr int kFewestRounds = 6;
 /// What a baseline keeps of a cell's record: numbers by path; those that do not exist are missing.
 struct ComparedValues {
   std::map<std::string, double> numbers;
-  std::map<std::string, report::Ratio> ratios;
+  std::map<std::string, records::Ratio> ratios;
 };
 
 /// Takes them out of a record.
-ComparedValues read_values(const report::CellRecord& cell);
+ComparedValues read_values(const records::CellRecord& cell);
 
 /// Says why a record lacks a number: its own reason, that of its group, or "not measured".
-std::string find_absence(const report::CellRecord& cell, const std::string& path);
+std::string find_absence(const records::CellRecord& cell, const std::string& path);
 
 }  // namespace shadowbench::regress

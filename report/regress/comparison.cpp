@@ -6,13 +6,14 @@
 #include <cmath>
 #include <utility>
 
+#include "report/analysis/summary.h"
+#include "report/records/format.h"
 #include "report/regress/noise_test.h"
-#include "report/summary.h"
 
 namespace shadowbench::regress {
 namespace {
 
-using report::format_number;
+using records::format_number;
 
 /// Compares one cell, finding by finding.
 class CellComparer {
@@ -53,9 +54,9 @@ class CellComparer {
     const PixelChange& change = *result_.pixels;
     limit_share(change);
     limit(kLargest, change.max,
-          fmt::format("the largest difference is {} at pixel ({}, {})", format_number(change.max), change.max_x,
-                      change.max_y));
-    limit(kMean, change.mean, fmt::format("the mean difference is {}", format_number(change.mean)));
+          fmt::format("the largest difference is {} at pixel ({}, {})", records::format_number(change.max),
+                      change.max_x, change.max_y));
+    limit(kMean, change.mean, fmt::format("the mean difference is {}", records::format_number(change.mean)));
     const double pixels = static_cast<double>(std::max<std::int64_t>(change.pixels(), 1));
     const std::int64_t excused = change.excused_flips + change.excused_rounding;
     limit(kExcused, static_cast<double>(excused - change.excused_expected) / pixels,
@@ -71,18 +72,19 @@ class CellComparer {
 
   void limit_share(const PixelChange& change) {
     if (change.share() <= tolerance(kShare).limit) return;
-    result_.add(Outcome::kChanged, {kShare, std::nullopt, change.share(), tolerance(kShare).limit,
-                                    fmt::format("{} of {} pixels differ by more than {} and what rounding explains; "
-                                                "the largest difference is {} at pixel ({}, {})",
-                                                change.changed, change.compared, format_number(tolerance(kPixel).limit),
-                                                format_number(change.max), change.max_x, change.max_y)});
+    result_.add(Outcome::kChanged,
+                {kShare, std::nullopt, change.share(), tolerance(kShare).limit,
+                 fmt::format("{} of {} pixels differ by more than {} and what rounding explains; "
+                             "the largest difference is {} at pixel ({}, {})",
+                             change.changed, change.compared, records::format_number(tolerance(kPixel).limit),
+                             records::format_number(change.max), change.max_x, change.max_y)});
   }
 
   void limit(const char* metric, double value, const std::string& text) {
     const Tolerance& allowed = tolerance(metric);
     if (value <= allowed.limit) return;
     result_.add(Outcome::kChanged, {metric, std::nullopt, value, allowed.limit,
-                                    fmt::format("{} (limit {})", text, format_number(allowed.limit))});
+                                    fmt::format("{} (limit {})", text, records::format_number(allowed.limit))});
   }
 
   void compare_spread() {
@@ -91,12 +93,12 @@ class CellComparer {
     const double level = tolerance(kLevel).limit;
     const SpreadTest test = test_spread(actual_.images.visibility, images_.uncertainty, lookups, level);
     result_.notes.push_back(fmt::format("drawn with seed {}, the baseline with {}: tested as noise, at level {}",
-                                        actual_.origin.seed, expected_.origin.seed, format_number(level)));
+                                        actual_.origin.seed, expected_.origin.seed, records::format_number(level)));
     add_noise(test.pixels, "pixels", "pixel", actual_.images.visibility.width);
     add_noise(test.blocks, "blocks of 8 x 8 pixels", "block", (actual_.images.visibility.width + 7) / 8);
   }
 
-  void add_noise(const reference::PixelTest& test, const char* many, const char* one, int columns) {
+  void add_noise(const metrics::PixelTest& test, const char* many, const char* one, int columns) {
     if (test.beyond == 0) return;
     const auto x = test.worst % static_cast<std::size_t>(columns), y = test.worst / static_cast<std::size_t>(columns);
     result_.add(Outcome::kChanged,
@@ -113,15 +115,15 @@ class CellComparer {
     const auto now = values.numbers.find(metric.path);
     if (before == expected_.values.numbers.end()) {
       if (now == values.numbers.end()) return;
-      result_.add(Outcome::kChanged,
-                  {metric.path, std::nullopt, now->second, allowed.limit,
-                   fmt::format("{} is {}, and missing in the baseline", metric.path, format_number(now->second))});
+      result_.add(Outcome::kChanged, {metric.path, std::nullopt, now->second, allowed.limit,
+                                      fmt::format("{} is {}, and missing in the baseline", metric.path,
+                                                  records::format_number(now->second))});
       return;
     }
     if (now == values.numbers.end()) {
       result_.add(Outcome::kChanged,
                   {metric.path, before->second, std::nullopt, allowed.limit,
-                   fmt::format("{} was {}, and is missing: {}", metric.path, format_number(before->second),
+                   fmt::format("{} was {}, and is missing: {}", metric.path, records::format_number(before->second),
                                find_absence(actual_.record, metric.path))});
       return;
     }
@@ -131,7 +133,7 @@ class CellComparer {
   void compare_values(const ComparedMetric& metric, double before, double now, const Tolerance& allowed) {
     if (metric.path.starts_with("artefact.") && has_spread() && !same_seed()) {
       result_.notes.push_back(fmt::format("{} is not compared with that of another seed: {}, was {}", metric.path,
-                                          format_number(now), format_number(before)));
+                                          records::format_number(now), records::format_number(before)));
       return;
     }
     const double limit = allowed.limit + (metric.role == MetricRole::kError ? explained_change() : 0.0);
@@ -143,8 +145,8 @@ class CellComparer {
     const bool regression = worse && !metric.path.starts_with("attribution.");
     result_.add(regression ? Outcome::kLessAccurate : Outcome::kChanged,
                 {metric.path, before, now, limit,
-                 fmt::format("{}: {}, was {} ({}; limit {}: {})", metric.path, format_number(now),
-                             format_number(before), kind, format_number(limit), allowed.reason)});
+                 fmt::format("{}: {}, was {} ({}; limit {}: {})", metric.path, records::format_number(now),
+                             records::format_number(before), kind, records::format_number(limit), allowed.reason)});
   }
 
   /// What excused pixels, and the noise of truth and filter, may move a mean of errors by. The truth of one seed is the
@@ -189,14 +191,15 @@ class CellComparer {
       const auto now = values.ratios.find(path);
       if (std::isinf(allowed.limit)) continue;
       if (now == values.ratios.end()) {
-        result_.add(Outcome::kChanged, {path, before.median, std::nullopt, allowed.limit,
-                                        fmt::format("{} was {}, and is missing: {}", path, report::format_ratio(before),
-                                                    find_absence(actual_.record, path))});
+        result_.add(Outcome::kChanged,
+                    {path, before.median, std::nullopt, allowed.limit,
+                     fmt::format("{} was {}, and is missing: {}", path, records::format_ratio(before),
+                                 find_absence(actual_.record, path))});
       } else if (now->second.ci95.low > before.ci95.high * (1.0 + allowed.limit)) {
         result_.add(Outcome::kSlower, {path, before.median, now->second.median, allowed.limit,
                                        fmt::format("{}: {}, was {}: slower by more than {} of the interval's end", path,
-                                                   report::format_ratio(now->second), report::format_ratio(before),
-                                                   format_number(allowed.limit))});
+                                                   records::format_ratio(now->second), records::format_ratio(before),
+                                                   records::format_number(allowed.limit))});
       }
     }
   }
@@ -206,10 +209,10 @@ std::string describe_cell(const std::string& view, int map_size, int width, int 
   return fmt::format("view {}, map {}, {} x {}", view, map_size, width, height);
 }
 
-bool same_size(const report::Image& a, const report::Image& b) { return a.width == b.width && a.height == b.height; }
+bool same_size(const images::Image& a, const images::Image& b) { return a.width == b.width && a.height == b.height; }
 
 /// Says why two images cannot be compared pixel by pixel; empty where they can.
-std::string find_mismatch(const report::Image& actual, const report::Image& expected) {
+std::string find_mismatch(const images::Image& actual, const images::Image& expected) {
   if (expected.empty()) return "the baseline has no image of it";
   if (actual.empty()) return "the run has no image of it";
   if (same_size(actual, expected)) return "";
@@ -219,9 +222,9 @@ std::string find_mismatch(const report::Image& actual, const report::Image& expe
 
 /// Says what is wrong with one cell's images; empty where nothing is.
 std::string find_damage(const CellImages& images, const char* whose) {
-  const report::UncertaintyImages& uncertainty = images.uncertainty;
-  for (const report::UncertaintyImage& each : report::list_uncertainty_images()) {
-    const report::Image& image = uncertainty.*each.image;
+  const images::UncertaintyImages& uncertainty = images.uncertainty;
+  for (const images::UncertaintyImage& each : images::list_uncertainty_images()) {
+    const images::Image& image = uncertainty.*each.image;
     if (!image.empty() && !same_size(image, images.visibility))
       return fmt::format("{} image '{}' has another size than its visibility", whose, each.id);
   }
@@ -267,7 +270,7 @@ void Comparison::add(Outcome worse, Finding finding) {
   findings.push_back(std::move(finding));
 }
 
-Comparison name_comparison(const report::CellRecord& record) {
+Comparison name_comparison(const records::CellRecord& record) {
   Comparison comparison;
   comparison.key = record.key;
   comparison.scene = record.scene;
@@ -278,7 +281,7 @@ Comparison name_comparison(const report::CellRecord& record) {
   return comparison;
 }
 
-Comparison name_truth(const report::CellRecord& record) {
+Comparison name_truth(const records::CellRecord& record) {
   Comparison comparison = name_comparison(record);
   comparison.key = truth_key(record);
   comparison.filter = comparison.label = kTruthName;
@@ -312,7 +315,7 @@ Comparison compare_truth(const ActualTruth& actual, const TruthImages& expected,
     comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, obstacle});
     return comparison;
   }
-  const reference::PixelTest test = test_truth(actual.images, expected, level);
+  const metrics::PixelTest test = test_truth(actual.images, expected, level);
   if (test.beyond == 0) return comparison;
   const auto width = static_cast<std::size_t>(actual.images.area.width);
   comparison.add(Outcome::kChanged,

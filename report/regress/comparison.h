@@ -46,7 +46,7 @@ struct Comparison {
 
 /// One cell of the run at hand.
 struct ActualCell {
-  report::CellRecord record;
+  records::CellRecord record;
   Origin origin;
   CellImages images;       ///< empty where they cannot be read
   std::string unreadable;  ///< why
@@ -59,7 +59,7 @@ Comparison compare_cell(const ActualCell& actual, const BaselineCell& expected, 
 
 /// Is one view's truth of the run at hand.
 struct ActualTruth {
-  report::CellRecord record;  ///< of any cell of the view
+  records::CellRecord record;  ///< of any cell of the view
   TruthImages images;
 };
 
@@ -67,8 +67,8 @@ struct ActualTruth {
 Comparison compare_truth(const ActualTruth& actual, const TruthImages& expected, double level);
 
 /// Make a comparison that only has a name: of a cell, or of the truth of a cell's view.
-Comparison name_truth(const report::CellRecord& record);
-Comparison name_comparison(const report::CellRecord& record);
+Comparison name_truth(const records::CellRecord& record);
+Comparison name_comparison(const records::CellRecord& record);
 Comparison name_comparison(const BaselineCell& cell);
 
 }  // namespace shadowbench::regress

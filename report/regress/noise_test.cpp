@@ -7,7 +7,7 @@
 namespace shadowbench::regress {
 namespace {
 
-using reference::NoisyDifference;
+using metrics::NoisyDifference;
 
 constexpr int kBlock = 8;
 constexpr double kScrambles = 16.0;  ///< that a truth's standard error is of (reference/truth)
@@ -19,15 +19,15 @@ constexpr double kHalfVariance = 0x1p-22 / 12.0;  ///< of rounding to 16 bits be
 /// lookups that agree.
 struct Noise {
   NoisyDifference difference;
-  reference::Share drawn;
-  reference::Share expected;
+  metrics::Share drawn;
+  metrics::Share expected;
 
   /// Chance, if either says so.
-  double p() const { return std::max(reference::find_p(difference), reference::find_p(drawn, expected)); }
+  double p() const { return std::max(metrics::find_p(difference), metrics::find_p(drawn, expected)); }
 };
 
-std::vector<Noise> list_noise(const report::Image& image, const report::UncertaintyImages& expected, double lookups) {
-  const double seeds = report::kSpreadSeeds;
+std::vector<Noise> list_noise(const images::Image& image, const images::UncertaintyImages& expected, double lookups) {
+  const double seeds = images::kSpreadSeeds;
   std::vector<Noise> noise(image.texels.size());
   for (std::size_t i = 0; i < noise.size(); ++i) {
     const double value = static_cast<double>(image.texels[i]), mean = static_cast<double>(expected.seed_mean.texels[i]);
@@ -47,7 +47,7 @@ Noise add(const std::vector<const Noise*>& parts) {
     sum.drawn = {sum.drawn.lit + part->drawn.lit, sum.drawn.lookups + part->drawn.lookups};
     sum.expected = {sum.expected.lit + part->expected.lit, sum.expected.lookups + part->expected.lookups};
   }
-  sum.difference = reference::add_differences(differences);
+  sum.difference = metrics::add_differences(differences);
   return sum;
 }
 
@@ -67,17 +67,17 @@ std::vector<double> test_blocks(const std::vector<Noise>& pixels, int width, int
 
 }  // namespace
 
-SpreadTest test_spread(const report::Image& image, const report::UncertaintyImages& expected, double lookups,
+SpreadTest test_spread(const images::Image& image, const images::UncertaintyImages& expected, double lookups,
                        double level) {
   const std::vector<Noise> pixels = list_noise(image, expected, lookups);
   std::vector<double> probabilities;
   for (const Noise& pixel : pixels) probabilities.push_back(pixel.p());
   // Two tests are made, at half the level each.
-  return {reference::test_pixels(probabilities, 0.5 * level),
-          reference::test_pixels(test_blocks(pixels, image.width, image.height), 0.5 * level)};
+  return {metrics::test_pixels(probabilities, 0.5 * level),
+          metrics::test_pixels(test_blocks(pixels, image.width, image.height), 0.5 * level)};
 }
 
-reference::PixelTest test_truth(const TruthImages& a, const TruthImages& b, double level) {
+metrics::PixelTest test_truth(const TruthImages& a, const TruthImages& b, double level) {
   std::vector<double> probabilities(a.area.texels.size());
   for (std::size_t i = 0; i < probabilities.size(); ++i) {
     const double of_a = static_cast<double>(a.standard_error.texels[i]),
@@ -85,10 +85,9 @@ reference::PixelTest test_truth(const TruthImages& a, const TruthImages& b, doub
     double difference = static_cast<double>(a.area.texels[i]) - static_cast<double>(b.area.texels[i]);
     if (of_a == 0.0 || of_b == 0.0)
       difference = std::copysign(std::max(std::abs(difference) - kUnanimousLimit, 0.0), difference);
-    probabilities[i] =
-        reference::find_p({difference, of_a * of_a + of_b * of_b + 2.0 * kHalfVariance, kScrambles - 1.0});
+    probabilities[i] = metrics::find_p({difference, of_a * of_a + of_b * of_b + 2.0 * kHalfVariance, kScrambles - 1.0});
   }
-  return reference::test_pixels(probabilities, level);
+  return metrics::test_pixels(probabilities, level);
 }
 
 }  // namespace shadowbench::regress

@@ -9,14 +9,14 @@ namespace shadowbench::regress {
 /// the baseline keeps; pixel by pixel, and over blocks of 8 x 8 pixels, where a small shift adds up. `lookups` is how
 /// many comparisons a receiver averages. The image's pixels, and lookups, are taken to be independent.
 struct SpreadTest {
-  reference::PixelTest pixels;
-  reference::PixelTest blocks;
+  metrics::PixelTest pixels;
+  metrics::PixelTest blocks;
 };
-SpreadTest test_spread(const report::Image& image, const report::UncertaintyImages& expected, double lookups,
+SpreadTest test_spread(const images::Image& image, const images::UncertaintyImages& expected, double lookups,
                        double level);
 
 /// Tests two truths, each with its standard errors; where all rays of one agree, it has no such error, and may be off
 /// by the limit of 3 in 64 rays.
-reference::PixelTest test_truth(const TruthImages& a, const TruthImages& b, double level);
+metrics::PixelTest test_truth(const TruthImages& a, const TruthImages& b, double level);
 
 }  // namespace shadowbench::regress

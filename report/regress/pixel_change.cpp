@@ -8,21 +8,21 @@ namespace {
 
 constexpr float kNegligibleBound = 0x1p-14f;
 
-float bound_at(const report::Image& rounding, std::size_t i) { return rounding.empty() ? 0.0f : rounding.texels[i]; }
+float bound_at(const images::Image& rounding, std::size_t i) { return rounding.empty() ? 0.0f : rounding.texels[i]; }
 
 float coarsen(float bound) {
-  if (bound == report::kMayFlip) return bound;
+  if (bound == images::kMayFlip) return bound;
   if (bound < kNegligibleBound) return 0.0f;
   if (!(bound < kWidestBound)) return 1.0f;
   return std::exp2(std::ceil(std::log2(bound)));
 }
 
-bool says_nothing(float bound) { return bound >= kWidestBound && bound != report::kMayFlip; }
+bool says_nothing(float bound) { return bound >= kWidestBound && bound != images::kMayFlip; }
 
 }  // namespace
 
-report::Image coarsen_rounding(const report::Image& rounding) {
-  report::Image coarse = rounding;
+images::Image coarsen_rounding(const images::Image& rounding) {
+  images::Image coarse = rounding;
   for (float& bound : coarse.texels) bound = coarsen(bound);
   return coarse;
 }
@@ -30,7 +30,7 @@ report::Image coarsen_rounding(const report::Image& rounding) {
 PixelChange compare_pixels(const CellImages& actual, const CellImages& expected, double tolerance) {
   assert(actual.visibility.texels.size() == expected.visibility.texels.size());
   PixelChange change;
-  const report::Image bounds = coarsen_rounding(actual.uncertainty.rounding),
+  const images::Image bounds = coarsen_rounding(actual.uncertainty.rounding),
                       known_bounds = coarsen_rounding(expected.uncertainty.rounding);
   const auto width = static_cast<std::size_t>(actual.visibility.width);
   for (std::size_t i = 0; i < actual.visibility.texels.size(); ++i) {
@@ -43,8 +43,8 @@ PixelChange compare_pixels(const CellImages& actual, const CellImages& expected,
                               : finite ? std::abs(static_cast<double>(actual.visibility.texels[i]) -
                                                   static_cast<double>(expected.visibility.texels[i]))
                                        : 1.0;
-    if (known == report::kMayFlip || says_nothing(known)) ++change.excused_expected;
-    const bool flips = own == report::kMayFlip || known == report::kMayFlip;
+    if (known == images::kMayFlip || says_nothing(known)) ++change.excused_expected;
+    const bool flips = own == images::kMayFlip || known == images::kMayFlip;
     if (finite && (flips || says_nothing(own) || says_nothing(known))) {
       ++(flips ? change.excused_flips : change.excused_rounding);
       change.excused_squares += difference * difference;
@@ -66,8 +66,8 @@ PixelChange compare_pixels(const CellImages& actual, const CellImages& expected,
   return change;
 }
 
-report::Image subtract(const report::Image& actual, const report::Image& expected) {
-  report::Image difference = actual;
+images::Image subtract(const images::Image& actual, const images::Image& expected) {
+  images::Image difference = actual;
   for (std::size_t i = 0; i < difference.texels.size(); ++i) difference.texels[i] -= expected.texels[i];
   return difference;
 }

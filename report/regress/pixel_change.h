@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "report/uncertainty_images.h"
+#include "report/images/uncertainty_images.h"
 
 namespace shadowbench::regress {
 
@@ -12,13 +12,13 @@ inline constexpr float kWidestBound = 0x1p-5f;
 
 /// One cell's visibility, with how far rounding and other seeds can move it. All images have one size or are empty.
 struct CellImages {
-  report::Image visibility;
-  report::UncertaintyImages uncertainty;
+  images::Image visibility;
+  images::UncertaintyImages uncertainty;
 };
 
 /// Coarsens rounding bounds to what a baseline keeps: 0 below 2^-14, which the pixel's own tolerance covers; the next
-/// power of two above; 1 from kWidestBound on; report::kMayFlip stays.
-report::Image coarsen_rounding(const report::Image& rounding);
+/// power of two above; 1 from kWidestBound on; images::kMayFlip stays.
+images::Image coarsen_rounding(const images::Image& rounding);
 
 /// How far an image is from what was expected.
 struct PixelChange {
@@ -43,6 +43,6 @@ struct PixelChange {
 PixelChange compare_pixels(const CellImages& actual, const CellImages& expected, double tolerance);
 
 /// Gives actual less expected.
-report::Image subtract(const report::Image& actual, const report::Image& expected);
+images::Image subtract(const images::Image& actual, const images::Image& expected);
 
 }  // namespace shadowbench::regress

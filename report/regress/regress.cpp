@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "filters/error.h"
-#include "filters/nearest_name.h"
-#include "report/atomic_file.h"
-#include "report/file_name.h"
-#include "report/folder_lock.h"
+#include "filters/base/error.h"
+#include "filters/base/nearest_name.h"
+#include "report/files/atomic_file.h"
+#include "report/files/file_name.h"
+#include "report/files/folder_lock.h"
 #include "report/regress/accept.h"
 #include "report/regress/junit.h"
 #include "report/regress/regress_picture.h"
@@ -80,7 +80,7 @@ class Regression {
   std::set<std::string> named_unreadable_;        ///< files of the baseline whose trouble a cell reports
   std::set<std::string> seen_truths_;             ///< scene and key
   std::map<std::string, ExpectedTruths> truths_;  ///< by scene
-  std::optional<report::FolderLock> lock_;        ///< of a baseline that may change
+  std::optional<files::FolderLock> lock_;         ///< of a baseline that may change
   RegressReport report_;
   CellFile file_;  ///< of the last cell's scene and filter
   std::pair<std::string, std::string> file_name_;
@@ -97,7 +97,7 @@ class Regression {
   template <class Name>
   void require_known(const std::vector<std::string>& chosen, const char* option, const Name& name_of_cell) const {
     std::vector<std::string> known;
-    for (const report::CellRecord& cell : run_.all_cells()) known.push_back(name_of_cell(cell));
+    for (const records::CellRecord& cell : run_.all_cells()) known.push_back(name_of_cell(cell));
     for (const BaselineCell& cell : index_.cells) known.push_back(name_of_cell(cell));
     std::sort(known.begin(), known.end());
     known.erase(std::unique(known.begin(), known.end()), known.end());
@@ -153,7 +153,7 @@ class Regression {
 
   void add_unknown(Comparison& comparison, const ActualCell& cell) {
     const std::string file =
-        (std::filesystem::path(report::make_file_stem(cell.record.scene)) / report::make_file_stem(cell.record.filter))
+        (std::filesystem::path(files::make_file_stem(cell.record.scene)) / files::make_file_stem(cell.record.filter))
             .string();
     const auto unreadable = index_.unreadable.find(file);
     if (unreadable != index_.unreadable.end()) named_unreadable_.insert(file);
@@ -184,12 +184,12 @@ class Regression {
     report_.comparisons.push_back(std::move(comparison));
   }
 
-  void draw(Comparison& comparison, const report::Image& expected, const report::Image& actual) {
+  void draw(Comparison& comparison, const images::Image& expected, const images::Image& actual) {
     const bool moved = comparison.outcome == Outcome::kChanged || comparison.outcome == Outcome::kLessAccurate;
     if (!moved || pictures_ >= kMostPictures) return;
     ++pictures_;
     comparison.picture =
-        report::make_file_stem(fmt::format("{}.{}.{}", comparison.scene, comparison.label, comparison.key)) + ".png";
+        files::make_file_stem(fmt::format("{}.{}.{}", comparison.scene, comparison.label, comparison.key)) + ".png";
     write_regress_picture(options_.out / *comparison.picture, comparison, expected, actual);
   }
 
@@ -250,7 +250,7 @@ class Regression {
   }
 
   void accept() {
-    const report::RunRecord& run = run_.run();
+    const records::RunRecord& run = run_.run();
     report_.accepted = accepter_.write({run.seed, run.gl.renderer, "", run.commit});
   }
 };
@@ -292,8 +292,8 @@ RegressOutcome run_regress(const RegressOptions& options) {
   remove_old_pictures(options.out);
   const RegressReport found = Regression(options).compare();
   RegressOutcome outcome{make_regress_text(found), make_regress_json(found), describe_failure(found)};
-  report::write_text_file(options.out / "regress.json", outcome.json);
-  if (options.junit) report::write_text_file(*options.junit, make_junit(found));
+  files::write_text_file(options.out / "regress.json", outcome.json);
+  if (options.junit) files::write_text_file(*options.junit, make_junit(found));
   return outcome;
 }
 

@@ -7,20 +7,21 @@
 #include <functional>
 #include <vector>
 
-#include "report/color_values.h"
-#include "report/diverging.h"
-#include "report/figure.h"
-#include "report/fit_worst.h"
-#include "report/hardest_edge.h"
-#include "report/picture_io.h"
-#include "report/summary.h"
+#include "report/analysis/summary.h"
+#include "report/images/color_values.h"
+#include "report/images/diverging.h"
+#include "report/images/figure.h"
+#include "report/images/fit_worst.h"
+#include "report/images/hardest_edge.h"
+#include "report/images/picture_io.h"
+#include "report/records/format.h"
 
 namespace shadowbench::regress {
 namespace {
 
-using report::Image;
-using report::Rect;
-using report::Rgb;
+using images::Image;
+using images::Rect;
+using images::Rgb;
 
 constexpr int kPanelWidth = 420;
 constexpr int kGap = 16;
@@ -34,7 +35,7 @@ using Colors = std::function<Rgb(float)>;
 struct Panel {
   std::string title;
   Image values;
-  report::Badness badness;  ///< of the pixels that share one of the reduced picture
+  images::Badness badness;  ///< of the pixels that share one of the reduced picture
   Colors colors;
 };
 
@@ -57,21 +58,21 @@ Rect crop_worst(const Image& difference) {
   const auto smaller = [](float a, float b) { return magnitude(a) < magnitude(b); };
   const int worst = static_cast<int>(std::max_element(difference.texels.begin(), difference.texels.end(), smaller) -
                                      difference.texels.begin());
-  const report::Size size = report::choose_crop_size({difference.width, difference.height});
+  const images::Size size = images::choose_crop_size({difference.width, difference.height});
   return {std::clamp(worst % difference.width - size.width / 2, 0, difference.width - size.width),
           std::clamp(worst / difference.width - size.height / 2, 0, difference.height - size.height), size.width,
           size.height};
 }
 
-void outline(report::Figure& figure, const Rect& rect) {
+void outline(images::Figure& figure, const Rect& rect) {
   figure.fill({rect.x - 1, rect.y - 1, rect.width + 2, 1}, kOutline);
   figure.fill({rect.x - 1, rect.y + rect.height, rect.width + 2, 1}, kOutline);
   figure.fill({rect.x - 1, rect.y, 1, rect.height}, kOutline);
   figure.fill({rect.x + rect.width, rect.y, 1, rect.height}, kOutline);
 }
 
-void frame(report::Figure& figure, int x, int y, const Image& picture) {
-  figure.fill({x - 1, y - 1, picture.width + 2, picture.height + 2}, report::kFigureLines);
+void frame(images::Figure& figure, int x, int y, const Image& picture) {
+  figure.fill({x - 1, y - 1, picture.width + 2, picture.height + 2}, images::kFigureLines);
   figure.place(x, y, picture);
 }
 
@@ -80,33 +81,33 @@ std::string describe_change(const Comparison& comparison) {
   const PixelChange& change = *comparison.pixels;
   return fmt::format(
       "{} of {} pixels moved, by {} at most; excused by name: {} where a comparison may flip, {} for rounding",
-      change.changed, change.compared, report::format_number(change.max), change.excused_flips,
+      change.changed, change.compared, records::format_number(change.max), change.excused_flips,
       change.excused_rounding);
 }
 
-void draw_panel(report::Figure& figure, int column, int y, const Panel& panel, const Rect& crop) {
+void draw_panel(images::Figure& figure, int column, int y, const Panel& panel, const Rect& crop) {
   const int x = figure.body().x + column * (kPanelWidth + kGap);
-  const int below = y + report::figure_line_height() + kPanelWidth * panel.values.height / panel.values.width + kGap;
-  figure.write(x, y, panel.title, report::kFigureInk);
-  frame(figure, x, y + report::figure_line_height(),
-        report::color_values(report::fit_worst(panel.values, kPanelWidth, panel.badness), panel.colors));
+  const int below = y + images::figure_line_height() + kPanelWidth * panel.values.height / panel.values.width + kGap;
+  figure.write(x, y, panel.title, images::kFigureInk);
+  frame(figure, x, y + images::figure_line_height(),
+        images::color_values(images::fit_worst(panel.values, kPanelWidth, panel.badness), panel.colors));
   const auto scaled = [&](int place) { return place * kPanelWidth / panel.values.width; };
-  outline(figure, {x + scaled(crop.x), y + report::figure_line_height() + scaled(crop.y), scaled(crop.width),
+  outline(figure, {x + scaled(crop.x), y + images::figure_line_height() + scaled(crop.y), scaled(crop.width),
                    scaled(crop.height)});
   const Image magnified =
-      report::color_values(report::fit_worst(cut(panel.values, crop), kPanelWidth, panel.badness), panel.colors);
+      images::color_values(images::fit_worst(cut(panel.values, crop), kPanelWidth, panel.badness), panel.colors);
   frame(figure, x, below, magnified);
   outline(figure, {x, below, magnified.width, magnified.height});
 }
 
-void draw_scale(report::Figure& figure, int top, double scale) {
-  const Image bar = report::make_ramp(kBarWidth, report::figure_line_height() - 4);
+void draw_scale(images::Figure& figure, int top, double scale) {
+  const Image bar = images::make_ramp(kBarWidth, images::figure_line_height() - 4);
   figure.place(figure.body().x, top + 2,
-               report::color_values(bar, [](float t) { return report::map_diverging(2.0f * t - 1.0f, 1.0f); }));
+               images::color_values(bar, [](float t) { return images::map_diverging(2.0f * t - 1.0f, 1.0f); }));
   figure.write(figure.body().x + kBarWidth + kGap, top,
                fmt::format("actual less expected: -{0} (darker now) to +{0} (brighter now); below: the outlined part, "
                            "with the largest difference",
-                           report::format_number(scale)));
+                           records::format_number(scale)));
 }
 
 }  // namespace
@@ -114,27 +115,27 @@ void draw_scale(report::Figure& figure, int top, double scale) {
 void write_regress_picture(const std::filesystem::path& path, const Comparison& comparison, const Image& expected,
                            const Image& actual) {
   const Image difference = subtract(actual, expected);
-  const double scale = report::choose_error_scale({&difference});
+  const double scale = images::choose_error_scale({&difference});
   const Rect crop = crop_worst(difference);
   const std::vector<Panel> panels = {{"expected", expected, distance_from_lit, color_visibility},
                                      {"actual", actual, distance_from_lit, color_visibility},
                                      {"difference", difference, magnitude, [scale](float v) {
-                                        return std::isfinite(v) ? report::map_diverging(v, static_cast<float>(scale))
+                                        return std::isfinite(v) ? images::map_diverging(v, static_cast<float>(scale))
                                                                 : kNotFinite;
                                       }}};
-  const int line = report::figure_line_height(), width = 3 * kPanelWidth + 2 * kGap;
-  const std::vector<std::string> notes = report::wrap_figure_text(describe_change(comparison), width);
+  const int line = images::figure_line_height(), width = 3 * kPanelWidth + 2 * kGap;
+  const std::vector<std::string> notes = images::wrap_figure_text(describe_change(comparison), width);
   const int top = line * static_cast<int>(notes.size()), height = top + line +
                                                                   kPanelWidth * actual.height / actual.width + kGap +
                                                                   kPanelWidth * crop.height / crop.width + kGap;
-  report::Figure figure(fmt::format("{} on {}: {}", comparison.label, comparison.scene, name_of(comparison.outcome)),
+  images::Figure figure(fmt::format("{} on {}: {}", comparison.label, comparison.scene, name_of(comparison.outcome)),
                         comparison.settings, {width, height + line});
   for (std::size_t i = 0; i < notes.size(); ++i)
     figure.write(figure.body().x, figure.body().y + line * static_cast<int>(i), notes[i]);
   for (std::size_t i = 0; i < panels.size(); ++i)
     draw_panel(figure, static_cast<int>(i), figure.body().y + top, panels[i], crop);
   draw_scale(figure, figure.body().y + height, scale);
-  report::write_display_png(path, figure.canvas());
+  images::write_display_png(path, figure.canvas());
 }
 
 }  // namespace shadowbench::regress

@@ -9,6 +9,6 @@ namespace shadowbench::regress {
 /// Draws what was expected, what was drawn, and the difference, side by side, with the worst place magnified, into a
 /// PNG file. Requires two images of one size, not empty, of one channel. Throws Error(kOutput).
 void write_regress_picture(const std::filesystem::path& path, const Comparison& comparison,
-                           const report::Image& expected, const report::Image& actual);
+                           const images::Image& expected, const images::Image& actual);
 
 }  // namespace shadowbench::regress

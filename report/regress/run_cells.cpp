@@ -6,9 +6,10 @@
 #include <map>
 #include <set>
 
-#include "filters/error.h"
-#include "report/picture_io.h"
-#include "report/summary.h"
+#include "filters/base/error.h"
+#include "report/analysis/summary.h"
+#include "report/images/picture_io.h"
+#include "report/records/format.h"
 
 namespace shadowbench::regress {
 namespace {
@@ -17,7 +18,7 @@ bool chosen(const std::vector<std::string>& names, const std::string& name) {
   return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
 }
 
-using Parts = std::map<std::string, report::Image>;
+using Parts = std::map<std::string, images::Image>;
 
 /// The parts of an image file, by name; the reason where it cannot be read.
 struct ImageFile {
@@ -28,16 +29,16 @@ struct ImageFile {
 ImageFile read_image_file(const std::filesystem::path& path) {
   ImageFile file;
   try {
-    for (report::Part& part : report::read_exr(path).parts) file.parts[part.name] = std::move(part.image);
+    for (images::Part& part : images::read_exr(path).parts) file.parts[part.name] = std::move(part.image);
   } catch (const Error& error) {
     file.unreadable = error.what();
   }
   return file;
 }
 
-report::Image find_part(const Parts& parts, const std::string& name) {
+images::Image find_part(const Parts& parts, const std::string& name) {
   const auto found = parts.find(name);
-  return found == parts.end() ? report::Image() : found->second;
+  return found == parts.end() ? images::Image() : found->second;
 }
 
 void read_images(ActualCell& cell, const ImageFile& file) {
@@ -47,21 +48,21 @@ void read_images(ActualCell& cell, const ImageFile& file) {
   }
   const std::string prefix = *cell.record.images.parts + ".";
   cell.images.visibility = find_part(file.parts, prefix + "visibility");
-  for (const report::UncertaintyImage& each : report::list_uncertainty_images())
+  for (const images::UncertaintyImage& each : images::list_uncertainty_images())
     cell.images.uncertainty.*each.image = find_part(file.parts, prefix + each.id);
 }
 
 /// Says why a cell has no image; empty where it has one.
-std::string explain_no_image(const report::CellRecord& cell) {
-  if (cell.status != report::CellStatus::kOk) return "the run could not measure it: " + report::describe_status(cell);
+std::string explain_no_image(const records::CellRecord& cell) {
+  if (cell.status != records::CellStatus::kOk) return "the run could not measure it: " + records::describe_status(cell);
   if (!cell.images.exr || !cell.images.parts) return "the run kept no float images: run it with --grids";
   return "";
 }
 
-std::map<std::string, std::vector<const report::CellRecord*>> group_by_file(
-    const std::vector<report::CellRecord>& cells) {
-  std::map<std::string, std::vector<const report::CellRecord*>> groups;
-  for (const report::CellRecord& cell : cells)
+std::map<std::string, std::vector<const records::CellRecord*>> group_by_file(
+    const std::vector<records::CellRecord>& cells) {
+  std::map<std::string, std::vector<const records::CellRecord*>> groups;
+  for (const records::CellRecord& cell : cells)
     groups[explain_no_image(cell).empty() ? *cell.images.exr : std::string()].push_back(&cell);
   return groups;
 }
@@ -73,13 +74,13 @@ bool Selection::holds(const std::string& scene, const std::string& filter) const
 }
 
 RunCells::RunCells(const std::filesystem::path& folder, const Selection& selection)
-    : folder_(folder), results_(report::read_results(folder / "results.json")), all_(results_.cells) {
+    : folder_(folder), results_(records::read_results(folder / "results.json")), all_(results_.cells) {
   std::erase_if(
-      results_.cells, [&](const report::CellRecord& cell) { return !selection.holds(cell.scene, cell.filter); });
+      results_.cells, [&](const records::CellRecord& cell) { return !selection.holds(cell.scene, cell.filter); });
 }
 
 Origin RunCells::origin() const {
-  const report::RunRecord& run = results_.run;
+  const records::RunRecord& run = results_.run;
   return {run.seed, run.gl.renderer, fmt::format("{}, {} cores", run.machine.cpu, run.machine.cores), run.commit};
 }
 
@@ -88,7 +89,7 @@ void RunCells::visit(const std::function<void(const ActualCell&)>& on_cell,
   std::set<std::string> seen;
   for (const auto& [name, cells] : group_by_file(results_.cells)) {
     const ImageFile file = name.empty() ? ImageFile() : read_image_file(folder_ / name);
-    for (const report::CellRecord* record : cells) {
+    for (const records::CellRecord* record : cells) {
       ActualCell cell{*record, origin(), {}, explain_no_image(*record)};
       if (cell.unreadable.empty()) read_images(cell, file);
       on_cell(cell);

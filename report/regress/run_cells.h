@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "report/json_io.h"
+#include "report/records/json_io.h"
 #include "report/regress/comparison.h"
 
 namespace shadowbench::regress {
@@ -26,9 +26,9 @@ class RunCells {
   /// `folder` is the run's report folder. Throws Error(kInput) where its results cannot be read.
   RunCells(const std::filesystem::path& folder, const Selection& selection);
 
-  const report::RunRecord& run() const { return results_.run; }
-  const std::vector<report::CellRecord>& cells() const { return results_.cells; }
-  const std::vector<report::CellRecord>& all_cells() const { return all_; }  ///< those that are not compared, too
+  const records::RunRecord& run() const { return results_.run; }
+  const std::vector<records::CellRecord>& cells() const { return results_.cells; }
+  const std::vector<records::CellRecord>& all_cells() const { return all_; }  ///< those that are not compared, too
 
   /// Hands out every cell, and the truth of every view once, where there is one.
   void visit(const std::function<void(const ActualCell&)>& on_cell,
@@ -36,8 +36,8 @@ class RunCells {
 
  private:
   std::filesystem::path folder_;
-  report::Results results_;
-  std::vector<report::CellRecord> all_;
+  records::Results results_;
+  std::vector<records::CellRecord> all_;
 
   Origin origin() const;
 };

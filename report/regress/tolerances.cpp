@@ -8,8 +8,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "filters/error.h"
-#include "filters/nearest_name.h"
+#include "filters/base/error.h"
+#include "filters/base/nearest_name.h"
 #include "report/regress/compared_metrics.h"
 
 namespace shadowbench::regress {

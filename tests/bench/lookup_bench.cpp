@@ -4,10 +4,10 @@
 
 #include <memory>
 
-#include "harness/run/bias_rule.h"
-#include "harness/run/options.h"
-#include "harness/run/statistics.h"
-#include "harness/run/timing.h"
+#include "harness/measure/statistics.h"
+#include "harness/measure/timing.h"
+#include "harness/options/options.h"
+#include "harness/render/bias_rule.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::bench {
@@ -19,8 +19,8 @@ constexpr int kMapSize = 1024;
 class LookupBench {
  public:
   /// Each filter with each bias.
-  explicit LookupBench(const std::string& filters, const std::vector<run::BiasRule>& rules = {{}})
-      : resources_(run::find_resources()),
+  explicit LookupBench(const std::string& filters, const std::vector<render::BiasRule>& rules = {{}})
+      : resources_(options::find_resources()),
         choice_(gl::create_context(gl::Backend::kAuto)),
         timer_(gl::choose_timer(*choice_.context)),
         scene_(scene::load("cubes", {.scenes_folder = resources_.scenes})),
@@ -34,23 +34,23 @@ class LookupBench {
     filters::Catalogue catalogue(resources_.filters);
     catalogue.add_user_file(SHADOWBENCH_SOURCE_DIR "/tests/user_filters/nine_compares.glsl");
     for (const auto& request : catalogue.parse_requests(filters)) {
-      for (const run::BiasRule& rule : rules) {
-        const auto bias = run::resolve_bias(rule, frustum_, request.spec, request.values);
+      for (const render::BiasRule& rule : rules) {
+        const auto bias = render::resolve_bias(rule, frustum_, request.spec, request.values);
         const auto light = render::make_light_setup(frustum_, scene_.light, bias, 1);
         filters_.push_back(std::make_unique<render::FilterPasses>(shaders_, request, map_, light));
       }
     }
   }
 
-  run::RoundTimes time(int rounds) {
+  measure::RoundTimes time(int rounds) {
     std::vector<render::FilterPasses*> pointers;
     for (const auto& filter : filters_) pointers.push_back(filter.get());
-    return run::time_rounds(
-        pointers, 0, [] {}, map_, gbuffer_, timer_, run::RoundLimits::exactly(rounds), 1);
+    return measure::time_rounds(
+        pointers, 0, [] {}, map_, gbuffer_, timer_, options::RoundLimits::exactly(rounds), 1);
   }
 
  private:
-  run::Resources resources_;
+  options::Resources resources_;
   gl::ContextChoice choice_;
   gl::TimerKind timer_;
   scene::Scene scene_;
@@ -64,14 +64,14 @@ class LookupBench {
 
 /// Compares the first lookup with the second: their ratio with its interval, and both medians.
 void compare(benchmark::State& state, LookupBench& bench) {
-  run::RoundTimes times;
+  measure::RoundTimes times;
   for (auto _ : state) times = bench.time(41);
-  const report::Ratio ratio = run::bootstrap_ratio(times.filters[0].lookup, times.filters[1].lookup, 1);
+  const records::Ratio ratio = measure::bootstrap_ratio(times.filters[0].lookup, times.filters[1].lookup, 1);
   state.counters["ratio"] = ratio.median;
   state.counters["ratio_low"] = ratio.ci95.low;
   state.counters["ratio_high"] = ratio.ci95.high;
-  state.counters["first_ms"] = run::summarise(times.filters[0].lookup).median;
-  state.counters["second_ms"] = run::summarise(times.filters[1].lookup).median;
+  state.counters["first_ms"] = measure::summarise(times.filters[0].lookup).median;
+  state.counters["second_ms"] = measure::summarise(times.filters[1].lookup).median;
 }
 
 void compare_lookups(benchmark::State& state, const std::string& filters) {
@@ -81,7 +81,7 @@ void compare_lookups(benchmark::State& state, const std::string& filters) {
 
 /// A filter with the receiver plane's depth at every tap, to the same filter with the default bias.
 void receiver_plane(benchmark::State& state, const std::string& filter) {
-  LookupBench bench(filter, {run::parse_bias({"receiver-plane"}), {}});
+  LookupBench bench(filter, {render::parse_bias({"receiver-plane"}), {}});
   compare(state, bench);
 }
 

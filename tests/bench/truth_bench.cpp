@@ -14,11 +14,11 @@
 #include <numeric>
 #include <vector>
 
-#include "harness/gl/context.h"
+#include "harness/gl/context/context.h"
+#include "harness/measure/scene_tracer.h"
+#include "harness/options/options.h"
 #include "harness/render/gbuffer.h"
 #include "harness/render/shader_library.h"
-#include "harness/run/options.h"
-#include "harness/run/scene_tracer.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::bench {
@@ -36,17 +36,17 @@ double median(std::vector<double> values) {
 /// A built-in scene with the receivers that its camera sees.
 struct View {
   View(const std::string& name, int width, int height)
-      : scene(scene::load(name, {.scenes_folder = run::find_resources().scenes})) {
+      : scene(scene::load(name, {.scenes_folder = options::find_resources().scenes})) {
     static gl::ContextChoice choice = gl::create_context(gl::Backend::kAuto);
-    render::ShaderLibrary shaders(run::find_resources().shaders);
+    render::ShaderLibrary shaders(options::find_resources().shaders);
     const render::Geometry geometry(scene);
     render::GBuffer gbuffer(width, height);
     gbuffer.draw(shaders, geometry, scene, scene.cameras.front());
-    receivers = run::read_view_receivers(gbuffer, -scene.light.direction_ws);
+    receivers = measure::read_view_receivers(gbuffer, -scene.light.direction_ws);
   }
 
   scene::Scene scene;
-  run::ViewReceivers receivers;
+  measure::ViewReceivers receivers;
 };
 
 /// An Embree scene without anything of ours around it.
@@ -104,7 +104,7 @@ struct Recording {
   std::vector<std::array<int, 16>> valid;
   double rays = 0.0;
 
-  void add(const reference::RayPacket& packet) {
+  void add(const truth::RayPacket& packet) {
     std::memcpy(&packets.emplace_back(), &packet, sizeof(RTCRay16));
     valid.push_back(packet.active);
     rays -= std::accumulate(packet.active.begin(), packet.active.end(), 0);
@@ -114,24 +114,24 @@ struct Recording {
 /// The same rays, traced by the truth and by a bare loop in turns: few enough of them to stay near the cores.
 void occlusion_rays(benchmark::State& state, const char* scene) {
   const View view(scene, 160, 90);
-  const reference::Occluders occluders = run::make_occluders(view.scene);
+  const truth::Occluders occluders = measure::make_occluders(view.scene);
   const BareEmbree bare(view.scene);
-  const auto light = reference::AreaLight::make_sun(-glm::dvec3(view.scene.light.direction_ws),
-                                                    static_cast<double>(view.scene.light.angular_diameter_deg));
-  reference::TraceSettings settings;
+  const auto light = truth::AreaLight::make_sun(-glm::dvec3(view.scene.light.direction_ws),
+                                                static_cast<double>(view.scene.light.angular_diameter_deg));
+  truth::TraceSettings settings;
   settings.standard_error = 1.0;
   settings.max_points = 16;
-  tbb::concurrent_vector<reference::RayPacket> packets;
-  settings.on_packet = [&](const reference::RayPacket& packet) { packets.push_back(packet); };
-  reference::trace_area(occluders, view.receivers.image, light, settings);
+  tbb::concurrent_vector<truth::RayPacket> packets;
+  settings.on_packet = [&](const truth::RayPacket& packet) { packets.push_back(packet); };
+  truth::trace_area(occluders, view.receivers.image, light, settings);
   settings.on_packet = {};
   Recording recording;
-  for (const reference::RayPacket& packet : packets) recording.add(packet);
+  for (const truth::RayPacket& packet : packets) recording.add(packet);
   std::vector<double> ours, theirs, ratios;
   for (auto _ : state) {
     for (int round = 0; round < 41; ++round) {
       const auto first = Clock::now();
-      benchmark::DoNotOptimize(reference::trace_area(occluders, view.receivers.image, light, settings));
+      benchmark::DoNotOptimize(truth::trace_area(occluders, view.receivers.image, light, settings));
       ours.push_back(recording.rays / seconds_since(first));
       const auto second = Clock::now();
       bare.trace(recording.packets, recording.valid);
@@ -154,12 +154,12 @@ void area_truth(benchmark::State& state, const char* scene) {
   const auto folder = std::filesystem::temp_directory_path() / ("shadowbench_truth_bench." + std::to_string(getpid()));
   const View view(scene, 960, 540);
   for (auto _ : state) {
-    run::TruthCache cache(folder, [](const std::string&) {});
+    measure::TruthCache cache(folder, [](const std::string&) {});
     const auto cold = Clock::now();
-    run::SceneTracer(view.scene, cache, 1).trace_view(view.receivers);
+    measure::SceneTracer(view.scene, cache, 1).trace_view(view.receivers);
     state.counters["cold_s"] = seconds_since(cold);
     const auto warm = Clock::now();
-    run::SceneTracer(view.scene, cache, 1).trace_view(view.receivers);
+    measure::SceneTracer(view.scene, cache, 1).trace_view(view.receivers);
     state.counters["warm_s"] = seconds_since(warm);
     if (cache.loaded() != 1) state.SkipWithError("the cache did not hold the view");
   }

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "filters/model.h"
 
 namespace shadowbench::filters {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 
 namespace shadowbench::filters {
 namespace {

@@ -1,7 +1,7 @@
 // An experiment file: its settings, and its swept filters written out in full.
 
 #include "filters/catalogue.h"
-#include "harness/run/experiment_file.h"
+#include "harness/options/experiment_file.h"
 #include "tests/fuzz/scratch_folder.h"
 
 namespace shadowbench::fuzz {
@@ -10,9 +10,9 @@ namespace {
 void read_experiment(std::string_view text) {
   static const ScratchFolder folder;
   static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  const run::Experiment experiment = run::read_experiment(
+  const options::Experiment experiment = options::read_experiment(
       folder.write("input.toml", text), {"scene", "map_size", "size", "seed", "grids", "filter_file"});
-  run::expand_filters(experiment, catalogue);
+  options::expand_filters(experiment, catalogue);
 }
 
 }  // namespace

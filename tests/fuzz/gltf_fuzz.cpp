@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "harness/scene/light_fit.h"
+#include "harness/scene/lights/light_fit.h"
 #include "harness/scene/load.h"
 #include "tests/fuzz/scratch_folder.h"
 

@@ -1,6 +1,6 @@
 // A scene file, read whole: its tables, its shapes, the model beside it, and the checks of the finished scene.
 
-#include "harness/scene/light_fit.h"
+#include "harness/scene/lights/light_fit.h"
 #include "harness/scene/scene_file.h"
 #include "tests/fuzz/scratch_folder.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 
 namespace shadowbench::fuzz {
 

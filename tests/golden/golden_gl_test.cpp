@@ -94,8 +94,8 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, GoldenOfScene, ::testing::ValuesIn(builtin_sce
                          [](const auto& each) { return each.param; });
 
 /// Says whether a filter's image is found not to be one of a stochastic filter's, drawn with another seed.
-bool is_told_apart(const regress::CellFile& expected, const report::Image& actual, double level) {
-  const report::UncertaintyImages& spread = expected.images.begin()->second.uncertainty;
+bool is_told_apart(const regress::CellFile& expected, const images::Image& actual, double level) {
+  const images::UncertaintyImages& spread = expected.images.begin()->second.uncertainty;
   const regress::SpreadTest test =
       regress::test_spread(actual, spread, expected.cells.front().values.numbers.at("cost.fetches"), level);
   return test.pixels.beyond + test.blocks.beyond > 0;

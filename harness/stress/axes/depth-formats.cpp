@@ -4,9 +4,10 @@
 #include <cmath>
 #include <memory>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/stress/axis.h"
 #include "harness/stress/stored_depths.h"
+#include "report/records/text_table.h"
 
 namespace shadowbench::stress {
 namespace {
@@ -97,8 +98,8 @@ std::vector<Case> make_cases(const StressContext& context) {
 constexpr double kShownRatio = 1000.0;
 
 /// The error at a few distances, beside half a step of the format there.
-report::TextTable make_growth_table(render::ShaderLibrary& shaders) {
-  report::TextTable table{{"case"}, {}};
+records::TextTable make_growth_table(render::ShaderLibrary& shaders) {
+  records::TextTable table{{"case"}, {}};
   for (const double distance : {2.0, 10.0, 100.0, 900.0}) table.header.push_back(fmt::format("at {:g} n", distance));
   for (const Setting& setting : list_settings()) {
     std::vector<std::string> row = {name(setting)};

@@ -72,7 +72,7 @@ std::vector<double> expect_visibility(const EdgeScene& edge, const Setting& sett
 
 /// exp(-c z) of the lookup underflows before exp(c z) of the map overflows; where the GL flushes denormals, all is dark
 /// from there.
-std::vector<std::string> remark_underflow(const Setting& setting, const report::StressCase& record) {
+std::vector<std::string> remark_underflow(const Setting& setting, const records::StressCase& record) {
   constexpr double kSmallestNormal = 87.3365;  // -ln(2^-126)
   if (is_log(setting) || !record.broken || record.broken->why.find("dark") == std::string::npos) return {};
   const double ratio = record.broken->value * static_cast<double>(setting.largest_depth) / kSmallestNormal;
@@ -105,7 +105,7 @@ Case make_case(const StressContext& context, const DrivenFilter& driven, const S
   item.params.erase(driven.param);
   item.theories = {make_overflow(setting, level)};
   if (is_log(setting)) item.theories.push_back(make_rounding(setting));
-  item.remark = [setting](const report::StressCase& record) { return remark_underflow(setting, record); };
+  item.remark = [setting](const records::StressCase& record) { return remark_underflow(setting, record); };
   const EdgeScene edge = make_edge_scene(setting.radius, {{kOccluder * setting.largest_depth, setting.largest_depth}});
   item.observe = [probe = probe, edge, setting, values = request.values, param = driven.param](double c) mutable {
     values[param] = c;

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "harness/run/bias_theory.h"
+#include "harness/render/bias_theory.h"
 #include "harness/stress/heat_map.h"
 #include "harness/stress/tilted_plane.h"
 
@@ -28,7 +28,7 @@ struct Reach {
 Reach find_reach(const filters::FilterRequest& request) {
   const filters::Kernel kernel = filters::make_model(request.spec.id)->kernel(request.values);
   const bool nearest = kernel.reconstruction() == filters::Reconstruction::kNearest;
-  const double texels = run::reach_texels(request), between = nearest ? 0.5 : 1.0;
+  const double texels = render::reach_texels(request), between = nearest ? 0.5 : 1.0;
   return {texels - between, between};
 }
 
@@ -64,9 +64,9 @@ Observation observe_plane(TiltedPlane& plane, const PlaneTilt& tilt, const Reach
 }
 
 /// Says how near the bias came to theory, over all angles.
-std::vector<std::string> remark_ratio(const report::StressCase& record, const Reach& reach, bool diagonal) {
+std::vector<std::string> remark_ratio(const records::StressCase& record, const Reach& reach, bool diagonal) {
   double least = std::numeric_limits<double>::infinity(), most = 0.0, steepest = 0.0;
-  for (const report::StressSample& sample : record.samples) {
+  for (const records::StressSample& sample : record.samples) {
     const double theory = find_gain_m({sample.value, diagonal}, reach.texels()) / kPlaneTexel_m;
     if (!sample.measured || theory <= 0.0) continue;
     least = std::min(least, *sample.measured / theory);
@@ -93,7 +93,9 @@ Case make_case(const StressContext& context, const filters::FilterRequest& reque
       level == Level::kGl ? make_gl_plane(context, request) : make_model_plane(request);
   item.observe = [plane, reach, diagonal](double angle) { return observe_plane(*plane, {angle, diagonal}, reach); };
   if (level == Level::kGl)
-    item.remark = [reach, diagonal](const report::StressCase& record) { return remark_ratio(record, reach, diagonal); };
+    item.remark = [reach, diagonal](const records::StressCase& record) {
+      return remark_ratio(record, reach, diagonal);
+    };
   return item;
 }
 
@@ -122,8 +124,8 @@ constexpr double kHighestBias = 12.0;  // texels
 
 /// The share of receivers with acne, a column for each angle. More bias never brings more acne: above the first bias
 /// without, nothing needs to be drawn.
-report::Image measure_acne(TiltedPlane& plane, bool diagonal) {
-  report::Image acne(kColumns, kRows, 1);
+images::Image measure_acne(TiltedPlane& plane, bool diagonal) {
+  images::Image acne(kColumns, kRows, 1);
   for (int x = 0; x < kColumns; ++x) {
     plane.tilt({90.0 * (x + 0.5) / kColumns, diagonal});
     for (int y = kRows - 1; y >= 0; --y) {

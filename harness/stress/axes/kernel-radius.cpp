@@ -56,7 +56,7 @@ Observation observe_radius(const RadiusFilter& filter, double radius, Probe& pro
       fmt::format("radius 0 is off by {:.2g} from what the filter is without a kernel", seen.measured.value_or(1.0))};
 }
 
-std::vector<std::string> remark_base(const report::StressCase& record, const std::string& base) {
+std::vector<std::string> remark_base(const records::StressCase& record, const std::string& base) {
   if (record.samples.empty() || record.samples.front().value != 0.0 || !record.samples.front().measured) return {};
   return {fmt::format("radius 0 is {}, within {:.2g}", base, *record.samples.front().measured)};
 }
@@ -83,7 +83,7 @@ Case make_case(const StressContext& context, const RadiusFilter& filter, Level l
   filters::ParamValues without = request.values;
   without[filter.param] = 0.0;
   const std::string base = name_base(request.spec, filters::make_model(request.spec.id)->kernel(without));
-  item.remark = [base](const report::StressCase& record) { return remark_base(record, base); };
+  item.remark = [base](const records::StressCase& record) { return remark_base(record, base); };
   return item;
 }
 

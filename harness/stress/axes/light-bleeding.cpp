@@ -110,7 +110,7 @@ Case make_case(const StressContext& context, const filters::FilterRequest& reque
   if (form.visibility)
     item.theories = {make_theory(form, radius, occluders)};
   else
-    item.remark = [](const report::StressCase&) {
+    item.remark = [](const records::StressCase&) {
       return std::vector<std::string>{
           "its front matter tells of no formula: there is nothing to hold it against but truth"};
     };

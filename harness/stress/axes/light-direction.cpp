@@ -109,10 +109,10 @@ class Leaner {
   }
 };
 
-std::vector<std::string> remark(const report::StressCase& record) {
+std::vector<std::string> remark(const records::StressCase& record) {
   if (record.degraded || record.broken || record.samples.empty()) return {};
   double largest = 0.0;
-  for (const report::StressSample& sample : record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
+  for (const records::StressSample& sample : record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
   return {fmt::format(
       "exactly along the axis, and from {:g} to {:g} degrees beside it, at most {:.2g} of the receivers are wrong",
       record.samples.front().value, record.samples.back().value, largest)};

@@ -233,7 +233,7 @@ Observation observe_all(std::vector<Looker>& lookers, double outside) {
   return worst;
 }
 
-std::vector<std::string> remark(const report::StressCase& record) {
+std::vector<std::string> remark(const records::StressCase& record) {
   if (record.degraded || record.broken || record.samples.empty()) return {};
   return {"lit outside the map, beyond its far plane and behind the light, and no line along the border"};
 }

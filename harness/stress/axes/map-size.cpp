@@ -4,8 +4,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/stress/probe.h"
+#include "report/records/text_table.h"
 
 namespace shadowbench::stress {
 namespace {
@@ -144,7 +145,7 @@ std::vector<Exhibit> make_exhibits(const StressContext& context) {
                   "looked up once, where memory allows; what is larger is an "
                   "error before anything is allocated.",
                   limit)};
-  exhibit.table = report::TextTable{{"map", "bytes of depth", "one allocation and one lookup, filter none"}, {}};
+  exhibit.table = records::TextTable{{"map", "bytes of depth", "one allocation and one lookup, filter none"}, {}};
   for (const int size : {limit, limit + 1, 2 * limit})
     exhibit.table->rows.push_back(
         {fmt::format("{}", size), mebibytes(4.0 * size * size), try_size(context, size, limit)});

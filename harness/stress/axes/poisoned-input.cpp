@@ -7,7 +7,7 @@
 #include <limits>
 #include <span>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/validate.h"
 #include "harness/stress/probe.h"
@@ -134,9 +134,9 @@ int find_reach(const filters::FilterRequest& request) {
   return static_cast<int>(std::ceil(filters::radius_texels(request.spec, request.values))) + 1;
 }
 
-std::vector<std::string> remark_spread(const report::StressCase& record) {
+std::vector<std::string> remark_spread(const records::StressCase& record) {
   double largest = 0.0;
-  for (const report::StressSample& sample : record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
+  for (const records::StressSample& sample : record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
   if (record.broken || record.samples.empty() || largest == 0.0) return {};
   return {
       fmt::format("up to {:.0f} % of the receivers whose kernel holds poison are harmed, and none beyond the kernel",
@@ -164,7 +164,7 @@ std::string describe_stored(const Poison& poison) {
                          : fmt::format("this GL stores {} when depths are uploaded", fmt::join(changed, ", "));
 }
 
-std::vector<std::string> remark_map(const MapSetting& setting, const report::StressCase& record) {
+std::vector<std::string> remark_map(const MapSetting& setting, const records::StressCase& record) {
   std::vector<std::string> sentences = remark_spread(record);
   if (setting.level != Level::kGl || record.samples.empty()) return sentences;
   if (std::string stored = describe_stored(setting.poison); !stored.empty()) sentences.push_back(std::move(stored));
@@ -178,7 +178,7 @@ Case make_map_case(const StressContext& context, const filters::FilterRequest& r
   Case item = start_case(request, variant, setting.level);
   item.theories = {{std::nullopt, TheoryKind::kQuantum, "none: poison stays within the kernel",
                     "derived: a blur of finite support", Verdict::kBroken}};
-  item.remark = [setting](const report::StressCase& record) { return remark_map(setting, record); };
+  item.remark = [setting](const records::StressCase& record) { return remark_map(setting, record); };
   item.observe = [probe = probe, values = request.values, setting, reach = find_reach(request),
                   scene = make_scene()](double number) {
     const int count = static_cast<int>(number);
@@ -284,7 +284,7 @@ Observation observe_input(const SceneInput& input, int count) {
   return {Verdict::kOk, 0.0, {}};
 }
 
-std::vector<std::string> remark_refusal(const SceneInput& input, const report::StressCase& record) {
+std::vector<std::string> remark_refusal(const SceneInput& input, const records::StressCase& record) {
   if (record.broken || record.samples.empty()) return {};
   return {input.refused ? "in vertices, matrices, the light and the camera it is refused as the scene is loaded"
                         : "accepted as the scene is loaded, or refused where no triangle keeps an area; nothing that "
@@ -298,7 +298,7 @@ Case make_input_case(const SceneInput& input) {
   item.theories = {{std::nullopt, TheoryKind::kQuantum,
                     input.refused ? "none: it is refused" : "none: they are numbers", "by definition",
                     Verdict::kBroken}};
-  item.remark = [input](const report::StressCase& record) { return remark_refusal(input, record); };
+  item.remark = [input](const records::StressCase& record) { return remark_refusal(input, record); };
   item.observe = [input](double number) { return observe_input(input, static_cast<int>(number)); };
   return item;
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "harness/run/bias_rule.h"
+#include "harness/render/bias_rule.h"
 #include "harness/scene/validate.h"
 #include "harness/stress/drawn_scene.h"
 #include "harness/stress/slab_scene.h"
@@ -69,7 +69,7 @@ double find_slack(const scene::Scene& scene, const scene::LightFrustum& frustum,
   const glm::dvec3 normal(scene.meshes.front().vertices.front().normal_ws), light(frustum.direction_ws);
   const double facing = std::abs(glm::dot(normal, light)),
                tangent = std::sqrt(std::max(1.0 - facing * facing, 0.0)) / facing;
-  const render::Bias bias = run::resolve_bias({}, frustum, request.spec, request.values);
+  const render::Bias bias = render::resolve_bias({}, frustum, request.spec, request.values);
   return bias.constant_depth * frustum.depth_range_ws + 0.5 * frustum.texel_size_ws * tangent;
 }
 
@@ -103,9 +103,9 @@ std::vector<Theory> list_theories(const scene::Scene& scene, const scene::LightF
   return theories;
 }
 
-std::vector<std::string> remark(Origin origin, const report::StressCase& record) {
+std::vector<std::string> remark(Origin origin, const records::StressCase& record) {
   if (origin == Origin::kWorld || record.samples.empty()) return {};
-  const report::StressOnset* met = record.degraded ? &*record.degraded : record.broken ? &*record.broken : nullptr;
+  const records::StressOnset* met = record.degraded ? &*record.degraded : record.broken ? &*record.broken : nullptr;
   if (origin == Origin::kSceneInDouble && !met) {
     return {
         fmt::format("the remedy holds to {:g} scene sizes, the end of the range: what is relative to the scene before "
@@ -128,7 +128,7 @@ Case make_case(const StressContext& context, const filters::FilterRequest& reque
   const auto drawer = std::make_shared<SceneDrawer>(context, request);
   Case item = start_case(request, variant, Level::kGl);
   item.theories = list_theories(scene, drawer->fit(scene), request, setting.origin);
-  item.remark = [origin = setting.origin](const report::StressCase& record) { return remark(origin, record); };
+  item.remark = [origin = setting.origin](const records::StressCase& record) { return remark(origin, record); };
   item.observe = [drawer, scene, size = find_size(scene), origin = setting.origin,
                   expected = std::optional<Drawing>()](double sizes) mutable {
     if (!expected) expected = drawer->draw(scene);

@@ -27,9 +27,9 @@ Theory make_theory() {
           "derived: IEEE 754, normal numbers", Verdict::kDegraded};
 }
 
-std::vector<std::string> remark(const report::StressCase& record) {
+std::vector<std::string> remark(const records::StressCase& record) {
   double largest = 0.0;
-  for (const report::StressSample& sample : record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
+  for (const records::StressSample& sample : record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
   if (record.degraded || record.broken || record.samples.empty()) return {};
   return {fmt::format("from {:g} to {:g} times its size no more than {:.2g} of the pixels change",
                       record.samples.front().value, record.samples.back().value, largest)};

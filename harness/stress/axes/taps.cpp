@@ -70,10 +70,10 @@ double find_noise(const StressContext& context, const filters::FilterRequest& re
 }
 
 std::vector<std::string> remark_noise(const StressContext& context, const TapsFilter& filter,
-                                      const report::StressCase& record) {
+                                      const records::StressCase& record) {
   std::vector<std::string> parts;
   double before = 0.0;
-  for (const report::StressSample& sample : record.samples) {
+  for (const records::StressSample& sample : record.samples) {
     const double count = choose_count(filter.find_param(), sample.value);
     if (count == before) continue;
     parts.push_back(fmt::format("{:.2g} with {:g}", find_noise(context, with_count(filter, count)), count));
@@ -102,7 +102,7 @@ Case make_case(const StressContext& context, const TapsFilter& filter, Level lev
   item.explain = explain_broken_throughout;
   item.observe = [&context, filter, level](double taps) { return observe_taps(context, filter, taps, level); };
   if (level == Level::kModel)
-    item.remark = [&context, filter](const report::StressCase& record) {
+    item.remark = [&context, filter](const records::StressCase& record) {
       return remark_noise(context, filter, record);
     };
   return item;

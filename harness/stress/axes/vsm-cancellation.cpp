@@ -82,10 +82,10 @@ Theory make_theory(double error, double minimum, double bound, Verdict predicts)
 std::string explain_unmet_bound(const Disagreement& missed) {
   if (missed.measured) return {};
   double largest = 0.0;
-  for (const report::StressSample& sample : missed.record.samples)
+  for (const records::StressSample& sample : missed.record.samples)
     largest = std::max(largest, sample.measured.value_or(0.0));
   const double bound = missed.theory.predicts == Verdict::kDegraded ? kBound : kLargestFall, factor = bound / largest;
-  if (factor > report::tolerance_of(TheoryKind::kRounding)) return {};
+  if (factor > records::tolerance_of(TheoryKind::kRounding)) return {};
   return fmt::format(
       "the minimum variance stops the error at {:.2g}, a factor {:.1f} below {:g}; theory adds all roundings up, which "
       "here partly cancel",

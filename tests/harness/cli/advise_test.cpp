@@ -4,11 +4,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "report/json_io.h"
+#include "report/records/format.h"
+#include "report/records/json_io.h"
 #include "tests/harness/cli/program.h"
-#include "tests/report/synthetic.h"
+#include "tests/report/records/synthetic.h"
 
 namespace shadowbench::test {
+
+using namespace records;
 namespace {
 
 using ::testing::HasSubstr;
@@ -24,15 +27,15 @@ class Advise : public ProgramTest {
       keys.push_back(write_cell(scene, "none", 1.0, 0.06));
       keys.push_back(write_cell(scene, "tent3x3", 4.0, 0.02));
     }
-    report::write_results(folder() / "run", report::make_run(), keys);
+    records::write_results(folder() / "run", records::make_run(), keys);
   }
 
   std::string write_cell(const std::string& scene, const std::string& filter, double ms, double rmse) const {
-    report::CellRecord cell = report::make_cell(scene, filter, ms);
+    records::CellRecord cell = records::make_cell(scene, filter, ms);
     cell.error.rmse = rmse;
     cell.truth.se = 0.001;
     cell.absent.erase("error");
-    report::write_cell(folder() / "run", cell);
+    records::write_cell(folder() / "run", cell);
     return cell.key;
   }
 
@@ -92,7 +95,7 @@ TEST_F(Advise, Json_HoldsTheAnswer) {
   const nlohmann::json json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json["advised"]["settings"]["filter"], "tent3x3");
   EXPECT_EQ(json["relaxed"][0]["worst"], 0.06);
-  EXPECT_EQ(json["time_unit"], "ms (CPU)");
+  EXPECT_EQ(json["records::time_unit"], "ms (CPU)");
 }
 
 TEST_F(Advise, LimitsThatAreNotNumbers_AreUsageErrors) {
@@ -123,7 +126,7 @@ TEST_F(Advise, BadRuns_AreInputErrors) {
   other["schema_version"] = 99;
   write("other.json", other.dump());
   expect_refusal("advise other.json", 3, {"other.json", "schema_version is 99"});
-  other["schema_version"] = report::kSchemaVersion;
+  other["schema_version"] = records::kSchemaVersion;
   other["cells"] = nlohmann::json::array();
   write("none.json", other.dump());
   expect_refusal("advise none.json", 3, {"holds no cell"});

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "report/picture_io.h"
+#include "report/images/picture_io.h"
 #include "tests/harness/cli/program.h"
 
 namespace shadowbench::test {
@@ -46,7 +46,7 @@ TEST_F(BiasCommand, WritesPageTableAndPictures_ForEveryMode) {
   for (const auto& [mode, count] : rows) {
     if (mode == "mode") continue;
     EXPECT_THAT(page, HasSubstr("bias." + mode + ".png"));
-    EXPECT_GT(report::read_picture(folder() / "out" / ("bias." + mode + ".png")).width, 160) << mode;
+    EXPECT_GT(images::read_picture(folder() / "out" / ("bias." + mode + ".png")).width, 160) << mode;
   }
 }
 

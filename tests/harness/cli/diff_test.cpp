@@ -5,12 +5,14 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "report/json_io.h"
-#include "report/picture_io.h"
+#include "report/images/picture_io.h"
+#include "report/records/json_io.h"
 #include "tests/harness/cli/program.h"
-#include "tests/report/synthetic.h"
+#include "tests/report/records/synthetic.h"
 
 namespace shadowbench::test {
+
+using namespace records;
 namespace {
 
 using ::testing::HasSubstr;
@@ -18,8 +20,8 @@ using ::testing::MatchesRegex;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-report::Image make_grey(std::vector<float> values) {
-  report::Image image(static_cast<int>(values.size()), 1, 1);
+images::Image make_grey(std::vector<float> values) {
+  images::Image image(static_cast<int>(values.size()), 1, 1);
   image.texels = std::move(values);
   return image;
 }
@@ -29,7 +31,7 @@ class Diff : public ProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
-    report::write_exr(folder() / "a.exr",
+    images::write_exr(folder() / "a.exr",
                       {{"image", {"Y"}, make_grey({0.5f, 1.0f, 0.0f, 0.25f}), false},
                        {"truth", {"Y"}, make_grey({0.0f, 1.0f, 0.5f, 0.0f}), false},
                        {"broken", {"Y"}, make_grey({kNan, 1.0f, 0.5f, 0.0f}), false},
@@ -38,8 +40,8 @@ class Diff : public ProgramTest {
                        {"empty", {"Y"}, make_grey({0.0f, 0.0f, 0.0f, 0.0f}), false},
                        {"nanmask", {"Y"}, make_grey({1.0f, kNan, 0.0f, 0.0f}), false},
                        {"short", {"Y"}, make_grey({0.0f, 0.0f}), false},
-                       {"two", {"U", "V"}, report::Image(4, 1, 2), false},
-                       {"rgb", {"R", "G", "B"}, report::Image(4, 1, 3), false}},
+                       {"two", {"U", "V"}, images::Image(4, 1, 2), false},
+                       {"rgb", {"R", "G", "B"}, images::Image(4, 1, 3), false}},
                       {});
     write("a.pgm", "P2\n2 1\n255\n51 255\n");
     write("b.pgm", "P2\n2 1\n255\n0 204\n");
@@ -191,12 +193,12 @@ class DiffRuns : public ProgramTest {
 
   void write_run(const std::string& name, double vsm_ms, double esm_ms) const {
     std::vector<std::string> keys;
-    for (const report::CellRecord& cell :
-         {report::make_cell("cubes", "vsm", vsm_ms), report::make_cell("cubes", "esm", esm_ms)}) {
-      report::write_cell(folder() / name, cell);
+    for (const records::CellRecord& cell :
+         {records::make_cell("cubes", "vsm", vsm_ms), records::make_cell("cubes", "esm", esm_ms)}) {
+      records::write_cell(folder() / name, cell);
       keys.push_back(cell.key);
     }
-    report::write_results(folder() / name, report::make_run(), keys);
+    records::write_results(folder() / name, records::make_run(), keys);
   }
 };
 
@@ -232,7 +234,7 @@ TEST_F(DiffRuns, WhatCannotBeCompared_IsRefused) {
   expect_refusal("diff a none.json", 3, {"none.json", "no such folder or file"});
   std::filesystem::create_directory(folder() / "empty");
   expect_refusal("diff a empty", 3, {"empty/results.json"});
-  report::write_results(folder() / "nothing", report::make_run(), {});
+  records::write_results(folder() / "nothing", records::make_run(), {});
   expect_refusal("diff a nothing", 3, {"0 cells in common"});
 }
 

@@ -69,11 +69,11 @@ TEST_F(FaultCache, FlippedBits_AreNoticed) {
 /// The file is a good one of its format; only the checksum says that it does not hold what was traced.
 TEST_F(FaultCache, AnotherValue_IsNoticed) {
   for (const auto& path : files()) {
-    report::ExrFile file = report::read_exr(path);
+    images::ExrFile file = images::read_exr(path);
     float& texel = file.parts.front().image.texels[file.parts.front().image.texels.size() / 2];
     texel = 1.0f - texel;
     std::erase_if(file.metadata, [](const auto& each) { return !each.first.starts_with("shadowbench:"); });
-    report::write_exr(path, file.parts, file.metadata);
+    images::write_exr(path, file.parts, file.metadata);
   }
   expect_traced_again(files().size());
   expect_traced_again(0);

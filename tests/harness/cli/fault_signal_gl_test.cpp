@@ -34,12 +34,12 @@ class FaultSignal : public FaultTest {
       if (path.parent_path().filename() != "cells" || path.string().find("tmp-") != std::string::npos ||
           path.string().find(".worker-") != std::string::npos)
         continue;
-      const report::CellRecord cell = report::read_cell(folder() / "out", path.stem().string());
+      const records::CellRecord cell = records::read_cell(folder() / "out", path.stem().string());
       for (const auto& image : {cell.images.picture, cell.images.visibility})
         if (!image)
           ADD_FAILURE() << path << " names no picture";
         else
-          EXPECT_FALSE(report::read_picture(folder() / "out" / *image).texels.empty()) << *image;
+          EXPECT_FALSE(images::read_picture(folder() / "out" / *image).texels.empty()) << *image;
     }
     expect_whole("out");
     EXPECT_THAT(list_processes(), IsEmpty());

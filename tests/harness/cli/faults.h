@@ -13,9 +13,9 @@
 #include <thread>
 #include <vector>
 
-#include "filters/error.h"
-#include "report/json_io.h"
-#include "report/picture_io.h"
+#include "filters/base/error.h"
+#include "report/images/picture_io.h"
+#include "report/records/json_io.h"
 #include "tests/harness/cli/program.h"
 
 namespace shadowbench::test {
@@ -186,10 +186,10 @@ class FaultTest : public ProgramTest {
       return text.find(end, text.size() < 16 ? 0 : text.size() - 16) != std::string::npos ? "" : "cut off";
     };
     try {
-      if (kind == ".exr") report::read_exr(path);
-      if (kind == ".png") report::read_picture(path);
+      if (kind == ".exr") images::read_exr(path);
+      if (kind == ".png") images::read_picture(path);
       if (kind == ".json" && !json::accept(text)) return "cut off";
-      if (kind == ".json" && is_cell(path)) report::read_cell(path.parent_path().parent_path(), path.stem().string());
+      if (kind == ".json" && is_cell(path)) records::read_cell(path.parent_path().parent_path(), path.stem().string());
     } catch (const std::exception& error) {
       return error.what();
     }

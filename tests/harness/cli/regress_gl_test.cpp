@@ -6,7 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "report/folder_lock.h"
+#include "report/files/folder_lock.h"
 #include "tests/harness/cli/program.h"
 
 namespace shadowbench::test {
@@ -196,7 +196,7 @@ TEST_F(Regress, UnreadableFile_KeepsTheCellsThatWereNotCompared_Unreadable) {
 
 TEST_F(Regress, AcceptBesideAnother_IsRefused) {
   make_baseline();
-  const report::FolderLock other(folder() / "base");
+  const files::FolderLock other(folder() / "base");
   const Outcome refused = compare("a", "--accept");
   EXPECT_EQ(refused.exit_code, 6);
   EXPECT_THAT(refused.err, HasSubstr("base"));

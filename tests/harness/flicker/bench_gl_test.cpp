@@ -17,13 +17,13 @@ class FlickerBenchTest : public ::testing::Test {
   FlickerBenchTest()
       : options_(make_options()),
         scene_(run::load_scene(options_, "cubes")),
-        renderer_(run::make_renderer(gl::Backend::kAuto, options_.resources)),
+        renderer_(measure::make_renderer(gl::Backend::kAuto, options_.resources)),
         cache_({}, [](const std::string&) {}),
         bench_(renderer_, options_, scene_, cache_) {}
 
-  static run::RunOptions make_options() {
-    run::RunOptions options;
-    options.resources = run::find_resources();
+  static options::RunOptions make_options() {
+    options::RunOptions options;
+    options.resources = options::find_resources();
     options.filters = filters::Catalogue(options.resources.filters).parse_requests("");
     options.map_sizes = {128};
     options.width = 160;
@@ -35,7 +35,7 @@ class FlickerBenchTest : public ::testing::Test {
     return choose_step(motion, scene_, bench_.receivers().image, bench_.following(false));
   }
 
-  std::vector<reference::FlickerStats> measure(Motion motion, bool snap, double step) {
+  std::vector<metrics::FlickerStats> measure(Motion motion, bool snap, double step) {
     const auto frames = make_frames(motion, scene_, step, kFrames);
     const auto frusta = fit_frames(motion, scene_, frames, bench_.following(snap));
     const auto mask = mark_receivers(bench_.receivers().image, frusta, 128, bench_.following(snap).pad_texels);
@@ -45,10 +45,10 @@ class FlickerBenchTest : public ::testing::Test {
 
   const std::string& label(std::size_t filter) const { return options_.filters[filter].spec.id; }
 
-  run::RunOptions options_;
+  options::RunOptions options_;
   scene::Scene scene_;
-  run::Renderer renderer_;
-  run::TruthCache cache_;
+  measure::Renderer renderer_;
+  measure::TruthCache cache_;
   FlickerBench bench_;
   TruthFrames truth_;
 };

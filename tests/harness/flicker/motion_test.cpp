@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::flicker {
@@ -23,8 +23,8 @@ scene::Scene load_cubes() {
 }
 
 /// Points on the floor of cubes, all seen by the camera.
-reference::ReceiverImage make_floor() {
-  reference::ReceiverImage image{5, 5, {}};
+truth::ReceiverImage make_floor() {
+  truth::ReceiverImage image{5, 5, {}};
   for (int y = 0; y < 5; ++y) {
     for (int x = 0; x < 5; ++x)
       image.points.push_back({{-1.0f + 0.5f * static_cast<float>(x), 0.0f, -1.0f + 0.5f * static_cast<float>(y)},
@@ -42,7 +42,7 @@ std::vector<scene::LightFrustum> fit(Motion motion, bool snap, double step) {
 double step_of(Motion motion) { return choose_step(motion, load_cubes(), make_floor(), {512, 5.0, 16.0 / 9.0, false}); }
 
 double grid_move(Motion motion, bool snap) {
-  const reference::ReceiverImage floor = make_floor();
+  const truth::ReceiverImage floor = make_floor();
   const auto frusta = fit(motion, snap, step_of(motion));
   return measure_grid_move(floor, mark_receivers(floor, frusta, 512, 5.0), frusta, 512).value();
 }
@@ -75,7 +75,7 @@ TEST(Motion, SnappedGrid_StandsStillUnderACamera_AndAFreeOneDoesNot) {
 }
 
 TEST(Motion, ReceiversThatLeaveTheMapOrTurnAway_AreNotMarked) {
-  reference::ReceiverImage floor = make_floor();
+  truth::ReceiverImage floor = make_floor();
   const auto frusta = fit(Motion::kLight, false, 1e-3);
   EXPECT_THAT(mark_receivers(floor, frusta, 512, 5.0), Each(1));
   floor.points[0].position_ws.x = 50.0f;  // outside

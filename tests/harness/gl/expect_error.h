@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 
 namespace shadowbench {
 

@@ -8,7 +8,7 @@
 
 #include "harness/gl/fullscreen.h"
 #include "harness/gl/objects.h"
-#include "harness/gl/probe.h"
+#include "harness/gl/survey/probe.h"
 #include "tests/harness/gl/expect_error.h"
 #include "tests/harness/gl/gl_fixture.h"
 

@@ -98,7 +98,7 @@ struct Traced {
         bench(shared_context(), scene, 1024, kWidth, kHeight, map),
         lit(trace(bench, scene, bench.receivers(catalogue().parse_requests("none").front()))) {}
 
-  Rates measure(const std::string& filter, const run::BiasRule& rule) {
+  Rates measure(const std::string& filter, const render::BiasRule& rule) {
     return compare(bench.draw(catalogue().parse_requests(filter).front(), rule), lit);
   }
 };
@@ -144,7 +144,7 @@ TEST(PerspectiveDepth, AtAMillion_GivesAcneThatReversedFloatsDoNot) {
   EXPECT_LE(acne({GL_DEPTH_COMPONENT32F, {true, 1e6}}), 0.001);
 }
 
-TEST(NoBias, GivesAcne) { EXPECT_GT(Traced("steps").measure("none", run::BiasRule::none()).acne, 0.05); }
+TEST(NoBias, GivesAcne) { EXPECT_GT(Traced("steps").measure("none", render::BiasRule::none()).acne, 0.05); }
 
 }  // namespace
 }  // namespace shadowbench::test

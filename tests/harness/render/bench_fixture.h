@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "filters/catalogue.h"
-#include "harness/gl/context.h"
-#include "harness/gl/measure.h"
+#include "harness/gl/context/context.h"
+#include "harness/gl/survey/measure.h"
+#include "harness/options/options.h"
+#include "harness/render/bias_rule.h"
 #include "harness/render/filter_passes.h"
 #include "harness/render/receivers.h"
-#include "harness/run/bias_rule.h"
-#include "harness/run/options.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::test {
@@ -24,7 +24,7 @@ class Bench {
         const render::MapSettings& map = {})
       : context_(context),
         scene_(scene),
-        shaders_(run::find_resources().shaders),
+        shaders_(options::find_resources().shaders),
         geometry_(scene),
         frustum_(scene::fit_light(scene, scene::FitMode::kTight, map_size, 6.0)),
         map_(map_size, map),
@@ -40,8 +40,8 @@ class Bench {
     map_.set_border(range.border);
   }
 
-  render::LightSetup light(const filters::FilterRequest& request, const run::BiasRule& rule = {}) const {
-    const render::Bias bias = run::resolve_bias(rule, frustum_, request.spec, request.values);
+  render::LightSetup light(const filters::FilterRequest& request, const render::BiasRule& rule = {}) const {
+    const render::Bias bias = render::resolve_bias(rule, frustum_, request.spec, request.values);
     return render::make_light_setup(frustum_, scene_.light, bias, 7, range_);
   }
 
@@ -49,7 +49,7 @@ class Bench {
   void redraw(const render::MapBias& bias) { map_.draw(shaders_, geometry_, frustum_, bias); }
 
   /// Gives visibility as the GL wrote it: rows bottom to top, like Receiver::pixel.
-  std::vector<float> draw(const filters::FilterRequest& request, const run::BiasRule& rule = {}) {
+  std::vector<float> draw(const filters::FilterRequest& request, const render::BiasRule& rule = {}) {
     render::FilterPasses filter(shaders_, request, map_, light(request, rule));
     filter.prefilter(map_);
     filter.lookup(gbuffer_, map_, target_);
@@ -58,7 +58,7 @@ class Bench {
     return visibility;
   }
 
-  std::vector<filters::Receiver> receivers(const filters::FilterRequest& request, const run::BiasRule& rule = {}) {
+  std::vector<filters::Receiver> receivers(const filters::FilterRequest& request, const render::BiasRule& rule = {}) {
     return render::read_receivers(shaders_, gbuffer_, light(request, rule));
   }
 
@@ -91,17 +91,17 @@ inline gl::Context& shared_context() {
 }
 
 inline scene::Scene load_builtin(const std::string& name) {
-  return scene::load(name, {.scenes_folder = run::find_resources().scenes});
+  return scene::load(name, {.scenes_folder = options::find_resources().scenes});
 }
 
 inline std::vector<std::string> builtin_scenes() {
   std::vector<std::string> names;
-  for (const auto& info : scene::list_scenes(run::find_resources().scenes)) names.push_back(info.name);
+  for (const auto& info : scene::list_scenes(options::find_resources().scenes)) names.push_back(info.name);
   return names;
 }
 
 inline const filters::Catalogue& catalogue() {
-  static const filters::Catalogue filters(run::find_resources().filters);
+  static const filters::Catalogue filters(options::find_resources().filters);
   return filters;
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "harness/run/bias_theory.h"
+#include "harness/render/bias_theory.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {
@@ -42,27 +42,28 @@ scene::Scene make_plane(double tilt_deg, double azimuth_deg) {
 }
 
 /// Gives the rule of a mode at `factor` times the theoretical amount, also for planes that the light grazes.
-run::BiasRule make_rule(const run::SweptMode& mode, const run::BiasTheory& theory, double factor) {
-  run::BiasRule rule = mode.make_rule(factor * mode.amount(theory));
+render::BiasRule make_rule(const render::SweptMode& mode, const render::BiasTheory& theory, double factor) {
+  render::BiasRule rule = mode.make_rule(factor * mode.amount(theory));
   rule.max_tangent = 1e4;
   return rule;
 }
 
-const run::SweptMode& find_mode(const std::string& name) {
-  const auto& modes = run::swept_modes();
-  return *std::find_if(modes.begin(), modes.end(), [&](const run::SweptMode& mode) { return mode.name == name; });
+const render::SweptMode& find_mode(const std::string& name) {
+  const auto& modes = render::swept_modes();
+  return *std::find_if(modes.begin(), modes.end(), [&](const render::SweptMode& mode) { return mode.name == name; });
 }
 
 struct Sweep {
   Sweep(double tilt, double azimuth, int map_size)
       : scene(make_plane(tilt, azimuth)), bench(shared_context(), scene, map_size, 96, 96), size(map_size) {}
 
-  run::BiasTheory theory(const filters::FilterRequest& request) {
-    return run::make_theory(run::reach_texels(request), bench.receivers(request, run::BiasRule::none()).front());
+  render::BiasTheory theory(const filters::FilterRequest& request) {
+    return render::make_theory(render::reach_texels(request),
+                               bench.receivers(request, render::BiasRule::none()).front());
   }
 
   /// The share of receivers that are darker than all but one part in 500.
-  double acne(const filters::FilterRequest& request, run::BiasRule rule) {
+  double acne(const filters::FilterRequest& request, render::BiasRule rule) {
     bench.redraw(rule.map);
     const std::vector<float> image = bench.draw(request, rule);
     double dark = 0.0, count = 0.0;
@@ -90,9 +91,10 @@ TEST_P(PlaneSweep, NoAcneAtTheTheoreticalAmount_AcneAtHalfOfIt) {
     for (const double azimuth : {0.0, 45.0}) {
       for (const int size : kSizes) {
         Sweep sweep(tilt, azimuth, size);
-        const run::BiasTheory theory = sweep.theory(request);
+        const render::BiasTheory theory = sweep.theory(request);
         // Rounding of depths and of rasterised vertices: a fiftieth of the amount, and some steps of single precision.
-        run::BiasRule enough = make_rule(find_mode(mode), theory, 1.02), half = make_rule(find_mode(mode), theory, 0.5);
+        render::BiasRule enough = make_rule(find_mode(mode), theory, 1.02),
+                         half = make_rule(find_mode(mode), theory, 0.5);
         enough.constant.depth += 1e-6;
         SCOPED_TRACE(mode + " " + filter + " at " + std::to_string(tilt) + " towards " + std::to_string(azimuth) +
                      ", map " + std::to_string(size));
@@ -108,7 +110,7 @@ TEST_P(PlaneSweep, NoAcneAtTheTheoreticalAmount_AcneAtHalfOfIt) {
 std::vector<std::string> mode_names() {
   std::vector<std::string> names;
   // Receiver-plane needs no amount but what rounding asks for.
-  for (const run::SweptMode& mode : run::swept_modes())
+  for (const render::SweptMode& mode : render::swept_modes())
     if (!mode.key.empty() && mode.name != "receiver-plane") names.push_back(mode.name);
   return names;
 }
@@ -130,7 +132,7 @@ class ReceiverPlane : public ::testing::TestWithParam<std::string> {};
 /// Needs no amount but what rounding asks for, whatever the kernel: up to 15 texels.
 TEST_P(ReceiverPlane, NeedsNoAmount_OnPlanes) {
   const filters::FilterRequest request = catalogue().parse_requests(GetParam()).front();
-  run::BiasRule rule = run::BiasRule::none();
+  render::BiasRule rule = render::BiasRule::none();
   rule.max_tangent = 1e4;
   rule.receiver_plane = true;
   rule.constant.depth = 2e-5;

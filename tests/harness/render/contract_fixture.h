@@ -15,7 +15,7 @@ namespace shadowbench::test {
 /// Gives the catalogue with users' files in it: what every filter must do, a user's file must do as well.
 inline const filters::Catalogue& all_filters() {
   static const filters::Catalogue all = [] {
-    filters::Catalogue catalogue(run::find_resources().filters);
+    filters::Catalogue catalogue(options::find_resources().filters);
     const std::filesystem::path folder = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "tests" / "user_filters";
     for (const char* file : {"nine_compares.glsl", "stored_plane.glsl"}) catalogue.add_user_file(folder / file);
     return catalogue;

@@ -92,7 +92,7 @@ double theoretical_error(double d, const filters::DepthPlanes& planes, const Cas
 
 TEST(DepthPrecision, EveryFormat_KeepsWhatTheoryAllows) {
   shared_context();
-  render::ShaderLibrary shaders(run::find_resources().shaders);
+  render::ShaderLibrary shaders(options::find_resources().shaders);
   for (const double ratio : {1e1, 1e2, 1e4, 1e6}) {
     const filters::DepthPlanes planes{0.01, 0.01 * ratio};
     for (const Case& c : cases()) {
@@ -114,7 +114,7 @@ TEST(DepthPrecision, EveryFormat_KeepsWhatTheoryAllows) {
 /// What reversed depth is for: from end to end, at far/near 10^6, the error is rounding's alone.
 TEST(DepthPrecision, ReversedFloatAtAMillion_IsExactToRounding_TheOthersAreNot) {
   shared_context();
-  render::ShaderLibrary shaders(run::find_resources().shaders);
+  render::ShaderLibrary shaders(options::find_resources().shaders);
   const filters::DepthPlanes planes{0.01, 1e4};
   for (const Case& c : cases()) {
     render::ShadowMap map(kSize, {c.format, {c.reversed}});

@@ -94,7 +94,7 @@ TEST(MapBias, PolygonOffset_MovesByFactorTimesSlope_AndUnitsOfTheFormat) {
   Bench bench(shared_context(), scene, 128, 16, 16);
   const double plain = height_in_map(bench, 3.0);
   const filters::Receiver r =
-      bench.receivers(catalogue().parse_requests("none").front(), run::BiasRule::none()).front();
+      bench.receivers(catalogue().parse_requests("none").front(), render::BiasRule::none()).front();
   const double slope =
       std::max(std::abs(static_cast<double>(r.depth_per_texel.x)), std::abs(static_cast<double>(r.depth_per_texel.y)));
   bench.redraw({.polygon_factor = 2.0});
@@ -133,7 +133,7 @@ TEST(ContactGap, IsTheBiasTimesTheSineOfTheTilt_WithinATexel) {
     Bench bench(shared_context(), scene, 1024, 960, 540);
     const filters::FilterRequest request = catalogue().parse_requests("none").front();
     for (const double bias_m : {0.1, 0.3, 0.6}) {
-      run::BiasRule rule = run::BiasRule::none();
+      render::BiasRule rule = render::BiasRule::none();
       rule.constant.world = bias_m;
       const std::vector<float> image = bench.draw(request, rule);
       double gap = 0.0;

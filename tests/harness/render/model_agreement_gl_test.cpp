@@ -32,7 +32,7 @@ double pcf_tolerance() {
   return bits >= 22 ? 1e-4 : 1.0 / 128.0;
 }
 
-Agreement compare(Bench& bench, const filters::FilterRequest& request, const run::BiasRule& rule = {}) {
+Agreement compare(Bench& bench, const filters::FilterRequest& request, const render::BiasRule& rule = {}) {
   const std::vector<float> image = bench.draw(request, rule);
   const filters::DepthMap map = bench.map().read();
   const filters::ModelInput input{
@@ -146,7 +146,7 @@ INSTANTIATE_TEST_SUITE_P(AllFormats, ModelFormats,
 /// A fixed-point map clamps the reference, so that a point beyond the far plane ties with what was cleared.
 TEST(FixedPointMap, ReferenceBeyondOne_IsLitInFixedPointAlone_InModelAndGl) {
   const scene::Scene scene = load_builtin("cubes");
-  filters::Catalogue filters(run::find_resources().filters);
+  filters::Catalogue filters(options::find_resources().filters);
   filters.add_user_file(std::string(SHADOWBENCH_SOURCE_DIR) + "/tests/user_filters/beyond_far.glsl");
   for (const bool reversed : {false, true}) {
     for (const GLenum format : {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT32F}) {
@@ -200,7 +200,8 @@ TEST_P(ReceiverPlaneModel, GlImageEqualsModel) {
   const auto& [scene_name, filter] = GetParam();
   const scene::Scene scene = load_builtin(scene_name);
   Bench bench(shared_context(), scene, 512);
-  const Agreement a = compare(bench, catalogue().parse_requests(filter).front(), run::parse_bias({"receiver-plane"}));
+  const Agreement a =
+      compare(bench, catalogue().parse_requests(filter).front(), render::parse_bias({"receiver-plane"}));
   EXPECT_GT(a.compared, 20000u);
   EXPECT_GT(a.shadowed, 0.01);
   EXPECT_LT(static_cast<double>(a.excused), 0.005 * static_cast<double>(a.compared));

@@ -63,7 +63,7 @@ class ProjectiveRange : public ::testing::Test {
   ProjectiveRange()
       : context_(shared_context()),
         scene_(make_scene()),
-        shaders_(run::find_resources().shaders),
+        shaders_(options::find_resources().shaders),
         geometry_(scene_),
         map_(256),
         gbuffer_(kSide, kSide) {
@@ -72,7 +72,7 @@ class ProjectiveRange : public ::testing::Test {
   }
 
   std::vector<float> draw(const std::string& filter, const RangeRule& rule) {
-    filters::Catalogue catalogue(run::find_resources().filters);
+    filters::Catalogue catalogue(options::find_resources().filters);
     catalogue.add_user_file(SHADOWBENCH_SOURCE_DIR "/tests/user_filters/clamped_reference.glsl");
     map_.set_border(rule.border);
     render::FilterPasses passes(shaders_, catalogue.parse_requests(filter).front(), map_, light(rule));

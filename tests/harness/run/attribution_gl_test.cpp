@@ -8,13 +8,13 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/run/run_experiment.h"
-#include "report/error_parts.h"
-#include "report/picture_io.h"
+#include "report/images/picture_io.h"
+#include "report/records/error_parts.h"
 
 namespace shadowbench::test {
 namespace {
 
-class Silent final : public run::Progress {
+class Silent final : public options::Progress {
   void begin(int, int) override {}
   void show(int, const std::string&) override {}
   void note(const std::string&) override {}
@@ -26,9 +26,9 @@ class Attributed : public ::testing::Test {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
     folder_ = std::filesystem::temp_directory_path() /
               ("shadowbench." + std::string(info->name()) + "." + std::to_string(getpid()));
-    options_.resources = run::find_resources();
+    options_.resources = options::find_resources();
     options_.sizes = {{240, 135}};
-    options_.rounds = run::RoundLimits::exactly(1);
+    options_.rounds = options::RoundLimits::exactly(1);
     options_.reference = filters::Catalogue(options_.resources.filters).parse_requests("none").front();
     options_.out = folder_;
     options_.command = {"test"};
@@ -49,7 +49,7 @@ class Attributed : public ::testing::Test {
   std::vector<float> part(const std::string& name) const {
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
       if (entry.path().extension() != ".exr") continue;
-      for (const report::Part& part : report::read_exr(entry.path()).parts)
+      for (const images::Part& part : images::read_exr(entry.path()).parts)
         if (part.name == name) return part.image.texels;
     }
     ADD_FAILURE() << "no part " << name;
@@ -57,7 +57,7 @@ class Attributed : public ::testing::Test {
   }
 
   std::filesystem::path folder_;
-  run::RunOptions options_;
+  options::RunOptions options_;
 };
 
 TEST_F(Attributed, PartsAddUp_InEveryPixel_OfEveryFilter) {
@@ -69,7 +69,7 @@ TEST_F(Attributed, PartsAddUp_InEveryPixel_OfEveryFilter) {
     SCOPED_TRACE(filter);
     const std::vector<float> image = part(filter + ".visibility");
     std::vector<double> sum(image.size(), 0.0);
-    for (const report::ErrorPart& error_part : report::list_error_parts()) {
+    for (const records::ErrorPart& error_part : records::list_error_parts()) {
       const std::vector<float> values = part(filter + ".error." + error_part.id);
       for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += static_cast<double>(values[i]);
     }
@@ -119,7 +119,7 @@ TEST_F(Attributed, OnFence_WithASmallMap_NoneFailsByItsResolution) {
 }
 
 TEST_F(Attributed, WithoutBias_AcneIsSeen_AndIsDiscretisation) {
-  options_.bias = run::BiasRule::none();
+  options_.bias = render::BiasRule::none();
   const nlohmann::json cells = run("steps", "none,pcf2x2");
   for (const auto& cell : cells) {
     EXPECT_GT(cell["artefact"]["acne"], 0.05) << cell["filter"];

@@ -6,16 +6,18 @@
 #include <cmath>
 #include <limits>
 
-#include "filters/error.h"
-#include "harness/run/mean_flip.h"
-#include "report/picture_io.h"
-#include "report/record_fields.h"
-#include "tests/report/synthetic.h"
+#include "filters/base/error.h"
+#include "harness/measure/mean_flip.h"
+#include "report/images/picture_io.h"
+#include "report/records/record_fields.h"
+#include "tests/report/records/synthetic.h"
 
 namespace shadowbench::run {
+
+using namespace records;
 namespace {
 
-using report::Image;
+using images::Image;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -35,13 +37,13 @@ class ComparePictures : public ::testing::Test {
     std::vector<std::string> channels = {"Y"};
     if (image.channels > 1) channels = {"R", "G", "B", "A", "U"};
     channels.resize(static_cast<std::size_t>(image.channels));
-    report::write_exr(path(name), {{"part", channels, image, false}}, {});
+    images::write_exr(path(name), {{"part", channels, image, false}}, {});
   }
 
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
 
   ComparisonOptions options(const std::string& image, const std::string& truth, const std::string& mask = "") const {
-    ComparisonOptions options{path(image), path(truth), std::nullopt, reference::picture_metrics(), 67.0};
+    ComparisonOptions options{path(image), path(truth), std::nullopt, metrics::picture_metrics(), 67.0};
     if (!mask.empty()) options.mask = path(mask);
     return options;
   }
@@ -61,7 +63,7 @@ class ComparePictures : public ::testing::Test {
   }
 
  private:
-  report::TemporaryFolder folder_{"compare_pictures"};
+  records::TemporaryFolder folder_{"compare_pictures"};
 };
 
 TEST_F(ComparePictures, Values_AreWhatTheirDefinitionsGive) {
@@ -80,7 +82,7 @@ TEST_F(ComparePictures, Values_AreWhatTheirDefinitionsGive) {
 }
 
 TEST_F(ComparePictures, SamePicture_HasNoError) {
-  write("a.exr", report::shade(report::make_visibility(32, 16, 8.0f)));
+  write("a.exr", records::shade(records::make_visibility(32, 16, 8.0f)));
   for (const auto& [name, value] : compare("a.exr", "a.exr").values) EXPECT_EQ(value, 0.0) << name;
 }
 
@@ -147,20 +149,20 @@ TEST_F(ComparePictures, EmptyMask_HasNoValueAndSaysWhy) {
 }
 
 TEST_F(ComparePictures, Flip_IsTheOneOfARun) {
-  const Image a = report::shade(report::make_visibility(48, 32, 3.0f));
-  const Image b = report::shade(report::make_visibility(48, 32, 12.0f));
+  const Image a = records::shade(records::make_visibility(48, 32, 3.0f));
+  const Image b = records::shade(records::make_visibility(48, 32, 12.0f));
   write("a.exr", a);
   write("b.exr", b);
-  EXPECT_DOUBLE_EQ(compare("a.exr", "b.exr").values.at("flip"), *measure_mean_flip(a, b));
+  EXPECT_DOUBLE_EQ(compare("a.exr", "b.exr").values.at("flip"), *measure::measure_mean_flip(a, b));
   ComparisonOptions near = options("a.exr", "b.exr");
   near.pixels_per_degree = 10.0;
-  EXPECT_DOUBLE_EQ(compare_pictures(near).values.at("flip"), *measure_mean_flip(a, b, {}, 10.0));
+  EXPECT_DOUBLE_EQ(compare_pictures(near).values.at("flip"), *measure::measure_mean_flip(a, b, {}, 10.0));
   EXPECT_NE(compare_pictures(near).values.at("flip"), compare("a.exr", "b.exr").values.at("flip"));
 }
 
 TEST_F(ComparePictures, FlipOverAMask_SeesTheWholePictureAndAveragesTheMask) {
-  const Image a = report::shade(report::make_visibility(48, 32, 3.0f));
-  const Image b = report::shade(report::make_visibility(48, 32, 12.0f));
+  const Image a = records::shade(records::make_visibility(48, 32, 3.0f));
+  const Image b = records::shade(records::make_visibility(48, 32, 12.0f));
   Image left(48, 32, 1), right(48, 32, 1);
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 48; ++x) *(x < 20 ? left : right).at(x, y) = 1.0f;
@@ -176,18 +178,18 @@ TEST_F(ComparePictures, FlipOverAMask_SeesTheWholePictureAndAveragesTheMask) {
 }
 
 TEST_F(ComparePictures, FlipOfSrgbCodes_IsThatOfTheLinearPicture) {
-  const Image a = report::shade(report::make_visibility(48, 32, 3.0f));
-  const Image b = report::shade(report::make_visibility(48, 32, 12.0f));
-  report::write_picture_png(path("a.png"), a);
-  report::write_picture_png(path("b.png"), b);
-  EXPECT_NEAR(compare("a.png", "b.png").values.at("flip"), *measure_mean_flip(a, b), 2e-3) << "8 bits";
+  const Image a = records::shade(records::make_visibility(48, 32, 3.0f));
+  const Image b = records::shade(records::make_visibility(48, 32, 12.0f));
+  images::write_picture_png(path("a.png"), a);
+  images::write_picture_png(path("b.png"), b);
+  EXPECT_NEAR(compare("a.png", "b.png").values.at("flip"), *measure::measure_mean_flip(a, b), 2e-3) << "8 bits";
   EXPECT_TRUE(compare("a.png", "b.png").warnings.empty());
 }
 
 TEST_F(ComparePictures, SrgbCodesAgainstLinearValues_AreWarnedOf) {
-  const Image a = report::shade(report::make_visibility(48, 32, 3.0f));
+  const Image a = records::shade(records::make_visibility(48, 32, 3.0f));
   write("a.exr", a);
-  report::write_picture_png(path("a.png"), a);
+  images::write_picture_png(path("a.png"), a);
   const Comparison result = compare("a.exr", "a.png");
   ASSERT_EQ(result.warnings.size(), 1u);
   EXPECT_THAT(result.warnings[0], HasSubstr("a.png holds sRGB codes"));
@@ -196,7 +198,7 @@ TEST_F(ComparePictures, SrgbCodesAgainstLinearValues_AreWarnedOf) {
 }
 
 TEST_F(ComparePictures, OneChannel_IsGreyForFlip) {
-  const Image a = report::make_visibility(48, 32, 3.0f), b = report::make_visibility(48, 32, 12.0f);
+  const Image a = records::make_visibility(48, 32, 3.0f), b = records::make_visibility(48, 32, 12.0f);
   const auto to_rgb = [](const Image& grey) {
     Image rgb(grey.width, grey.height, 3);
     for (std::size_t i = 0; i < rgb.texels.size(); ++i) rgb.texels[i] = grey.texels[i / 3];
@@ -204,7 +206,7 @@ TEST_F(ComparePictures, OneChannel_IsGreyForFlip) {
   };
   write("a.exr", a);
   write("b.exr", b);
-  EXPECT_DOUBLE_EQ(compare("a.exr", "b.exr").values.at("flip"), *measure_mean_flip(to_rgb(a), to_rgb(b)));
+  EXPECT_DOUBLE_EQ(compare("a.exr", "b.exr").values.at("flip"), *measure::measure_mean_flip(to_rgb(a), to_rgb(b)));
 }
 
 TEST_F(ComparePictures, OtherChannelCounts_HaveNoFlip) {
@@ -252,29 +254,29 @@ TEST_F(ComparePictures, MaskThatIsNotFinite_IsRefused) {
 
 TEST(MeanFlip, PixelThatIsNotFinite_LeavesNone) {
   Image a(4, 4, 3), b(4, 4, 3);
-  EXPECT_EQ(measure_mean_flip(a, b), 0.0);
+  EXPECT_EQ(measure::measure_mean_flip(a, b), 0.0);
   b.texels[7] = kNan;
-  EXPECT_FALSE(measure_mean_flip(a, b));
-  EXPECT_FALSE(measure_mean_flip(b, a));
+  EXPECT_FALSE(measure::measure_mean_flip(a, b));
+  EXPECT_FALSE(measure::measure_mean_flip(b, a));
 }
 
 TEST(MeanFlip, EmptyMask_LeavesNone) {
   const Image a(4, 4, 3);
-  EXPECT_FALSE(measure_mean_flip(a, a, std::vector<std::uint8_t>(16, 0)));
+  EXPECT_FALSE(measure::measure_mean_flip(a, a, std::vector<std::uint8_t>(16, 0)));
 }
 
 TEST(MeanFlip, ValuesADisplayCannotShow_AreClamped) {
   Image a(4, 4, 3), b(4, 4, 3);
   std::fill(a.texels.begin(), a.texels.end(), 1.0f);
   std::fill(b.texels.begin(), b.texels.end(), 7.0f);
-  EXPECT_EQ(measure_mean_flip(a, b), 0.0);
+  EXPECT_EQ(measure::measure_mean_flip(a, b), 0.0);
 }
 
 TEST(MetricTable, NamesEveryNumberOfACellsErrorGroups) {
   std::vector<std::string> listed, recorded;
-  for (const reference::Metric& metric : reference::metric_table()) listed.emplace_back(metric.path);
-  const report::CellRecord cell;
-  report::visit_cell_fields(cell, [&](const std::string& path, const auto&) {
+  for (const metrics::Metric& metric : metrics::metric_table()) listed.emplace_back(metric.path);
+  const records::CellRecord cell;
+  records::visit_cell_fields(cell, [&](const std::string& path, const auto&) {
     for (const char* group : {"error.", "truth.", "coverage.", "artefact.", "attribution."})
       if (path.rfind(group, 0) == 0) recorded.push_back(path);
   });

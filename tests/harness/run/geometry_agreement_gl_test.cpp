@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "harness/run/scene_tracer.h"
+#include "harness/measure/scene_tracer.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {
@@ -13,7 +13,7 @@ class Geometry : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Geometry, HasTheSameTrianglesAndBounds) {
   const scene::Scene scene = load_builtin(GetParam());
-  const reference::Occluders occluders = run::make_occluders(scene);
+  const truth::Occluders occluders = measure::make_occluders(scene);
   std::int64_t casting = 0;
   scene::Bounds bounds;
   for (const scene::Mesh& mesh : scene.meshes) {
@@ -30,13 +30,13 @@ TEST_P(Geometry, HasTheSameTrianglesAndBounds) {
 /// Depth along the light through a point of the map, in [0,1]; infinity where nothing is hit.
 class DepthRays {
  public:
-  DepthRays(const reference::Occluders& occluders, const scene::LightFrustum& frustum)
+  DepthRays(const truth::Occluders& occluders, const scene::LightFrustum& frustum)
       : occluders_(occluders), frustum_(frustum), world_from_light_(glm::inverse(frustum.light_from_world)) {}
 
   double at(double x, double y) const {
     const double half = 0.5 * frustum_.width_ws, texel = frustum_.texel_size_ws;
     const glm::dvec4 start = world_from_light_ * glm::dvec4(x * texel - half, y * texel - half, 0.0, 1.0);
-    reference::RayPacket packet;
+    truth::RayPacket packet;
     packet.set(0, glm::vec3(glm::dvec3(start)), glm::vec3(glm::dvec3(frustum_.direction_ws) * frustum_.depth_range_ws));
     return static_cast<double>(occluders_.find_nearest(packet)[0]);
   }
@@ -51,7 +51,7 @@ class DepthRays {
   }
 
  private:
-  const reference::Occluders& occluders_;
+  const truth::Occluders& occluders_;
   const scene::LightFrustum& frustum_;
   glm::dmat4 world_from_light_;
 };
@@ -61,7 +61,7 @@ TEST_P(Geometry, RaysHitWhatTheDepthMapSees) {
   const scene::Scene scene = load_builtin(GetParam());
   Bench bench(shared_context(), scene, kSize, 64, 36);
   const filters::DepthMap map = bench.map().read();
-  const reference::Occluders occluders = run::make_occluders(scene);
+  const truth::Occluders occluders = measure::make_occluders(scene);
   const DepthRays rays(occluders, bench.frustum());
   int seen = 0, different = 0;
   for (int i = 0; i < kSize * kSize; ++i) {

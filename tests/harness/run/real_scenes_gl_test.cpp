@@ -25,7 +25,7 @@ TEST(RealScenes, LoadAndDraw_WithLightAndShadow) {
   for (const auto& file : files) {
     SCOPED_TRACE(file.filename().string());
     const scene::Scene scene =
-        scene::load(file.string(), {.scenes_folder = run::find_resources().scenes, .ground = true});
+        scene::load(file.string(), {.scenes_folder = options::find_resources().scenes, .ground = true});
     Bench bench(shared_context(), scene, 512, 240, 135);
     const auto request = catalogue().parse_requests("pcf2x2").front();
     const std::vector<float> image = bench.draw(request);

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "harness/scene/framing.h"
-#include "harness/scene/light_fit.h"
+#include "harness/scene/lights/light_fit.h"
 #include "test_files.h"
 
 namespace shadowbench::scene {

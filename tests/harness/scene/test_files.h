@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 
 namespace shadowbench::scene {
 

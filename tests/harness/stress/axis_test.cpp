@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "filters/model.h"
-#include "harness/run/options.h"
+#include "harness/options/options.h"
 #include "harness/stress/onset.h"
 #include "harness/stress/run_stress.h"
 #include "tests/harness/stress/stress_fixture.h"
@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
 const filters::Catalogue& catalogue() {
-  static const filters::Catalogue filters(run::find_resources().filters);
+  static const filters::Catalogue filters(options::find_resources().filters);
   return filters;
 }
 
@@ -159,9 +159,9 @@ TEST(Axes, ModelsAndArithmetic_MeetTheirTheories) {
   for (const char* id : {"esm-exponent", "warp-exponent", "vsm-cancellation"}) {
     const Axis axis = choose_axes(id)[0];
     for (const Case& item : axis.make_cases(context)) {
-      const report::StressCase found = find_onsets(item, axis);
-      for (const report::StressLimit& limit : compare(item, found, axis)) {
-        EXPECT_NE(limit.agreement, report::StressAgreement::kDisagrees)
+      const records::StressCase found = find_onsets(item, axis);
+      for (const records::StressLimit& limit : compare(item, found, axis)) {
+        EXPECT_NE(limit.agreement, records::StressAgreement::kDisagrees)
             << id << " " << item.filter << " " << item.variant << ": theory " << limit.onset.value_or(-1.0)
             << ", measured " << limit.measured.value_or(-1.0);
       }

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/scene/validate.h"
 #include "harness/stress/drawn_scene.h"
 #include "harness/stress/onset.h"
@@ -37,10 +37,10 @@ TEST_P(ExtremeAxis, GlCases_MeetTheirTheories) {
   axis.range.high = std::min(axis.range.high, axis.whole ? 512.0 : axis.range.high);  // larger maps cost seconds
   for (const Case& item : axis.make_cases(context)) {
     if (item.level != Level::kGl) continue;
-    const report::StressCase found = find_onsets(item, axis);
+    const records::StressCase found = find_onsets(item, axis);
     EXPECT_EQ(found.not_available, "");
-    for (const report::StressLimit& limit : compare(item, found, axis)) {
-      EXPECT_EQ(limit.agreement, report::StressAgreement::kAgrees)
+    for (const records::StressLimit& limit : compare(item, found, axis)) {
+      EXPECT_EQ(limit.agreement, records::StressAgreement::kAgrees)
           << item.filter << " " << item.variant << ": theory " << limit.onset.value_or(-1.0) << ", measured "
           << limit.measured.value_or(-1.0);
     }

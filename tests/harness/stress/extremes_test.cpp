@@ -85,7 +85,7 @@ TEST(PoisonedInput, Scenes_AreRefused_AndModelsKeepPoisonWithinTheKernel) {
   int refused = 0, spread = 0;
   for (const Case& item : axis.make_cases(make_context(""))) {
     if (item.level == Level::kGl) continue;
-    const report::StressCase found = find_onsets(item, axis);
+    const records::StressCase found = find_onsets(item, axis);
     EXPECT_FALSE(found.broken) << item.filter << " " << item.variant << ": " << found.broken->why;
     if (item.level == Level::kModel && found.degraded) ++spread;
     for (const std::string& note : found.notes)

@@ -17,10 +17,10 @@ TEST(GeometryAxes, GlCases_MeetTheirTheories) {
     int limits = 0;
     for (const Case& item : axis.make_cases(context)) {
       if (item.level != Level::kGl) continue;
-      const report::StressCase found = find_onsets(item, axis);
+      const records::StressCase found = find_onsets(item, axis);
       EXPECT_EQ(found.not_available, "");
-      for (const report::StressLimit& limit : compare(item, found, axis)) {
-        EXPECT_EQ(limit.agreement, report::StressAgreement::kAgrees)
+      for (const records::StressLimit& limit : compare(item, found, axis)) {
+        EXPECT_EQ(limit.agreement, records::StressAgreement::kAgrees)
             << id << " " << item.filter << " " << item.variant << ": theory " << limit.onset.value_or(-1.0)
             << ", measured " << limit.measured.value_or(-1.0);
         ++limits;

@@ -128,7 +128,7 @@ HeatMap make_heat_map() {
               "quantity",
               {"x", {0.0, 10.0}, {0, 10}},
               {"y", {0.0, 4.0}, {0, 4}},
-              report::Image(2, 2, 1),
+              images::Image(2, 2, 1),
               1.0,
               [](double) { return 2.0; }};
   *map.values.at(1, 0) = 1.0f;  // high x, high y
@@ -136,7 +136,7 @@ HeatMap make_heat_map() {
 }
 
 /// Counts the columns of a row of the picture in which a colour is reddish, and near black.
-std::pair<int, int> count_red_and_black(const report::Image& picture, int row) {
+std::pair<int, int> count_red_and_black(const images::Image& picture, int row) {
   std::pair<int, int> counts;
   for (int x = picture.width / 4; x < picture.width; ++x) {
     const float* texel = picture.at(x, row);
@@ -147,7 +147,7 @@ std::pair<int, int> count_red_and_black(const report::Image& picture, int row) {
 }
 
 TEST(HeatMap, HighValuesLieAbove_AndTheCurveWhereItSays) {
-  const report::Image picture = draw_heat_map(make_heat_map());
+  const images::Image picture = draw_heat_map(make_heat_map());
   std::vector<int> red_rows, curve_rows;
   for (int y = 0; y < picture.height; ++y) {
     const auto [red, black] = count_red_and_black(picture, y);
@@ -166,10 +166,10 @@ TEST(GeometryAxes, Models_MeetTheirTheories) {
     const Axis axis = choose_axes(id)[0];
     int limits = 0;
     for (const Case& item : axis.make_cases(context)) {
-      const report::StressCase found = find_onsets(item, axis);
+      const records::StressCase found = find_onsets(item, axis);
       EXPECT_EQ(found.not_available.empty(), item.level == Level::kModel) << id << " " << found.not_available;
-      for (const report::StressLimit& limit : compare(item, found, axis)) {
-        EXPECT_EQ(limit.agreement, report::StressAgreement::kAgrees)
+      for (const records::StressLimit& limit : compare(item, found, axis)) {
+        EXPECT_EQ(limit.agreement, records::StressAgreement::kAgrees)
             << id << " " << item.filter << " " << item.variant << ": theory " << limit.onset.value_or(-1.0)
             << ", measured " << limit.measured.value_or(-1.0);
         ++limits;
@@ -200,14 +200,14 @@ TEST(LightBleeding, ParametersThatChangeTheFormula_AreNamed) {
   const Axis axis = choose_axes("light-bleeding")[0];
   const Case item = find_model_case("light-bleeding", make_context("vsm:bleed_reduction=0.2"), "2 occluders");
   const auto limits = compare(item, find_onsets(item, axis), axis);
-  ASSERT_EQ(limits.at(0).agreement, report::StressAgreement::kExplained);
+  ASSERT_EQ(limits.at(0).agreement, records::StressAgreement::kExplained);
   EXPECT_THAT(limits[0].explanation, HasSubstr("bleed_reduction"));
 }
 
 /// An explanation must not cover for numbers that the exact model does not have.
 TEST(LightBleeding, WhatTheExactModelDoesNotDo_IsNotExplained) {
   const Case item = find_model_case("light-bleeding", make_context("vsm"), "2 occluders");
-  report::StressCase record;
+  records::StressCase record;
   record.samples = {{3.0, Verdict::kDegraded, 0.2, ""}};
   EXPECT_EQ(item.explain({item.theories.at(0), 3.0, record}), "");
 }
@@ -217,15 +217,15 @@ TEST(KernelRadius, OverflowOfTheStore_IsNotBlamedOnTheRadius) {
   const Axis axis = choose_axes("kernel-radius")[0];
   const Case item = find_model_case("kernel-radius", make_context("esm:store=r16f"), "blurred map");
   const auto limits = compare(item, find_onsets(item, axis), axis);
-  EXPECT_EQ(limits.at(0).agreement, report::StressAgreement::kExplained);
+  EXPECT_EQ(limits.at(0).agreement, records::StressAgreement::kExplained);
   EXPECT_THAT(limits[0].explanation, HasSubstr("every value"));
 }
 
 TEST(Explain, WhatBreaksWithinTheRange_IsNotBrokenThroughout) {
   const Theory theory;
-  report::StressCase record;
+  records::StressCase record;
   record.samples = {{1.0, Verdict::kOk, 0.0, ""}, {2.0, Verdict::kBroken, {}, "overflow"}};
-  record.broken = report::StressOnset{2.0, 1.0, "overflow"};
+  record.broken = records::StressOnset{2.0, 1.0, "overflow"};
   EXPECT_EQ(explain_broken_throughout({theory, 2.0, record}), "");
   record.samples.erase(record.samples.begin());
   EXPECT_THAT(explain_broken_throughout({theory, 2.0, record}), HasSubstr("overflow"));
@@ -233,11 +233,11 @@ TEST(Explain, WhatBreaksWithinTheRange_IsNotBrokenThroughout) {
 
 TEST(KernelRadius, RadiusZero_IsNamedForWhatItIs) {
   const Axis axis = choose_axes("kernel-radius")[0];
-  const report::StressCase disk =
+  const records::StressCase disk =
       find_onsets(find_model_case("kernel-radius", make_context("poisson"), "disk of comparisons"), axis);
   ASSERT_EQ(disk.notes.size(), 1u);
   EXPECT_THAT(disk.notes[0], HasSubstr("one hardware 2x2 comparison"));
-  const report::StressCase blurred =
+  const records::StressCase blurred =
       find_onsets(find_model_case("kernel-radius", make_context("vsm"), "blurred map"), axis);
   ASSERT_EQ(blurred.notes.size(), 1u);
   EXPECT_THAT(blurred.notes[0], HasSubstr("its formula on one texel"));
@@ -245,7 +245,7 @@ TEST(KernelRadius, RadiusZero_IsNamedForWhatItIs) {
 
 TEST(Taps, MoreOfThem_AreNearerToTheDisk) {
   const StressContext context = make_context("poisson");
-  const report::StressCase found =
+  const records::StressCase found =
       find_onsets(find_model_case("taps", context, "taps at radius 3"), choose_axes("taps")[0]);
   ASSERT_EQ(found.notes.size(), 1u);
   for (const char* count : {"with 4,", "with 8,", "with 16,", "with 32;"})

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 
 namespace shadowbench::stress {
 namespace {
@@ -35,7 +35,7 @@ Case make_steps(double degraded, double broken, int* count = nullptr) {
 }
 
 TEST(FindOnsets, FindsBothToOnePercent_OnALogarithmicAxis) {
-  const report::StressCase found = find_onsets(make_steps(12.34, 567.8), make_axis(1.0, 1e4));
+  const records::StressCase found = find_onsets(make_steps(12.34, 567.8), make_axis(1.0, 1e4));
   ASSERT_TRUE(found.degraded && found.broken);
   EXPECT_GE(found.degraded->value, 12.34);
   EXPECT_LT(*found.degraded->last_before, 12.34);
@@ -46,7 +46,7 @@ TEST(FindOnsets, FindsBothToOnePercent_OnALogarithmicAxis) {
 }
 
 TEST(FindOnsets, FindsToOnePercent_OnALinearAxisThatBeginsAtZero) {
-  const report::StressCase found = find_onsets(make_steps(0.037, 61.0), make_axis(0.0, 90.0, Scale::kLinear));
+  const records::StressCase found = find_onsets(make_steps(0.037, 61.0), make_axis(0.0, 90.0, Scale::kLinear));
   EXPECT_NEAR(found.degraded->value, 0.037, 0.00037);
   EXPECT_NEAR(found.broken->value, 61.0, 0.61);
 }
@@ -54,10 +54,10 @@ TEST(FindOnsets, FindsToOnePercent_OnALinearAxisThatBeginsAtZero) {
 TEST(FindOnsets, WholeNumbers_AreFoundExactly) {
   Axis axis = make_axis(1.0, 4096.0);
   axis.whole = true;
-  const report::StressCase found = find_onsets(make_steps(1e9, 777.0), axis);
+  const records::StressCase found = find_onsets(make_steps(1e9, 777.0), axis);
   EXPECT_EQ(found.broken->value, 777.0);
   EXPECT_EQ(*found.broken->last_before, 776.0);
-  for (const report::StressSample& sample : found.samples) EXPECT_EQ(sample.value, std::round(sample.value));
+  for (const records::StressSample& sample : found.samples) EXPECT_EQ(sample.value, std::round(sample.value));
 }
 
 TEST(FindOnsets, FromTheHighEnd_FindsTheFirstChangeDownwards) {
@@ -65,32 +65,32 @@ TEST(FindOnsets, FromTheHighEnd_FindsTheFirstChangeDownwards) {
   axis.from = SearchFrom::kHigh;
   Case item;
   item.observe = [](double value) { return Observation{value < 20.0 ? Verdict::kBroken : Verdict::kOk, value, {}}; };
-  const report::StressCase found = find_onsets(item, axis);
+  const records::StressCase found = find_onsets(item, axis);
   EXPECT_NEAR(found.broken->value, 20.0, 0.2);
   EXPECT_GE(*found.broken->last_before, 20.0);
 }
 
 TEST(FindOnsets, BreakingAtOnce_IsNotDegraded) {
-  const report::StressCase found = find_onsets(make_steps(50.0, 50.0), make_axis(1.0, 1000.0));
+  const records::StressCase found = find_onsets(make_steps(50.0, 50.0), make_axis(1.0, 1000.0));
   EXPECT_FALSE(found.degraded);
   EXPECT_NEAR(found.broken->value, 50.0, 0.5);
 }
 
 TEST(FindOnsets, NothingChanges_NothingIsFound) {
-  const report::StressCase found = find_onsets(make_steps(1e9, 1e9), make_axis(1.0, 1000.0));
+  const records::StressCase found = find_onsets(make_steps(1e9, 1e9), make_axis(1.0, 1000.0));
   EXPECT_FALSE(found.degraded || found.broken);
   EXPECT_THAT(found.samples, SizeIs(9));
 }
 
 TEST(FindOnsets, RangeThatBeginsBroken_HasNoValueBefore) {
-  const report::StressCase found = find_onsets(make_steps(0.5, 0.5), make_axis(1.0, 1000.0));
+  const records::StressCase found = find_onsets(make_steps(0.5, 0.5), make_axis(1.0, 1000.0));
   EXPECT_EQ(found.broken->value, 1.0);
   EXPECT_FALSE(found.broken->last_before);
 }
 
 TEST(FindOnsets, ObservesNoValueTwice_AndCountsAll) {
   int count = 0;
-  const report::StressCase found = find_onsets(make_steps(10.0, 10.0, &count), make_axis(1.0, 1000.0));
+  const records::StressCase found = find_onsets(make_steps(10.0, 10.0, &count), make_axis(1.0, 1000.0));
   EXPECT_EQ(static_cast<std::size_t>(count), found.samples.size());
   EXPECT_LE(count, 9 + 9);
 }
@@ -100,7 +100,7 @@ TEST(FindOnsets, VerdictsThatGetBetterAgain_AreNoted) {
   item.observe = [](double value) {
     return Observation{value > 10.0 && value < 200.0 ? Verdict::kBroken : Verdict::kOk, value, {}};
   };
-  const report::StressCase found = find_onsets(item, make_axis(1.0, 1000.0));
+  const records::StressCase found = find_onsets(item, make_axis(1.0, 1000.0));
   EXPECT_NEAR(found.broken->value, 10.0, 0.11);
   ASSERT_THAT(found.notes, SizeIs(1));
   EXPECT_THAT(found.notes[0], HasSubstr("ok again at 421.7"));
@@ -121,29 +121,29 @@ TEST(FindOnsets, ErrorAtTheFirstValue_IsNotAvailable_LaterOnesAreBroken) {
     if (value > 100.0) throw Error(ErrorKind::kContext, "no memory");
     return Observation{};
   };
-  const report::StressCase found = find_onsets(item, make_axis(1.0, 1000.0));
+  const records::StressCase found = find_onsets(item, make_axis(1.0, 1000.0));
   EXPECT_EQ(found.not_available, "");
   EXPECT_NEAR(found.broken->value, 100.0, 1.01);
   EXPECT_EQ(found.broken->why, "no memory");
 }
 
 TEST(FindOnsets, AbsentCase_KeepsItsReason) {
-  const report::StressCase found =
+  const records::StressCase found =
       find_onsets(make_absent_case("vsm", "r8", Level::kGl, "no such format"), make_axis(1.0, 2.0));
   EXPECT_EQ(found.not_available, "no such format");
   EXPECT_THAT(found.samples, SizeIs(0));
 }
 
 /// Gives how a case that breaks at `measured` compares with a theory.
-report::StressLimit compare_one(double measured, std::optional<double> onset, TheoryKind kind, double low = 1.0,
-                                double high = 1000.0) {
+records::StressLimit compare_one(double measured, std::optional<double> onset, TheoryKind kind, double low = 1.0,
+                                 double high = 1000.0) {
   Case item = make_steps(measured, measured);
   item.theories = {{onset, kind, "formula", "source", Verdict::kBroken}};
   const Axis axis = make_axis(low, high);
   return compare(item, find_onsets(item, axis), axis).at(0);
 }
 
-using report::StressAgreement;
+using records::StressAgreement;
 
 TEST(Compare, OverflowQuantumAndSlope_AgreeWithinTenPercent) {
   for (const TheoryKind kind : {TheoryKind::kOverflow, TheoryKind::kQuantum, TheoryKind::kSlope}) {

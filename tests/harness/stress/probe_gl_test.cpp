@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 #include "harness/stress/edge_scene.h"
 #include "harness/stress/onset.h"
 #include "tests/harness/stress/stress_fixture.h"
@@ -72,10 +72,10 @@ TEST(Axes, GlCases_MeetTheirTheories) {
     const Axis axis = choose_axes(id)[0];
     for (const Case& item : axis.make_cases(context)) {
       if (item.level != Level::kGl) continue;
-      const report::StressCase found = find_onsets(item, axis);
+      const records::StressCase found = find_onsets(item, axis);
       EXPECT_EQ(found.not_available, "");
-      for (const report::StressLimit& limit : compare(item, found, axis)) {
-        EXPECT_NE(limit.agreement, report::StressAgreement::kDisagrees)
+      for (const records::StressLimit& limit : compare(item, found, axis)) {
+        EXPECT_NE(limit.agreement, records::StressAgreement::kDisagrees)
             << id << " " << item.variant << ": theory " << limit.onset.value_or(-1.0) << ", measured "
             << limit.measured.value_or(-1.0);
       }

@@ -8,16 +8,16 @@ namespace shadowbench::stress {
 
 /// Makes a context of these filters without a GL.
 inline StressContext make_context(const std::string& filters = "") {
-  static const filters::Catalogue catalogue(run::find_resources().filters);
+  static const filters::Catalogue catalogue(options::find_resources().filters);
   StressContext context;
-  context.resources = run::find_resources();
+  context.resources = options::find_resources();
   context.filters = catalogue.parse_requests(filters);
   return context;
 }
 
 /// Gives the one renderer of a test program.
-inline run::Renderer& shared_renderer() {
-  static run::Renderer renderer = run::make_renderer(gl::Backend::kAuto, run::find_resources());
+inline measure::Renderer& shared_renderer() {
+  static measure::Renderer renderer = measure::make_renderer(gl::Backend::kAuto, options::find_resources());
   return renderer;
 }
 

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
@@ -105,4 +105,4 @@ TEST(NoiseRate, WithoutPenumbra_IsAbsent) {
 }
 
 }  // namespace
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

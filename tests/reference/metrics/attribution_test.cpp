@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 namespace {
 
 struct Stations {
@@ -87,4 +87,4 @@ TEST(Attribution, LeavesOutWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 namespace {
 
 TEST(ErrorStats, OfFourPixels_AreWhatTheirDefinitionsGive) {
@@ -47,4 +47,4 @@ TEST(ErrorStats, EmptyMask_HasNone) {
 }
 
 }  // namespace
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 namespace {
 
 using ::testing::DoubleEq;
@@ -84,4 +84,4 @@ TEST(Flicker, OneFrame_OrNoReceiver_HasNoAnswer) {
 }
 
 }  // namespace
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

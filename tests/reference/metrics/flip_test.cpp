@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 namespace {
 
 LinearPicture make_uniform(const glm::vec3& color, int width = 40, int height = 30) {
@@ -81,4 +81,4 @@ TEST(Flip, FartherAway_FineNoiseIsSeenLess) {
 }
 
 }  // namespace
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

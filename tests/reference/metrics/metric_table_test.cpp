@@ -7,7 +7,7 @@
 
 #include "reference/metrics/artefacts.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 namespace {
 
 using ::testing::ElementsAre;
@@ -61,4 +61,4 @@ TEST(MetricTable, ArtefactLimits_AreTheOnesInUse) {
 }
 
 }  // namespace
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

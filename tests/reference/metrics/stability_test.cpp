@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 namespace {
 
 using ::testing::ElementsAre;
@@ -88,4 +88,4 @@ TEST(Bound, Darker_IsAViolationOnlyBeyondTheTolerance) {
 }
 
 }  // namespace
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

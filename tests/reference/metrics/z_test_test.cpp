@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace shadowbench::reference {
+namespace shadowbench::metrics {
 namespace {
 
 TEST(ZTest, StudentsQuantile_IsWhereItsTableHasIt) {
@@ -74,4 +74,4 @@ TEST(ZTest, SumsAddVariances_AndDegreesOfFreedom) {
 }
 
 }  // namespace
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::metrics

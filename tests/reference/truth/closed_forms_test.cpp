@@ -8,7 +8,7 @@
 #include "tests/reference/truth/shapes.h"
 #include "tests/reference/truth/z_scores.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 namespace {
 
 constexpr double kOccluderHeight = 2.0;
@@ -113,4 +113,4 @@ TEST(AreaTruth, SphereOnItsAxis_CoversADisk) {
 }
 
 }  // namespace
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

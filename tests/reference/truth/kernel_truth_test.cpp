@@ -9,7 +9,7 @@
 #include "tests/reference/truth/shapes.h"
 #include "tests/reference/truth/z_scores.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 namespace {
 
 using filters::Kernel;
@@ -149,4 +149,4 @@ TEST(SquareTruth, IsALinearRamp) {
 }
 
 }  // namespace
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

@@ -7,7 +7,7 @@
 
 #include "reference/truth/visibility.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 
 /// A rectangle at height h, from (x0, z0) to (x1, z1), in n x n cells: giant triangles limit the accuracy.
 inline OccluderMesh make_sheet(double x0, double x1, double z0, double z1, double h, int n = 64) {
@@ -65,4 +65,4 @@ inline ReceiverImage make_line(double x0, double x1, int width, int height = 8) 
   return image;
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

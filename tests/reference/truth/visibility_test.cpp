@@ -18,7 +18,7 @@
 #include "reference/truth/cut_out.h"
 #include "tests/reference/truth/shapes.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 namespace {
 
 std::vector<OccluderMesh> half_plane() { return {make_sheet(-40.0, 0.0, -40.0, 40.0, 2.0)}; }
@@ -249,4 +249,4 @@ TEST(Occluders, NeitherSelfHitsNorLeaks_AtAnyScale) {
 }
 
 }  // namespace
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

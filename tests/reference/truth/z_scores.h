@@ -11,7 +11,7 @@
 
 #include "reference/truth/visibility.h"
 
-namespace shadowbench::reference {
+namespace shadowbench::truth {
 
 /// Two-sided z-test of many pixels with 15 degrees of freedom: at a family-wise level of 1e-3 over some 13 000 pixels,
 /// Bonferroni asks for the quantile at 3.8e-8 per tail, which is 9.7 for Student's t.
@@ -78,4 +78,4 @@ inline void expect_agreement(const ZScores& scores) {
   EXPECT_LT(scores.rms, 1.25);
 }
 
-}  // namespace shadowbench::reference
+}  // namespace shadowbench::truth

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "report/cell_key.h"
+#include "report/records/cell_key.h"
 
 namespace shadowbench::regress {
 namespace {
@@ -16,8 +16,8 @@ using ::testing::HasSubstr;
 constexpr int kWidth = 32;
 constexpr int kHeight = 16;
 
-report::Image make_image(float value) {
-  report::Image image(kWidth, kHeight, 1);
+images::Image make_image(float value) {
+  images::Image image(kWidth, kHeight, 1);
   for (float& texel : image.texels) texel = value;
   return image;
 }
@@ -38,17 +38,17 @@ ActualCell make_cell() {
   cell.record.artefact.leak = 0.2;
   cell.record.attribution.model.rms = 0.04;
   cell.record.cost.fetches = 4.0;
-  cell.record.time_ms.lookup = report::Quartiles{2.0, 1.9, 2.1, kFewestRounds};
-  cell.record.ratio_to_none.lookup = report::Ratio{2.0, {1.9, 2.1}};
+  cell.record.time_ms.lookup = records::Quartiles{2.0, 1.9, 2.1, kFewestRounds};
+  cell.record.ratio_to_none.lookup = records::Ratio{2.0, {1.9, 2.1}};
   cell.record.images.parts = "tent";
-  cell.record.key = report::cell_key(cell.record);
+  cell.record.key = records::cell_key(cell.record);
   cell.origin = {1, "llvmpipe", "a machine", "abc"};
   cell.images.visibility = make_image(0.5f);
   return cell;
 }
 
 BaselineCell expect(const ActualCell& cell) {
-  const report::CellRecord& r = cell.record;
+  const records::CellRecord& r = cell.record;
   return {r.key,      r.scene, r.view,   r.filter,    *r.images.parts,
           r.map_size, r.width, r.height, cell.origin, read_values(r)};
 }
@@ -91,7 +91,7 @@ TEST(Comparison, RoundingToHalf_IsNoChange) {
 }
 
 TEST(Comparison, NotFinite_IsAChange_ExcusedOrNot) {
-  for (const float bound : {0.0f, 1.0f, report::kMayFlip}) {
+  for (const float bound : {0.0f, 1.0f, images::kMayFlip}) {
     ActualCell before = make_cell();
     before.images.uncertainty.rounding = make_image(bound);
     ActualCell now = before;
@@ -121,20 +121,20 @@ TEST(Comparison, BrokenBoundOfTheBaseline_ExcusesNothing) {
 TEST(Comparison, DamagedImages_AreUnreadable) {
   const auto compare_damaged = [](const auto& damage) {
     ActualCell cell = make_cell();
-    for (const report::UncertaintyImage& each : report::list_uncertainty_images())
+    for (const images::UncertaintyImage& each : images::list_uncertainty_images())
       cell.images.uncertainty.*each.image = make_image(0.0f);
     CellImages expected = cell.images;
     damage(cell.images, expected);
     return compare_cell(cell, expect(cell), expected, Tolerances()).outcome;
   };
   EXPECT_EQ(compare_damaged([](CellImages&, CellImages&) {}), Outcome::kSame);
-  for (const report::UncertaintyImage& each : report::list_uncertainty_images()) {
+  for (const images::UncertaintyImage& each : images::list_uncertainty_images()) {
     EXPECT_EQ(
-        compare_damaged([&](CellImages& run, CellImages&) { run.uncertainty.*each.image = report::Image(4, 4, 1); }),
+        compare_damaged([&](CellImages& run, CellImages&) { run.uncertainty.*each.image = images::Image(4, 4, 1); }),
         Outcome::kUnreadable)
         << each.id;
     EXPECT_EQ(compare_damaged([&](CellImages&, CellImages& baseline) {
-                baseline.uncertainty.*each.image = report::Image(4, 4, 1);
+                baseline.uncertainty.*each.image = images::Image(4, 4, 1);
               }),
               Outcome::kUnreadable)
         << each.id;
@@ -145,7 +145,7 @@ TEST(Comparison, DamagedImages_AreUnreadable) {
 
 TEST(Comparison, ManyExcusedPixelsThatDiffer_AreAChange) {
   ActualCell before = make_cell();
-  before.images.uncertainty.rounding = make_image(report::kMayFlip);
+  before.images.uncertainty.rounding = make_image(images::kMayFlip);
   ActualCell now = before;
   *now.images.visibility.at(5, 5) = 1.0f;  // one of 512: more than one in a thousand
   const Comparison found = compare_cell(now, expect(before), before.images, Tolerances());
@@ -158,7 +158,7 @@ TEST(Comparison, PixelThatMayFlip_IsExcusedByName) {
   tolerances.set("tent", kExcusedChanged, {0.01, "a small picture"});
   ActualCell before = make_cell();
   before.images.uncertainty.rounding = make_image(0.0f);
-  *before.images.uncertainty.rounding.at(5, 5) = report::kMayFlip;
+  *before.images.uncertainty.rounding.at(5, 5) = images::kMayFlip;
   ActualCell now = before;
   *now.images.visibility.at(5, 5) = 1.0f;
   const Comparison excused = compare_cell(now, expect(before), before.images, tolerances);
@@ -241,7 +241,7 @@ TEST(Comparison, TruthsNoise_CountsWhereTheTruthIsAnother) {
 
 TEST(Comparison, Time_CountsAsRatioWithItsInterval_OnOneMachineAlone) {
   const auto slow = [](double low) {
-    return [low](ActualCell& cell) { cell.record.ratio_to_none.lookup = report::Ratio{low + 0.1, {low, low + 0.2}}; };
+    return [low](ActualCell& cell) { cell.record.ratio_to_none.lookup = records::Ratio{low + 0.1, {low, low + 0.2}}; };
   };
   EXPECT_EQ(compare_changed(slow(2.6)).outcome, Outcome::kSame);  // 2.1 x 1.25 = 2.625
   EXPECT_EQ(compare_changed(slow(2.7)).outcome, Outcome::kSlower);
@@ -267,7 +267,7 @@ TEST(Comparison, TooFewRounds_GiveNoRatio) {
 
 TEST(Comparison, EmptyOrOtherSizedImage_IsUnreadable) {
   EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.images.visibility = {}; }).outcome, Outcome::kUnreadable);
-  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.images.visibility = report::Image(4, 4, 1); }).outcome,
+  EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.images.visibility = images::Image(4, 4, 1); }).outcome,
             Outcome::kUnreadable);
   EXPECT_EQ(compare_changed([](ActualCell& cell) { cell.unreadable = "timeout"; }).findings.front().text, "timeout");
   const ActualCell cell = make_cell();
@@ -279,9 +279,9 @@ class Spread : public ::testing::Test {
  protected:
   std::mt19937 generator_{1};
 
-  report::Image draw(double p) {
+  images::Image draw(double p) {
     std::binomial_distribution<int> lit(16, p);
-    report::Image image(kWidth, kHeight, 1);
+    images::Image image(kWidth, kHeight, 1);
     for (float& texel : image.texels) texel = static_cast<float>(lit(generator_)) / 16.0f;
     return image;
   }
@@ -289,21 +289,21 @@ class Spread : public ::testing::Test {
   /// A baseline of the mean and the deviation over 16 seeds.
   CellImages make_baseline(double p) {
     CellImages images{draw(p), {}};
-    std::vector<report::Image> seeds;
-    for (int i = 0; i < report::kSpreadSeeds; ++i) seeds.push_back(draw(p));
-    images.uncertainty.seed_mean = images.uncertainty.seed_deviation = report::Image(kWidth, kHeight, 1);
+    std::vector<images::Image> seeds;
+    for (int i = 0; i < images::kSpreadSeeds; ++i) seeds.push_back(draw(p));
+    images.uncertainty.seed_mean = images.uncertainty.seed_deviation = images::Image(kWidth, kHeight, 1);
     for (std::size_t i = 0; i < images.visibility.texels.size(); ++i) {
       double sum = 0.0, squares = 0.0;
-      for (const report::Image& seed : seeds) sum += static_cast<double>(seed.texels[i]);
-      const double mean = sum / report::kSpreadSeeds;
-      for (const report::Image& seed : seeds) squares += std::pow(static_cast<double>(seed.texels[i]) - mean, 2);
+      for (const images::Image& seed : seeds) sum += static_cast<double>(seed.texels[i]);
+      const double mean = sum / images::kSpreadSeeds;
+      for (const images::Image& seed : seeds) squares += std::pow(static_cast<double>(seed.texels[i]) - mean, 2);
       images.uncertainty.seed_mean.texels[i] = static_cast<float>(mean);
-      images.uncertainty.seed_deviation.texels[i] = static_cast<float>(std::sqrt(squares / (report::kSpreadSeeds - 1)));
+      images.uncertainty.seed_deviation.texels[i] = static_cast<float>(std::sqrt(squares / (images::kSpreadSeeds - 1)));
     }
     return images;
   }
 
-  static Comparison compare(const report::Image& image, const CellImages& expected, std::uint64_t seed) {
+  static Comparison compare(const images::Image& image, const CellImages& expected, std::uint64_t seed) {
     ActualCell before = make_cell();
     before.record.cost.fetches = 16.0;
     ActualCell now = before;
@@ -329,7 +329,7 @@ TEST_F(Spread, AnotherDistribution_IsFound) {
 
 TEST_F(Spread, OnePixelOfTheOtherKind_IsFound) {
   const CellImages expected = make_baseline(1.0);
-  report::Image acne = draw(1.0);
+  images::Image acne = draw(1.0);
   *acne.at(9, 2) = 0.5f;
   const Comparison found = compare(acne, expected, 2);
   EXPECT_EQ(found.outcome, Outcome::kChanged);
@@ -340,7 +340,7 @@ TEST_F(Spread, OnePixelOfTheOtherKind_IsFound) {
 TEST_F(Spread, LookupsThatAgree_AreStillNoise) {
   std::bernoulli_distribution lit(0.5);
   const auto flip = [&] {
-    report::Image image(kWidth, kHeight, 1);
+    images::Image image(kWidth, kHeight, 1);
     for (float& texel : image.texels) texel = lit(generator_) ? 1.0f : 0.0f;
     return image;
   };
@@ -363,7 +363,7 @@ class Truth : public ::testing::Test {
 
   TruthImages trace(double at) {
     std::normal_distribution<double> noise(0.0, static_cast<double>(kError));
-    TruthImages truth{report::Image(kWidth, kHeight, 1), make_image(kError)};
+    TruthImages truth{images::Image(kWidth, kHeight, 1), make_image(kError)};
     for (float& texel : truth.area.texels) texel = static_cast<float>(at + noise(generator_));
     return truth;
   }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "filters/error.h"
+#include "filters/base/error.h"
 
 namespace shadowbench::regress {
 namespace {

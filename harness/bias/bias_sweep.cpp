@@ -1,0 +1,271 @@
+#include "harness/bias/bias_sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/base/error.h"
+#include "harness/measure/cell_analysis.h"
+#include "harness/measure/scene_assets.h"
+#include "harness/render/bias_theory.h"
+#include "harness/render/filter_passes.h"
+#include "harness/render/receivers.h"
+#include "harness/render/shade_pass.h"
+#include "harness/run/run_facts.h"
+#include "harness/run/scene_loading.h"
+#include "report/files/atomic_file.h"
+#include "report/files/folder_lock.h"
+#include "report/images/grid.h"
+#include "report/images/hardest_edge.h"
+#include "report/pages/bias_chart.h"
+#include "report/pages/bias_page.h"
+
+namespace shadowbench::bias {
+namespace {
+
+constexpr double kFactors[] = {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
+constexpr double kTooLittle = 0.25, kRight = 1.0, kTooMuch = 8.0;  // of the pictures
+constexpr double kPercentile = 0.95;
+constexpr const char* kPictureFilter = "tent3x3";  // where it is among the chosen
+
+/// One image of a mode, for its grid.
+struct Shot {
+  records::BiasPoint point;
+  images::Image visibility;
+};
+
+class BiasSweep {
+ public:
+  BiasSweep(const options::RunOptions& options, options::Progress& progress)
+      : options_(options),
+        progress_(progress),
+        scene_(run::load_scene(options, options.scenes.front())),
+        renderer_(measure::make_renderer(options.backend, options.resources)),
+        cache_(options.cache, [&progress](const std::string& message) { progress.note("warning: " + message); }),
+        assets_(renderer_, options_, scene_, cache_, measure::largest_padding_texels(options.filters)),
+        light_(assets_.light_map(scene_.cameras.front(), options.map_sizes.front())),
+        target_("visibility", GL_R32F, options.width, options.height) {}
+
+  void run() {
+    const files::FolderLock lock(options_.out);  // a folder that cannot be written is better found now
+    progress_.begin(static_cast<int>(render::swept_modes().size() * options_.filters.size()), 0);
+    progress_.show(0, "truth");
+    make_masks();
+    find_lit();
+    describe();
+    for (const render::SweptMode& mode : render::swept_modes()) record_.modes.push_back(sweep_mode(mode));
+    renderer_.context->require_no_gl_errors();
+    lock.require_in_place();
+    files::write_text_file(options_.out / "bias.csv", pages::make_bias_csv(record_));
+    files::write_text_file(options_.out / "bias.html", pages::make_bias_html(record_));
+    progress_.show(done_, "done");
+  }
+
+ private:
+  const options::RunOptions& options_;
+  options::Progress& progress_;
+  scene::Scene scene_;
+  measure::Renderer renderer_;
+  measure::TruthCache cache_;
+  measure::SceneAssets assets_;
+  measure::LightMap& light_;
+  render::ImageTarget target_;
+  render::MapBias drawn_;  ///< what the map holds
+  metrics::ArtefactMasks masks_;
+  std::vector<filters::Receiver> lit_;  ///< those of the acne mask
+  records::BiasSweepRecord record_;
+  int done_ = 0;
+
+  const scene::Camera& camera() const { return scene_.cameras.front(); }
+
+  void make_masks() {
+    const measure::SceneTruth& truth = assets_.truth(camera());
+    const measure::SceneTask task{&scene_, &camera(), options_.map_sizes.front(), options_.filters};
+    const auto masks = measure::CellAnalyser(renderer_, options_, task, assets_, truth).masks();
+    if (!masks)
+      throw Error(ErrorKind::kInput,
+                  fmt::format("{}: no masks of artefacts: {}; choose another scene", scene_.name, truth.absent));
+    masks_ = *masks;
+  }
+
+  render::LightSetup make_light(const render::Bias& bias) const {
+    return render::make_light_setup(light_.frustum, scene_.light, bias, options_.seed);
+  }
+
+  /// Finds the lit receivers, which theory is reckoned for.
+  void find_lit() {
+    lit_ = render::read_receivers(renderer_.shaders, assets_.gbuffer(camera()), make_light({}));
+    std::erase_if(lit_, [&](const filters::Receiver& r) {
+      return !masks_.acne[static_cast<std::size_t>((options_.height - 1 - r.pixel.y) * options_.width + r.pixel.x)];
+    });
+    if (static_cast<int>(lit_.size()) < metrics::kFewestReceivers) {
+      throw Error(
+          ErrorKind::kInput,
+          fmt::format(
+              "{}: {} receivers are wholly lit, and {} are needed to reckon a theoretical amount; choose a larger "
+              "--size, a larger --map-size or another scene",
+              scene_.name, lit_.size(), metrics::kFewestReceivers));
+    }
+    const render::SweptMode& constant = render::swept_modes().front();
+    if (render::find_theory(constant, 1.0, lit_, kPercentile).slope_per_texel > 0.0) return;
+    throw Error(
+        ErrorKind::kInput,
+        fmt::format(
+            "{}: the lit surfaces face the light squarely, where theory asks for no bias at all; choose another "
+            "scene",
+            scene_.name));
+  }
+
+  void describe() {
+    const auto count = [](const std::vector<std::uint8_t>& mask) {
+      return static_cast<long>(std::count(mask.begin(), mask.end(), 1));
+    };
+    record_.scene = scene_.name;
+    record_.title = scene_.title;
+    record_.view = camera().name;
+    record_.map_size = options_.map_sizes.front();
+    record_.width = options_.width;
+    record_.height = options_.height;
+    const records::GlRecord gl = run::describe_gl(renderer_);
+    record_.renderer = fmt::format("{} ({}), program {}", gl.renderer, gl.backend, run::build_commit());
+    for (const auto& request : options_.filters) record_.filters.push_back(request.label());
+    const render::BiasTheory steep = render::find_theory(render::swept_modes().front(), 1.0, lit_, kPercentile);
+    record_.slope_depth = steep.slope_per_texel;
+    record_.angle_deg = glm::degrees(std::acos(steep.n_dot_l));
+    record_.percentile = kPercentile;
+    record_.texel_m = light_.frustum.texel_size_ws;
+    record_.depth_range_m = light_.frustum.depth_range_ws;
+    record_.gap_above = metrics::kArtefactLimits.contact_gap_above;
+    record_.acne_below = metrics::kArtefactLimits.acne_below;
+    record_.acne_receivers = count(masks_.acne);
+    record_.contact_receivers = count(masks_.contact_gap);
+    record_.fewest_receivers = metrics::kFewestReceivers;
+  }
+
+  void draw_map(const render::MapBias& bias) {
+    if (drawn_ == bias) return;
+    drawn_ = bias;
+    assets_.redraw(light_, drawn_);
+  }
+
+  /// Says why a filter has no say under a mode; empty where it has.
+  std::string explain_left_out(const render::BiasRule& rule, const filters::FilterSpec& spec) {
+    draw_map(rule.map);
+    if (rule.map.cull_front && !measure::SceneAssets::has_casters(light_))
+      return "would read an empty map: all casters are open meshes, of which nothing stays";
+    return render::explain_unusable(rule, spec);
+  }
+
+  images::Image draw(const filters::FilterRequest& request, const render::BiasRule& rule) {
+    draw_map(rule.map);
+    const render::Bias bias = render::resolve_bias(rule, light_.frustum, request.spec, request.values);
+    render::FilterPasses filter(renderer_.shaders, request, light_.map, make_light(bias));
+    filter.prefilter(light_.map);
+    filter.lookup(assets_.gbuffer(camera()), light_.map, target_);
+    return render::read_image(target_.texture(), 1);
+  }
+
+  Shot shoot(const render::SweptMode& mode, const filters::FilterRequest& request, std::optional<double> factor,
+             double setting) {
+    Shot shot{{factor, setting, {}, {}}, draw(request, mode.make_rule(setting))};
+    const std::vector<float>& image = shot.visibility.texels;
+    shot.point.acne = metrics::rate_below(image, masks_.acne, metrics::kArtefactLimits.acne_below);
+    shot.point.contact_gap = metrics::rate_above(image, masks_.contact_gap, metrics::kArtefactLimits.contact_gap_above);
+    return shot;
+  }
+
+  std::vector<Shot> shoot_curve(const render::SweptMode& mode, const filters::FilterRequest& request,
+                                records::BiasCurve& curve) {
+    std::vector<Shot> shots;
+    if (mode.key.empty()) {
+      shots.push_back(shoot(mode, request, std::nullopt, 0.0));
+      return shots;
+    }
+    const render::BiasTheory theory = render::find_theory(mode, render::reach_texels(request), lit_, kPercentile);
+    curve.theory_setting = mode.amount(theory);
+    curve.lift_depth = mode.lift_depth(theory);
+    curve.lift_m = curve.lift_depth * light_.frustum.depth_range_ws;
+    curve.lift_texels = curve.lift_m / light_.frustum.texel_size_ws;
+    for (const double factor : kFactors) shots.push_back(shoot(mode, request, factor, factor * curve.theory_setting));
+    return shots;
+  }
+
+  /// Gives the filter whose images are shown.
+  const filters::FilterRequest* choose_shown(const std::vector<const filters::FilterRequest*>& usable) const {
+    const auto tent = std::find_if(usable.begin(), usable.end(),
+                                   [](const auto* request) { return request->spec.id == kPictureFilter; });
+    return tent != usable.end() ? *tent : usable.empty() ? nullptr : usable.front();
+  }
+
+  records::BiasModeRecord sweep_mode(const render::SweptMode& mode) {
+    records::BiasModeRecord record{mode.name, mode.key, mode.meaning, {}, {}, {}, {}};
+    std::vector<const filters::FilterRequest*> usable;
+    for (const filters::FilterRequest& request : options_.filters) {
+      const std::string reason = explain_left_out(mode.make_rule(0.0), request.spec);
+      if (reason.empty())
+        usable.push_back(&request);
+      else
+        record.left_out.push_back(fmt::format("Left out: {}, which {}.", request.label(), reason));
+    }
+    const filters::FilterRequest* shown = choose_shown(usable);
+    for (const filters::FilterRequest* request : usable) {
+      progress_.show(done_++, fmt::format("{} · {}", mode.name, request->label()));
+      records::BiasCurve& curve = record.curves.emplace_back();
+      curve.filter = request->label();
+      std::vector<Shot> shots = shoot_curve(mode, *request, curve);
+      for (const Shot& shot : shots) curve.points.push_back(shot.point);
+      if (request == shown) write_pictures(record, curve, std::move(shots));
+    }
+    done_ += static_cast<int>(record.left_out.size());
+    return record;
+  }
+
+  images::GridTile make_tile(const records::BiasModeRecord& mode, Shot& shot) {
+    const records::BiasPoint& p = shot.point;
+    const std::string which = p.factor == kTooLittle ? "too little: " : p.factor == kTooMuch ? "too much: " : "right: ";
+    const auto rate = [](const std::optional<double>& value) {
+      return value ? fmt::format("{:.3g} %", 100.0 * *value) : "absent";
+    };
+    images::GridTile tile;
+    tile.label = p.factor ? which + pages::name_factor(*p.factor) : mode.mode;
+    tile.caption = (p.factor ? fmt::format("{} {:.4g} · ", mode.key, p.setting) : std::string()) +
+                   fmt::format("acne {} · contact gap {}", rate(p.acne), rate(p.contact_gap));
+    tile.picture = render::shade(renderer_.shaders, assets_.gbuffer(camera()), render::upload_image(shot.visibility),
+                                 scene_, camera());
+    tile.visibility = std::move(shot.visibility);
+    return tile;
+  }
+
+  void write_pictures(records::BiasModeRecord& mode, const records::BiasCurve& curve, std::vector<Shot> shots) {
+    std::erase_if(shots, [](const Shot& shot) {
+      const auto factor = shot.point.factor;
+      return factor && factor != kTooLittle && factor != kRight && factor != kTooMuch;
+    });
+    images::Grid grid;
+    grid.title = fmt::format("{}: {}", mode.mode, curve.filter);
+    grid.subtitle = fmt::format("visibility on {}, map {}{}", scene_.name, options_.map_sizes.front(),
+                                mode.key.empty() ? "" : "; amounts in theoretical ones");
+    for (Shot& shot : shots) grid.tiles.push_back(make_tile(mode, shot));
+    std::vector<const images::Image*> images;
+    for (const images::GridTile& tile : grid.tiles) images.push_back(&tile.visibility);
+    const images::Image& truth = assets_.truth(camera()).area;
+    images.push_back(&truth);
+    grid.crop =
+        images::find_hardest_edge(images, images.size() - 1, images::choose_crop_size({truth.width, truth.height}));
+    grid.columns = static_cast<int>(grid.tiles.size());
+    mode.picture = fmt::format("bias.{}.png", mode.mode);
+    mode.picture_caption = fmt::format(
+        "{} under {}: picture and visibility{}, and the crop where it differs most; full size behind the link",
+        curve.filter, mode.mode, mode.key.empty() ? "" : " at too little, right and too much");
+    images::write_grid(options_.out / mode.picture, grid);
+  }
+};
+
+}  // namespace
+
+void run_bias_sweep(const options::RunOptions& options, options::Progress& progress) {
+  BiasSweep(options, progress).run();
+}
+
+}  // namespace shadowbench::bias

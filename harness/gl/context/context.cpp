@@ -1,0 +1,132 @@
+#include "harness/gl/context/context.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <chrono>
+#include <stdexcept>
+#include <utility>
+
+#include "filters/base/error.h"
+#include "harness/gl/context/context_backends.h"
+#include "harness/gl/gl_error.h"
+
+namespace shadowbench::gl {
+namespace {
+
+constexpr std::array<std::pair<Backend, std::string_view>, 4> kNames = {
+    {{Backend::kAuto, "auto"}, {Backend::kOsmesa, "osmesa"}, {Backend::kEgl, "egl"}, {Backend::kGlfw, "glfw"}}};
+
+std::string get_gl_string(GLenum name) {
+  const auto* text = glGetString(name);
+  return text == nullptr ? std::string() : reinterpret_cast<const char*>(text);
+}
+
+// For display, and for what `auto` tries first; nothing that can be measured may follow from it.
+bool looks_like_software(const std::string& renderer) {
+  for (const std::string_view name :
+       {"llvmpipe", "softpipe", "swrast", "Software Rasterizer", "SwiftShader", "lavapipe"})
+    if (renderer.find(name) != std::string::npos) return true;
+  return false;
+}
+
+struct Attempt {
+  std::string_view name;
+  std::unique_ptr<Context> (*create)();
+};
+
+std::vector<Attempt> list_attempts(Backend backend) {
+  const Attempt osmesa = {"osmesa", create_osmesa_context};
+  const Attempt egl_gpu = {"egl on a GPU", create_egl_gpu_context};
+  const Attempt egl = {"egl", create_egl_context};
+  const Attempt glfw = {"glfw", create_glfw_context};
+  switch (backend) {
+    case Backend::kOsmesa: return {osmesa};
+    case Backend::kEgl: return {egl};
+    case Backend::kGlfw: return {glfw};
+    case Backend::kAuto: break;
+  }
+  return {egl_gpu, osmesa, egl, glfw};
+}
+
+}  // namespace
+
+Backend parse_backend(std::string_view text) {
+  for (const auto& [backend, name] : kNames)
+    if (name == text) return backend;
+  throw Error(ErrorKind::kUsage, fmt::format("unknown GL back end '{}'; there are auto, osmesa, egl and glfw", text));
+}
+
+std::string_view backend_name(Backend backend) {
+  for (const auto& [value, name] : kNames)
+    if (value == backend) return name;
+  throw std::logic_error("a GL back end without a name");
+}
+
+ContextChoice create_context(Backend backend) {
+  ContextChoice choice;
+  for (const Attempt& attempt : list_attempts(backend)) {
+    try {
+      choice.context = attempt.create();
+      return choice;
+    } catch (const Error& error) {
+      choice.refused.push_back(fmt::format("{}: {}", attempt.name, error.message()));
+    }
+  }
+  throw Error(
+      ErrorKind::kContext,
+      fmt::format("no OpenGL 4.5 core context: {}; install OSMesa (harness/setup.sh does), or choose another with --gl",
+                  fmt::join(choice.refused, "; ")));
+}
+
+void Context::make_current() {
+  bind();
+  if (gladLoadGL(loader()) == 0) throw Error(ErrorKind::kContext, "the GL functions cannot be loaded");
+}
+
+void Context::initialise(GlInfo info, std::chrono::steady_clock::time_point start) {
+  make_current();
+  if (!GLAD_GL_VERSION_4_5)
+    throw Error(ErrorKind::kContext, fmt::format("OpenGL 4.5 is needed, this is {}", get_gl_string(GL_VERSION)));
+  info_ = std::move(info);
+  info_.vendor = get_gl_string(GL_VENDOR);
+  info_.renderer = get_gl_string(GL_RENDERER);
+  info_.version = get_gl_string(GL_VERSION);
+  info_.software = info_.software || looks_like_software(info_.renderer);
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &info_.max_texture_size);
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  record_errors();
+  info_.creation_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+void Context::record_errors() {
+  glEnable(GL_DEBUG_OUTPUT);
+  glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+  glDebugMessageCallback(&Context::record_message, this);
+}
+
+void GLAPIENTRY Context::record_message(GLenum source, GLenum type, GLuint, GLenum severity, GLsizei length,
+                                        const GLchar* message, const void* context) {
+  if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;
+  if (type != GL_DEBUG_TYPE_ERROR && type != GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) return;
+  if (severity != GL_DEBUG_SEVERITY_HIGH && severity != GL_DEBUG_SEVERITY_MEDIUM) return;
+  // The pointer is the `this` of record_errors; GL hands it back as const.
+  auto* self = const_cast<Context*>(static_cast<const Context*>(context));
+  self->errors_.push_back(length < 0 ? std::string(message) : std::string(message, static_cast<std::size_t>(length)));
+}
+
+std::vector<std::string> Context::take_gl_errors() {
+  // A context without the debug flag need not send messages: what is pending without one counts as well.
+  const auto pending = drain_gl_errors();
+  if (errors_.empty())
+    for (const GLenum error : pending) errors_.push_back(gl_error_name(error));
+  return std::exchange(errors_, {});
+}
+
+void Context::require_no_gl_errors() {
+  const auto errors = take_gl_errors();
+  if (!errors.empty()) throw std::logic_error(fmt::format("GL errors: {}", fmt::join(errors, "; ")));
+}
+
+}  // namespace shadowbench::gl

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+
+#include "harness/gl/context/context.h"
+#include "harness/gl/timer.h"
+
+namespace shadowbench::gl {
+
+/// Holds how finely the GL interpolates between two texels.
+struct WeightPrecision {
+  /// As many bits as fp32 coordinates can tell apart; from 22 on weights count as exact.
+  static constexpr int kMaxBits = 23;
+
+  int bits = 0;            ///< fractional bits of the weight: 8 means steps of 1/256
+  double max_error = 0.0;  ///< largest distance from the exact weight, over [0, 1]
+
+  bool exact() const { return bits >= 22; }
+};
+
+/// Holds what the GL does with one depth format.
+struct DepthFormatMeasurement {
+  WeightPrecision pcf;            ///< weights of depth compare with linear filter (hardware PCF)
+  double offset_unit_near = 0.0;  ///< glPolygonOffset(0, 1) at depth 0.25, in depth
+  double offset_unit_far = 0.0;   ///< the same at depth 0.75; float depth scales with the depth's exponent
+  bool clamps_reference = false;  ///< a reference above 1 is compared as 1
+};
+
+/// Holds what a GL really does, as found by experiment. Every value is a plain number.
+struct GlMeasurement {
+  DepthFormatMeasurement d16;
+  DepthFormatMeasurement d24;
+  DepthFormatMeasurement d32f;
+  WeightPrecision r32f;  ///< linear filtering of colour
+  WeightPrecision rg32f;
+  int r8_levels = 0;         ///< distinct values between 0 and 255 with linear filtering of R8
+  double slope_ratio = 0.0;  ///< slope factor / max(|dz/dx|,|dz/dy|) for slopes 3:4. 1: max, 1.25: length, 1.75: sum
+  TimerCheck timer;          ///< the same work by GL's timer and by the wall clock
+  double exp_ulp = 0.0;      ///< worst relative error of exp() over [-80, 80], in units of 2^-24
+  double sin_error = 0.0;    ///< worst absolute error of sin() over [0, 2 pi]
+  double cos_error = 0.0;    ///< worst absolute error of cos() over [0, 2 pi]
+  double texel_border_error = 0.0;  ///< farthest from a texel border that nearest sampling of a 1024 map takes the
+                                    ///< wrong texel, in texels
+};
+
+/// Finds out what this GL does. Requires: `context` is current. Cost: under 2 s on a software rasteriser.
+GlMeasurement measure_gl(Context& context);
+
+/// Returns the weight bits of hardware PCF for one depth format: the cheap part of `measure_gl`.
+/// Shape: GL_DEPTH_COMPONENT16, 24 or 32F. Returns at most WeightPrecision::kMaxBits.
+int measure_pcf_weight_bits(Context& context, GLenum depth_format);
+
+/// Writes the context and its measurement as lines of text for people; ends with a newline.
+std::string format_measurement(const GlInfo& info, const GlMeasurement& measured);
+
+}  // namespace shadowbench::gl

@@ -1,0 +1,147 @@
+#include "harness/measure/cell_analysis.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/measure/model_images.h"
+#include "harness/render/receivers.h"
+#include "reference/metrics/attribution.h"
+#include "reference/metrics/error_stats.h"
+#include "report/records/absence.h"
+#include "report/records/error_parts.h"
+
+namespace shadowbench::measure {
+namespace {
+
+std::vector<std::uint8_t> find_settled(const truth::TracedVisibility& traced) {
+  std::vector<std::uint8_t> settled;
+  for (const std::uint32_t rays : traced.rays) settled.push_back(rays == truth::kRaysOfSettledPixel ? 1 : 0);
+  return settled;
+}
+
+void note(records::CellRecord& record, const char* field, std::optional<double>& to, const std::optional<double>& rate,
+          const std::string& reason) {
+  to = rate;
+  if (!rate) record.absent[field] = reason;
+}
+
+/// Says which receivers there are too few of for a rate.
+std::string too_few(const char* which) {
+  return records::explain_nothing_to_see(fmt::format("fewer than {} receivers {}", metrics::kFewestReceivers, which));
+}
+
+void note_parts(records::CellRecord& record, const metrics::Attribution& attribution) {
+  for (std::size_t p = 0; p < metrics::kErrorParts; ++p) {
+    if (!attribution.stats[p]) continue;
+    record.attribution.*
+        records::list_error_parts()[p].record = {attribution.stats[p]->rms, attribution.stats[p]->share};
+  }
+  if (attribution.stats.front()) return;
+  record.absent["attribution"] =
+      attribution.not_finite > 0 ? "no pixel of the image is finite" : "there is no error to take apart";
+}
+
+}  // namespace
+
+metrics::ArtefactMasks find_artefact_masks(SceneTracer& tracer, const scene::LightFrustum& frustum,
+                                           const SceneTruth& truth, double widest_kernel_texels) {
+  const double half_width = widest_kernel_texels + metrics::kArtefactLimits.guard_texels;
+  const truth::TracedVisibility around = tracer.trace_surroundings(truth.receivers, half_width, frustum);
+  const std::vector<std::uint8_t> area_settled = find_settled(truth.rays.area), around_settled = find_settled(around);
+  return metrics::make_artefact_masks({truth.mask, truth.rays.area.visibility, area_settled, around.visibility,
+                                       around_settled, truth.rays.first_blockers_ws,
+                                       metrics::kArtefactLimits.contact_texels * frustum.texel_size_ws});
+}
+
+CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
+                           SceneAssets& assets, const SceneTruth& truth)
+    : renderer_(renderer),
+      options_(options),
+      task_(task),
+      assets_(assets),
+      truth_(truth),
+      light_(assets.light_map(*task.camera, task.map_size)) {
+  if (!truth_.absent.empty()) return;
+  masks_ = find_artefact_masks(assets_.tracer(), light_.frustum, truth_, widest_kernel_texels(options_));
+}
+
+const std::vector<float>& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {
+  if (kernel.is_point()) return truth_.rays.hard;
+  const auto [place, is_new] = kernels_.try_emplace(kernel.name());
+  if (is_new) place->second = assets_.tracer().trace_kernel(truth_.receivers, kernel, light_.frustum).visibility;
+  return place->second;
+}
+
+void CellAnalyser::analyse(MeasuredCell& cell) {
+  records::CellRecord& record = cell.record;
+  if (!masks_ || cell.visibility.empty()) {
+    const std::string reason = truth_.absent.empty() ? record.message : truth_.absent;
+    for (const char* group : {"artefact", "attribution", "error.kernel_rmse", "excused", "images.attribution"})
+      record.absent[group] = reason;
+    return;
+  }
+  count_artefacts(cell);
+  attribute(cell);
+}
+
+void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
+  records::CellRecord& record = cell.record;
+  const std::vector<float>& image = cell.visibility.texels;
+  const metrics::ArtefactLimits& limits = metrics::kArtefactLimits;
+  note(record, "artefact.acne", record.artefact.acne, metrics::rate_below(image, masks_->acne, limits.acne_below),
+       too_few("are wholly lit, with their surroundings"));
+  note(record, "artefact.leak", record.artefact.leak, metrics::rate_above(image, masks_->leak, limits.leak_above),
+       too_few("are wholly blocked, with their surroundings, by something that does not touch them"));
+  note(record, "artefact.contact_gap", record.artefact.contact_gap,
+       metrics::rate_above(image, masks_->contact_gap, limits.contact_gap_above),
+       too_few("are wholly blocked by something that touches them"));
+}
+
+std::vector<filters::Receiver> CellAnalyser::read_receivers(const render::Bias& bias) const {
+  const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed, options_.range);
+  return render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera), light);
+}
+
+void CellAnalyser::attribute(MeasuredCell& cell) {
+  records::CellRecord& record = cell.record;
+  const filters::FilterRequest& request = cell.request;
+  const auto model = filters::make_model(request.spec.id);
+  const bool wanted = options_.attribution;
+  if (!model || request.user_file || !wanted) {
+    const char* reason = wanted ? "the filter has no scalar model" : "the run was made with --no-attribution";
+    for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused", "images.attribution"})
+      record.absent[field] = reason;
+    return;
+  }
+  if (!map_) map_ = light_.map.read();
+  const render::Bias own = render::resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
+  const render::Bias comparison =
+      render::resolve_comparison_bias(options_.bias, light_.frustum, request.spec, request.values);
+  ModelReceivers receivers{read_receivers(own), {}};
+  receivers.closer = own == comparison ? receivers.filter : read_receivers(comparison);
+  const double plane_max_tangent = options_.bias.plane_max_tangent();
+  const ModelImages images =
+      evaluate_model(request, *map_, receivers, plane_max_tangent, options_.seed, options_.width, options_.height);
+  const std::vector<float>& kernel = kernel_truth(model->kernel(request.values));
+  const std::vector<float>& image = cell.visibility.texels;
+  metrics::Attribution attribution =
+      metrics::attribute_error({image, images.model, images.closer, kernel, truth_.area.texels, truth_.mask});
+  record.excused = images.excused;
+  record.absent.erase("excused");
+  note_parts(record, attribution);
+  const auto to_kernel = metrics::measure_error(image, kernel, truth_.mask);
+  note(record, "error.kernel_rmse", record.error.kernel_rmse, to_kernel ? std::optional(to_kernel->rmse) : std::nullopt,
+       "no pixel of the image is finite");
+  const bool random = request.spec.kind == filters::FilterKind::kStochastic;
+  note(record, "artefact.noise", record.artefact.noise,
+       random ? metrics::rate_noise(image, images.closer, kernel, truth_.mask, options_.width) : std::nullopt,
+       random ? too_few("lie in the kernel's penumbra") : "the filter takes no random taps");
+  for (std::vector<float>& part : attribution.parts) {
+    images::Image& to = cell.error_parts.emplace_back(options_.width, options_.height, 1);
+    to.texels = std::move(part);
+  }
+}
+
+}  // namespace shadowbench::measure

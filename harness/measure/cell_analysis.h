@@ -1,0 +1,52 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "filters/model.h"
+#include "harness/measure/scene_assets.h"
+#include "harness/measure/scene_measurement.h"
+#include "harness/measure/scene_truth.h"
+#include "reference/metrics/artefacts.h"
+
+namespace shadowbench::measure {
+
+/// Finds where artefacts can occur in a view: the guard around a receiver is `widest_kernel_texels` and a little more.
+/// Requires a truth. Cost: traces the receivers' surroundings, or takes them from the cache.
+metrics::ArtefactMasks find_artefact_masks(SceneTracer& tracer, const scene::LightFrustum& frustum,
+                                           const SceneTruth& truth, double widest_kernel_texels);
+
+/// Says why the cells of one task are wrong: takes their errors apart, and counts the artefacts a person sees.
+class CellAnalyser {
+ public:
+  /// Everything but the task must outlive this object. Reads the depth map back and traces the receivers' surroundings.
+  CellAnalyser(Renderer& renderer, const options::RunOptions& options, const SceneTask& task, SceneAssets& assets,
+               const SceneTruth& truth);
+
+  /// Notes attribution and artefacts in the cell's record, or why there are none, and leaves the parts as images.
+  /// Cost: the filter's scalar model and its brute-force percentage-closer filter for every receiver, and its kernel
+  /// traced once for all cells that share it.
+  void analyse(MeasuredCell& cell);
+
+  /// The masks of the artefacts; nothing where there is no truth.
+  const std::optional<metrics::ArtefactMasks>& masks() const { return masks_; }
+
+ private:
+  Renderer& renderer_;
+  const options::RunOptions& options_;
+  SceneTask task_;
+  SceneAssets& assets_;
+  const SceneTruth& truth_;
+  LightMap& light_;
+  std::optional<filters::DepthMap> map_;
+  std::optional<metrics::ArtefactMasks> masks_;
+  std::map<std::string, std::vector<float>> kernels_;  ///< by name
+
+  const std::vector<float>& kernel_truth(const filters::Kernel& kernel);
+  std::vector<filters::Receiver> read_receivers(const render::Bias& bias) const;
+  void count_artefacts(MeasuredCell& cell) const;
+  void attribute(MeasuredCell& cell);
+};
+
+}  // namespace shadowbench::measure

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+
+#include "harness/measure/renderer.h"
+#include "harness/measure/scene_assets.h"
+#include "harness/render/filter_passes.h"
+
+namespace shadowbench::measure {
+
+/// Gives a light as one filter sees it: with the run's bias, resolved for the filter's kernel.
+render::LightSetup make_filter_light(const options::RunOptions& options, const scene::Light& light,
+                                     const scene::LightFrustum& frustum, const filters::FilterRequest& request);
+
+/// Compiles one filter over a light's map.
+/// Throws as render::FilterPasses.
+std::unique_ptr<render::FilterPasses> make_filter_passes(Renderer& renderer, const options::RunOptions& options,
+                                                         const scene::Scene& scene, const LightMap& light,
+                                                         const filters::FilterRequest& request);
+
+}  // namespace shadowbench::measure

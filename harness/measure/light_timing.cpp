@@ -1,0 +1,132 @@
+#include "harness/measure/light_timing.h"
+
+#include <cassert>
+#include <map>
+#include <memory>
+
+#include "harness/measure/filter_setup.h"
+#include "harness/measure/statistics.h"
+#include "harness/scene/lights/light_ring.h"
+
+namespace shadowbench::measure {
+namespace {
+
+using SharedTarget = std::shared_ptr<render::ImageTarget>;
+
+/// The encoded maps of every light, for each format that some filter stores.
+class EncodedMaps {
+ public:
+  EncodedMaps(int map_size, std::size_t lights) : map_size_(map_size), lights_(lights) {}
+
+  /// Null for a filter that reads depth.
+  SharedTarget find(const render::FilterPasses& filter, std::size_t light) {
+    if (!filter.encoded_format()) return nullptr;
+    std::vector<SharedTarget>& maps = maps_[*filter.encoded_format()];
+    while (maps.size() < lights_)
+      maps.push_back(
+          std::make_shared<render::ImageTarget>("a light's map", *filter.encoded_format(), map_size_, map_size_));
+    return maps[light];
+  }
+
+ private:
+  int map_size_;
+  std::size_t lights_;
+  std::map<GLenum, std::vector<SharedTarget>> maps_;
+};
+
+records::LightCountRecord make_record(int count, const RoundTimes& times, std::size_t filter, const LightFrame& frame,
+                                      std::uint64_t seed) {
+  const FilterTimes &own = times.filters[filter], &reference = times.filters[frame.reference];
+  const std::vector<double> moving = add_moving(times.map, own);
+  records::LightCountRecord record;
+  record.count = count;
+  record.still_ms = summarise(own.lookup);
+  record.moving_ms = summarise(moving);
+  record.still_ratio = bootstrap_ratio(own.lookup, reference.lookup, seed);
+  record.moving_ratio = bootstrap_ratio(moving, add_moving(times.map, reference), seed);
+  return record;
+}
+
+}  // namespace
+
+LightFrameBench::LightFrameBench(Renderer& renderer, const options::RunOptions& options, SceneAssets& assets,
+                                 const LightFrame& frame, int count)
+    : renderer_(renderer), options_(options), assets_(assets), frame_(frame), gbuffer_(assets.gbuffer(*frame.camera)) {
+  const std::vector<scene::Light> lights = scene::make_light_ring(*frame.light, count);
+  for (const scene::Light& light : lights) maps_.push_back(assets.make_light_map(light, *frame.camera, frame.map_size));
+  for (int i = 0; i < count; ++i)
+    targets_.push_back(
+        std::make_unique<render::ImageTarget>("visibility of a light", GL_R32F, options.width, options.height));
+  prepare_filters(lights);
+}
+
+void LightFrameBench::prepare_filters(const std::vector<scene::Light>& lights) {
+  EncodedMaps encoded(frame_.map_size, lights.size());
+  for (render::FilterPasses* filter : frame_.filters) {
+    std::vector<render::PreparedLight>& prepared = prepared_.emplace_back();
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+      prepared.push_back(filter->prepare(make_filter_light(options_, lights[i], maps_[i].frustum, filter->request()),
+                                         encoded.find(*filter, i)));
+    }
+  }
+}
+
+void LightFrameBench::draw_maps() {
+  for (LightMap& map : maps_) assets_.redraw(map);
+}
+
+void LightFrameBench::prefilter(std::size_t filter) {
+  for (std::size_t i = 0; i < maps_.size(); ++i) {
+    frame_.filters[filter]->turn_to(prepared_[filter][i]);
+    frame_.filters[filter]->prefilter(maps_[i].map);
+  }
+}
+
+void LightFrameBench::look_up(std::size_t filter) {
+  for (std::size_t i = 0; i < maps_.size(); ++i) {
+    frame_.filters[filter]->turn_to(prepared_[filter][i]);
+    frame_.filters[filter]->lookup(gbuffer_, maps_[i].map, *targets_[i]);
+  }
+}
+
+RoundTimes LightFrameBench::time() {
+  const gl::TimerKind timer = renderer_.timer;
+  std::vector<TimedFilter> timed;
+  for (std::size_t i = 0; i < frame_.filters.size(); ++i) {
+    TimedFilter& passes = timed.emplace_back();
+    if (frame_.filters[i]->has_prefilter())
+      passes.prefilter = [this, timer, i] {
+        return gl::time_ms(
+            timer, [&] { prefilter(i); });
+      };
+    passes.lookup = [this, timer, i] { return gl::time_ms(timer, [&] { look_up(i); }); };
+  }
+  return run_rounds(
+      timed, frame_.reference, [&] { return gl::time_ms(timer, [&] { draw_maps(); }); }, options_.rounds,
+      options_.seed);
+}
+
+std::vector<std::vector<float>> LightFrameBench::draw(std::size_t filter) {
+  prefilter(filter);
+  std::vector<std::vector<float>> pictures;
+  for (std::size_t i = 0; i < maps_.size(); ++i) {
+    frame_.filters[filter]->turn_to(prepared_[filter][i]);
+    frame_.filters[filter]->lookup(gbuffer_, maps_[i].map, *targets_[i]);
+    pictures.push_back(targets_[i]->texture().read_floats(1));
+  }
+  return pictures;
+}
+
+LightMeasurement measure_lights(Renderer& renderer, const options::RunOptions& options, SceneAssets& assets,
+                                const LightFrame& frame) {
+  LightMeasurement result{std::vector<std::vector<records::LightCountRecord>>(frame.filters.size()), 0.0};
+  for (const int count : options.lights) {
+    const RoundTimes times = LightFrameBench(renderer, options, assets, frame, count).time();
+    result.spent_ms += times.spent_ms;
+    for (std::size_t i = 0; i < frame.filters.size(); ++i)
+      result.filters[i].push_back(make_record(count, times, i, frame, options.seed));
+  }
+  return result;
+}
+
+}  // namespace shadowbench::measure

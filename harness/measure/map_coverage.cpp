@@ -1,0 +1,151 @@
+#include "harness/measure/map_coverage.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace shadowbench::measure {
+namespace {
+
+/// A pixel's footprint in the map, in texels.
+struct Footprint {
+  glm::dvec2 centre{0.0};
+  glm::dvec2 along_x{0.0};  ///< from one side of the pixel to the other
+  glm::dvec2 along_y{0.0};
+  double area() const { return std::abs(along_x.x * along_y.y - along_x.y * along_y.x); }
+};
+
+/// Projects pixels through their receivers' planes into the map.
+class PixelProjector {
+ public:
+  PixelProjector(const scene::Camera& camera, const scene::LightFrustum& frustum, int height, int map_size)
+      : eye_(camera.position_ws),
+        forward_(camera.forward_ws),
+        right_(glm::normalize(glm::cross(forward_, glm::dvec3(camera.up_ws)))),
+        up_(glm::cross(right_, forward_)),
+        orthographic_(camera.orthographic_height_m > 0.0f),
+        pixel_(orthographic_ ? static_cast<double>(camera.orthographic_height_m) / height
+                             : 2.0 * std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad)) / height),
+        texel_from_world_(frustum.light_from_world),
+        texels_per_metre_(1.0 / frustum.texel_size_ws),
+        half_map_(0.5 * map_size) {}
+
+  Footprint project(const truth::ReceiverPoint& point) const {
+    const glm::dvec3 position(point.position_ws), normal(point.normal_ws);
+    const glm::dvec3 from_eye = position - eye_;
+    const glm::dvec3 ray = orthographic_ ? forward_ : glm::normalize(from_eye);
+    const double side = orthographic_ ? pixel_ : pixel_ * glm::dot(from_eye, forward_);
+    // A plane seen edge on would have a footprint without bound.
+    constexpr double kGrazing = 1e-6;
+    const double facing = std::min(glm::dot(normal, ray), -kGrazing);
+    const auto edge = [&](const glm::dvec3& across) {
+      const glm::dvec3 on_plane = side * (across - ray * (glm::dot(normal, across) / facing));
+      return glm::dvec2(glm::dmat3(texel_from_world_) * on_plane) * texels_per_metre_;
+    };
+    const glm::dvec2 seen(texel_from_world_ * glm::dvec4(position, 1.0));
+    return {seen * texels_per_metre_ + half_map_, edge(right_), edge(up_)};
+  }
+
+  bool is_in_map(const Footprint& texels) const {
+    return glm::all(glm::greaterThanEqual(texels.centre, glm::dvec2(0.0))) &&
+           glm::all(glm::lessThanEqual(texels.centre, glm::dvec2(2.0 * half_map_)));
+  }
+
+ private:
+  glm::dvec3 eye_, forward_, right_, up_;
+  bool orthographic_;
+  double pixel_;                 ///< side of a pixel: per metre ahead, or in metres where the camera is orthographic
+  glm::dmat4 texel_from_world_;  ///< rigid; in metres
+  double texels_per_metre_;
+  double half_map_;
+};
+
+/// The map's area in cells, marked where footprints fall.
+class CoverageCells {
+ public:
+  explicit CoverageCells(int map_size)
+      : side_(std::min(map_size, kMostCells)),
+        per_texel_(static_cast<double>(side_) / map_size),
+        marked_(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_)) {}
+
+  void mark(const Footprint& texels) {
+    const Footprint f{texels.centre * per_texel_, texels.along_x * per_texel_, texels.along_y * per_texel_};
+    mark(static_cast<int>(std::floor(f.centre.x)), static_cast<int>(std::floor(f.centre.y)));
+    const glm::dvec2 reach = 0.5 * (glm::abs(f.along_x) + glm::abs(f.along_y));
+    if (std::max(reach.x, reach.y) > 0.5 * kWidest || f.area() < 1e-9) return;
+    const glm::ivec2 first(glm::floor(f.centre - reach)), last(glm::floor(f.centre + reach));
+    for (int y = first.y; y <= last.y; ++y) {
+      for (int x = first.x; x <= last.x; ++x)
+        if (holds(f, glm::dvec2(x + 0.5, y + 0.5) - f.centre)) mark(x, y);
+    }
+  }
+
+  double share() const {
+    return static_cast<double>(std::count(marked_.begin(), marked_.end(), 1)) / static_cast<double>(marked_.size());
+  }
+
+ private:
+  static constexpr int kMostCells = 512;
+  static constexpr double kWidest = 64.0;
+  int side_;
+  double per_texel_;
+  std::vector<std::uint8_t> marked_;
+
+  void mark(int x, int y) {
+    if (x < 0 || y < 0 || x >= side_ || y >= side_) return;
+    marked_[static_cast<std::size_t>(y) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(x)] = 1;
+  }
+
+  static bool holds(const Footprint& f, const glm::dvec2& d) {
+    const double signed_area = f.along_x.x * f.along_y.y - f.along_x.y * f.along_y.x;
+    const double s = (d.x * f.along_y.y - d.y * f.along_y.x) / signed_area;
+    const double t = (f.along_x.x * d.y - f.along_x.y * d.x) / signed_area;
+    return std::abs(s) <= 0.5 && std::abs(t) <= 0.5;
+  }
+};
+
+double share_of_casters(const images::Image& depth_map) {
+  const auto filled =
+      std::count_if(depth_map.texels.begin(), depth_map.texels.end(), [](float depth) { return depth < 1.0f; });
+  return static_cast<double>(filled) / static_cast<double>(depth_map.texels.size());
+}
+
+records::CoverageRecord summarise(std::vector<float> densities, const CoverageCells& cells) {
+  records::CoverageRecord record;
+  if (densities.empty()) return record;
+  record.fewest_texels_per_pixel = static_cast<double>(*std::min_element(densities.begin(), densities.end()));
+  const auto middle = densities.begin() + static_cast<std::ptrdiff_t>(densities.size() / 2);
+  std::nth_element(densities.begin(), middle, densities.end());
+  record.texels_per_pixel = static_cast<double>(*middle);
+  record.map_used = cells.share();
+  return record;
+}
+
+}  // namespace
+
+MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera& camera,
+                             const scene::LightFrustum& frustum, const images::Image& depth_map) {
+  const int width = receivers.image.width, height = receivers.image.height;
+  const PixelProjector projector(camera, frustum, height, depth_map.width);
+  CoverageCells cells(depth_map.width);
+  MapCoverage coverage{images::Image(width, height, 1), images::Image(width, height, 2), {}};
+  std::vector<float> densities;
+  for (std::size_t i = 0; i < receivers.image.points.size(); ++i) {
+    const truth::ReceiverPoint& point = receivers.image.points[i];
+    if (!point.counts) {
+      coverage.density.texels[i] = receivers.is_surface[i] ? 0.0f : -1.0f;
+      continue;
+    }
+    const Footprint footprint = projector.project(point);
+    if (!projector.is_in_map(footprint)) continue;
+    cells.mark(footprint);
+    coverage.density.texels[i] = static_cast<float>(footprint.area());
+    coverage.texel.texels[2 * i] = static_cast<float>(footprint.centre.x);
+    coverage.texel.texels[2 * i + 1] = static_cast<float>(footprint.centre.y);
+    densities.push_back(coverage.density.texels[i]);
+  }
+  coverage.record = summarise(std::move(densities), cells);
+  coverage.record.map_filled = share_of_casters(depth_map);
+  return coverage;
+}
+
+}  // namespace shadowbench::measure

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "harness/measure/view_receivers.h"
+#include "harness/scene/lights/light_fit.h"
+#include "harness/scene/scene.h"
+#include "report/images/image.h"
+#include "report/records/records.h"
+
+namespace shadowbench::measure {
+
+/// Where the pixels of a view fall in a light's map; rows top to bottom.
+struct MapCoverage {
+  /// Map texels under each pixel's footprint; 0 on a surface turned away from the light or outside the
+  /// map, -1 on the background.
+  images::Image density;
+  /// Place of each receiver in the map, two channels, in texels from its first row and column; 0 elsewhere.
+  images::Image texel;
+  records::CoverageRecord record;  ///< empty fields where no receiver in the map faces the light
+};
+
+/// Lays the pixels of a view out in the map.
+///
+/// A pixel's footprint is the parallelogram that its sides cut out of its receiver's tangent plane, seen from the
+/// camera; it follows from camera, position and geometric normal (first order: the plane is the surface), so no
+/// neighbour of another surface has a say. Its area along the light, over a texel's area, is the texels per pixel.
+/// `map_used` is the share of the map's area under footprints, counted in cells of 1/512 of its side, or in texels
+/// where it has fewer; a footprint wider than 64 cells counts where its centre lies. `map_filled` is the share of the
+/// texels of `depth_map` that are nearer than 1. Cost: 0.05 s for half a million pixels on one core, and one pass over
+/// the map.
+MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera& camera,
+                             const scene::LightFrustum& frustum, const images::Image& depth_map);
+
+}  // namespace shadowbench::measure

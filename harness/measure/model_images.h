@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "filters/catalogue.h"
+#include "filters/model.h"
+
+namespace shadowbench::measure {
+
+/// What a filter's scalar model makes of a view, rows top to bottom; 1 where there is no receiver, and where the map
+/// does not reach: lit by convention.
+struct ModelImages {
+  std::vector<double> model;   ///< the filter in double precision
+  std::vector<double> closer;  ///< brute-force percentage-closer filter with its kernel
+  std::int64_t excused = 0;    ///< receivers where rounding decides which texel is read, or a comparison
+};
+
+/// The receivers of one view, with the biases that the two get.
+struct ModelReceivers {
+  std::vector<filters::Receiver> filter;
+  std::vector<filters::Receiver> closer;  ///< the same pixels in the same order
+};
+
+/// Evaluates a model for receivers that the GPU handed out, in parallel; `plane_max_tangent` as in ModelInput.
+/// Requires a filter that has a model.
+ModelImages evaluate_model(const filters::FilterRequest& request, const filters::DepthMap& map,
+                           const ModelReceivers& receivers, double plane_max_tangent, std::uint32_t seed, int width,
+                           int height);
+
+}  // namespace shadowbench::measure

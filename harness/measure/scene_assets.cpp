@@ -1,0 +1,120 @@
+#include "harness/measure/scene_assets.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/base/error.h"
+#include "harness/measure/mean_flip.h"
+#include "harness/render/shade_pass.h"
+#include "report/images/picture_io.h"
+
+namespace shadowbench::measure {
+
+SceneAssets::SceneAssets(Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
+                         TruthCache& cache, double pad_texels)
+    : renderer_(renderer),
+      options_(options),
+      scene_(scene),
+      pad_texels_(pad_texels),
+      geometry_(scene),
+      tracer_(scene, cache, options.seed) {}
+
+LightMap& SceneAssets::light_map(const scene::Camera& camera, int map_size) {
+  const std::pair key(options_.fit == scene::FitMode::kView ? &camera : nullptr, map_size);
+  const auto found = maps_.find(key);
+  if (found != maps_.end()) return found->second;
+  LightMap& kept = maps_.emplace(key, make_light_map(scene_.light, camera, map_size)).first->second;
+  require_casters(kept);
+  return kept;
+}
+
+LightMap SceneAssets::make_light_map(const scene::Light& light, const scene::Camera& camera, int map_size) {
+  // A map smaller than the padding keeps half of its texels for the scene.
+  const double pad_texels = std::min(pad_texels_, 0.25 * (map_size - 1));
+  const double aspect = static_cast<double>(options_.width) / options_.height;
+  LightMap made{scene::fit_light(scene_, {options_.fit, map_size, pad_texels, options_.snap, &camera, aspect, &light}),
+                render::ShadowMap(map_size, options_.map)};
+  made.map.set_border(options_.range.border);
+  redraw(made);
+  return made;
+}
+
+void SceneAssets::redraw(LightMap& light, const render::MapBias& bias) {
+  light.map.draw(renderer_.shaders, geometry_, light.frustum, bias);
+}
+
+images::Image read_linear_depth(const render::ShadowMap& map) {
+  images::Image picture = map.read_picture();
+  for (float& depth : picture.texels) depth = map.settings().curve.linear(depth);
+  return picture;
+}
+
+bool SceneAssets::has_casters(const LightMap& light) {
+  const filters::DepthMap map = light.map.read();
+  return std::any_of(map.stored.begin(), map.stored.end(), [&](float d) { return d != map.curve.far_plane(); });
+}
+
+void SceneAssets::require_casters(const LightMap& light) const {
+  if (!options_.bias.map.cull_front) return;
+  if (has_casters(light)) return;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("--bias front-cull leaves nothing of the scene '{}' in its shadow map: all its "
+                          "casters are open meshes; choose another bias, or set may_cull_front = false on "
+                          "some objects",
+                          scene_.name));
+}
+
+render::GBuffer& SceneAssets::gbuffer(const scene::Camera& camera) {
+  const auto found = gbuffers_.find(&camera);
+  if (found != gbuffers_.end()) return found->second;
+  render::GBuffer& kept = gbuffers_.try_emplace(&camera, options_.width, options_.height).first->second;
+  kept.draw(renderer_.shaders, geometry_, scene_, camera);
+  return kept;
+}
+
+const SceneTruth& SceneAssets::truth(const scene::Camera& camera) {
+  const auto found = truths_.find(&camera);
+  if (found != truths_.end()) return found->second;
+  return truths_.emplace(&camera, make_truth(camera)).first->second;
+}
+
+SceneTruth SceneAssets::make_truth(const scene::Camera& camera) {
+  SceneTruth truth;
+  if (!options_.truth) {
+    truth.absent = "the run was made with --no-truth";
+    return truth;
+  }
+  render::GBuffer& view = gbuffer(camera);
+  truth = trace_scene(tracer_, read_view_receivers(view, -scene_.light.direction_ws));
+  if (!truth.absent.empty()) return truth;
+  const auto shaded = [&](const images::Image& visibility) {
+    return render::shade(renderer_.shaders, view, render::upload_image(visibility), scene_, camera);
+  };
+  truth.hard_picture = shaded(truth.hard);
+  truth.area_picture = shaded(truth.area);
+  truth.area_seen = view_picture(images::round_to_half(truth.area_picture));
+  return truth;
+}
+
+double largest_radius_texels(const std::vector<filters::FilterRequest>& requests) {
+  double largest = 0.0;
+  for (const auto& request : requests)
+    largest = std::max(largest, filters::radius_texels(request.spec, request.values));
+  return largest;
+}
+
+double largest_padding_texels(const std::vector<filters::FilterRequest>& requests) {
+  return std::ceil(largest_radius_texels(requests)) + 1.0;
+}
+
+double padding_texels(const options::RunOptions& options) {
+  return options.pad_texels.value_or(largest_padding_texels(options.filters));
+}
+
+double widest_kernel_texels(const options::RunOptions& options) {
+  return options.pad_texels ? std::max(*options.pad_texels - 1.0, 0.0) : largest_radius_texels(options.filters);
+}
+
+}  // namespace shadowbench::measure

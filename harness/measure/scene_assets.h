@@ -1,0 +1,85 @@
+#pragma once
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "harness/measure/renderer.h"
+#include "harness/measure/scene_tracer.h"
+#include "harness/measure/scene_truth.h"
+#include "harness/options/options.h"
+#include "harness/render/gbuffer.h"
+#include "harness/render/shadow_map.h"
+
+namespace shadowbench::measure {
+
+/// A light's depth map with the frustum it was drawn in.
+struct LightMap {
+  scene::LightFrustum frustum;
+  render::ShadowMap map;
+};
+
+/// What all cells of one scene share: its geometry, one G-buffer per view, one depth map per size. Each is drawn when
+/// it is first asked for and kept, since neither light nor casters change during a run.
+class SceneAssets {
+ public:
+  /// `pad_texels` is the half-width of the run's widest kernel: every filter sees the same map.
+  SceneAssets(Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene, TruthCache& cache,
+              double pad_texels);
+
+  /// Gives the light's map; one for all cameras, unless the light is fitted to what each sees.
+  /// Throws Error(kUsage) when the GL cannot give a map of this size.
+  LightMap& light_map(const scene::Camera& camera, int map_size);
+
+  /// Draws the map of another light than the scene's; it is not kept.
+  /// Throws Error(kUsage) when the GL cannot give a map of this size.
+  LightMap make_light_map(const scene::Light& light, const scene::Camera& camera, int map_size);
+
+  render::GBuffer& gbuffer(const scene::Camera& camera);
+
+  /// Gives the truth of a view, traced when it is first asked for.
+  const SceneTruth& truth(const scene::Camera& camera);
+
+  /// Gives what traces this scene.
+  SceneTracer& tracer() { return tracer_; }
+
+  /// Draws a map again, as a moving light would; for timing.
+  void redraw(LightMap& light) { redraw(light, options_.bias.map); }
+
+  /// Draws a map again with another bias in it.
+  void redraw(LightMap& light, const render::MapBias& bias);
+
+  /// Says whether anything stands in a map. Reads it back.
+  static bool has_casters(const LightMap& light);
+
+ private:
+  Renderer& renderer_;
+  const options::RunOptions& options_;
+  const scene::Scene& scene_;
+  double pad_texels_;
+  render::Geometry geometry_;
+  SceneTracer tracer_;
+  std::map<std::pair<const scene::Camera*, int>, LightMap> maps_;  ///< the camera is null where all share a map
+  std::map<const scene::Camera*, render::GBuffer> gbuffers_;
+  std::map<const scene::Camera*, SceneTruth> truths_;
+
+  /// Throws Error(kUsage) where culling left the map empty.
+  void require_casters(const LightMap& light) const;
+  SceneTruth make_truth(const scene::Camera& camera);
+};
+
+/// Reads a map back as a picture of linear depth, rows top to bottom.
+images::Image read_linear_depth(const render::ShadowMap& map);
+
+/// Gives the half-width in texels of the widest kernel of these filters.
+double largest_radius_texels(const std::vector<filters::FilterRequest>& requests);
+
+/// Gives the padding that the widest kernel of these filters needs, in whole texels.
+double largest_padding_texels(const std::vector<filters::FilterRequest>& requests);
+
+/// Give a run's padding, and the half-width of the widest kernel that it makes room for: as it was told, or of its own
+/// filters.
+double padding_texels(const options::RunOptions& options);
+double widest_kernel_texels(const options::RunOptions& options);
+
+}  // namespace shadowbench::measure

@@ -1,0 +1,229 @@
+#include "harness/measure/scene_measurement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "harness/measure/filter_setup.h"
+#include "harness/measure/light_timing.h"
+#include "harness/measure/stability.h"
+#include "harness/measure/statistics.h"
+#include "harness/measure/timing.h"
+#include "harness/measure/uncertainty.h"
+#include "harness/render/filter_passes.h"
+#include "harness/render/receivers.h"
+#include "harness/render/shade_pass.h"
+#include "report/analysis/summary.h"
+#include "report/records/cell_key.h"
+#include "report/records/format.h"
+
+namespace shadowbench::measure {
+namespace {
+
+std::int64_t count_not_finite(const images::Image& image) {
+  return std::count_if(
+      image.texels.begin(), image.texels.end(), [](float v) { return !std::isfinite(v); });
+}
+
+/// Everything that one task draws with.
+class SceneBench {
+ public:
+  SceneBench(Renderer& renderer, const options::RunOptions& options, const SceneTask& task, SceneAssets& assets)
+      : renderer_(renderer),
+        options_(options),
+        task_(task),
+        assets_(assets),
+        light_(assets.light_map(*task.camera, task.map_size)),
+        gbuffer_(assets.gbuffer(*task.camera)),
+        target_("visibility", GL_R32F, options.width, options.height) {}
+
+  SceneMeasurement run(const std::function<void(const std::string&)>& on_cell) {
+    SceneMeasurement result;
+    std::vector<std::unique_ptr<render::FilterPasses>> filters;
+    StabilityMeter stability(renderer_, options_, task_, assets_);
+    for (const auto& request : task_.filters) {
+      on_cell(request.label());
+      filters.push_back(make_passes(request));
+      result.cells.push_back(draw(*filters.back()));
+      count_passes(result, *filters.back());
+      stability.warn(result.cells.back(), *filters.back());
+      warn_of_broken_pixels(result.cells.back());
+      if (options_.stability) stability.measure(result.cells.back(), *filters.back());
+      if (options_.uncertainty)
+        measure_uncertainty({renderer_, options_, task_, assets_}, result.cells.back(), *filters.back());
+    }
+    time(result, filters);
+    result.stored_map = light_.map.read_picture();
+    result.depth_map = read_linear_depth(light_.map);
+    warn_of_coarse_depth(result);
+    renderer_.context->require_no_gl_errors();
+    return result;
+  }
+
+ private:
+  Renderer& renderer_;
+  const options::RunOptions& options_;
+  const SceneTask& task_;
+  SceneAssets& assets_;
+  LightMap& light_;
+  render::GBuffer& gbuffer_;
+  render::ImageTarget target_;
+  std::int64_t receivers_ = -1;
+  double drawn_ms_ = 0.0;  ///< of all filters' passes, once
+
+  std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request) {
+    return make_filter_passes(renderer_, options_, *task_.scene, light_, request);
+  }
+
+  MeasuredCell draw(render::FilterPasses& filter) {
+    MeasuredCell cell;
+    cell.record = make_record(options_, task_, filter.request());
+    cell.record.map_scale = {light_.frustum.texel_size_ws, light_.frustum.depth_range_ws};
+    cell.request = filter.request();
+    cell.label = filter.request().label();
+    drawn_ms_ += time_once(filter, light_.map, gbuffer_, target_, renderer_.timer);
+    cell.visibility = render::read_image(target_.texture(), 1);
+    cell.picture = render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera);
+    cell.record.nan = count_not_finite(cell.visibility);
+    if (receivers_ < 0) receivers_ = render::count_receivers(renderer_.shaders, gbuffer_, filter.light());
+    cell.record.receivers = receivers_;
+    set_cost(cell.record, filter.measure_cost(renderer_.shaders, gbuffer_, light_.map));
+    return cell;
+  }
+
+  static void set_cost(records::CellRecord& record, const render::FilterCost& cost) {
+    record.cost = {cost.fetches, cost.bytes_per_texel, cost.passes, cost.map_bytes, cost.prefilter_texels};
+    if (!cost.fetches) record.absent["cost.fetches"] = "the filter reads the map's samplers itself";
+  }
+
+  /// A map that holds depth in steps shadows surfaces by up to half a step, in the light's face as on a slope.
+  void warn_of_coarse_depth(SceneMeasurement& result) const {
+    float farthest = 0.0f;
+    for (const float depth : result.depth_map.texels) farthest = depth < 1.0f ? std::max(farthest, depth) : farthest;
+    const double step_m =
+        render::find_coarsest_step(options_.map, static_cast<double>(farthest)) * light_.frustum.depth_range_ws;
+    const double bias_m = options_.bias.constant.in_world(light_.frustum);
+    if (bias_m == 0.0 || bias_m >= 0.5 * step_m) return;
+    const std::string warning(fmt::format(
+        "{}: a map stored as {} holds depth in steps of up to {} m, but the constant bias is {} m: expect "
+        "acne on what faces the light; choose --bias with a constant of {} m or more, --reversed-depth with d32f, or a "
+        "smaller --perspective-depth",
+        task_.scene->name, render::describe_map(options_.map), records::format_number(step_m),
+        records::format_number(bias_m), records::format_number(0.5 * step_m)));
+    for (MeasuredCell& cell : result.cells) cell.record.warnings.push_back(warning);
+  }
+
+  void warn_of_broken_pixels(MeasuredCell& cell) const {
+    const std::int64_t nan = cell.record.nan.value_or(0);
+    if (nan > 0)
+      cell.record.warnings.push_back(
+          fmt::format("{}: {}: {} pixels are not finite", task_.scene->name, cell.label, nan));
+  }
+
+  static void count_passes(SceneMeasurement& result, const render::FilterPasses& filter) {
+    const int prefilter = filter.prefilter_passes();
+    result.passes_run += 1 + prefilter;
+    result.passes_skipped += 3 - prefilter;
+  }
+
+  void time(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
+    std::vector<render::FilterPasses*> pointers;
+    for (const auto& filter : filters) pointers.push_back(filter.get());
+    const auto asked =
+        std::find_if(task_.filters.begin(), task_.filters.end(), [&](const filters::FilterRequest& request) {
+          return request.spec.id == options_.reference.spec.id && request.values == options_.reference.values;
+        });
+    const auto reference = static_cast<std::size_t>(asked - task_.filters.begin());
+    std::unique_ptr<render::FilterPasses> added;
+    if (asked == task_.filters.end()) {
+      pointers.push_back((added = make_passes(options_.reference)).get());
+      drawn_ms_ += time_once(*added, light_.map, gbuffer_, target_, renderer_.timer);
+    }
+    const RoundTimes times = time_rounds(
+        pointers, reference, [&] { assets_.redraw(light_); }, light_.map, gbuffer_, renderer_.timer, options_.rounds,
+        options_.seed, drawn_ms_);
+    result.timed_ms = times.spent_ms;
+    for (std::size_t i = 0; i < filters.size(); ++i)
+      set_times(result.cells[i].record, times.map, times.filters[i], times.filters[reference]);
+    time_lights(result, pointers, reference);
+  }
+
+  void time_lights(SceneMeasurement& result, const std::vector<render::FilterPasses*>& filters, std::size_t reference) {
+    if (options_.lights.empty()) {
+      for (MeasuredCell& cell : result.cells) cell.record.absent["lights"] = "the run was made without --lights";
+      return;
+    }
+    LightMeasurement measured = measure_lights(renderer_, options_, assets_,
+                                               {&task_.scene->light, task_.camera, task_.map_size, filters, reference});
+    result.timed_ms += measured.spent_ms;
+    for (std::size_t i = 0; i < result.cells.size(); ++i) {
+      records::CellRecord& record = result.cells[i].record;
+      record.lights = std::move(measured.filters[i]);
+      for (records::LightCountRecord& each : *record.lights)
+        each.maps_bytes = each.count * record.cost.map_bytes.value();
+    }
+  }
+
+  void set_times(records::CellRecord& record, const std::vector<double>& map, const FilterTimes& times,
+                 const FilterTimes& reference) const {
+    record.time_ms.map = summarise({map.begin(), map.begin() + static_cast<std::ptrdiff_t>(times.lookup.size())});
+    record.time_ms.lookup = summarise(times.lookup);
+    record.time_ms.stopped = name_of(times.stopped);
+    if (times.prefilter.empty())
+      record.absent["time_ms.prefilter"] = "the filter reads the depth map itself";
+    else
+      record.time_ms.prefilter = summarise(times.prefilter);
+    record.ratio_to_none.lookup = bootstrap_ratio(times.lookup, reference.lookup, options_.seed);
+    record.ratio_to_none.static_map = record.ratio_to_none.lookup;
+    record.ratio_to_none.moving = bootstrap_ratio(add_moving(map, times), add_moving(map, reference), options_.seed);
+  }
+};
+
+}  // namespace
+
+records::ParamMap record_params(const filters::ParamValues& values) {
+  records::ParamMap params;
+  for (const auto& [name, value] : values)
+    std::visit([&params, &key = name](const auto& v) { params[key] = v; }, value);
+  return params;
+}
+
+std::string describe_light(const options::LightAngles& light) {
+  return fmt::format("{},{}", light.azimuth_deg, light.elevation_deg);
+}
+
+records::CellRecord make_record(const options::RunOptions& options, const SceneTask& task,
+                                const filters::FilterRequest& request) {
+  records::CellRecord record;
+  record.scene = task.scene->name;
+  record.view = task.camera->name;
+  record.filter = request.spec.id;
+  record.params = record_params(request.values);
+  record.kernel_radius_texels = filters::radius_texels(request.spec, request.values);
+  record.claims = request.spec.claims;
+  record.map_size = task.map_size;
+  record.map_format = render::describe_map(options.map);
+  record.fit = std::string(scene::name_of(options.fit)) + (options.snap ? " snapped" : "");
+  if (options.light) record.light = describe_light(*options.light);
+  const render::BiasRule& bias = options.bias;
+  const auto amount = [](const render::BiasAmount& a) { return records::BiasAmountRecord{a.depth, a.texels, a.world}; };
+  record.bias = {amount(bias.constant),      amount(bias.slope),  bias.plane_texels,       bias.plane_kernels,
+                 amount(bias.normal_offset), bias.receiver_plane, bias.map.polygon_factor, bias.map.polygon_units,
+                 bias.map.cull_front,        bias.map.midpoint};
+  record.range = {filters::to_string(options.range.border), options.range.far_test, options.range.behind_test};
+  if (!options.stability)
+    record.absent["stability"] = record.absent["images.stability"] = "the run was made without --stability";
+  record.width = options.width;
+  record.height = options.height;
+  record.key = records::cell_key(record);
+  return record;
+}
+
+SceneMeasurement measure_scene(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
+                               SceneAssets& assets, const std::function<void(const std::string&)>& on_cell) {
+  return SceneBench(renderer, options, task, assets).run(on_cell);
+}
+
+}  // namespace shadowbench::measure

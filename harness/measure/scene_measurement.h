@@ -1,0 +1,66 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "harness/measure/renderer.h"
+#include "harness/measure/scene_assets.h"
+#include "harness/scene/scene.h"
+#include "reference/metrics/artefacts.h"
+#include "report/images/image.h"
+#include "report/images/stability_picture.h"
+#include "report/images/uncertainty_images.h"
+#include "report/records/records.h"
+
+namespace shadowbench::measure {
+
+/// One measured cell with its images; the images are empty where the status is not ok.
+struct MeasuredCell {
+  records::CellRecord record;
+  filters::FilterRequest request;
+  std::string label;                  ///< filter and the parameters that were asked for
+  images::Image picture;              ///< linear RGB
+  images::Image visibility;           ///< 1 lit .. 0 blocked
+  images::StabilityImages stability;  ///< where its numbers break; empty unless the run asks for it
+  images::UncertaintyImages
+      uncertainty;  ///< how far rounding and other seeds can move its pixels; empty unless the run asks for it
+  std::vector<images::Image> error_parts;  ///< in the order of metrics::ErrorPart; empty where there is no attribution
+};
+
+/// One scene seen by one camera through one shadow map, with every filter.
+struct SceneMeasurement {
+  std::vector<MeasuredCell> cells;
+  images::Image stored_map;                     ///< [0,1], row 0 is v = 1
+  images::Image depth_map;                      ///< the same, linearised
+  std::optional<metrics::ArtefactMasks> masks;  ///< where artefacts can occur; nothing without truth
+  double timed_ms = 0.0;                        ///< of the passes that were timed
+  double attribution_s = 0.0;                   ///< that taking the errors apart took
+  int passes_run = 0;
+  int passes_skipped = 0;  ///< encode and blur passes that no chosen filter needed
+};
+
+/// What is to be measured in one go.
+struct SceneTask {
+  const scene::Scene* scene = nullptr;
+  const scene::Camera* camera = nullptr;
+  int map_size = 1024;
+  std::vector<filters::FilterRequest> filters;
+};
+
+/// Draws and times every filter of a task. `on_cell` hears of each filter before it is drawn.
+/// Throws Error(kFilter) for a filter's GLSL, Error(kUsage) for a map size that the GL cannot give.
+SceneMeasurement measure_scene(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
+                               SceneAssets& assets, const std::function<void(const std::string&)>& on_cell);
+
+/// Writes a light's place as the command line reads it.
+std::string describe_light(const options::LightAngles& light);
+
+/// Gives a filter's parameters as records hold them.
+records::ParamMap record_params(const filters::ParamValues& values);
+
+/// Gives the record of a cell with its settings and key, nothing measured yet.
+records::CellRecord make_record(const options::RunOptions& options, const SceneTask& task,
+                                const filters::FilterRequest& request);
+
+}  // namespace shadowbench::measure

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/measure/scene_tracer.h"
+#include "harness/measure/view_receivers.h"
+#include "reference/metrics/flip.h"
+#include "report/images/image.h"
+#include "report/records/records.h"
+
+namespace shadowbench::measure {
+
+/// Ray-traced visibility of one view's receivers, rows top to bottom like every report image.
+struct SceneTruth {
+  std::string absent;  ///< why there is none; empty where there is
+  ViewReceivers receivers;
+  ViewRays rays;
+  images::Image hard;                          ///< the light as a point: 1 seen, 0 blocked
+  images::Image area;                          ///< the fraction of the light that is seen
+  images::Image hard_picture;                  ///< shaded with `hard`, linear RGB
+  images::Image area_picture;                  ///< shaded with `area`, linear RGB
+  std::optional<metrics::FlipView> area_seen;  ///< that picture, rounded to half as it is saved, as FLIP sees it
+  std::vector<std::uint8_t> mask;              ///< 1 where a pixel counts: a surface that faces the light
+  double standard_error = 0.0;                 ///< root mean square over the pixels that count
+  double unanimous = 0.0;  ///< share of them whose rays all agree, and which therefore have no standard error
+};
+
+/// Traces the receivers of a view; the pictures are left empty.
+SceneTruth trace_scene(SceneTracer& tracer, ViewReceivers receivers);
+
+/// Scores a cell's images against the truth and notes the errors, or why there are none, in its record: visibility over
+/// the pixels that count, and the mean LDR-FLIP of the shaded picture against the picture shaded with the area truth.
+/// Cost: about a second per megapixel. Safe to call from many threads, each with its own record.
+void score(records::CellRecord& record, const images::Image& visibility, const images::Image& picture,
+           const SceneTruth& truth);
+
+/// Gives visibility less area truth where pixels count, 0 elsewhere; empty where there is no truth or no visibility.
+images::Image make_error_image(const images::Image& visibility, const SceneTruth& truth);
+
+}  // namespace shadowbench::measure

@@ -1,0 +1,241 @@
+#include "harness/measure/stability.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "filters/model.h"
+#include "filters/percentage_closer.h"
+#include "filters/store_format.h"
+#include "harness/measure/filter_setup.h"
+#include "harness/measure/view_receivers.h"
+#include "harness/render/receivers.h"
+#include "reference/metrics/error_stats.h"
+#include "report/analysis/stability_words.h"
+#include "report/files/file_name.h"
+#include "report/records/format.h"
+
+namespace shadowbench::measure {
+namespace {
+
+/// Rows of a map from top to bottom, as pictures have them.
+images::Image make_map_image(const std::vector<float>& values, int side) {
+  images::Image image(side, side, 1);
+  for (int y = 0; y < side; ++y) {
+    const auto row = values.begin() + static_cast<std::ptrdiff_t>(side - 1 - y) * side;
+    std::copy(row, row + side, image.at(0, y));
+  }
+  return image;
+}
+
+images::Image make_view_image(std::vector<float> values, const options::RunOptions& options) {
+  images::Image image(options.width, options.height, 1);
+  image.texels = std::move(values);
+  return image;
+}
+
+void explain(records::CellRecord& record, std::initializer_list<const char*> fields, const std::string& reason) {
+  for (const char* field : fields) record.absent[std::string("stability.") + field] = reason;
+}
+
+constexpr const char* kReadsDepth = "the filter reads the depth map itself";
+
+}  // namespace
+
+std::optional<std::string> find_other_store(const filters::FilterRequest& request) {
+  const filters::ParamSpec* param = request.spec.find_param("store");
+  if (!param) return std::nullopt;
+  const std::string own = filters::text_or(request.values, "store", "");
+  for (const filters::ParamValue& choice : param->choices) {
+    const std::string other = filters::to_string(choice);
+    const bool floats = own.ends_with("f") && other.ends_with("f");
+    if (!floats || filters::store_channels(own) != filters::store_channels(other)) continue;
+    if (filters::store_precision(own) != filters::store_precision(other)) return other;
+  }
+  return std::nullopt;
+}
+
+StabilityMeter::StabilityMeter(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
+                               SceneAssets& assets)
+    : renderer_(renderer),
+      options_(options),
+      task_(task),
+      assets_(assets),
+      light_(assets.light_map(*task.camera, task.map_size)) {}
+
+MapTrial StabilityMeter::make_trial(const filters::FilterRequest& request) const {
+  return [this, request](const filters::ParamValues& values) {
+    filters::FilterRequest tried = request;
+    tried.values = values;
+    const auto passes = make_filter_passes(renderer_, options_, *task_.scene, light_, tried);
+    passes->prefilter(light_.map);
+    return metrics::check_texels(ReadMap(*passes, light_.map).stored());
+  };
+}
+
+const filters::DepthMap& StabilityMeter::depth_map() {
+  if (!map_) map_ = light_.map.read();
+  return *map_;
+}
+
+const std::vector<std::uint8_t>& StabilityMeter::mask() {
+  if (!mask_) mask_ = read_view_receivers(assets_.gbuffer(*task_.camera), -task_.scene->light.direction_ws).mask();
+  return *mask_;
+}
+
+void StabilityMeter::warn(MeasuredCell& cell, render::FilterPasses& filter) const {
+  if (!filter.encoded_map()) return;
+  const metrics::TexelHealth health = metrics::check_texels(ReadMap(filter, light_.map).stored());
+  const std::string name = fmt::format("{}: {}", task_.scene->name, cell.label);
+  for (std::string& warning : list_exceeded_limits(name, cell.request, health, make_trial(cell.request)))
+    cell.record.warnings.push_back(std::move(warning));
+}
+
+void StabilityMeter::measure(MeasuredCell& cell, render::FilterPasses& filter) {
+  check_texels(cell, filter);
+  compare_stores(cell);
+  check_bound(cell, filter);
+}
+
+void StabilityMeter::check_texels(MeasuredCell& cell, render::FilterPasses& filter) const {
+  records::StabilityRecord& stability = cell.record.stability;
+  if (!filter.encoded_map()) {
+    explain(
+        cell.record,
+        {"overflow_texels", "nan_texels", "negative_variance_texels", "lowest_variance", "headroom", "safe_exponent"},
+        kReadsDepth);
+    return;
+  }
+  const ReadMap read(filter, light_.map);
+  const metrics::StoredMap map = read.stored();
+  const metrics::TexelHealth health = metrics::check_texels(map);
+  stability.overflow_texels = health.overflowed;
+  stability.nan_texels = health.nan;
+  cell.stability.headroom = make_map_image(metrics::measure_headroom(map), read.side());
+  if (health.largest && *health.largest > 0.0)
+    stability.headroom = std::log(map.largest_number) - std::log(*health.largest);
+  else
+    explain(cell.record, {"headroom"}, health.largest ? "the map holds nothing but 0" : "the map overflowed");
+  stability.safe_exponent = find_safe_exponent(cell.request, make_trial(cell.request));
+  if (!stability.safe_exponent)
+    explain(cell.record, {"safe_exponent"},
+            "the map holds no exponentials, or none that a smaller exponent keeps finite");
+  if (!map.moments) {
+    explain(cell.record, {"negative_variance_texels", "lowest_variance"},
+            "the filter does not say that its map holds moments");
+    return;
+  }
+  stability.negative_variance_texels = health.negative_variance;
+  stability.lowest_variance = health.lowest_variance;
+  cell.stability.variance = make_map_image(metrics::measure_variance(map), read.side());
+}
+
+void StabilityMeter::compare_stores(MeasuredCell& cell) {
+  const auto other_store = find_other_store(cell.request);
+  if (!other_store) {
+    explain(cell.record, {"half_difference_max", "half_difference_rms"},
+            cell.request.spec.has_encode ? "the filter has no other store with as many channels" : kReadsDepth);
+    return;
+  }
+  filters::FilterRequest request = cell.request;
+  request.values["store"] = *other_store;
+  const auto passes = make_filter_passes(renderer_, options_, *task_.scene, light_, request);
+  render::ImageTarget target("visibility with the other store", GL_R32F, options_.width, options_.height);
+  passes->prefilter(light_.map);
+  passes->lookup(assets_.gbuffer(*task_.camera), light_.map, target);
+  const images::Image other = render::read_image(target.texture(), 1);
+  const bool other_is_half = filters::store_precision(*other_store) == filters::StorePrecision::kHalf;
+  const images::Image& half = other_is_half ? other : cell.visibility;
+  const images::Image& single = other_is_half ? cell.visibility : other;
+  images::Image difference = half;
+  for (std::size_t i = 0; i < difference.texels.size(); ++i) difference.texels[i] -= single.texels[i];
+  const std::vector<float> zero(difference.texels.size(), 0.0f);
+  if (const auto stats = metrics::measure_error(difference.texels, zero, mask())) {
+    cell.record.stability.half_difference_max = stats->max;
+    cell.record.stability.half_difference_rms = stats->rmse;
+  } else {
+    explain(cell.record, {"half_difference_max", "half_difference_rms"},
+            "no surface in view faces the light, or no pixel is finite");
+  }
+  cell.stability.half_difference = std::move(difference);
+}
+
+void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filter) {
+  const std::initializer_list<const char*> fields = {"bound_shortfall_max", "bound_violations",
+                                                     "bound_exact_violations"};
+  if (cell.request.spec.kind != filters::FilterKind::kBound) {
+    explain(cell.record, fields,
+            "only a filter of the kind 'bound' promises never to be darker than its percentage-closer filter");
+    return;
+  }
+  const auto model = filters::make_model(cell.request.spec.id);
+  if (!model || cell.request.user_file) {
+    explain(cell.record, fields, "the filter has no scalar model");
+    return;
+  }
+  const auto receivers = render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera), filter.light());
+  metrics::BoundCheck check = compare_with_closer(cell, *model, receivers);
+  if (check.receivers == 0) {
+    explain(cell.record, fields, "no receiver can be compared");
+    return;
+  }
+  cell.record.stability.bound_shortfall_max = check.shortfall_max;
+  cell.record.stability.bound_violations = check.violations;
+  cell.record.stability.bound_exact_violations = check.exact_violations;
+  cell.stability.shortfall = make_view_image(std::move(check.shortfall), options_);
+  cell.stability.violation = make_view_image(std::move(check.violation), options_);
+}
+
+/// Both at the depth that the filter itself compares with: another bias is another bound.
+metrics::BoundCheck StabilityMeter::compare_with_closer(const MeasuredCell& cell, const filters::Model& model,
+                                                        const std::vector<filters::Receiver>& receivers) {
+  const double plane_max_tangent = options_.bias.plane_max_tangent();
+  const filters::ModelInput input{cell.request.spec,           cell.request.values, depth_map(),
+                                  measure_accuracy(renderer_), options_.seed,       plane_max_tangent};
+  const auto exact = model.prepare(input, filters::Precision::kDouble);
+  const auto tracked = model.prepare(input, filters::Precision::kTracked);
+  const filters::PercentageCloser closer(model.kernel(cell.request.values), depth_map(), plane_max_tangent);
+  const std::size_t pixels = cell.visibility.texels.size();
+  const bool overflowed = cell.record.stability.overflow_texels.value_or(0) > 0;
+  std::vector<double> of_model(pixels, 1.0), of_closer(pixels, 1.0),
+      tolerance(pixels, std::numeric_limits<double>::quiet_NaN());
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, receivers.size(), 1024), [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          const filters::Receiver& r = receivers[i];
+          const filters::ModelResult bounded = tracked->at(r);
+          if (bounded.excused) continue;
+          const auto pixel = static_cast<std::size_t>((options_.height - 1 - r.pixel.y) * options_.width + r.pixel.x);
+          of_model[pixel] = exact->at(r).visibility;
+          of_closer[pixel] = closer.at(r);
+          // An overflow is no rounding: where a bound on that is infinite in such a map, nothing is explained by it.
+          tolerance[pixel] = std::isfinite(bounded.bound) ? bounded.bound : overflowed ? 0.0 : HUGE_VAL;
+        }
+      });
+  return metrics::check_bound({cell.visibility.texels, of_model, of_closer, tolerance});
+}
+
+void write_stability(const options::RunOptions& options, const std::string& stem, MeasuredCell& cell) {
+  if (!options.stability || cell.record.status != records::CellStatus::kOk) return;
+  if (cell.stability.headroom.empty() && cell.stability.shortfall.empty()) {
+    cell.record.absent["images.stability"] = "the filter reads the depth map itself, and is no bound";
+    return;
+  }
+  images::StabilityPicture picture;
+  picture.title = fmt::format("{} on {}: where its numbers break, or come near to it", cell.label, cell.record.scene);
+  picture.note = records::describe_params(cell.record.params) + " · " + records::describe_settings(cell.record);
+  picture.images = std::move(cell.stability);
+  picture.texels = analysis::caption_texels(cell.record);
+  picture.variance = analysis::caption_variance(cell.record);
+  picture.difference = analysis::caption_difference(cell.record);
+  picture.bound = analysis::caption_bound(cell.record);
+  cell.record.images.stability = fmt::format("images/{}.{}.stability.png", stem, files::make_file_stem(cell.label));
+  images::write_stability_picture(options.out / *cell.record.images.stability, picture);
+  cell.stability = std::move(picture.images);
+}
+
+}  // namespace shadowbench::measure

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "harness/gl/timer.h"
+#include "harness/options/round_limits.h"
+#include "harness/render/filter_passes.h"
+
+namespace shadowbench::measure {
+
+/// Says why no more rounds were timed.
+enum class StopReason {
+  kRounds,   ///< as many as were asked for, or as there may be
+  kPrecise,  ///< the ratio's interval is as narrow as was asked for
+  kBudget,   ///< the time is spent
+};
+
+/// Gives the name of a reason in records: "rounds", "precise" or "budget".
+std::string name_of(StopReason reason);
+
+/// Times of one filter, one entry per round it took part in, from the first on; milliseconds.
+struct FilterTimes {
+  std::vector<double> prefilter;  ///< empty for filters that read depth
+  std::vector<double> lookup;
+  StopReason stopped = StopReason::kRounds;
+};
+
+/// Times of a set of filters that took turns; entry i of every list comes from round i.
+struct RoundTimes {
+  std::vector<double> map;           ///< as many entries as there were rounds
+  std::vector<FilterTimes> filters;  ///< in the order given
+  double spent_ms = 0.0;             ///< of all passes, those that warm up included
+};
+
+/// Runs one filter's passes once and gives their times in milliseconds.
+struct TimedFilter {
+  std::function<double()> prefilter;  ///< empty for filters that read depth
+  std::function<double()> lookup;
+};
+
+/// Times interleaved rounds: every round draws the map and runs each filter once, in a shuffled order, so that drift of
+/// the machine's speed hits all of them alike. After a prefilter three lookups go untimed, and the fourth is timed:
+/// right after one, a CPU's lookups are up to 1.6 times as slow, which in a frame of lookups alone they are not. One
+/// round warms up and is not counted; none where `drawn_ms`, which is what running every filter once has cost before,
+/// spends the budget already. A filter drops out when its ratios to the filter `reference`, of the lookup and of map,
+/// prefilter and lookup, are precise enough; `reference` stays as long as any other. When the budget is spent, all
+/// stop, but not before three rounds, or one where no more may be. Requires at least one filter. Cost: (rounds + 1)
+/// times the sum of all passes, lookups of prefiltered maps four times.
+RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference,
+                      const std::function<double()>& draw_map, const options::RoundLimits& limits, std::uint64_t seed,
+                      double drawn_ms = 0.0);
+
+/// Runs a filter's passes once, into `target`, and gives their time in milliseconds.
+double time_once(render::FilterPasses& filter, const render::ShadowMap& map, const render::GBuffer& gbuffer,
+                 render::ImageTarget& target, gl::TimerKind timer);
+
+/// Times the shadow map, prefilters and lookups of filters that were drawn once, as run_rounds().
+RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::size_t reference,
+                       const std::function<void()>& draw_map, const render::ShadowMap& map,
+                       const render::GBuffer& gbuffer, gl::TimerKind timer, const options::RoundLimits& limits,
+                       std::uint64_t seed, double drawn_ms = 0.0);
+
+/// Adds what a filter costs in a frame in which light or casters move: map, prefilter and lookup, round by round.
+std::vector<double> add_moving(const std::vector<double>& map, const FilterTimes& times);
+
+}  // namespace shadowbench::measure

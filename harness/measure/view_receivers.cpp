@@ -1,0 +1,50 @@
+#include "harness/measure/view_receivers.h"
+
+#include <algorithm>
+
+#include "filters/receiver.h"
+#include "harness/measure/content_hash.h"
+#include "harness/render/image_target.h"
+
+namespace shadowbench::measure {
+
+bool ViewReceivers::any_counts() const {
+  return std::any_of(
+      image.points.begin(), image.points.end(), [](const auto& point) { return point.counts; });
+}
+
+images::Image ViewReceivers::to_image(const std::vector<float>& visibility) const {
+  images::Image result(image.width, image.height, 1);
+  for (std::size_t i = 0; i < visibility.size(); ++i)
+    result.texels[i] = image.points[i].counts ? visibility[i] : is_surface[i] ? 0.0f : 1.0f;
+  return result;
+}
+
+std::vector<std::uint8_t> ViewReceivers::mask() const {
+  std::vector<std::uint8_t> result;
+  for (const truth::ReceiverPoint& point : image.points) result.push_back(point.counts ? 1 : 0);
+  return result;
+}
+
+ViewReceivers read_view_receivers(const render::GBuffer& gbuffer, const glm::vec3& to_light) {
+  const images::Image positions = render::read_image(gbuffer.position(), 4);
+  const images::Image normals = render::read_image(gbuffer.normal(), 4);
+  ViewReceivers receivers{{gbuffer.width(), gbuffer.height(), {}}, {}, {}};
+  for (std::size_t i = 0; i < positions.texels.size(); i += 4) {
+    const float* p = &positions.texels[i];
+    const float* n = &normals.texels[i];
+    const glm::vec3 normal(n[0], n[1], n[2]);
+    const bool is_surface = p[3] != 0.0f;
+    receivers.is_surface.push_back(is_surface ? 1 : 0);
+    receivers.image.points.push_back(
+        {{p[0], p[1], p[2]}, normal, is_surface && glm::dot(normal, to_light) > filters::kFacesLight});
+  }
+  ContentHash hash;
+  hash.add_values(std::span<const float>(positions.texels));
+  hash.add_values(std::span<const float>(normals.texels));
+  hash.add_values(std::span<const float>(&to_light.x, 3));
+  receivers.content = hash.name();
+  return receivers;
+}
+
+}  // namespace shadowbench::measure

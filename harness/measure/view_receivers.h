@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/render/gbuffer.h"
+#include "reference/truth/receiver_image.h"
+#include "report/images/image.h"
+
+namespace shadowbench::measure {
+
+/// The pixels of a view as the truth sees them, rows top to bottom like every report image.
+struct ViewReceivers {
+  truth::ReceiverImage image;
+  std::vector<std::uint8_t> is_surface;  ///< 0: background
+  std::string content;                   ///< names positions, normals and which of them count
+
+  bool any_counts() const;
+
+  /// Gives visibility as the lookup pass writes it: a surface turned away from the light is dark, the background is
+  /// lit.
+  images::Image to_image(const std::vector<float>& visibility) const;
+
+  /// 1 where a pixel counts: a surface that faces the light.
+  std::vector<std::uint8_t> mask() const;
+};
+
+/// Reads the receivers that a G-buffer holds. `to_light` is of unit length.
+ViewReceivers read_view_receivers(const render::GBuffer& gbuffer, const glm::vec3& to_light);
+
+}  // namespace shadowbench::measure

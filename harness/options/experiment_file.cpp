@@ -1,0 +1,224 @@
+#include "harness/options/experiment_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "filters/base/error.h"
+#include "filters/base/nearest_name.h"
+#include "harness/scene/toml_reader.h"
+
+namespace shadowbench::options {
+namespace {
+
+constexpr double kMostCombinations = 100'000.0;
+constexpr int kMostSteps = 10'000;
+
+class ExperimentReader {
+ public:
+  explicit ExperimentReader(const std::filesystem::path& file) : file_(file), root_(scene::parse_toml_file(file)) {}
+
+  Experiment read(const std::vector<std::string>& keys) {
+    const scene::TomlTable table(root_, "the experiment", file_.string());
+    std::vector<std::string> known = keys;
+    known.insert(known.end(), {"title", "filter"});
+    table.require_known_keys(known);
+    Experiment experiment;
+    experiment.title = table.string("title", std::string());
+    for (const std::string& key : keys)
+      if (table.has(key)) experiment.settings.push_back(read_setting(key));
+    for (const toml::node& node : filter_nodes()) experiment.filters.push_back(read_filter(node));
+    return experiment;
+  }
+
+ private:
+  std::filesystem::path file_;
+  toml::table root_;
+
+  std::string where(const toml::node& node) const {
+    return fmt::format("{}:{}", file_.string(), node.source().begin.line);
+  }
+
+  [[noreturn]] void fail(const toml::node& node, const std::string& message) const {
+    throw Error(ErrorKind::kInput, message, where(node));
+  }
+
+  const toml::array& filter_nodes() const {
+    static const toml::array none;
+    const toml::node* node = root_.get("filter");
+    if (!node) return none;
+    if (const toml::array* tables = node->as_array(); tables && tables->is_array_of_tables()) return *tables;
+    fail(*node, "'filter' must be tables, each headed [[filter]]");
+  }
+
+  /// One value as the command line would have it.
+  std::string text_of(const toml::node& node, const std::string& key) const {
+    if (const auto* text = node.as_string()) return text->get();
+    if (const auto* whole = node.as_integer()) return fmt::format("{}", whole->get());
+    if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+    if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+    fail(node, fmt::format("'{}' must be a text, a number, true or false, or a list of such", key));
+  }
+
+  std::vector<std::string> texts_of(const toml::node& node, const std::string& key) const {
+    const toml::array* list = node.as_array();
+    if (!list) return {text_of(node, key)};
+    std::vector<std::string> texts;
+    for (const toml::node& each : *list) texts.push_back(text_of(each, key));
+    if (texts.empty())
+      fail(node, fmt::format("'{}' is an empty list: nothing would be run; name a value, or leave the key out", key));
+    return texts;
+  }
+
+  /// A file named in an experiment lies beside it.
+  std::string resolve(const std::string& name) const {
+    const std::filesystem::path path(name);
+    return path.has_extension() && path.is_relative() ? (file_.parent_path() / path).string() : name;
+  }
+
+  ExperimentSetting read_setting(const std::string& key) const {
+    const toml::node& node = *root_.get(key);
+    ExperimentSetting setting{"--" + key, texts_of(node, key), where(node)};
+    std::replace(setting.option.begin(), setting.option.end(), '_', '-');
+    if (key != "scene" && key != "filter_file") return setting;
+    for (std::string& value : setting.values) value = resolve(value);
+    return setting;
+  }
+
+  SweptFilter read_filter(const toml::node& node) const {
+    const toml::table& entries = *node.as_table();
+    const scene::TomlTable table(entries, "[[filter]]", file_.string());
+    SweptFilter filter{table.string("id"), {}, where(node)};
+    for (const auto& [key, value] : entries)
+      if (key.str() != "id") filter.params.push_back(read_param(std::string(key.str()), value));
+    return filter;
+  }
+
+  SweptParam read_param(const std::string& name, const toml::node& node) const {
+    const toml::table* range = node.as_table();
+    if (!range) return {name, {}, false, 0, texts_of(node, name)};
+    const scene::TomlTable table(*range, name, file_.string());
+    table.require_known_keys({"linear", "log", "count"});
+    SweptParam param;
+    param.name = name;
+    param.logarithmic = table.has("log");
+    if (param.logarithmic == table.has("linear"))
+      fail(node, fmt::format("'{}' needs 'linear' or 'log', one of them: the range's two ends", name));
+    const glm::dvec2 ends = table.vec2(param.logarithmic ? "log" : "linear", scene::kAnyNumber);
+    if (param.logarithmic && !(std::min(ends.x, ends.y) > 0.0))
+      fail(node, fmt::format("'{}': the ends of a logarithmic range must be more than 0", name));
+    param.range = {ends.x, ends.y};
+    param.count = table.integer("count", {2, kMostSteps});
+    return param;
+  }
+};
+
+std::vector<double> spread(const SweptParam& param) {
+  const auto curve = [&](double x) { return param.logarithmic ? std::log(x) : x; };
+  const double from = curve(param.range[0]), to = curve(param.range[1]);
+  std::vector<double> values{param.range[0]};
+  for (int i = 1; i + 1 < param.count; ++i) {
+    const double x = from + (to - from) * i / (param.count - 1);
+    values.push_back(param.logarithmic ? std::exp(x) : x);
+  }
+  values.push_back(param.range[1]);
+  return values;
+}
+
+/// The texts of a parameter's values, each once.
+std::vector<std::string> list_values(const SweptParam& param, const filters::ParamSpec* spec) {
+  std::vector<std::string> texts = param.values;
+  if (!param.range.empty())
+    for (const double value : spread(param))
+      texts.push_back(fmt::format("{}", spec && spec->integer ? std::round(value) : value));
+  std::vector<std::string> distinct;
+  std::set<std::string> seen;
+  for (const std::string& text : texts)
+    if (seen.insert(text).second) distinct.push_back(text);
+  return distinct;
+}
+
+/// How many combinations a filter's parameters have; where there are too many, not all are counted.
+double count_combinations(const SweptFilter& filter, const filters::FilterSpec& spec) {
+  double combinations = 1.0;
+  for (const SweptParam& param : filter.params) {
+    if (combinations > kMostCombinations) break;
+    combinations *= static_cast<double>(list_values(param, spec.find_param(param.name)).size());
+  }
+  return combinations;
+}
+
+/// Throws unless a run takes as many combinations as the filters up to this one have.
+void require_few(double combinations, const SweptFilter& filter) {
+  if (combinations <= kMostCombinations) return;
+  throw Error(ErrorKind::kUsage, fmt::format("with the parameters of '{}' there are more than {:.0f} combinations, and "
+                                             "a run takes {:.0f} at most; name fewer values",
+                                             filter.id, kMostCombinations, kMostCombinations));
+}
+
+/// Says what is wrong with a filter's values while it is known where they stand; each is tried once, not in every
+/// combination.
+void check_values(const SweptFilter& filter, const filters::Catalogue& catalogue) {
+  const filters::FilterSpec& spec = catalogue.find(filter.id);
+  for (const SweptParam& param : filter.params)
+    for (const std::string& value : list_values(param, spec.find_param(param.name)))
+      filters::parse_value(spec, param.name, value);
+}
+
+/// Every combination of one filter's values, as `--filters` has it.
+std::vector<std::string> combine(const SweptFilter& filter, const filters::Catalogue& catalogue) {
+  const filters::FilterSpec& spec = catalogue.find(filter.id);
+  std::vector<std::string> requests{filter.id};
+  char separator = ':';
+  for (const SweptParam& param : filter.params) {
+    const std::vector<std::string> values = list_values(param, spec.find_param(param.name));
+    std::vector<std::string> longer;
+    for (const std::string& request : requests)
+      for (const std::string& value : values)
+        longer.push_back(fmt::format("{}{}{}={}", request, separator, param.name, value));
+    requests = std::move(longer);
+    separator = ',';
+  }
+  return requests;
+}
+
+}  // namespace
+
+std::filesystem::path find_experiment(const std::filesystem::path& folder, const std::string& name) {
+  if (std::filesystem::path(name).extension() == ".toml") return name;
+  std::vector<std::string> known;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (entry.path().extension() == ".toml") known.push_back(entry.path().stem().string());
+  std::sort(known.begin(), known.end());
+  if (std::find(known.begin(), known.end(), name) != known.end()) return folder / (name + ".toml");
+  const std::optional<std::string> nearest = nearest_name(name, known);
+  throw Error(ErrorKind::kUsage, fmt::format("unknown experiment '{}'{}; a file of your own ends in .toml", name,
+                                             nearest ? fmt::format("; did you mean '{}'?", *nearest)
+                                                     : fmt::format(": there are {}", fmt::join(known, ", "))));
+}
+
+Experiment read_experiment(const std::filesystem::path& file, const std::vector<std::string>& keys) {
+  return ExperimentReader(file).read(keys);
+}
+
+std::string expand_filters(const Experiment& experiment, const filters::Catalogue& catalogue) {
+  std::vector<std::string> all;
+  double combinations = 0.0;
+  for (const SweptFilter& filter : experiment.filters) {
+    try {
+      combinations += count_combinations(filter, catalogue.find(filter.id));
+      require_few(combinations, filter);
+      check_values(filter, catalogue);
+      for (std::string& request : combine(filter, catalogue)) all.push_back(std::move(request));
+    } catch (const Error& error) {
+      throw Error(ErrorKind::kInput, error.message(), filter.where);
+    }
+  }
+  return fmt::format("{}", fmt::join(all, ","));
+}
+
+}  // namespace shadowbench::options

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "filters/catalogue.h"
+#include "filters/map_range.h"
+#include "harness/gl/context/context.h"
+#include "harness/options/round_limits.h"
+#include "harness/render/bias_rule.h"
+#include "harness/render/map_settings.h"
+#include "harness/scene/lights/light_fit.h"
+
+namespace shadowbench::options {
+
+/// The folders that come with the program.
+struct Resources {
+  std::filesystem::path filters;
+  std::filesystem::path shaders;
+  std::filesystem::path scenes;
+  std::filesystem::path experiments;
+};
+
+/// Finds the program's folders: below $SHADOWBENCH_ROOT where that is set, else where the program was built from.
+/// Throws Error(kUsage) when they are not there.
+Resources find_resources();
+
+/// Gives the folder for traced images: $XDG_CACHE_HOME/shadowbench, else ~/.cache/shadowbench; empty where neither is
+/// set. Source: XDG Base Directory Specification 0.8.
+std::filesystem::path default_cache_folder();
+
+/// Of a picture, in pixels.
+struct PictureSize {
+  int width = 960;
+  int height = 540;
+  bool operator==(const PictureSize&) const = default;
+};
+
+/// Every `count`-th cell of an experiment, from the `index`-th on, counted from 0.
+struct Shard {
+  int index = 0;
+  int count = 1;
+};
+
+/// Where a light stands in the sky: azimuth 0 is +z, 90 is +x; degrees.
+struct LightAngles {
+  double azimuth_deg = 0.0;
+  double elevation_deg = 0.0;
+};
+
+/// Everything that `shadowbench run` is told.
+struct RunOptions {
+  Resources resources;
+  std::vector<std::string> scenes;  ///< names or paths
+  bool ground = false;
+  std::vector<filters::FilterRequest> filters;
+  std::vector<int> map_sizes = {1024};
+  std::vector<PictureSize> sizes = {{}};  ///< of a run; of what one size of it is told, width and height hold
+  int width = 960;
+  int height = 540;
+  std::vector<std::string> views;  ///< names of cameras; none: all that each scene has
+  render::MapSettings map;
+  scene::FitMode fit = scene::FitMode::kTight;
+  bool snap = false;                 ///< keep the map's texel grid fixed in the world
+  std::optional<LightAngles> light;  ///< in place of every scene's own; empty: as the scenes say
+  render::BiasRule bias;
+  filters::RangeRule range;          ///< outside the map, beyond its far plane, behind the light
+  bool border_page = false;          ///< also draw every rule for what lies outside the map, side by side
+  std::optional<double> pad_texels;  ///< around the scene in the map; empty: what the widest kernel needs
+  RoundLimits rounds;
+  std::vector<int> lights;           ///< frames lit by so many lights are timed too; none: they are not
+  filters::FilterRequest reference;  ///< what the others are timed against
+  std::uint32_t seed = 1;
+  gl::Backend backend = gl::Backend::kAuto;
+  bool truth = true;         ///< trace visibility and score every filter against it
+  bool attribution = true;   ///< take the errors apart; needs truth
+  bool stability = false;    ///< say where numbers break, per texel and per pixel
+  bool uncertainty = false;  ///< say how far rounding and other seeds can move each pixel
+  bool grids = true;  ///< compare all filters of a view in one picture and keep their float images; else each cell's
+                      ///< pictures alone
+  Shard shard;
+  std::string title;             ///< of the experiment
+  bool fresh = false;            ///< measure cells again that the report folder has
+  bool large_is_fine = false;    ///< run however many cells there are
+  std::filesystem::path cache;   ///< keeps traced images between runs; empty: nothing is kept
+  double cell_timeout_s = 60.0;  ///< for one user's filter on one scene
+  std::filesystem::path out;
+  std::vector<std::string> command;     ///< the command line, for the record
+  std::vector<std::string> bias_texts;  ///< as given, for worker processes
+  std::vector<std::string> notes;       ///< what reading the options found that the user should know
+  bool worker = false;                  ///< runs user's filters itself and writes cells and float images only
+};
+
+}  // namespace shadowbench::options

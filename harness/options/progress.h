@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+namespace shadowbench::options {
+
+/// Is told how far a run is; the command line shows it.
+class Progress {
+ public:
+  virtual ~Progress() = default;
+  /// A run of `cells` cells begins, of which `finished` were finished before.
+  virtual void begin(int cells, int finished) = 0;
+  /// The cell named is under way, `done` cells are finished.
+  virtual void show(int done, const std::string& what) = 0;
+  /// Something the user should know, once.
+  virtual void note(const std::string& message) = 0;
+};
+
+}  // namespace shadowbench::options

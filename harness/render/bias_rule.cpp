@@ -1,0 +1,203 @@
+#include "harness/render/bias_rule.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <sstream>
+
+#include "filters/base/error.h"
+#include "filters/base/nearest_name.h"
+
+namespace shadowbench::render {
+namespace {
+
+/// Where a key's amount goes.
+using Target = std::function<double&(BiasRule&)>;
+
+/// One mode: what it switches on, and which amounts it takes.
+struct Mode {
+  std::map<std::string, Target> keys;
+  std::function<void(BiasRule&)> begin = [](BiasRule&) {};
+  bool needs_amount = true;
+};
+
+std::map<std::string, Target> list_units(BiasAmount BiasRule::*amount) {
+  return {{"depth", [=](BiasRule& r) -> double& { return (r.*amount).depth; }},
+          {"texels", [=](BiasRule& r) -> double& { return (r.*amount).texels; }},
+          {"world", [=](BiasRule& r) -> double& { return (r.*amount).world; }}};
+}
+
+Target constant_depth() {
+  return [](BiasRule& r) -> double& { return r.constant.depth; };
+}
+
+/// The tangent of 89.99 degrees.
+constexpr double kAnySlope = 5730.0;
+
+/// The slack that rounding needs, unless the user gives one.
+constexpr double kRoundingDepth = 2e-5;
+
+std::map<std::string, Mode> make_modes() {
+  std::map<std::string, Mode> modes;
+  modes["none"].needs_amount = false;
+  modes["constant"].keys = list_units(&BiasRule::constant);
+  modes["slope"].keys = list_units(&BiasRule::slope);
+  modes["plane"].keys = {{"kernels", [](BiasRule& r) -> double& { return r.plane_kernels; }},
+                         {"texels", [](BiasRule& r) -> double& { return r.plane_texels; }},
+                         {"depth", constant_depth()}};
+  modes["normal-offset"].keys = list_units(&BiasRule::normal_offset);
+  modes["normal-offset"].keys.erase("depth");
+  modes["receiver-plane"] = {{{"depth", constant_depth()}}, [](BiasRule& r) { r.receiver_plane = true; }, false};
+  modes["polygon-offset"].keys = {{"factor", [](BiasRule& r) -> double& { return r.map.polygon_factor; }},
+                                  {"units", [](BiasRule& r) -> double& { return r.map.polygon_units; }}};
+  modes["front-cull"] = {{{"depth", constant_depth()}}, [](BiasRule& r) { r.map.cull_front = true; }, false};
+  modes["midpoint"] = {{{"depth", constant_depth()}}, [](BiasRule& r) { r.map.midpoint = true; }, false};
+  return modes;
+}
+
+const std::map<std::string, Mode>& modes() {
+  static const std::map<std::string, Mode> table = make_modes();
+  return table;
+}
+
+template <class Table>
+std::vector<std::string> list_names(const Table& table) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : table) names.push_back(name);
+  return names;
+}
+
+template <class Table>
+[[noreturn]] void fail_unknown(const char* what, const std::string& name, const Table& table) {
+  const std::vector<std::string> known = list_names(table);
+  const auto near = nearest_name(name, known);
+  const std::string hint = near            ? fmt::format("did you mean '{}'?", *near)
+                           : known.empty() ? "this mode takes none"
+                                           : fmt::format("known: {}", fmt::join(known, ", "));
+  throw Error(ErrorKind::kUsage, fmt::format("--bias: unknown {} '{}'; {}", what, name, hint));
+}
+
+double parse_amount(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value) || value < 0.0) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("--bias: '{}' must be a finite number, 0 or more, without a unit: the unit is "
+                            "in the key (depth, texels, world)",
+                            text));
+  }
+  return value;
+}
+
+void add(BiasRule& rule, const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const std::string name = text.substr(0, colon);
+  const auto found = modes().find(name);
+  if (found == modes().end()) fail_unknown("mode", name, modes());
+  const Mode& mode = found->second;
+  mode.begin(rule);
+  std::stringstream assignments(colon == std::string::npos ? std::string() : text.substr(colon + 1));
+  bool any = false;
+  for (std::string item; std::getline(assignments, item, ','); any = true) {
+    const std::size_t equals = item.find('=');
+    const std::string key = item.substr(0, equals);
+    const auto target = mode.keys.find(key);
+    if (target == mode.keys.end() || equals == std::string::npos) fail_unknown("amount", key, mode.keys);
+    target->second(rule) += parse_amount(item.substr(equals + 1));
+  }
+  if (!any && mode.needs_amount) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("--bias {}: no amount given, write {}:{}=VALUE", name, name, mode.keys.begin()->first));
+  }
+  const bool has_slack = !mode.needs_amount && mode.keys.contains("depth");
+  if (!any && has_slack) rule.constant.depth += kRoundingDepth;
+}
+
+render::Bias resolve(const BiasRule& rule, const scene::LightFrustum& frustum, double half_width_texels) {
+  render::Bias bias;
+  bias.constant_depth = rule.constant.in_depth(frustum);
+  bias.slope_depth = rule.slope.in_depth(frustum);
+  bias.plane_texels = rule.plane_texels + rule.plane_kernels * (half_width_texels + 1.0);
+  bias.normal_offset_texels = rule.normal_offset.in_world(frustum) / frustum.texel_size_ws;
+  bias.receiver_plane = rule.receiver_plane;
+  bias.max_tangent = rule.max_tangent;
+  return bias;
+}
+
+}  // namespace
+
+double BiasAmount::in_world(const scene::LightFrustum& frustum) const {
+  return depth * frustum.depth_range_ws + texels * frustum.texel_size_ws + world;
+}
+
+double BiasAmount::in_depth(const scene::LightFrustum& frustum) const {
+  return depth + (texels * frustum.texel_size_ws + world) / frustum.depth_range_ws;
+}
+
+BiasRule BiasRule::none() {
+  BiasRule rule;
+  rule.constant = {};
+  rule.plane_kernels = 0.0;
+  return rule;
+}
+
+BiasRule parse_bias(const std::vector<std::string>& texts) {
+  if (texts.empty()) return {};
+  BiasRule rule = BiasRule::none();
+  for (const std::string& text : texts) add(rule, text);
+  return rule;
+}
+
+std::string list_bias_modes() {
+  std::vector<std::string> texts;
+  for (const auto& [name, mode] : modes()) {
+    const std::vector<std::string> keys = list_names(mode.keys);
+    texts.push_back(keys.empty() ? name
+                                 : fmt::format("{}{}:{}=X{}", name, mode.needs_amount ? "" : "[",
+                                               fmt::join(keys, "=X,"), mode.needs_amount ? "" : "]"));
+  }
+  return fmt::format("{}", fmt::join(texts, " | "));
+}
+
+std::string explain_unusable(const BiasRule& rule, const filters::FilterSpec& spec) {
+  if (!rule.receiver_plane || (!spec.has_encode && !spec.uses_samplers)) return {};
+  return spec.has_encode ? "reads a prefiltered map, not one depth per tap" : "reads the map's samplers itself";
+}
+
+void require_usable(const BiasRule& rule, const filters::FilterSpec& spec) {
+  const std::string why = explain_unusable(rule, spec);
+  if (why.empty()) return;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("--bias receiver-plane cannot be used by the filter '{}', which {}; leave that "
+                          "filter out of --filters, or choose another bias",
+                          spec.id, why));
+}
+
+void require_drawable(const BiasRule& rule, const render::MapSettings& map) {
+  if (map.curve.is_linear() || (rule.map.polygon_factor == 0.0 && rule.map.polygon_units == 0.0)) return;
+  throw Error(
+      ErrorKind::kUsage,
+      "--bias polygon-offset cannot be drawn with --perspective-depth: the GL would add it to linear depth, before "
+      "the map bends it; leave one of the two out");
+}
+
+render::Bias resolve_bias(const BiasRule& rule, const scene::LightFrustum& frustum, const filters::FilterSpec& spec,
+                          const filters::ParamValues& values) {
+  return resolve(rule, frustum, filters::bias_texels(spec, values));
+}
+
+render::Bias resolve_comparison_bias(const BiasRule& rule, const scene::LightFrustum& frustum,
+                                     const filters::FilterSpec& spec, const filters::ParamValues& values) {
+  const double own = filters::bias_texels(spec, values), radius = filters::radius_texels(spec, values);
+  if (own >= radius) return resolve(rule, frustum, own);
+  render::Bias bias = resolve(rule, frustum, radius);
+  bias.max_tangent = kAnySlope;  // the filter itself has no acne on steep planes either
+  return bias;
+}
+
+}  // namespace shadowbench::render

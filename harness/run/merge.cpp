@@ -1,0 +1,166 @@
+#include "harness/run/merge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <system_error>
+
+#include "filters/base/error.h"
+#include "report/files/atomic_file.h"
+#include "report/files/folder_lock.h"
+#include "report/pages/report.h"
+#include "report/records/json_io.h"
+
+namespace shadowbench::run {
+namespace {
+
+struct ShardRun {
+  std::filesystem::path folder;
+  records::Results results;
+};
+
+std::vector<ShardRun> read_shards(const std::vector<std::filesystem::path>& folders) {
+  std::vector<ShardRun> shards;
+  for (const std::filesystem::path& folder : folders)
+    shards.push_back({folder, records::read_results(folder / "results.json")});
+  std::sort(shards.begin(), shards.end(), [](const ShardRun& a, const ShardRun& b) {
+    return a.results.run.experiment.shard < b.results.run.experiment.shard;
+  });
+  return shards;
+}
+
+/// How many cells a shard of an experiment holds: every `shards`-th from its own on.
+std::size_t count_cells(const records::ExperimentRecord& experiment) {
+  const int first = experiment.shard - 1;
+  return first < experiment.cells ? static_cast<std::size_t>((experiment.cells - first - 1) / experiment.shards + 1)
+                                  : 0;
+}
+
+void require_same(const ShardRun& first, const ShardRun& other) {
+  const records::ExperimentRecord &a = first.results.run.experiment, &b = other.results.run.experiment;
+  if (a.settings == b.settings && a.shards == b.shards) return;
+  throw Error(
+      ErrorKind::kInput,
+      fmt::format("this is no shard of the experiment in {}: scenes, filters, settings, program or OpenGL differ, "
+                  "or it is one of {} shards and not of {}",
+                  first.folder.string(), b.shards, a.shards),
+      other.folder.string());
+}
+
+void require_complete(const std::vector<ShardRun>& shards) {
+  const int count = shards.front().results.run.experiment.shards;
+  for (std::size_t i = 0; i < shards.size(); ++i) {
+    const records::ExperimentRecord& own = shards[i].results.run.experiment;
+    if (i > 0 && own.shard == shards[i - 1].results.run.experiment.shard) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("{} and {} are both shard {}/{}: name one of them", shards[i - 1].folder.string(),
+                              shards[i].folder.string(), own.shard, count));
+    }
+    if (own.shard != static_cast<int>(i) + 1) break;
+    if (shards[i].results.cells.size() == count_cells(own)) continue;
+    throw Error(ErrorKind::kInput,
+                fmt::format("it holds {} cells, and shard {}/{} of {} cells has {}; run it again",
+                            shards[i].results.cells.size(), own.shard, count, own.cells, count_cells(own)),
+                shards[i].folder.string());
+  }
+  for (int shard = 1; shard <= count; ++shard) {
+    const auto is_it = [&](const ShardRun& each) { return each.results.run.experiment.shard == shard; };
+    if (std::any_of(shards.begin(), shards.end(), is_it)) continue;
+    throw Error(ErrorKind::kUsage,
+                fmt::format("shard {}/{} is missing: run it with --shard {}/{}, and name its folder too", shard, count,
+                            shard, count));
+  }
+}
+
+/// Says whether the folder holds a report, or a cell of something else than what is merged.
+bool is_taken(const std::filesystem::path& out, const std::set<std::string>& keys) {
+  std::error_code error;
+  if (std::filesystem::exists(out / "results.json", error)) return true;
+  std::filesystem::directory_iterator entry(out / "cells", error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error))
+    if (!keys.contains(entry->path().stem().string())) return true;
+  return false;
+}
+
+/// A folder that has something else in it is not added to; what a merge left that did not come to its end is.
+void require_free(const std::filesystem::path& out, const std::vector<ShardRun>& shards) {
+  std::set<std::string> keys;
+  for (const ShardRun& shard : shards)
+    for (const records::CellRecord& cell : shard.results.cells) keys.insert(cell.key);
+  if (!is_taken(out, keys)) return;
+  throw Error(ErrorKind::kUsage, "--out: there is a report in this folder already; choose an empty or new one",
+              out.string());
+}
+
+void copy_whole(const std::filesystem::path& from, const std::filesystem::path& to) {
+  files::PendingFile pending(to);
+  std::error_code error;
+  std::filesystem::copy_file(from, pending.temporary_path(), std::filesystem::copy_options::overwrite_existing, error);
+  if (error)
+    throw Error(
+        ErrorKind::kOutput,
+        fmt::format(
+            "it cannot be copied to {} ({}); check rights and free space there, or choose another folder with --out",
+            to.string(), error.message()),
+        from.string());
+  pending.commit();
+}
+
+std::vector<std::string> list_files(const records::CellRecord& cell) {
+  std::vector<std::string> files;
+  for (const auto member :
+       {&records::ImagesRecord::picture, &records::ImagesRecord::visibility, &records::ImagesRecord::depth_map,
+        &records::ImagesRecord::grid, &records::ImagesRecord::exr, &records::ImagesRecord::attribution,
+        &records::ImagesRecord::texel_density, &records::ImagesRecord::texel_grid, &records::ImagesRecord::stability})
+    if (cell.images.*member) files.push_back(*(cell.images.*member));
+  return files;
+}
+
+records::RunRecord join(const std::vector<ShardRun>& shards) {
+  records::RunRecord run = shards.front().results.run;
+  run.experiment.shard = run.experiment.shards = 1;
+  run.repeat = {};  // of one shard alone
+  for (std::size_t i = 1; i < shards.size(); ++i) {
+    const records::RunRecord& other = shards[i].results.run;
+    run.work.shader_variants_compiled += other.work.shader_variants_compiled;
+    run.work.passes_run += other.work.passes_run;
+    run.work.passes_skipped += other.work.passes_skipped;
+    run.work.truths_traced += other.work.truths_traced;
+    run.work.truths_cached += other.work.truths_cached;
+    run.work.timed_s += other.work.timed_s;
+    run.work.elapsed_s += other.work.elapsed_s;
+    if (other.work.attribution_s)
+      run.work.attribution_s = run.work.attribution_s.value_or(0.0) + *other.work.attribution_s;
+    for (const std::string& warning : other.warnings)
+      if (std::find(run.warnings.begin(), run.warnings.end(), warning) == run.warnings.end())
+        run.warnings.push_back(warning);
+    if (other.machine.cpu == run.machine.cpu && other.machine.cores == run.machine.cores) continue;
+    run.warnings.push_back(fmt::format(
+        "shards ran on different machines, so times of their cells do not compare: {} with {} cores, {} with {}",
+        run.machine.cpu, run.machine.cores, other.machine.cpu, other.machine.cores));
+  }
+  return run;
+}
+
+}  // namespace
+
+void merge_runs(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out) {
+  if (folders.empty()) throw Error(ErrorKind::kUsage, "merge: name the report folders of all shards");
+  const std::vector<ShardRun> shards = read_shards(folders);
+  for (const ShardRun& shard : shards) require_same(shards.front(), shard);
+  require_complete(shards);
+  const files::FolderLock lock(out);
+  require_free(out, shards);
+  std::vector<std::string> keys;
+  for (int i = 0; i < shards.front().results.run.experiment.cells; ++i) {
+    const ShardRun& shard = shards[static_cast<std::size_t>(i) % shards.size()];
+    const records::CellRecord& cell = shard.results.cells[static_cast<std::size_t>(i) / shards.size()];
+    for (const std::string& file : list_files(cell)) copy_whole(shard.folder / file, out / file);
+    copy_whole(records::cell_path(shard.folder, cell.key), records::cell_path(out, cell.key));
+    keys.push_back(cell.key);
+  }
+  pages::write_report(out, join(shards), keys);
+}
+
+}  // namespace shadowbench::run

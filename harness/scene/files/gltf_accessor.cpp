@@ -1,0 +1,228 @@
+#include "harness/scene/files/gltf_accessor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <limits>
+
+#include "filters/base/error.h"
+
+namespace shadowbench::scene {
+namespace {
+
+constexpr std::size_t kMostElements = std::size_t{1} << 27;
+/// Of an accessor without a buffer view: nothing in the file stands for its elements, which are all zero.
+constexpr std::size_t kMostZeros = std::size_t{1} << 16;
+
+/// Bytes that were found to lie inside their buffer.
+struct Span {
+  const unsigned char* data = nullptr;
+  std::size_t size = 0;
+};
+
+Span checked_view(const tinygltf::Model& model, int index, const std::string& owner, const std::string& where) {
+  const auto fail = [&](const std::string& why) -> Span {
+    throw Error(ErrorKind::kInput, fmt::format("{}: {}", owner, why), where);
+  };
+  if (index < 0 || static_cast<std::size_t>(index) >= model.bufferViews.size())
+    return fail(fmt::format("there is no buffer view {} (of {})", index, model.bufferViews.size()));
+  const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(index)];
+  if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model.buffers.size())
+    return fail(fmt::format("buffer view {} names buffer {} (of {})", index, view.buffer, model.buffers.size()));
+  const std::vector<unsigned char>& bytes = model.buffers[static_cast<std::size_t>(view.buffer)].data;
+  if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset) {
+    return fail(fmt::format("buffer view {} runs past its buffer: offset {} + {} bytes of {}", index, view.byteOffset,
+                            view.byteLength, bytes.size()));
+  }
+  return {bytes.data() + view.byteOffset, view.byteLength};
+}
+
+/// How elements lie in a checked span; every element was found to be inside it.
+struct Elements {
+  const unsigned char* data = nullptr;  ///< null: all zero
+  std::size_t count = 0;
+  std::size_t stride = 0;
+  int component_type = 0;
+  std::size_t components = 0;
+};
+
+std::size_t component_size(int component_type, const std::string& owner, const std::string& where) {
+  switch (component_type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+    case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
+    default:
+      throw Error(ErrorKind::kInput,
+                  fmt::format("{} has component type {}, which glTF 2.0 does not know", owner, component_type), where);
+  }
+}
+
+/// Checks that `layout.count` elements from `offset` lie inside the span, and points the layout at the first.
+Elements place(Elements layout, Span span, std::size_t offset, const std::string& owner, const std::string& where) {
+  const std::size_t element_size = component_size(layout.component_type, owner, where) * layout.components;
+  if (layout.stride == 0) layout.stride = element_size;
+  if (layout.stride < element_size) {
+    throw Error(ErrorKind::kInput,
+                fmt::format("{} has a stride of {} bytes for elements of {}", owner, layout.stride, element_size),
+                where);
+  }
+  const bool fits = layout.count > 0 && offset <= span.size && element_size <= span.size - offset &&
+                    layout.count - 1 <= (span.size - offset - element_size) / layout.stride;
+  if (layout.count > 0 && !fits) {
+    throw Error(ErrorKind::kInput,
+                fmt::format("{} is out of range: {} elements of {} bytes, stride {}, from byte {} of "
+                            "a buffer view of {} bytes",
+                            owner, layout.count, element_size, layout.stride, offset, span.size),
+                where);
+  }
+  layout.data = span.data + offset;
+  return layout;
+}
+
+Elements checked_elements(const tinygltf::Model& model, int index, int components, const std::string& where) {
+  const std::string owner = fmt::format("accessor {}", index);
+  if (index < 0 || static_cast<std::size_t>(index) >= model.accessors.size())
+    throw Error(ErrorKind::kInput, fmt::format("there is no {} (of {})", owner, model.accessors.size()), where);
+  const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+  if (tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)) != components)
+    throw Error(ErrorKind::kInput, fmt::format("{} must have {} component(s) per element", owner, components), where);
+  if (accessor.count > kMostElements) {
+    throw Error(ErrorKind::kInput,
+                fmt::format("{} has {} elements; at most {} are read", owner, accessor.count, kMostElements), where);
+  }
+  Elements elements{nullptr, accessor.count, 0, accessor.componentType, static_cast<std::size_t>(components)};
+  component_size(accessor.componentType, owner, where);
+  if (accessor.bufferView < 0 && accessor.count > kMostZeros) {
+    throw Error(ErrorKind::kInput,
+                fmt::format("{} has {} elements and no buffer view; at most {} such zeros are read", owner,
+                            accessor.count, kMostZeros),
+                where);
+  }
+  if (accessor.bufferView < 0) return elements;
+  const Span span = checked_view(model, accessor.bufferView, owner, where);
+  elements.stride = model.bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteStride;
+  return place(elements, span, accessor.byteOffset, owner, where);
+}
+
+template <typename T>
+T load(const unsigned char* bytes) {
+  T value;
+  std::memcpy(&value, bytes, sizeof value);
+  return value;
+}
+
+double load_component(const unsigned char* bytes, int component_type) {
+  switch (component_type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return load<std::int8_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return load<std::uint8_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return load<std::int16_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load<std::uint16_t>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return load<std::uint32_t>(bytes);
+    default: return static_cast<double>(load<float>(bytes));
+  }
+}
+
+double largest_value(int component_type) {
+  switch (component_type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return 127.0;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 255.0;
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return 32767.0;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 65535.0;
+    default: return 1.0;
+  }
+}
+
+std::vector<double> load_all(const Elements& elements) {
+  std::vector<double> values(elements.count * elements.components, 0.0);
+  if (!elements.data) return values;
+  const std::size_t step = component_size(elements.component_type, "", "");
+  for (std::size_t i = 0; i < elements.count; ++i) {
+    for (std::size_t c = 0; c < elements.components; ++c) {
+      values[i * elements.components + c] =
+          load_component(elements.data + i * elements.stride + c * step, elements.component_type);
+    }
+  }
+  return values;
+}
+
+/// Replaces the elements that a sparse accessor lists.
+std::vector<double> with_sparse_values(std::vector<double> values, const tinygltf::Model& model,
+                                       const tinygltf::Accessor& accessor, const Elements& base,
+                                       const std::string& where) {
+  const auto& sparse = accessor.sparse;
+  const std::string owner = fmt::format("sparse accessor '{}'", accessor.name);
+  if (sparse.count < 0 || static_cast<std::size_t>(sparse.count) > base.count || sparse.indices.byteOffset < 0 ||
+      sparse.values.byteOffset < 0)
+    throw Error(ErrorKind::kInput, fmt::format("{} has a count or offset out of range", owner), where);
+  const auto count = static_cast<std::size_t>(sparse.count);
+  const Elements slots = place({nullptr, count, 0, sparse.indices.componentType, 1},
+                               checked_view(model, sparse.indices.bufferView, owner, where),
+                               static_cast<std::size_t>(sparse.indices.byteOffset), owner, where);
+  const Elements news = place({nullptr, count, 0, base.component_type, base.components},
+                              checked_view(model, sparse.values.bufferView, owner, where),
+                              static_cast<std::size_t>(sparse.values.byteOffset), owner, where);
+  const std::vector<double> slot_values = load_all(slots);
+  const std::vector<double> new_values = load_all(news);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(slot_values[i] >= 0.0 && slot_values[i] < static_cast<double>(base.count))) {
+      throw Error(ErrorKind::kInput, fmt::format("{} replaces element {} of {}", owner, slot_values[i], base.count),
+                  where);
+    }
+    std::copy_n(
+        new_values.begin() + static_cast<std::ptrdiff_t>(i * base.components), base.components,
+        values.begin() + static_cast<std::ptrdiff_t>(slot_values[i]) * static_cast<std::ptrdiff_t>(base.components));
+  }
+  return values;
+}
+
+std::vector<double> read_values(const tinygltf::Model& model, int index, int components, const std::string& where) {
+  const Elements elements = checked_elements(model, index, components, where);
+  const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+  std::vector<double> values = load_all(elements);
+  if (accessor.sparse.isSparse) values = with_sparse_values(std::move(values), model, accessor, elements, where);
+  return values;
+}
+
+}  // namespace
+
+std::vector<float> read_floats(const tinygltf::Model& model, int accessor, int components, const std::string& where) {
+  const std::vector<double> values = read_values(model, accessor, components, where);
+  const tinygltf::Accessor& source = model.accessors[static_cast<std::size_t>(accessor)];
+  const double scale = source.normalized ? 1.0 / largest_value(source.componentType) : 1.0;
+  std::vector<float> floats;
+  floats.reserve(values.size());
+  for (const double value : values)
+    floats.push_back(static_cast<float>(source.normalized ? std::max(value * scale, -1.0) : value));
+  return floats;
+}
+
+std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor, const std::string& where) {
+  const std::vector<double> values = read_values(model, accessor, 1, where);
+  const int type = model.accessors[static_cast<std::size_t>(accessor)].componentType;
+  const bool is_unsigned = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+                           type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+                           type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+  if (!is_unsigned) {
+    throw Error(ErrorKind::kInput,
+                fmt::format("accessor {} holds indices, but its component type {} is not an "
+                            "unsigned integer",
+                            accessor, type),
+                where);
+  }
+  std::vector<std::uint32_t> indices;
+  indices.reserve(values.size());
+  for (const double value : values) indices.push_back(static_cast<std::uint32_t>(value));
+  return indices;
+}
+
+std::vector<unsigned char> read_buffer_view(const tinygltf::Model& model, int view, const std::string& where) {
+  const Span span = checked_view(model, view, "image", where);
+  return {span.data, span.data + span.size};
+}
+
+}  // namespace shadowbench::scene

@@ -1,0 +1,270 @@
+#include "harness/scene/files/gltf_file.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "filters/base/error.h"
+#include "harness/scene/files/gltf_accessor.h"
+#include "harness/scene/files/gltf_parse.h"
+#include "harness/scene/mesh_tools.h"
+
+namespace shadowbench::scene {
+namespace {
+
+constexpr std::size_t kMostCorners = std::size_t{3} << 25;
+
+/// Turns the list of a strip's or fan's corners into separate triangles.
+std::vector<std::uint32_t> to_triangles(const std::vector<std::uint32_t>& corners, int mode) {
+  if (mode == TINYGLTF_MODE_TRIANGLES) return corners;
+  std::vector<std::uint32_t> triangles;
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    const bool fan = mode == TINYGLTF_MODE_TRIANGLE_FAN;
+    const bool odd = i % 2 == 1;
+    const std::uint32_t first = fan ? corners[0] : corners[odd ? i - 1 : i - 2];
+    const std::uint32_t second = fan ? corners[i - 1] : corners[odd ? i - 2 : i - 1];
+    triangles.insert(triangles.end(), {first, second, corners[i]});
+  }
+  return triangles;
+}
+
+/// Builds a model from a parsed file, part by part.
+class GltfImporter {
+ public:
+  GltfImporter(const tinygltf::Model& source, std::string where) : source_(source), where_(std::move(where)) {}
+
+  ImportedModel import() {
+    warn_of_extensions();
+    for (const tinygltf::Material& material : source_.materials) add_material(material);
+    for (const PlacedNode& placed : place_nodes(source_, where_)) {
+      const tinygltf::Node& node = source_.nodes[static_cast<std::size_t>(placed.node)];
+      if (node.mesh >= 0) add_mesh(node, placed.world_from_node);
+      if (node.camera >= 0) add_camera(node, placed.world_from_node);
+      add_light(node, placed.world_from_node);
+      if (node.skin >= 0) warn("skins are not modelled: meshes are drawn as modelled, unposed");
+    }
+    return std::move(result_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const { throw Error(ErrorKind::kInput, message, where_); }
+
+  void warn(const std::string& message) {
+    if (warned_.insert(message).second) result_.warnings.push_back(message);
+  }
+
+  void warn_of_extensions() {
+    for (const std::string& extension : source_.extensionsUsed) {
+      const bool harmless = extension.starts_with("KHR_materials_") || extension == "KHR_lights_punctual" ||
+                            extension == "KHR_mesh_quantization";
+      if (!harmless) warn(fmt::format("the extension {} is ignored", extension));
+    }
+  }
+
+  void add_material(const tinygltf::Material& source) {
+    Material material;
+    material.name = source.name.empty() ? fmt::format("material {}", result_.materials.size()) : source.name;
+    const std::vector<double>& factor = source.pbrMetallicRoughness.baseColorFactor;
+    if (factor.size() != 4) fail(fmt::format("the base colour of '{}' must have 4 numbers", material.name));
+    for (int i = 0; i < 4; ++i) material.base_color[i] = static_cast<float>(factor[static_cast<std::size_t>(i)]);
+    const tinygltf::TextureInfo& texture = source.pbrMetallicRoughness.baseColorTexture;
+    if (texture.index >= 0) material.base_color_texture = add_texture(texture.index);
+    material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
+    if (source.alphaMode == "MASK") {
+      material.alpha_mode = AlphaMode::kMask;
+    } else if (source.alphaMode == "BLEND") {
+      warn(fmt::format("material '{}' blends; it is drawn opaque", material.name));
+    } else if (source.alphaMode != "OPAQUE") {
+      fail(fmt::format("material '{}' has alphaMode '{}'; glTF knows OPAQUE, MASK and BLEND", material.name,
+                       source.alphaMode));
+    }
+    result_.materials.push_back(material);
+    texcoord_set_.push_back(texture.texCoord);
+  }
+
+  int add_texture(int index) {
+    if (static_cast<std::size_t>(index) >= source_.textures.size()) fail(fmt::format("there is no texture {}", index));
+    const int image = source_.textures[static_cast<std::size_t>(index)].source;
+    if (image < 0 || static_cast<std::size_t>(image) >= source_.images.size())
+      fail(fmt::format("texture {} has no image that can be read", index));
+    if (const auto known = texture_of_image_.find(image); known != texture_of_image_.end()) return known->second;
+    result_.textures.push_back(read_image(image));
+    return texture_of_image_[image] = static_cast<int>(result_.textures.size()) - 1;
+  }
+
+  Texture read_image(int index) const {
+    const tinygltf::Image& image = source_.images[static_cast<std::size_t>(index)];
+    const std::string fallback_name = image.uri.empty() ? fmt::format("image {}", index) : image.uri;
+    const std::string name = image.name.empty() ? fallback_name : image.name;
+    if (image.bufferView >= 0)
+      return decode_texture(read_buffer_view(source_, image.bufferView, where_), name, where_, result_.textures);
+    if (image.image.empty()) fail(fmt::format("the image '{}' is missing or empty", fallback_name));
+    return decode_texture(image.image, name, where_, result_.textures);
+  }
+
+  void add_mesh(const tinygltf::Node& node, const glm::dmat4& world_from_node) {
+    if (static_cast<std::size_t>(node.mesh) >= source_.meshes.size())
+      fail(fmt::format("there is no mesh {}", node.mesh));
+    for (const Mesh& local : local_meshes(node.mesh)) {
+      count_corners(local.indices.size());
+      Mesh mesh = transform_mesh(local, world_from_node);
+      if (!node.name.empty()) mesh.name = node.name;
+      result_.meshes.push_back(std::move(mesh));
+    }
+  }
+
+  /// Counts what is read and what is placed, since a small file can name the same numbers many times.
+  void count_corners(std::size_t corners) {
+    corner_count_ += corners;
+    if (corner_count_ > kMostCorners)
+      fail(fmt::format("it has more than {} triangles, as read or as placed", kMostCorners / 3));
+  }
+
+  /// The primitives of a mesh, read once however often the mesh is placed.
+  const std::vector<Mesh>& local_meshes(int index) {
+    if (const auto known = local_meshes_.find(index); known != local_meshes_.end()) return known->second;
+    const tinygltf::Mesh& source = source_.meshes[static_cast<std::size_t>(index)];
+    const std::string name = source.name.empty() ? fmt::format("mesh {}", index) : source.name;
+    std::vector<Mesh> meshes;
+    for (const tinygltf::Primitive& primitive : source.primitives)
+      if (is_drawn(primitive, name)) meshes.push_back(read_primitive(primitive, name));
+    return local_meshes_[index] = std::move(meshes);
+  }
+
+  bool is_drawn(const tinygltf::Primitive& primitive, const std::string& name) {
+    const bool has_faces = primitive.mode == TINYGLTF_MODE_TRIANGLES ||
+                           primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
+                           primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN;
+    if (!has_faces) warn(fmt::format("points and lines of '{}' are left out", name));
+    if (!primitive.attributes.contains("POSITION")) warn(fmt::format("a part of '{}' has no positions", name));
+    if (!primitive.targets.empty()) warn("morph targets are not modelled");
+    if (primitive.attributes.contains("COLOR_0")) warn("vertex colours are ignored");
+    return has_faces && primitive.attributes.contains("POSITION");
+  }
+
+  Mesh read_primitive(const tinygltf::Primitive& primitive, const std::string& name) {
+    Mesh mesh;
+    mesh.name = name;
+    mesh.material = material_of(primitive);
+    mesh.vertices = read_vertices(primitive, mesh);
+    count_corners(mesh.vertices.size());
+    mesh.indices = to_triangles(read_corners(primitive, mesh), primitive.mode);
+    count_corners(mesh.indices.size());
+    if (mesh.indices.size() % 3 != 0)
+      fail(fmt::format("'{}' has {} corners, which is no multiple of 3", name, mesh.indices.size()));
+    return primitive.attributes.contains("NORMAL") ? mesh : with_flat_normals(mesh);
+  }
+
+  int material_of(const tinygltf::Primitive& primitive) {
+    const auto count = source_.materials.size();
+    if (primitive.material >= 0 && static_cast<std::size_t>(primitive.material) < count) return primitive.material;
+    if (primitive.material >= 0) fail(fmt::format("there is no material {} (of {})", primitive.material, count));
+    if (result_.materials.size() == count) {
+      result_.materials.push_back({.name = "default"});
+      texcoord_set_.push_back(0);
+    }
+    return static_cast<int>(count);
+  }
+
+  std::vector<std::uint32_t> read_corners(const tinygltf::Primitive& primitive, const Mesh& mesh) const {
+    if (primitive.indices < 0) {
+      std::vector<std::uint32_t> all(mesh.vertices.size());
+      std::iota(all.begin(), all.end(), 0U);
+      return all;
+    }
+    std::vector<std::uint32_t> corners = read_indices(source_, primitive.indices, where_);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      if (corners[i] < mesh.vertices.size()) continue;
+      fail(fmt::format("index {} of '{}' is {}, but there are {} vertices", i, mesh.name, corners[i],
+                       mesh.vertices.size()));
+    }
+    return corners;
+  }
+
+  /// The floats of an attribute; empty where the primitive does not have it.
+  std::vector<float> read_attribute(const tinygltf::Primitive& primitive, const std::string& attribute,
+                                    int components) const {
+    const auto found = primitive.attributes.find(attribute);
+    if (found == primitive.attributes.end()) return {};
+    return read_floats(source_, found->second, components, where_);
+  }
+
+  std::vector<Vertex> read_vertices(const tinygltf::Primitive& primitive, const Mesh& mesh) const {
+    const std::string texcoord = fmt::format("TEXCOORD_{}", texcoord_set_[static_cast<std::size_t>(mesh.material)]);
+    const std::vector<float> positions = read_attribute(primitive, "POSITION", 3);
+    const std::vector<float> normals = read_attribute(primitive, "NORMAL", 3);
+    const std::vector<float> uvs = read_attribute(primitive, texcoord, 2);
+    const std::size_t count = positions.size() / 3;
+    const bool same_count =
+        (normals.empty() || normals.size() == 3 * count) && (uvs.empty() || uvs.size() == 2 * count);
+    if (!same_count) fail(fmt::format("the attributes of '{}' differ in their number of elements", mesh.name));
+    std::vector<Vertex> vertices(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      vertices[i].position_ws = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
+      if (!normals.empty()) vertices[i].normal_ws = {normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]};
+      if (!uvs.empty()) vertices[i].uv = {uvs[2 * i], uvs[2 * i + 1]};
+    }
+    return vertices;
+  }
+
+  void add_camera(const tinygltf::Node& node, const glm::dmat4& world_from_node) {
+    if (static_cast<std::size_t>(node.camera) >= source_.cameras.size())
+      fail(fmt::format("there is no camera {}", node.camera));
+    const tinygltf::Camera& source = source_.cameras[static_cast<std::size_t>(node.camera)];
+    Camera camera;
+    const std::string fallback_name = node.name.empty() ? fmt::format("camera {}", node.camera) : node.name;
+    camera.name = source.name.empty() ? fallback_name : source.name;
+    camera.position_ws = glm::vec3(world_from_node[3]);
+    camera.forward_ws = glm::vec3(-world_from_node[2]);
+    camera.up_ws = glm::vec3(world_from_node[1]);
+    if (source.type == "orthographic")
+      camera.orthographic_height_m = static_cast<float>(2.0 * source.orthographic.ymag);
+    else
+      camera.vertical_fov_rad = static_cast<float>(source.perspective.yfov);
+    result_.cameras.push_back(camera);
+  }
+
+  void add_light(const tinygltf::Node& node, const glm::dmat4& world_from_node) {
+    const auto extension = node.extensions.find("KHR_lights_punctual");
+    if (extension == node.extensions.end() || !extension->second.Has("light")) return;
+    const int index = extension->second.Get("light").GetNumberAsInt();
+    if (index < 0 || static_cast<std::size_t>(index) >= source_.lights.size())
+      fail(fmt::format("there is no light {}", index));
+    const tinygltf::Light& source = source_.lights[static_cast<std::size_t>(index)];
+    if (source.type != "directional") {
+      warn(fmt::format("{} lights are not modelled yet; they are left out", source.type));
+      return;
+    }
+    if (result_.light) {
+      warn("more than one directional light: only the first is used");
+      return;
+    }
+    Light light;
+    light.direction_ws = glm::vec3(-world_from_node[2]);
+    if (source.color.size() == 3)
+      for (int i = 0; i < 3; ++i) light.color[i] = static_cast<float>(source.color[static_cast<std::size_t>(i)]);
+    result_.light = light;
+  }
+
+  const tinygltf::Model& source_;
+  std::string where_;
+  ImportedModel result_;
+  std::set<std::string> warned_;
+  std::map<int, int> texture_of_image_;
+  std::map<int, std::vector<Mesh>> local_meshes_;
+  std::vector<int> texcoord_set_;  ///< per material
+  std::size_t corner_count_ = 0;
+};
+
+}  // namespace
+
+ImportedModel import_gltf(const std::filesystem::path& file) {
+  const tinygltf::Model source = parse_gltf(file);
+  return GltfImporter(source, file.string()).import();
+}
+
+}  // namespace shadowbench::scene

@@ -1,0 +1,162 @@
+#include "harness/scene/files/gltf_parse.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <new>
+#include <optional>
+#include <string_view>
+
+#include "filters/base/error.h"
+#include "harness/scene/files/file_bytes.h"
+
+namespace shadowbench::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Lets the parser see one folder and remembers what it was refused.
+struct FolderGuard {
+  std::string folder;
+  std::vector<std::string> refused;
+};
+
+bool exists_inside(const std::string& path, void* user_data) {
+  auto& guard = *static_cast<FolderGuard*>(user_data);
+  const std::string prefix = guard.folder + "/";
+  // The parser also looks in the working directory, where nothing of the model belongs.
+  if (!path.starts_with(prefix)) return false;
+  const std::string reference = path.substr(prefix.size());
+  if (reference.empty()) return false;
+  const std::optional<fs::path> inside = resolve_inside(guard.folder, reference);
+  if (!inside) {
+    guard.refused.push_back(reference);
+    return false;
+  }
+  std::error_code ignored;
+  return fs::is_regular_file(*inside, ignored);
+}
+
+std::string keep_path(const std::string& path, void*) { return path; }
+
+bool read_inside(std::vector<unsigned char>* bytes, std::string* failure, const std::string& path, void* user_data) {
+  if (!exists_inside(path, user_data)) return false;
+  try {
+    *bytes = read_file_bytes(path);
+    return true;
+  } catch (const Error& e) {
+    *failure += e.what();
+    return false;
+  }
+}
+
+/// Keeps an image encoded. Bytes from a buffer view are not touched: the parser has not checked their range.
+bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes,
+                  int size, void*) {
+  if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
+  image->as_is = true;
+  return true;
+}
+
+bool is_glb(const std::vector<unsigned char>& bytes) {
+  return bytes.size() >= 20 && std::memcmp(bytes.data(), "glTF", 4) == 0;
+}
+
+std::string_view json_of(const std::vector<unsigned char>& bytes) {
+  const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (!is_glb(bytes)) return all;
+  std::uint32_t length = 0;
+  std::memcpy(&length, bytes.data() + 12, sizeof length);
+  return all.substr(20, length);
+}
+
+/// The parser recurses; JSON nested without limit would end the program.
+int nesting_depth(std::string_view json) {
+  int depth = 0;
+  int deepest = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (quoted && c == '\\') ++i;
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (c == '{' || c == '[') deepest = std::max(deepest, ++depth);
+    if (c == '}' || c == ']') --depth;
+  }
+  return deepest;
+}
+
+std::string one_line(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  std::ranges::replace(text, '\n', ';');
+  return text.empty() ? "the parser gives no reason" : text;
+}
+
+void require_readable_extensions(const tinygltf::Model& model, const std::string& where) {
+  constexpr std::array<std::string_view, 2> kRead{"KHR_lights_punctual", "KHR_mesh_quantization"};
+  for (const std::string& extension : model.extensionsRequired) {
+    const bool only_looks = extension.starts_with("KHR_materials_");
+    if (only_looks || std::ranges::find(kRead, extension) != kRead.end()) continue;
+    throw Error(ErrorKind::kInput,
+                fmt::format("the file requires the extension {}, which is not supported; save it "
+                            "without",
+                            extension),
+                where);
+  }
+}
+
+void require_version_2(const tinygltf::Model& model, const std::string& where) {
+  const std::string& version = model.asset.version;
+  if (version.starts_with("2.") || version == "2") return;
+  throw Error(ErrorKind::kInput, fmt::format("this is glTF version '{}'; only 2.0 is read", version), where);
+}
+
+/// Parses from memory, so that every byte comes through the guard.
+bool parse_bytes(tinygltf::TinyGLTF& parser, tinygltf::Model* model, std::string* failure,
+                 const std::vector<unsigned char>& bytes, const std::string& folder) {
+  const auto size = static_cast<unsigned int>(bytes.size());
+  std::string warning;
+  try {
+    if (is_glb(bytes)) return parser.LoadBinaryFromMemory(model, failure, &warning, bytes.data(), size, folder);
+    const auto* text = reinterpret_cast<const char*>(bytes.data());
+    return parser.LoadASCIIFromString(model, failure, &warning, text, size, folder);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    *failure += e.what();
+    return false;
+  }
+}
+
+}  // namespace
+
+tinygltf::Model parse_gltf(const fs::path& file) {
+  constexpr int kDeepestJson = 200;
+  const std::string where = file.string();
+  const std::vector<unsigned char> bytes = read_file_bytes(file);
+  if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
+    throw Error(ErrorKind::kInput, "the file is larger than 4 GiB", where);
+  if (nesting_depth(json_of(bytes)) > kDeepestJson)
+    throw Error(ErrorKind::kInput, fmt::format("its JSON is nested more than {} deep", kDeepestJson), where);
+  FolderGuard guard{fs::absolute(file).lexically_normal().parent_path().string(), {}};
+  tinygltf::TinyGLTF parser;
+  parser.SetImageLoader(&keep_encoded, nullptr);
+  parser.SetFsCallbacks({&exists_inside, &keep_path, &read_inside, nullptr, &guard});
+  tinygltf::Model model;
+  std::string failure;
+  const bool parsed = parse_bytes(parser, &model, &failure, bytes, guard.folder);
+  if (!guard.refused.empty()) {
+    throw Error(ErrorKind::kInput,
+                fmt::format("it refers to '{}', outside its folder; such files are not read", guard.refused.front()),
+                where);
+  }
+  require_readable_extensions(model, where);
+  if (!parsed || !failure.empty()) throw Error(ErrorKind::kInput, "not valid glTF: " + one_line(failure), where);
+  require_version_2(model, where);
+  return model;
+}
+
+}  // namespace shadowbench::scene

@@ -1,0 +1,109 @@
+#include "harness/scene/files/model.h"
+
+#include <fmt/format.h>
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "filters/base/error.h"
+#include "harness/scene/files/gltf_file.h"
+#include "harness/scene/files/obj_file.h"
+#include "harness/scene/files/picture_header.h"
+
+namespace shadowbench::scene {
+namespace {
+
+std::string extension_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+bool is_gltf(const std::string& extension) { return extension == ".gltf" || extension == ".glb"; }
+
+/// Keeps the high byte of 16-bit channels.
+std::vector<std::uint8_t> to_8_bits(const tinygltf::Image& image) {
+  if (image.bits == 8) return image.image;
+  std::vector<std::uint8_t> high;
+  high.reserve(image.image.size() / 2);
+  for (std::size_t i = 1; i < image.image.size(); i += 2) high.push_back(image.image[i]);
+  return high;
+}
+
+/// Refuses what a picture's header claims before any memory is asked for.
+void require_usable_size(const std::vector<unsigned char>& bytes, const std::string& name, const std::string& where,
+                         const std::vector<Texture>& others) {
+  constexpr std::uint64_t kLongestSide = 16384;
+  constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 26;
+  constexpr std::uint64_t kMostPixelsOfAll = std::uint64_t{1} << 28;
+  const std::optional<PictureSize> size = read_picture_size(bytes);
+  if (!size) throw Error(ErrorKind::kInput, fmt::format("image '{}' cannot be decoded: use PNG or JPEG", name), where);
+  const bool short_enough = std::max(size->width, size->height) <= kLongestSide;
+  if (!short_enough || size->width * size->height > kMostPixels) {
+    throw Error(ErrorKind::kInput,
+                fmt::format("image '{}' says that it has {} x {} pixels; at most {} a side and {} in all are read",
+                            name, size->width, size->height, kLongestSide, kMostPixels),
+                where);
+  }
+  std::uint64_t pixels = size->width * size->height;
+  for (const Texture& other : others)
+    pixels += static_cast<std::uint64_t>(other.width) * static_cast<std::uint64_t>(other.height);
+  if (pixels <= kMostPixelsOfAll) return;
+  throw Error(ErrorKind::kInput,
+              fmt::format("with image '{}' its textures have {} pixels; at most {} are read: use smaller ones", name,
+                          pixels, kMostPixelsOfAll),
+              where);
+}
+
+}  // namespace
+
+bool is_model_file(const std::filesystem::path& file) {
+  const std::string extension = extension_of(file);
+  return is_gltf(extension) || extension == ".obj";
+}
+
+ImportedModel import_model(const std::filesystem::path& file) {
+  const std::string extension = extension_of(file);
+  if (is_gltf(extension)) return import_gltf(file);
+  if (extension == ".obj") return import_obj(file);
+  throw Error(ErrorKind::kInput, fmt::format("'{}' is no kind of model: use .gltf, .glb or .obj", extension),
+              file.string());
+}
+
+Scene add_model(Scene scene, ImportedModel model) {
+  const auto first_material = static_cast<int>(scene.materials.size());
+  const auto first_texture = static_cast<int>(scene.textures.size());
+  for (Material& material : model.materials) {
+    if (material.base_color_texture >= 0) material.base_color_texture += first_texture;
+    scene.materials.push_back(std::move(material));
+  }
+  for (Mesh& mesh : model.meshes) {
+    mesh.material += first_material;
+    scene.meshes.push_back(std::move(mesh));
+  }
+  std::ranges::move(model.textures, std::back_inserter(scene.textures));
+  std::ranges::move(model.warnings, std::back_inserter(scene.warnings));
+  return scene;
+}
+
+Texture decode_texture(const std::vector<unsigned char>& bytes, const std::string& name, const std::string& where,
+                       const std::vector<Texture>& others) {
+  if (bytes.empty() || bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw Error(ErrorKind::kInput, fmt::format("image '{}' has no usable size: {} bytes", name, bytes.size()), where);
+  require_usable_size(bytes, name, where, others);
+  tinygltf::Image image;
+  std::string failure;
+  std::string warning;
+  const bool decoded = tinygltf::LoadImageData(&image, 0, &failure, &warning, 0, 0, bytes.data(),
+                                               static_cast<int>(bytes.size()), nullptr);
+  if (!decoded || image.component != 4)
+    throw Error(ErrorKind::kInput, fmt::format("image '{}' cannot be decoded: use PNG or JPEG", name), where);
+  return {name, image.width, image.height, to_8_bits(image)};
+}
+
+}  // namespace shadowbench::scene

@@ -1,0 +1,325 @@
+#include "harness/tune/tune_filters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include "filters/base/error.h"
+#include "harness/measure/scene_measurement.h"
+#include "harness/run/run_facts.h"
+#include "harness/run/scene_loading.h"
+#include "harness/tune/tune_stage.h"
+#include "report/files/atomic_file.h"
+#include "report/files/folder_lock.h"
+#include "report/pages/tables.h"
+#include "report/pages/tuned_text.h"
+#include "report/records/csv.h"
+#include "report/records/tuned_json.h"
+
+namespace shadowbench::tune {
+namespace {
+
+constexpr double kWorstError = 1.0;  // of every metric that is tuned
+constexpr double kLargestPaddingShare = 1.0 / 64.0;
+constexpr double kLeastPadding = 4.0;
+
+using StageList = std::vector<std::unique_ptr<TuneStage>>;
+
+/// What is known of one filter between its search and its scoring.
+struct TunedFilter {
+  filters::FilterRequest request;  ///< at its defaults
+  filters::ParamValues found;
+  records::TunedFilterRecord record;
+};
+
+std::vector<TuneView> select_views(bool training) {
+  std::vector<TuneView> views;
+  std::ranges::copy_if(tune_views(), std::back_inserter(views),
+                       [&](const TuneView& view) { return view.training == training; });
+  return views;
+}
+
+/// Splits views by the light they need: each light has a map of its own.
+std::vector<std::vector<TuneView>> group_by_light(const std::vector<TuneView>& views) {
+  std::vector<std::vector<TuneView>> groups;
+  for (const TuneView& view : views) {
+    const auto same = std::ranges::find_if(
+        groups, [&](const auto& group) { return group.front().light_turn_deg == view.light_turn_deg; });
+    if (same != groups.end())
+      same->push_back(view);
+    else
+      groups.push_back({view});
+  }
+  return groups;
+}
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+class Tuner {
+ public:
+  Tuner(const TuneOptions& options, options::Progress& progress)
+      : options_(options),
+        progress_(progress),
+        metric_(find_tune_metric(options.metric)),
+        filters_(list_filters(options.run.filters)),
+        scenes_(run::load_scenes(options.run)),
+        renderer_(measure::make_renderer(options.run.backend, options.run.resources)),
+        cache_(options.run.cache, [&progress](const std::string& message) { progress.note("warning: " + message); }) {
+    describe();
+    settings_ = {&options_.run, &metric_, record_.pad_texels};
+  }
+
+  std::string run() {
+    const files::FolderLock lock(options_.run.out);  // a folder that cannot be written is better found now
+    progress_.begin(static_cast<int>(filters_.size()) * options_.budget, 0);
+    search_all();
+    score_unseen();
+    renderer_.context->require_no_gl_errors();
+    progress_.show(done_, "writing");
+    lock.require_in_place();
+    return write();
+  }
+
+ private:
+  const TuneOptions& options_;
+  options::Progress& progress_;
+  const TuneMetric& metric_;
+  std::vector<TunedFilter> filters_;
+  std::vector<scene::Scene> scenes_;
+  measure::Renderer renderer_;
+  measure::TruthCache cache_;
+  TuneSettings settings_;
+  records::TunedRecord record_;
+  std::string evaluations_;  ///< rows of evaluations.csv
+  int done_ = 0;
+
+  static std::vector<TunedFilter> list_filters(const std::vector<filters::FilterRequest>& requests) {
+    std::vector<TunedFilter> tuned;
+    for (const filters::FilterRequest& request : requests) {
+      const auto is_same = [&](const TunedFilter& known) { return known.request.spec.id == request.spec.id; };
+      if (std::ranges::any_of(tuned, is_same)) {
+        throw Error(ErrorKind::kUsage, fmt::format("--filter names '{}' twice, and tuned.json holds one setting of "
+                                                   "each: tune them apart, with another --out",
+                                                   request.spec.id));
+      }
+      if (list_searched_params(request).empty()) {
+        throw Error(
+            ErrorKind::kUsage,
+            fmt::format(
+                "there is nothing to tune of '{}': it has no numeric parameter with a range that is not const and not "
+                "set already; choose another filter (see 'list filters')",
+                request.label()));
+      }
+      tuned.push_back({request, {}, {}});
+    }
+    return tuned;
+  }
+
+  void describe() {
+    const options::RunOptions& run = options_.run;
+    record_.commit = run::build_commit();
+    const records::GlRecord gl = run::describe_gl(renderer_);
+    record_.renderer = fmt::format("{} ({})", gl.renderer, gl.backend);
+    record_.metric = metric_.name;
+    record_.map_size = run.map_sizes.front();
+    record_.width = run.width;
+    record_.height = run.height;
+    record_.widest_kernel = find_widest_kernel(run.filters);
+    record_.pad_texels = choose_tune_padding(record_.widest_kernel, record_.map_size);
+    record_.budget = options_.budget;
+    record_.tolerance = SearchSettings().tolerance;
+    record_.seed = run.seed;
+    if (run.light) record_.light = measure::describe_light(*run.light);
+    record_.bias = run.bias_texts;
+    record_.training_views = describe_tune_views(true);
+    record_.unseen_views = describe_tune_views(false);
+  }
+
+  std::unique_ptr<TuneStage> make_stage(const scene::Scene& scene, const std::vector<TuneView>& views) {
+    auto stage = std::make_unique<TuneStage>(renderer_, settings_, cache_, scene, views,
+                                             [this](const std::string& what) { progress_.show(done_, what); });
+    record_.notes.insert(record_.notes.end(), stage->left_out().begin(), stage->left_out().end());
+    return stage;
+  }
+
+  /// Throws where a scene cannot be scored in any view of one kind: a mean over the others would not be of all scenes.
+  void require_views(const scene::Scene& scene, std::size_t views, const char* kind) const {
+    if (views > 0) return;
+    throw Error(ErrorKind::kInput, fmt::format("no {} view of the scene '{}' can be scored by {} ({}); leave it out "
+                                               "with --scene, or choose a larger --size or "
+                                               "another --metric",
+                                               kind, scene.name, metric_.name, record_.notes.back()));
+  }
+
+  /// Makes the training views of all scenes, and forgets the scenes that have none and may be skipped.
+  StageList make_training_stages() {
+    StageList stages;
+    std::vector<scene::Scene> kept;
+    for (const scene::Scene& scene : scenes_) {
+      std::unique_ptr<TuneStage> stage = make_stage(scene, select_views(true));
+      const bool last_hope = &scene == &scenes_.back() && kept.empty();
+      if (!options_.skip_scenes || last_hope) require_views(scene, stage->views().size(), "training");
+      if (stage->views().empty()) continue;
+      stages.push_back(std::move(stage));
+      kept.push_back(scene);
+      record_.scenes.push_back(scene.name);
+    }
+    scenes_ = std::move(kept);
+    return stages;
+  }
+
+  void search_all() {
+    const StageList stages = make_training_stages();
+    for (TunedFilter& filter : filters_) {
+      search(filter, stages);
+      for (const auto& stage : stages) score(filter, *stage, true);
+    }
+  }
+
+  static filters::ParamValues with_values(const filters::FilterRequest& request,
+                                          const std::vector<SearchedParam>& params, const std::vector<double>& values) {
+    filters::ParamValues all = request.values;
+    for (std::size_t i = 0; i < params.size(); ++i) all[params[i].name] = values[i];
+    return all;
+  }
+
+  /// Gives the mean over all training views.
+  static double evaluate(const StageList& stages, render::FilterPasses& passes, const filters::ParamValues& values) {
+    std::vector<double> all;
+    for (const auto& stage : stages) {
+      const auto scores = stage->score(passes, values);
+      if (!scores) return kWorstError;
+      all.insert(all.end(), scores->begin(), scores->end());
+    }
+    return mean(all);
+  }
+
+  void search(TunedFilter& filter, const StageList& stages) {
+    const std::vector<SearchedParam> params = list_searched_params(filter.request);
+    const std::vector<ParamScale> scales(params.begin(), params.end());
+    render::FilterPasses passes = stages.front()->make_passes(filter.request);
+    const int before = done_;
+    SearchSettings search;
+    search.budget = options_.budget;
+    search.on_evaluation = [&](const Evaluation& evaluation) {
+      done_ = before + std::min(evaluation.number, options_.budget);
+      progress_.show(done_, fmt::format("{} · {} · {} {:.4g}", filter.request.spec.id, evaluation.stage, metric_.name,
+                                        evaluation.error));
+      note_evaluation(filter.request.spec.id, params, evaluation);
+    };
+    const SearchResult result = search_parameters(scales, search, [&](const std::vector<double>& values) {
+      return evaluate(stages, passes, with_values(filter.request, params, values));
+    });
+    done_ = before + options_.budget;
+    filter.found = with_values(filter.request, params, result.best);
+    note_search(filter, scales, result);
+  }
+
+  void note_evaluation(const std::string& id, const std::vector<SearchedParam>& params, const Evaluation& evaluation) {
+    std::string values;
+    for (std::size_t i = 0; i < params.size(); ++i)
+      values += fmt::format("{}{}={}", i > 0 ? " " : "", params[i].name, evaluation.values[i]);
+    evaluations_ += fmt::format("{},{},{},{},{}\r\n", id, evaluation.number, evaluation.stage,
+                                records::quote_csv(values), evaluation.error);
+  }
+
+  static void note_search(TunedFilter& filter, const std::vector<ParamScale>& scales, const SearchResult& result) {
+    records::TunedFilterRecord& record = filter.record;
+    record.id = filter.request.spec.id;
+    record.label = filter.request.label();
+    record.defaults = measure::record_params(filter.request.values);
+    record.search_evaluations = result.search_evaluations;
+    record.evaluations = result.evaluations;
+    for (std::size_t i = 0; i < scales.size(); ++i) {
+      const SearchedParam& param = scales[i].param();
+      const GoodRange& range = result.ranges[i];
+      records::TunedParamRecord& to = record.searched.emplace_back();
+      to = {param.name,       filter.request.spec.find_param(param.name)->unit,
+            scales[i].name(), param.min,
+            param.max,        param.default_value,
+            result.best[i],   {},
+            range.share,      range.no_effect};
+      for (const ValueInterval& interval : range.intervals) to.good.push_back({interval.low, interval.high});
+    }
+  }
+
+  /// Notes what default and found parameters score in every view of a stage.
+  void score(TunedFilter& filter, TuneStage& stage, bool training) const {
+    render::FilterPasses passes = stage.make_passes(filter.request);
+    const std::vector<double> worst(stage.views().size(), kWorstError);
+    const std::vector<double> at_default = stage.score(passes, filter.request.values).value_or(worst);
+    const std::vector<double> tuned = stage.score(passes, filter.found).value_or(worst);
+    for (std::size_t i = 0; i < worst.size(); ++i) {
+      const TuneStage::View& view = stage.views()[i];
+      filter.record.views.push_back(
+          {stage.scene().name, view.camera->name, training, {at_default[i], tuned[i]}, view.truth->standard_error});
+    }
+  }
+
+  /// One stage at a time: their truths need not stand in memory together.
+  void score_unseen() {
+    for (const scene::Scene& scene : scenes_) {
+      std::size_t views = 0;
+      for (const std::vector<TuneView>& group : group_by_light(select_views(false))) {
+        const std::unique_ptr<TuneStage> stage = make_stage(scene, group);
+        views += stage->views().size();
+        for (TunedFilter& filter : filters_) score(filter, *stage, false);
+      }
+      require_views(scene, views, "unseen");
+    }
+  }
+
+  std::string write() {
+    for (TunedFilter& filter : filters_) {
+      records::judge_tuning(filter.record, measure::record_params(filter.found),
+                            metric_.kind == TuneMetricKind::kStatistic);
+      record_.filters.push_back(filter.record);
+    }
+    const std::string text = pages::make_tuned_text(record_);
+    files::write_text_file(options_.run.out / "evaluations.csv",
+                           fmt::format("filter,evaluation,stage,parameters,{}\r\n", metric_.name) + evaluations_);
+    files::write_text_file(options_.run.out / "tune.md", text);
+    files::write_text_file(options_.run.out / "tuned.json", records::make_tuned_json(record_));
+    return text;
+  }
+};
+
+}  // namespace
+
+std::vector<SearchedParam> list_searched_params(const filters::FilterRequest& request) {
+  std::vector<SearchedParam> params;
+  for (const filters::ParamSpec& param : request.spec.params) {
+    const bool fixed = std::ranges::find(request.set_by_user, param.name) != request.set_by_user.end();
+    if (fixed || param.is_const || !param.choices.empty() || !param.min || !param.max || !(*param.min < *param.max))
+      continue;
+    params.push_back({param.name, *param.min, *param.max, std::get<double>(param.default_value), param.integer});
+  }
+  return params;
+}
+
+double find_widest_kernel(const std::vector<filters::FilterRequest>& requests) {
+  double widest = 0.0;
+  for (const filters::FilterRequest& request : requests) {
+    filters::ParamValues values = request.values;
+    for (const SearchedParam& param : list_searched_params(request)) values[param.name] = param.max;
+    widest = std::max(
+        {widest, filters::radius_texels(request.spec, request.values), filters::radius_texels(request.spec, values)});
+  }
+  return widest;
+}
+
+double choose_tune_padding(double widest_kernel_texels, int map_size) {
+  const double largest = std::max(kLeastPadding, std::floor(kLargestPaddingShare * map_size));
+  return std::min(std::ceil(widest_kernel_texels) + 1.0, largest);
+}
+
+std::string tune_filters(const TuneOptions& options, options::Progress& progress) {
+  return Tuner(options, progress).run();
+}
+
+}  // namespace shadowbench::tune

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+
+#include "harness/options/options.h"
+#include "harness/options/progress.h"
+#include "harness/tune/tuning.h"
+
+namespace shadowbench::tune {
+
+/// Everything that `shadowbench tune` is told.
+struct TuneOptions {
+  options::RunOptions
+      run;  ///< scenes, filters with the parameters that stay fixed, one map size, picture size, light, bias, folders
+  bool skip_scenes =
+      false;  ///< leave out scenes that have no training view to measure the metric in: nobody asked for them by name
+  std::string metric = "rmse";
+  int budget = 80;  ///< settings that the search draws of each filter
+};
+
+/// Lists the parameters of a request that are searched: numbers with a range that the request does not set, and that
+/// are not `const`, which would have to be compiled anew for every value.
+std::vector<SearchedParam> list_searched_params(const filters::FilterRequest& request);
+
+/// Gives the half-width in texels of the widest kernel that a search of these filters draws.
+double find_widest_kernel(const std::vector<filters::FilterRequest>& requests);
+
+/// Gives how many texels the maps of a search are padded by, the same for every setting: what the widest kernel needs,
+/// but at most a 64th of the map, at least 4. A kernel that reaches beyond reads depth 1, as it would in a larger map
+/// without casters.
+double choose_tune_padding(double widest_kernel_texels, int map_size);
+
+/// Finds the parameters of each filter that make the metric's mean over the training views (tune_views()) of all scenes
+/// least, and scores them, and the defaults, on views that were not trained on. Writes tuned.json, tune.md and
+/// evaluations.csv into the output folder. Returns the text of tune.md. Throws Error(kUsage) for an unknown metric, a
+/// filter named twice or without parameters to search, Error(kInput) where a scene that is not to be skipped, or every
+/// scene, has no view to measure the metric in, and as run_experiment. Cost: one prefilter per scene and one lookup per
+/// view for each setting; the truth of each view, once. Memory is that of the training views, whatever the number of
+/// settings.
+std::string tune_filters(const TuneOptions& options, options::Progress& progress);
+
+}  // namespace shadowbench::tune

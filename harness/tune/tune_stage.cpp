@@ -1,0 +1,113 @@
+#include "harness/tune/tune_stage.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/measure/cell_analysis.h"
+#include "harness/measure/filter_setup.h"
+#include "harness/measure/map_limits.h"
+#include "harness/measure/mean_flip.h"
+#include "harness/render/shade_pass.h"
+#include "report/images/picture_io.h"
+
+namespace shadowbench::tune {
+namespace {
+
+constexpr double kWorst = 1.0;  // of every metric that is tuned
+
+/// What was drawn of one view.
+struct Shot {
+  images::Image visibility;
+  images::Image picture;  ///< only for FLIP
+};
+
+double score_statistic(const TuneMetric& metric, images::Image visibility, const measure::SceneTruth& truth) {
+  for (std::size_t i = 0; i < visibility.texels.size(); ++i)
+    if (!std::isfinite(visibility.texels[i])) visibility.texels[i] = truth.area.texels[i] > 0.5f ? 0.0f : 1.0f;
+  const auto stats = metrics::measure_error(visibility.texels, truth.area.texels, truth.mask);
+  return stats ? (*stats).*metric.statistic : kWorst;
+}
+
+double score_shot(const TuneMetric& metric, const Shot& shot, const TuneStage::View& view) {
+  const metrics::ArtefactLimits& limits = metrics::kArtefactLimits;
+  const std::vector<float>& image = shot.visibility.texels;
+  switch (metric.kind) {
+    case TuneMetricKind::kStatistic: return score_statistic(metric, shot.visibility, *view.truth);
+    case TuneMetricKind::kFlip:
+      return measure::measure_mean_flip(measure::view_picture(images::round_to_half(shot.picture)),
+                                        view.truth->area_seen)
+          .value_or(kWorst);
+    case TuneMetricKind::kAcne: return metrics::rate_below(image, view.masks->acne, limits.acne_below).value_or(kWorst);
+    case TuneMetricKind::kLeak: return metrics::rate_above(image, view.masks->leak, limits.leak_above).value_or(kWorst);
+  }
+  return kWorst;
+}
+
+bool is_artefact(TuneMetricKind kind) { return kind == TuneMetricKind::kAcne || kind == TuneMetricKind::kLeak; }
+
+}  // namespace
+
+TuneStage::TuneStage(measure::Renderer& renderer, const TuneSettings& settings, measure::TruthCache& cache,
+                     const scene::Scene& scene, const std::vector<TuneView>& views,
+                     const std::function<void(const std::string&)>& on_view)
+    : renderer_(renderer),
+      settings_(settings),
+      scene_(make_tune_scene(scene, views)),
+      assets_(renderer, *settings.options, scene_, cache, settings.pad_texels),
+      target_("visibility", GL_R32F, settings.options->width, settings.options->height) {
+  light_ = &assets_.light_map(scene_.cameras.front(), settings.options->map_sizes.front());
+  for (const scene::Camera& camera : scene_.cameras) {
+    on_view(fmt::format("truth of {}, {}", scene_.name, camera.name));
+    View view{&camera, &assets_.truth(camera), std::nullopt};
+    if (view.truth->absent.empty() && is_artefact(settings.metric->kind))
+      view.masks = measure::find_artefact_masks(assets_.tracer(), light_->frustum, *view.truth, settings.pad_texels);
+    const std::string reason = explain_absent(view);
+    if (reason.empty())
+      views_.push_back(std::move(view));
+    else
+      left_out_.push_back(fmt::format("{}, {}: {}", scene_.name, camera.name, reason));
+  }
+}
+
+std::string TuneStage::explain_absent(const View& view) const {
+  if (!view.masks) return view.truth->absent;
+  const bool acne = settings_.metric->kind == TuneMetricKind::kAcne;
+  const std::vector<std::uint8_t>& mask = acne ? view.masks->acne : view.masks->leak;
+  const auto count = std::count(mask.begin(), mask.end(), 1);
+  if (count >= metrics::kFewestReceivers) return {};
+  return fmt::format("{} receivers are wholly {} with their surroundings, and a rate of {} needs {}", count,
+                     acne ? "lit" : "blocked", settings_.metric->name, metrics::kFewestReceivers);
+}
+
+render::LightSetup TuneStage::make_light(const filters::FilterRequest& request) const {
+  return measure::make_filter_light(*settings_.options, scene_.light, light_->frustum, request);
+}
+
+render::FilterPasses TuneStage::make_passes(const filters::FilterRequest& request) {
+  return render::FilterPasses(renderer_.shaders, request, light_->map, make_light(request));
+}
+
+std::optional<std::vector<double>> TuneStage::score(render::FilterPasses& passes, const filters::ParamValues& values) {
+  filters::FilterRequest request = passes.request();
+  request.values = values;
+  passes.retune(renderer_.shaders, values, make_light(request));
+  passes.prefilter(light_->map);
+  if (measure::count_broken_texels(passes, light_->map) > 0) return std::nullopt;
+  std::vector<Shot> shots(views_.size());
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    render::GBuffer& gbuffer = assets_.gbuffer(*views_[i].camera);
+    passes.lookup(gbuffer, light_->map, target_);
+    shots[i].visibility = render::read_image(target_.texture(), 1);
+    if (settings_.metric->kind != TuneMetricKind::kFlip) continue;
+    shots[i].picture = render::shade(renderer_.shaders, gbuffer, target_.texture(), scene_, *views_[i].camera);
+  }
+  std::vector<double> scores(views_.size());
+  tbb::parallel_for(std::size_t{0}, scores.size(),
+                    [&](std::size_t i) { scores[i] = score_shot(*settings_.metric, shots[i], views_[i]); });
+  return scores;
+}
+
+}  // namespace shadowbench::tune

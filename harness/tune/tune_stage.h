@@ -1,0 +1,71 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/measure/scene_assets.h"
+#include "harness/render/filter_passes.h"
+#include "harness/tune/tune_metric.h"
+#include "harness/tune/tune_views.h"
+#include "reference/metrics/artefacts.h"
+
+namespace shadowbench::tune {
+
+/// Says how tuning draws and scores, whatever the filter.
+struct TuneSettings {
+  const options::RunOptions* options = nullptr;  ///< one map size, no rounds
+  const TuneMetric* metric = nullptr;
+  double pad_texels =
+      0.0;  ///< around the scene in the map, and the widest kernel that the guard of artefacts allows for
+};
+
+/// One scene under one light with some of its views, ready to score any setting of any filter. Draws the map and the
+/// views and traces their truth once; scoring draws the prefilter once and one lookup for each view, and times nothing.
+class TuneStage {
+ public:
+  /// `on_view` hears of each view before it is traced. All but the scene must outlive this object.
+  TuneStage(measure::Renderer& renderer, const TuneSettings& settings, measure::TruthCache& cache,
+            const scene::Scene& scene, const std::vector<TuneView>& views,
+            const std::function<void(const std::string&)>& on_view);
+  TuneStage(const TuneStage&) = delete;
+  TuneStage& operator=(const TuneStage&) = delete;
+
+  /// A view that the metric can be measured in.
+  struct View {
+    const scene::Camera* camera = nullptr;
+    const measure::SceneTruth* truth = nullptr;
+    std::optional<metrics::ArtefactMasks> masks;  ///< only where the metric needs them
+  };
+  const std::vector<View>& views() const { return views_; }
+
+  /// Says which views cannot be scored, and why, a line for each.
+  const std::vector<std::string>& left_out() const { return left_out_; }
+
+  const scene::Scene& scene() const { return scene_; }
+
+  /// Compiles a filter, to be scored by this and all other stages of the same settings.
+  render::FilterPasses make_passes(const filters::FilterRequest& request);
+
+  /// Scores values of the filter's parameters in every view, in the order of views(). Gives nothing where the values
+  /// overflow the filter's map: infinite texels may hide in the image, and are not to be chosen for it. A pixel that is
+  /// not finite counts as wholly wrong.
+  std::optional<std::vector<double>> score(render::FilterPasses& passes, const filters::ParamValues& values);
+
+ private:
+  measure::Renderer& renderer_;
+  TuneSettings settings_;
+  scene::Scene scene_;
+  measure::SceneAssets assets_;
+  measure::LightMap* light_ = nullptr;
+  render::ImageTarget target_;
+  std::vector<View> views_;
+  std::vector<std::string> left_out_;
+
+  /// Gives why a view has no such metric; empty where it has.
+  std::string explain_absent(const View& view) const;
+  render::LightSetup make_light(const filters::FilterRequest& request) const;
+};
+
+}  // namespace shadowbench::tune

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/analysis/cell_group.h"
+#include "report/analysis/summary.h"
+#include "report/records/error_parts.h"
+
+namespace shadowbench::analysis {
+
+/// Ranks cells by their RMSE to the area truth, smallest first, as groups of indices into `cells` that are not ranked
+/// apart. A cell joins the group of the best cell from which it differs by no more than the truth's standard error, the
+/// larger of the two. Cells without an RMSE are left out.
+std::vector<std::vector<std::size_t>> rank_errors(const std::vector<records::CellRecord>& cells);
+
+/// Finds the part that alone is more than half of an error, as an index into list_error_parts().
+std::optional<std::size_t> find_dominating_part(const records::PartValues& shares);
+
+/// Is a cell's RMSE no larger than the standard error of the truth it is measured against? No where either is unknown.
+bool is_lost_in_truth(const records::CellRecord& cell);
+
+/// Says in plain sentences how wrong a group's cells are, where that comes from, and which faults show.
+std::vector<std::string> describe_accuracy(const CellGroup& group);
+
+}  // namespace shadowbench::analysis

@@ -1,0 +1,301 @@
+#include "report/analysis/advice.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <tuple>
+#include <variant>
+
+#include "filters/base/error.h"
+#include "filters/base/nearest_name.h"
+#include "report/analysis/summary.h"
+#include "report/records/absence.h"
+#include "report/records/format.h"
+
+namespace shadowbench::analysis {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr const char* kRmse = "error.rmse";
+
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
+
+void require_scenes(const std::vector<records::CellRecord>& cells, const std::vector<std::string>& wanted) {
+  std::set<std::string> known;
+  for (const records::CellRecord& cell : cells) known.insert(cell.scene);
+  for (const std::string& scene : wanted) {
+    if (known.contains(scene)) continue;
+    refuse(fmt::format("--scene: the run has no '{}'; it has {}", scene, fmt::join(known, ", ")));
+  }
+}
+
+void require_size(const std::vector<records::CellRecord>& cells, std::pair<int, int> wanted) {
+  std::set<std::string> known;
+  for (const records::CellRecord& cell : cells) {
+    if (std::pair(cell.width, cell.height) == wanted) return;
+    known.insert(fmt::format("{}x{}", cell.width, cell.height));
+  }
+  refuse(fmt::format("--size: the run has no pictures of {}x{}; it has {}", wanted.first, wanted.second,
+                     fmt::join(known, ", ")));
+}
+
+void require_claim(const std::vector<records::CellRecord>& cells, const AdviceRequest& request,
+                   const std::string& wanted) {
+  std::set<std::string> known;
+  for (const auto& [filter, made] : request.claims) known.insert(made.begin(), made.end());
+  for (const records::CellRecord& cell : cells)
+    if (cell.claims) known.insert(cell.claims->begin(), cell.claims->end());
+  if (known.contains(wanted)) return;
+  if (known.empty()) refuse(fmt::format("--requires: no filter claims '{}', nor anything else: leave it out", wanted));
+  refuse(fmt::format("--requires: no filter claims '{}'{}; filters claim {}", wanted,
+                     did_you_mean(wanted, {known.begin(), known.end()}), fmt::join(known, ", ")));
+}
+
+std::vector<const records::CellRecord*> choose_cells(const std::vector<records::CellRecord>& cells,
+                                                     const AdviceRequest& request) {
+  if (cells.empty()) throw Error(ErrorKind::kInput, "the run holds no cell: nothing can be advised; run it again");
+  require_scenes(cells, request.scenes);
+  if (request.size) require_size(cells, *request.size);
+  std::vector<const records::CellRecord*> chosen;
+  for (const records::CellRecord& cell : cells) {
+    const bool scene_fits = request.scenes.empty() || std::ranges::count(request.scenes, cell.scene) > 0;
+    const bool size_fits = !request.size || std::pair(cell.width, cell.height) == *request.size;
+    if (scene_fits && size_fits) chosen.push_back(&cell);
+  }
+  return chosen;
+}
+
+// Says why a value cannot be had, or nothing where it can.
+std::optional<std::string> find_gap(const std::vector<const records::CellRecord*>& cells, const LimitSpec& spec,
+                                    const Advice& advice) {
+  for (const records::CellRecord* cell : cells) {
+    if (spec.read(*cell, advice.request.light)) continue;
+    return fmt::format("no {} on {}: {}", spec.field, describe_place(place_of(*cell), advice.places),
+                       explain_absence(*cell, spec.field));
+  }
+  return std::nullopt;
+}
+
+bool has_nothing_to_see(const records::CellRecord& cell, const LimitSpec& spec, LightMotion light) {
+  return !spec.read(cell, light) && records::is_nothing_to_see(explain_absence(cell, spec.field));
+}
+
+// Says why a limit cannot be judged: a value is missing, or there is nothing to see anywhere.
+std::optional<std::string> find_limit_gap(const Configuration& configuration, const LimitSpec& spec,
+                                          const Advice& advice) {
+  std::vector<const records::CellRecord*> telling = configuration.cells;
+  std::erase_if(telling,
+                [&](const records::CellRecord* cell) { return has_nothing_to_see(*cell, spec, advice.request.light); });
+  if (!telling.empty()) return find_gap(telling, spec, advice);
+  return fmt::format("no {} anywhere: {}", spec.field, explain_absence(*configuration.cells.front(), spec.field));
+}
+
+// What the filter of a configuration claims; nothing where nobody knows.
+std::optional<std::vector<std::string>> find_claims(const Configuration& configuration, const AdviceRequest& request) {
+  const records::CellRecord& cell = *configuration.cells.front();
+  if (cell.claims) return cell.claims;
+  const auto known = request.claims.find(cell.filter);
+  return known != request.claims.end() ? std::optional(known->second) : std::nullopt;
+}
+
+std::optional<std::string> find_missing_cell(const Configuration& configuration, const std::vector<Place>& places) {
+  for (const Place& place : places) {
+    const auto cell = std::ranges::find_if(configuration.cells, [&](const auto* c) { return place_of(*c) == place; });
+    if (cell == configuration.cells.end()) return "not measured on " + describe_place(place, places);
+    if ((*cell)->status != records::CellStatus::kOk)
+      return fmt::format("did not finish on {} ({})", describe_place(place, places), records::describe_status(**cell));
+  }
+  return std::nullopt;
+}
+
+Verdict judge_limit(const std::vector<const records::CellRecord*>& cells, const Demand& demand, LightMotion light) {
+  Verdict verdict{true, -kInfinity};
+  const bool is_rmse = demand.spec->field == std::string(kRmse);
+  for (const records::CellRecord* cell : cells) {
+    if (!demand.spec->read(*cell, light)) {
+      verdict.nothing_to_see.push_back(cell);
+      continue;
+    }
+    const double value = *demand.spec->read(*cell, light);
+    if (value > *verdict.worst) {
+      verdict.worst = value;
+      verdict.where = cell;
+    }
+    if (is_rmse && demand.most - value < cell->truth.se.value_or(0.0)) verdict.lost_in_truth = cell;
+  }
+  verdict.kept = *verdict.worst <= demand.most;
+  if (!verdict.kept) verdict.lost_in_truth = nullptr;
+  return verdict;
+}
+
+Cost measure_cost(const std::vector<const records::CellRecord*>& cells, const AdviceRequest& request) {
+  Cost cost{0.0, {0.0, 0.0}, records::Interval{0.0, 0.0}};
+  const double weight = 1.0 / static_cast<double>(cells.size());
+  for (const records::CellRecord* cell : cells) {
+    const double value = *cost_spec(request.cheapest).read(*cell, request.light);
+    const bool timed = request.cheapest == CostKind::kTime;
+    const records::Quartiles spread =
+        timed ? *frame_time(*cell, request.light) : records::Quartiles{value, value, value, 1};
+    cost.mean += weight * value;
+    cost.quartiles.low += weight * spread.q1;
+    cost.quartiles.high += weight * spread.q3;
+    const auto& ratio = frame_ratio(*cell, request.light);
+    if (!timed || !ratio || !(ratio->median > 0.0)) cost.ratio.reset();
+    if (!cost.ratio) continue;
+    cost.ratio->low += weight * value * ratio->ci95.low / ratio->median;
+    cost.ratio->high += weight * value * ratio->ci95.high / ratio->median;
+  }
+  return cost;
+}
+
+std::variant<Candidate, Unjudged> judge(const Configuration& configuration, const Advice& advice) {
+  const AdviceRequest& request = advice.request;
+  if (const auto gap = find_missing_cell(configuration, advice.places)) return Unjudged{configuration, *gap, {}};
+  Candidate candidate{configuration, {}, {}};
+  for (std::size_t i = 0; i < request.demands.size(); ++i) {
+    const Demand& demand = request.demands[i];
+    if (demand.spec) {
+      if (const auto gap = find_limit_gap(configuration, *demand.spec, advice)) return Unjudged{configuration, *gap, i};
+      candidate.verdicts.push_back(judge_limit(configuration.cells, demand, request.light));
+      continue;
+    }
+    const auto claims = find_claims(configuration, request);
+    if (!claims) {
+      return Unjudged{configuration,
+                      fmt::format("the run does not say what '{}' claims, and it is no built-in filter",
+                                  configuration.cells.front()->filter),
+                      i};
+    }
+    candidate.verdicts.push_back({std::ranges::count(*claims, demand.claim) > 0, {}});
+  }
+  if (const auto gap = find_gap(configuration.cells, cost_spec(request.cheapest), advice))
+    return Unjudged{configuration, *gap, {}};
+  candidate.cost = measure_cost(configuration.cells, request);
+  return candidate;
+}
+
+double mean_or_infinity(const Candidate& candidate, const LimitSpec& spec, LightMotion light) {
+  double sum = 0.0;
+  for (const records::CellRecord* cell : candidate.configuration.cells)
+    sum += spec.read(*cell, light).value_or(kInfinity);
+  return sum;
+}
+
+void sort_by_cost(std::vector<Candidate>& candidates, LightMotion light) {
+  const LimitSpec& rmse = *std::ranges::find(limit_table(), std::string(kRmse), &LimitSpec::field);
+  const auto key = [&](const Candidate& candidate) {
+    return std::tuple(candidate.cost.mean, mean_or_infinity(candidate, cost_spec(CostKind::kTime), light),
+                      mean_or_infinity(candidate, rmse, light));
+  };
+  std::ranges::stable_sort(candidates, {}, key);
+}
+
+std::vector<std::size_t> list_failed(const Candidate& candidate) {
+  std::vector<std::size_t> failed;
+  for (std::size_t i = 0; i < candidate.verdicts.size(); ++i)
+    if (!candidate.verdicts[i].kept) failed.push_back(i);
+  return failed;
+}
+
+Obstacle find_obstacle(const Advice& advice, std::size_t demand) {
+  Obstacle obstacle;
+  double least = kInfinity;
+  for (std::size_t i = 0; i < advice.failing.size(); ++i) {
+    const Verdict& verdict = advice.failing[i].verdicts[demand];
+    if (verdict.kept) continue;
+    ++obstacle.failing;
+    if (list_failed(advice.failing[i]).size() > 1) continue;
+    ++obstacle.alone;
+    // The cheaper of two that are as near comes first. A claim has no size: there every one is as near.
+    if (obstacle.nearest && verdict.worst.value_or(0.0) >= least) continue;
+    least = verdict.worst.value_or(0.0);
+    obstacle.nearest = i;
+  }
+  for (const Unjudged& unjudged : advice.unjudged) obstacle.unknown += unjudged.demand == demand;
+  return obstacle;
+}
+
+// How far beyond its limits a candidate is; beyond a limit of 0, or without a claim, infinitely.
+double measure_excess(const Candidate& candidate, const std::vector<Demand>& demands) {
+  double excess = 0.0;
+  for (const std::size_t i : list_failed(candidate)) {
+    const double worst = candidate.verdicts[i].worst.value_or(kInfinity);
+    excess = std::max(excess, demands[i].most > 0.0 ? worst / demands[i].most : kInfinity);
+  }
+  return excess;
+}
+
+std::optional<std::size_t> find_closest(const Advice& advice) {
+  if (advice.failing.empty()) return std::nullopt;
+  const auto key = [&](const Candidate& candidate) {
+    return std::pair(list_failed(candidate).size(), measure_excess(candidate, advice.request.demands));
+  };
+  return static_cast<std::size_t>(std::ranges::min_element(advice.failing, {}, key) - advice.failing.begin());
+}
+
+// The candidates that fail this demand alone, those that fail it by least first.
+std::vector<std::size_t> list_held_back(const Advice& advice, std::size_t demand) {
+  std::vector<std::size_t> held;
+  for (std::size_t i = 0; i < advice.failing.size(); ++i)
+    if (list_failed(advice.failing[i]) == std::vector{demand}) held.push_back(i);
+  const auto worst = [&](std::size_t i) { return advice.failing[i].verdicts[demand].worst.value_or(0.0); };
+  std::ranges::stable_sort(held, {}, worst);
+  return held;
+}
+
+bool is_cheaper(const Candidate& candidate, const Candidate& than, CostKind kind) {
+  return candidate.cost.mean < than.cost.mean && !compare_costs(candidate, than, kind).tied;
+}
+
+void add_relaxations(Advice& advice, std::size_t demand) {
+  const CostKind kind = advice.request.cheapest;
+  const Candidate* last = &advice.keeping.front();
+  for (const std::size_t i : list_held_back(advice, demand)) {
+    if (!is_cheaper(advice.failing[i], *last, kind)) continue;
+    last = &advice.failing[i];
+    advice.relaxations.push_back({demand, i, compare_costs(*last, advice.keeping.front(), kind)});
+  }
+}
+
+}  // namespace
+
+CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, CostKind kind) {
+  const Cost &a = cheaper.cost, &b = dearer.cost;
+  CostGap gap{b.mean - a.mean, a.mean > 0.0 ? (b.mean - a.mean) / a.mean : 0.0, b.mean <= a.mean, Basis::kExact};
+  if (kind != CostKind::kTime) return gap;
+  const bool common = a.ratio && b.ratio && cheaper.configuration.surroundings == dearer.configuration.surroundings;
+  gap.basis = common ? Basis::kRatio : Basis::kQuartiles;
+  gap.tied = common ? a.ratio->high >= b.ratio->low : a.quartiles.high >= b.quartiles.low;
+  return gap;
+}
+
+Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest& request) {
+  for (const Demand& demand : request.demands)
+    if (!demand.spec) require_claim(cells, request, demand.claim);
+  Advice advice;
+  advice.request = request;
+  const std::vector<const records::CellRecord*> chosen = choose_cells(cells, request);
+  advice.places = list_places(chosen);
+  for (const Configuration& configuration : list_configurations(chosen)) {
+    auto verdict = judge(configuration, advice);
+    if (auto* unjudged = std::get_if<Unjudged>(&verdict)) {
+      advice.unjudged.push_back(std::move(*unjudged));
+      continue;
+    }
+    auto& candidate = std::get<Candidate>(verdict);
+    (list_failed(candidate).empty() ? advice.keeping : advice.failing).push_back(std::move(candidate));
+  }
+  sort_by_cost(advice.keeping, request.light);
+  sort_by_cost(advice.failing, request.light);
+  for (std::size_t i = 0; i < request.demands.size(); ++i) {
+    advice.obstacles.push_back(find_obstacle(advice, i));
+    if (!advice.keeping.empty()) add_relaxations(advice, i);
+  }
+  advice.closest = find_closest(advice);
+  return advice;
+}
+
+}  // namespace shadowbench::analysis

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "report/analysis/configuration.h"
+#include "report/analysis/limits.h"
+#include "report/records/records.h"
+
+namespace shadowbench::analysis {
+
+/// Says what is looked for.
+struct AdviceRequest {
+  std::vector<Demand> demands;
+  LightMotion light = LightMotion::kMoving;
+  CostKind cheapest = CostKind::kTime;
+  std::vector<std::string> scenes;          ///< empty: all of the run
+  std::optional<std::pair<int, int>> size;  ///< of the picture, pixels; empty: all of the run
+  std::map<std::string, std::vector<std::string>>
+      claims;  ///< of known filters, by id: for cells that do not hold theirs
+};
+
+/// Says how a configuration stands to one demand.
+struct Verdict {
+  bool kept = false;
+  std::optional<double> worst;                 ///< over the places; empty for a claim
+  const records::CellRecord* where = nullptr;  ///< the cell with the worst value
+  /// Cells that have nothing on which the limit could be broken; it counts as kept there.
+  std::vector<const records::CellRecord*> nothing_to_see = {};
+  /// Keeps a limit on the RMSE by less than the standard error of the truth it is measured against; null: none does.
+  const records::CellRecord* lost_in_truth = nullptr;
+};
+
+/// Holds a cost over all places, each counting the same.
+struct Cost {
+  double mean = 0.0;
+  records::Interval quartiles;  ///< mean of the lower and of the upper quartiles; of bytes and fetches: the mean twice
+  std::optional<records::Interval>
+      ratio;  ///< the mean, times what the 95 % interval of the ratio to `none` says of each place
+};
+
+/// Is a configuration that was judged.
+struct Candidate {
+  Configuration configuration;
+  Cost cost;
+  std::vector<Verdict> verdicts;  ///< one per demand
+};
+
+/// Is a configuration that cannot be said to keep the limits.
+struct Unjudged {
+  Configuration configuration;
+  std::string reason;
+  std::optional<std::size_t> demand;  ///< the first one that has no value
+};
+
+/// Says which spread decided whether two costs differ.
+enum class Basis {
+  kExact,      ///< bytes and fetches have none
+  kRatio,      ///< 95 % intervals of the ratio to the same `none`
+  kQuartiles,  ///< of the times, where there is no common `none`
+};
+
+/// Says how much more one configuration costs than another.
+struct CostGap {
+  double difference = 0.0;  ///< of the means, 0 or more
+  double share = 0.0;       ///< of the cheaper one's mean; 0 where that is 0
+  bool tied = false;        ///< the intervals overlap, or exact costs are equal
+  Basis basis = Basis::kExact;
+};
+
+/// Compares two costs. Requires that the mean of `cheaper` is not above that of `dearer`.
+CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, CostKind kind);
+
+/// Says how far one demand is in the way.
+struct Obstacle {
+  std::size_t failing = 0;             ///< judged configurations that fail it
+  std::size_t alone = 0;               ///< those of them that keep all the others
+  std::size_t unknown = 0;             ///< configurations that have no value for it
+  std::optional<std::size_t> nearest;  ///< index into `failing` of the one that fails it alone by the least
+};
+
+/// Is a configuration that one demand alone keeps from being the cheapest.
+struct Relaxation {
+  std::size_t demand = 0;
+  std::size_t candidate = 0;  ///< index into `failing`
+  CostGap saving;             ///< against the advised one
+};
+
+/// Holds what can be said about a choice.
+struct Advice {
+  AdviceRequest request;
+  std::vector<Place> places;
+  std::vector<Candidate> keeping;  ///< all demands, cheapest first: the first is advised, the second the runner-up
+  std::vector<Candidate> failing;  ///< cheapest first
+  std::vector<Unjudged> unjudged;
+  std::vector<Obstacle> obstacles;  ///< one per demand
+  std::vector<Relaxation>
+      relaxations;                     ///< by demand; a demand's own with every step dearer to grant and cheaper to run
+  std::optional<std::size_t> closest;  ///< index into `failing`: fails the fewest demands, among those by the least
+};
+
+/// Finds the cheapest configuration that keeps every demand in every place; the worst place decides. Configurations of
+/// the same cost are ordered by time, then RMSE.
+/// A configuration that was not measured in a place, did not finish there, or lacks a value there is not judged. A
+/// value that has nothing to be measured on in some places, as is_nothing_to_see() says, is judged on the others, if
+/// there are any. Requires that `cells` outlive what is returned. Throws Error(kUsage) for a scene or picture size that
+/// the run does not have, or a claim that no filter makes; Error(kInput) where there is no cell.
+Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest& request);
+
+}  // namespace shadowbench::analysis

@@ -1,0 +1,245 @@
+#include "report/analysis/advice_words.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <set>
+
+#include "report/analysis/summary.h"
+#include "report/records/format.h"
+
+namespace shadowbench::analysis {
+namespace {
+
+std::optional<double> worst_rmse(const Candidate& candidate) {
+  double worst = 0.0;
+  for (const records::CellRecord* cell : candidate.configuration.cells) {
+    if (!cell->error.rmse) return std::nullopt;
+    worst = std::max(worst, *cell->error.rmse);
+  }
+  return worst;
+}
+
+// What a tie hides: the one that is named second may be the more accurate.
+std::string compare_errors(const Candidate& first, const Candidate& second) {
+  const auto a = worst_rmse(first), b = worst_rmse(second);
+  if (!a || !b || *b >= *a) return "";
+  return fmt::format("; {} has the lower RMSE, {} against {} at worst", second.configuration.label,
+                     records::format_number(*b), records::format_number(*a));
+}
+
+std::optional<double> total_time(const Candidate& candidate, LightMotion light) {
+  double sum = 0.0;
+  for (const records::CellRecord* cell : candidate.configuration.cells) {
+    const auto time = frame_time(*cell, light);
+    if (!time) return std::nullopt;
+    sum += time->median;
+  }
+  return sum;
+}
+
+// Follows the order that advise() gives to equal costs.
+std::string explain_order(const Candidate& first, const Candidate& second, LightMotion light) {
+  const auto time_a = total_time(first, light), time_b = total_time(second, light);
+  if (time_a && (!time_b || *time_a < *time_b)) return "its shorter time";
+  const auto rmse_a = worst_rmse(first), rmse_b = worst_rmse(second);
+  return rmse_a && (!rmse_b || *rmse_a < *rmse_b) ? "its lower RMSE" : "standing first in the run";
+}
+
+std::string describe_tie(const Advice& advice, const CostGap& gap) {
+  const Candidate &first = advice.keeping[0], &second = advice.keeping[1];
+  const std::string& name = first.configuration.label;
+  if (gap.basis == Basis::kExact) {
+    return fmt::format("a tie, at the same cost: {} is named first for {}", name,
+                       explain_order(first, second, advice.request.light));
+  }
+  return fmt::format("a tie, for their {} overlap: {} is named first for its lower mean{}",
+                     gap.basis == Basis::kRatio ? "95 % intervals" : "quartiles", name, compare_errors(first, second));
+}
+
+std::string count_ties(const Advice& advice) {
+  std::vector<std::string> labels;
+  for (std::size_t i = 2; i < advice.keeping.size(); ++i) {
+    if (!compare_costs(advice.keeping[0], advice.keeping[i], advice.request.cheapest).tied) continue;
+    labels.push_back(advice.keeping[i].configuration.label);
+  }
+  if (labels.empty()) return "";
+  if (labels.size() > 3) return fmt::format("; {} more are tied with it", labels.size());
+  return fmt::format("; tied with it too: {}", fmt::join(labels, ", "));
+}
+
+std::string describe_obstacle(const Advice& advice, std::size_t i) {
+  const Obstacle& obstacle = advice.obstacles[i];
+  const Candidate& nearest = advice.failing[*obstacle.nearest];
+  const auto worst = nearest.verdicts[i].worst;
+  const std::string way = worst ? format_limit(*worst) + " would let" : "without it there is";
+  return fmt::format("{} ({} {} it alone; {} {}{})", describe_demand(advice.request.demands[i]), obstacle.alone,
+                     obstacle.alone > 1 ? "fail" : "fails", way, nearest.configuration.label, worst ? " through" : "");
+}
+
+std::string list_settings_that_vary(const std::set<std::string>& values) {
+  return values.size() > 1 ? fmt::format("{}", fmt::join(values, ", ")) : "";
+}
+
+// Settings that belong to the question more than to the answer.
+void add_setting_notes(std::vector<std::string>& notes, const std::vector<const records::CellRecord*>& cells) {
+  std::set<std::string> sizes, lights;
+  for (const records::CellRecord* cell : cells) {
+    sizes.insert(fmt::format("{}x{}", cell->width, cell->height));
+    lights.insert(cell->light);
+  }
+  if (const std::string list = list_settings_that_vary(sizes); !list.empty()) {
+    notes.push_back(
+        fmt::format("Pictures of {} pixels compete here, and a smaller one costs less: --size chooses.", list));
+  }
+  if (const std::string list = list_settings_that_vary(lights); !list.empty())
+    notes.push_back(fmt::format("Lights at {} compete here, as if a renderer could choose.", list));
+}
+
+std::vector<const records::CellRecord*> list_judged_cells(const Advice& advice) {
+  std::vector<const records::CellRecord*> cells;
+  for (const auto* candidates : {&advice.keeping, &advice.failing})
+    for (const Candidate& candidate : *candidates)
+      cells.insert(cells.end(), candidate.configuration.cells.begin(), candidate.configuration.cells.end());
+  return cells;
+}
+
+bool uses_time(const AdviceRequest& request) {
+  return request.cheapest == CostKind::kTime ||
+         std::ranges::any_of(
+             request.demands, [](const Demand& d) { return d.spec == &cost_spec(CostKind::kTime); });
+}
+
+void add_time_notes(std::vector<std::string>& notes, const std::vector<const records::CellRecord*>& cells,
+                    const records::GlRecord& gl) {
+  if (gl.software)
+    notes.push_back(fmt::format("Times are {}: a GPU ranks filters differently.", records::describe_clock(gl)));
+  const bool once = std::ranges::any_of(
+      cells, [](const records::CellRecord* c) { return c->time_ms.lookup && c->time_ms.lookup->n < 2; });
+  if (once) notes.push_back("Times of a single round have no spread, so their order may be chance: raise --rounds.");
+}
+
+// Where a limit could not be broken: by the advised one, or, where there is none, by any that was judged.
+void add_notes_of_nothing_to_see(std::vector<std::string>& notes, const Advice& advice) {
+  const bool fits = !advice.keeping.empty();
+  const std::vector<Candidate>& judged = fits ? advice.keeping : advice.failing;
+  for (std::size_t i = 0; i < advice.request.demands.size(); ++i) {
+    std::vector<std::string> places;
+    std::string reason;
+    for (const Candidate& candidate : judged) {
+      for (const records::CellRecord* cell : candidate.verdicts[i].nothing_to_see) {
+        const std::string place = describe_place(place_of(*cell), advice.places);
+        if (std::ranges::count(places, place) == 0) places.push_back(place);
+        if (reason.empty()) reason = explain_absence(*cell, advice.request.demands[i].spec->field);
+      }
+      if (fits) break;
+    }
+    if (places.empty()) continue;
+    notes.push_back(fmt::format("{} could not be judged on {}, and cannot be broken there: {}.",
+                                describe_demand(advice.request.demands[i]), fmt::join(places, ", "), reason));
+  }
+}
+
+}  // namespace
+
+std::string format_cost(double value, CostKind kind, const records::GlRecord& gl) {
+  switch (kind) {
+    case CostKind::kTime: return fmt::format("{} {}", records::format_number(value), records::time_unit(gl));
+    case CostKind::kBytes: return fmt::format("{} bytes", records::format_number(value));
+    case CostKind::kFetches: break;
+  }
+  return fmt::format("{} {}", records::format_number(value), value == 1.0 ? "fetch" : "fetches");
+}
+
+std::string format_limit(double value) {
+  if (std::nearbyint(value) == value) return fmt::format("{:.0f}", value);
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
+  std::string text = fmt::format("{:.3g}", value);
+  for (int steps = 1; std::stod(text) < value; ++steps) text = fmt::format("{:.3g}", value + steps * unit);
+  return text;
+}
+
+std::string format_kept(double value, double most) {
+  std::string text = records::format_number(value);
+  for (int digits = 4; std::stod(text) > most && digits <= 17; ++digits) text = fmt::format("{:.{}g}", value, digits);
+  return text;
+}
+
+std::string describe_frame(const AdviceRequest& request) {
+  if (request.cheapest != CostKind::kTime) return "";
+  return request.light == LightMotion::kMoving ? " a frame, moving light" : " a frame, static light";
+}
+
+std::string describe_runner_up(const Advice& advice, const records::GlRecord& gl) {
+  assert(advice.keeping.size() > 1);
+  const CostKind kind = advice.request.cheapest;
+  const CostGap gap = compare_costs(advice.keeping[0], advice.keeping[1], kind);
+  if (gap.tied) return describe_tie(advice, gap) + count_ties(advice);
+  const char* apart = gap.basis == Basis::kExact   ? ""
+                      : gap.basis == Basis::kRatio ? "; the 95 % intervals are apart"
+                                                   : "; the quartiles are apart";
+  return fmt::format("dearer by {} ({:.0f} %){}", format_cost(gap.difference, kind, gl), 100.0 * gap.share, apart);
+}
+
+std::string describe_closest(const Advice& advice) {
+  assert(advice.closest);
+  const Candidate& closest = advice.failing[*advice.closest];
+  std::vector<std::string> broken;
+  for (std::size_t i = 0; i < closest.verdicts.size(); ++i) {
+    if (closest.verdicts[i].kept) continue;
+    const auto worst = closest.verdicts[i].worst;
+    broken.push_back(describe_demand(advice.request.demands[i]) + (worst ? " with " + format_limit(*worst) : ""));
+  }
+  return fmt::format("{} comes closest, and breaks {}", closest.configuration.label, fmt::join(broken, " and "));
+}
+
+std::string describe_failure(const Advice& advice) {
+  assert(advice.keeping.empty());
+  const std::size_t total = advice.failing.size() + advice.unjudged.size();
+  if (advice.failing.empty())
+    return fmt::format("none of {} configurations can be judged: {}", total, fmt::join(count_unjudged(advice), "; "));
+  std::vector<std::string> obstacles;
+  for (std::size_t i = 0; i < advice.obstacles.size(); ++i)
+    if (advice.obstacles[i].alone > 0) obstacles.push_back(describe_obstacle(advice, i));
+  return fmt::format("none of {} configurations keeps the limits; {}", total,
+                     obstacles.empty() ? "no single one is in the way: " + describe_closest(advice)
+                                       : fmt::format("in the way: {}", fmt::join(obstacles, ", ")));
+}
+
+std::vector<std::string> list_advice_notes(const Advice& advice, const records::GlRecord& gl) {
+  std::vector<std::string> notes;
+  if (advice.request.demands.empty()) {
+    notes.emplace_back(
+        "No limit was given: what does least is then the cheapest; --max-rmse or another limit asks for more.");
+  }
+  const std::vector<const records::CellRecord*> cells = list_judged_cells(advice);
+  if (uses_time(advice.request)) add_time_notes(notes, cells, gl);
+  add_notes_of_nothing_to_see(notes, advice);
+  add_setting_notes(notes, cells);
+  if (advice.keeping.empty()) return notes;
+  for (const records::CellRecord* cell : advice.keeping.front().configuration.cells) {
+    if (cell->nan.value_or(0) == 0) continue;
+    notes.push_back(fmt::format("{} pixels of it on {} are not finite, and are left out of every number here.",
+                                *cell->nan, describe_place(place_of(*cell), advice.places)));
+  }
+  return notes;
+}
+
+std::vector<std::string> count_unjudged(const Advice& advice) {
+  std::vector<std::pair<std::string, int>> counts;
+  for (const Unjudged& unjudged : advice.unjudged) {
+    const auto found = std::ranges::find(counts, unjudged.reason, &std::pair<std::string, int>::first);
+    if (found == counts.end())
+      counts.emplace_back(unjudged.reason, 1);
+    else
+      ++found->second;
+  }
+  std::vector<std::string> texts;
+  for (const auto& [reason, count] : counts) texts.push_back(fmt::format("{}: {}", count, reason));
+  return texts;
+}
+
+}  // namespace shadowbench::analysis

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/analysis/advice.h"
+
+namespace shadowbench::analysis {
+
+/// Writes a cost for people, with its unit: "4.39 ms (CPU)", "4194304 bytes", "4 fetches".
+std::string format_cost(double value, CostKind kind, const records::GlRecord& gl);
+
+/// Writes a number that is no smaller than the value, with three significant digits: as a limit it lets the value pass.
+std::string format_limit(double value);
+
+/// Writes a value that keeps a limit, with as many digits, three or more, as show that it does.
+std::string format_kept(double value, double most);
+
+/// Says behind a cost what it is paid for: " a frame, moving light"; empty where that is not time.
+std::string describe_frame(const AdviceRequest& request);
+
+/// Says why the runner-up lost, or that it ties and why it is named second. Requires two that keep the demands.
+std::string describe_runner_up(const Advice& advice, const records::GlRecord& gl);
+
+/// Says which demands the closest of those that fail breaks, and by what. Requires that there is one.
+std::string describe_closest(const Advice& advice);
+
+/// Says on one line which demands are in the way. Requires that nothing keeps them all.
+std::string describe_failure(const Advice& advice);
+
+/// Says in one sentence each what weakens the advice.
+std::vector<std::string> list_advice_notes(const Advice& advice, const records::GlRecord& gl);
+
+/// Counts the configurations that could not be judged, by reason: "3 not measured on stack".
+std::vector<std::string> count_unjudged(const Advice& advice);
+
+}  // namespace shadowbench::analysis

@@ -1,0 +1,35 @@
+#include "report/analysis/cell_group.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "report/records/cell_key.h"
+#include "report/records/format.h"
+#include "report/records/json_values.h"
+
+namespace shadowbench::analysis {
+
+std::vector<CellGroup> group_cells(const std::vector<records::CellRecord>& cells) {
+  std::vector<CellGroup> groups;
+  std::map<std::string, std::size_t> places;
+  for (const records::CellRecord& cell : cells) {
+    auto settings = records::cell_settings(cell);
+    settings.erase("filter");
+    settings.erase("params");
+    const auto [place, is_new] = places.emplace(records::dump_line(settings), groups.size());
+    if (is_new) groups.push_back({cell.scene, {}});
+    groups[place->second].cells.push_back(cell);
+  }
+  return groups;
+}
+
+std::string label_cell(const CellGroup& group, const records::CellRecord& cell) {
+  const auto count = std::count_if(group.cells.begin(), group.cells.end(),
+                                   [&](const records::CellRecord& other) { return other.filter == cell.filter; });
+  return count > 1 && !cell.params.empty() ? fmt::format("{} ({})", cell.filter, records::describe_params(cell.params))
+                                           : cell.filter;
+}
+
+}  // namespace shadowbench::analysis

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/records/records.h"
+
+namespace shadowbench::analysis {
+
+/// Names what a filter is judged on: a scene, seen from one of its views.
+struct Place {
+  std::string scene;
+  std::string view;
+  bool operator==(const Place&) const = default;
+};
+
+/// Returns where a cell was measured.
+Place place_of(const records::CellRecord& cell);
+
+/// Lists where cells were measured, each place once, in the order in which they appear.
+std::vector<Place> list_places(const std::vector<const records::CellRecord*>& cells);
+
+/// Names a place for people: its scene, and its view where the scene has several.
+std::string describe_place(const Place& place, const std::vector<Place>& places);
+
+/// Holds the cells that differ in nothing but scene and view: what a renderer would choose as a whole.
+struct Configuration {
+  std::string label;                              ///< filter and map, and all else in which the configurations differ
+  std::string surroundings;                       ///< canonical settings without filter and parameters
+  std::vector<const records::CellRecord*> cells;  ///< in the order of the run; never empty
+};
+
+/// Groups cells into configurations, in the order in which each first appears; no two have one label.
+/// Requires that the cells outlive what is returned.
+std::vector<Configuration> list_configurations(const std::vector<const records::CellRecord*>& cells);
+
+}  // namespace shadowbench::analysis

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/analysis/front.h"
+#include "report/analysis/trade.h"
+
+namespace shadowbench::analysis {
+
+/// Is a time measured at one kernel radius.
+struct RadiusPoint {
+  double radius_texels = 0.0;
+  Estimate still;   ///< ms: the lookup alone
+  Estimate moving;  ///< ms: map, prefilter and lookup
+};
+
+/// Is one filter over its kernel radius, all else being equal.
+struct RadiusCurve {
+  std::string filter;
+  std::string label;                ///< with the parameters that tell it from the filter's other curves
+  bool prefiltered = false;         ///< blurs the map beforehand: cost.prefilter_texels > 0
+  bool many_taps = false;           ///< not prefiltered, and reads the map more than once per receiver
+  std::vector<RadiusPoint> points;  ///< by ascending radius
+};
+
+/// Is what one scene, view, map and picture size say of time over radius.
+struct RadiusChart {
+  std::string scope_id;
+  std::string title;  ///< "cubes · view main · 480 × 270 · map 512"
+  std::string scene;
+  std::string view;
+  int map_size = 0;
+  int width = 0;
+  int height = 0;
+  std::vector<RadiusCurve> curves;
+};
+
+/// Says which passes are paid in a frame.
+enum class LightState { kStill, kMoving };
+
+/// Compares a prefiltered curve with one that reads many taps, at the radii that both cover.
+///
+/// A radius counts where one of the curves was measured and the other was measured there, or on both sides of it, where
+/// its time is interpolated, its logarithm linearly over the radius. Cheaper and dearer are said where the intervals do
+/// not overlap.
+struct CurveComparison {
+  std::size_t prefiltered = 0;  ///< index into the chart's curves
+  std::size_t taps = 0;         ///< likewise
+  LightState light = LightState::kStill;
+  std::vector<double> radii;           ///< ascending; none where the curves have no radius in common
+  std::vector<int> signs;              ///< at each: -1 prefiltered is cheaper, 0 not apart, 1 it is dearer
+  std::vector<RadiusPoint> crossings;  ///< where the medians meet, between two of the radii; the light's time is set
+};
+
+/// Sorts cells into charts. Configurations of one filter that differ in parameters which the kernel's radius follows
+/// from are one curve: those parameters whose value changes exactly with the radius. Charts without a prefiltered curve
+/// or without one of many taps are left out. Radii are `kernel_radius_texels`; cells without it are left out.
+std::vector<RadiusChart> make_radius_charts(const std::vector<records::CellRecord>& cells,
+                                            const std::vector<TradeScope>& scopes);
+
+/// Gives a curve's time at a radius: measured or interpolated; nothing outside the radii measured.
+std::optional<Estimate> time_at(const RadiusCurve& curve, double radius_texels, LightState light);
+
+/// Compares all pairs of a chart that have a radius in common.
+std::vector<CurveComparison> compare_curves(const RadiusChart& chart, LightState light);
+
+/// Says where the prefiltered curve is cheaper, to follow "is cheaper": "from a kernel radius of 4 texels on, of 2, 4
+/// compared".
+std::string describe_comparison(const CurveComparison& comparison);
+
+/// Says in plain sentences from which kernel radius on prefiltered maps beat filters that read many taps, where the
+/// cells support it; one sentence per pair of curves and state of the light, with the places where it holds.
+std::vector<std::string> describe_crossovers(const std::vector<RadiusChart>& charts);
+
+}  // namespace shadowbench::analysis

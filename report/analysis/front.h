@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace shadowbench::analysis {
+
+/// Is a value with the ends of its interval; both ends equal the value where it is exact.
+struct Estimate {
+  double value = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// Is one cell in the plane of the trade; less is better in both.
+struct FrontPoint {
+  Estimate error;
+  Estimate cost;
+};
+
+/// Says how a cell stands to the front.
+enum class Standing {
+  kFront,      ///< no cell of the front dominates it or is tied with it
+  kTied,       ///< a cell of the front differs from it in neither error nor cost
+  kDominated,  ///< a cell of the front beats it
+};
+
+/// Is a cell's place: `by` is the cell of the front that it is tied with or dominated by, itself where it is on it.
+struct Placement {
+  Standing standing = Standing::kFront;
+  std::size_t by = 0;
+};
+
+/// Is one error smaller than another by more than is uncertain? Errors of one scene are measured against one truth,
+/// whose standard error is the half-width of their intervals: a difference counts where it exceeds the larger
+/// half-width, as in rank_errors(). Exact errors differ where they are not equal.
+bool is_clearly_less_error(const Estimate& a, const Estimate& b);
+
+/// Is one cost below another, their intervals not touching?
+bool is_clearly_less_cost(const Estimate& a, const Estimate& b);
+
+/// Does `a` beat `b`: its cost is no higher, its error is not clearly larger, and one of the two is clearly less?
+/// Costs are compared by their values, because each has an interval of its own: a badly timed cell must not beat others
+/// by being uncertain. Errors of one scene share their uncertainty, so that a gain within it is no gain.
+bool dominates(const FrontPoint& a, const FrontPoint& b);
+
+/// Does neither error nor cost tell the two apart?
+bool is_tied(const FrontPoint& a, const FrontPoint& b);
+
+/// Finds the Pareto front and every other cell's place; entry i is of point i.
+///
+/// Cells are taken cheapest first; each joins the front unless a member dominates it or is tied with it. Of members
+/// that dominate it the cheapest is named, and failing that of those that are tied with it. Ties are therefore always
+/// with a member, never with a cell that is itself only tied, so that no chain of small steps joins cells that are far
+/// apart. Being tied is not transitive: two cells tied with one member may differ. Cost: cells times members.
+std::vector<Placement> find_front(const std::vector<FrontPoint>& points);
+
+/// Lists the front's members, cheapest first.
+std::vector<std::size_t> list_members(const std::vector<FrontPoint>& points, const std::vector<Placement>& placements);
+
+}  // namespace shadowbench::analysis

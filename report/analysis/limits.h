@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "report/records/records.h"
+
+namespace shadowbench::analysis {
+
+/// Says which passes a frame pays for: map, prefilter and lookup (moving), or the lookup alone (static).
+enum class LightMotion { kMoving, kStatic };
+
+/// Says what is to be cheap.
+enum class CostKind { kTime, kBytes, kFetches };
+
+/// Describes one number of a cell that may be limited; less is better.
+struct LimitSpec {
+  const char* option;  ///< "--max-rmse"
+  const char* field;   ///< of the record: "error.rmse"; "time_ms" for a sum over passes
+  const char* text;    ///< for help
+  std::optional<double> (*read)(const records::CellRecord& cell, LightMotion light);
+};
+
+/// Lists everything that may be limited.
+std::span<const LimitSpec> limit_table();
+
+/// Returns the entry of the table that a cost is read by.
+const LimitSpec& cost_spec(CostKind kind);
+
+/// Returns what one frame takes: the sums of the passes' medians and quartiles, which makes the quartiles of several
+/// passes wider than those of their sum. Nothing where a pass that is paid was not timed.
+std::optional<records::Quartiles> frame_time(const records::CellRecord& cell, LightMotion light);
+
+/// Returns the ratio to `none` of what one frame takes.
+const std::optional<records::Ratio>& frame_ratio(const records::CellRecord& cell, LightMotion light);
+
+/// Returns why a cell lacks a value: what `absent` says of the field, of its group, or of a part of it.
+std::string explain_absence(const records::CellRecord& cell, const std::string& field);
+
+/// Is one thing asked of a configuration: a limit, or, without `spec`, a claim of its filter.
+struct Demand {
+  const LimitSpec* spec = nullptr;
+  double most = 0.0;  ///< a value of this size keeps the limit
+  std::string claim;
+};
+
+/// Writes a demand as the command line has it: "--max-rmse 0.05".
+std::string describe_demand(const Demand& demand);
+
+}  // namespace shadowbench::analysis

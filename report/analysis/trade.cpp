@@ -1,0 +1,214 @@
+#include "report/analysis/trade.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "report/analysis/summary.h"
+#include "report/files/file_name.h"
+#include "report/records/cell_key.h"
+#include "report/records/format.h"
+#include "report/records/json_values.h"
+
+namespace shadowbench::analysis {
+namespace {
+
+constexpr std::size_t kFewestCells = 3;
+
+std::string settings_without(const records::CellRecord& cell, std::initializer_list<const char*> names) {
+  auto settings = records::cell_settings(cell);
+  for (const char* name : names) settings.erase(name);
+  return records::dump_line(settings);
+}
+
+// What shares a reference for ratios: everything but the filter is the same.
+std::string reference_key(const records::CellRecord& cell) { return settings_without(cell, {"filter", "params"}); }
+
+std::string place_key(const records::CellRecord& cell) {
+  return settings_without(cell, {"filter", "params", "map_size"});
+}
+
+std::string picture_key(const records::CellRecord& cell) {
+  return settings_without(cell, {"filter", "params", "map_size", "scene", "view"});
+}
+
+std::string configuration_key(const records::CellRecord& cell) {
+  return records::dump_line(nlohmann::json{cell.filter, records::value_json(cell.params), cell.map_size});
+}
+
+// Groups indices of cells by a key, in the order in which each key first appears.
+template <class Key>
+std::vector<std::vector<std::size_t>> group_indices(const std::vector<records::CellRecord>& cells,
+                                                    const std::vector<std::size_t>& indices, Key key) {
+  std::vector<std::vector<std::size_t>> groups;
+  std::map<std::string, std::size_t> places;
+  for (const std::size_t i : indices) {
+    const auto [place, is_new] = places.emplace(key(cells[i]), groups.size());
+    if (is_new) groups.emplace_back();
+    groups[place->second].push_back(i);
+  }
+  return groups;
+}
+
+// Reads cells' errors and costs, each cost with the reference of its map and picture.
+class CellReader {
+ public:
+  explicit CellReader(const std::vector<records::CellRecord>& cells) : cells_(cells) {
+    for (const records::CellRecord& cell : cells)
+      if (is_reference(cell)) references_.emplace(reference_key(cell), &cell);
+  }
+
+  TradeConfiguration read(const std::vector<std::size_t>& indices) const {
+    const records::CellRecord& first = cells_[indices.front()];
+    TradeConfiguration result{first.filter, first.params, first.map_size, {}, indices, {}, {}};
+    for (std::size_t i = 0; i < kErrorMeasures; ++i) result.errors[i] = combine(indices, i, true);
+    for (std::size_t i = 0; i < kCostMeasures; ++i) result.costs[i] = combine(indices, i, false);
+    return result;
+  }
+
+ private:
+  const std::vector<records::CellRecord>& cells_;
+  std::map<std::string, const records::CellRecord*> references_;
+
+  Measured read_one(const records::CellRecord& cell, std::size_t measure, bool is_error) const {
+    if (is_error) return read_error(cell, measure);
+    const auto reference = references_.find(reference_key(cell));
+    return read_cost(cell, reference == references_.end() ? nullptr : reference->second, measure);
+  }
+
+  Measured combine(const std::vector<std::size_t>& indices, std::size_t measure, bool is_error) const {
+    std::vector<Estimate> estimates;
+    for (const std::size_t i : indices) {
+      Measured one = read_one(cells_[i], measure, is_error);
+      if (!one.estimate || indices.size() == 1) return one;
+      estimates.push_back(*one.estimate);
+    }
+    return {is_error ? combine_errors(estimates, measure) : combine_costs(estimates, measure), {}};
+  }
+};
+
+TradeScope make_place_scope(const std::vector<records::CellRecord>& cells, const std::vector<std::size_t>& indices,
+                            const CellReader& reader) {
+  const records::CellRecord& first = cells[indices.front()];
+  TradeScope scope;
+  scope.scene = first.scene;
+  scope.view = first.view;
+  scope.title = fmt::format("{} · view {} · {} × {}", first.scene, first.view, first.width, first.height);
+  scope.id = files::make_file_stem(fmt::format("{}.{}.{}x{}", first.scene, first.view, first.width, first.height));
+  for (const auto& group : group_indices(cells, indices, configuration_key))
+    scope.configurations.push_back(reader.read({group.front()}));
+  return scope;
+}
+
+TradeScope make_joint_scope(const std::vector<records::CellRecord>& cells, const std::vector<std::size_t>& indices,
+                            const CellReader& reader) {
+  const records::CellRecord& first = cells[indices.front()];
+  const std::size_t places = group_indices(cells, indices, place_key).size();
+  const std::size_t scenes =
+      group_indices(cells, indices, [](const records::CellRecord& cell) { return cell.scene; }).size();
+  TradeScope scope;
+  scope.title = fmt::format("{} · {} × {}",
+                            places == scenes ? fmt::format("all {} scenes", scenes)
+                                             : fmt::format("all {} views of {} scenes", places, scenes),
+                            first.width, first.height);
+  scope.id = fmt::format("all.{}x{}", first.width, first.height);
+  for (const auto& group : group_indices(cells, indices, configuration_key))
+    if (group.size() == places)
+      scope.configurations.push_back(reader.read(group));
+    else
+      ++scope.incomplete;
+  return scope;
+}
+
+// Scopes that differ in another setting than scene, view and picture are numbered.
+void make_unique(std::vector<TradeScope>& scopes) {
+  std::map<std::string, int> seen;
+  for (TradeScope& scope : scopes) {
+    const int number = ++seen[scope.id];
+    if (number == 1) continue;
+    scope.id += fmt::format(".{}", number);
+    scope.title += fmt::format(" · other settings ({})", number);
+  }
+}
+
+}  // namespace
+
+void label_configurations(std::vector<TradeConfiguration>& configurations) {
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> values;
+  std::set<int> map_sizes;
+  for (const TradeConfiguration& each : configurations) {
+    map_sizes.insert(each.map_size);
+    for (const auto& [name, value] : each.params)
+      values[{each.filter, name}].insert(records::describe_params({{name, value}}));
+  }
+  for (TradeConfiguration& each : configurations) {
+    records::ParamMap telling = each.params;
+    std::erase_if(telling, [&](const auto& param) { return values[{each.filter, param.first}].size() < 2; });
+    each.label = each.filter + (telling.empty() ? "" : " (" + records::describe_params(telling) + ")");
+    if (map_sizes.size() > 1) each.label += fmt::format(" · map {}", each.map_size);
+  }
+}
+
+std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>& cells) {
+  std::vector<std::size_t> all(cells.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+  const CellReader reader(cells);
+  std::vector<TradeScope> scopes;
+  for (const auto& picture : group_indices(cells, all, picture_key))
+    if (group_indices(cells, picture, place_key).size() > 1) scopes.push_back(make_joint_scope(cells, picture, reader));
+  for (const auto& place : group_indices(cells, all, place_key))
+    scopes.push_back(make_place_scope(cells, place, reader));
+  for (TradeScope& scope : scopes) {
+    const records::CellRecord* first =
+        scope.configurations.empty() ? nullptr : &cells[scope.configurations[0].cells[0]];
+    scope.width = first ? first->width : 0;
+    scope.height = first ? first->height : 0;
+    label_configurations(scope.configurations);
+  }
+  std::erase_if(scopes, [](const TradeScope& scope) { return scope.configurations.empty(); });
+  make_unique(scopes);
+  return scopes;
+}
+
+TradeFront make_trade_front(const TradeScope& scope, std::size_t error, std::size_t cost) {
+  TradeFront front;
+  front.error = error;
+  front.cost = cost;
+  for (std::size_t i = 0; i < scope.configurations.size(); ++i) {
+    const Measured& e = scope.configurations[i].errors[error];
+    const Measured& c = scope.configurations[i].costs[cost];
+    if (!e.estimate || !c.estimate) {
+      ++front.left_out[e.estimate ? c.absent : e.absent];
+      continue;
+    }
+    front.configurations.push_back(i);
+    front.points.push_back({*e.estimate, *c.estimate});
+  }
+  front.placements = find_front(front.points);
+  front.members = list_members(front.points, front.placements);
+  return front;
+}
+
+bool has_trade(const std::vector<TradeScope>& scopes) {
+  const auto has_one = [](const auto& measured) {
+    return std::any_of(
+        measured.begin(), measured.end(), [](const Measured& each) { return each.estimate.has_value(); });
+  };
+  return std::any_of(scopes.begin(), scopes.end(), [&](const TradeScope& scope) {
+    const auto count =
+        std::count_if(scope.configurations.begin(), scope.configurations.end(),
+                      [&](const TradeConfiguration& each) { return has_one(each.errors) && has_one(each.costs); });
+    return static_cast<std::size_t>(count) >= kFewestCells;
+  });
+}
+
+std::vector<std::string> list_filters(const std::vector<records::CellRecord>& cells) {
+  std::vector<std::string> filters;
+  for (const records::CellRecord& cell : cells)
+    if (std::find(filters.begin(), filters.end(), cell.filter) == filters.end()) filters.push_back(cell.filter);
+  return filters;
+}
+
+}  // namespace shadowbench::analysis

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "report/analysis/front.h"
+#include "report/analysis/trade_measures.h"
+#include "report/records/records.h"
+
+namespace shadowbench::analysis {
+
+/// Is a filter with its parameters and a map size, and what it got and paid in one scope.
+struct TradeConfiguration {
+  std::string filter;
+  records::ParamMap params;
+  int map_size = 0;
+  std::string label;               ///< tells it apart in its scope: "vsm (radius 4) · map 512"
+  std::vector<std::size_t> cells;  ///< indices into the run's cells: one, or one per scene and view
+  std::array<Measured, kErrorMeasures> errors;
+  std::array<Measured, kCostMeasures> costs;
+};
+
+/// Is what may be compared on one front: all cells of one scene, view and picture size, or all scenes and views
+/// together. Map format, bias, fit, light and range rule are the same throughout.
+struct TradeScope {
+  std::string id;     ///< fit for a file name, and unique
+  std::string title;  ///< "cubes · view main · 480 × 270"
+  std::string scene;  ///< empty for all scenes together
+  std::string view;
+  int width = 0;
+  int height = 0;
+  std::vector<TradeConfiguration> configurations;
+  std::size_t incomplete = 0;  ///< configurations left out because not every scene and view has a cell of them
+};
+
+/// Labels configurations by their filter, the parameters in which those of one filter differ, and the map where there
+/// are several.
+void label_configurations(std::vector<TradeConfiguration>& configurations);
+
+/// Sorts a run's cells into scopes: scenes together first, where there are several, then each scene by itself in the
+/// order in which it appears. Scenes together hold only configurations that every scene and view has.
+std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>& cells);
+
+/// Is the front of a scope for one error and one cost.
+struct TradeFront {
+  std::size_t error = 0;                    ///< index into list_error_measures()
+  std::size_t cost = 0;                     ///< index into list_cost_measures()
+  std::vector<std::size_t> configurations;  ///< those that have both, indices into the scope's
+  std::vector<FrontPoint> points;           ///< entry i is of configurations[i]
+  std::vector<Placement> placements;        ///< likewise; `by` is an index into `points`
+  std::vector<std::size_t> members;         ///< indices into `points`, cheapest first
+  std::map<std::string, int> left_out;      ///< reason to number of configurations without one of the two
+};
+
+/// Finds the front of a scope.
+TradeFront make_trade_front(const TradeScope& scope, std::size_t error, std::size_t cost);
+
+/// Is there a scope in which three cells or more have an error and a cost? Below that there is no trade to show.
+bool has_trade(const std::vector<TradeScope>& scopes);
+
+/// Lists the run's filters in order of first appearance: a filter's place gives its colour and mark in all plots.
+std::vector<std::string> list_filters(const std::vector<records::CellRecord>& cells);
+
+}  // namespace shadowbench::analysis

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/analysis/front.h"
+#include "report/records/records.h"
+
+namespace shadowbench::analysis {
+
+inline constexpr std::size_t kErrorMeasures = 4;
+inline constexpr std::size_t kCostMeasures = 4;
+
+/// Describes one axis of the trade.
+struct Measure {
+  const char* id;           ///< in file names, CSV and JSON: "rmse"
+  const char* name;         ///< for axes and sentences: "RMSE to the area truth"
+  const char* meaning;      ///< what it is and what its interval is
+  const char* over_scenes;  ///< how one number is made of several scenes'
+  bool is_time;             ///< milliseconds of the run's clock
+  bool is_bytes;
+};
+
+/// Lists the errors: rmse, kernel_rmse, leak, flip.
+const std::array<Measure, kErrorMeasures>& list_error_measures();
+
+/// Lists the costs: lookup, moving, fetches, bytes.
+const std::array<Measure, kCostMeasures>& list_cost_measures();
+
+/// Names a measure with its unit: "time of the lookup, ms: CPU time (software rasteriser)".
+std::string name_axis(const Measure& measure, const records::GlRecord& gl);
+
+/// Writes a value of a measure for people, without its unit except for bytes: "0.0512", "1.5 MiB".
+std::string format_value(const Measure& measure, double value);
+
+/// Writes an estimate with its interval where it has one: "3.9 [3.8, 4.1]".
+std::string format_estimate(const Measure& measure, const Estimate& estimate);
+
+/// Is a value or the reason why there is none.
+struct Measured {
+  std::optional<Estimate> estimate;
+  std::string absent;
+};
+
+/// Reads an error from a cell; `measure` is an index into list_error_measures().
+/// RMSE to the area truth: the truth's standard error to both sides. The others have no interval in the record.
+Measured read_error(const records::CellRecord& cell, std::size_t measure);
+
+/// Reads a cost from a cell; `measure` is an index into list_cost_measures().
+/// Times: the per-round ratio to the reference filter and its 95 % interval, times the reference's own median, in ms;
+/// the ratio is robust against drift of the machine's speed between rounds, and the product can be compared between
+/// maps and picture sizes. The reference's median counts as exact. Where the ratio or `reference` is missing: median
+/// and quartiles (for a sum of passes the sums of theirs). `reference` is the cell that ratios of this cell's map and
+/// picture refer to, or null.
+Measured read_cost(const records::CellRecord& cell, const records::CellRecord* reference, std::size_t measure);
+
+/// Is a cell the one that ratios refer to? That is the one whose own ratio is exactly 1 [1, 1].
+bool is_reference(const records::CellRecord& cell);
+
+/// Makes one number of several scenes', as `over_scenes` of the measure says. Requires at least one.
+Estimate combine_errors(const std::vector<Estimate>& errors, std::size_t measure);
+Estimate combine_costs(const std::vector<Estimate>& costs, std::size_t measure);
+
+}  // namespace shadowbench::analysis

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+
+namespace shadowbench::files {
+
+/// Keeps an output folder for this process, so that two runs do not write into one, and clears away what killed ones
+/// left half-written. The system lets go of the lock of a process that ends, however it ends.
+class FolderLock {
+ public:
+  /// Creates the folder where it is missing; takes it, or refuses at once where another process has it.
+  /// Throws Error(kOutput), which names the folder, and the other process.
+  explicit FolderLock(std::filesystem::path folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+  /// Checks that the folder is still the one that was taken.
+  /// Throws Error(kOutput) where it was removed, renamed or replaced meanwhile.
+  void require_in_place() const;
+
+ private:
+  std::filesystem::path folder_;
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+
+  bool try_to_take();
+  bool is_in_place() const;
+};
+
+}  // namespace shadowbench::files

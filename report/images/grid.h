@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/images/attribution_bar.h"
+#include "report/images/hardest_edge.h"
+#include "report/images/image.h"
+
+namespace shadowbench::images {
+
+/// Is one filter's place in a grid.
+struct GridTile {
+  std::string label;    ///< "vsm"
+  std::string caption;  ///< "radius 4, rg32f · 12.3 ms (CPU)"; wrapped where it is long
+  Image picture;        ///< linear RGB; empty where the cell has none
+  Image visibility;     ///< 1 channel, the picture's size; empty where the cell has none
+  Image error;          ///< 1 channel, signed: visibility less truth; empty where there is no truth
+  std::string message;  ///< shown instead of the images where all are empty: "timed out after 10 s"
+  std::optional<AttributionBar> attribution = std::nullopt;  ///< the parts of the error, drawn as a bar
+  std::string no_attribution = {};  ///< why it has none; said where another tile has, and empty where none is due
+};
+
+/// Is a labelled picture of what filters make of one scene, for people.
+struct Grid {
+  std::string title;
+  std::string subtitle;
+  std::vector<GridTile> tiles;
+  Rect crop;              ///< pixels of the pictures, outlined there and magnified below; may be empty
+  int columns = 3;        ///< tiles side by side
+  double exposure = 1.0;  ///< linear factor, the same for all tiles
+  std::optional<double> error_scale = std::nullopt;  ///< the error that gets the full colour; chosen where not given
+  std::string error_name = "error, visibility less area truth";  ///< for the colour bar
+};
+
+/// Draws a grid: blocks of `columns` tiles; in each a label, a caption, the picture, the visibility, the error as a
+/// heat map, the bar of its parts, and the crop of picture and visibility side by side, magnified to whole texels; each
+/// only where there is one. All heat maps share one scale, and all bars one. Large pictures are reduced in linear
+/// light. Returns display-referred sRGB values in [0,1], 3 channels. A texel that is not finite becomes magenta. Throws
+/// Error(kOutput) where the font is not installed.
+Image draw_grid(const Grid& grid);
+
+/// Draws a grid into an 8-bit PNG file.
+/// Throws Error(kOutput).
+void write_grid(const std::filesystem::path& path, const Grid& grid);
+
+}  // namespace shadowbench::images

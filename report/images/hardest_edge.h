@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "report/images/image.h"
+#include "report/images/rect.h"
+
+namespace shadowbench::images {
+
+/// Returns the size of crop that a grid magnifies well for pictures of this size.
+Size choose_crop_size(Size picture);
+
+/// Finds the rectangle in which filters disagree most about a shadow's edge.
+///
+/// The score of a rectangle is the mean over its pixels of the variance of visibility across the filters, times
+/// 4 m (1 - m), m the mean visibility of the reference in it: 1 where the reference is half lit and half blocked, 0
+/// where it has no edge. Where no filter disagrees, the rectangle that the edge divides most evenly is taken; where
+/// there is no edge, the one in which filters disagree most. Ties go
+/// to the topmost, then leftmost rectangle; a pixel that is not finite in any image counts as agreed upon and blocked.
+///
+/// `visibility`: 1 channel each, of one size; null or empty images are left out. `reference` is an index into it.
+/// Returns a rectangle of `size`, clipped to the images; an empty one where there are no images.
+Rect find_hardest_edge(const std::vector<const Image*>& visibility, std::size_t reference, Size size);
+
+}  // namespace shadowbench::images

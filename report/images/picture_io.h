@@ -1,0 +1,73 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "report/images/image.h"
+
+namespace shadowbench::images {
+
+/// Encodes one linear value in [0,1] for a display; values outside are clamped, NaN stays NaN.
+/// Source: IEC 61966-2-1 (sRGB).
+float encode_srgb(float linear);
+
+/// Decodes one sRGB value in [0,1] to linear; the inverse of encode_srgb().
+/// Source: IEC 61966-2-1 (sRGB).
+float decode_srgb(float code);
+
+/// Writes a linear RGB picture as an 8-bit sRGB PNG.
+/// Requires 3 channels. Values outside [0,1] are clamped; a texel that is not finite becomes magenta.
+/// Throws Error(kOutput).
+void write_picture_png(const std::filesystem::path& path, const Image& picture);
+
+/// Writes a picture that is display-referred already: sRGB values in [0,1] become 8-bit codes.
+/// Requires 3 channels. Throws Error(kOutput).
+void write_display_png(const std::filesystem::path& path, const Image& picture);
+
+/// Says which value is black and which white in a grey picture.
+struct GreyRange {
+  float black = 0.0f;
+  float white = 1.0f;
+};
+
+/// Writes one channel as an 8-bit grey PNG whose codes are linear in the value: visibility .5 becomes code 128 of 255.
+/// Requires 1 channel and black != white. Values outside the range are clamped; a texel that is not finite becomes
+/// magenta, and the PNG then has three channels. Throws Error(kOutput).
+void write_grey_png(const std::filesystem::path& path, const Image& image, GreyRange range = {});
+
+/// Reads the first image of any file OpenImageIO knows, its values as stored (8-bit codes as code/255).
+/// Throws Error(kInput).
+Image read_picture(const std::filesystem::path& path);
+
+/// Is one named image of a multi-part EXR file.
+struct Part {
+  std::string name;                        ///< "vsm.visibility"; unique in its file
+  std::vector<std::string> channel_names;  ///< one per channel of `image`, unique
+  Image image;
+  bool half = false;  ///< stored as 16-bit floats
+};
+
+/// Holds a file's attributes, by name.
+using Metadata = std::map<std::string, std::variant<double, std::string>>;
+
+/// Rounds a picture to 16-bit floats, as a half part keeps it. Values above 65504 become infinite.
+Image round_to_half(const Image& image);
+
+/// Writes a multi-part OpenEXR file, losslessly compressed; parts may differ in size. Metadata go into every part.
+/// Requires at least one part. Throws Error(kOutput), also where names are not unique.
+void write_exr(const std::filesystem::path& path, const std::vector<Part>& parts, const Metadata& metadata);
+
+/// Holds a multi-part EXR file.
+struct ExrFile {
+  std::vector<Part> parts;
+  Metadata metadata;  ///< of the first part: numbers and texts, the format's own attributes included
+};
+
+/// Reads a multi-part EXR file; channels come in the order that write_exr() was given.
+/// Throws Error(kInput).
+ExrFile read_exr(const std::filesystem::path& path);
+
+}  // namespace shadowbench::images

@@ -1,0 +1,226 @@
+#include "report/images/stability_picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "report/images/color_values.h"
+#include "report/images/diverging.h"
+#include "report/images/figure.h"
+#include "report/images/fit_worst.h"
+#include "report/images/picture_io.h"
+#include "report/records/format.h"
+
+namespace shadowbench::images {
+namespace {
+
+constexpr int kPanelWidth = 640;
+constexpr int kGap = 40;
+constexpr int kBarHeight = 16;
+constexpr Rgb kBroken{1.0f, 0.0f, 1.0f};
+constexpr Rgb kZeroTexel{0.93f, 0.94f, 0.95f};
+constexpr double kLeastVarianceDecade = -10.0;  // of the colour bar; the largest is 0
+
+using Tick = std::pair<float, std::string>;  // place on the colour bar, [0,1]
+
+struct Panel {
+  std::string title;
+  std::string caption;
+  Image picture;  ///< 3 channels, display values
+  Image bar;      ///< likewise
+  std::vector<Tick> ticks;
+};
+
+int shown_width(const Image& image) {
+  return image.width >= kPanelWidth ? kPanelWidth : image.width * (kPanelWidth / image.width);
+}
+
+Image show_worst(const Image& image, const Badness& badness) { return fit_worst(image, shown_width(image), badness); }
+
+Image make_bar() { return make_ramp(kPanelWidth, kBarHeight); }
+
+/// Colours values in [0,1], dark for little.
+Image color_sequential(const Image& values) { return color_values(values, "viridis"); }
+
+float worst_if_nan(float value, float badness) {
+  return std::isnan(value) ? std::numeric_limits<float>::infinity() : badness;
+}
+
+/// The largest finite value, rounded up to a multiple of 5: the end of the headroom's colour bar.
+float choose_headroom_scale(const Image& headroom) {
+  float most = 0.0f;
+  for (const float value : headroom.texels) most = std::isfinite(value) ? std::max(most, value) : most;
+  return std::max(5.0f, 5.0f * std::ceil(most / 5.0f));
+}
+
+Panel make_headroom_panel(const StabilityPicture& picture) {
+  const Image& headroom = picture.images.headroom;
+  const float scale = choose_headroom_scale(headroom);
+  const Image shown = show_worst(headroom, [](float v) { return worst_if_nan(v, -v); });
+  Image places = shown;
+  for (float& value : places.texels) value = std::isfinite(value) ? std::clamp(value / scale, 0.0f, 1.0f) : 0.0f;
+  Panel panel{"overflow: what exponents could grow by, per texel of the map",
+              picture.texels,
+              color_sequential(places),
+              color_sequential(make_bar()),
+              {}};
+  for (std::size_t i = 0; i < shown.texels.size(); ++i) {
+    const float value = shown.texels[i];
+    if (std::isfinite(value)) continue;
+    const Rgb& rgb = value > 0.0f ? kZeroTexel : kBroken;
+    std::copy(rgb.begin(), rgb.end(), panel.picture.texels.begin() + static_cast<std::ptrdiff_t>(3 * i));
+  }
+  for (const float part : {0.0f, 0.25f, 0.5f, 0.75f, 1.0f})
+    panel.ticks.emplace_back(part, records::format_number(static_cast<double>(part * scale)));
+  panel.ticks.front().second = "0: the limit";
+  return panel;
+}
+
+/// Places a variance on a bar with zero in the middle and decades on either side, [-1,1].
+float place_variance(float variance) {
+  if (variance == 0.0f) return 0.0f;
+  const double decades = std::log10(std::abs(static_cast<double>(variance)));
+  return std::copysign(static_cast<float>(std::clamp(1.0 - decades / kLeastVarianceDecade, 0.0, 1.0)), variance);
+}
+
+Panel make_variance_panel(const StabilityPicture& picture) {
+  const Image shown = show_worst(
+      picture.images.variance, [](float v) { return worst_if_nan(v, -v); });
+  const auto color_of = [](float v) { return std::isfinite(v) ? map_diverging(-place_variance(v), 1.0f) : kBroken; };
+  Panel panel{"variance before any clamp, per texel of the map",
+              picture.variance,
+              color_values(shown, color_of),
+              color_values(make_bar(), [](float t) { return map_diverging(1.0f - 2.0f * t, 1.0f); }),
+              {}};
+  for (const float variance : {-1e-2f, -1e-5f, -1e-8f, 0.0f, 1e-8f, 1e-5f, 1e-2f})
+    panel.ticks.emplace_back(0.5f + 0.5f * place_variance(variance), fmt::format("{:g}", variance));
+  return panel;
+}
+
+std::vector<Tick> list_signed_ticks(double scale) {
+  std::vector<Tick> ticks;
+  for (const double part : {-1.0, -0.5, 0.0, 0.5, 1.0})
+    ticks.emplace_back(static_cast<float>(0.5 + 0.5 * part), records::format_number(part * scale));
+  return ticks;
+}
+
+Panel make_difference_panel(const StabilityPicture& picture) {
+  const Image& difference = picture.images.half_difference;
+  const double scale = choose_error_scale({&difference});
+  const Image shown = show_worst(
+      difference, [](float v) { return worst_if_nan(v, std::abs(v)); });
+  const auto color_of = [scale](float v) {
+    return std::isfinite(v) ? map_diverging(v, static_cast<float>(scale)) : kBroken;
+  };
+  return {"visibility with the 16-bit store less that with the 32-bit store", picture.difference,
+          color_values(shown, color_of),
+          color_values(make_bar(), [](float t) { return map_diverging(2.0f * t - 1.0f, 1.0f); }),
+          list_signed_ticks(scale)};
+}
+
+/// Shortfalls, with what rounding does not explain above all colours.
+Panel make_bound_panel(const StabilityPicture& picture) {
+  const Image& shortfall = picture.images.shortfall;
+  assert(picture.images.violation.texels.size() == shortfall.texels.size());
+  const double scale = choose_error_scale({&shortfall});
+  Image marked = shortfall;
+  for (std::size_t i = 0; i < marked.texels.size(); ++i)
+    if (picture.images.violation.texels[i] > 0.0f) marked.texels[i] = std::numeric_limits<float>::infinity();
+  const Image shown = show_worst(
+      marked, [](float v) { return worst_if_nan(v, v); });
+  const auto color_of = [scale](float v) {
+    return std::isfinite(v) ? map_diverging(-v, static_cast<float>(scale)) : kBroken;
+  };
+  Panel panel{"a bound that must hold: by how much the filter is darker than the PCF of its kernel",
+              picture.bound,
+              color_values(shown, color_of),
+              color_values(make_bar(), [](float t) { return map_diverging(-t, 1.0f); }),
+              {}};
+  for (const float part : {0.0f, 0.5f, 1.0f})
+    panel.ticks.emplace_back(part, records::format_number(static_cast<double>(part) * scale));
+  return panel;
+}
+
+std::vector<Panel> make_panels(const StabilityPicture& picture) {
+  std::vector<Panel> panels;
+  const StabilityImages& images = picture.images;
+  if (!images.headroom.empty()) panels.push_back(make_headroom_panel(picture));
+  if (!images.variance.empty()) panels.push_back(make_variance_panel(picture));
+  if (!images.half_difference.empty()) panels.push_back(make_difference_panel(picture));
+  if (!images.shortfall.empty()) panels.push_back(make_bound_panel(picture));
+  return panels;
+}
+
+std::vector<std::string> list_lines(const Panel& panel) {
+  std::vector<std::string> lines = wrap_figure_text(panel.title, kPanelWidth);
+  for (const std::string& line : wrap_figure_text(panel.caption, kPanelWidth)) lines.push_back(line);
+  return lines;
+}
+
+int measure_height(const Panel& panel) {
+  const int line = figure_line_height();
+  return static_cast<int>(list_lines(panel).size()) * line + panel.picture.height + kBarHeight + 3 * line;
+}
+
+void draw_panel(Figure& figure, int x, int y, const Panel& panel) {
+  const int line = figure_line_height();
+  const std::size_t of_title = wrap_figure_text(panel.title, kPanelWidth).size();
+  std::size_t number = 0;
+  for (const std::string& text : list_lines(panel)) {
+    figure.write(x, y, text, number++ < of_title ? kFigureInk : kFigureSecondInk);
+    y += line;
+  }
+  y += line / 4;
+  figure.place(x, y, panel.picture);
+  y += panel.picture.height + line / 2;
+  figure.place(x, y, panel.bar);
+  for (const auto& [place, label] : panel.ticks) {
+    const int at = x + static_cast<int>(place * static_cast<float>(kPanelWidth - 1));
+    figure.fill({at, y + kBarHeight, 1, 5}, kFigureSecondInk);
+    if (place <= 0.0f)
+      figure.write(x, y + kBarHeight + 6, label);
+    else if (place >= 1.0f)
+      figure.write_before(at, y + kBarHeight + 6, label);
+    else
+      figure.write_centred(at, y + kBarHeight + 6, label);
+  }
+}
+
+}  // namespace
+
+const std::array<StabilityImage, 5>& list_stability_images() {
+  static const std::array<StabilityImage, 5> images{{{"headroom", &StabilityImages::headroom},
+                                                     {"variance", &StabilityImages::variance},
+                                                     {"half_difference", &StabilityImages::half_difference},
+                                                     {"shortfall", &StabilityImages::shortfall},
+                                                     {"violation", &StabilityImages::violation}}};
+  return images;
+}
+
+Image draw_stability_picture(const StabilityPicture& picture) {
+  const std::vector<Panel> panels = make_panels(picture);
+  assert(!panels.empty());
+  const int columns = std::min<int>(2, static_cast<int>(panels.size()));
+  std::vector<int> row_heights((panels.size() + 1) / 2, 0);
+  for (std::size_t i = 0; i < panels.size(); ++i)
+    row_heights[i / 2] = std::max(row_heights[i / 2], measure_height(panels[i]));
+  int height = 0;
+  for (const int row : row_heights) height += row;
+  Figure figure(picture.title, picture.note, {columns * kPanelWidth + (columns - 1) * kGap, height});
+  int y = figure.body().y;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    draw_panel(figure, figure.body().x + static_cast<int>(i % 2) * (kPanelWidth + kGap), y, panels[i]);
+    if (i % 2 == 1) y += row_heights[i / 2];
+  }
+  return figure.canvas();
+}
+
+void write_stability_picture(const std::filesystem::path& path, const StabilityPicture& picture) {
+  write_display_png(path, draw_stability_picture(picture));
+}
+
+}  // namespace shadowbench::images

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "report/images/image.h"
+
+namespace shadowbench::images {
+
+/// Holds one picture as its file stores it.
+struct StoredPicture {
+  Image image;             ///< integer codes as code / largest code; colours are not multiplied by alpha on the way
+  int alpha_channel = -1;  ///< -1: there is none
+  bool srgb = false;       ///< integer codes that OpenImageIO calls sRGB; anything else is taken for linear
+  int origin_x = 0;        ///< where the data window begins
+  int origin_y = 0;
+};
+
+/// Reads a picture that `name` names: FILE, or FILE#PART for one part of a file with several. A file of the whole name
+/// comes first, and FILE alone is its first part. A part without a name of its own goes by its number, from 0.
+/// Throws Error(kInput): no such file, unreadable, damaged, no such part (naming those there are), deep or volumetric.
+/// Cost: reads that part alone.
+StoredPicture read_stored_picture(const std::string& name);
+
+}  // namespace shadowbench::images

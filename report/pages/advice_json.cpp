@@ -1,0 +1,230 @@
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "report/analysis/advice_words.h"
+#include "report/analysis/summary.h"
+#include "report/pages/advice_text.h"
+#include "report/records/cell_key.h"
+#include "report/records/format.h"
+#include "report/records/json_values.h"
+
+namespace shadowbench::pages {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* name_of(analysis::CostKind kind) {
+  switch (kind) {
+    case analysis::CostKind::kTime: return "time";
+    case analysis::CostKind::kBytes: return "bytes";
+    case analysis::CostKind::kFetches: break;
+  }
+  return "fetches";
+}
+
+const char* name_of(analysis::Basis basis) {
+  switch (basis) {
+    case analysis::Basis::kExact: return "exact";
+    case analysis::Basis::kRatio: return "ratio_to_none";
+    case analysis::Basis::kQuartiles: break;
+  }
+  return "quartiles";
+}
+
+constexpr const char* kClaim = "a claim has no size";
+
+Json interval_json(const records::Interval& interval) { return Json::array({interval.low, interval.high}); }
+
+// Sets a value, or null and the reason.
+template <class T>
+void set(Json& object, const char* name, const std::optional<T>& value, const std::string& reason) {
+  object[name] = value ? Json(records::value_json(*value)) : Json(nullptr);
+  if (!value) object["absent"][name] = reason;
+}
+
+Json cell_json(const records::CellRecord& cell, analysis::LightMotion light) {
+  Json json = {{"key", cell.key}, {"scene", cell.scene}, {"view", cell.view}};
+  json["absent"] = Json::object();
+  set(json, "time_ms", analysis::frame_time(cell, light), analysis::explain_absence(cell, "time_ms"));
+  set(json, "ratio_to_none", analysis::frame_ratio(cell, light), analysis::explain_absence(cell, "ratio_to_none"));
+  set(json, "rmse", cell.error.rmse, analysis::explain_absence(cell, "error.rmse"));
+  set(json, "truth_se", cell.truth.se, analysis::explain_absence(cell, "truth.se"));
+  set(json, "map_bytes", cell.cost.map_bytes, analysis::explain_absence(cell, "cost.map_bytes"));
+  set(json, "fetches", cell.cost.fetches, analysis::explain_absence(cell, "cost.fetches"));
+  return json;
+}
+
+Json demand_json(const analysis::Demand& demand) {
+  const auto* spec = demand.spec;
+  const auto when = [](bool exists, const std::string& value) { return exists ? std::optional(value) : std::nullopt; };
+  Json json = {{"option", spec ? spec->option : "--requires"}};
+  json["absent"] = Json::object();
+  set(json, "claim", when(!spec, demand.claim), "this is a limit");
+  set(json, "field", when(spec, spec ? spec->field : ""), kClaim);
+  set(json, "most", spec ? std::optional(demand.most) : std::nullopt, kClaim);
+  return json;
+}
+
+Json nothing_to_see_json(const analysis::Demand& demand, const analysis::Verdict& verdict) {
+  Json list = Json::array();
+  for (const records::CellRecord* cell : verdict.nothing_to_see) {
+    list.push_back({{"scene", cell->scene},
+                    {"view", cell->view},
+                    {"reason", analysis::explain_absence(*cell, demand.spec->field)}});
+  }
+  return list;
+}
+
+Json verdict_json(const analysis::Demand& demand, const analysis::Verdict& verdict) {
+  const records::CellRecord* cell = verdict.where;
+  const auto of_cell = [&](std::string records::CellRecord::*field) {
+    return cell ? std::optional(cell->*field) : std::nullopt;
+  };
+  Json json = demand_json(demand);
+  json["kept"] = verdict.kept;
+  set(json, "worst", verdict.worst, kClaim);
+  set(json, "scene", of_cell(&records::CellRecord::scene), kClaim);
+  set(json, "view", of_cell(&records::CellRecord::view), kClaim);
+  set(json, "key", of_cell(&records::CellRecord::key), kClaim);
+  json["within_truth_se"] = verdict.lost_in_truth != nullptr;
+  json["nothing_to_see"] = nothing_to_see_json(demand, verdict);
+  return json;
+}
+
+Json settings_json(const records::CellRecord& cell) {
+  auto settings = records::cell_settings(cell);
+  settings.erase("scene");
+  settings.erase("view");
+  return settings;
+}
+
+std::string explain_no_interval(const analysis::Candidate& candidate, const analysis::AdviceRequest& request) {
+  if (request.cheapest != analysis::CostKind::kTime) return "only times have an interval";
+  for (const records::CellRecord* cell : candidate.configuration.cells)
+    if (!analysis::frame_ratio(*cell, request.light)) return analysis::explain_absence(*cell, "ratio_to_none");
+  return "a ratio to none is 0";
+}
+
+Json cost_json(const analysis::Candidate& candidate, const analysis::AdviceRequest& request) {
+  const analysis::Cost& cost = candidate.cost;
+  Json json = {{"mean", cost.mean}, {"quartiles", interval_json(cost.quartiles)}, {"ci95", nullptr}};
+  json["absent"] = Json::object();
+  if (cost.ratio)
+    json["ci95"] = interval_json(*cost.ratio);
+  else
+    json["absent"]["ci95"] = explain_no_interval(candidate, request);
+  return json;
+}
+
+Json candidate_json(const analysis::Candidate& candidate, const analysis::Advice& advice) {
+  Json json = {{"label", candidate.configuration.label}};
+  json["settings"] = settings_json(*candidate.configuration.cells.front());
+  json["cost"] = cost_json(candidate, advice.request);
+  json["limits"] = Json::array();
+  for (std::size_t i = 0; i < candidate.verdicts.size(); ++i)
+    json["limits"].push_back(verdict_json(advice.request.demands[i], candidate.verdicts[i]));
+  json["cells"] = Json::array();
+  for (const records::CellRecord* cell : candidate.configuration.cells)
+    json["cells"].push_back(cell_json(*cell, advice.request.light));
+  return json;
+}
+
+Json gap_json(const analysis::CostGap& gap) {
+  return {{"difference", gap.difference}, {"share", gap.share}, {"tied", gap.tied}, {"basis", name_of(gap.basis)}};
+}
+
+Json request_json(const analysis::Advice& advice) {
+  const analysis::AdviceRequest& request = advice.request;
+  Json json = {{"limits", Json::object()}, {"requires", Json::array()}};
+  for (const analysis::Demand& demand : request.demands)
+    if (demand.spec)
+      json["limits"][demand.spec->option] = demand.most;
+    else
+      json["requires"].push_back(demand.claim);
+  json["light"] = request.light == analysis::LightMotion::kMoving ? "moving" : "static";
+  json["cheapest"] = name_of(request.cheapest);
+  json["places"] = Json::array();
+  for (const analysis::Place& place : advice.places)
+    json["places"].push_back({{"scene", place.scene}, {"view", place.view}});
+  return json;
+}
+
+Json unjudged_json(const analysis::Advice& advice) {
+  Json list = Json::array();
+  for (const analysis::Unjudged& unjudged : advice.unjudged)
+    list.push_back({{"label", unjudged.configuration.label}, {"reason", unjudged.reason}});
+  return list;
+}
+
+Json relaxed_json(const analysis::Advice& advice) {
+  Json list = Json::array();
+  for (const analysis::Relaxation& step : advice.relaxations) {
+    const analysis::Candidate& candidate = advice.failing[step.candidate];
+    Json json = verdict_json(advice.request.demands[step.demand], candidate.verdicts[step.demand]);
+    json["label"] = candidate.configuration.label;
+    json["cost"] = candidate.cost.mean;
+    json["saves"] = step.saving.difference;
+    json["basis"] = name_of(step.saving.basis);
+    list.push_back(json);
+  }
+  return list;
+}
+
+Json obstacle_json(const analysis::Advice& advice, std::size_t i) {
+  const analysis::Obstacle& obstacle = advice.obstacles[i];
+  Json json = demand_json(advice.request.demands[i]);
+  json["fail"] = obstacle.failing;
+  json["fail_alone"] = obstacle.alone;
+  json["no_value"] = obstacle.unknown;
+  std::optional<std::string> label;
+  std::optional<double> worst;
+  if (obstacle.nearest) {
+    const analysis::Candidate& nearest = advice.failing[*obstacle.nearest];
+    label = nearest.configuration.label;
+    worst = nearest.verdicts[i].worst;
+  }
+  set(json, "nearest_label", label, "no configuration fails this alone");
+  set(json, "nearest_worst", worst, label ? kClaim : "no configuration fails this alone");
+  return json;
+}
+
+void set_answer(Json& json, const analysis::Advice& advice, const records::GlRecord& gl) {
+  const bool fits = !advice.keeping.empty();
+  json["advised"] = fits ? candidate_json(advice.keeping[0], advice) : Json(nullptr);
+  json["runner_up"] = nullptr;
+  json["closest"] = !fits && advice.closest ? candidate_json(advice.failing[*advice.closest], advice) : Json(nullptr);
+  json["absent"] = Json::object();
+  if (!fits) json["absent"]["advised"] = analysis::describe_failure(advice);
+  if (json["closest"].is_null()) json["absent"]["closest"] = fits ? "the limits are kept" : "nothing could be judged";
+  if (advice.keeping.size() < 2) {
+    json["absent"]["runner_up"] = "no other configuration keeps the limits";
+    return;
+  }
+  json["runner_up"] = candidate_json(advice.keeping[1], advice);
+  json["runner_up"]["lost_by"] =
+      gap_json(analysis::compare_costs(advice.keeping[0], advice.keeping[1], advice.request.cheapest));
+  json["runner_up"]["why"] = analysis::describe_runner_up(advice, gl);
+}
+
+}  // namespace
+
+Json make_advice_json(const records::RunRecord& run, const analysis::Advice& advice) {
+  Json json = {{"fits", !advice.keeping.empty()},
+               {"commit", run.commit},
+               {"clock", records::describe_clock(run.gl)},
+               {"records::time_unit", records::time_unit(run.gl)},
+               {"software", run.gl.software},
+               {"renderer", run.gl.renderer},
+               {"asked", request_json(advice)}};
+  set_answer(json, advice, run.gl);
+  json["relaxed"] = relaxed_json(advice);
+  json["limits"] = Json::array();
+  for (std::size_t i = 0; i < advice.obstacles.size(); ++i) json["limits"].push_back(obstacle_json(advice, i));
+  json["keep"] = advice.keeping.size();
+  json["fail"] = advice.failing.size();
+  json["not_judged"] = unjudged_json(advice);
+  json["notes"] = analysis::list_advice_notes(advice, run.gl);
+  return json;
+}
+
+}  // namespace shadowbench::pages

@@ -1,0 +1,212 @@
+#include "report/pages/advice_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "report/analysis/advice_words.h"
+#include "report/analysis/summary.h"
+#include "report/records/format.h"
+
+namespace shadowbench::pages {
+namespace {
+
+constexpr std::size_t kColumns = 100;
+
+using Row = std::vector<std::string>;
+
+// Columns on a terminal: every code point of ours takes one.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+std::string align(const std::vector<Row>& rows) {
+  std::vector<std::size_t> widths;
+  for (const Row& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+  }
+  std::string text;
+  for (const Row& row : rows) {
+    std::string line = " ";
+    for (std::size_t i = 0; i < row.size(); ++i)
+      line += fmt::format(" {}{} ", row[i], std::string(widths[i] - width_of(row[i]), ' '));
+    line.resize(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
+
+// Breaks a paragraph at spaces; all lines but the first are indented.
+std::string wrap(const std::string& text) {
+  std::string result, line;
+  std::size_t begin = 0;
+  while (begin < text.size()) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    if (!line.empty() && width_of(line) + 1 + width_of(word) > kColumns) {
+      result += line + "\n";
+      line.assign(1, ' ');
+    }
+    if (!line.empty()) line += ' ';
+    line += word;
+    begin = end + 1;
+  }
+  return result + line + "\n";
+}
+
+std::string place_name(const records::CellRecord& cell, const analysis::Advice& advice) {
+  return analysis::describe_place(analysis::place_of(cell), advice.places);
+}
+
+std::string remark(const analysis::Demand& demand, const analysis::Verdict& verdict, analysis::LightMotion light) {
+  if (verdict.lost_in_truth) {
+    return fmt::format("kept by less than the truth's own standard error, {}",
+                       records::format_number(*verdict.lost_in_truth->truth.se));
+  }
+  if (demand.spec == &analysis::cost_spec(analysis::CostKind::kTime)) {
+    const double q3 = analysis::frame_time(*verdict.where, light)->q3;
+    if (q3 > demand.most) return fmt::format("its upper quartile, {}, is over it", records::format_number(q3));
+  }
+  return "";
+}
+
+Row describe_limit(const analysis::Demand& demand, const analysis::Verdict& verdict, const records::RunRecord& run,
+                   const analysis::Advice& advice) {
+  if (!verdict.worst) return {analysis::describe_demand(demand), "claimed"};
+  const bool is_time = demand.spec == &analysis::cost_spec(analysis::CostKind::kTime);
+  const std::string worst = analysis::format_kept(*verdict.worst, demand.most);
+  return {analysis::describe_demand(demand), is_time ? fmt::format("{} {}", worst, records::time_unit(run.gl)) : worst,
+          place_name(*verdict.where, advice), remark(demand, verdict, advice.request.light)};
+}
+
+std::string list_limits(const records::RunRecord& run, const analysis::Advice& advice) {
+  if (advice.request.demands.empty()) return "";
+  std::vector<Row> rows = {{"limit", "worst", "on"}};
+  for (std::size_t i = 0; i < advice.request.demands.size(); ++i)
+    rows.push_back(describe_limit(advice.request.demands[i], advice.keeping.front().verdicts[i], run, advice));
+  return align(rows);
+}
+
+template <class T>
+std::string format_optional(const std::optional<T>& value) {
+  return value ? records::format_number(static_cast<double>(*value)) : records::kNothing;
+}
+
+Row describe_cell(const records::CellRecord& cell, const analysis::Advice& advice) {
+  const auto time = analysis::frame_time(cell, advice.request.light);
+  return {place_name(cell, advice),
+          time ? records::format_number(time->median) : records::kNothing,
+          time ? fmt::format("{} .. {}", records::format_number(time->q1), records::format_number(time->q3))
+               : records::kNothing,
+          records::format_ratio(analysis::frame_ratio(cell, advice.request.light)),
+          format_optional(cell.error.rmse),
+          format_optional(cell.cost.map_bytes),
+          format_optional(cell.cost.fetches),
+          cell.key};
+}
+
+std::string list_cells(const records::RunRecord& run, const analysis::Advice& advice) {
+  std::vector<Row> rows = {
+      {"scene", records::time_unit(run.gl), "quartiles", "/ none [95 %]", "RMSE", "bytes", "fetches", "cell"}};
+  for (const records::CellRecord* cell : advice.keeping.front().configuration.cells)
+    rows.push_back(describe_cell(*cell, advice));
+  return align(rows);
+}
+
+std::string describe_second(const records::RunRecord& run, const analysis::Advice& advice) {
+  if (advice.keeping.size() < 2) return "Runner-up: no other configuration keeps the limits.\n";
+  const analysis::Candidate& second = advice.keeping[1];
+  return wrap(fmt::format("Runner-up: {}, {}; {}.", second.configuration.label,
+                          analysis::format_cost(second.cost.mean, advice.request.cheapest, run.gl),
+                          analysis::describe_runner_up(advice, run.gl)));
+}
+
+Row describe_relaxation(const records::RunRecord& run, const analysis::Advice& advice,
+                        const analysis::Relaxation& step) {
+  const analysis::Demand& demand = advice.request.demands[step.demand];
+  const analysis::Candidate& candidate = advice.failing[step.candidate];
+  const auto worst = candidate.verdicts[step.demand].worst;
+  const analysis::CostKind kind = advice.request.cheapest;
+  const double of = candidate.cost.mean + step.saving.difference;
+  const double share = of > 0.0 ? step.saving.difference / of : 0.0;
+  return {
+      worst ? fmt::format("{} -> {}", analysis::describe_demand(demand), analysis::format_limit(*worst))
+            : "without " + analysis::describe_demand(demand),
+      fmt::format("saves {} ({:.0f} %)", analysis::format_cost(step.saving.difference, kind, run.gl), 100.0 * share),
+      candidate.configuration.label};
+}
+
+std::string list_relaxations(const records::RunRecord& run, const analysis::Advice& advice) {
+  if (advice.request.demands.empty()) return "";
+  if (advice.relaxations.empty()) return "Relaxing one limit alone buys nothing.\n";
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < advice.request.demands.size(); ++i) {
+    const std::size_t before = rows.size();
+    for (const analysis::Relaxation& step : advice.relaxations)
+      if (step.demand == i) rows.push_back(describe_relaxation(run, advice, step));
+    if (rows.size() == before)
+      rows.push_back({analysis::describe_demand(advice.request.demands[i]), "relaxing it alone buys nothing"});
+  }
+  return fmt::format("A relaxed limit buys:\n{}", align(rows));
+}
+
+std::string list_obstacles(const analysis::Advice& advice) {
+  std::vector<Row> rows = {{"limit", "fail it", "fail it alone", "no value", "would let through"}};
+  for (std::size_t i = 0; i < advice.obstacles.size(); ++i) {
+    const analysis::Obstacle& obstacle = advice.obstacles[i];
+    Row row = {analysis::describe_demand(advice.request.demands[i]), fmt::format("{}", obstacle.failing),
+               fmt::format("{}", obstacle.alone), fmt::format("{}", obstacle.unknown)};
+    if (obstacle.nearest) {
+      const analysis::Candidate& nearest = advice.failing[*obstacle.nearest];
+      const auto worst = nearest.verdicts[i].worst;
+      row.push_back((worst ? analysis::format_limit(*worst) : "none") + ": " + nearest.configuration.label);
+    }
+    rows.push_back(row);
+  }
+  return align(rows);
+}
+
+std::string list_remarks(const records::RunRecord& run, const analysis::Advice& advice) {
+  const std::size_t judged = advice.keeping.size() + advice.failing.size();
+  std::vector<std::string> places;
+  for (const analysis::Place& place : advice.places) places.push_back(analysis::describe_place(place, advice.places));
+  std::string text = wrap(fmt::format("{} of {} configurations judged, on {}.", judged, judged + advice.unjudged.size(),
+                                      fmt::join(places, ", ")));
+  for (const std::string& reason : analysis::count_unjudged(advice)) text += wrap("Not judged, " + reason + ".");
+  for (const std::string& note : analysis::list_advice_notes(advice, run.gl)) text += wrap(note);
+  return text;
+}
+
+std::string describe_answer(const records::RunRecord& run, const analysis::Advice& advice) {
+  const analysis::Candidate& best = advice.keeping.front();
+  const records::ParamMap& params = best.configuration.cells.front()->params;
+  const std::string with = params.empty() ? "" : wrap(fmt::format("with {}", records::describe_params(params)));
+  return fmt::format("{}: {}{}; cheapest of {}{}\n{}", best.configuration.label,
+                     analysis::format_cost(best.cost.mean, advice.request.cheapest, run.gl),
+                     analysis::describe_frame(advice.request), advice.keeping.size(),
+                     advice.request.demands.empty() ? "" : " that keep the limits", with);
+}
+
+std::string describe_nearest(const analysis::Advice& advice) {
+  return advice.closest ? wrap(analysis::describe_closest(advice) + ".") : "";
+}
+
+}  // namespace
+
+std::string make_advice_text(const records::RunRecord& run, const analysis::Advice& advice) {
+  std::vector<std::string> sections;
+  if (advice.keeping.empty()) {
+    sections = {"Nothing fits.\n", list_obstacles(advice), describe_nearest(advice)};
+  } else {
+    sections = {describe_answer(run, advice), list_limits(run, advice), list_cells(run, advice),
+                describe_second(run, advice), list_relaxations(run, advice)};
+  }
+  sections.push_back(list_remarks(run, advice));
+  std::erase(sections, "");
+  return fmt::format("{}", fmt::join(sections, "\n"));
+}
+
+}  // namespace shadowbench::pages

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace shadowbench::records {
+
+/// Holds what one amount of bias did to one filter's image.
+struct BiasPoint {
+  std::optional<double> factor;       ///< times the theoretical amount; empty: the mode takes none
+  double setting = 0.0;               ///< what the mode's key was set to; 0 where it takes none
+  std::optional<double> acne;         ///< share of wholly lit receivers that are dark
+  std::optional<double> contact_gap;  ///< share of receivers blocked by what touches them that are lit
+};
+
+/// Holds one filter under one mode, over the amount.
+struct BiasCurve {
+  std::string filter;             ///< label: id and the parameters that were asked for
+  double theory_setting = 0.0;    ///< what theory sets the mode's key to
+  double lift_depth = 0.0;        ///< how far that moves the receiver it is reckoned for towards the light, [0,1]
+  double lift_texels = 0.0;       ///< the same, in widths of a texel
+  double lift_m = 0.0;            ///< the same, in metres
+  std::vector<BiasPoint> points;  ///< by ascending factor
+};
+
+/// Holds one mode of bias.
+struct BiasModeRecord {
+  std::string mode;     ///< "constant"
+  std::string key;      ///< "depth"; empty where the mode takes no amount
+  std::string meaning;  ///< one sentence
+  std::vector<BiasCurve> curves;
+  std::vector<std::string> left_out;  ///< filters that cannot use it, with the reason
+  std::string picture;                ///< path of its pictures, relative to the page
+  std::string picture_caption;
+};
+
+/// Holds everything that a page about bias says.
+struct BiasSweepRecord {
+  std::string scene;
+  std::string title;
+  std::string view;
+  int map_size = 0;
+  int width = 0;   ///< pixels
+  int height = 0;  ///< pixels
+  std::string renderer;
+  std::vector<std::string> filters;  ///< labels; their place gives them their colour
+  double percentile = 0.0;           ///< [0,1]: the theoretical amount is enough for this share of the lit receivers
+  double slope_depth = 0.0;  ///< |dz/du| + |dz/dv| of the lit receiver at that percentile of slope, depth per texel
+  double angle_deg = 0.0;    ///< between that receiver's normal and the light
+  double texel_m = 0.0;
+  double depth_range_m = 0.0;
+  double gap_above = 0.0;      ///< visibility from which on a contact is lit
+  double acne_below = 0.0;     ///< visibility below which a lit receiver is dark
+  long acne_receivers = 0;     ///< in the mask
+  long contact_receivers = 0;  ///< in the mask
+  int fewest_receivers = 0;    ///< a rate over fewer is absent
+  std::vector<BiasModeRecord> modes;
+};
+
+}  // namespace shadowbench::records

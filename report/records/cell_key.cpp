@@ -1,0 +1,51 @@
+#include "report/records/cell_key.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "report/files/file_name.h"
+#include "report/records/json_values.h"
+
+namespace shadowbench::records {
+namespace {
+
+using nlohmann::json;
+
+json canonical(const json& value) {
+  if (value.is_number_float()) return number_json(value.get<double>());
+  json result = value;
+  if (result.is_structured())
+    for (json& child : result) child = canonical(child);
+  return result;
+}
+
+}  // namespace
+
+json cell_settings(const CellRecord& cell) {
+  return json{{"scene", cell.scene},
+              {"view", cell.view},
+              {"filter", cell.filter},
+              {"params", value_json(cell.params)},
+              {"map_size", cell.map_size},
+              {"map_format", cell.map_format},
+              {"bias", value_json(cell.bias)},
+              {"size", {cell.width, cell.height}},
+              {"fit", cell.fit},
+              {"light", cell.light},
+              {"range", {cell.range.border, cell.range.far_test, cell.range.behind_test}}};
+}
+
+std::string cell_key(const json& settings) {
+  return fmt::format("{:016x}", files::hash_text(dump_line(canonical(settings))));
+}
+
+std::string cell_key(const CellRecord& cell) { return cell_key(cell_settings(cell)); }
+
+bool is_cell_key(std::string_view text) {
+  const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+  return text.size() == 16 && std::all_of(text.begin(), text.end(), is_digit);
+}
+
+}  // namespace shadowbench::records

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+#include "report/records/records.h"
+
+namespace shadowbench::records {
+
+/// Returns what identifies a cell: scene, view, filter, parameters, map settings, bias, fit, light, range rule and
+/// picture size; no results.
+nlohmann::json cell_settings(const CellRecord& cell);
+
+/// Returns the key of settings: 16 hexadecimal digits, the hash of their canonical JSON (sorted keys, no white space,
+/// 4 and 4.0 alike). Whoever has more settings than cell_settings() adds them to its answer.
+std::string cell_key(const nlohmann::json& settings);
+
+/// Returns the key of cell_settings(cell).
+std::string cell_key(const CellRecord& cell);
+
+/// Tells whether a text is a key: 16 digits 0-9, a-f.
+bool is_cell_key(std::string_view text);
+
+}  // namespace shadowbench::records

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace shadowbench::records {
+
+/// Quotes a text as one CSV field, where it needs quoting.
+/// Source: RFC 4180.
+std::string quote_csv(std::string_view text);
+
+}  // namespace shadowbench::records

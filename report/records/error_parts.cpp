@@ -1,0 +1,65 @@
+#include "report/records/error_parts.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <vector>
+
+#include "report/records/format.h"
+
+namespace shadowbench::records {
+
+const std::array<ErrorPart, metrics::kErrorParts>& list_error_parts() {
+  static const std::array<ErrorPart, metrics::kErrorParts> kParts = {
+      ErrorPart{"numeric", "numeric", "arithmetic precision", {0.20f, 0.20f, 0.20f}, &AttributionRecord::numeric},
+      ErrorPart{"estimator",
+                "estimator",
+                "what the filter makes of the depths it reads, such as light bleeding of a bound or noise of few taps",
+                {0.94f, 0.75f, 0.19f},
+                &AttributionRecord::estimator},
+      ErrorPart{"discretisation",
+                "discretisation and bias",
+                "the map's resolution and the bias",
+                {0.00f, 0.45f, 0.35f},
+                &AttributionRecord::discretisation},
+      ErrorPart{"model",
+                "model",
+                "a fixed kernel is not this light's penumbra",
+                {0.80f, 0.47f, 0.65f},
+                &AttributionRecord::model}};
+  return kParts;
+}
+
+std::optional<PartValues> list_shares(const CellRecord& cell) {
+  PartValues shares{};
+  for (std::size_t i = 0; i < metrics::kErrorParts; ++i) {
+    const auto& share = (cell.attribution.*list_error_parts()[i].record).share;
+    if (!share || !std::isfinite(*share)) return std::nullopt;
+    shares[i] = *share;
+  }
+  return shares;
+}
+
+std::string format_share(double share) {
+  const double percent = std::round(100.0 * share);
+  return fmt::format("{:.0f} %", percent == 0.0 ? 0.0 : percent);  // no "-0 %"
+}
+
+std::string format_rate(double rate) { return format_number(100.0 * rate) + " %"; }
+
+std::string describe_shares(const PartValues& shares) {
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < metrics::kErrorParts; ++i)
+    texts.push_back(fmt::format("{} {}", list_error_parts()[i].id, format_share(shares[i])));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+std::string explain_no_attribution(const CellRecord& cell) {
+  for (const auto& [field, reason] : cell.absent)
+    if (field == "attribution" || field.rfind("attribution.", 0) == 0) return reason;
+  const auto found = cell.absent.find("error");
+  return found == cell.absent.end() ? "not measured" : found->second;
+}
+
+}  // namespace shadowbench::records

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "reference/metrics/attribution.h"
+#include "report/records/records.h"
+
+namespace shadowbench::records {
+
+/// Describes one of the parts that an error is the sum of.
+struct ErrorPart {
+  const char* id;       ///< its field in AttributionRecord: "discretisation"
+  const char* name;     ///< for legends: "discretisation and bias"
+  const char* meaning;  ///< ends the sentence "most of the error is estimator: ..."
+  std::array<float, 3>
+      color;  ///< for a display, sRGB; tells the parts apart by lightness alone, so in grey and to any eye
+  AttributionPart AttributionRecord::*record;
+};
+
+/// Lists the parts in the order of their sum: numeric, estimator, discretisation, model.
+const std::array<ErrorPart, metrics::kErrorParts>& list_error_parts();
+
+/// Holds one number per part, in the order of list_error_parts().
+using PartValues = std::array<double, metrics::kErrorParts>;
+
+/// Returns the shares of a cell's error, or nothing where one of them does not exist.
+std::optional<PartValues> list_shares(const CellRecord& cell);
+
+/// Writes a share for people, in whole percent: "71 %".
+std::string format_share(double share);
+
+/// Writes a rate for people, in percent with three digits: "4.2 %".
+std::string format_rate(double rate);
+
+/// Lists all parts with their shares: "numeric 0 %, estimator 71 %, discretisation 9 %, model 20 %".
+std::string describe_shares(const PartValues& shares);
+
+/// Says why a cell has no attribution: what its `absent` holds for the attribution, one of its parts, or the error.
+std::string explain_no_attribution(const CellRecord& cell);
+
+}  // namespace shadowbench::records

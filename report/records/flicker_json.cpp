@@ -1,0 +1,101 @@
+#include "report/records/flicker_json.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "report/records/csv.h"
+#include "report/records/json_io.h"
+
+namespace shadowbench::records {
+namespace {
+
+using nlohmann::json;
+
+json to_json(const FlickerFilter& filter) {
+  return {{"filter", filter.filter},         {"change", filter.change},
+          {"flicker", filter.flicker},       {"back_and_forth", filter.returning},
+          {"not_finite", filter.not_finite}, {"mean_change", filter.mean_change}};
+}
+
+json to_json(const FlickerTruth& truth) {
+  return {{"traced", truth.moves},
+          {"change", truth.change},
+          {"back_and_forth", truth.returning},
+          {"standard_error_of_change", truth.noise},
+          {"mean_change", truth.mean_change}};
+}
+
+template <class T>
+json list(const std::vector<T>& records);
+
+json to_json(const FlickerVariant& variant) {
+  return {{"snap", variant.snap},
+          {"texel_m", variant.texel_m},
+          {"grid_texels", variant.grid_texels},
+          {"resizes", variant.resizes},
+          {"filters", list(variant.filters)}};
+}
+
+json to_json(const FlickerMotion& motion) {
+  return {{"id", motion.id},
+          {"title", motion.title},
+          {"step", motion.step},
+          {"step_unit", motion.step_unit},
+          {"fit", motion.fit},
+          {"receivers", motion.receivers},
+          {"truth", to_json(motion.truth)},
+          {"variants", list(motion.variants)},
+          {"picture", motion.picture}};
+}
+
+template <class T>
+json list(const std::vector<T>& records) {
+  json result = json::array();
+  for (const T& record : records) result.push_back(to_json(record));
+  return result;
+}
+
+}  // namespace
+
+std::string make_flicker_json(const FlickerRecord& record) {
+  RunRecord run;
+  run.gl = record.gl;
+  run.machine = record.machine;
+  const json head = records::to_json(run);
+  const json result = {{"schema_version", kFlickerSchemaVersion},
+                       {"commit", record.commit},
+                       {"gl", head.at("gl")},
+                       {"machine", head.at("machine")},
+                       {"seed", record.seed},
+                       {"command", record.command},
+                       {"scene", record.scene},
+                       {"view", record.view},
+                       {"size", {record.width, record.height}},
+                       {"map_size", record.map_size},
+                       {"frames", record.frames},
+                       {"back_and_forth_above", static_cast<double>(record.return_above)},
+                       {"seconds", record.seconds},
+                       {"motions", list(record.motions)}};
+  return result.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+std::string make_flicker_csv(const FlickerRecord& record) {
+  std::string csv =
+      "scene,view,map_size,frames,motion,step,step_unit,snap,filter,receivers,change,truth_change,truth_noise,flicker,"
+      "back_and_forth,truth_back_and_forth,not_finite\r\n";
+  for (const FlickerMotion& motion : record.motions) {
+    for (const FlickerVariant& variant : motion.variants) {
+      for (const FlickerFilter& filter : variant.filters) {
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", quote_csv(record.scene),
+                           quote_csv(record.view), record.map_size, record.frames, motion.id, motion.step,
+                           motion.step_unit, variant.snap ? "on" : "off", quote_csv(filter.filter), motion.receivers,
+                           filter.change, motion.truth.change, motion.truth.noise, filter.flicker, filter.returning,
+                           motion.truth.returning, filter.not_finite);
+      }
+    }
+  }
+  return csv;
+}
+
+}  // namespace shadowbench::records

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "report/records/records.h"
+
+namespace shadowbench::records {
+
+inline constexpr int kFlickerSchemaVersion = 1;
+
+/// Is what one filter does while something moves; see metrics::FlickerStats.
+struct FlickerFilter {
+  std::string filter;  ///< with the parameters that were asked for
+  double change = 0.0;
+  double flicker = 0.0;
+  double returning = 0.0;  ///< share
+  std::int64_t not_finite = 0;
+  std::vector<double> mean_change;  ///< by step
+};
+
+/// Is one motion with the map's texel grid free, or fixed in the world.
+struct FlickerVariant {
+  bool snap = false;
+  double texel_m = 0.0;      ///< in the first frame
+  double grid_texels = 0.0;  ///< that a receiver moves against the texel grid in a step, whole texels left out; median
+  int resizes = 0;           ///< steps in which the texel's size changes by more than a millionth
+  std::vector<FlickerFilter> filters;
+};
+
+/// Is what the truth does meanwhile.
+struct FlickerTruth {
+  bool moves = false;  ///< false: it cannot change, and is not traced
+  double change = 0.0;
+  double returning = 0.0;
+  double noise =
+      0.0;  ///< standard error of a change, root mean square, if frames were traced with random numbers of their own
+  std::vector<double> mean_change;  ///< by step
+};
+
+/// Is one motion.
+struct FlickerMotion {
+  std::string id;     ///< "light"
+  std::string title;  ///< for people
+  std::string how;    ///< what moves, a sentence
+  double step = 0.0;
+  std::string step_unit;  ///< "degrees", "m"
+  std::string fit;        ///< of the light's map, as --fit names it
+  std::int64_t receivers = 0;
+  FlickerTruth truth;
+  std::vector<FlickerVariant> variants;  ///< without snapping, with it; filters in the same order
+  std::string picture;                   ///< flicker by pixel
+};
+
+/// Holds everything that `shadowbench flicker` found.
+struct FlickerRecord {
+  std::string commit;
+  GlRecord gl;
+  MachineRecord machine;
+  std::uint64_t seed = 0;
+  std::vector<std::string> command;
+  std::string scene, view;
+  int width = 0, height = 0;  ///< of the pictures, pixels
+  int map_size = 0;           ///< texels along a side
+  int frames = 0;
+  float return_above = 0.0f;  ///< going back by more counts
+  double seconds = 0.0;       ///< wall time
+  std::string no_plots;       ///< why the plots were not drawn; empty: they were
+  std::vector<FlickerMotion> motions;
+};
+
+}  // namespace shadowbench::records

@@ -1,0 +1,134 @@
+#include "report/records/format.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <vector>
+
+#include "report/records/json_values.h"
+
+namespace shadowbench::records {
+namespace {
+
+std::string format_param(const records::ParamValue& value) {
+  if (const auto* number = std::get_if<double>(&value)) return records::dump_line(records::number_json(*number));
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "on" : "off";
+  return std::get<std::string>(value);
+}
+
+const char* name_of(records::CellStatus status) {
+  switch (status) {
+    case records::CellStatus::kOk: return "ok";
+    case records::CellStatus::kTimeout: return "timeout";
+    case records::CellStatus::kCrashed: return "crashed";
+    case records::CellStatus::kError: break;
+  }
+  return "error";
+}
+
+/// Writes a length in the units it was given in, then in all three where the map's scale is known.
+std::string describe_amount(const records::BiasAmountRecord& amount, const records::MapScaleRecord& scale) {
+  std::vector<std::string> given;
+  if (amount.depth > 0.0) given.push_back(format_number(amount.depth) + " depth");
+  if (amount.texels > 0.0) given.push_back(format_number(amount.texels) + " texels");
+  if (amount.world > 0.0) given.push_back(format_number(amount.world) + " m");
+  std::string text = fmt::format("{}", fmt::join(given, " + "));
+  if (!scale.texel_m || !scale.depth_range_m) return text;
+  const double metres = amount.depth * *scale.depth_range_m + amount.texels * *scale.texel_m + amount.world;
+  return text + fmt::format(" (depth {}, {} texels, {} m)", format_number(metres / *scale.depth_range_m),
+                            format_number(metres / *scale.texel_m), format_number(metres));
+}
+
+bool any(const records::BiasAmountRecord& amount) {
+  return amount.depth > 0.0 || amount.texels > 0.0 || amount.world > 0.0;
+}
+
+/// Lists the parts of a bias that are there.
+std::string describe_bias(const records::BiasRecord& bias, const records::MapScaleRecord& scale) {
+  std::vector<std::string> parts;
+  if (any(bias.constant)) parts.push_back(describe_amount(bias.constant, scale));
+  if (any(bias.slope)) parts.push_back("(1 − n·l) × " + describe_amount(bias.slope, scale));
+  if (bias.plane_texels > 0.0) parts.push_back(fmt::format("plane over {} texels", format_number(bias.plane_texels)));
+  if (bias.plane_kernels > 0.0)
+    parts.push_back(fmt::format("plane over {} × (kernel half-width + 1) texels", format_number(bias.plane_kernels)));
+  if (any(bias.normal_offset)) parts.push_back("normal offset of " + describe_amount(bias.normal_offset, scale));
+  if (bias.receiver_plane) parts.push_back("receiver plane, per tap");
+  if (bias.polygon_factor > 0.0 || bias.polygon_units > 0.0) {
+    parts.push_back(
+        fmt::format("polygon offset {}, {}", format_number(bias.polygon_factor), format_number(bias.polygon_units)));
+  }
+  if (bias.front_cull) parts.push_back("front faces culled");
+  if (bias.midpoint) parts.push_back("midpoint map");
+  return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, " + "));
+}
+
+/// Says what differs from the default.
+std::string describe_fit_and_light(const records::CellRecord& cell) {
+  const records::CellRecord usual;
+  std::string text;
+  if (cell.fit != usual.fit) text += " · fit " + cell.fit;
+  if (cell.light != usual.light) text += fmt::format(" · light at {}° (azimuth, elevation)", cell.light);
+  return text;
+}
+
+/// Names what is not as it should be, each with a separator before it; nothing for the right rule.
+std::string describe_wrong_range(const records::RangeRecord& range) {
+  std::string text;
+  if (range.border != records::RangeRecord().border) text += " · outside the map: " + range.border;
+  if (!range.far_test) text += " · far-plane test off";
+  if (!range.behind_test) text += " · behind-the-light test off";
+  return text;
+}
+
+}  // namespace
+
+std::string format_number(double value) {
+  if (!std::isfinite(value)) return kNothing;
+  const double size = std::abs(value);
+  if (size >= 99.95 && size < 1e15) return fmt::format("{:.0f}", value);
+  return fmt::format("{:.3g}", value);
+}
+
+std::string format_ratio(const std::optional<records::Ratio>& ratio) {
+  return ratio ? fmt::format("{} [{}, {}]", format_number(ratio->median), format_number(ratio->ci95.low),
+                             format_number(ratio->ci95.high))
+               : kNothing;
+}
+
+std::string describe_clock(const records::GlRecord& gl) {
+  const bool wall_clock = gl.timer == records::TimerKind::kWallClock;
+  if (gl.software) return wall_clock ? "CPU time (software rasteriser)" : "GL timer query (software rasteriser)";
+  return wall_clock ? "wall-clock time" : "GPU time (timer query)";
+}
+
+std::string time_unit(const records::GlRecord& gl) {
+  if (gl.timer == records::TimerKind::kWallClock) return gl.software ? "ms (CPU)" : "ms";
+  return gl.software ? "ms (GL timer)" : "ms (GPU)";
+}
+
+std::string describe_params(const records::ParamMap& params) {
+  std::vector<std::string> parts;
+  for (const auto& [name, value] : params) parts.push_back(name + " " + format_param(value));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string describe_coverage(const records::CoverageRecord& coverage) {
+  if (!coverage.texels_per_pixel || !coverage.fewest_texels_per_pixel || !coverage.map_used) return {};
+  return fmt::format("{} map texels per pixel (worst {}), {:.0f} % of the map used",
+                     format_number(*coverage.texels_per_pixel), format_number(*coverage.fewest_texels_per_pixel),
+                     100.0 * *coverage.map_used);
+}
+
+std::string describe_settings(const records::CellRecord& cell) {
+  return fmt::format("view {} · map {} × {} {}{} · picture {} × {} · bias: {}{}", cell.view, cell.map_size,
+                     cell.map_size, cell.map_format, describe_fit_and_light(cell), cell.width, cell.height,
+                     describe_bias(cell.bias, cell.map_scale), describe_wrong_range(cell.range));
+}
+
+std::string describe_status(const records::CellRecord& cell) {
+  return cell.message.empty() ? records::name_of(cell.status)
+                              : fmt::format("{}: {}", records::name_of(cell.status), cell.message);
+}
+
+}  // namespace shadowbench::records

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "report/records/records.h"
+
+namespace shadowbench::records {
+
+/// Stands in a text for a value that does not exist.
+inline constexpr const char* kNothing = "–";
+
+/// Writes a number for people: three significant digits, no exponent where it can be helped.
+std::string format_number(double value);
+
+/// Writes a ratio for people: "1.09 [1.08, 1.1]".
+std::string format_ratio(const std::optional<records::Ratio>& ratio);
+
+/// Names the clock that a run's times come from: "CPU time (software rasteriser)".
+std::string describe_clock(const records::GlRecord& gl);
+
+/// Names the unit of a run's times where room is short: "ms (CPU)", "ms (GPU)",
+/// "ms (GL timer)" or "ms".
+std::string time_unit(const records::GlRecord& gl);
+
+/// Lists parameters: "radius 4, store rg32f".
+std::string describe_params(const records::ParamMap& params);
+
+/// Says how well the map's texels are spent: "3.2 map texels per pixel (worst 0.4), 61 % of the map used"; empty where
+/// that was not measured.
+std::string describe_coverage(const records::CoverageRecord& coverage);
+
+/// Lists what all cells of one table share: view, map, picture size, bias.
+std::string describe_settings(const records::CellRecord& cell);
+
+/// Says how a cell ended: "ok", "timeout: no answer after 10 s".
+std::string describe_status(const records::CellRecord& cell);
+
+}  // namespace shadowbench::records

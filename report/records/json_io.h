@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "report/records/records.h"
+
+namespace shadowbench::records {
+
+/// Writes a cell as JSON. A value that is missing or not finite is null, and `absent` in the JSON says why.
+nlohmann::json to_json(const CellRecord& cell);
+
+/// Writes a run's head as JSON, without its cells.
+nlohmann::json to_json(const RunRecord& run);
+
+/// Reads a cell; `where` names its file in messages. Throws Error(kInput) where a field is missing or holds another
+/// type, the key is none, or a picture's path leaves the report's folder.
+CellRecord cell_from_json(const nlohmann::json& json, const std::string& where);
+
+/// Reads a run's head; `where` names its file in messages.
+/// Throws Error(kInput) where a field is missing or holds another type, or the shard is none of the shards.
+RunRecord run_from_json(const nlohmann::json& json, const std::string& where);
+
+/// Returns where a cell's file lies in a report folder: cells/<key>.json. Requires a key.
+std::filesystem::path cell_path(const std::filesystem::path& dir, const std::string& key);
+
+/// Writes one finished cell into a report folder, whole or not at all. Requires cell.key.
+/// Throws Error(kOutput).
+void write_cell(const std::filesystem::path& dir, const CellRecord& cell);
+
+/// Reads one cell of a report folder.
+/// Throws Error(kInput) where the file is missing, cut off or of another schema version.
+CellRecord read_cell(const std::filesystem::path& dir, const std::string& key);
+
+/// Writes results.json from the cell files that `keys` name, in that order, and results.schema.json beside it.
+/// Throws Error(kInput) for a cell file, Error(kOutput) for the results. Cost: memory of one cell at a time.
+void write_results(const std::filesystem::path& dir, const RunRecord& run, const std::vector<std::string>& keys);
+
+/// Holds a whole results.json.
+struct Results {
+  RunRecord run;
+  std::vector<CellRecord> cells;
+};
+
+/// Reads a results.json.
+/// Throws Error(kInput) where the file is missing, cut off or of another schema version.
+Results read_results(const std::filesystem::path& file);
+
+/// Returns the JSON Schema (draft 2020-12) of results.json; cell files follow its `$defs/cell_file`.
+std::string_view results_schema();
+
+}  // namespace shadowbench::records

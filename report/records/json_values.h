@@ -1,0 +1,44 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "report/records/records.h"
+
+namespace shadowbench::records {
+
+/// Parses JSON. Throws nlohmann::json::exception, or std::invalid_argument where it is nested more than 100 deep:
+/// copying or writing such a value recurses, and would end the program.
+nlohmann::json parse_json(std::istream& stream);
+
+/// Writes a number: integral values as integers, so that 4 and 4.0 are one text. Requires a finite value.
+nlohmann::json number_json(double value);
+
+/// Writes JSON on one line; bytes that are not UTF-8 become U+FFFD.
+std::string dump_line(const nlohmann::json& value);
+
+/// Writes one value of a record as JSON.
+nlohmann::json value_json(const std::string& value);
+nlohmann::json value_json(int value);
+nlohmann::json value_json(std::int64_t value);
+nlohmann::json value_json(std::uint64_t value);
+nlohmann::json value_json(bool value);
+nlohmann::json value_json(double value);
+nlohmann::json value_json(CellStatus value);
+nlohmann::json value_json(TimerKind value);
+nlohmann::json value_json(const Quartiles& value);
+nlohmann::json value_json(const Ratio& value);
+nlohmann::json value_json(const std::vector<LightCountRecord>& value);
+nlohmann::json value_json(const ParamMap& value);
+nlohmann::json value_json(const BiasRecord& value);
+nlohmann::json value_json(const std::map<std::string, std::string>& value);
+nlohmann::json value_json(const std::vector<std::string>& value);
+nlohmann::json value_json(const std::vector<SceneRecord>& value);
+
+/// Reads one value of a record from JSON, strictly: no number becomes a text, no fraction an integer.
+/// Throws nlohmann::json::exception or std::invalid_argument where the JSON holds something else.
+template <class T>
+T read_value(const nlohmann::json& json);
+
+}  // namespace shadowbench::records

@@ -1,0 +1,162 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "report/records/records.h"
+
+namespace shadowbench::records {
+
+/// Names the fields that older files of this schema version lack; they are read as null there.
+inline constexpr std::array<std::string_view, 7> kLaterFields = {
+    "images.parts", "work.attribution_s", "claims", "lights", "repeat.cells", "repeat.overlapping", "repeat.of"};
+
+/// Calls `visit(name, value)` for every field of a bias.
+template <class Bias, class Visitor>
+void visit_bias_fields(Bias& bias, Visitor&& visit) {
+  visit("constant_depth", bias.constant.depth);
+  visit("constant_texels", bias.constant.texels);
+  visit("constant_world", bias.constant.world);
+  visit("slope_depth", bias.slope.depth);
+  visit("slope_texels", bias.slope.texels);
+  visit("slope_world", bias.slope.world);
+  visit("plane_texels", bias.plane_texels);
+  visit("plane_kernels", bias.plane_kernels);
+  visit("normal_offset_texels", bias.normal_offset.texels);
+  visit("normal_offset_world", bias.normal_offset.world);
+  visit("receiver_plane", bias.receiver_plane);
+  visit("polygon_factor", bias.polygon_factor);
+  visit("polygon_units", bias.polygon_units);
+  visit("front_cull", bias.front_cull);
+  visit("midpoint", bias.midpoint);
+}
+
+/// Calls `visit(path, value)` for every field of a cell: the one list that writing, reading and `absent` follow.
+/// A dot in the path is a group; optional values may be null in the JSON.
+template <class Cell, class Visitor>
+void visit_cell_fields(Cell& cell, Visitor&& visit) {
+  visit("key", cell.key);
+  visit("content", cell.content);
+  visit("status", cell.status);
+  visit("message", cell.message);
+  visit("scene", cell.scene);
+  visit("view", cell.view);
+  visit("filter", cell.filter);
+  visit("params", cell.params);
+  visit("kernel_radius_texels", cell.kernel_radius_texels);
+  visit("claims", cell.claims);
+  visit("map_size", cell.map_size);
+  visit("map_format", cell.map_format);
+  visit("fit", cell.fit);
+  visit("light", cell.light);
+  visit("bias", cell.bias);
+  visit("map_scale.texel_m", cell.map_scale.texel_m);
+  visit("map_scale.depth_range_m", cell.map_scale.depth_range_m);
+  visit("range.border", cell.range.border);
+  visit("range.far_test", cell.range.far_test);
+  visit("range.behind_test", cell.range.behind_test);
+  visit("size.width", cell.width);
+  visit("size.height", cell.height);
+  visit("receivers", cell.receivers);
+  visit("excused", cell.excused);
+  visit("nan", cell.nan);
+  visit("time_ms.map", cell.time_ms.map);
+  visit("time_ms.prefilter", cell.time_ms.prefilter);
+  visit("time_ms.lookup", cell.time_ms.lookup);
+  visit("time_ms.stopped", cell.time_ms.stopped);
+  visit("ratio_to_none.lookup", cell.ratio_to_none.lookup);
+  visit("ratio_to_none.static", cell.ratio_to_none.static_map);
+  visit("ratio_to_none.moving", cell.ratio_to_none.moving);
+  visit("lights", cell.lights);
+  visit("cost.fetches", cell.cost.fetches);
+  visit("cost.bytes_per_texel", cell.cost.bytes_per_texel);
+  visit("cost.passes", cell.cost.passes);
+  visit("cost.map_bytes", cell.cost.map_bytes);
+  visit("cost.prefilter_texels", cell.cost.prefilter_texels);
+  visit("error.rmse", cell.error.rmse);
+  visit("error.mae", cell.error.mae);
+  visit("error.p95", cell.error.p95);
+  visit("error.max", cell.error.max);
+  visit("error.mean", cell.error.mean);
+  visit("error.flip", cell.error.flip);
+  visit("error.kernel_rmse", cell.error.kernel_rmse);
+  visit("truth.se", cell.truth.se);
+  visit("truth.unanimous", cell.truth.unanimous);
+  visit("coverage.texels_per_pixel", cell.coverage.texels_per_pixel);
+  visit("coverage.fewest_texels_per_pixel", cell.coverage.fewest_texels_per_pixel);
+  visit("coverage.map_used", cell.coverage.map_used);
+  visit("coverage.map_filled", cell.coverage.map_filled);
+  visit("artefact.acne", cell.artefact.acne);
+  visit("artefact.leak", cell.artefact.leak);
+  visit("artefact.contact_gap", cell.artefact.contact_gap);
+  visit("artefact.noise", cell.artefact.noise);
+  visit("attribution.numeric.rms", cell.attribution.numeric.rms);
+  visit("attribution.numeric.share", cell.attribution.numeric.share);
+  visit("attribution.estimator.rms", cell.attribution.estimator.rms);
+  visit("attribution.estimator.share", cell.attribution.estimator.share);
+  visit("attribution.discretisation.rms", cell.attribution.discretisation.rms);
+  visit("attribution.discretisation.share", cell.attribution.discretisation.share);
+  visit("attribution.model.rms", cell.attribution.model.rms);
+  visit("attribution.model.share", cell.attribution.model.share);
+  visit("stability.overflow_texels", cell.stability.overflow_texels);
+  visit("stability.nan_texels", cell.stability.nan_texels);
+  visit("stability.negative_variance_texels", cell.stability.negative_variance_texels);
+  visit("stability.lowest_variance", cell.stability.lowest_variance);
+  visit("stability.headroom", cell.stability.headroom);
+  visit("stability.safe_exponent", cell.stability.safe_exponent);
+  visit("stability.half_difference_max", cell.stability.half_difference_max);
+  visit("stability.half_difference_rms", cell.stability.half_difference_rms);
+  visit("stability.bound_shortfall_max", cell.stability.bound_shortfall_max);
+  visit("stability.bound_violations", cell.stability.bound_violations);
+  visit("stability.bound_exact_violations", cell.stability.bound_exact_violations);
+  visit("images.picture", cell.images.picture);
+  visit("images.visibility", cell.images.visibility);
+  visit("images.depth_map", cell.images.depth_map);
+  visit("images.grid", cell.images.grid);
+  visit("images.exr", cell.images.exr);
+  visit("images.parts", cell.images.parts);
+  visit("images.attribution", cell.images.attribution);
+  visit("images.texel_density", cell.images.texel_density);
+  visit("images.texel_grid", cell.images.texel_grid);
+  visit("images.stability", cell.images.stability);
+  visit("warnings", cell.warnings);
+  visit("absent", cell.absent);
+}
+
+/// Calls `visit(path, value)` for every field of a run.
+template <class Run, class Visitor>
+void visit_run_fields(Run& run, Visitor&& visit) {
+  visit("commit", run.commit);
+  visit("command", run.command);
+  visit("seed", run.seed);
+  visit("gl.backend", run.gl.backend);
+  visit("gl.renderer", run.gl.renderer);
+  visit("gl.version", run.gl.version);
+  visit("gl.software", run.gl.software);
+  visit("gl.timer", run.gl.timer);
+  visit("machine.cpu", run.machine.cpu);
+  visit("machine.cores", run.machine.cores);
+  visit("machine.load_at_start", run.machine.load_at_start);
+  visit("machine.compiler", run.machine.compiler);
+  visit("machine.os", run.machine.os);
+  visit("work.shader_variants_compiled", run.work.shader_variants_compiled);
+  visit("work.passes_run", run.work.passes_run);
+  visit("work.passes_skipped", run.work.passes_skipped);
+  visit("work.truths_traced", run.work.truths_traced);
+  visit("work.truths_cached", run.work.truths_cached);
+  visit("work.timed_s", run.work.timed_s);
+  visit("work.elapsed_s", run.work.elapsed_s);
+  visit("work.attribution_s", run.work.attribution_s);
+  visit("experiment.title", run.experiment.title);
+  visit("experiment.settings", run.experiment.settings);
+  visit("experiment.cells", run.experiment.cells);
+  visit("experiment.shard", run.experiment.shard);
+  visit("experiment.shards", run.experiment.shards);
+  visit("repeat.cells", run.repeat.cells);
+  visit("repeat.overlapping", run.repeat.overlapping);
+  visit("repeat.of", run.repeat.of);
+  visit("scenes", run.scenes);
+  visit("warnings", run.warnings);
+}
+
+}  // namespace shadowbench::records

@@ -1,0 +1,145 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/records/records.h"
+#include "report/records/text_table.h"
+
+namespace shadowbench::records {
+
+/// Version of stress.json.
+inline constexpr int kStressSchemaVersion = 1;
+
+/// Says what became of a filter at one value of a stress axis; each is worse than the one before.
+enum class StressVerdict {
+  kOk,
+  kDegraded,  ///< the axis' error is over its stated bound
+  kBroken     ///< NaN, infinity, all lit, all dark, or falling where the filter must rise
+};
+
+/// Says what kind of law a theoretical limit follows, and so how near a measurement has to come.
+enum class StressTheoryKind {
+  kOverflow,  ///< a number leaves its format: within 10 %
+  kQuantum,   ///< a step of a format: within 10 %
+  kSlope,     ///< geometry: within 10 %
+  kRounding   ///< a bound on accumulated rounding: within a factor of 8
+};
+
+/// Says how a measured limit compares with its theory.
+enum class StressAgreement {
+  kAgrees,
+  kExplained,  ///< it does not agree, and the axis says why
+  kDisagrees
+};
+
+/// Is a range of an axis, ends included.
+struct StressRange {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// Holds one observation.
+struct StressSample {
+  double value = 0.0;  ///< of the axis' quantity
+  StressVerdict verdict = StressVerdict::kOk;
+  std::optional<double> measured;  ///< what the axis measures; empty: not finite, or there was nothing to measure
+  std::string why;                 ///< what decided the verdict
+};
+
+/// Holds where a verdict was first met.
+struct StressOnset {
+  double value = 0.0;                 ///< the first value with that verdict or a worse one
+  std::optional<double> last_before;  ///< the last value without; empty: the range begins with it
+  std::string why;                    ///< of the observation at `value`
+};
+
+/// Holds one theoretical limit of a case, and what was measured beside it.
+struct StressLimit {
+  std::optional<double> onset;  ///< empty: theory says that there is none
+  StressTheoryKind kind = StressTheoryKind::kOverflow;
+  StressVerdict predicts = StressVerdict::kBroken;  ///< the verdict that the case reaches at `onset`
+  std::string formula;
+  std::string source;
+  std::optional<double> measured;  ///< where that verdict was first met; empty: nowhere in the range
+  std::optional<double> ratio;     ///< measured / onset; empty where one of them is
+  StressAgreement agreement = StressAgreement::kAgrees;
+  std::string explanation;  ///< of kExplained
+};
+
+/// Holds one filter in one variant on one axis.
+struct StressCase {
+  std::string filter;  ///< id; empty: the axis tests arithmetic that no filter has yet
+  std::string variant;
+  std::string level;  ///< what ran: "GL", "model" or "arithmetic"
+  ParamMap params;
+  std::string not_available;          ///< why nothing was measured; empty: it was
+  std::vector<StressSample> samples;  ///< all, by ascending value
+  std::optional<StressOnset> degraded;
+  std::optional<StressOnset> broken;
+  std::vector<StressLimit> limits;
+  std::vector<std::string> notes;  ///< verdicts that got better again, and the axis' remarks
+};
+
+/// Is a table, with pictures, that an axis adds to its part of the page.
+struct StressExhibit {
+  struct Picture {
+    std::string file;  ///< relative to the page
+    std::string caption;
+  };
+  std::string id;  ///< unique in its axis: letters, digits and '-'
+  std::string title;
+  std::vector<std::string> sentences;
+  std::optional<TextTable> table;
+  std::vector<Picture> pictures;
+};
+
+/// Holds one axis with all its cases.
+struct StressAxis {
+  std::string id;
+  std::string title;
+  std::string quantity;
+  std::string unit;  ///< empty: a pure number
+  bool log = false;
+  StressRange range;
+  std::string measured;  ///< what samples measure
+  std::string measured_unit;
+  double bound = 0.0;  ///< `degraded` is said above it
+  bool measured_log = false;
+  std::string broken_when;  ///< in words
+  std::vector<StressCase> cases;
+  std::vector<StressExhibit> exhibits;
+};
+
+/// Holds everything that `shadowbench stress` found.
+struct StressRecord {
+  std::string commit;
+  GlRecord gl;
+  MachineRecord machine;
+  std::uint64_t seed = 0;
+  std::vector<std::string> command;
+  std::vector<std::string> filters;  ///< labels of what was chosen
+  double seconds = 0.0;              ///< wall time
+  std::string no_plots;              ///< why the plots were not drawn; empty: they were
+  std::vector<StressAxis> axes;
+};
+
+/// Names a case: "esm: r16f, linear (GL)".
+std::string label_of(const StressCase& item);
+
+/// Gives the words of records: "ok", "overflow", "agrees".
+const char* name_of(StressVerdict verdict);
+const char* name_of(StressTheoryKind kind);
+const char* name_of(StressAgreement agreement);
+
+/// Gives how far measured / theory may be from 1 for a kind, as a factor: 1.1 or 8.
+double tolerance_of(StressTheoryKind kind);
+
+/// Gives where a case first has `verdict` or a worse one; null: nowhere in the range.
+const StressOnset* find_onset(const StressCase& item, StressVerdict verdict);
+
+/// Counts the limits that disagree with no explanation.
+int count_disagreements(const StressRecord& record);
+
+}  // namespace shadowbench::records

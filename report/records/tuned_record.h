@@ -1,0 +1,91 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/records/records.h"
+
+namespace shadowbench::records {
+
+/// Holds a metric with the parameters a filter has by default, and with those that were found.
+struct TunedScore {
+  double at_default = 0.0;
+  double tuned = 0.0;
+  double gain() const { return at_default - tuned; }  ///< positive: the found ones are better
+};
+
+/// Holds the scores of one view.
+struct TunedViewRecord {
+  std::string scene;
+  std::string view;
+  bool training = false;
+  TunedScore score;
+  double truth_se = 0.0;  ///< standard error of the truth, root mean square over the view's receivers
+};
+
+/// Holds one parameter that was searched, and how wide its good range is.
+struct TunedParamRecord {
+  std::string name;
+  std::string unit;
+  std::string scale;  ///< on which it was searched: "linear", "log"
+  double min = 0.0;
+  double max = 0.0;
+  double default_value = 0.0;
+  double found = 0.0;
+  std::vector<Interval> good;  ///< where the training error stays near the best, the other parameters at theirs
+  double good_share = 0.0;     ///< of the scaled range that these take, [0,1]
+  bool no_effect = false;      ///< the training error is the same all over the range
+};
+
+/// Says what views that were not trained on make of the parameters that were found.
+enum class TuneVerdict {
+  kBetter,      ///< better by more than the truth's standard error
+  kNoGain,      ///< not better by more than that, in training or on unseen views
+  kOverfitted,  ///< better in training, but not on unseen views
+};
+
+/// Holds what was found for one filter.
+struct TunedFilterRecord {
+  std::string id;
+  std::string label;  ///< with the parameters that the request fixed
+  ParamMap defaults;  ///< complete: the starting point, fixed parameters included
+  ParamMap params;    ///< complete: what to run with; the defaults, unless the verdict is kBetter
+  std::vector<TunedParamRecord> searched;
+  std::vector<TunedViewRecord> views;
+  TunedScore training;                    ///< mean over the training views
+  TunedScore unseen;                      ///< mean over the others
+  std::optional<double> unseen_truth_se;  ///< mean over these; empty: the metric is not in units of visibility
+  TuneVerdict verdict = TuneVerdict::kNoGain;
+  int search_evaluations = 0;  ///< settings that the search drew
+  int evaluations = 0;         ///< those of the good ranges included
+};
+
+/// Holds a whole tuning.
+struct TunedRecord {
+  std::string commit;
+  std::string renderer;
+  std::string metric;
+  int map_size = 0;
+  int width = 0;               ///< pixels
+  int height = 0;              ///< pixels
+  double pad_texels = 0.0;     ///< around the scene in the map
+  double widest_kernel = 0.0;  ///< half-width in texels of the widest kernel that was searched
+  int budget = 0;
+  double tolerance = 0.0;  ///< of the good range, relative
+  std::uint32_t seed = 0;
+  std::string light;              ///< "AZIMUTH,ELEVATION"; empty: each scene's own
+  std::vector<std::string> bias;  ///< as asked for; empty: the default
+  std::string training_views;     ///< in words
+  std::string unseen_views;       ///< likewise
+  std::vector<std::string> scenes;
+  std::vector<std::string> notes;  ///< views left out, and why
+  std::vector<TunedFilterRecord> filters;
+};
+
+/// Fills in a filter's means, verdict and the parameters to run with, from its views and `found`, its complete
+/// parameters as found. `metric_in_visibility`: the truth's standard error is in the metric's unit; else any gain
+/// counts.
+void judge_tuning(TunedFilterRecord& filter, const ParamMap& found, bool metric_in_visibility);
+
+}  // namespace shadowbench::records

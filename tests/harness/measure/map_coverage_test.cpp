@@ -1,0 +1,139 @@
+#include "harness/measure/map_coverage.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace shadowbench::measure {
+namespace {
+
+constexpr int kWidth = 40;
+constexpr int kHeight = 30;
+
+/// A light from straight above: u along x, v along -z, over `width_ws` around the origin.
+scene::LightFrustum light_from_above(double width_ws, int map_size, float tilt_deg = 0.0f) {
+  const double angle = glm::radians(static_cast<double>(tilt_deg));
+  scene::LightFrustum frustum;
+  frustum.width_ws = width_ws;
+  frustum.texel_size_ws = width_ws / map_size;
+  frustum.direction_ws = glm::vec3(std::sin(angle), -std::cos(angle), 0.0);
+  const glm::dvec3 back(-glm::dvec3(frustum.direction_ws));
+  const glm::dvec3 up(0.0, 0.0, -1.0), right = glm::cross(up, back);
+  frustum.light_from_world = glm::dmat4(glm::transpose(glm::dmat3(right, up, back)));
+  return frustum;
+}
+
+/// What a camera sees of the floor y = 0, pixel by pixel; all of it, as if it had no end.
+ViewReceivers look_at_floor(const scene::Camera& camera) {
+  const glm::dvec3 forward(camera.forward_ws), right = glm::normalize(glm::cross(forward, glm::dvec3(camera.up_ws)));
+  const glm::dvec3 up = glm::cross(right, forward);
+  const bool flat = camera.orthographic_height_m > 0.0f;
+  const double half = flat ? 0.5 * static_cast<double>(camera.orthographic_height_m)
+                           : std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad));
+  ViewReceivers view{{kWidth, kHeight, {}}, {}, {}};
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const glm::dvec3 across =
+          half * ((2.0 * (x + 0.5) - kWidth) / kHeight * right + (1.0 - 2.0 * (y + 0.5) / kHeight) * up);
+      const glm::dvec3 origin = glm::dvec3(camera.position_ws) + (flat ? across : glm::dvec3(0.0));
+      const glm::dvec3 ray = flat ? forward : forward + across;
+      const glm::dvec3 hit = origin - ray * (origin.y / ray.y);
+      view.image.points.push_back({glm::vec3(hit), {0.0f, 1.0f, 0.0f}, true});
+      view.is_surface.push_back(1);
+    }
+  }
+  return view;
+}
+
+scene::Camera camera_above(float height_m, float orthographic_height_m) {
+  scene::Camera camera;
+  camera.position_ws = {0.0f, height_m, 0.0f};
+  camera.forward_ws = {0.0f, -1.0f, 0.0f};
+  camera.up_ws = {0.0f, 0.0f, -1.0f};
+  camera.orthographic_height_m = orthographic_height_m;
+  return camera;
+}
+
+images::Image half_filled_map(int size) {
+  images::Image map(size, size, 1);
+  for (std::size_t i = 0; i < map.texels.size(); ++i) map.texels[i] = i % 2 == 0 ? 0.5f : 1.0f;
+  return map;
+}
+
+TEST(MapCoverage, OrthographicViewAlongTheLight_IsTexelAreaOverPixelArea) {
+  // A pixel is 0.1 m wide, a texel 0.05 m; the view covers 4 m x 3 m of 12.8 m x 12.8 m.
+  const MapCoverage c = measure_coverage(look_at_floor(camera_above(5.0f, 3.0f)), camera_above(5.0f, 3.0f),
+                                         light_from_above(12.8, 256), half_filled_map(256));
+  EXPECT_NEAR(*c.record.texels_per_pixel, 4.0, 1e-4);
+  EXPECT_NEAR(*c.record.fewest_texels_per_pixel, 4.0, 1e-4);
+  EXPECT_NEAR(*c.record.map_used, 12.0 / (12.8 * 12.8), 1e-3);
+  EXPECT_EQ(*c.record.map_filled, 0.5);
+}
+
+TEST(MapCoverage, TiltedLight_SpreadsATexelByOneOverTheCosine) {
+  const scene::Camera camera = camera_above(5.0f, 3.0f);
+  const MapCoverage c =
+      measure_coverage(look_at_floor(camera), camera, light_from_above(12.8, 256, 60.0f), half_filled_map(256));
+  EXPECT_NEAR(*c.record.texels_per_pixel, 2.0, 1e-4);
+}
+
+/// The sum of all footprints is the area that the picture's corners enclose, as the light sees it.
+TEST(MapCoverage, PerspectiveFootprints_AddUpToWhatThePictureShows) {
+  scene::Camera camera;
+  camera.position_ws = {0.0f, 2.0f, 3.0f};
+  camera.forward_ws = glm::normalize(glm::vec3(0.0f, -1.0f, -0.6f));
+  camera.vertical_fov_rad = 0.7f;
+  const ViewReceivers view = look_at_floor(camera);
+  const scene::LightFrustum light = light_from_above(20.0, 256, 30.0f);
+  const MapCoverage c = measure_coverage(view, camera, light, half_filled_map(256));
+  const glm::dvec3 forward(camera.forward_ws), right(1.0, 0.0, 0.0), up = glm::cross(right, forward);
+  const double t = std::tan(0.35);
+  const auto hit = [&](double sx, double sy) {
+    const glm::dvec3 ray = forward + t * (sx * kWidth / kHeight * right + sy * up);
+    return glm::dvec3(camera.position_ws) - ray * (2.0 / ray.y);
+  };
+  const glm::dvec3 a = hit(-1, -1), b = hit(1, -1), d = hit(1, 1), e = hit(-1, 1);
+  const double area = 0.5 * (glm::length(glm::cross(b - a, d - a)) + glm::length(glm::cross(d - a, e - a)));
+  const double texels = area * std::cos(glm::radians(30.0)) / (light.texel_size_ws * light.texel_size_ws);
+  double sum = 0.0;
+  for (const float density : c.density.texels) sum += static_cast<double>(density);
+  EXPECT_NEAR(sum, texels, 0.002 * texels);
+  EXPECT_NEAR(*c.record.map_used * 256 * 256, texels, 0.03 * texels);
+  EXPECT_LT(*c.record.fewest_texels_per_pixel, *c.record.texels_per_pixel);
+}
+
+TEST(MapCoverage, ReceiversPlaceInTheMap_IsWhereTheFrustumPutsIt) {
+  const scene::Camera camera = camera_above(5.0f, 3.0f);
+  const MapCoverage c =
+      measure_coverage(look_at_floor(camera), camera, light_from_above(12.8, 256), half_filled_map(256));
+  // The left upper pixel lies at x = -1.95 m, z = -1.45 m; +v is -z.
+  EXPECT_NEAR(c.texel.at(0, 0)[0], 128.0 - 1.95 / 0.05, 1e-3);
+  EXPECT_NEAR(c.texel.at(0, 0)[1], 128.0 + 1.45 / 0.05, 1e-3);
+}
+
+TEST(MapCoverage, SurfacesTurnedAwayAndBackground_HaveNoSay) {
+  const scene::Camera camera = camera_above(5.0f, 3.0f);
+  ViewReceivers view = look_at_floor(camera);
+  for (std::size_t i = 0; i < view.image.points.size(); ++i) {
+    view.image.points[i].counts = false;
+    view.is_surface[i] = i % 2 == 0 ? 1 : 0;
+  }
+  const MapCoverage c = measure_coverage(view, camera, light_from_above(12.8, 256), half_filled_map(256));
+  EXPECT_FALSE(c.record.texels_per_pixel);
+  EXPECT_FALSE(c.record.map_used);
+  EXPECT_TRUE(c.record.map_filled);
+  EXPECT_EQ(c.density.texels[0], 0.0f);
+  EXPECT_EQ(c.density.texels[1], -1.0f);
+}
+
+/// The view is 4 m wide, the map 2 m: half of the columns and two thirds of the rows lie in it.
+TEST(MapCoverage, ReceiversOutsideTheMap_HaveNoSay) {
+  const scene::Camera camera = camera_above(5.0f, 3.0f);
+  const MapCoverage c = measure_coverage(look_at_floor(camera), camera, light_from_above(2.0, 64), half_filled_map(64));
+  EXPECT_NEAR(*c.record.map_used, 1.0, 1e-9);
+  EXPECT_EQ(std::count_if(c.density.texels.begin(), c.density.texels.end(), [](float d) { return d > 0.0f; }), 20 * 20);
+  EXPECT_EQ(c.density.texels[0], 0.0f);
+}
+
+}  // namespace
+}  // namespace shadowbench::measure

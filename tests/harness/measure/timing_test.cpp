@@ -1,0 +1,149 @@
+// When enough rounds are timed, with clocks that say what the test wants.
+
+#include "harness/measure/timing.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "harness/measure/statistics.h"
+
+namespace shadowbench::measure {
+namespace {
+
+/// Filters whose times are a mean with uniform noise of so many percent.
+class FakeFilters {
+ public:
+  void add(double mean_ms, double noise, bool prefilter = false) {
+    TimedFilter filter;
+    filter.lookup = [this, mean_ms, noise] { return draw(mean_ms, noise); };
+    if (prefilter) filter.prefilter = [this, mean_ms, noise] { return draw(mean_ms, noise); };
+    filters_.push_back(std::move(filter));
+  }
+
+  RoundTimes run(const options::RoundLimits& limits) {
+    return run_rounds(
+        filters_, 0, [] { return 1.0; }, limits, 3);
+  }
+
+ private:
+  std::mt19937 generator_{5};
+  std::vector<TimedFilter> filters_;
+
+  double draw(double mean_ms, double noise) {
+    return mean_ms * (1.0 + noise * std::uniform_real_distribution<double>(-1.0, 1.0)(generator_));
+  }
+};
+
+double width(const records::Ratio& ratio) { return (ratio.ci95.high - ratio.ci95.low) / ratio.median; }
+
+TEST(Rounds, QuietFilters_StopAsSoonAsTheyMay) {
+  FakeFilters filters;
+  filters.add(2.0, 0.001);
+  filters.add(5.0, 0.001);
+  const RoundTimes times = filters.run({9, 100, 0.05, 1e6});
+  EXPECT_EQ(times.map.size(), 9u);
+  for (const FilterTimes& filter : times.filters) {
+    EXPECT_EQ(filter.lookup.size(), 9u);
+    EXPECT_EQ(filter.stopped, StopReason::kPrecise);
+  }
+}
+
+TEST(Rounds, NoisyFilter_GoesOnUntilItsIntervalIsNarrow_WhileQuietOnesDropOut) {
+  FakeFilters filters;
+  filters.add(2.0, 0.001);
+  filters.add(5.0, 0.001);
+  filters.add(5.0, 0.20, true);
+  const RoundTimes times = filters.run({9, 2000, 0.05, 1e6});
+  EXPECT_EQ(times.filters[1].lookup.size(), 9u);
+  const std::size_t rounds = times.filters[2].lookup.size();
+  EXPECT_GT(rounds, 20u);
+  EXPECT_LT(rounds, 2000u);
+  EXPECT_EQ(times.filters[2].prefilter.size(), rounds);
+  EXPECT_EQ(times.filters[0].lookup.size(), rounds) << "the reference stays";
+  EXPECT_EQ(times.map.size(), rounds);
+  EXPECT_EQ(times.filters[2].stopped, StopReason::kPrecise);
+  EXPECT_LE(width(bootstrap_ratio(times.filters[2].lookup, times.filters[0].lookup, 3)), 0.05);
+  EXPECT_LE(width(bootstrap_ratio(add_moving(times.map, times.filters[2]), add_moving(times.map, times.filters[0]), 3)),
+            0.05);
+}
+
+TEST(Rounds, BudgetIsSpent_AllStop_AndSaySo) {
+  FakeFilters filters;
+  filters.add(10.0, 0.5);
+  filters.add(10.0, 0.5);
+  // A round takes some 21 ms, one of them warms up.
+  const RoundTimes times = filters.run({9, 1000, 0.001, 500.0});
+  EXPECT_NEAR(static_cast<double>(times.map.size()), 1000.0 / 21.0 - 1.0, 6.0);
+  for (const FilterTimes& filter : times.filters) EXPECT_EQ(filter.stopped, StopReason::kBudget);
+}
+
+/// Lookups right after a prefilter are slow for a while; those of filters without one are timed as they come.
+TEST(Rounds, LookupsSettleAfterAPrefilter) {
+  int since = 0, alone = 0;
+  const TimedFilter slow{[&] { return since = 0, 10.0; }, [&] { return ++since > 3 ? 2.0 : 7.0; }},
+      other{{}, [&] { return 1.0 + alone++; }};
+  const RoundTimes times = run_rounds(
+      {slow, other}, 0, [] { return 1.0; }, options::RoundLimits::exactly(2), 3);
+  EXPECT_EQ(times.filters[0].lookup, (std::vector<double>{2.0, 2.0}));
+  EXPECT_EQ(times.filters[1].lookup, (std::vector<double>{2.0, 3.0}));
+  EXPECT_DOUBLE_EQ(times.spent_ms, 3.0 * (1.0 + 10.0 + 3.0 * 7.0 + 2.0) + 1.0 + 2.0 + 3.0);
+}
+
+TEST(Rounds, BudgetOfNothing_StillLeavesThreeRounds) {
+  FakeFilters filters;
+  filters.add(10.0, 0.5);
+  filters.add(10.0, 0.5);
+  EXPECT_EQ(filters.run({9, 1000, 0.05, 1e-6}).map.size(), 3u);
+  EXPECT_EQ(filters.run({2, 2, 0.05, 1e-6}).map.size(), 2u);
+}
+
+/// Where drawing every filter once has spent the budget, nothing more warms up, and three rounds are timed.
+TEST(Rounds, SlowFilters_AreWarm_OnceTheyWereDrawn) {
+  int lookups = 0;
+  const std::vector<TimedFilter> filters(2, TimedFilter{{}, [&] { return 1000.0 + lookups++; }});
+  const auto run = [&](const options::RoundLimits& limits, double drawn_ms) {
+    lookups = 0;
+    return run_rounds(
+        filters, 0, [] { return 1.0; }, limits, 3, drawn_ms);
+  };
+  const RoundTimes drawn = run({9, 100, 0.05, 500.0}, 2000.0);
+  EXPECT_EQ(drawn.map.size(), 3u);
+  EXPECT_EQ(lookups, 2 * 3);
+  EXPECT_DOUBLE_EQ(drawn.spent_ms, 2000.0 + 3.0 + 6.0 * 1000.0 + 15.0);
+  EXPECT_EQ(run({9, 100, 0.05, 500.0}, 10.0).map.size(), 3u);
+  EXPECT_EQ(lookups, 2 * (1 + 3));
+  run(options::RoundLimits::exactly(1), 1e6);
+  EXPECT_EQ(lookups, 2 * (1 + 1));
+}
+
+TEST(Rounds, AFixedNumber_IsKeptWhateverTheTimesSay) {
+  FakeFilters filters;
+  filters.add(1.0, 0.0);
+  filters.add(1.0, 0.9);
+  const RoundTimes times = filters.run(options::RoundLimits::exactly(4));
+  for (const FilterTimes& filter : times.filters) {
+    EXPECT_EQ(filter.lookup.size(), 4u);
+    EXPECT_EQ(filter.stopped, StopReason::kRounds);
+  }
+}
+
+TEST(Rounds, TheMostThereMayBe_IsSaidToBeThat) {
+  FakeFilters filters;
+  filters.add(1.0, 0.5);
+  filters.add(1.0, 0.5);
+  const RoundTimes times = filters.run({2, 5, 1e-6, 1e9});
+  EXPECT_EQ(times.map.size(), 5u);
+  EXPECT_EQ(times.filters[1].stopped, StopReason::kRounds);
+}
+
+TEST(AddMoving, SumsMapPrefilterAndLookup_OfTheRoundsThatAFilterTookPartIn) {
+  FilterTimes times;
+  times.lookup = {1.0, 2.0};
+  EXPECT_EQ(add_moving({10.0, 20.0, 30.0}, times), (std::vector<double>{11.0, 22.0}));
+  times.prefilter = {100.0, 200.0};
+  EXPECT_EQ(add_moving({10.0, 20.0, 30.0}, times), (std::vector<double>{111.0, 222.0}));
+}
+
+}  // namespace
+}  // namespace shadowbench::measure

@@ -1,0 +1,130 @@
+#include "harness/options/experiment_file.h"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "filters/base/error.h"
+
+namespace shadowbench::options {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class ExperimentFile : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path write(const std::string& text) const {
+    std::ofstream(folder_ / "e.toml") << text;
+    return folder_ / "e.toml";
+  }
+  Experiment read(const std::string& text) const {
+    return read_experiment(write(text), {"map_size", "scene", "size", "grids", "seed"});
+  }
+  std::string expand(const std::string& text) const {
+    static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
+    return expand_filters(read(text), catalogue);
+  }
+  static Error error_of(const std::function<void()>& action) {
+    try {
+      action();
+    } catch (const Error& error) {
+      return error;
+    }
+    return {ErrorKind::kLimit, "no error"};
+  }
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("shadowbench.experiment." + std::to_string(getpid()));
+};
+
+TEST_F(ExperimentFile, KeysAreOptions_ListsAreSeveralValues) {
+  const Experiment e =
+      read("title = 'T'\nmap_size = [256, 512]\nsize = '64x36'\ngrids = false\nscene = ['cubes', 'my/a.glb']\n");
+  EXPECT_EQ(e.title, "T");
+  ASSERT_EQ(e.settings.size(), 4u);
+  const auto values = [&](const std::string& option) {
+    for (const ExperimentSetting& s : e.settings)
+      if (s.option == option) return s.values;
+    return std::vector<std::string>{"none"};
+  };
+  EXPECT_THAT(values("--map-size"), ElementsAre("256", "512"));
+  EXPECT_THAT(values("--size"), ElementsAre("64x36"));
+  EXPECT_THAT(values("--grids"), ElementsAre("false"));
+  EXPECT_THAT(values("--scene"), ElementsAre("cubes", (folder() / "my/a.glb").string()));
+  EXPECT_EQ(e.settings.front().where, (folder() / "e.toml").string() + ":2");
+}
+
+TEST_F(ExperimentFile, FiltersAreTheProductOfTheirParameters) {
+  EXPECT_EQ(
+      expand("[[filter]]\nid = 'none'\n[[filter]]\nid = 'poisson'\nradius = [1.5, 2]\ntaps = [8, 16]\n"),
+      "none,poisson:radius=1.5,taps=8,poisson:radius=1.5,taps=16,poisson:radius=2,taps=8,poisson:radius=2,taps=16");
+}
+
+TEST_F(ExperimentFile, RangesAreLinearOrLogarithmic_WholeNumbersAreRounded_AndStandOnce) {
+  EXPECT_EQ(expand("[[filter]]\nid = 'vsm'\nradius = {linear = [1, 3], count = 5}\n"),
+            "vsm:radius=1,vsm:radius=2,vsm:radius=3");
+  EXPECT_EQ(expand("[[filter]]\nid = 'poisson'\nradius = {linear = [1, 2], count = 3}\n"),
+            "poisson:radius=1,poisson:radius=1.5,poisson:radius=2");
+  const std::string log = expand("[[filter]]\nid = 'esm'\nc = {log = [1, 100], count = 3}\n");
+  EXPECT_THAT(log, HasSubstr("esm:c=1,esm:c=10"));
+  EXPECT_THAT(log, HasSubstr(",esm:c=100"));
+  EXPECT_EQ(
+      expand("[[filter]]\nid = 'vsm'\nstore = ['rg32f', 'rg16f']\nmin_variance = {log = [1e-5, 1e-5], count = 2}\n"),
+      "vsm:min_variance=1e-05,store=rg32f,vsm:min_variance=1e-05,store=rg16f");
+}
+
+TEST_F(ExperimentFile, Mistakes_NameFileAndLine) {
+  const std::vector<std::tuple<std::string, std::string, int>> cases = {
+      {"map_sise = 3\n", "did you mean 'map_size'", 1},
+      {"title = 'x'\nmap_size = []\n", "'map_size' is an empty list", 2},
+      {"\nmap_size = [1, {a = 2}]\n", "'map_size' must be a text", 2},
+      {"[filter]\nid = 'none'\n", "[[filter]]", 1},
+      {"[[filter]]\nradius = 3\n", "id", 1},
+      {"\n[[filter]]\nid = 'vsn'\n", "did you mean 'vsm'", 2},
+      {"[[filter]]\nid = 'vsm'\nradios = 3\n", "did you mean 'radius'", 1},
+      {"[[filter]]\nid = 'vsm'\nradius = 99\n", "out of range", 1},
+      {"[[filter]]\nid = 'vsm'\nradius = {linear = [1, 2]}\n", "count", 3},
+      {"[[filter]]\nid = 'vsm'\nradius = {linear = [1, 2], count = 1}\n", "count", 3},
+      {"[[filter]]\nid = 'vsm'\nradius = {linear = [1, 2], log = [1, 2], count = 3}\n", "one of them", 3},
+      {"[[filter]]\nid = 'vsm'\nradius = {count = 3}\n", "one of them", 3},
+      {"[[filter]]\nid = 'esm'\nc = {log = [0, 2], count = 3}\n", "more than 0", 3},
+      {"[[filter]]\nid = 'esm'\nc = {linear = [1, 2000], count = 10000}\nradius = {linear = [0, 64], count = 64}\n",
+       "combinations, and a run takes 100000", 1},
+      {"[[filter]]\nid = 'esm'\nc = {linear = [1, 2000], count = 10000}\nradius = [1, 2, 3, 4, 5, 6]\n"
+       "[[filter]]\nid = 'esm'\nc = {linear = [1, 2000], count = 10000}\nradius = [1, 2, 3, 4, 5, 6]\n",
+       "combinations, and a run takes 100000", 5},
+      {"[[filter]]\nid = 'esm'\nc = {linear = [1, inf], count = 3}\n", "number", 3},
+      {"map_size = = 3\n", "not valid TOML", 1},
+  };
+  for (const auto& [text, message, line] : cases) {
+    SCOPED_TRACE(text);
+    const Error error = error_of([&] { expand(text); });
+    EXPECT_EQ(error.kind(), ErrorKind::kInput);
+    EXPECT_THAT(error.what(), HasSubstr(message));
+    EXPECT_THAT(error.where(), HasSubstr("e.toml:" + std::to_string(line)));
+  }
+}
+
+TEST_F(ExperimentFile, Missing_IsSaid) {
+  EXPECT_EQ(error_of([&] { read_experiment(folder() / "none.toml", {}); }).kind(), ErrorKind::kInput);
+}
+
+TEST_F(ExperimentFile, AreFoundByName_OrPath) {
+  const std::filesystem::path shipped = SHADOWBENCH_SOURCE_DIR "/harness/experiments";
+  EXPECT_EQ(find_experiment(shipped, "quick"), shipped / "quick.toml");
+  EXPECT_EQ(find_experiment(shipped, "my/own.toml"), "my/own.toml");
+  EXPECT_THAT(error_of([&] { find_experiment(shipped, "quik"); }).what(), HasSubstr("did you mean 'quick'"));
+  EXPECT_THAT(error_of([&] { find_experiment(shipped, "xyzzy12"); }).what(),
+              HasSubstr("default, golden, lights, quick, sweep"));
+}
+
+}  // namespace
+}  // namespace shadowbench::options

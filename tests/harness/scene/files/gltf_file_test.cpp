@@ -1,0 +1,459 @@
+#include "harness/scene/files/gltf_file.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "harness/scene/mesh_tools.h"
+#include "harness/scene/validate.h"
+#include "tests/harness/scene/test_files.h"
+
+namespace shadowbench::scene {
+namespace {
+
+using testing::HasSubstr;
+
+/// A quad in the plane z = 0, facing +z: four positions (48 bytes), then the indices 0 1 2 0 2 3 (12 bytes).
+const std::vector<float> kQuad{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+const std::vector<std::uint16_t> kQuadIndices{0, 1, 2, 0, 2, 3};
+
+/// The parts of a small file that tests replace.
+struct Parts {
+  std::string nodes = R"([{"mesh": 0}])";
+  std::string primitive = R"({"attributes": {"POSITION": 0}, "indices": 1})";
+  std::string accessors = R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+                              {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}])";
+  std::string views = R"([{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}])";
+  std::string buffer = bytes_of(kQuad) + bytes_of(kQuadIndices);
+  std::string uri = "data.bin";
+  std::string more;  ///< further members, each with a comma in front
+  std::string scenes = R"([{"nodes": [0]}])";
+};
+
+std::string json_of(const Parts& p) {
+  const std::string uri = p.uri.empty() ? "" : fmt::format(R"(, "uri": "{}")", p.uri);
+  return fmt::format(R"({{"asset": {{"version": "2.0"}}, "scenes": {}, "nodes": {},
+    "meshes": [{{"name": "quad", "primitives": [{}]}}], "accessors": {}, "bufferViews": {},
+    "buffers": [{{"byteLength": {}{}}}]{}}})",
+                     p.scenes, p.nodes, p.primitive, p.accessors, p.views, p.buffer.size(), uri, p.more);
+}
+
+ImportedModel import_parts(const Parts& parts) {
+  const TestFolder folder;
+  folder.write("data.bin", parts.buffer);
+  return import_gltf(folder.write("test.gltf", json_of(parts)));
+}
+
+std::string complaint_about(const Parts& parts) {
+  const Error error = error_of([&] { import_parts(parts); });
+  EXPECT_EQ(error.kind(), ErrorKind::kInput);
+  EXPECT_THAT(error.where(), HasSubstr("test.gltf"));
+  EXPECT_THAT(error.message(), testing::Not(HasSubstr("\n")));
+  return error.message();
+}
+
+Bounds bounds_of(const ImportedModel& model) {
+  Bounds box;
+  for (const Mesh& mesh : model.meshes)
+    for (const Vertex& vertex : mesh.vertices) box.add(vertex.position_ws);
+  return box;
+}
+
+glm::dvec3 first_face(const Mesh& mesh) {
+  return area_normal(mesh.vertices[mesh.indices[0]].position_ws, mesh.vertices[mesh.indices[1]].position_ws,
+                     mesh.vertices[mesh.indices[2]].position_ws);
+}
+
+std::string little_endian(std::size_t value) {
+  return bytes_of(std::vector<std::uint32_t>{static_cast<std::uint32_t>(value)});
+}
+
+std::string glb_of(Parts parts) {
+  parts.uri.clear();
+  std::string json = json_of(parts);
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::string binary = parts.buffer;
+  binary.resize((binary.size() + 3) / 4 * 4, '\0');
+  const std::size_t size = 12 + 8 + json.size() + 8 + binary.size();
+  return "glTF" + little_endian(2) + little_endian(size) + little_endian(json.size()) + "JSON" + json +
+         little_endian(binary.size()) + std::string("BIN\0", 4) + binary;
+}
+
+TEST(GltfFileTest, Quad_HasTwoTrianglesWithFlatNormals) {
+  const ImportedModel model = import_parts({});
+  ASSERT_EQ(model.meshes.size(), 1U);
+  EXPECT_EQ(model.meshes[0].indices.size(), 6U);
+  EXPECT_EQ(model.meshes[0].name, "quad");
+  for (const Vertex& v : model.meshes[0].vertices) EXPECT_EQ(v.normal_ws, glm::vec3(0, 0, 1));
+  ASSERT_EQ(model.materials.size(), 1U);
+  EXPECT_TRUE(model.cameras.empty());
+  EXPECT_FALSE(model.light.has_value());
+  EXPECT_TRUE(model.warnings.empty());
+}
+
+TEST(GltfFileTest, Glb_HoldsTheSame) {
+  const TestFolder folder;
+  const ImportedModel model = import_gltf(folder.write("test.glb", glb_of({})));
+  ASSERT_EQ(model.meshes.size(), 1U);
+  EXPECT_EQ(bounds_of(model).max, glm::vec3(1, 1, 0));
+}
+
+TEST(GltfFileTest, NestedTransforms_ApplyParentLast) {
+  Parts parts;
+  // The child is turned a quarter about z and moved; its parent doubles everything; theirs moves along z by a matrix.
+  parts.nodes = R"([{"children": [1], "matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,7,1]},
+                    {"children": [2], "scale": [2, 2, 2]},
+                    {"mesh": 0, "name": "leaf", "translation": [10, 0, 0], "rotation": [0, 0, 0.70710678118654752, 0.70710678118654752]}])";
+  const ImportedModel model = import_parts(parts);
+  const Bounds box = bounds_of(model);
+  EXPECT_NEAR(glm::distance(box.min, glm::vec3(18, 0, 7)), 0.0f, 1e-5f);
+  EXPECT_NEAR(glm::distance(box.max, glm::vec3(20, 2, 7)), 0.0f, 1e-5f);
+  EXPECT_EQ(model.meshes[0].name, "leaf");
+}
+
+TEST(GltfFileTest, NegativeScale_KeepsWindingAndNormalTogether) {
+  Parts parts;
+  parts.nodes = R"([{"mesh": 0, "scale": [-1, 1, 1]}])";
+  const Mesh mesh = import_parts(parts).meshes[0];
+  EXPECT_GT(first_face(mesh).z, 0.0);
+  EXPECT_EQ(mesh.vertices[0].normal_ws, glm::vec3(0, 0, 1));
+  parts.nodes = R"([{"mesh": 0, "scale": [1, 1, -1]}])";
+  const Mesh flipped = import_parts(parts).meshes[0];
+  EXPECT_LT(first_face(flipped).z, 0.0);
+  EXPECT_EQ(flipped.vertices[0].normal_ws, glm::vec3(0, 0, -1));
+}
+
+TEST(GltfFileTest, MeshPlacedTwice_IsThereTwice) {
+  Parts parts;
+  parts.nodes = R"([{"mesh": 0}, {"mesh": 0, "translation": [0, 0, 5]}])";
+  parts.scenes = R"([{"nodes": [0, 1]}])";
+  const ImportedModel model = import_parts(parts);
+  ASSERT_EQ(model.meshes.size(), 2U);
+  EXPECT_EQ(bounds_of(model).max.z, 5.0f);
+}
+
+TEST(GltfFileTest, StripAndFan_WindAsTheQuadDoes) {
+  for (const auto& [mode, indices] :
+       {std::pair(5, std::vector<std::uint16_t>{0, 1, 3, 2}), std::pair(6, std::vector<std::uint16_t>{0, 1, 2, 3})}) {
+    Parts parts;
+    parts.buffer = bytes_of(kQuad) + bytes_of(indices) + std::string(4, '\0');
+    parts.primitive = fmt::format(R"({{"attributes": {{"POSITION": 0}}, "indices": 1, "mode": {}}})", mode);
+    parts.accessors = R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+                          {"bufferView": 1, "componentType": 5123, "count": 4, "type": "SCALAR"}])";
+    const Mesh mesh = import_parts(parts).meshes[0];
+    ASSERT_EQ(mesh.indices.size(), 6U) << mode;
+    for (const Vertex& v : mesh.vertices) EXPECT_EQ(v.normal_ws, glm::vec3(0, 0, 1)) << mode;
+    double area = 0.0;
+    for (std::size_t i = 0; i < 6; i += 3) {
+      area += 0.5 * area_normal(mesh.vertices[i].position_ws, mesh.vertices[i + 1].position_ws,
+                                mesh.vertices[i + 2].position_ws)
+                        .z;
+    }
+    EXPECT_NEAR(area, 1.0, 1e-6) << mode;
+  }
+}
+
+TEST(GltfFileTest, IndicesOfEveryWidth_AndNone_Read) {
+  Parts bytes;
+  bytes.buffer = bytes_of(kQuad) + bytes_of(std::vector<std::uint8_t>{0, 1, 2, 0, 2, 3}) + std::string(6, '\0');
+  bytes.accessors = R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+                        {"bufferView": 1, "componentType": 5121, "count": 6, "type": "SCALAR"}])";
+  EXPECT_EQ(import_parts(bytes).meshes[0].indices.size(), 6U);
+  Parts words;
+  words.buffer = bytes_of(kQuad) + bytes_of(std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3});
+  words.views = R"([{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}])";
+  words.accessors = R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+                        {"bufferView": 1, "componentType": 5125, "count": 6, "type": "SCALAR"}])";
+  EXPECT_EQ(import_parts(words).meshes[0].indices.size(), 6U);
+  Parts none;
+  none.primitive = R"({"attributes": {"POSITION": 0}})";
+  none.accessors = R"([{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}])";
+  EXPECT_EQ(import_parts(none).meshes[0].indices.size(), 3U);
+}
+
+TEST(GltfFileTest, StridedAndNormalizedAttributes_Read) {
+  Parts parts;
+  parts.buffer = bytes_of(std::vector<std::int16_t>{0, 0, 0, 99, 32767, 0, 0, 99, 0, 32767, 0, 99});
+  parts.primitive = R"({"attributes": {"POSITION": 0}})";
+  parts.views = R"([{"buffer": 0, "byteLength": 24, "byteStride": 8}])";
+  parts.accessors = R"([{"bufferView": 0, "componentType": 5122, "normalized": true, "count": 3, "type": "VEC3"}])";
+  EXPECT_EQ(bounds_of(import_parts(parts)).max, glm::vec3(1, 1, 0));
+}
+
+TEST(GltfFileTest, SparseAccessor_ReplacesItsElements) {
+  Parts parts;
+  parts.accessors = R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "sparse": {"count": 1,
+      "indices": {"bufferView": 2, "componentType": 5123}, "values": {"bufferView": 3}}},
+      {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}])";
+  parts.buffer += bytes_of(std::vector<std::uint16_t>{2, 0}) + bytes_of(std::vector<float>{9, 9, 0});
+  parts.views = R"([{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12},
+                    {"buffer": 0, "byteOffset": 60, "byteLength": 2}, {"buffer": 0, "byteOffset": 64, "byteLength": 12}])";
+  EXPECT_EQ(bounds_of(import_parts(parts)).max, glm::vec3(9, 9, 0));
+  parts.buffer[60] = 4;
+  EXPECT_THAT(complaint_about(parts), HasSubstr("replaces element 4 of 4"));
+}
+
+struct Damage {
+  const char* what;
+  std::string Parts::*part;
+  const char* from;
+  const char* to;
+  const char* message;
+};
+
+TEST(GltfFileTest, DamagedReferences_AreToldAndNeverRead) {
+  const std::vector<Damage> damages{
+      {"count too large", &Parts::accessors, R"("count": 4)", R"("count": 5)", "accessor 0 is out of range"},
+      {"count huge", &Parts::accessors, R"("count": 4)", R"("count": 4000000000)", "at most"},
+      {"index count", &Parts::accessors, R"("count": 6)", R"("count": 7)", "accessor 1 is out of range"},
+      {"offset", &Parts::accessors, R"("count": 4)", R"("byteOffset": 4, "count": 4)", "accessor 0 is out of range"},
+      {"offset past end", &Parts::accessors, R"("count": 4)", R"("byteOffset": 400, "count": 4)", "out of range"},
+      {"no such view", &Parts::accessors, R"("bufferView": 0)", R"("bufferView": 7)", "no buffer view 7"},
+      {"component type", &Parts::accessors, "5126", "5124", "component type 5124"},
+      {"double components", &Parts::accessors, "5126", "5130", "component type 5130"},
+      {"signed indices", &Parts::accessors, "5123", "5122", "unsigned"},
+      {"float indices", &Parts::accessors, "5123", "5126", "out of range"},
+      {"wrong type", &Parts::accessors, R"("VEC3")", R"("VEC2")", "must have 3 component"},
+      {"view too long", &Parts::views, R"("byteLength": 48)", R"("byteLength": 480)", "runs past its buffer"},
+      {"view offset", &Parts::views, R"("byteOffset": 48)", R"("byteOffset": 4800)", "runs past its buffer"},
+      {"no such buffer", &Parts::views, R"({"buffer": 0, "byteLength": 48)", R"({"buffer": 3, "byteLength": 48)",
+       "names buffer 3"},
+      {"stride too short", &Parts::views, R"("byteLength": 48)", R"("byteLength": 48, "byteStride": 4)", "stride of 4"},
+      {"stride too long", &Parts::views, R"("byteLength": 48)", R"("byteLength": 48, "byteStride": 16)",
+       "out of range"},
+      {"no such accessor", &Parts::primitive, R"("POSITION": 0)", R"("POSITION": 9)", "no accessor 9"},
+      {"negative accessor", &Parts::primitive, R"("POSITION": 0)", R"("POSITION": -1)", "accessor -1"},
+      {"no such material", &Parts::primitive, R"("indices": 1)", R"("indices": 1, "material": 3)", "no material 3"},
+      {"no such mesh", &Parts::nodes, R"("mesh": 0)", R"("mesh": 5)", "no mesh 5"},
+      {"no such node", &Parts::scenes, "[0]", "[4]", "no node 4"},
+      {"no such child", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "children": [8])", "no node 8"},
+      {"matrix length", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "matrix": [1, 0])", ""},
+      {"rotation length", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "rotation": [0, 1])", ""},
+      {"zero rotation", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "rotation": [0, 0, 0, 0])",
+       "rotation of node 0 is zero"},
+      {"number overflow", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "translation": [1e999, 0, 0])",
+       "not valid glTF"},
+      {"not JSON", &Parts::nodes, "[{", "[{{", "not valid glTF"}};
+  for (const Damage& damage : damages) {
+    SCOPED_TRACE(damage.what);
+    Parts parts;
+    std::string& text = parts.*damage.part;
+    const std::size_t at = text.find(damage.from);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, std::string(damage.from).size(), damage.to);
+    EXPECT_THAT(complaint_about(parts), HasSubstr(damage.message));
+  }
+}
+
+TEST(GltfFileTest, IndexBeyondTheVertices_NamesIt) {
+  Parts parts;
+  parts.buffer[48 + 2 * 4] = 4;
+  EXPECT_THAT(complaint_about(parts), HasSubstr("index 4 of 'quad' is 4, but there are 4 vertices"));
+}
+
+TEST(GltfFileTest, NodesInACycle_AreAnError) {
+  Parts parts;
+  parts.nodes = R"([{"mesh": 0, "name": "a", "children": [1]}, {"name": "b", "children": [0]}])";
+  EXPECT_THAT(complaint_about(parts), AllOf(HasSubstr("'a'"), HasSubstr("cycle")));
+  parts.scenes = "[]";
+  EXPECT_THAT(complaint_about(parts), HasSubstr("cycle"));
+  parts.nodes = R"([{"children": [0]}])";
+  parts.scenes = R"([{"nodes": [0]}])";
+  EXPECT_THAT(complaint_about(parts), HasSubstr("cycle"));
+}
+
+TEST(GltfFileTest, ChainOfManyNodes_DoesNotExhaustTheStack) {
+  Parts parts;
+  std::string chain = "[";
+  constexpr int kNodes = 50000;
+  for (int i = 0; i < kNodes; ++i) chain += fmt::format(R"({{"children": [{}]}}, )", i + 1);
+  parts.nodes = chain + R"({"mesh": 0}])";
+  EXPECT_EQ(import_parts(parts).meshes.size(), 1U);
+}
+
+TEST(GltfFileTest, JsonNestedWithoutEnd_IsAnError) {
+  Parts parts;
+  parts.more = R"(, "extras": )" + std::string(100000, '[') + std::string(100000, ']');
+  EXPECT_THAT(complaint_about(parts), HasSubstr("nested"));
+}
+
+TEST(GltfFileTest, NotFiniteVertex_IsNamedByTheMesh) {
+  Parts parts;
+  const float bad = std::numeric_limits<float>::quiet_NaN();
+  std::memcpy(parts.buffer.data() + 16, &bad, sizeof bad);
+  const TestFolder folder;
+  folder.write("data.bin", parts.buffer);
+  ImportedModel model = import_gltf(folder.write("test.gltf", json_of(parts)));
+  Scene scene = add_model({}, std::move(model));
+  const Error error = error_of([&] { validate_geometry(scene, "test.gltf"); });
+  EXPECT_THAT(error.message(), AllOf(HasSubstr("'quad'"), HasSubstr("not finite")));
+}
+
+TEST(GltfFileTest, ReferencesOutsideTheFolder_AreRefused) {
+  const TestFolder folder;
+  folder.write("secret.bin", Parts().buffer);
+  const std::vector<std::string> outside{"../secret.bin", "sub/../../secret.bin", "%2e%2e/secret.bin"};
+  for (const std::string& uri : outside) {
+    Parts parts;
+    parts.uri = uri;
+    const Error error = error_of([&] { import_gltf(folder.write("model/test.gltf", json_of(parts))); });
+    EXPECT_THAT(error.message(), HasSubstr("outside its folder")) << uri;
+  }
+  Parts absolute;
+  absolute.uri = (folder.path() / "secret.bin").string();
+  error_of([&] { import_gltf(folder.write("model/test.gltf", json_of(absolute))); });
+}
+
+TEST(GltfFileTest, MissingOrShortBuffer_IsAnError) {
+  Parts parts;
+  parts.uri = "absent.bin";
+  EXPECT_THAT(complaint_about(parts), HasSubstr("absent.bin"));
+  const TestFolder folder;
+  folder.write("data.bin", "short");
+  const Error error = error_of([&] { import_gltf(folder.write("test.gltf", json_of({}))); });
+  EXPECT_THAT(error.message(), HasSubstr("data.bin"));
+}
+
+TEST(GltfFileTest, RequiredExtensionThatIsNotRead_IsNamed) {
+  for (const std::string extension : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"}) {
+    Parts parts;
+    parts.more = fmt::format(R"(, "extensionsUsed": ["{0}"], "extensionsRequired": ["{0}"])", extension);
+    EXPECT_THAT(complaint_about(parts), HasSubstr(extension));
+    parts.uri.clear();
+    EXPECT_THAT(complaint_about(parts), HasSubstr(extension));
+  }
+}
+
+TEST(GltfFileTest, ExtensionThatIsOnlyUsed_IsIgnoredWithAWarning) {
+  Parts parts;
+  parts.more = R"(, "extensionsUsed": ["EXT_mesh_gpu_instancing", "KHR_materials_sheen"])";
+  EXPECT_THAT(import_parts(parts).warnings, testing::ElementsAre(HasSubstr("EXT_mesh_gpu_instancing")));
+}
+
+TEST(GltfFileTest, OtherVersion_IsAnError) {
+  const TestFolder folder;
+  const std::string json = R"({"asset": {"version": "1.0"}, "scenes": [{"nodes": []}]})";
+  EXPECT_THAT(error_of([&] { import_gltf(folder.write("test.gltf", json)); }).message(), HasSubstr("'1.0'"));
+}
+
+TEST(GltfFileTest, Cameras_StandWhereTheirNodesAre) {
+  Parts parts;
+  parts.more = R"(, "cameras": [{"type": "perspective", "name": "eye", "perspective": {"yfov": 0.5, "znear": 0.1}},
+      {"type": "orthographic", "orthographic": {"xmag": 3, "ymag": 2, "znear": 0, "zfar": 10}}])";
+  parts.nodes =
+      R"([{"mesh": 0}, {"camera": 0, "translation": [1, 2, 3], "rotation": [0, 0.70710678118654752, 0, 0.70710678118654752]},
+                    {"camera": 1, "name": "plan"}])";
+  parts.scenes = R"([{"nodes": [0, 1, 2]}])";
+  const std::vector<Camera> cameras = import_parts(parts).cameras;
+  ASSERT_EQ(cameras.size(), 2U);
+  EXPECT_EQ(cameras[0].name, "eye");
+  EXPECT_EQ(cameras[0].position_ws, glm::vec3(1, 2, 3));
+  EXPECT_NEAR(glm::distance(cameras[0].forward_ws, glm::vec3(-1, 0, 0)), 0.0f, 1e-6f);
+  EXPECT_FLOAT_EQ(cameras[0].vertical_fov_rad, 0.5f);
+  EXPECT_EQ(cameras[0].orthographic_height_m, 0.0f);
+  EXPECT_EQ(cameras[1].name, "plan");
+  EXPECT_FLOAT_EQ(cameras[1].orthographic_height_m, 4.0f);
+}
+
+TEST(GltfFileTest, DirectionalLight_ShinesAlongItsNodesMinusZ) {
+  Parts parts;
+  parts.more = R"(, "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual": {"lights": [
+      {"type": "point"}, {"type": "directional", "color": [1, 0.5, 0.25], "intensity": 100000}]}})";
+  parts.nodes = R"([{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}},
+      {"extensions": {"KHR_lights_punctual": {"light": 1}}, "rotation": [-0.70710678118654752, 0, 0, 0.70710678118654752]}])";
+  parts.scenes = R"([{"nodes": [0, 1, 2]}])";
+  const ImportedModel model = import_parts(parts);
+  ASSERT_TRUE(model.light.has_value());
+  EXPECT_NEAR(glm::distance(model.light->direction_ws, glm::vec3(0, -1, 0)), 0.0f, 1e-6f);
+  EXPECT_EQ(model.light->color, glm::vec3(1.0f, 0.5f, 0.25f));
+  EXPECT_FLOAT_EQ(model.light->intensity, 1.0f);
+  EXPECT_THAT(model.warnings, testing::ElementsAre(HasSubstr("point lights are not modelled")));
+}
+
+TEST(GltfFileTest, Materials_KeepColourAndAlphaMode) {
+  Parts parts;
+  parts.more = R"(, "materials": [{"name": "leaf", "alphaMode": "MASK", "alphaCutoff": 0.25,
+      "pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 0.4]}}, {"name": "glass", "alphaMode": "BLEND"}])";
+  parts.primitive = R"({"attributes": {"POSITION": 0}, "indices": 1, "material": 0})";
+  const ImportedModel model = import_parts(parts);
+  ASSERT_EQ(model.materials.size(), 2U);
+  EXPECT_EQ(model.materials[0].base_color, glm::vec4(0.1f, 0.2f, 0.3f, 0.4f));
+  EXPECT_EQ(model.materials[0].alpha_mode, AlphaMode::kMask);
+  EXPECT_FLOAT_EQ(model.materials[0].alpha_cutoff, 0.25f);
+  EXPECT_EQ(model.materials[1].alpha_mode, AlphaMode::kOpaque);
+  EXPECT_THAT(model.warnings, testing::ElementsAre(AllOf(HasSubstr("'glass'"), HasSubstr("opaque"))));
+}
+
+/// A 2 x 1 picture: red, then half transparent blue; 32-bit TGA, rows from the top.
+std::string tga_bytes() {
+  std::string tga("\0\0\2\0\0\0\0\0\0\0\0\0\2\0\1\0\40\50", 18);
+  return tga + std::string("\x00\x00\xff\xff\xff\x00\x00\x80", 8);
+}
+
+Parts textured_parts(const std::string& image) {
+  Parts parts;
+  parts.more = fmt::format(R"(, "images": [{}], "textures": [{{"source": 0}}], "materials": [{{"pbrMetallicRoughness":
+      {{"baseColorTexture": {{"index": 0}}}}}}])",
+                           image);
+  parts.primitive = R"({"attributes": {"POSITION": 0, "TEXCOORD_0": 2}, "indices": 1, "material": 0})";
+  parts.accessors = R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+                        {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"},
+                        {"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC2"}])";
+  parts.buffer += bytes_of(std::vector<float>{0, 1, 1, 1, 1, 0, 0, 0}) + tga_bytes();
+  parts.views = R"([{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12},
+      {"buffer": 0, "byteOffset": 60, "byteLength": 32}, {"buffer": 0, "byteOffset": 92, "byteLength": 26}])";
+  return parts;
+}
+
+void expect_textured(const ImportedModel& model) {
+  ASSERT_EQ(model.textures.size(), 1U);
+  EXPECT_EQ(model.textures[0].width, 2);
+  EXPECT_EQ(model.textures[0].rgba, (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 0, 255, 128}));
+  EXPECT_EQ(model.materials[0].base_color_texture, 0);
+  EXPECT_EQ(model.meshes[0].vertices[0].uv, glm::vec2(0, 1));
+}
+
+TEST(GltfFileTest, TextureInAFile_IsDecoded) {
+  const TestFolder folder;
+  const Parts parts = textured_parts(R"({"uri": "a%20picture.tga"})");
+  folder.write("data.bin", parts.buffer);
+  folder.write("a picture.tga", tga_bytes());
+  expect_textured(import_gltf(folder.write("test.gltf", json_of(parts))));
+}
+
+TEST(GltfFileTest, TextureInABufferView_IsDecoded) {
+  expect_textured(import_parts(textured_parts(R"({"bufferView": 3, "mimeType": "image/png"})")));
+}
+
+TEST(GltfFileTest, MissingUnreadableOrOutsideTexture_IsAnError) {
+  EXPECT_THAT(complaint_about(textured_parts(R"({"uri": "absent.png"})")), HasSubstr("'absent.png' is missing"));
+  EXPECT_THAT(complaint_about(textured_parts(R"({"uri": "data.bin"})")), HasSubstr("cannot be decoded"));
+  EXPECT_THAT(complaint_about(textured_parts(R"({"uri": "../x.png"})")), HasSubstr("outside its folder"));
+  Parts parts = textured_parts(R"({"bufferView": 3, "mimeType": "image/png"})");
+  parts.views.replace(parts.views.find("\"byteLength\": 26"), 16, "\"byteLength\": 99");
+  EXPECT_THAT(complaint_about(parts), HasSubstr("runs past its buffer"));
+}
+
+/// Damages single bytes at random; a sanitizer build makes this a fuzz test.
+TEST(GltfFileTest, FilesWithDamagedBytes_LoadOrAreRefused) {
+  const TestFolder folder;
+  const std::string sound = glb_of(textured_parts(R"({"bufferView": 3, "mimeType": "image/png"})"));
+  std::mt19937 random(7);
+  for (int round = 0; round < 500; ++round) {
+    std::string damaged = sound;
+    for (int i = 0; i < 1 + round % 3; ++i) damaged[random() % damaged.size()] = static_cast<char>(random());
+    if (round % 10 == 0) damaged.resize(random() % damaged.size());
+    const auto file = folder.write("test.glb", damaged);
+    try {
+      Scene scene = add_model({}, import_gltf(file));
+      validate_geometry(std::move(scene), file.string());
+    } catch (const Error& e) {
+      ASSERT_EQ(e.kind(), ErrorKind::kInput) << e.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace shadowbench::scene

@@ -1,0 +1,284 @@
+#include "harness/scene/lights/light_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "harness/scene/mesh_tools.h"
+#include "harness/scene/primitives.h"
+#include "tests/harness/scene/test_files.h"
+
+namespace shadowbench::scene {
+namespace {
+
+const std::vector<glm::vec3> kDirections{{0, -1, 0}, {0, 1, 0},      {1, 0, 0},         {-1, 0, 0},     {0, 0, 1},
+                                         {0, 0, -1}, {1, -1, 1},     {-0.3f, -1, 0.2f}, {0.01f, -1, 0}, {5, -0.1f, 2},
+                                         {1, 1, 0},  {1e-8f, -1, 0}, {-3, -4, 0}};
+
+Scene make_scene(glm::vec3 direction, glm::vec3 offset = glm::vec3(0.0f)) {
+  Scene scene;
+  const glm::dmat4 moved = glm::translate(glm::dmat4(1.0), glm::dvec3(offset));
+  const glm::dmat4 raised = glm::translate(moved, glm::dvec3(1.0, 1.5, -2.0));
+  scene.meshes.push_back(transform_mesh(make_plane({10.0f, 8.0f}, 4), moved));
+  scene.meshes.back().casts_shadow = false;
+  scene.meshes.push_back(transform_mesh(make_box({1.0f, 2.0f, 0.5f}, 2), raised));
+  scene.light.direction_ws = glm::normalize(direction);
+  return scene;
+}
+
+/// What a 16-bit depth map rounds to 0 or 1.
+constexpr double kHalfStep16 = 0.5 / 65535.0;
+
+/// Every vertex lies at least `pad` of the map from its border and strictly inside the depth range.
+void expect_inside(const Scene& scene, const LightFrustum& fit, double pad) {
+  const auto slack = 1e-6 + 1e-7 * static_cast<double>(glm::length(scene.bounds().max)) / fit.texel_size_ws / 256.0;
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Vertex& vertex : mesh.vertices) {
+      const glm::dvec4 p = glm::dvec4(fit.uv_depth_from_world * glm::vec4(vertex.position_ws, 1.0f));
+      ASSERT_EQ(p.w, 1.0);
+      for (int i = 0; i < 2; ++i) {
+        ASSERT_GE(p[i], pad - slack);
+        ASSERT_LE(p[i], 1.0 - pad + slack);
+      }
+      ASSERT_GT(p.z, kHalfStep16);
+      ASSERT_LT(p.z, 1.0 - kHalfStep16);
+    }
+  }
+}
+
+class LightFitTest : public testing::TestWithParam<FitMode> {};
+INSTANTIATE_TEST_SUITE_P(Modes, LightFitTest, testing::Values(FitMode::kSphere, FitMode::kTight));
+
+TEST_P(LightFitTest, AnyDirection_HoldsEveryVertexWithItsPadding) {
+  for (const glm::vec3& direction : kDirections) {
+    const Scene scene = make_scene(direction);
+    expect_inside(scene, fit_light(scene, GetParam(), 256, 5.5), 5.5 / 256.0);
+  }
+}
+
+TEST_P(LightFitTest, FarFromTheOrigin_StillHoldsEveryVertex) {
+  for (const glm::vec3& direction : kDirections) {
+    const Scene scene = make_scene(direction, {1e4f, -2e4f, 5e3f});
+    expect_inside(scene, fit_light(scene, GetParam(), 256, 2.0), 2.0 / 256.0);
+  }
+}
+
+TEST_P(LightFitTest, View_IsRigidAndLooksAlongTheLight) {
+  for (const glm::vec3& direction : kDirections) {
+    const LightFrustum fit = fit_light(make_scene(direction), GetParam(), 256, 1.0);
+    const glm::dmat3 rotation(fit.light_from_world);
+    EXPECT_NEAR(glm::determinant(rotation), 1.0, 1e-12);
+    const glm::dmat3 product = rotation * glm::transpose(rotation);
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(product[i][k], i == k ? 1.0 : 0.0, 1e-12);
+    EXPECT_NEAR((rotation * glm::dvec3(fit.direction_ws)).z, -1.0, 1e-6);
+  }
+}
+
+TEST_P(LightFitTest, OneTexelInTheWorld_IsOneTexelInTheMapOnBothAxes) {
+  const LightFrustum fit = fit_light(make_scene({1, -2, 0.5f}), GetParam(), 512, 3.0);
+  EXPECT_NEAR(fit.width_ws, 512.0 * fit.texel_size_ws, 1e-9);
+  const glm::dmat3 world_from_light = glm::transpose(glm::dmat3(fit.light_from_world));
+  for (int axis = 0; axis < 2; ++axis) {
+    const glm::dvec3 step = world_from_light[axis] * fit.texel_size_ws;
+    const glm::dvec3 moved = glm::dmat3(glm::mat3(fit.uv_depth_from_world)) * step;
+    EXPECT_NEAR(moved[axis] * 512.0, 1.0, 1e-4);
+    EXPECT_NEAR(moved[1 - axis] * 512.0, 0.0, 1e-4);
+  }
+}
+
+TEST_P(LightFitTest, DepthGrowsAlongTheLightByTheRange) {
+  const LightFrustum fit = fit_light(make_scene({1, -2, 0.5f}), GetParam(), 512, 3.0);
+  const glm::dvec3 step = glm::dvec3(fit.direction_ws) * fit.depth_range_ws;
+  EXPECT_NEAR((glm::dmat3(glm::mat3(fit.uv_depth_from_world)) * step).z, 1.0, 1e-5);
+}
+
+TEST_P(LightFitTest, UvIsHalfOfClipSpacePlusHalf) {
+  const LightFrustum fit = fit_light(make_scene({1, -2, 0.5f}), GetParam(), 512, 3.0);
+  const glm::vec4 clip = fit.clip_from_world * glm::vec4(1.0f, 0.5f, -2.0f, 1.0f);
+  const glm::vec4 uv = fit.uv_depth_from_world * glm::vec4(1.0f, 0.5f, -2.0f, 1.0f);
+  EXPECT_NEAR(uv.x, clip.x * 0.5f + 0.5f, 1e-6f);
+  EXPECT_NEAR(uv.y, clip.y * 0.5f + 0.5f, 1e-6f);
+  EXPECT_NEAR(uv.z, clip.z, 1e-6f);
+}
+
+TEST_P(LightFitTest, FlatScenes_HaveADepthRange) {
+  for (const glm::vec3& direction : {glm::vec3(0, -1, 0), glm::vec3(1, 0, 0)}) {
+    Scene scene = make_scene(direction);
+    scene.meshes.pop_back();
+    const LightFrustum fit = fit_light(scene, GetParam(), 256, 1.0);
+    EXPECT_GT(fit.depth_range_ws, 1e-4);
+    expect_inside(scene, fit, 1.0 / 256.0);
+  }
+}
+
+TEST(LightFitTest, TightMap_TouchesTheSceneOnItsLongerSide) {
+  Scene scene = make_scene({0, -1, 0});
+  const LightFrustum fit = fit_light(scene, FitMode::kTight, 100, 10.0);
+  EXPECT_NEAR(fit.width_ws, 10.0 * 100.0 / 80.0, 1e-6);
+  EXPECT_NEAR(fit.depth_range_ws, 2.5, 0.01);
+}
+
+TEST(LightFitTest, SphereMap_KeepsItsWidthWhenTheLightTurns) {
+  const double width = fit_light(make_scene({0, -1, 0}), FitMode::kSphere, 256, 2.0).width_ws;
+  for (const glm::vec3& direction : kDirections) {
+    EXPECT_NEAR(fit_light(make_scene(direction), FitMode::kSphere, 256, 2.0).width_ws, width, 1e-9);
+    EXPECT_LE(fit_light(make_scene(direction), FitMode::kTight, 256, 2.0).width_ws, width);
+  }
+}
+
+TEST(LightFitTest, ReceiversThatCastNothing_AreInsideTheMap) {
+  Scene scene = make_scene({0, -1, 0});
+  EXPECT_GT(fit_light(scene, FitMode::kTight, 256, 0.0).width_ws, 9.9);
+}
+
+/// Where the frustum puts a point: u, v, depth.
+glm::dvec3 seen(const LightFrustum& fit, const glm::dvec3& p) {
+  return glm::dvec3(fit.uv_depth_from_world * glm::vec4(glm::vec3(p), 1.0f));
+}
+
+TEST_P(LightFitTest, Window_IsTheMap) {
+  for (const glm::vec3& direction : kDirections) {
+    Scene scene = make_scene(direction);
+    const glm::dvec3 center(1.0, 0.5, -2.0), along(scene.light.direction_ws);
+    scene.light.map_window = MapWindow{center, 3.0, MapWindow::Planes{-1.0, 4.0}};
+    const LightFrustum fit = fit_light(scene, GetParam(), 256, 20.0);
+    EXPECT_EQ(fit.width_ws, 3.0) << "no padding";
+    EXPECT_EQ(fit.texel_size_ws, 3.0 / 256.0);
+    EXPECT_EQ(fit.depth_range_ws, 5.0);
+    EXPECT_LT(glm::length(seen(fit, center) - glm::dvec3(0.5, 0.5, 0.2)), 1e-5);
+    EXPECT_NEAR(seen(fit, center + 4.0 * along).z, 1.0, 1e-5);
+    EXPECT_NEAR(seen(fit, center - 1.0 * along).z, 0.0, 1e-5);
+    const glm::dvec3 right = glm::transpose(glm::dmat3(fit.light_from_world))[0];
+    EXPECT_NEAR(seen(fit, center + 1.5 * right).x, 1.0, 1e-5);
+    EXPECT_NEAR((fit.clip_from_world * glm::vec4(glm::vec3(center + 1.5 * right), 1.0f)).x, 1.0f, 1e-5f);
+  }
+}
+
+TEST_P(LightFitTest, WindowWithoutPlanes_KeepsTheFittedDepth) {
+  Scene scene = make_scene({1, -2, 0.5f});
+  const LightFrustum fitted = fit_light(scene, GetParam(), 256, 2.0);
+  scene.light.map_window = MapWindow{glm::dvec3(1.0, 0.5, -2.0), 3.0, std::nullopt};
+  const LightFrustum fit = fit_light(scene, GetParam(), 256, 2.0);
+  EXPECT_EQ(fit.depth_range_ws, fitted.depth_range_ws);
+  for (const glm::dvec3& p : {glm::dvec3(0.0), glm::dvec3(3.0, -1.0, 2.0)})
+    EXPECT_NEAR(seen(fit, p).z, seen(fitted, p).z, 1e-6);
+}
+
+TEST(LightFitTest, PaddingThatLeavesNoTexel_IsAUsageError) {
+  const Error error = error_of([] { fit_light(make_scene({0, -1, 0}), FitMode::kTight, 16, 8.0); });
+  EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+}
+
+Camera make_camera(glm::vec3 position, glm::vec3 forward) {
+  Camera camera;
+  camera.position_ws = position;
+  camera.forward_ws = glm::normalize(forward);
+  camera.vertical_fov_rad = 0.5f;
+  return camera;
+}
+
+LightFrustum fit_view(const Scene& scene, const Camera& camera, bool snap = false) {
+  return fit_light(scene, {FitMode::kView, 256, 3.0, snap, &camera, 1.5});
+}
+
+/// The place of a world point in the map, in texels.
+glm::dvec2 texel_of(const LightFrustum& fit, const glm::dvec3& p) {
+  return glm::dvec2(fit.light_from_world * glm::dvec4(p, 1.0)) / fit.texel_size_ws;
+}
+
+bool sees(const Camera& camera, const glm::dvec3& p) {
+  const glm::dvec3 d = p - glm::dvec3(camera.position_ws), forward(camera.forward_ws);
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(camera.up_ws))),
+                   up = glm::cross(right, forward);
+  const double ahead = glm::dot(d, forward), tangent = std::tan(0.25);
+  return ahead > 0.0 && std::abs(glm::dot(d, right)) <= 1.5 * tangent * ahead &&
+         std::abs(glm::dot(d, up)) <= tangent * ahead;
+}
+
+TEST(LightFitView, HoldsEveryVisiblePointWithItsPadding_AndIsSmallerThanTight) {
+  const Camera camera = make_camera({-3.0f, 2.0f, 4.0f}, {0.2f, -0.9f, -0.5f});
+  for (const glm::vec3& direction : kDirections) {
+    const Scene scene = make_scene(direction);
+    for (const bool snap : {false, true}) {
+      const LightFrustum fit = fit_view(scene, camera, snap);
+      int seen = 0;
+      for (double x = -5.0; x <= 5.0; x += 0.05) {
+        for (double z = -4.0; z <= 4.0; z += 0.05) {
+          if (!sees(camera, {x, 0.0, z})) continue;
+          ++seen;
+          const glm::dvec4 p = glm::dvec4(fit.uv_depth_from_world * glm::vec4(x, 0.0, z, 1.0));
+          for (int i = 0; i < 2; ++i) {
+            ASSERT_GE(p[i] * 256.0, 3.0 - 0.01);
+            ASSERT_LE(p[i] * 256.0, 253.0 + 0.01);
+          }
+          ASSERT_GT(p.z, 0.0);
+          ASSERT_LT(p.z, 1.0);
+        }
+      }
+      EXPECT_GT(seen, 500);
+      if (!snap) EXPECT_LT(fit.texel_size_ws, fit_light(scene, FitMode::kTight, 256, 3.0).texel_size_ws);
+    }
+  }
+}
+
+/// The box stands out of view, between the light and what is seen.
+TEST(LightFitView, CasterOutOfView_LiesInsideTheDepthRange) {
+  Scene scene = make_scene({0, -1, 0});
+  const Camera camera = make_camera({1.0f, 1.0f, -1.0f}, {0.0f, -0.9f, -0.5f});
+  const LightFrustum fit = fit_view(scene, camera);
+  const glm::vec4 top = fit.uv_depth_from_world * glm::vec4(1.0f, 2.5f, -2.0f, 1.0f);
+  EXPECT_FALSE(sees(camera, {1.0, 2.5, -2.0}));
+  EXPECT_GT(top.z, 0.0f);
+  EXPECT_GT(fit.depth_range_ws, 2.4);
+  // Far from everything seen, it would only cost precision.
+  for (Vertex& vertex : scene.meshes[1].vertices) vertex.position_ws.x += 100.0f;
+  EXPECT_LT(fit_view(scene, camera).depth_range_ws, 0.1);
+}
+
+TEST(LightFitView, CameraThatSeesNothing_GetsTheTightFit) {
+  const Scene scene = make_scene({1, -2, 0.5f});
+  const Camera camera = make_camera({0.0f, 10.0f, 0.0f}, {0.1f, 1.0f, 0.0f});
+  EXPECT_EQ(fit_view(scene, camera).width_ws, fit_light(scene, FitMode::kTight, 256, 3.0).width_ws);
+}
+
+TEST(LightFitSnap, CameraMovedByLessThanATexel_LeavesTheGridWhereItWas) {
+  const Scene scene = make_scene({1, -2, 0.5f});
+  const glm::dvec3 mark(0.3, 0.0, -0.7);
+  const auto camera_at = [](int step) {
+    return make_camera({-2.0f + 0.0031f * static_cast<float>(step), 3.0f, 4.0f}, {0.3f, -0.9f, -0.7f});
+  };
+  const LightFrustum first = fit_view(scene, camera_at(0), true), loose = fit_view(scene, camera_at(0), false);
+  ASSERT_LT(0.0031, 0.5 * first.texel_size_ws);
+  double moved = 0.0;
+  for (int step = 1; step <= 40; ++step) {
+    const LightFrustum snapped = fit_view(scene, camera_at(step), true);
+    ASSERT_EQ(snapped.texel_size_ws, first.texel_size_ws);
+    const glm::dvec2 shift = texel_of(snapped, mark) - texel_of(first, mark);
+    EXPECT_NEAR(shift.x, std::round(shift.x), 1e-6);
+    EXPECT_NEAR(shift.y, std::round(shift.y), 1e-6);
+    const glm::dvec2 drift = texel_of(fit_view(scene, camera_at(step), false), mark) - texel_of(loose, mark);
+    moved = std::max(moved, std::max(std::abs(drift.x - std::round(drift.x)), std::abs(drift.y - std::round(drift.y))));
+  }
+  EXPECT_GT(moved, 0.3) << "without snapping the grid follows the camera";
+}
+
+TEST_P(LightFitTest, Snapped_StillHoldsEveryVertexWithItsPadding) {
+  for (const glm::vec3& direction : kDirections) {
+    const Scene scene = make_scene(direction, {0.37f, 0.1f, -0.21f});
+    expect_inside(scene,
+                  fit_light(scene, FitRequest{.mode = GetParam(), .map_size = 256, .pad_texels = 5.5, .snap = true}),
+                  5.5 / 256.0);
+  }
+}
+
+TEST(FitNames, GoBothWays_AndAnUnknownOneIsRefused) {
+  for (const FitMode mode : {FitMode::kSphere, FitMode::kTight, FitMode::kView})
+    EXPECT_EQ(parse_fit_mode(name_of(mode)), mode);
+  EXPECT_EQ(name_of(FitMode::kView), "view");
+  const Error error = error_of([] { parse_fit_mode("box"); });
+  EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+}
+
+}  // namespace
+}  // namespace shadowbench::scene

@@ -1,0 +1,50 @@
+#include "harness/scene/lights/light_ring.h"
+
+#include <gtest/gtest.h>
+
+#include "harness/scene/framing.h"
+#include "harness/scene/lights/light_fit.h"
+#include "harness/scene/load.h"
+
+namespace shadowbench::scene {
+namespace {
+
+Light make_light(double azimuth_deg, double elevation_deg) {
+  Light light;
+  light.direction_ws = glm::vec3(light_direction(azimuth_deg, elevation_deg));
+  light.intensity = 3.0f;
+  light.angular_diameter_deg = 2.0f;
+  return light;
+}
+
+TEST(LightRing, LightsAreEvenlySpaced_AllAsHighAsTheFirst) {
+  for (const int count : {1, 2, 3, 8, 16}) {
+    const std::vector<Light> lights = make_light_ring(make_light(72.0, 38.0), count);
+    ASSERT_EQ(lights.size(), static_cast<std::size_t>(count));
+    EXPECT_EQ(lights[0].direction_ws, make_light(72.0, 38.0).direction_ws);
+    for (int i = 0; i < count; ++i) {
+      const glm::vec3 expected = make_light(72.0 + 360.0 * i / count, 38.0).direction_ws;
+      EXPECT_LT(glm::length(lights[static_cast<std::size_t>(i)].direction_ws - expected), 1e-6f)
+          << i << " of " << count;
+      EXPECT_EQ(lights[static_cast<std::size_t>(i)].intensity, 3.0f);
+      EXPECT_EQ(lights[static_cast<std::size_t>(i)].angular_diameter_deg, 2.0f);
+    }
+  }
+}
+
+TEST(LightFit, OfAnotherLight_EqualsTheFitOfASceneWithThatLight) {
+  Scene scene;
+  scene.meshes.push_back({"m", {{{-1, 0, -2}}, {{3, 0, 1}}, {{0, 2, 0}}}, {0, 1, 2}});
+  scene.light = make_light(10.0, 50.0);
+  Scene other = scene;
+  other.light = make_light(200.0, 20.0);
+  const LightFrustum fit = fit_light(scene, FitRequest{.map_size = 64, .light = &other.light});
+  EXPECT_EQ(fit.uv_depth_from_world, fit_light(other, FitRequest{.map_size = 64}).uv_depth_from_world);
+  EXPECT_EQ(fit.direction_ws, fit_light(other, FitRequest{.map_size = 64}).direction_ws);
+  EXPECT_NE(fit.uv_depth_from_world, fit_light(scene, FitRequest{.map_size = 64}).uv_depth_from_world);
+  other.light.map_window = MapWindow{{0.5, 0.0, 0.0}, 3.0, MapWindow::Planes{-2.0, 4.0}};
+  EXPECT_EQ(fit_light(scene, FitRequest{.map_size = 64, .light = &other.light}).width_ws, 3.0);
+}
+
+}  // namespace
+}  // namespace shadowbench::scene

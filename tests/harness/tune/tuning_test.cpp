@@ -1,0 +1,234 @@
+#include "harness/tune/tuning.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "harness/options/options.h"
+#include "harness/tune/tune_filters.h"
+
+namespace shadowbench::tune {
+namespace {
+
+SearchedParam make_param(double min, double max, double default_value, bool integer = false) {
+  return {"p", min, max, default_value, integer};
+}
+
+/// What a search drew, beside what it found.
+struct Watched {
+  SearchResult result;
+  std::vector<Evaluation> drawn;
+};
+
+Watched search(const std::vector<SearchedParam>& params, const Objective& objective, int budget = 80) {
+  Watched watched;
+  SearchSettings settings;
+  settings.budget = budget;
+  settings.on_evaluation = [&](const Evaluation& evaluation) { watched.drawn.push_back(evaluation); };
+  watched.result = search_parameters({params.begin(), params.end()}, settings, objective);
+  return watched;
+}
+
+TEST(ParamScale, IsLogarithmic_WhereTheRangeSpansTwoDecades) {
+  const ParamScale log(make_param(1.0, 10000.0, 10.0)), linear(make_param(1.0, 99.0, 10.0));
+  EXPECT_EQ(log.name(), "log");
+  EXPECT_NEAR(log.to_value(0.5), 100.0, 1e-9);
+  EXPECT_EQ(linear.name(), "linear");
+  EXPECT_NEAR(linear.to_value(0.5), 50.0, 1e-9);
+}
+
+TEST(ParamScale, FromZero_TinyDefaultLiesInTheMiddle) {
+  const ParamScale scale(make_param(0.0, 0.1, 1e-5));
+  EXPECT_NEAR(scale.to_unit(1e-5), 0.5, 0.01);
+  EXPECT_EQ(scale.to_value(0.0), 0.0);
+  EXPECT_EQ(scale.to_value(1.0), 0.1);
+  EXPECT_LT(scale.to_value(0.25), 1e-6);
+}
+
+TEST(ParamScale, OfEveryFilter_ReachesBothEndsAndTurnsBack) {
+  const filters::Catalogue catalogue(options::find_resources().filters);
+  int scales = 0;
+  for (const filters::FilterRequest& request : catalogue.parse_requests("")) {
+    for (const SearchedParam& param : list_searched_params(request)) {
+      SCOPED_TRACE(request.spec.id + ":" + param.name);
+      const ParamScale scale(param);
+      EXPECT_EQ(scale.to_value(0.0), param.min);
+      EXPECT_EQ(scale.to_value(1.0), param.max);
+      EXPECT_EQ(scale.to_value(scale.to_unit(param.default_value)), param.default_value);
+      EXPECT_NEAR(scale.measure_share(param.min, param.max), 1.0, 1e-12);
+      for (double unit = 0.0; unit < 1.0; unit += 0.03) EXPECT_LE(scale.to_value(unit), scale.to_value(unit + 0.03));
+      ++scales;
+    }
+  }
+  EXPECT_GE(scales, 6);
+}
+
+TEST(ParamScale, Values_AreWholeOrOfFourDigits) {
+  EXPECT_EQ(ParamScale(make_param(0.0, 10.0, 5.0, true)).to_value(0.333), 3.0);
+  EXPECT_EQ(ParamScale(make_param(0.0, 1.0, 0.5)).to_value(1.0 / 3.0), 0.3333);
+}
+
+TEST(SearchParameters, FindsTheMinimum_OfWholeLogarithmicAndLinearNumbers) {
+  const auto bowl = [](const std::vector<double>& v) {
+    return 0.01 * std::pow(v[0] - 13.0, 2.0) + 0.1 * std::pow(std::log10(v[1]) + 3.0, 2.0) + std::pow(v[2] - 0.3, 2.0);
+  };
+  const Watched found =
+      search({make_param(0.0, 64.0, 4.0, true), make_param(1e-6, 1.0, 0.5), make_param(0.0, 1.0, 0.9)}, bowl, 150);
+  EXPECT_EQ(found.result.best[0], 13.0);
+  EXPECT_NEAR(std::log10(found.result.best[1]), -3.0, 0.1);
+  EXPECT_NEAR(found.result.best[2], 0.3, 0.02);
+}
+
+/// The default lies in a valley of its own, the deeper one is elsewhere.
+TEST(SearchParameters, LeavesALocalMinimum) {
+  const auto valleys = [](const std::vector<double>& v) {
+    return 1.0 - std::exp(-std::pow((v[0] - 0.8) / 0.1, 2.0)) - 0.5 * std::exp(-std::pow((v[0] - 0.2) / 0.2, 2.0));
+  };
+  const Watched found = search({make_param(0.0, 1.0, 0.2)}, valleys, 40);
+  EXPECT_NEAR(found.result.best[0], 0.8, 0.01);
+  const auto by_search = [](const Evaluation& e) { return e.stage != "range" && std::abs(e.values[0] - 0.8) < 0.01; };
+  EXPECT_TRUE(std::any_of(found.drawn.begin(), found.drawn.end(), by_search));
+}
+
+TEST(SearchParameters, IsNeverWorseThanTheDefault) {
+  const double hidden = 0.123456789;  // not of four digits: no step of the search comes there
+  const Watched found = search({make_param(0.0, 1.0, hidden)},
+                               [&](const std::vector<double>& v) { return std::sqrt(std::abs(v[0] - hidden)); });
+  EXPECT_EQ(found.result.best[0], hidden);
+  EXPECT_EQ(found.result.default_error, found.result.best_error);
+}
+
+TEST(SearchParameters, KeepsTheBudget_AndDrawsNoSettingTwice) {
+  const auto bowl = [](const std::vector<double>& v) {
+    return 1.0 + std::pow(v[0] - 3.0, 2.0) + std::pow(v[1] - 0.4, 2.0);
+  };
+  for (const int budget : {1, 2, 7, 30}) {
+    const Watched found = search({make_param(0.0, 20.0, 10.0, true), make_param(0.0, 1.0, 0.0)}, bowl, budget);
+    int searched = 0;
+    std::set<std::vector<double>> settings;
+    for (const Evaluation& evaluation : found.drawn) {
+      searched += evaluation.stage != "range" ? 1 : 0;
+      EXPECT_TRUE(settings.insert(evaluation.values).second);
+    }
+    EXPECT_LE(searched, budget);
+    EXPECT_EQ(found.result.search_evaluations, searched);
+    EXPECT_EQ(found.result.evaluations, static_cast<int>(found.drawn.size()));
+    EXPECT_EQ(found.drawn.front().stage, "default");
+  }
+}
+
+/// A few whole numbers are soon all known: the search ends.
+TEST(SearchParameters, EndsWhereAllSettingsAreDrawn) {
+  const Watched found = search(
+      {make_param(0.0, 3.0, 1.0, true)}, [](const std::vector<double>& v) { return 3.0 - v[0]; }, 1000);
+  EXPECT_EQ(found.result.best[0], 3.0);
+  EXPECT_EQ(found.drawn.size(), 4u);
+}
+
+TEST(SearchParameters, IsDeterministic) {
+  const auto waves = [](const std::vector<double>& v) { return 2.0 + std::sin(9.0 * v[0]) * std::cos(7.0 * v[1]); };
+  const std::vector<SearchedParam> params = {make_param(0.0, 1.0, 0.5), make_param(0.0, 1.0, 0.5)};
+  const Watched a = search(params, waves), b = search(params, waves);
+  ASSERT_EQ(a.drawn.size(), b.drawn.size());
+  for (std::size_t i = 0; i < a.drawn.size(); ++i) EXPECT_EQ(a.drawn[i].values, b.drawn[i].values);
+}
+
+TEST(SearchParameters, PassesOnWhatTheObjectiveThrows) {
+  int calls = 0;
+  const auto breaks = [&](const std::vector<double>&) -> double {
+    if (++calls == 5) throw std::domain_error("broken");
+    return 1.0;
+  };
+  EXPECT_THROW(search({make_param(0.0, 1.0, 0.5)}, breaks), std::domain_error);
+}
+
+/// 1 + (u - 1/2)^2 <= 1.1 for |u - 1/2| <= sqrt(0.1).
+TEST(GoodRange, HasTheWidthOfTheClosedForm_OnALinearScale) {
+  const Watched found =
+      search({make_param(0.0, 1.0, 0.5)}, [](const std::vector<double>& v) { return 1.0 + std::pow(v[0] - 0.5, 2.0); });
+  const GoodRange& range = found.result.ranges.front();
+  ASSERT_EQ(range.intervals.size(), 1u);
+  EXPECT_NEAR(range.intervals[0].low, 0.5 - std::sqrt(0.1), 1.0 / 256.0);
+  EXPECT_NEAR(range.intervals[0].high, 0.5 + std::sqrt(0.1), 1.0 / 256.0);
+  EXPECT_NEAR(range.share, 2.0 * std::sqrt(0.1), 2.0 / 256.0);
+  EXPECT_FALSE(range.no_effect);
+}
+
+TEST(GoodRange, HasTheWidthOfTheClosedForm_OnALogarithmicScale) {
+  const Watched found = search({make_param(0.01, 1e4, 10.0)}, [](const std::vector<double>& v) {
+    return 1.0 + std::pow(std::log10(v[0]) - 1.0, 2.0);
+  });
+  const GoodRange& range = found.result.ranges.front();
+  EXPECT_NEAR(std::log10(range.intervals.at(0).low), 1.0 - std::sqrt(0.1), 6.0 / 256.0);
+  EXPECT_NEAR(std::log10(range.intervals.at(0).high), 1.0 + std::sqrt(0.1), 6.0 / 256.0);
+  EXPECT_NEAR(range.share, 2.0 * std::sqrt(0.1) / 6.0, 2.0 / 256.0);
+}
+
+/// 1 + (n - 7)^2 / 25 <= 1.1 for n = 6, 7, 8: three of a hundred steps.
+TEST(GoodRange, OfWholeNumbers_IsExact) {
+  const Watched found = search({make_param(0.0, 100.0, 50.0, true)},
+                               [](const std::vector<double>& v) { return 1.0 + 0.04 * std::pow(v[0] - 7.0, 2.0); });
+  const GoodRange& range = found.result.ranges.front();
+  ASSERT_EQ(range.intervals.size(), 1u);
+  EXPECT_EQ(range.intervals[0].low, 6.0);
+  EXPECT_EQ(range.intervals[0].high, 8.0);
+  EXPECT_NEAR(range.share, 0.03, 1e-12);
+}
+
+TEST(GoodRange, WithAHole_HasTwoIntervals) {
+  const auto valleys = [](const std::vector<double>& v) {
+    return 1.0 + 4.0 * std::min(std::pow(v[0] - 0.25, 2.0), std::pow(v[0] - 0.75, 2.0));
+  };
+  const GoodRange range = search({make_param(0.0, 1.0, 0.5)}, valleys).result.ranges.front();
+  ASSERT_EQ(range.intervals.size(), 2u);
+  EXPECT_NEAR(range.intervals[0].high, 0.25 + std::sqrt(0.025), 1.0 / 256.0);
+  EXPECT_NEAR(range.intervals[1].low, 0.75 - std::sqrt(0.025), 1.0 / 256.0);
+  EXPECT_NEAR(range.share, 4.0 * std::sqrt(0.025), 4.0 / 256.0);
+}
+
+TEST(GoodRange, OfAParameterThatIsNotUsed_IsAllOfIt) {
+  const Watched found = search({make_param(0.0, 1.0, 0.5), make_param(0.0, 0.1, 1e-5)},
+                               [](const std::vector<double>& v) { return 1.0 + v[0]; });
+  EXPECT_FALSE(found.result.ranges[0].no_effect);
+  EXPECT_TRUE(found.result.ranges[1].no_effect);
+  EXPECT_NEAR(found.result.ranges[1].share, 1.0, 1e-12);
+}
+
+/// With a budget of 1 only the default is drawn; the scan then meets the valley, which becomes the best.
+TEST(GoodRange, ThatMeetsSomethingBetter_MovesTheBest) {
+  const Watched found = search(
+      {make_param(0.0, 1.0, 0.9)}, [](const std::vector<double>& v) { return 0.1 + std::abs(v[0] - 0.25); }, 1);
+  EXPECT_NEAR(found.result.best[0], 0.25, 1e-9);
+  EXPECT_LE(found.result.ranges[0].intervals.at(0).low, 0.25);
+  EXPECT_NEAR(found.result.ranges[0].share, 0.02, 2.0 / 256.0);
+  EXPECT_EQ(found.result.search_evaluations, 1);
+}
+
+TEST(TunePadding, IsWhatTheWidestKernelNeeds_UpToA64thOfTheMap) {
+  EXPECT_EQ(choose_tune_padding(4.0, 1024), 5.0);
+  EXPECT_EQ(choose_tune_padding(64.0, 1024), 16.0);
+  EXPECT_EQ(choose_tune_padding(64.0, 64), 4.0);
+  const filters::Catalogue catalogue(options::find_resources().filters);
+  EXPECT_EQ(find_widest_kernel(catalogue.parse_requests("vsm,esm:radius=3")), 64.0);
+  EXPECT_EQ(find_widest_kernel(catalogue.parse_requests("esm:radius=3")), 3.0);
+}
+
+TEST(SearchedParams, AreNumbersWithARange_NeitherConstNorSet) {
+  const filters::Catalogue catalogue(options::find_resources().filters);
+  const auto names = [&](const std::string& text) {
+    std::string joined;
+    for (const SearchedParam& param : list_searched_params(catalogue.parse_requests(text).front()))
+      joined += param.name + " ";
+    return joined;
+  };
+  EXPECT_EQ(names("none"), "");
+  EXPECT_EQ(names("poisson"), "radius ");  // taps are const, rotation is a text
+  EXPECT_EQ(names("esm:c=20"), "radius ");
+  EXPECT_EQ(names("esm:store=r16f"), "radius c ");
+}
+
+}  // namespace
+}  // namespace shadowbench::tune

@@ -1,0 +1,449 @@
+#include "report/analysis/advice.h"
+
+#include <gmock/gmock.h>
+
+#include "filters/base/error.h"
+#include "report/analysis/advice_words.h"
+#include "report/records/absence.h"
+#include "tests/report/records/synthetic.h"
+
+namespace shadowbench::analysis {
+
+using namespace records;
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+const LimitSpec* find_limit(const std::string& option) {
+  for (const LimitSpec& spec : limit_table())
+    if (spec.option == option) return &spec;
+  return nullptr;
+}
+
+Demand limit(const std::string& option, double most) { return {find_limit(option), most, {}}; }
+
+/// A cell whose lookup takes `ms` and its map 1 ms, within 1 % of both; its filter has no parameters.
+records::CellRecord measure(const std::string& scene, const std::string& filter, double ms, double rmse,
+                            int map_size = 1024) {
+  records::CellRecord cell = make_cell(scene, filter, ms);
+  cell.params.clear();
+  cell.map_size = map_size;
+  cell.cost.map_bytes = 4LL * map_size * map_size;
+  cell.cost.prefilter_texels = 0;
+  cell.time_ms.map = records::Quartiles{1.0, 0.99, 1.01, 9};
+  cell.time_ms.lookup = records::Quartiles{ms, 0.99 * ms, 1.01 * ms, 9};
+  cell.ratio_to_none.static_map = cell.ratio_to_none.lookup;
+  cell.ratio_to_none.moving = records::Ratio{(1.0 + ms) / 5.0, {(1.0 + ms) / 5.0 * 0.99, (1.0 + ms) / 5.0 * 1.01}};
+  cell.error.rmse = rmse;
+  cell.truth.se = 0.001;
+  cell.artefact = {0.0, 0.0, 0.0, 0.0};
+  cell.absent.erase("error");
+  cell.key = records::cell_key(cell);
+  return cell;
+}
+
+std::vector<std::string> labels(const std::vector<Candidate>& candidates) {
+  std::vector<std::string> filters;
+  for (const Candidate& candidate : candidates) filters.push_back(candidate.configuration.cells.front()->filter);
+  return filters;
+}
+
+std::vector<std::string> reasons(const Advice& advice) {
+  std::vector<std::string> texts;
+  for (const Unjudged& unjudged : advice.unjudged) texts.push_back(unjudged.reason);
+  return texts;
+}
+
+Advice advise_on(const std::vector<records::CellRecord>& cells, std::vector<Demand> demands) {
+  AdviceRequest request;
+  request.demands = std::move(demands);
+  return advise(cells, request);
+}
+
+void expect_refusal(const std::vector<records::CellRecord>& cells, const AdviceRequest& request, ErrorKind kind,
+                    const std::string& word) {
+  try {
+    advise(cells, request);
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind);
+    EXPECT_THAT(error.what(), HasSubstr(word));
+  }
+}
+
+TEST(Advice, WorstPlace_DecidesALimit) {
+  const std::vector<records::CellRecord> cells = {
+      measure("cubes", "none", 1.0, 0.01), measure("stack", "none", 1.0, 0.09), measure("cubes", "wide", 3.0, 0.03),
+      measure("stack", "wide", 3.0, 0.02)};
+  const Advice advice = advise_on(cells, {limit("--max-rmse", 0.03)});
+  ASSERT_THAT(labels(advice.keeping), ElementsAre("wide"));
+  ASSERT_THAT(labels(advice.failing), ElementsAre("none"));
+  const Verdict& verdict = advice.keeping.at(0).verdicts[0];
+  EXPECT_EQ(*verdict.worst, 0.03);
+  EXPECT_EQ(verdict.where, &cells[2]);
+  EXPECT_EQ(advice.failing[0].verdicts[0].where, &cells[1]);
+}
+
+TEST(Advice, EveryLimit_IsKeptUpToItsValueAndNotBeyond) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "none", 2.0, 0.25)};
+  cells[0].artefact = {0.25, 0.25, 0.25, 0.25};
+  cells[0].error.flip = 0.25;
+  for (const LimitSpec& spec : limit_table()) {
+    const auto value = spec.read(cells[0], LightMotion::kMoving);
+    ASSERT_TRUE(value) << spec.option;
+    EXPECT_THAT(advise_on(cells, {{&spec, *value, {}}}).keeping, SizeIs(1)) << spec.option;
+    EXPECT_THAT(advise_on(cells, {{&spec, *value * 0.999, {}}}).keeping, IsEmpty()) << spec.option;
+  }
+}
+
+TEST(Advice, Cost_IsTheMeanOverAllPlaces) {
+  const std::vector<records::CellRecord> cells = {
+      measure("cubes", "even", 4.0, 0.0), measure("stack", "even", 4.0, 0.0), measure("cubes", "uneven", 1.0, 0.0),
+      measure("stack", "uneven", 6.0, 0.0)};
+  const Advice advice = advise_on(cells, {});
+  EXPECT_THAT(labels(advice.keeping), ElementsAre("uneven", "even"));
+  EXPECT_DOUBLE_EQ(advice.keeping.at(0).cost.mean, 4.5);
+  EXPECT_DOUBLE_EQ(advice.keeping.at(0).cost.quartiles.low, 0.99 * 4.5);
+  EXPECT_DOUBLE_EQ(advice.keeping.at(0).cost.ratio->high, 1.01 * 4.5);
+}
+
+TEST(Advice, MovingLight_PaysForMapAndPrefilter) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "wide", 4.0, 0.0), measure("cubes", "blurred", 2.0, 0.0)};
+  cells[1].time_ms.prefilter = records::Quartiles{8.0, 7.9, 8.1, 9};
+  AdviceRequest request;
+  EXPECT_THAT(labels(advise(cells, request).keeping), ElementsAre("wide", "blurred"));
+  EXPECT_DOUBLE_EQ(advise(cells, request).keeping[1].cost.mean, 11.0);
+  request.light = LightMotion::kStatic;
+  EXPECT_THAT(labels(advise(cells, request).keeping), ElementsAre("blurred", "wide"));
+  EXPECT_DOUBLE_EQ(advise(cells, request).keeping.at(0).cost.mean, 2.0);
+}
+
+TEST(Advice, PrefilterThatWasNotTimed_LeavesNoTime) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "blurred", 2.0, 0.0)};
+  cells[0].cost.prefilter_texels = 100;
+  cells[0].absent = {{"time_ms.prefilter", "the clock stood still"}};
+  EXPECT_THAT(reasons(advise_on(cells, {})), ElementsAre("no time_ms on cubes: the clock stood still"));
+}
+
+TEST(Advice, WhatWasNotMeasuredEverywhere_IsNotJudged) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "none", 1.0, 0.0), measure("stack", "none", 1.0, 0.0),
+                                            measure("cubes", "gone", 1.0, 0.0), measure("cubes", "hung", 1.0, 0.0),
+                                            measure("stack", "hung", 1.0, 0.0)};
+  cells[4].status = records::CellStatus::kTimeout;
+  cells[4].message = "no answer after 10 s";
+  const Advice advice = advise_on(cells, {limit("--max-rmse", 1.0)});
+  EXPECT_THAT(labels(advice.keeping), ElementsAre("none"));
+  EXPECT_THAT(reasons(advice),
+              ElementsAre("not measured on stack", "did not finish on stack (timeout: no answer after 10 s)"));
+}
+
+TEST(Advice, NeededValueThatIsNull_IsNotJudgedAndSaysWhy) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "none", 1.0, 0.0), measure("cubes", "blind", 1.0, 0.0),
+                                            measure("cubes", "free", 1.0, 0.0)};
+  cells[1].error = {};
+  cells[1].absent["error"] = "no truth in this run";
+  cells[2].cost.fetches.reset();
+  cells[2].absent["cost.fetches"] = "it reads the map itself";
+  const Advice advice = advise_on(cells, {limit("--max-rmse", 1.0), limit("--max-fetches", 9.0)});
+  EXPECT_THAT(reasons(advice), ElementsAre("no error.rmse on cubes: no truth in this run",
+                                           "no cost.fetches on cubes: it reads the map itself"));
+  EXPECT_EQ(advice.obstacles[0].unknown, 1U);
+  EXPECT_EQ(advice.obstacles[1].unknown, 1U);
+  EXPECT_THAT(count_unjudged(advice), ElementsAre("1: no error.rmse on cubes: no truth in this run",
+                                                  "1: no cost.fetches on cubes: it reads the map itself"));
+  EXPECT_THAT(advise_on(cells, {}).unjudged, IsEmpty()) << "nobody asked for those values";
+}
+
+TEST(Advice, CostThatIsNull_IsNotJudged) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "free", 1.0, 0.0)};
+  cells[0].cost.fetches.reset();
+  AdviceRequest request;
+  request.cheapest = CostKind::kFetches;
+  EXPECT_THAT(reasons(advise(cells, request)), ElementsAre("no cost.fetches on cubes: not measured"));
+}
+
+TEST(Advice, OfOneSurrounding_RatioIntervalsTellCostsApart) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "a", 4.0, 0.0), measure("cubes", "b", 4.2, 0.0)};
+  Advice advice = advise_on(cells, {});
+  CostGap gap = compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime);
+  EXPECT_EQ(gap.basis, Basis::kRatio);
+  EXPECT_FALSE(gap.tied);
+  EXPECT_NEAR(gap.difference, 0.2, 1e-12);
+  EXPECT_NEAR(gap.share, 0.2 / 5.0, 1e-12);
+  EXPECT_EQ(describe_runner_up(advice, make_run().gl), "dearer by 0.2 ms (CPU) (4 %); the 95 % intervals are apart");
+  cells[1].ratio_to_none.moving->ci95.low *= 0.9;
+  advice = advise_on(cells, {});
+  EXPECT_TRUE(compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime).tied);
+}
+
+TEST(Advice, OfTwoMaps_QuartilesTellCostsApart) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "a", 4.0, 0.0, 256),
+                                            measure("cubes", "a", 4.2, 0.0, 1024)};
+  cells[1].ratio_to_none.moving->ci95.low *= 0.5;
+  Advice advice = advise_on(cells, {});
+  const CostGap gap = compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime);
+  EXPECT_EQ(gap.basis, Basis::kQuartiles);
+  EXPECT_FALSE(gap.tied);
+  cells[1].time_ms.lookup->q1 = 3.9;
+  advice = advise_on(cells, {});
+  EXPECT_TRUE(compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime).tied);
+  EXPECT_THAT(describe_runner_up(advice, make_run().gl), HasSubstr("a tie, for their quartiles overlap"));
+}
+
+TEST(Advice, WithoutARatio_QuartilesTellCostsApart) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "a", 4.0, 0.0), measure("cubes", "b", 4.2, 0.0)};
+  cells[0].ratio_to_none = {};
+  const Advice advice = advise_on(cells, {});
+  EXPECT_EQ(compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime).basis, Basis::kQuartiles);
+}
+
+TEST(Advice, ATie_NamesTheLowerMeanAndSaysWhoIsMoreAccurate) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "rough", 4.0, 0.03), measure("cubes", "fine", 4.02, 0.01),
+                                            measure("cubes", "third", 4.03, 0.02),
+                                            measure("cubes", "slow", 9.0, 0.001)};
+  const Advice advice = advise_on(cells, {});
+  EXPECT_EQ(
+      describe_runner_up(advice, make_run().gl),
+      "a tie, for their 95 % intervals overlap: rough, map 1024 × 1024 d32f is named first for its lower mean; "
+      "fine, map 1024 × 1024 d32f has the lower RMSE, 0.01 against 0.03 at worst; tied with it too: third, map 1024 "
+      "× 1024 d32f");
+}
+
+TEST(Advice, EqualBytes_AreATieThatTimeOrders) {
+  const std::vector<records::CellRecord> cells = {measure("cubes", "slow", 9.0, 0.01),
+                                                  measure("cubes", "fast", 4.0, 0.03)};
+  AdviceRequest request;
+  request.cheapest = CostKind::kBytes;
+  const Advice advice = advise(cells, request);
+  EXPECT_THAT(labels(advice.keeping), ElementsAre("fast", "slow"));
+  EXPECT_EQ(describe_runner_up(advice, make_run().gl),
+            "a tie, at the same cost: fast, map 1024 × 1024 d32f is named first for its shorter time");
+}
+
+TEST(Advice, RelaxedLimit_BuysEveryStepThatIsReallyCheaper) {
+  const std::vector<records::CellRecord> cells = {
+      measure("cubes", "best", 9.0, 0.01), measure("cubes", "near", 6.0, 0.02), measure("cubes", "far", 3.0, 0.04),
+      measure("cubes", "worse", 7.0, 0.03), measure("cubes", "tied", 8.99, 0.015)};
+  const Advice advice = advise_on(cells, {limit("--max-rmse", 0.012)});
+  ASSERT_THAT(advice.relaxations, SizeIs(2));
+  EXPECT_EQ(labels(advice.failing)[advice.relaxations[0].candidate], "near");
+  EXPECT_EQ(labels(advice.failing)[advice.relaxations[1].candidate], "far");
+  EXPECT_DOUBLE_EQ(advice.relaxations[0].saving.difference, 3.0);
+  EXPECT_DOUBLE_EQ(advice.relaxations[1].saving.difference, 6.0);
+}
+
+TEST(Advice, WhatFailsTwoLimits_NoSingleOneBuys) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "best", 9.0, 0.01), measure("cubes", "leaky", 3.0, 0.02)};
+  cells[1].artefact.leak = 0.5;
+  EXPECT_THAT(advise_on(cells, {limit("--max-rmse", 0.01), limit("--max-leak", 0.1)}).relaxations, IsEmpty());
+  EXPECT_THAT(advise_on(cells, {limit("--max-rmse", 0.02), limit("--max-leak", 0.1)}).relaxations, SizeIs(1));
+}
+
+TEST(Advice, NothingFits_NamesTheLimitInTheWayAndTheNearestValue) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "a", 1.0, 0.0412345), measure("cubes", "b", 2.0, 0.06),
+                                            measure("cubes", "c", 9.0, 0.05)};
+  const Advice advice = advise_on(cells, {limit("--max-rmse", 0.03), limit("--max-ms", 5.0)});
+  EXPECT_THAT(advice.keeping, IsEmpty());
+  EXPECT_EQ(advice.obstacles[0].failing, 3U);
+  EXPECT_EQ(advice.obstacles[0].alone, 2U);
+  EXPECT_EQ(advice.obstacles[1].failing, 1U);
+  EXPECT_EQ(advice.obstacles[1].alone, 0U);
+  EXPECT_FALSE(advice.obstacles[1].nearest);
+  EXPECT_EQ(
+      describe_failure(advice),
+      "none of 3 configurations keeps the limits; in the way: --max-rmse 0.03 (2 fail it alone; 0.0413 would let a, "
+      "map 1024 × 1024 d32f through)");
+}
+
+TEST(Advice, NothingFits_WithoutASingleObstacleNamesTheClosest) {
+  const std::vector<records::CellRecord> cells = {measure("cubes", "far", 9.0, 0.3),
+                                                  measure("cubes", "close", 9.0, 0.04)};
+  const Advice advice = advise_on(cells, {limit("--max-rmse", 0.03), limit("--max-ms", 5.0)});
+  EXPECT_EQ(describe_failure(advice),
+            "none of 2 configurations keeps the limits; no single one is in the way: close, map 1024 × 1024 d32f comes "
+            "closest, and breaks --max-rmse 0.03 with 0.04 and --max-ms 5 with 10");
+}
+
+TEST(Advice, NothingCanBeJudged_SaysWhy) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "a", 9.0, 0.3), measure("cubes", "b", 9.0, 0.3)};
+  for (records::CellRecord& cell : cells) cell.error.rmse.reset();
+  EXPECT_EQ(describe_failure(advise_on(cells, {limit("--max-rmse", 0.03)})),
+            "none of 2 configurations can be judged: 2: no error.rmse on cubes: not measured");
+}
+
+TEST(Advice, RmseKeptByLessThanTheTruthsStandardError_IsMarked) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "a", 9.0, 0.0295), measure("stack", "a", 9.0, 0.001)};
+  EXPECT_EQ(advise_on(cells, {limit("--max-rmse", 0.03)}).keeping.at(0).verdicts[0].lost_in_truth, &cells[0]);
+  EXPECT_FALSE(advise_on(cells, {limit("--max-rmse", 0.031)}).keeping.at(0).verdicts[0].lost_in_truth);
+  cells[1].truth.se = 0.04;
+  EXPECT_EQ(advise_on(cells, {limit("--max-rmse", 0.031)}).keeping.at(0).verdicts[0].lost_in_truth, &cells[1])
+      << "not the worst";
+  EXPECT_FALSE(advise_on(cells, {limit("--max-fetches", 4.0)}).keeping.at(0).verdicts[0].lost_in_truth);
+}
+
+TEST(Advice, RequiredClaim_IsReadFromTheKnownFilters) {
+  const std::vector<records::CellRecord> cells = {
+      measure("cubes", "hard", 1.0, 0.01), measure("cubes", "soft", 4.0, 0.01), measure("cubes", "mine", 1.0, 0.01)};
+  AdviceRequest request;
+  request.demands = {{nullptr, 0.0, "contact-hardening"}};
+  request.claims = {{"hard", {}}, {"soft", {"contact-hardening"}}, {"other", {"temporal"}}};
+  const Advice advice = advise(cells, request);
+  EXPECT_THAT(labels(advice.keeping), ElementsAre("soft"));
+  EXPECT_THAT(reasons(advice), ElementsAre("the run does not say what 'mine' claims, and it is no built-in filter"));
+  ASSERT_THAT(advice.relaxations, SizeIs(1));
+  EXPECT_EQ(labels(advice.failing)[advice.relaxations[0].candidate], "hard");
+  request.demands[0].claim = "temporal";
+  EXPECT_THAT(describe_failure(advise(cells, request)),
+              HasSubstr("--requires temporal (2 fail it alone; without it there is hard, map"));
+}
+
+TEST(Advice, ClaimsInTheRecord_CountBeforeThoseOfTheKnownFilters) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "mine", 1.0, 0.01), measure("cubes", "soft", 4.0, 0.01)};
+  cells[0].claims = {{"contact-hardening", "own-claim"}};
+  cells[1].claims.emplace();
+  AdviceRequest request;
+  request.claims = {{"soft", {"contact-hardening"}}};
+  for (const char* claim : {"contact-hardening", "own-claim"}) {
+    request.demands = {{nullptr, 0.0, claim}};
+    const Advice advice = advise(cells, request);
+    EXPECT_THAT(labels(advice.keeping), ElementsAre("mine")) << claim;
+    EXPECT_THAT(labels(advice.failing), ElementsAre("soft")) << claim;
+  }
+}
+
+/// A cell with a leak rate on "cubes", and none on "fence", where too little is blocked.
+std::vector<records::CellRecord> measure_leak_on_one(const std::string& filter, double ms, double leak) {
+  std::vector<records::CellRecord> cells = {measure("cubes", filter, ms, 0.01), measure("fence", filter, ms, 0.01)};
+  cells[0].artefact.leak = leak;
+  cells[1].artefact.leak.reset();
+  cells[1].absent["artefact.leak"] = records::explain_nothing_to_see("fewer than 100 receivers are blocked");
+  return cells;
+}
+
+std::vector<records::CellRecord> join(std::vector<records::CellRecord> a, const std::vector<records::CellRecord>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+TEST(Advice, SceneWithNothingToSee_BarsNothingAndIsNamed) {
+  const auto cells = join(measure_leak_on_one("leaky", 1.0, 0.5), measure_leak_on_one("tight", 2.0, 0.01));
+  const Advice advice = advise_on(cells, {limit("--max-leak", 0.1)});
+  EXPECT_THAT(advice.unjudged, IsEmpty());
+  ASSERT_THAT(labels(advice.keeping), ElementsAre("tight"));
+  EXPECT_THAT(labels(advice.failing), ElementsAre("leaky"));
+  EXPECT_EQ(advice.keeping[0].verdicts[0].worst, 0.01);
+  EXPECT_EQ(advice.keeping[0].verdicts[0].where, &cells[2]);
+  EXPECT_THAT(advice.keeping[0].verdicts[0].nothing_to_see, ElementsAre(&cells[3]));
+  const std::string note =
+      "--max-leak 0.1 could not be judged on fence, and cannot be broken there: nothing to see: fewer than 100 "
+      "receivers "
+      "are blocked.";
+  EXPECT_THAT(list_advice_notes(advice, make_run().gl), ::testing::Contains(note));
+  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-leak", 0.001)}), make_run().gl),
+              ::testing::Contains(HasSubstr("could not be judged on fence")))
+      << "nothing fits";
+  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-acne", 0.1)}), make_run().gl),
+              ::testing::Each(::testing::Not(HasSubstr("fence"))));
+}
+
+TEST(Advice, EveryFaultWithoutReceivers_BarsNothing) {
+  for (const char* name : {"acne", "leak", "contact_gap"}) {
+    std::vector<records::CellRecord> cells = measure_leak_on_one("a", 1.0, 0.0);
+    cells[1].artefact = {};
+    cells[1].absent = {{std::string("artefact.") + name, records::explain_nothing_to_see("too few")}};
+    std::string option = "--max-" + std::string(name);
+    std::ranges::replace(option, '_', '-');
+    EXPECT_THAT(advise_on(cells, {limit(option, 0.1)}).keeping, SizeIs(1)) << name;
+  }
+}
+
+TEST(Advice, WhatWasNotMeasuredBesideNothingToSee_IsNotJudged) {
+  auto cells = measure_leak_on_one("a", 1.0, 0.0);
+  cells[0].artefact = {};
+  cells[0].absent["artefact"] = "the run was made with --no-truth";
+  EXPECT_THAT(reasons(advise_on(cells, {limit("--max-leak", 0.1)})),
+              ElementsAre("no artefact.leak on cubes: the run was made with --no-truth"));
+}
+
+TEST(Advice, NothingToSeeAnywhere_IsNotJudgedAndSaysSo) {
+  auto cells = measure_leak_on_one("a", 1.0, 0.0);
+  cells[0].artefact.leak.reset();
+  cells[0].absent = cells[1].absent;
+  EXPECT_EQ(describe_failure(advise_on(cells, {limit("--max-leak", 0.1)})),
+            "none of 1 configurations can be judged: 1: no artefact.leak anywhere: nothing to see: fewer than 100 "
+            "receivers are blocked");
+}
+
+TEST(Advice, ClaimThatNoFilterMakes_IsRefused) {
+  const std::vector<records::CellRecord> cells = {measure("cubes", "hard", 1.0, 0.01)};
+  AdviceRequest request;
+  request.demands = {{nullptr, 0.0, "contact-hardning"}};
+  request.claims = {{"hard", {}}, {"soft", {"contact-hardening", "temporal"}}};
+  expect_refusal(cells, request, ErrorKind::kUsage,
+                 "--requires: no filter claims 'contact-hardning'; did you mean 'contact-hardening'?; filters claim "
+                 "contact-hardening, temporal");
+  request.claims = {{"hard", {}}};
+  expect_refusal(cells, request, ErrorKind::kUsage, "nor anything else");
+}
+
+TEST(Advice, Scenes_ChooseWhatIsJudged) {
+  const std::vector<records::CellRecord> cells = {measure("cubes", "none", 1.0, 0.01),
+                                                  measure("stack", "none", 1.0, 0.09)};
+  AdviceRequest request;
+  request.demands = {limit("--max-rmse", 0.03)};
+  EXPECT_THAT(advise(cells, request).keeping, IsEmpty());
+  request.scenes = {"cubes"};
+  EXPECT_THAT(advise(cells, request).keeping, SizeIs(1));
+  request.scenes = {"cubes", "stick"};
+  expect_refusal(cells, request, ErrorKind::kUsage, "--scene: the run has no 'stick'; it has cubes, stack");
+}
+
+TEST(Advice, Size_ChoosesThePicture) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "none", 1.0, 0.01), measure("cubes", "none", 4.0, 0.01)};
+  cells[0].width = 480;
+  cells[0].height = 270;
+  AdviceRequest request;
+  EXPECT_THAT(advise(cells, request).keeping, SizeIs(2));
+  EXPECT_THAT(
+      list_advice_notes(advise(cells, request), make_run().gl),
+      ::testing::Contains("Pictures of 480x270, 960x540 pixels compete here, and a smaller one costs less: --size "
+                          "chooses."));
+  request.size = {960, 540};
+  ASSERT_THAT(advise(cells, request).keeping, SizeIs(1));
+  EXPECT_DOUBLE_EQ(advise(cells, request).keeping.at(0).cost.mean, 5.0);
+  request.size = {2, 2};
+  expect_refusal(cells, request, ErrorKind::kUsage, "--size: the run has no pictures of 2x2; it has 480x270, 960x540");
+}
+
+TEST(Advice, RunWithoutCells_IsAnInputError) { expect_refusal({}, {}, ErrorKind::kInput, "holds no cell"); }
+
+TEST(Advice, Notes_SayWhatWeakensIt) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "none", 1.0, 0.01)};
+  records::GlRecord gl = make_run().gl;
+  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-rmse", 1.0)}), gl),
+              ElementsAre("Times are CPU time (software rasteriser): a GPU ranks filters differently."));
+  gl.software = false;
+  gl.timer = records::TimerKind::kTimerQuery;
+  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-rmse", 1.0)}), gl), IsEmpty());
+  EXPECT_THAT(list_advice_notes(advise_on(cells, {}), gl), ElementsAre(HasSubstr("No limit was given")));
+  cells[0].nan = 12;
+  cells[0].time_ms.lookup->n = 1;
+  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-rmse", 1.0)}), gl),
+              ElementsAre(HasSubstr("a single round"), HasSubstr("12 pixels of it on cubes are not finite")));
+}
+
+TEST(Advice, LimitsInWords_LetTheValuePass) {
+  for (const double value : {0.0246282, 0.03, 1e-5, 0.9999, 12.341, 123.456, 4194304.0, 0.0, 1234.5}) {
+    EXPECT_GE(std::stod(format_limit(value)), value) << format_limit(value);
+    EXPECT_LE(std::stod(format_limit(value)), value * 1.01) << format_limit(value);
+  }
+  EXPECT_EQ(format_limit(0.0246282), "0.0247");
+  EXPECT_EQ(format_kept(0.0246282, 0.03), "0.0246");
+  EXPECT_EQ(format_kept(0.0299962, 0.0299999), "0.029996");
+}
+
+}  // namespace
+}  // namespace shadowbench::analysis

@@ -1,0 +1,91 @@
+#include "report/files/folder_lock.h"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <optional>
+
+#include "filters/base/error.h"
+#include "report/files/atomic_file.h"
+#include "report/files/temporary_files.h"
+#include "tests/report/records/synthetic.h"
+
+namespace shadowbench::files {
+
+using namespace records;
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string refusal_of(const std::filesystem::path& folder) {
+  try {
+    const FolderLock lock(folder);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kOutput);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(FolderLock, IsOfOneAtATime_AndLeavesNothing) {
+  const TemporaryFolder folder("lock_one");
+  const std::filesystem::path out = folder.path() / "a" / "out";
+  {
+    const FolderLock lock(out);
+    lock.require_in_place();
+    const std::string refusal = refusal_of(out);
+    EXPECT_THAT(refusal, HasSubstr(out.string()));
+    EXPECT_THAT(refusal, HasSubstr("process " + std::to_string(getpid())));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(out));
+  EXPECT_EQ(refusal_of(out), "");
+}
+
+TEST(FolderLock, OfAKilledProcess_IsFree) {
+  const TemporaryFolder folder("lock_killed");
+  write_text_file(folder.path() / ".shadowbench-lock", "1\n");
+  EXPECT_EQ(refusal_of(folder.path()), "");
+}
+
+TEST(FolderLock, FolderThatIsGoneOrAnother_IsNoticed) {
+  const TemporaryFolder folder("lock_gone");
+  const std::filesystem::path out = folder.path() / "out";
+  const FolderLock lock(out);
+  std::filesystem::remove_all(out);
+  EXPECT_THROW(lock.require_in_place(), Error);
+  const FolderLock other(out);
+  EXPECT_THROW(lock.require_in_place(), Error);
+  EXPECT_NO_THROW(other.require_in_place());
+}
+
+/// Only names of ours are removed, however alike others are.
+TEST(TemporaryFiles, AreRemoved_AndNothingElseIs) {
+  const TemporaryFolder folder("lock_clean");
+  const char* others[] = {
+      "a.json",     "a.tmp-12.png", "a.shadowbench-tmp-.png", "a.shadowbench-tmp-12x.png",       ".worker-x/a",
+      ".worker-/a", ".plots-1x/a",  "cells/b.json",           "deep/er/a.shadowbench-tmp-12.png"};
+  const char* ours[] = {"a.shadowbench-tmp-12.png",        "b.grid.shadowbench-tmp-12.json", "c.shadowbench-tmp-12",
+                        "cells/d.shadowbench-tmp-12.json", ".worker-12/cells/e.json",        ".plots-12/plots/f.svg"};
+  for (const char* name : others) write_text_file(folder.path() / name, "x");
+  for (const char* name : ours) write_text_file(folder.path() / name, "x");
+  remove_temporary_files(folder.path(), [](pid_t process) { return process == 13; });
+  for (const char* name : ours) EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
+  remove_temporary_files(folder.path(), [](pid_t process) { return process == 12; });
+  for (const char* name : ours) EXPECT_FALSE(std::filesystem::exists(folder.path() / name)) << name;
+  for (const char* name : others) EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
+  EXPECT_FALSE(is_gone(getpid()));
+  EXPECT_TRUE(is_gone(99999999));
+}
+
+TEST(TemporaryFiles, NamesOfThisProcess_AreRecognised) {
+  const TemporaryFolder folder("lock_own");
+  { PendingFile(folder.path() / "x.png"); }
+  for (const char* name : {"x.png", "x", "x.y.exr"}) write_text_file(make_temporary_path(folder.path() / name), "x");
+  std::filesystem::create_directories(make_temporary_folder_path(folder.path(), "worker"));
+  std::filesystem::create_directories(make_temporary_folder_path(folder.path(), "plots"));
+  remove_temporary_files(folder.path(), [](pid_t process) { return process == getpid(); });
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace shadowbench::files

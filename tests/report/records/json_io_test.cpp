@@ -1,0 +1,407 @@
+#include "report/records/json_io.h"
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "filters/base/error.h"
+#include "report/files/atomic_file.h"
+#include "synthetic.h"
+
+namespace shadowbench::records {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+// Debian's python3-jsonschema is the judge of the schema.
+bool is_valid(const std::filesystem::path& file, const std::filesystem::path& schema) {
+  const std::string command =
+      "/usr/bin/python3 -m jsonschema -i '" + file.string() + "' '" + schema.string() + "' >/dev/null 2>&1";
+  return std::system(command.c_str()) == 0;
+}
+
+// Says of each document whether the schema accepts it; python is slow to start, so one judges them all.
+std::vector<bool> judge_all(const std::vector<json>& documents, const std::filesystem::path& schema,
+                            const std::filesystem::path& dir) {
+  constexpr const char* kJudge =
+      "import json, jsonschema, sys\n"
+      "schema = json.load(open(sys.argv[1]))\n"
+      "judge = jsonschema.validators.validator_for(schema)(schema)\n"
+      "for line in open(sys.argv[2]): print(judge.is_valid(json.loads(line)))\n";
+  std::string lines;
+  for (const json& document : documents) lines += document.dump() + "\n";
+  files::write_text_file(dir / "documents", lines);
+  files::write_text_file(dir / "judge.py", kJudge);
+  const std::string command =
+      "cd '" + dir.string() + "' && /usr/bin/python3 judge.py '" + schema.string() + "' documents > verdicts";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  std::vector<bool> verdicts;
+  std::istringstream text(read_text(dir / "verdicts"));
+  for (std::string line; std::getline(text, line);) verdicts.push_back(line == "True");
+  return verdicts;
+}
+
+std::vector<std::string> write_cells(const std::filesystem::path& dir, const std::vector<CellRecord>& cells) {
+  std::vector<std::string> keys;
+  for (const CellRecord& cell : cells) {
+    write_cell(dir, cell);
+    keys.push_back(cell.key);
+  }
+  return keys;
+}
+
+CellRecord make_timed_out_cell() {
+  CellRecord cell = make_cell("cubes", "esm", 1.0);
+  cell.status = CellStatus::kTimeout;
+  cell.message = "no answer after 10 s";
+  cell.time_ms = {};
+  cell.ratio_to_none = {};
+  cell.images = {};
+  return cell;
+}
+
+// A cell in which everything that later issues bring exists.
+CellRecord make_full_cell() {
+  CellRecord cell = make_cell("cubes", "full", 4.0);
+  cell.kernel_radius_texels = 4.0;
+  cell.claims = {{"contact-hardening"}};
+  cell.map_scale = {0.02, 10.0};
+  cell.bias = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, 0.7, 0.8, {0.0, 0.9, 1.0}, true, 1.1, 1.2, true, true};
+  cell.time_ms.prefilter = Quartiles{1.5, 1.25, 1.75, 3};
+  cell.ratio_to_none.static_map = Ratio{1.5, {1.25, 1.75}};
+  cell.ratio_to_none.moving = Ratio{2.5, {2.25, 2.75}};
+  cell.cost.prefilter_texels = 2097152;
+  cell.range = {"edge", false, false};
+  cell.error = {0.1, 0.05, 0.2, 1.0, -0.01, 0.3, 0.04};
+  cell.truth = {0.001, 0.9};
+  cell.artefact = {0.1, 0.2, 0.3, 0.4};
+  cell.attribution = {{0.1, 0.5}, {0.2, -0.1}, {0.3, 0.2}, {0.4, 0.4}};
+  cell.images = {"a.png", "b.png", "c.png", "d.png", "e.exr", "f.png", "g.png", "h.png", "i.png", "vsm"};
+  cell.stability = {1, 2, 3, -1e-6, 4.5, 11.25, 0.5, 0.25, 0.125, 4, 5};
+  cell.coverage = {3.5, 0.25, 0.75, 0.5};
+  cell.fit = "view snapped";
+  cell.light = "120,-35.5";
+  cell.time_ms.stopped = "budget";
+  cell.lights = {{1, {1.5, 1.25, 1.75, 9}, {2.5, 2.25, 2.75, 9}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 1024},
+                 {16, {24.0, 20.0, 28.0, 5}, {40.0, 36.0, 44.0, 5}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 16384}};
+  cell.content = "0123";
+  cell.warnings = {"one", "two"};
+  cell.absent.clear();
+  return cell;
+}
+
+std::string message_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kInput);
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(JsonIo, Cell_ComesBackAsItWas) {
+  for (const CellRecord& cell : {make_cell("cubes", "vsm", 4.5), make_timed_out_cell(), make_full_cell()}) {
+    const json written = to_json(cell);
+    EXPECT_EQ(to_json(cell_from_json(written, "here")), written);
+  }
+  const CellRecord back = cell_from_json(to_json(make_full_cell()), "here");
+  EXPECT_EQ(back.attribution.estimator.share, -0.1);
+  EXPECT_EQ(back.claims, std::vector<std::string>{"contact-hardening"});
+  EXPECT_EQ(back.error.kernel_rmse, 0.04);
+  EXPECT_EQ(back.ratio_to_none.moving->ci95.high, 2.75);
+  EXPECT_EQ(back.time_ms.prefilter->n, 3);
+  EXPECT_EQ(back.bias.normal_offset.world, 1.0);
+  EXPECT_TRUE(back.bias.midpoint);
+  EXPECT_EQ(back.range.border, "edge");
+  EXPECT_FALSE(back.range.far_test);
+  EXPECT_FALSE(back.range.behind_test);
+  EXPECT_EQ(back.images.exr, "e.exr");
+  EXPECT_EQ(back.images.attribution, "f.png");
+  EXPECT_EQ(back.images.texel_density, "g.png");
+  EXPECT_EQ(back.images.texel_grid, "h.png");
+  EXPECT_EQ(back.images.stability, "i.png");
+  EXPECT_EQ(back.images.parts, "vsm");
+  EXPECT_EQ(back.stability.negative_variance_texels, 3);
+  EXPECT_EQ(back.stability.safe_exponent, 11.25);
+  EXPECT_EQ(back.stability.bound_exact_violations, 5);
+  EXPECT_EQ(back.coverage.texels_per_pixel, 3.5);
+  EXPECT_EQ(back.coverage.fewest_texels_per_pixel, 0.25);
+  EXPECT_EQ(back.coverage.map_used, 0.75);
+  EXPECT_EQ(back.coverage.map_filled, 0.5);
+  EXPECT_EQ(back.fit, "view snapped");
+  EXPECT_EQ(back.light, "120,-35.5");
+  EXPECT_EQ(back.time_ms.stopped, "budget");
+  ASSERT_EQ(back.lights->size(), 2u);
+  EXPECT_EQ(back.lights->back().count, 16);
+  EXPECT_EQ(back.lights->back().still_ms.q3, 28.0);
+  EXPECT_EQ(back.lights->back().moving_ms.n, 5);
+  EXPECT_EQ(back.lights->back().moving_ratio.ci95.low, 1.75);
+  EXPECT_EQ(back.lights->back().maps_bytes, 16384);
+  EXPECT_EQ(back.content, "0123");
+  EXPECT_EQ(back.warnings, (std::vector<std::string>{"one", "two"}));
+  EXPECT_EQ(std::get<std::string>(back.params.at("store")), "rg32f");
+}
+
+TEST(JsonIo, FullCell_HasNoNull) { EXPECT_EQ(to_json(make_full_cell()).at("absent"), json::object()); }
+
+TEST(JsonIo, LaterFields_MayLack) {
+  json written = to_json(make_full_cell());
+  written.erase("claims");
+  EXPECT_FALSE(cell_from_json(written, "here").claims);
+  EXPECT_EQ(cell_from_json(written, "here").fit, "view snapped");
+  RunRecord run = make_run();
+  run.repeat = {40, 118, 120};
+  written = to_json(run);
+  EXPECT_EQ(run_from_json(written, "here").repeat.overlapping, 118);
+  written.erase("repeat");
+  EXPECT_FALSE(run_from_json(written, "here").repeat.of);
+  EXPECT_EQ(run_from_json(written, "here").seed, run.seed);
+  written.erase("seed");
+  EXPECT_THAT(message_of([&] { run_from_json(written, "here"); }), HasSubstr("'seed' is missing"));
+}
+
+/// Files of this version that were written before lights were counted stay readable, and valid.
+TEST(JsonIo, CellWithoutLights_IsReadAsNotMeasured) {
+  json written = to_json(make_full_cell());
+  written.erase("lights");
+  const CellRecord back = cell_from_json(written, "here");
+  EXPECT_FALSE(back.lights);
+  EXPECT_EQ(to_json(back).at("absent").at("lights"), "not measured");
+  const TemporaryFolder folder("json_no_lights");
+  write_results(folder.path(), make_run(), write_cells(folder.path(), {make_full_cell()}));
+  json results = json::parse(read_text(folder.path() / "results.json"));
+  results["cells"][0].erase("lights");
+  files::write_text_file(folder.path() / "results.json", results.dump());
+  EXPECT_TRUE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
+  results["cells"][0]["lights"] = {{{"count", 0}}};
+  files::write_text_file(folder.path() / "results.json", results.dump());
+  EXPECT_FALSE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
+}
+
+TEST(JsonIo, NotFiniteLights_AreNullWithTheirReason) {
+  CellRecord cell = make_full_cell();
+  cell.lights->back().moving_ms.median = std::numeric_limits<double>::infinity();
+  const json written = to_json(cell);
+  EXPECT_TRUE(written.at("lights").is_null());
+  EXPECT_EQ(written.at("absent").at("lights"), "the value was not finite");
+}
+
+TEST(JsonIo, NotFinite_IsNullWithItsReason) {
+  CellRecord cell = make_cell("cubes", "vsm", 4.0);
+  cell.cost.fetches = std::numeric_limits<double>::quiet_NaN();
+  cell.time_ms.lookup->q3 = std::numeric_limits<double>::infinity();
+  const json written = to_json(cell);
+  EXPECT_TRUE(written.at("cost").at("fetches").is_null());
+  EXPECT_TRUE(written.at("time_ms").at("lookup").is_null());
+  EXPECT_EQ(written.at("absent").at("cost.fetches"), "the value was not finite");
+  EXPECT_EQ(written.at("absent").at("time_ms.lookup"), "the value was not finite");
+}
+
+void expect_explained(const json& value, const std::string& path, const json& absent) {
+  const std::string group = path.substr(0, path.find('.'));
+  const std::string middle = path.substr(0, path.rfind('.'));
+  if (value.is_null())
+    EXPECT_TRUE(absent.contains(path) || absent.contains(group) || absent.contains(middle)) << path;
+  else if (value.is_object())
+    for (const auto& [name, child] : value.items())
+      expect_explained(child, path.empty() ? name : path + "." + name, absent);
+}
+
+TEST(JsonIo, EveryNull_HasAReason) {
+  for (const CellRecord& cell : {make_cell("cubes", "vsm", 4.5), make_timed_out_cell(), CellRecord{}}) {
+    const json written = to_json(cell);
+    expect_explained(written, "", written.at("absent"));
+  }
+  const json absent = to_json(make_cell("cubes", "vsm", 4.5)).at("absent");
+  EXPECT_EQ(absent.at("error"), "no truth in this run");
+  EXPECT_EQ(absent.at("artefact"), "not measured");
+  EXPECT_EQ(absent.at("cost.prefilter_texels"), "not measured");
+  EXPECT_FALSE(absent.contains("cost"));
+}
+
+TEST(JsonIo, WhatWasMeasuredAfterReadingAgain_IsNoLongerAbsent) {
+  CellRecord cell = make_full_cell();
+  cell.error = {};
+  cell.truth = {};
+  CellRecord again = cell_from_json(to_json(cell), "test");
+  ASSERT_EQ(again.absent.at("error"), "not measured");
+  again.error.rmse = 0.5;
+  const json absent = to_json(again).at("absent");
+  EXPECT_FALSE(absent.contains("error"));
+  EXPECT_EQ(absent.at("error.mae"), "not measured");
+  EXPECT_EQ(absent.at("truth"), "not measured");
+}
+
+TEST(JsonIo, TextThatIsNotUtf8_IsWrittenAllTheSame) {
+  const TemporaryFolder folder("json_utf8");
+  CellRecord cell = make_cell("bad\xff", "vsm", 4.0);
+  write_cell(folder.path(), cell);
+  EXPECT_EQ(read_cell(folder.path(), cell.key).scene, "bad\xEF\xBF\xBD");
+}
+
+TEST(JsonIo, Results_AreValidAgainstTheirSchema) {
+  const TemporaryFolder folder("json_valid");
+  RunRecord run = make_run();
+  run.repeat = {3, 5, 6};
+  run.warnings = {"a \"warning\""};
+  run.machine.load_at_start = std::nullopt;
+  const auto keys =
+      write_cells(folder.path(), {make_cell("cubes", "vsm", 4.5), make_timed_out_cell(), make_full_cell()});
+  write_results(folder.path(), run, keys);
+  EXPECT_TRUE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
+  EXPECT_EQ(read_text(folder.path() / "results.schema.json"),
+            read_text(std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "report" / "results.schema.json"));
+}
+
+TEST(JsonIo, ResultsOfNoCell_AreValidToo) {
+  const TemporaryFolder folder("json_empty");
+  write_results(folder.path(), make_run(), {});
+  EXPECT_TRUE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
+  EXPECT_TRUE(read_results(folder.path() / "results.json").cells.empty());
+}
+
+TEST(JsonIo, CellFile_IsValidAgainstItsPartOfTheSchema) {
+  const TemporaryFolder folder("json_cell");
+  const CellRecord cell = make_cell("cubes", "vsm", 4.5);
+  write_cell(folder.path(), cell);
+  json schema = json::parse(results_schema());
+  schema = {{"$schema", schema["$schema"]}, {"$ref", "#/$defs/cell_file"}, {"$defs", schema["$defs"]}};
+  files::write_text_file(folder.path() / "schema.json", schema.dump());
+  EXPECT_TRUE(is_valid(cell_path(folder.path(), cell.key), folder.path() / "schema.json"));
+}
+
+// One broken results.json per line: each must be refused by the schema.
+TEST(JsonIo, BrokenRecords_AreRefusedByTheSchema) {
+  const TemporaryFolder folder("json_broken");
+  const auto keys = write_cells(folder.path(), {make_cell("cubes", "vsm", 4.5)});
+  write_results(folder.path(), make_run(), keys);
+  const json good = json::parse(read_text(folder.path() / "results.json"));
+  const std::vector<json> patches = {
+      json::parse(R"([{"op": "remove", "path": "/cells/0/time_ms/map"}])"),
+      json::parse(R"([{"op": "add", "path": "/cells/0/extra", "value": 1}])"),
+      json::parse(R"([{"op": "add", "path": "/cells/0/error/extra", "value": 1}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/time_ms/lookup/n", "value": "9"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/status", "value": "fine"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/status", "value": "timeout"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/params/radius", "value": null}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/key", "value": "../../x"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/images/picture", "value": "/etc/passwd"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/images/attribution", "value": "/etc/passwd"}])"),
+      json::parse(R"([{"op": "remove", "path": "/cells/0/images/attribution"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/map_format", "value": "d8"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/fit", "value": "box"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/light", "value": "noon"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/coverage/map_used", "value": 2}])"),
+      json::parse(R"([{"op": "remove", "path": "/cells/0/coverage/map_filled"}])"),
+      json::parse(R"([{"op": "remove", "path": "/cells/0/images/texel_grid"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/range/border", "value": "mirror"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/range/far_test", "value": "on"}])"),
+      json::parse(R"([{"op": "remove", "path": "/cells/0/range/behind_test"}])"),
+      json::parse(R"([{"op": "remove", "path": "/work/truths_cached"}])"),
+      json::parse(R"([{"op": "replace", "path": "/work/truths_traced", "value": -1}])"),
+      json::parse(R"([{"op": "replace", "path": "/schema_version", "value": 1}])"),
+      json::parse(R"([{"op": "add", "path": "/extra", "value": 1}])"),
+      json::parse(R"([{"op": "remove", "path": "/gl/timer"}])"),
+      json::parse(R"([{"op": "add", "path": "/gl/extra", "value": 1}])"),
+  };
+  std::vector<json> documents = {good};
+  for (const json& patch : patches) documents.push_back(good.patch(patch));
+  const std::vector<bool> verdicts = judge_all(documents, folder.path() / "results.schema.json", folder.path());
+  ASSERT_EQ(verdicts.size(), documents.size());
+  EXPECT_TRUE(verdicts[0]);
+  for (std::size_t i = 0; i < patches.size(); ++i) EXPECT_FALSE(verdicts[i + 1]) << patches[i];
+}
+
+TEST(JsonIo, Results_HoldTheNamedCellsInTheGivenOrder) {
+  const TemporaryFolder folder("json_order");
+  auto keys = write_cells(
+      folder.path(), {make_cell("cubes", "none", 4.0), make_cell("cubes", "vsm", 5.0), make_cell("stale", "vsm", 6.0)});
+  keys = {keys[1], keys[0]};
+  write_results(folder.path(), make_run(), keys);
+  const Results results = read_results(folder.path() / "results.json");
+  ASSERT_EQ(results.cells.size(), 2u);
+  EXPECT_EQ(results.cells[0].filter, "vsm");
+  EXPECT_EQ(results.cells[1].filter, "none");
+  EXPECT_EQ(to_json(results.run), to_json(make_run()));
+  EXPECT_EQ(results.run.work.truths_traced, 5);
+  EXPECT_EQ(results.run.work.truths_cached, 2);
+  EXPECT_EQ(results.run.work.timed_s, 1.5);
+  EXPECT_EQ(results.run.work.elapsed_s, 2.0);
+  EXPECT_EQ(results.run.work.attribution_s, 0.5);
+}
+
+TEST(JsonIo, CutOffFile_IsAnInputErrorThatNamesItAndSaysWhatToDo) {
+  const TemporaryFolder folder("json_cut");
+  const CellRecord cell = make_cell("cubes", "vsm", 4.5);
+  write_cell(folder.path(), cell);
+  const std::string whole = read_text(cell_path(folder.path(), cell.key));
+  files::write_text_file(cell_path(folder.path(), cell.key), whole.substr(0, whole.size() / 2));
+  const std::string message = message_of([&] { read_cell(folder.path(), cell.key); });
+  EXPECT_THAT(message, HasSubstr(cell_path(folder.path(), cell.key).string()));
+  EXPECT_THAT(message, HasSubstr("cut off"));
+  EXPECT_THAT(message, HasSubstr("delete it and run again"));
+  EXPECT_THAT(message_of([&] { write_results(folder.path(), make_run(), {cell.key}); }), HasSubstr("cut off"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "results.json"));
+}
+
+TEST(JsonIo, OtherSchemaVersion_IsAnInputError) {
+  const TemporaryFolder folder("json_version");
+  files::write_text_file(folder.path() / "results.json", R"({"schema_version": 99})");
+  EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }),
+              HasSubstr("schema_version is 99, and this program reads 2"));
+  files::write_text_file(folder.path() / "results.json", "[]");
+  EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }), HasSubstr("is missing"));
+}
+
+TEST(JsonIo, MissingFile_IsAnInputError) {
+  EXPECT_THAT(message_of([] { read_results("/nowhere/results.json"); }), HasSubstr("/nowhere/results.json"));
+}
+
+TEST(JsonIo, FieldOfAnotherType_IsAnInputErrorThatNamesTheField) {
+  json written = to_json(make_cell("cubes", "vsm", 4.5));
+  written["cost"]["passes"] = 1.5;
+  EXPECT_THAT(message_of([&] { cell_from_json(written, "f.json"); }), HasSubstr("f.json: the field 'cost.passes'"));
+  written = to_json(make_cell("cubes", "vsm", 4.5));
+  written["status"] = "fine";
+  EXPECT_THAT(message_of([&] { cell_from_json(written, "f.json"); }), HasSubstr("'status'"));
+  written.erase("status");
+  EXPECT_THAT(message_of([&] { cell_from_json(written, "f.json"); }), HasSubstr("'status' is missing"));
+  EXPECT_THAT(message_of([&] { cell_from_json(json(), "f.json"); }), HasSubstr("is missing"));
+}
+
+TEST(JsonIo, NestedWithoutEnd_IsAnInputError) {
+  const TemporaryFolder folder("json_deep");
+  const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
+  files::write_text_file(folder.path() / "results.json", R"({"schema_version": 2, "commit": )" + deep + "}");
+  EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }),
+              HasSubstr("nested more than 100 deep"));
+}
+
+TEST(JsonIo, PathsAndKeysThatLeaveTheFolder_AreRefused) {
+  for (const std::string& path :
+       {std::string("../outside.png"), std::string("/etc/passwd"), std::string("images/../../x.png"), std::string(".."),
+        std::string(), std::string("images/x.png\0/../..", 19)}) {
+    json written = to_json(make_full_cell());
+    written["images"]["picture"] = path;
+    EXPECT_THAT(message_of([&] { cell_from_json(written, "f.json"); }), HasSubstr("'images.picture'")) << path;
+  }
+  json written = to_json(make_full_cell());
+  written["key"] = "../../../../etc/x";
+  EXPECT_THAT(message_of([&] { cell_from_json(written, "f.json"); }), HasSubstr("'key'"));
+}
+
+TEST(JsonIo, ShardThatCannotBe_IsRefused) {
+  for (const auto& [field, value] : std::map<std::string, int>{{"shards", 0}, {"shard", 0}, {"cells", -1}}) {
+    json written = to_json(make_run());
+    written["experiment"][field] = value;
+    EXPECT_THAT(message_of([&] { run_from_json(written, "f.json"); }), HasSubstr("'experiment'")) << field;
+  }
+}
+
+}  // namespace
+}  // namespace shadowbench::records

@@ -1,0 +1,164 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "report/images/grid.h"
+#include "report/records/cell_key.h"
+#include "report/records/error_parts.h"
+#include "report/records/records.h"
+
+namespace shadowbench::records {
+
+/// A folder of its own for one test, removed at the end.
+class TemporaryFolder {
+ public:
+  explicit TemporaryFolder(const std::string& name)
+      : path_(std::filesystem::path(::testing::TempDir()) / ("shadowbench_" + name + "_" + std::to_string(getpid()))) {
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directories(path_);
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string read_text(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+/// A slanted shadow edge of the given softness, in pixels.
+inline images::Image make_visibility(int width, int height, float softness) {
+  images::Image image(width, height, 1);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const float distance = static_cast<float>(x) - 0.4f * static_cast<float>(width) - 0.3f * static_cast<float>(y);
+      *image.at(x, y) = std::clamp(0.5f + distance / softness, 0.0f, 1.0f);
+    }
+  }
+  return image;
+}
+
+/// A bright floor under that shadow, linear RGB.
+inline images::Image shade(const images::Image& visibility) {
+  images::Image picture(visibility.width, visibility.height, 3);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const float light = 0.08f + 0.7f * *visibility.at(x, y);
+      const bool dark = ((x * 16 / picture.width) + (y * 9 / picture.height)) % 2 != 0;
+      picture.at(x, y)[0] = light * (dark ? 0.5f : 0.9f);
+      picture.at(x, y)[1] = light * (dark ? 0.5f : 0.8f);
+      picture.at(x, y)[2] = light * (dark ? 0.6f : 0.6f);
+    }
+  }
+  return picture;
+}
+
+inline images::GridTile make_tile(const std::string& label, int width, int height, float softness) {
+  images::Image visibility = make_visibility(width, height, softness);
+  images::Image picture = shade(visibility);
+  return {label, "radius 4, rg32f · 12.3 ms (CPU)", std::move(picture), std::move(visibility), {}, {}};
+}
+
+/// A grid of `tiles` filters whose edges grow softer.
+inline images::Grid make_grid(int tiles, int width, int height) {
+  images::Grid grid;
+  grid.title = "cubes";
+  grid.subtitle = "view main, map 1024 x 1024 d32f, 960 x 540 · llvmpipe (LLVM 15.0.6, 256 bits)";
+  const char* names[] = {"none", "pcf2x2", "tent3x3", "poisson", "vsm", "esm"};
+  for (int i = 0; i < tiles; ++i) {
+    const std::string name = i < 6 ? names[i] : "mine_" + std::to_string(i);
+    grid.tiles.push_back(make_tile(name, width, height, 0.01f + 4.0f * static_cast<float>(i)));
+  }
+  std::vector<const images::Image*> visibility;
+  for (const images::GridTile& tile : grid.tiles) visibility.push_back(&tile.visibility);
+  grid.crop = images::find_hardest_edge(visibility, 0, images::choose_crop_size({width, height}));
+  return grid;
+}
+
+/// A finished cell with times and costs, and no truth.
+inline CellRecord make_cell(const std::string& scene, const std::string& filter, double lookup_ms) {
+  CellRecord cell;
+  cell.scene = scene;
+  cell.view = "main";
+  cell.filter = filter;
+  cell.params = {{"radius", 4.0}, {"store", std::string("rg32f")}};
+  cell.map_size = 1024;
+  cell.map_format = "d32f";
+  cell.width = 960;
+  cell.height = 540;
+  cell.receivers = 400000;
+  cell.excused = 12;
+  cell.nan = 0;
+  cell.time_ms.map = Quartiles{3.5, 3.25, 3.75, 9};
+  cell.time_ms.lookup = Quartiles{lookup_ms, lookup_ms * 0.98, lookup_ms * 1.02, 9};
+  cell.ratio_to_none.lookup = Ratio{lookup_ms / 4.0, {lookup_ms / 4.0 * 0.99, lookup_ms / 4.0 * 1.01}};
+  cell.cost.fetches = 4.0;
+  cell.cost.bytes_per_texel = 4;
+  cell.cost.passes = 1;
+  cell.cost.map_bytes = 4194304;
+  cell.images.picture = scene + "." + filter + ".png";
+  cell.absent = {{"error", "no truth in this run"}, {"time_ms.prefilter", "this filter needs no prefilter"}};
+  cell.key = cell_key(cell);
+  return cell;
+}
+
+/// That cell with an RMSE of `rmse` to a truth whose standard error is 0.001, and with the shares of its parts.
+inline CellRecord make_attributed_cell(const std::string& filter, double rmse, const PartValues& shares) {
+  CellRecord cell = make_cell("cubes", filter, 4.0);
+  cell.absent.erase("error");
+  cell.error = {rmse, rmse / 4.0, 2.0 * rmse, 1.0, -rmse / 8.0, 0.02, rmse / 2.0};
+  cell.truth = {0.001, 0.9};
+  for (std::size_t i = 0; i < metrics::kErrorParts; ++i)
+    cell.attribution.*list_error_parts()[i].record = {std::abs(shares[i]) * rmse, shares[i]};
+  return cell;
+}
+
+/// A grid whose first tile is a truth, with neither bar nor reason, and whose others have errors and bars, the last but
+/// one a reason instead, where there are that many.
+inline images::Grid make_attributed_grid(int tiles, int width, int height) {
+  images::Grid grid = make_grid(tiles, width, height);
+  const int without = tiles - 2;
+  for (int i = 1; i < tiles; ++i) {
+    images::GridTile& tile = grid.tiles[static_cast<std::size_t>(i)];
+    tile.error = make_visibility(width, height, 9.0f);
+    for (float& value : tile.error.texels) value = 0.3f * (value - 0.5f);
+    if (i == without && without > 1)
+      tile.no_attribution = "this filter has no scalar model, so nothing says what it should have computed";
+    else
+      tile.attribution = images::AttributionBar{{0.0001, 0.03, -0.004 * i, 0.01}};
+  }
+  return grid;
+}
+
+inline RunRecord make_run() {
+  RunRecord run;
+  run.commit = "0123abc";
+  run.command = {"shadowbench", "run"};
+  run.seed = 7;
+  run.gl = {"osmesa", "llvmpipe (LLVM 15.0.6, 256 bits)", "4.5 (Core Profile) Mesa 22.3.6", true,
+            TimerKind::kWallClock};
+  run.machine = {"Some CPU", 2, 0.25, "GCC 12.2.0", "Debian GNU/Linux 12"};
+  run.work = {12, 40, 3, 5, 2, 1.5, 2.0, 0.5};
+  run.scenes = {{"cubes", "Three cubes on a floor"}};
+  return run;
+}
+
+}  // namespace shadowbench::records
