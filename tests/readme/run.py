@@ -357,7 +357,7 @@ def is_path(code):
 def check_inline_code(page, help_text, report):
     for number, line in page.text:
         for code in INLINE_CODE.findall(line):
-            option = re.match(r"--[a-z][a-z-]*", code)
+            option = re.match(r"--[a-z][a-z_-]*", code)
             if option and option.group(0) not in OTHER_OPTIONS and not help_text.has_option(option.group(0)):
                 if option.group(0) not in (ROOT / "harness/setup.sh").read_text(encoding="utf-8"):
                     report.fail(page, number, f"the program has no option {option.group(0)}")
