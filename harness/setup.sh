@@ -1,18 +1,20 @@
 #!/bin/sh
-# Installs the Debian 12 packages that building, testing and running Shadowbench need; does nothing where they are.
-# With --fuzz also clang and its libFuzzer, for the preset `fuzz`.
+# Installs the Debian 12 packages that building and running Shadowbench need; does nothing where they are.
+# With --tests also what the tests need; with --fuzz that, and clang with its libFuzzer for the preset `fuzz`.
 set -eu
 
 packages="
   cmake g++ git ninja-build pkg-config python3-glad
-  libbenchmark-dev libcli11-dev libegl-dev libembree-dev libfmt-dev libfreetype-dev libgl-dev libglfw3-dev libglm-dev libgmock-dev libgsl-dev libgtest-dev
-  libnlopt-cxx-dev libopenimageio-dev libosmesa6-dev libpugixml-dev libtbb-dev libtinygltf-dev libtinyobjloader-dev libtomlplusplus-dev nlohmann-json3-dev
-  fonts-dejavu-core gcovr gnuplot-nox libjs-chart.js openimageio-tools libegl1 libegl-mesa0 libgl1-mesa-dri python3-jsonschema xauth xvfb
+  libcli11-dev libegl-dev libembree-dev libfmt-dev libfreetype-dev libgl-dev libglfw3-dev libglm-dev libgsl-dev
+  libnlopt-cxx-dev libopenimageio-dev libosmesa6-dev libpugixml-dev libtbb-dev libtinygltf-dev libtinyobjloader-dev
+  libtomlplusplus-dev nlohmann-json3-dev fonts-dejavu-core libjs-chart.js libegl1 libegl-mesa0 libgl1-mesa-dri
 "
+tests="chromium clang-format gcovr libbenchmark-dev libgmock-dev libgtest-dev openimageio-tools python3-jsonschema xauth xvfb"
 case "${1-}" in
   "") ;;
-  --fuzz) packages="$packages clang llvm libclang-rt-14-dev" ;;
-  *) echo "setup.sh: unknown argument '$1': use --fuzz, or none" >&2; exit 2 ;;
+  --tests) packages="$packages $tests" ;;
+  --fuzz) packages="$packages $tests clang llvm libclang-rt-14-dev" ;;
+  *) echo "setup.sh: unknown argument '$1': use --tests, --fuzz, or none" >&2; exit 2 ;;
 esac
 
 missing=""

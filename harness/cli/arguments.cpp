@@ -11,8 +11,6 @@
 namespace shadowbench::cli {
 namespace {
 
-[[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
-
 double parse_angle(const std::string& text, const char* name, double limit_deg) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -22,6 +20,8 @@ double parse_angle(const std::string& text, const char* name, double limit_deg) 
 }
 
 }  // namespace
+
+void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
 
 std::vector<std::string> split_list(const std::string& text) {
   std::vector<std::string> parts;

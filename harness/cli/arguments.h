@@ -12,6 +12,9 @@ namespace shadowbench::cli {
 
 // What commands share of reading their options. All but find_results() throw Error(kUsage) with the option's name.
 
+/// Refuses what the command line says.
+[[noreturn]] void fail(const std::string& message);
+
 /// Splits a text at its commas; an empty text is one empty part.
 std::vector<std::string> split_list(const std::string& text);
 

@@ -28,8 +28,6 @@ constexpr double kMostPadding = 1000.0;  // more than any kernel is wide
 constexpr int kMostRounds = 10000;
 constexpr const char* kReferenceFilter = "none";  // what the others' times are ratios to
 
-[[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
-
 /// Whole numbers, 1 or more, each once.
 std::vector<int> parse_counts(const std::string& text, const char* option) {
   std::vector<int> counts;

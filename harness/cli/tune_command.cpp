@@ -37,8 +37,6 @@ struct TuneArguments {
   std::string out = "report/out/tune";
 };
 
-[[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
-
 int parse_budget(const std::string& text) {
   const int budget = parse_count(text, "--budget");
   if (budget > kLargestBudget)

@@ -11,7 +11,7 @@
 namespace shadowbench::render {
 namespace {
 
-std::vector<SweptMode> make_modes() {
+std::vector<SweptMode> make_swept_modes() {
   const auto depth = [](const BiasTheory& t) { return t.depth(); };
   const auto slack = [](const BiasTheory&) { return BiasRule().constant.depth; };
   return {
@@ -84,7 +84,7 @@ BiasRule SweptMode::make_rule(double amount_of_key) const {
 }
 
 const std::vector<SweptMode>& swept_modes() {
-  static const std::vector<SweptMode> modes = make_modes();
+  static const std::vector<SweptMode> modes = make_swept_modes();
   return modes;
 }
 

@@ -24,9 +24,9 @@ double place(const HeatAxis& axis, double value) {
   return (value - axis.range.low) / (axis.range.high - axis.range.low);
 }
 
-class Drawing {
+class HeatMapDrawing {
  public:
-  explicit Drawing(const HeatMap& map)
+  explicit HeatMapDrawing(const HeatMap& map)
       : map_(map),
         line_(images::figure_line_height()),
         figure_(map.title, map.note, {kLeft + kPlot.width + line_, kPlot.height + 6 * line_ + kTick + kBar}),
@@ -112,7 +112,7 @@ class Drawing {
 
 images::Image draw_heat_map(const HeatMap& map) {
   assert(map.values.channels == 1 && map.curve);
-  return Drawing(map).draw();
+  return HeatMapDrawing(map).draw();
 }
 
 void write_heat_map(const std::filesystem::path& path, const HeatMap& map) {

@@ -8,7 +8,7 @@
 namespace shadowbench::stress {
 namespace {
 
-constexpr double kNearOne = 1e-3;  ///< all is lit, or dark: every receiver is this near to it
+constexpr double kNearlyLit = 1e-3;  ///< all is lit, or dark: every receiver is this near to it
 
 double find_largest_error(const std::vector<double>& seen, const std::vector<double>& expected) {
   double largest = 0.0;
@@ -18,7 +18,7 @@ double find_largest_error(const std::vector<double>& seen, const std::vector<dou
 
 bool is_all(const std::vector<double>& values, double of) {
   return std::ranges::all_of(
-      values, [of](double value) { return std::abs(value - of) < kNearOne; });
+      values, [of](double value) { return std::abs(value - of) < kNearlyLit; });
 }
 
 /// Gives the largest fall within a run from any receiver to a later one.

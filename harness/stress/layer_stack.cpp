@@ -8,7 +8,7 @@
 namespace shadowbench::stress {
 namespace {
 
-constexpr int kReceivers = 16;  // in a row: each has other shares
+constexpr int kStackReceivers = 16;  // in a row: each has other shares
 
 /// Which occluder a texel holds. Neighbours along a row differ by one, along a column by about the root of their count:
 /// small kernels hold as many as they can.
@@ -56,13 +56,13 @@ LayerStack make_layer_stack(int count, double first_gap, double gap_ratio, doubl
 LayerScene make_layer_scene(int radius_texels, const LayerStack& stack) {
   LayerScene layers;
   ProbeScene& scene = layers.scene;
-  scene.size = std::max(64, 2 * radius_texels + kReceivers + 2);
+  scene.size = std::max(64, 2 * radius_texels + kStackReceivers + 2);
   for (int y = 0; y < scene.size; ++y)
     for (int x = 0; x < scene.size; ++x)
       scene.depths.push_back(static_cast<float>(stack.depths[choose_layer(x, y, stack.depths.size())]));
   const float between = radius_texels == 0 ? 0.5f / static_cast<float>(scene.size) : 0.0f;
-  const int row = scene.size / 2, first = (scene.size - kReceivers) / 2;
-  for (int x = first; x < first + kReceivers; ++x) {
+  const int row = scene.size / 2, first = (scene.size - kStackReceivers) / 2;
+  for (int x = first; x < first + kStackReceivers; ++x) {
     scene.receivers.push_back({scene.uv(x) + between, scene.uv(row) + between, static_cast<float>(stack.receiver)});
     layers.shares.push_back(
         find_shares(make_span(radius_texels, x), make_span(radius_texels, row), stack.depths.size()));

@@ -7,20 +7,21 @@
 namespace shadowbench::stress {
 namespace {
 
-constexpr int kSize = 2 * kWidestRadius + 4;  // a texel to spare: no rounding of a place reaches the border
-constexpr int kReceivers = 37;                // no divisor of the steps: none falls on a texel's border
+constexpr int kEdgeSize = 2 * kWidestRadius + 4;  // a texel to spare: no rounding of a place reaches the border
+constexpr int kEdgeReceivers = 37;                // no divisor of the steps: none falls on a texel's border
 constexpr float kOccluder = 0.3f, kSurface = 0.6f;
 
 }  // namespace
 
 ProbeScene make_straight_edge(double radius_texels) {
   ProbeScene scene;
-  scene.size = kSize;
-  for (int i = 0; i < kSize * kSize; ++i) scene.depths.push_back(i % kSize < kSize / 2 ? kOccluder : kSurface);
+  scene.size = kEdgeSize;
+  for (int i = 0; i < kEdgeSize * kEdgeSize; ++i)
+    scene.depths.push_back(i % kEdgeSize < kEdgeSize / 2 ? kOccluder : kSurface);
   const double reach = 0.5 + std::min(kWidestRadius - radius_texels, radius_texels + 2.0);
-  for (int i = 0; i < kReceivers; ++i) {
-    const double texels = kSize / 2 + reach * (2.0 * (i + 0.5) / kReceivers - 1.0);
-    scene.receivers.push_back({static_cast<float>(texels / kSize), scene.uv(kSize / 2), kSurface});
+  for (int i = 0; i < kEdgeReceivers; ++i) {
+    const double texels = kEdgeSize / 2 + reach * (2.0 * (i + 0.5) / kEdgeReceivers - 1.0);
+    scene.receivers.push_back({static_cast<float>(texels / kEdgeSize), scene.uv(kEdgeSize / 2), kSurface});
   }
   return scene;
 }

@@ -21,7 +21,7 @@ constexpr Rgb kEmpty{0.80f, 0.87f, 0.95f};
 constexpr Rgb kBars{0.20f, 0.36f, 0.60f};
 
 /// One map with its histogram.
-struct Panel {
+struct DepthPanel {
   std::string title;
   Image depth;
   filters::DepthCurve curve;  ///< says what depth a value stands for
@@ -32,7 +32,7 @@ struct Range {
   float most = 0.0f;
 };
 
-Range find_range(const Panel& panel) {
+Range find_range(const DepthPanel& panel) {
   Range range;
   for (const float d : panel.depth.texels) {
     if (d == panel.curve.far_plane()) continue;
@@ -47,7 +47,7 @@ int displayed_side(const Image& depth) {
 }
 
 /// Shows the map's texels as squares where it is small, and one of many where it is large.
-Image draw_map(const Panel& panel, const Range& range) {
+Image draw_map(const DepthPanel& panel, const Range& range) {
   const Image& depth = panel.depth;
   const int side = displayed_side(depth);
   Image map(side, side, 3);
@@ -107,7 +107,7 @@ void draw_histogram(Figure& figure, const Rect& plot, const DepthHistogram& hist
 constexpr int kBins = (kMapSide - kAxisWidth) / kBinWidth;
 
 /// Draws the panel with its left top corner at (x, y).
-void draw_panel(Figure& figure, int x, int y, const Panel& panel, double range_m) {
+void draw_panel(Figure& figure, int x, int y, const DepthPanel& panel, double range_m) {
   const Range range = find_range(panel);
   const DepthHistogram histogram = count_depths(panel.depth, kBins, panel.curve.far_plane());
   const Image map = draw_map(panel, range);
@@ -128,7 +128,7 @@ void draw_panel(Figure& figure, int x, int y, const Panel& panel, double range_m
 }
 
 /// As stored first; the rest is what cannot be seen in that.
-std::vector<Panel> make_panels(const DepthPicture& picture) {
+std::vector<DepthPanel> make_panels(const DepthPicture& picture) {
   if (picture.curve.is_linear() && !picture.curve.reversed)
     return {{"depth, linear as it is stored", picture.stored, {}}};
   Image linear = picture.stored;
@@ -155,13 +155,13 @@ DepthHistogram count_depths(const Image& depth, int bins, float far_plane) {
 
 Image draw_depth_picture(const DepthPicture& picture) {
   constexpr int kPanelWidth = kMapSide + 20, kGap = 60;
-  const std::vector<Panel> panels = make_panels(picture);
+  const std::vector<DepthPanel> panels = make_panels(picture);
   const int count = static_cast<int>(panels.size()), line = figure_line_height();
   Figure figure(
       picture.title, picture.note,
       {count * kPanelWidth + (count - 1) * kGap, displayed_side(picture.stored) + kPlotHeight + 8 * line + line / 2});
   int x = figure.body().x;
-  for (const Panel& panel : panels) {
+  for (const DepthPanel& panel : panels) {
     draw_panel(figure, x, figure.body().y, panel, picture.range_m);
     x += kPanelWidth + kGap;
   }

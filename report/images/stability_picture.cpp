@@ -20,14 +20,14 @@ namespace {
 
 constexpr int kPanelWidth = 640;
 constexpr int kGap = 40;
-constexpr int kBarHeight = 16;
+constexpr int kColorBarHeight = 16;
 constexpr Rgb kBroken{1.0f, 0.0f, 1.0f};
 constexpr Rgb kZeroTexel{0.93f, 0.94f, 0.95f};
 constexpr double kLeastVarianceDecade = -10.0;  // of the colour bar; the largest is 0
 
 using Tick = std::pair<float, std::string>;  // place on the colour bar, [0,1]
 
-struct Panel {
+struct StabilityPanel {
   std::string title;
   std::string caption;
   Image picture;  ///< 3 channels, display values
@@ -41,7 +41,7 @@ int shown_width(const Image& image) {
 
 Image show_worst(const Image& image, const Badness& badness) { return fit_worst(image, shown_width(image), badness); }
 
-Image make_bar() { return make_ramp(kPanelWidth, kBarHeight); }
+Image make_bar() { return make_ramp(kPanelWidth, kColorBarHeight); }
 
 /// Colours values in [0,1], dark for little.
 Image color_sequential(const Image& values) { return color_values(values, "viridis"); }
@@ -57,17 +57,17 @@ float choose_headroom_scale(const Image& headroom) {
   return std::max(5.0f, 5.0f * std::ceil(most / 5.0f));
 }
 
-Panel make_headroom_panel(const StabilityPicture& picture) {
+StabilityPanel make_headroom_panel(const StabilityPicture& picture) {
   const Image& headroom = picture.images.headroom;
   const float scale = choose_headroom_scale(headroom);
   const Image shown = show_worst(headroom, [](float v) { return worst_if_nan(v, -v); });
   Image places = shown;
   for (float& value : places.texels) value = std::isfinite(value) ? std::clamp(value / scale, 0.0f, 1.0f) : 0.0f;
-  Panel panel{"overflow: what exponents could grow by, per texel of the map",
-              picture.texels,
-              color_sequential(places),
-              color_sequential(make_bar()),
-              {}};
+  StabilityPanel panel{"overflow: what exponents could grow by, per texel of the map",
+                       picture.texels,
+                       color_sequential(places),
+                       color_sequential(make_bar()),
+                       {}};
   for (std::size_t i = 0; i < shown.texels.size(); ++i) {
     const float value = shown.texels[i];
     if (std::isfinite(value)) continue;
@@ -87,15 +87,15 @@ float place_variance(float variance) {
   return std::copysign(static_cast<float>(std::clamp(1.0 - decades / kLeastVarianceDecade, 0.0, 1.0)), variance);
 }
 
-Panel make_variance_panel(const StabilityPicture& picture) {
+StabilityPanel make_variance_panel(const StabilityPicture& picture) {
   const Image shown = show_worst(
       picture.images.variance, [](float v) { return worst_if_nan(v, -v); });
   const auto color_of = [](float v) { return std::isfinite(v) ? map_diverging(-place_variance(v), 1.0f) : kBroken; };
-  Panel panel{"variance before any clamp, per texel of the map",
-              picture.variance,
-              color_values(shown, color_of),
-              color_values(make_bar(), [](float t) { return map_diverging(1.0f - 2.0f * t, 1.0f); }),
-              {}};
+  StabilityPanel panel{"variance before any clamp, per texel of the map",
+                       picture.variance,
+                       color_values(shown, color_of),
+                       color_values(make_bar(), [](float t) { return map_diverging(1.0f - 2.0f * t, 1.0f); }),
+                       {}};
   for (const float variance : {-1e-2f, -1e-5f, -1e-8f, 0.0f, 1e-8f, 1e-5f, 1e-2f})
     panel.ticks.emplace_back(0.5f + 0.5f * place_variance(variance), fmt::format("{:g}", variance));
   return panel;
@@ -108,7 +108,7 @@ std::vector<Tick> list_signed_ticks(double scale) {
   return ticks;
 }
 
-Panel make_difference_panel(const StabilityPicture& picture) {
+StabilityPanel make_difference_panel(const StabilityPicture& picture) {
   const Image& difference = picture.images.half_difference;
   const double scale = choose_error_scale({&difference});
   const Image shown = show_worst(
@@ -123,7 +123,7 @@ Panel make_difference_panel(const StabilityPicture& picture) {
 }
 
 /// Shortfalls, with what rounding does not explain above all colours.
-Panel make_bound_panel(const StabilityPicture& picture) {
+StabilityPanel make_bound_panel(const StabilityPicture& picture) {
   const Image& shortfall = picture.images.shortfall;
   assert(picture.images.violation.texels.size() == shortfall.texels.size());
   const double scale = choose_error_scale({&shortfall});
@@ -135,18 +135,18 @@ Panel make_bound_panel(const StabilityPicture& picture) {
   const auto color_of = [scale](float v) {
     return std::isfinite(v) ? map_diverging(-v, static_cast<float>(scale)) : kBroken;
   };
-  Panel panel{"a bound that must hold: by how much the filter is darker than the PCF of its kernel",
-              picture.bound,
-              color_values(shown, color_of),
-              color_values(make_bar(), [](float t) { return map_diverging(-t, 1.0f); }),
-              {}};
+  StabilityPanel panel{"a bound that must hold: by how much the filter is darker than the PCF of its kernel",
+                       picture.bound,
+                       color_values(shown, color_of),
+                       color_values(make_bar(), [](float t) { return map_diverging(-t, 1.0f); }),
+                       {}};
   for (const float part : {0.0f, 0.5f, 1.0f})
     panel.ticks.emplace_back(part, records::format_number(static_cast<double>(part) * scale));
   return panel;
 }
 
-std::vector<Panel> make_panels(const StabilityPicture& picture) {
-  std::vector<Panel> panels;
+std::vector<StabilityPanel> make_panels(const StabilityPicture& picture) {
+  std::vector<StabilityPanel> panels;
   const StabilityImages& images = picture.images;
   if (!images.headroom.empty()) panels.push_back(make_headroom_panel(picture));
   if (!images.variance.empty()) panels.push_back(make_variance_panel(picture));
@@ -155,18 +155,18 @@ std::vector<Panel> make_panels(const StabilityPicture& picture) {
   return panels;
 }
 
-std::vector<std::string> list_lines(const Panel& panel) {
+std::vector<std::string> list_lines(const StabilityPanel& panel) {
   std::vector<std::string> lines = wrap_figure_text(panel.title, kPanelWidth);
   for (const std::string& line : wrap_figure_text(panel.caption, kPanelWidth)) lines.push_back(line);
   return lines;
 }
 
-int measure_height(const Panel& panel) {
+int measure_height(const StabilityPanel& panel) {
   const int line = figure_line_height();
-  return static_cast<int>(list_lines(panel).size()) * line + panel.picture.height + kBarHeight + 3 * line;
+  return static_cast<int>(list_lines(panel).size()) * line + panel.picture.height + kColorBarHeight + 3 * line;
 }
 
-void draw_panel(Figure& figure, int x, int y, const Panel& panel) {
+void draw_panel(Figure& figure, int x, int y, const StabilityPanel& panel) {
   const int line = figure_line_height();
   const std::size_t of_title = wrap_figure_text(panel.title, kPanelWidth).size();
   std::size_t number = 0;
@@ -180,13 +180,13 @@ void draw_panel(Figure& figure, int x, int y, const Panel& panel) {
   figure.place(x, y, panel.bar);
   for (const auto& [place, label] : panel.ticks) {
     const int at = x + static_cast<int>(place * static_cast<float>(kPanelWidth - 1));
-    figure.fill({at, y + kBarHeight, 1, 5}, kFigureSecondInk);
+    figure.fill({at, y + kColorBarHeight, 1, 5}, kFigureSecondInk);
     if (place <= 0.0f)
-      figure.write(x, y + kBarHeight + 6, label);
+      figure.write(x, y + kColorBarHeight + 6, label);
     else if (place >= 1.0f)
-      figure.write_before(at, y + kBarHeight + 6, label);
+      figure.write_before(at, y + kColorBarHeight + 6, label);
     else
-      figure.write_centred(at, y + kBarHeight + 6, label);
+      figure.write_centred(at, y + kColorBarHeight + 6, label);
   }
 }
 
@@ -202,7 +202,7 @@ const std::array<StabilityImage, 5>& list_stability_images() {
 }
 
 Image draw_stability_picture(const StabilityPicture& picture) {
-  const std::vector<Panel> panels = make_panels(picture);
+  const std::vector<StabilityPanel> panels = make_panels(picture);
   assert(!panels.empty());
   const int columns = std::min<int>(2, static_cast<int>(panels.size()));
   std::vector<int> row_heights((panels.size() + 1) / 2, 0);

@@ -16,8 +16,8 @@ namespace {
 
 constexpr float kOctaves = 6.0f;  // on either side of one texel per pixel
 constexpr Rgb kAway{0.62f, 0.62f, 0.62f};
-constexpr Rgb kBackground{0.93f, 0.94f, 0.95f};
-constexpr int kBarHeight = 18;
+constexpr Rgb kNoSurface{0.93f, 0.94f, 0.95f};
+constexpr int kScaleHeight = 18;
 constexpr int kSmallestWidth = 640;  // of a figure: the legend needs it
 
 /// Places densities on the colour bar, [0,1].
@@ -33,7 +33,7 @@ Image color_densities(const Image& density) {
   Image colors = color_places(places);
   for (std::size_t i = 0; i < density.texels.size(); ++i) {
     if (density.texels[i] > 0.0f) continue;
-    const Rgb& color = density.texels[i] < 0.0f ? kBackground : kAway;
+    const Rgb& color = density.texels[i] < 0.0f ? kNoSurface : kAway;
     std::copy(color.begin(), color.end(), colors.texels.begin() + static_cast<std::ptrdiff_t>(3 * i));
   }
   return colors;
@@ -75,14 +75,14 @@ Image draw_density_picture(const DensityPicture& picture) {
   assert(picture.density.channels == 1);
   const int line = figure_line_height();
   const int width = std::max(picture.density.width, kSmallestWidth);
-  Figure figure(picture.title, picture.note, {width, picture.density.height + 4 * line + kBarHeight});
+  Figure figure(picture.title, picture.note, {width, picture.density.height + 4 * line + kScaleHeight});
   const Rect& body = figure.body();
   figure.place(body.x, body.y, color_densities(picture.density));
   int y = body.y + picture.density.height + line / 2;
   figure.write(body.x, y,
                "map texels per pixel · grey: turned away from the light, or outside the map · white: background");
   y += line + line / 2;
-  draw_color_bar(figure, {body.x + 40, y, width - 80, kBarHeight});
+  draw_color_bar(figure, {body.x + 40, y, width - 80, kScaleHeight});
   return figure.canvas();
 }
 

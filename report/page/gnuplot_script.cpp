@@ -5,11 +5,11 @@
 
 #include "report/images/text.h"
 #include "report/page/gnuplot.h"
+#include "report/page/plot_style.h"
 
 namespace shadowbench::page {
 namespace {
 
-constexpr const char* kInk = "#1c1f24";
 constexpr int kWidth = 1120, kHeight = 620;
 
 // In single quotes gnuplot takes everything as it is, on one line; a quote inside becomes a typographic one, because

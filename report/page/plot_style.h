@@ -4,6 +4,9 @@
 
 namespace shadowbench::page {
 
+/// The colour of axes and texts of plots.
+inline constexpr const char* kInk = "#1c1f24";
+
 /// Is how a filter is drawn in plots.
 struct PlotStyle {
   const char* color;  ///< "#rrggbb", on white

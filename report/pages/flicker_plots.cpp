@@ -7,7 +7,6 @@
 namespace shadowbench::pages {
 namespace {
 
-constexpr const char* kInk = "#1c1f24";
 constexpr std::size_t kStepsPerPoint = 8;
 
 page::PlotSeries make_series(const std::string& title, const char* color, page::PlotLine line,
@@ -61,7 +60,7 @@ page::Plot make_flicker_plot(const records::FlickerMotion& motion, const records
         make_series({}, page::style_of(i).color, page::PlotLine::kSolid, variant.filters[i].mean_change));
     plot.series.push_back(make_points(variant.filters[i], i));
   }
-  plot.series.push_back(make_series("truth", kInk, page::PlotLine::kDashed, motion.truth.mean_change));
+  plot.series.push_back(make_series("truth", page::kInk, page::PlotLine::kDashed, motion.truth.mean_change));
   return plot;
 }
 

@@ -12,7 +12,6 @@
 namespace shadowbench::pages {
 namespace {
 
-constexpr const char* kInk = "#1c1f24";
 constexpr std::size_t kLimitsPerLine = 5;
 constexpr double kLeastShown = 1e-9;  // of a logarithmic scale
 
@@ -84,7 +83,7 @@ void add_theory(page::Plot& plot, const records::StressAxis& axis) {
   std::string title = "theoretical limits:";
   for (const auto& [onset, label] : sorted) {
     plot.series.push_back(
-        {title, kInk, 0, page::PlotLine::kDashed, false, {place(onset, plot.y.low), place(onset, plot.y.high)}});
+        {title, page::kInk, 0, page::PlotLine::kDashed, false, {place(onset, plot.y.low), place(onset, plot.y.high)}});
     title.clear();
   }
   for (std::size_t i = 0; i < sorted.size(); i += kLimitsPerLine) {

@@ -11,8 +11,6 @@
 namespace shadowbench::pages {
 namespace {
 
-constexpr const char* kInk = "#1c1f24";
-
 page::PlotAxis choose_measure_axis(const std::vector<const analysis::Measured*>& measured, bool bytes) {
   std::vector<double> values, ends;
   for (const analysis::Measured* each : measured) {
@@ -46,7 +44,7 @@ page::PlotSeries make_series(const analysis::TradeScope& scope, const analysis::
 
 // The line through the members, with their numbers beside it.
 page::PlotSeries make_front_line(const analysis::TradeFront& front) {
-  page::PlotSeries line{"front", kInk, 0, page::PlotLine::kSteps, false, {}};
+  page::PlotSeries line{"front", page::kInk, 0, page::PlotLine::kSteps, false, {}};
   for (const std::size_t member : front.members) {
     line.points.push_back(make_point(front, member));
     line.points.back().label = fmt::format("{}", line.points.size());
@@ -112,7 +110,7 @@ page::PlotSeries make_curve_series(const analysis::RadiusCurve& curve, analysis:
 }
 
 page::PlotSeries make_crossings(const analysis::RadiusChart& chart, analysis::LightState light) {
-  page::PlotSeries series{"crossing", kInk, 2, page::PlotLine::kNone, false, {}};
+  page::PlotSeries series{"crossing", page::kInk, 2, page::PlotLine::kNone, false, {}};
   for (const analysis::CurveComparison& each : analysis::compare_curves(chart, light)) {
     for (const analysis::RadiusPoint& p : each.crossings) {
       series.points.push_back({{p.radius_texels, p.radius_texels, p.radius_texels},

@@ -27,14 +27,14 @@ json to_json(const FlickerTruth& truth) {
 }
 
 template <class T>
-json list(const std::vector<T>& records);
+json list_flicker(const std::vector<T>& records);
 
 json to_json(const FlickerVariant& variant) {
   return {{"snap", variant.snap},
           {"texel_m", variant.texel_m},
           {"grid_texels", variant.grid_texels},
           {"resizes", variant.resizes},
-          {"filters", list(variant.filters)}};
+          {"filters", list_flicker(variant.filters)}};
 }
 
 json to_json(const FlickerMotion& motion) {
@@ -45,12 +45,12 @@ json to_json(const FlickerMotion& motion) {
           {"fit", motion.fit},
           {"receivers", motion.receivers},
           {"truth", to_json(motion.truth)},
-          {"variants", list(motion.variants)},
+          {"variants", list_flicker(motion.variants)},
           {"picture", motion.picture}};
 }
 
 template <class T>
-json list(const std::vector<T>& records) {
+json list_flicker(const std::vector<T>& records) {
   json result = json::array();
   for (const T& record : records) result.push_back(to_json(record));
   return result;
@@ -76,7 +76,7 @@ std::string make_flicker_json(const FlickerRecord& record) {
                        {"frames", record.frames},
                        {"back_and_forth_above", static_cast<double>(record.return_above)},
                        {"seconds", record.seconds},
-                       {"motions", list(record.motions)}};
+                       {"motions", list_flicker(record.motions)}};
   return result.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

@@ -45,7 +45,7 @@ Function load(const char* name) {
   return reinterpret_cast<Function>(eglGetProcAddress(name));
 }
 
-[[noreturn]] void refuse(std::string_view what) {
+[[noreturn]] void refuse_egl(std::string_view what) {
   throw Error(ErrorKind::kContext, fmt::format("{} (EGL error 0x{:04x})", what, eglGetError()));
 }
 
@@ -88,13 +88,13 @@ std::vector<Candidate> list_candidates() {
 // Displays stay open for the life of the process: closing one would take every other context on it along.
 Display open_display(const Candidate& candidate) {
   const auto get_display = load<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
-  if (get_display == nullptr) refuse("no eglGetPlatformDisplayEXT");
+  if (get_display == nullptr) refuse_egl("no eglGetPlatformDisplayEXT");
   Display opened;
   opened.display = get_display(candidate.platform, candidate.native, nullptr);
-  if (opened.display == EGL_NO_DISPLAY) refuse("no display");
-  if (eglInitialize(opened.display, nullptr, nullptr) == EGL_FALSE) refuse("the display does not initialise");
+  if (opened.display == EGL_NO_DISPLAY) refuse_egl("no display");
+  if (eglInitialize(opened.display, nullptr, nullptr) == EGL_FALSE) refuse_egl("the display does not initialise");
   opened.extensions = own_text(eglQueryString(opened.display, EGL_EXTENSIONS));
-  if (!has_word(opened.extensions, "EGL_KHR_surfaceless_context")) refuse("no EGL_KHR_surfaceless_context");
+  if (!has_word(opened.extensions, "EGL_KHR_surfaceless_context")) refuse_egl("no EGL_KHR_surfaceless_context");
   return opened;
 }
 
@@ -104,7 +104,7 @@ EGLConfig choose_config(const Display& opened) {
   EGLConfig config = nullptr;
   EGLint count = 0;
   if (eglChooseConfig(opened.display, attributes, &config, 1, &count) == EGL_FALSE || count < 1)
-    refuse("no configuration renders OpenGL");
+    refuse_egl("no configuration renders OpenGL");
   return config;
 }
 
@@ -114,12 +114,12 @@ class EglContext : public Context {
     const auto start = std::chrono::steady_clock::now();
     const Display opened = open_display(candidate);
     owned_.display = opened.display;
-    if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) refuse("no OpenGL, only OpenGL ES");
+    if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) refuse_egl("no OpenGL, only OpenGL ES");
     const EGLint attributes[] = {
         EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     owned_.context = eglCreateContext(opened.display, choose_config(opened), EGL_NO_CONTEXT, attributes);
-    if (owned_.context == EGL_NO_CONTEXT) refuse("no OpenGL 4.5 core context");
+    if (owned_.context == EGL_NO_CONTEXT) refuse_egl("no OpenGL 4.5 core context");
     GlInfo info;
     info.backend = "egl";
     info.device = candidate.name;
@@ -145,7 +145,7 @@ class EglContext : public Context {
     // The API in force belongs to the thread, and GLFW may have changed it.
     eglBindAPI(EGL_OPENGL_API);
     if (eglMakeCurrent(owned_.display, EGL_NO_SURFACE, EGL_NO_SURFACE, owned_.context) == EGL_FALSE)
-      refuse("the context cannot be made current");
+      refuse_egl("the context cannot be made current");
   }
 
   GLADloadfunc loader() const override { return &eglGetProcAddress; }

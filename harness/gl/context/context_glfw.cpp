@@ -13,7 +13,7 @@
 namespace shadowbench::gl {
 namespace {
 
-[[noreturn]] void refuse(std::string_view what) {
+[[noreturn]] void refuse_glfw(std::string_view what) {
   const char* reason = nullptr;
   glfwGetError(&reason);
   throw Error(ErrorKind::kContext, fmt::format("{}: {}", what, reason == nullptr ? "no reason given" : reason));
@@ -23,7 +23,7 @@ namespace {
 class Library {
  public:
   Library() {
-    if (users == 0 && glfwInit() == GLFW_FALSE) refuse("GLFW does not start");
+    if (users == 0 && glfwInit() == GLFW_FALSE) refuse_glfw("GLFW does not start");
     ++users;
   }
   Library(const Library&) = delete;
@@ -47,7 +47,7 @@ class GlfwContext : public Context {
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     constexpr int kSide = 16;
     window_.reset(glfwCreateWindow(kSide, kSide, "shadowbench", nullptr, nullptr));
-    if (!window_) refuse("GLFW opens no window with OpenGL 4.5 core");
+    if (!window_) refuse_glfw("GLFW opens no window with OpenGL 4.5 core");
     GlInfo info;
     info.backend = "glfw";
     info.device = glfwGetVersionString();

@@ -9,7 +9,7 @@
 namespace shadowbench::gl {
 namespace {
 
-constexpr int kSide = 256;
+constexpr int kArguments = 256;
 constexpr int kMapSize = 1024;
 
 // Columns are the borders between texels, rows the distances from them.
@@ -18,7 +18,7 @@ constexpr int kDistances = 128;
 std::vector<float> list_arguments() {
   constexpr double kExpLimit = 80.0;
   std::vector<float> arguments;
-  constexpr int kCount = kSide * kSide;
+  constexpr int kCount = kArguments * kArguments;
   for (int i = 0; i < kCount; ++i) {
     const double t = static_cast<double>(i) / (kCount - 1);
     arguments.push_back(static_cast<float>(kExpLimit * (2.0 * t - 1.0)));
@@ -53,9 +53,9 @@ Texture make_index_map() {
 
 void measure_functions(GlMeasurement& measured) {
   const auto arguments = list_arguments();
-  Texture texture("probe arguments", GL_RG32F, kSide, kSide);
+  Texture texture("probe arguments", GL_RG32F, kArguments, kArguments);
   texture.upload_floats(arguments, 2);
-  Probe probe("probe_math.frag", {kSide, kSide}, GL_RGBA32F);
+  Probe probe("probe_math.frag", {kArguments, kArguments}, GL_RGBA32F);
   Sampler::unbind(0);
   texture.bind(0);
   probe.program().set("u_arguments", 0);

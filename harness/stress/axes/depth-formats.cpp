@@ -10,7 +10,7 @@
 #include "report/records/text_table.h"
 
 namespace shadowbench::stress {
-namespace {
+namespace depth_formats {
 
 constexpr double kBound = 0.01;  // of a distance
 constexpr double kBroken = 0.5;
@@ -134,9 +134,10 @@ std::vector<Exhibit> make_exhibits(const StressContext& context) {
   return {exhibit};
 }
 
-}  // namespace
+}  // namespace depth_formats
 
 Axis make_depth_formats_axis() {
+  using namespace depth_formats;
   Axis axis;
   axis.title = "Depth formats: what is left of a distance";
   axis.quantity = "far plane's distance / near plane's";

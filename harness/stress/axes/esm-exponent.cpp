@@ -9,7 +9,7 @@
 #include "harness/stress/replay.h"
 
 namespace shadowbench::stress {
-namespace {
+namespace esm_exponent {
 
 constexpr double kBound = 0.02;    // of visibility: five steps of an 8-bit picture
 constexpr float kOccluder = 0.3f;  // of the largest depth
@@ -154,9 +154,10 @@ std::vector<Exhibit> make_exhibits(const StressContext& context) {
   return {replay(context, mistake, "mistake")};
 }
 
-}  // namespace
+}  // namespace esm_exponent
 
 Axis make_esm_exponent_axis() {
+  using namespace esm_exponent;
   Axis axis;
   axis.title = "Exponent of exponential shadow maps";
   axis.quantity = "exponent c";

@@ -11,7 +11,7 @@
 #include "harness/stress/tilted_plane.h"
 
 namespace shadowbench::stress {
-namespace {
+namespace grazing_light {
 
 constexpr double kBound = 10.0;     // texels
 constexpr double kTolerance = 0.1;  // of what geometry says
@@ -188,9 +188,10 @@ std::vector<Exhibit> make_exhibits(const StressContext& context) {
   return {exhibit};
 }
 
-}  // namespace
+}  // namespace grazing_light
 
 Axis make_grazing_light_axis() {
+  using namespace grazing_light;
   Axis axis;
   axis.title = "Grazing light: the bias that an empty plane takes";
   axis.quantity = "angle between the light and the plane's normal";

@@ -6,7 +6,7 @@
 #include "harness/stress/straight_edge.h"
 
 namespace shadowbench::stress {
-namespace {
+namespace kernel_radius {
 
 constexpr double kBound = 0.02;               // of visibility: five steps of an 8-bit picture
 constexpr double kSamplerStep = 1.0 / 128.0;  // GPUs interpolate a comparison with 8 bits
@@ -97,9 +97,10 @@ std::vector<Case> make_cases(const StressContext& context) {
   return cases;
 }
 
-}  // namespace
+}  // namespace kernel_radius
 
 Axis make_kernel_radius_axis() {
+  using namespace kernel_radius;
   Axis axis;
   axis.title = "Kernel radius, from none to half the map";
   axis.quantity = "radius of the kernel";

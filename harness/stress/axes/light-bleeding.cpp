@@ -9,7 +9,7 @@
 #include "harness/stress/layer_stack.h"
 
 namespace shadowbench::stress {
-namespace {
+namespace light_bleeding {
 
 constexpr double kBound = 0.1;  // of visibility, where truth is 0
 constexpr double kLit = 0.9;
@@ -139,9 +139,10 @@ std::vector<Case> make_cases(const StressContext& context) {
   return cases;
 }
 
-}  // namespace
+}  // namespace light_bleeding
 
 Axis make_light_bleeding_axis() {
+  using namespace light_bleeding;
   Axis axis;
   axis.title = "Light bleeding behind stacked occluders";
   axis.quantity = "gap between the last occluder and the receiver / gap between the first and the last occluder";

@@ -9,7 +9,7 @@
 #include "harness/stress/slab_scene.h"
 
 namespace shadowbench::stress {
-namespace {
+namespace light_direction {
 
 constexpr double kBound = 0.005;    // of the receivers whose visibility is known
 constexpr double kPixels_m = 0.05;  // the widest pixel on the floor: nearer to an edge, a pixel's centre decides
@@ -141,9 +141,10 @@ std::vector<Case> make_cases(const StressContext& context) {
   return cases;
 }
 
-}  // namespace
+}  // namespace light_direction
 
 Axis make_light_direction_axis() {
+  using namespace light_direction;
   Axis axis;
   axis.title = "Light along an axis, at right angles to one plane and parallel to another";
   axis.quantity = "angle to the axis";

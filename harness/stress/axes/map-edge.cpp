@@ -6,7 +6,7 @@
 #include "harness/stress/probe.h"
 
 namespace shadowbench::stress {
-namespace {
+namespace map_edge {
 
 constexpr double kBound = 1.0 / 255.0;  // of visibility: a step of an 8-bit picture
 constexpr int kMapSize = 128;
@@ -261,9 +261,10 @@ std::vector<Case> make_cases(const StressContext& context) {
   return cases;
 }
 
-}  // namespace
+}  // namespace map_edge
 
 Axis make_map_edge_axis() {
+  using namespace map_edge;
   Axis axis;
   axis.title = "Receivers across the map's border, its far plane, and behind the light";
   axis.quantity = "distance outside";

@@ -9,7 +9,7 @@
 #include "report/records/text_table.h"
 
 namespace shadowbench::stress {
-namespace {
+namespace map_size {
 
 constexpr double kBound = 0.02;  // of visibility: five steps of an 8-bit picture
 constexpr int kReceivers = 65;
@@ -152,9 +152,10 @@ std::vector<Exhibit> make_exhibits(const StressContext& context) {
   return {exhibit};
 }
 
-}  // namespace
+}  // namespace map_size
 
 Axis make_map_size_axis() {
+  using namespace map_size;
   Axis axis;
   axis.title = "Size of the map: against the model in double up to 256 texels, then by construction";
   axis.quantity = "texels per side";

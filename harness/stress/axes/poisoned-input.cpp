@@ -14,7 +14,7 @@
 #include "harness/stress/slab_scene.h"
 
 namespace shadowbench::stress {
-namespace {
+namespace poisoned_input {
 
 constexpr int kMapSize = 64;
 constexpr float kOccluder = 0.3f, kReceiver = 0.6f;
@@ -318,9 +318,10 @@ std::vector<Case> make_cases(const StressContext& context) {
   return cases;
 }
 
-}  // namespace
+}  // namespace poisoned_input
 
 Axis make_poisoned_input_axis() {
+  using namespace poisoned_input;
   Axis axis;
   axis.title = "Poisoned input: not a number, infinity, denormals";
   axis.quantity = "poisoned texels; of a scene: poisoned numbers";

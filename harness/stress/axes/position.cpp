@@ -10,7 +10,7 @@
 #include "harness/stress/slab_scene.h"
 
 namespace shadowbench::stress {
-namespace {
+namespace position {
 
 constexpr double kBound = 0.01;              // of the pixels
 constexpr glm::dvec3 kWay{0.8, 0.36, 0.48};  // the scene is moved along it; unit length
@@ -157,9 +157,10 @@ std::vector<Case> make_cases(const StressContext& context) {
   return cases;
 }
 
-}  // namespace
+}  // namespace position
 
 Axis make_position_axis() {
+  using namespace position;
   Axis axis;
   axis.title = "Distance of a scene from the world's origin";
   axis.quantity = "distance / size of the scene";

@@ -4,7 +4,7 @@
 #include "harness/stress/drawn_scene.h"
 
 namespace shadowbench::stress {
-namespace {
+namespace scale {
 
 constexpr double kBound = 0.01;  // of the pixels
 
@@ -55,9 +55,10 @@ std::vector<Case> make_cases(const StressContext& context) {
   return cases;
 }
 
-}  // namespace
+}  // namespace scale
 
 Axis make_scale_axis() {
+  using namespace scale;
   Axis axis;
   axis.title = "Size of a scene";
   axis.quantity = "factor on every length";

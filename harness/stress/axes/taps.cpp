@@ -8,7 +8,7 @@
 #include "harness/stress/straight_edge.h"
 
 namespace shadowbench::stress {
-namespace {
+namespace taps {
 
 constexpr double kBound = 0.02;  // of visibility: five steps of an 8-bit picture
 constexpr Range kRange{1.0, 128.0};
@@ -117,9 +117,10 @@ std::vector<Case> make_cases(const StressContext& context) {
   return cases;
 }
 
-}  // namespace
+}  // namespace taps
 
 Axis make_taps_axis() {
+  using namespace taps;
   Axis axis;
   axis.title = "Number of taps, over what the filters allow";
   axis.quantity = "taps";

@@ -7,7 +7,7 @@
 #include "harness/stress/edge_scene.h"
 
 namespace shadowbench::stress {
-namespace {
+namespace vsm_cancellation {
 
 constexpr double kBound = 0.02;  // of visibility: five steps of an 8-bit picture
 constexpr int kBands = 12;       // depths at which a gap is tried: how a moment is rounded is luck
@@ -182,9 +182,10 @@ std::vector<Case> make_cases(const StressContext& context) {
   return cases;
 }
 
-}  // namespace
+}  // namespace vsm_cancellation
 
 Axis make_vsm_cancellation_axis() {
+  using namespace vsm_cancellation;
   Axis axis;
   axis.title = "Variance by cancellation: across an edge, and (arithmetic) behind a wall";
   axis.quantity = "depth range / gap between occluder and receiver";

@@ -7,7 +7,7 @@
 #include "harness/stress/probe.h"
 
 namespace shadowbench::stress {
-namespace {
+namespace warp_exponent {
 
 constexpr double kBound = 0.02;
 constexpr int kTaps = 81;  // of a 9 x 9 box
@@ -116,9 +116,10 @@ std::vector<Case> make_cases(const StressContext& context) {
   return cases;
 }
 
-}  // namespace
+}  // namespace warp_exponent
 
 Axis make_warp_exponent_axis() {
+  using namespace warp_exponent;
   Axis axis;
   axis.title = "Warp exponent of exponential variance maps";
   axis.quantity = "exponent c of the warp exp(c z), z in [-1,1]";

@@ -143,15 +143,5 @@ TEST_F(Advise, Requires_ReadsTheClaimsOfTheBuiltInFilters) {
   unsetenv("SHADOWBENCH_ROOT");
 }
 
-TEST_F(Advise, DoesNotLoadTheImageLibraries) {
-  const std::string command =
-      "cd '" + folder().string() + "' && LD_DEBUG=files '" SHADOWBENCH_PROGRAM "' advise run >out.txt 2>debug.txt";
-  ASSERT_EQ(std::system(command.c_str()), 0);
-  const std::string files = read_text(folder() / "debug.txt");
-  EXPECT_THAT(files, HasSubstr("libfmt"));
-  for (const char* library : {"OpenImageIO", "OpenEXR", "embree"})
-    EXPECT_EQ(files.find(library), std::string::npos) << library;
-}
-
 }  // namespace
 }  // namespace shadowbench::test

@@ -8,14 +8,14 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr const char* kRun = "run --size 96x54 --map-size 32 --rounds 1 --scene cubes --filters none,vsm ";
+constexpr const char* kDiskRun = "run --size 96x54 --map-size 32 --rounds 1 --scene cubes --filters none,vsm ";
 constexpr const char* kAdvice = "free space";
 
 class FaultDisk : public FaultTest {
  protected:
   void SetUp() override {
     FaultTest::SetUp();
-    const Outcome outcome = run(std::string(kRun) + "--out whole");
+    const Outcome outcome = run(std::string(kDiskRun) + "--out whole");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
 
@@ -51,8 +51,8 @@ TEST_F(FaultDisk, FullDuringAReport_LeavesNothingHalfWritten_AndGoesOnWithRoom) 
     const auto room = static_cast<std::uintmax_t>(bytes * percent / 100.0);
     const std::string script =
         "mkdir -p disk && mount -t tmpfs -o size=" + std::to_string(room) + " none disk || exit 98\n" + "shadowbench " +
-        kRun + "--out disk/out 2>" + name + ".txt\ncode=$?\ncp -r disk/out " + name +
-        "\nmount -o remount,size=64m disk || exit 97\nshadowbench " + kRun + "--out disk/out 2>" + name +
+        kDiskRun + "--out disk/out 2>" + name + ".txt\ncode=$?\ncp -r disk/out " + name +
+        "\nmount -o remount,size=64m disk || exit 97\nshadowbench " + kDiskRun + "--out disk/out 2>" + name +
         ".then.txt\necho $? >" + name + ".then\ncp -r disk/out " + name + "_whole\nexit $code\n";
     expect_survived(name, run_script(*shell, script));
   }
@@ -63,8 +63,8 @@ TEST_F(FaultDisk, FilesThatMayNotGrow_LeaveNothingHalfWritten_AndTheRunGoesOn) {
   for (const int blocks : {2, 16, 100}) {  // of 512 bytes
     const std::string name = "limit" + std::to_string(blocks);
     const std::string script = std::string("mkdir ") + name + "\n(ulimit -f " + std::to_string(blocks) +
-                               "; shadowbench " + kRun + "--no-cache --out " + name + "/out) 2>" + name +
-                               ".txt\ncode=$?\ncp -r " + name + "/out kept\nshadowbench " + kRun + "--out " + name +
+                               "; shadowbench " + kDiskRun + "--no-cache --out " + name + "/out) 2>" + name +
+                               ".txt\ncode=$?\ncp -r " + name + "/out kept\nshadowbench " + kDiskRun + "--out " + name +
                                "/out 2>" + name + ".then.txt\necho $? >" + name + ".then\nmv " + name + "/out " + name +
                                "_whole\nrm -r " + name + "\nmv kept " + name + "\nexit $code\n";
     expect_survived(name, run_script("", script));
@@ -75,7 +75,7 @@ TEST_F(FaultDisk, FullCache_IsSaid_AndCostsNothingElse) {
   const auto shell = find_mounting_shell();
   if (!shell) GTEST_SKIP() << "no file system can be mounted here (neither as root nor with 'unshare -rm')";
   const std::string script =
-      std::string("mkdir disk && mount -t tmpfs -o size=8k none disk || exit 98\nshadowbench ") + kRun +
+      std::string("mkdir disk && mount -t tmpfs -o size=8k none disk || exit 98\nshadowbench ") + kDiskRun +
       "--cache disk/cache --out out 2>messages.txt\ncode=$?\ncp -r disk/cache kept\nexit $code\n";
   EXPECT_EQ(run_script(*shell, script), 0) << read_text(folder() / "messages.txt");
   EXPECT_THAT(read_text(folder() / "messages.txt"), HasSubstr("traced images are not kept for the next run"));

@@ -7,12 +7,14 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr const char* kSmall =
+constexpr const char* kSmallFolderRun =
     "--size 32x18 --map-size 16 --rounds 1 --scene cubes --no-attribution --filters none,pcf2x2 ";
 
 class FaultFolder : public FaultTest {
  protected:
-  void run_whole() const { ASSERT_EQ(run("run " + std::string(kSmall) + "--no-grids --out whole").exit_code, 0); }
+  void run_whole() const {
+    ASSERT_EQ(run("run " + std::string(kSmallFolderRun) + "--no-grids --out whole").exit_code, 0);
+  }
 
   /// Starts a run that stays in the folder `out` until it is killed.
   pid_t start_endless() const {
@@ -28,8 +30,8 @@ class FaultFolder : public FaultTest {
 
 /// Each command that writes a folder.
 std::vector<std::string> list_commands() {
-  return {std::string("run ") + kSmall,
-          std::string("run --no-grids --fresh ") + kSmall,
+  return {std::string("run ") + kSmallFolderRun,
+          std::string("run --no-grids --fresh ") + kSmallFolderRun,
           "merge whole",
           "bias --scene cubes --filters none --map-size 64 --size 160x90",
           "stress --axes taps --filters poisson:taps=8",
@@ -51,7 +53,7 @@ TEST_F(FaultFolder, OfARunThatGoesOn_IsRefusedToAllOthers_AndFreeOnceItIsKilled)
   kill(first, SIGKILL);
   EXPECT_EQ(wait_for(first).signal, SIGKILL);
   EXPECT_THAT(list_processes(), ::testing::IsEmpty()) << "the worker of the user's filter";
-  const Outcome outcome = run("run " + std::string(kSmall) + "--no-grids --out out");
+  const Outcome outcome = run("run " + std::string(kSmallFolderRun) + "--no-grids --out out");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   expect_no_leftovers("out");
   expect_same("whole", "out");
@@ -79,7 +81,8 @@ TEST_F(FaultFolder, TakenByManyAtOnce_BelongsToOne) {
   run_whole();
   std::vector<pid_t> all;
   for (int i = 0; i < 5; ++i)
-    all.push_back(start("run " + std::string(kSmall) + "--no-grids --out out", "many" + std::to_string(i) + ".txt"));
+    all.push_back(
+        start("run " + std::string(kSmallFolderRun) + "--no-grids --out out", "many" + std::to_string(i) + ".txt"));
   int done = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Ending ending = wait_for(all[i]);
@@ -162,8 +165,8 @@ TEST_F(FaultFolder, WithoutTheRightToWrite_IsAnOutputError) {
   const std::string as_nobody = "setpriv --reuid=65534 --regid=65534 --clear-groups ";
   if (is_root && std::system((as_nobody + "test -x '" SHADOWBENCH_PROGRAM "' 2>/dev/null").c_str()) != 0)
     GTEST_SKIP() << "root may write everywhere, and 'setpriv' cannot run the program as nobody here";
-  EXPECT_EQ(run_script("", (is_root ? as_nobody + "'" SHADOWBENCH_PROGRAM "' run " : "shadowbench run ") + kSmall +
-                               "--out out"),
+  EXPECT_EQ(run_script("", (is_root ? as_nobody + "'" SHADOWBENCH_PROGRAM "' run " : "shadowbench run ") +
+                               kSmallFolderRun + "--out out"),
             6);
   expect_one_message(read_text(folder() / "script.txt"), {"out: ", "Permission denied", "rights", "--out"});
 }
@@ -176,7 +179,7 @@ TEST_F(FaultFolder, ThatIsAFile_IsAnOutputErrorForEveryCommand) {
     EXPECT_EQ(outcome.exit_code, 6) << command << " " << outcome.err;
     expect_one_message(outcome.err, {"out: ", "--out"});
   }
-  const Outcome inner = run("run " + std::string(kSmall) + "--out out/inner");
+  const Outcome inner = run("run " + std::string(kSmallFolderRun) + "--out out/inner");
   EXPECT_EQ(inner.exit_code, 6) << inner.err;
   expect_one_message(inner.err, {"out/inner: ", "--out"});
   EXPECT_EQ(read_text(folder() / "out"), "a file");

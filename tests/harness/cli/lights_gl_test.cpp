@@ -13,7 +13,7 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr const char* kSmall =
+constexpr const char* kSmallLights =
     "run --out out --size 64x36 --map-size 64 --rounds 3 --scene cubes --no-attribution --no-grids ";
 
 class Lights : public ProgramTest {
@@ -28,8 +28,9 @@ class Lights : public ProgramTest {
 };
 
 TEST_F(Lights, AreTimedForEveryCell_ByAscendingCount_UsersFiltersToo) {
-  const Outcome outcome = run(std::string(kSmall) + "--lights 4,1,2 --filters none,vsm,nine_compares --filter-file " +
-                              user_filter("nine_compares.glsl"));
+  const Outcome outcome =
+      run(std::string(kSmallLights) + "--lights 4,1,2 --filters none,vsm,nine_compares --filter-file " +
+          user_filter("nine_compares.glsl"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   expect_valid();
   const json all = results();
@@ -54,7 +55,7 @@ TEST_F(Lights, AreTimedForEveryCell_ByAscendingCount_UsersFiltersToo) {
 }
 
 TEST_F(Lights, ThatWereNotAskedFor_AreAbsentWithTheReason) {
-  ASSERT_EQ(run(std::string(kSmall) + "--filters none").exit_code, 0);
+  ASSERT_EQ(run(std::string(kSmallLights) + "--filters none").exit_code, 0);
   expect_valid();
   const json cell = results()["cells"][0];
   EXPECT_TRUE(cell["lights"].is_null());
@@ -64,7 +65,7 @@ TEST_F(Lights, ThatWereNotAskedFor_AreAbsentWithTheReason) {
 
 /// Cells that were measured without lights, or with others, are measured again.
 TEST_F(Lights, AreNoticedWhenARunGoesOn) {
-  const std::string common = std::string(kSmall) + "--filters none,vsm ";
+  const std::string common = std::string(kSmallLights) + "--filters none,vsm ";
   ASSERT_EQ(run(common).exit_code, 0);
   EXPECT_THAT(run(common).err, HasSubstr("2 of them finished before"));
   EXPECT_THAT(run(common + "--lights 1,2").err, Not(HasSubstr("finished before")));
@@ -90,7 +91,7 @@ TEST_F(Lights, AreCountedInTheTimeThatIsAnnounced) {
 }
 
 TEST_F(Lights, BadCounts_AreRefused) {
-  const std::string common = std::string(kSmall) + "--filters none --lights ";
+  const std::string common = std::string(kSmallLights) + "--filters none --lights ";
   expect_refusal(common + "0", 2, {"--lights", "'0'", "whole number"});
   expect_refusal(common + "-2", 2, {"--lights"});
   expect_refusal(common + "1.5", 2, {"--lights", "'1.5'", "whole number"});

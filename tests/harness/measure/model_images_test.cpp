@@ -7,7 +7,7 @@
 namespace shadowbench::measure {
 namespace {
 
-constexpr int kWidth = 3, kHeight = 4;
+constexpr int kImageWidth = 3, kImageHeight = 4;
 
 filters::Receiver make_receiver(int x, int y, float depth) {
   filters::Receiver r;
@@ -20,7 +20,7 @@ filters::Receiver make_receiver(int x, int y, float depth) {
 ModelImages evaluate(const ModelReceivers& receivers) {
   static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
   static const filters::DepthMap map{4, std::vector<float>(16, 0.5f)};
-  return evaluate_model(catalogue.parse_requests("none").front(), map, receivers, 0.0, 1, kWidth, kHeight);
+  return evaluate_model(catalogue.parse_requests("none").front(), map, receivers, 0.0, 1, kImageWidth, kImageHeight);
 }
 
 TEST(ModelImages, HaveTheirTopRowFirst_AndAreLitWhereThereIsNoReceiver) {
@@ -28,7 +28,7 @@ TEST(ModelImages, HaveTheirTopRowFirst_AndAreLitWhereThereIsNoReceiver) {
   const std::vector<filters::Receiver> blocked = {make_receiver(2, 0, 0.75f), make_receiver(0, 3, 0.75f),
                                                   make_receiver(1, 2, 0.25f)};
   const ModelImages images = evaluate({blocked, blocked});
-  std::vector<double> expected(kWidth * kHeight, 1.0);
+  std::vector<double> expected(kImageWidth * kImageHeight, 1.0);
   expected.front() = expected.back() = 0.0;
   EXPECT_EQ(images.model, expected);
   EXPECT_EQ(images.closer, expected);
@@ -37,7 +37,7 @@ TEST(ModelImages, HaveTheirTopRowFirst_AndAreLitWhereThereIsNoReceiver) {
 
 TEST(ModelImages, AskEachStationWithItsOwnBias) {
   const ModelImages images = evaluate({{make_receiver(1, 1, 0.75f)}, {make_receiver(1, 1, 0.25f)}});
-  constexpr std::size_t kPixel = 2 * kWidth + 1;
+  constexpr std::size_t kPixel = 2 * kImageWidth + 1;
   EXPECT_EQ(images.model[kPixel], 0.0);
   EXPECT_EQ(images.closer[kPixel], 1.0);
 }

@@ -115,7 +115,7 @@ std::vector<std::string> mode_names() {
   return names;
 }
 
-std::string name_of(const testing::TestParamInfo<std::tuple<std::string, std::string>>& test) {
+std::string name_of_mode_and_filter(const testing::TestParamInfo<std::tuple<std::string, std::string>>& test) {
   std::string name = std::get<0>(test.param) + "_" + std::get<1>(test.param);
   for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
   return name;
@@ -125,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(Modes, PlaneSweep,
                          ::testing::Combine(::testing::ValuesIn(mode_names()),
                                             ::testing::Values("none", "pcf2x2", "tent3x3", "box3x3",
                                                               "poisson:taps=32,rotation=none")),
-                         name_of);
+                         name_of_mode_and_filter);
 
 class ReceiverPlane : public ::testing::TestWithParam<std::string> {};
 

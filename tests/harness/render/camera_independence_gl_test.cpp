@@ -14,7 +14,7 @@ using filters::FilterRequest;
 using filters::Receiver;
 
 constexpr int kMapSize = 384;  // texels larger than pixels: few lit or dark places fall between the pixels of a view
-constexpr int kWidth = 640, kHeight = 360;
+constexpr int kViewWidth = 640, kViewHeight = 360;
 constexpr std::uint32_t kSeeds = 24;
 constexpr double kShaded = 0.9;     // wide kernels leave much light behind thin casters
 constexpr double kTurn = 0.45;      // of the camera around the scene, rad
@@ -51,9 +51,10 @@ struct Place {
 class View {
  public:
   View(const scene::Scene& scene, const FilterRequest& request)
-      : bench_(shared_context(), scene, kMapSize, kWidth, kHeight),
-        clip_(render::clip_from_world(scene.cameras.front(), scene.bounds(), static_cast<double>(kWidth) / kHeight)),
-        pixels_(static_cast<std::size_t>(kWidth * kHeight)) {
+      : bench_(shared_context(), scene, kMapSize, kViewWidth, kViewHeight),
+        clip_(render::clip_from_world(scene.cameras.front(), scene.bounds(),
+                                      static_cast<double>(kViewWidth) / kViewHeight)),
+        pixels_(static_cast<std::size_t>(kViewWidth * kViewHeight)) {
     const auto images = draw_seeds(bench_, request, is_stochastic(request) ? kSeeds : 1);
     for (const Receiver& r : bench_.receivers(request)) pixels_[bench_.index(r)] = average(r, images);
   }
@@ -64,13 +65,13 @@ class View {
   /// Gives the places of the 3x3 pixels around a place, all of them on its surface; none where one is not.
   std::vector<const Place*> find_around(const Receiver& r) const {
     const glm::vec4 clip = clip_ * glm::vec4(r.position_ws, 1.0f);
-    const glm::vec2 at = (glm::vec2(clip) / clip.w * 0.5f + 0.5f) * glm::vec2(kWidth, kHeight);
+    const glm::vec2 at = (glm::vec2(clip) / clip.w * 0.5f + 0.5f) * glm::vec2(kViewWidth, kViewHeight);
     const glm::ivec2 pixel(glm::floor(at));
     std::vector<const Place*> found;
     for (int y = pixel.y - 1; y <= pixel.y + 1; ++y) {
       for (int x = pixel.x - 1; x <= pixel.x + 1; ++x) {
-        if (x < 0 || y < 0 || x >= kWidth || y >= kHeight) return {};
-        const auto& place = pixels_[static_cast<std::size_t>(y * kWidth + x)];
+        if (x < 0 || y < 0 || x >= kViewWidth || y >= kViewHeight) return {};
+        const auto& place = pixels_[static_cast<std::size_t>(y * kViewWidth + x)];
         if (!place || !is_same_surface(r, place->receiver)) return {};
         found.push_back(&*place);
       }

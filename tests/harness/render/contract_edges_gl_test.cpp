@@ -13,12 +13,12 @@ namespace {
 using filters::FilterKind;
 using filters::FilterRequest;
 
-constexpr std::uint32_t kSeeds = 64;
+constexpr std::uint32_t kEdgeSeeds = 64;
 constexpr float kFar = 1e4f;  // casters are cut at the map's border
 
 enum class Along { kU, kV };
 
-std::uint32_t seeds_of(const FilterRequest& request) { return is_stochastic(request) ? kSeeds : 1; }
+std::uint32_t seeds_of(const FilterRequest& request) { return is_stochastic(request) ? kEdgeSeeds : 1; }
 
 double radius_of(const FilterRequest& request) { return filters::radius_texels(request.spec, request.values); }
 

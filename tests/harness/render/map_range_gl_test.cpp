@@ -12,8 +12,8 @@ using filters::Border;
 using filters::RangeRule;
 using filters::Receiver;
 
-constexpr int kMapSize = 256;
-constexpr float kBeyondKernels = 12.0f / kMapSize;  // no default kernel reaches this far from outside into the map
+constexpr int kRangeMapSize = 256;
+constexpr float kBeyondKernels = 12.0f / kRangeMapSize;  // no default kernel reaches this far from outside into the map
 
 bool is_outside(const Receiver& r) {
   const glm::vec2 from_center = glm::abs(r.uv - 0.5f);
@@ -25,7 +25,7 @@ bool is_beyond_far(const Receiver& r) { return r.depth_unbiased > 1.0f; }
 /// The scene `edge` with every receiver known, those beyond the far plane too.
 class EdgeScene {
  public:
-  EdgeScene() : scene_(load_builtin("edge")), bench_(shared_context(), scene_, kMapSize) {
+  EdgeScene() : scene_(load_builtin("edge")), bench_(shared_context(), scene_, kRangeMapSize) {
     bench_.set_range({Border::kBorder, false, true});
     receivers_ = bench_.receivers(catalogue().parse_requests("none").front());
   }

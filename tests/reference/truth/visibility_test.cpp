@@ -21,7 +21,7 @@
 namespace shadowbench::truth {
 namespace {
 
-std::vector<OccluderMesh> half_plane() { return {make_sheet(-40.0, 0.0, -40.0, 40.0, 2.0)}; }
+std::vector<OccluderMesh> half_plane_at_height() { return {make_sheet(-40.0, 0.0, -40.0, 40.0, 2.0)}; }
 
 /// Ends the process by exit code 0 where occluders that memory is too small for are refused.
 [[noreturn]] void build_in_little_memory() {
@@ -51,7 +51,7 @@ TEST(OccludersDeathTest, MemoryThatIsTooSmall_IsBadAlloc) {
 }
 
 TEST(AreaTruth, DoesNotDependOnThreads) {
-  const Occluders occluders(half_plane());
+  const Occluders occluders(half_plane_at_height());
   const AreaLight light = AreaLight::make_sun({0.0, 1.0, 0.0}, 3.0);
   const ReceiverImage image = make_line(-0.06, 0.06, 100);
   const TracedVisibility many = trace_area(occluders, image, light, {});
@@ -61,7 +61,7 @@ TEST(AreaTruth, DoesNotDependOnThreads) {
 
 TEST(AreaTruth, DoesNotDependOnTheOrderOfPixels) {
   // A pixel's random numbers follow its place in the image; its truth does not.
-  const Occluders occluders(half_plane());
+  const Occluders occluders(half_plane_at_height());
   const AreaLight light = AreaLight::make_sun({0.0, 1.0, 0.0}, 3.0);
   const ReceiverImage image = make_line(-0.06, 0.06, 100);
   ReceiverImage reversed = image;
@@ -77,7 +77,7 @@ TEST(AreaTruth, DoesNotDependOnTheOrderOfPixels) {
 }
 
 TEST(AreaTruth, SettledPixels_GetFewRays_WhateverDoesNotCountBesideThem) {
-  const Occluders occluders(half_plane());
+  const Occluders occluders(half_plane_at_height());
   ReceiverImage image = make_line(-1.0, 1.0, 64);
   for (std::size_t i = 0; i < image.points.size(); i += 4) image.points[i].counts = false;
   const TracedVisibility truth = trace_area(occluders, image, AreaLight::make_sun({0.0, 1.0, 0.0}, 0.1), {});
@@ -182,7 +182,7 @@ TEST(OddLights, GiveFiniteVisibility) {
 }
 
 TEST(HardTruth, OfAPointLight_IsAStep) {
-  const Occluders occluders(half_plane());
+  const Occluders occluders(half_plane_at_height());
   const AreaLight light = AreaLight::make_sun({0.0, 1.0, 0.0}, 0.0);
   const ReceiverImage image = make_line(-1.0, 1.0, 64);
   const std::vector<float> visibility = trace_hard(occluders, image, light);

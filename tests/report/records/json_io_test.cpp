@@ -255,7 +255,7 @@ TEST(JsonIo, Results_AreValidAgainstTheirSchema) {
   write_results(folder.path(), run, keys);
   EXPECT_TRUE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
   EXPECT_EQ(read_text(folder.path() / "results.schema.json"),
-            read_text(std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "report" / "results.schema.json"));
+            read_text(std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "report" / "records" / "results.schema.json"));
 }
 
 TEST(JsonIo, ResultsOfNoCell_AreValidToo) {

@@ -20,7 +20,7 @@ const std::vector<float> kQuad{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
 const std::vector<std::uint16_t> kQuadIndices{0, 1, 2, 0, 2, 3};
 
 /// The parts of a small file that tests replace.
-struct Parts {
+struct GltfParts {
   std::string nodes = R"([{"mesh": 0}])";
   std::string primitive = R"({"attributes": {"POSITION": 0}, "indices": 1})";
   std::string accessors = R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
@@ -32,7 +32,7 @@ struct Parts {
   std::string scenes = R"([{"nodes": [0]}])";
 };
 
-std::string json_of(const Parts& p) {
+std::string gltf_of(const GltfParts& p) {
   const std::string uri = p.uri.empty() ? "" : fmt::format(R"(, "uri": "{}")", p.uri);
   return fmt::format(R"({{"asset": {{"version": "2.0"}}, "scenes": {}, "nodes": {},
     "meshes": [{{"name": "quad", "primitives": [{}]}}], "accessors": {}, "bufferViews": {},
@@ -40,13 +40,13 @@ std::string json_of(const Parts& p) {
                      p.scenes, p.nodes, p.primitive, p.accessors, p.views, p.buffer.size(), uri, p.more);
 }
 
-ImportedModel import_parts(const Parts& parts) {
+ImportedModel import_parts(const GltfParts& parts) {
   const TestFolder folder;
   folder.write("data.bin", parts.buffer);
-  return import_gltf(folder.write("test.gltf", json_of(parts)));
+  return import_gltf(folder.write("test.gltf", gltf_of(parts)));
 }
 
-std::string complaint_about(const Parts& parts) {
+std::string complaint_about_gltf(const GltfParts& parts) {
   const Error error = error_of([&] { import_parts(parts); });
   EXPECT_EQ(error.kind(), ErrorKind::kInput);
   EXPECT_THAT(error.where(), HasSubstr("test.gltf"));
@@ -70,9 +70,9 @@ std::string little_endian(std::size_t value) {
   return bytes_of(std::vector<std::uint32_t>{static_cast<std::uint32_t>(value)});
 }
 
-std::string glb_of(Parts parts) {
+std::string glb_of(GltfParts parts) {
   parts.uri.clear();
-  std::string json = json_of(parts);
+  std::string json = gltf_of(parts);
   json.resize((json.size() + 3) / 4 * 4, ' ');
   std::string binary = parts.buffer;
   binary.resize((binary.size() + 3) / 4 * 4, '\0');
@@ -101,7 +101,7 @@ TEST(GltfFileTest, Glb_HoldsTheSame) {
 }
 
 TEST(GltfFileTest, NestedTransforms_ApplyParentLast) {
-  Parts parts;
+  GltfParts parts;
   // The child is turned a quarter about z and moved; its parent doubles everything; theirs moves along z by a matrix.
   parts.nodes = R"([{"children": [1], "matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,7,1]},
                     {"children": [2], "scale": [2, 2, 2]},
@@ -114,7 +114,7 @@ TEST(GltfFileTest, NestedTransforms_ApplyParentLast) {
 }
 
 TEST(GltfFileTest, NegativeScale_KeepsWindingAndNormalTogether) {
-  Parts parts;
+  GltfParts parts;
   parts.nodes = R"([{"mesh": 0, "scale": [-1, 1, 1]}])";
   const Mesh mesh = import_parts(parts).meshes[0];
   EXPECT_GT(first_face(mesh).z, 0.0);
@@ -126,7 +126,7 @@ TEST(GltfFileTest, NegativeScale_KeepsWindingAndNormalTogether) {
 }
 
 TEST(GltfFileTest, MeshPlacedTwice_IsThereTwice) {
-  Parts parts;
+  GltfParts parts;
   parts.nodes = R"([{"mesh": 0}, {"mesh": 0, "translation": [0, 0, 5]}])";
   parts.scenes = R"([{"nodes": [0, 1]}])";
   const ImportedModel model = import_parts(parts);
@@ -137,7 +137,7 @@ TEST(GltfFileTest, MeshPlacedTwice_IsThereTwice) {
 TEST(GltfFileTest, StripAndFan_WindAsTheQuadDoes) {
   for (const auto& [mode, indices] :
        {std::pair(5, std::vector<std::uint16_t>{0, 1, 3, 2}), std::pair(6, std::vector<std::uint16_t>{0, 1, 2, 3})}) {
-    Parts parts;
+    GltfParts parts;
     parts.buffer = bytes_of(kQuad) + bytes_of(indices) + std::string(4, '\0');
     parts.primitive = fmt::format(R"({{"attributes": {{"POSITION": 0}}, "indices": 1, "mode": {}}})", mode);
     parts.accessors = R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
@@ -156,25 +156,25 @@ TEST(GltfFileTest, StripAndFan_WindAsTheQuadDoes) {
 }
 
 TEST(GltfFileTest, IndicesOfEveryWidth_AndNone_Read) {
-  Parts bytes;
+  GltfParts bytes;
   bytes.buffer = bytes_of(kQuad) + bytes_of(std::vector<std::uint8_t>{0, 1, 2, 0, 2, 3}) + std::string(6, '\0');
   bytes.accessors = R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
                         {"bufferView": 1, "componentType": 5121, "count": 6, "type": "SCALAR"}])";
   EXPECT_EQ(import_parts(bytes).meshes[0].indices.size(), 6U);
-  Parts words;
+  GltfParts words;
   words.buffer = bytes_of(kQuad) + bytes_of(std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3});
   words.views = R"([{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}])";
   words.accessors = R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
                         {"bufferView": 1, "componentType": 5125, "count": 6, "type": "SCALAR"}])";
   EXPECT_EQ(import_parts(words).meshes[0].indices.size(), 6U);
-  Parts none;
+  GltfParts none;
   none.primitive = R"({"attributes": {"POSITION": 0}})";
   none.accessors = R"([{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}])";
   EXPECT_EQ(import_parts(none).meshes[0].indices.size(), 3U);
 }
 
 TEST(GltfFileTest, StridedAndNormalizedAttributes_Read) {
-  Parts parts;
+  GltfParts parts;
   parts.buffer = bytes_of(std::vector<std::int16_t>{0, 0, 0, 99, 32767, 0, 0, 99, 0, 32767, 0, 99});
   parts.primitive = R"({"attributes": {"POSITION": 0}})";
   parts.views = R"([{"buffer": 0, "byteLength": 24, "byteStride": 8}])";
@@ -183,7 +183,7 @@ TEST(GltfFileTest, StridedAndNormalizedAttributes_Read) {
 }
 
 TEST(GltfFileTest, SparseAccessor_ReplacesItsElements) {
-  Parts parts;
+  GltfParts parts;
   parts.accessors = R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "sparse": {"count": 1,
       "indices": {"bufferView": 2, "componentType": 5123}, "values": {"bufferView": 3}}},
       {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}])";
@@ -192,12 +192,12 @@ TEST(GltfFileTest, SparseAccessor_ReplacesItsElements) {
                     {"buffer": 0, "byteOffset": 60, "byteLength": 2}, {"buffer": 0, "byteOffset": 64, "byteLength": 12}])";
   EXPECT_EQ(bounds_of(import_parts(parts)).max, glm::vec3(9, 9, 0));
   parts.buffer[60] = 4;
-  EXPECT_THAT(complaint_about(parts), HasSubstr("replaces element 4 of 4"));
+  EXPECT_THAT(complaint_about_gltf(parts), HasSubstr("replaces element 4 of 4"));
 }
 
 struct Damage {
   const char* what;
-  std::string Parts::*part;
+  std::string GltfParts::*part;
   const char* from;
   const char* to;
   const char* message;
@@ -205,67 +205,69 @@ struct Damage {
 
 TEST(GltfFileTest, DamagedReferences_AreToldAndNeverRead) {
   const std::vector<Damage> damages{
-      {"count too large", &Parts::accessors, R"("count": 4)", R"("count": 5)", "accessor 0 is out of range"},
-      {"count huge", &Parts::accessors, R"("count": 4)", R"("count": 4000000000)", "at most"},
-      {"index count", &Parts::accessors, R"("count": 6)", R"("count": 7)", "accessor 1 is out of range"},
-      {"offset", &Parts::accessors, R"("count": 4)", R"("byteOffset": 4, "count": 4)", "accessor 0 is out of range"},
-      {"offset past end", &Parts::accessors, R"("count": 4)", R"("byteOffset": 400, "count": 4)", "out of range"},
-      {"no such view", &Parts::accessors, R"("bufferView": 0)", R"("bufferView": 7)", "no buffer view 7"},
-      {"component type", &Parts::accessors, "5126", "5124", "component type 5124"},
-      {"double components", &Parts::accessors, "5126", "5130", "component type 5130"},
-      {"signed indices", &Parts::accessors, "5123", "5122", "unsigned"},
-      {"float indices", &Parts::accessors, "5123", "5126", "out of range"},
-      {"wrong type", &Parts::accessors, R"("VEC3")", R"("VEC2")", "must have 3 component"},
-      {"view too long", &Parts::views, R"("byteLength": 48)", R"("byteLength": 480)", "runs past its buffer"},
-      {"view offset", &Parts::views, R"("byteOffset": 48)", R"("byteOffset": 4800)", "runs past its buffer"},
-      {"no such buffer", &Parts::views, R"({"buffer": 0, "byteLength": 48)", R"({"buffer": 3, "byteLength": 48)",
+      {"count too large", &GltfParts::accessors, R"("count": 4)", R"("count": 5)", "accessor 0 is out of range"},
+      {"count huge", &GltfParts::accessors, R"("count": 4)", R"("count": 4000000000)", "at most"},
+      {"index count", &GltfParts::accessors, R"("count": 6)", R"("count": 7)", "accessor 1 is out of range"},
+      {"offset", &GltfParts::accessors, R"("count": 4)", R"("byteOffset": 4, "count": 4)",
+       "accessor 0 is out of range"},
+      {"offset past end", &GltfParts::accessors, R"("count": 4)", R"("byteOffset": 400, "count": 4)", "out of range"},
+      {"no such view", &GltfParts::accessors, R"("bufferView": 0)", R"("bufferView": 7)", "no buffer view 7"},
+      {"component type", &GltfParts::accessors, "5126", "5124", "component type 5124"},
+      {"double components", &GltfParts::accessors, "5126", "5130", "component type 5130"},
+      {"signed indices", &GltfParts::accessors, "5123", "5122", "unsigned"},
+      {"float indices", &GltfParts::accessors, "5123", "5126", "out of range"},
+      {"wrong type", &GltfParts::accessors, R"("VEC3")", R"("VEC2")", "must have 3 component"},
+      {"view too long", &GltfParts::views, R"("byteLength": 48)", R"("byteLength": 480)", "runs past its buffer"},
+      {"view offset", &GltfParts::views, R"("byteOffset": 48)", R"("byteOffset": 4800)", "runs past its buffer"},
+      {"no such buffer", &GltfParts::views, R"({"buffer": 0, "byteLength": 48)", R"({"buffer": 3, "byteLength": 48)",
        "names buffer 3"},
-      {"stride too short", &Parts::views, R"("byteLength": 48)", R"("byteLength": 48, "byteStride": 4)", "stride of 4"},
-      {"stride too long", &Parts::views, R"("byteLength": 48)", R"("byteLength": 48, "byteStride": 16)",
+      {"stride too short", &GltfParts::views, R"("byteLength": 48)", R"("byteLength": 48, "byteStride": 4)",
+       "stride of 4"},
+      {"stride too long", &GltfParts::views, R"("byteLength": 48)", R"("byteLength": 48, "byteStride": 16)",
        "out of range"},
-      {"no such accessor", &Parts::primitive, R"("POSITION": 0)", R"("POSITION": 9)", "no accessor 9"},
-      {"negative accessor", &Parts::primitive, R"("POSITION": 0)", R"("POSITION": -1)", "accessor -1"},
-      {"no such material", &Parts::primitive, R"("indices": 1)", R"("indices": 1, "material": 3)", "no material 3"},
-      {"no such mesh", &Parts::nodes, R"("mesh": 0)", R"("mesh": 5)", "no mesh 5"},
-      {"no such node", &Parts::scenes, "[0]", "[4]", "no node 4"},
-      {"no such child", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "children": [8])", "no node 8"},
-      {"matrix length", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "matrix": [1, 0])", ""},
-      {"rotation length", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "rotation": [0, 1])", ""},
-      {"zero rotation", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "rotation": [0, 0, 0, 0])",
+      {"no such accessor", &GltfParts::primitive, R"("POSITION": 0)", R"("POSITION": 9)", "no accessor 9"},
+      {"negative accessor", &GltfParts::primitive, R"("POSITION": 0)", R"("POSITION": -1)", "accessor -1"},
+      {"no such material", &GltfParts::primitive, R"("indices": 1)", R"("indices": 1, "material": 3)", "no material 3"},
+      {"no such mesh", &GltfParts::nodes, R"("mesh": 0)", R"("mesh": 5)", "no mesh 5"},
+      {"no such node", &GltfParts::scenes, "[0]", "[4]", "no node 4"},
+      {"no such child", &GltfParts::nodes, R"("mesh": 0)", R"("mesh": 0, "children": [8])", "no node 8"},
+      {"matrix length", &GltfParts::nodes, R"("mesh": 0)", R"("mesh": 0, "matrix": [1, 0])", ""},
+      {"rotation length", &GltfParts::nodes, R"("mesh": 0)", R"("mesh": 0, "rotation": [0, 1])", ""},
+      {"zero rotation", &GltfParts::nodes, R"("mesh": 0)", R"("mesh": 0, "rotation": [0, 0, 0, 0])",
        "rotation of node 0 is zero"},
-      {"number overflow", &Parts::nodes, R"("mesh": 0)", R"("mesh": 0, "translation": [1e999, 0, 0])",
+      {"number overflow", &GltfParts::nodes, R"("mesh": 0)", R"("mesh": 0, "translation": [1e999, 0, 0])",
        "not valid glTF"},
-      {"not JSON", &Parts::nodes, "[{", "[{{", "not valid glTF"}};
+      {"not JSON", &GltfParts::nodes, "[{", "[{{", "not valid glTF"}};
   for (const Damage& damage : damages) {
     SCOPED_TRACE(damage.what);
-    Parts parts;
+    GltfParts parts;
     std::string& text = parts.*damage.part;
     const std::size_t at = text.find(damage.from);
     ASSERT_NE(at, std::string::npos);
     text.replace(at, std::string(damage.from).size(), damage.to);
-    EXPECT_THAT(complaint_about(parts), HasSubstr(damage.message));
+    EXPECT_THAT(complaint_about_gltf(parts), HasSubstr(damage.message));
   }
 }
 
 TEST(GltfFileTest, IndexBeyondTheVertices_NamesIt) {
-  Parts parts;
+  GltfParts parts;
   parts.buffer[48 + 2 * 4] = 4;
-  EXPECT_THAT(complaint_about(parts), HasSubstr("index 4 of 'quad' is 4, but there are 4 vertices"));
+  EXPECT_THAT(complaint_about_gltf(parts), HasSubstr("index 4 of 'quad' is 4, but there are 4 vertices"));
 }
 
 TEST(GltfFileTest, NodesInACycle_AreAnError) {
-  Parts parts;
+  GltfParts parts;
   parts.nodes = R"([{"mesh": 0, "name": "a", "children": [1]}, {"name": "b", "children": [0]}])";
-  EXPECT_THAT(complaint_about(parts), AllOf(HasSubstr("'a'"), HasSubstr("cycle")));
+  EXPECT_THAT(complaint_about_gltf(parts), AllOf(HasSubstr("'a'"), HasSubstr("cycle")));
   parts.scenes = "[]";
-  EXPECT_THAT(complaint_about(parts), HasSubstr("cycle"));
+  EXPECT_THAT(complaint_about_gltf(parts), HasSubstr("cycle"));
   parts.nodes = R"([{"children": [0]}])";
   parts.scenes = R"([{"nodes": [0]}])";
-  EXPECT_THAT(complaint_about(parts), HasSubstr("cycle"));
+  EXPECT_THAT(complaint_about_gltf(parts), HasSubstr("cycle"));
 }
 
 TEST(GltfFileTest, ChainOfManyNodes_DoesNotExhaustTheStack) {
-  Parts parts;
+  GltfParts parts;
   std::string chain = "[";
   constexpr int kNodes = 50000;
   for (int i = 0; i < kNodes; ++i) chain += fmt::format(R"({{"children": [{}]}}, )", i + 1);
@@ -274,18 +276,18 @@ TEST(GltfFileTest, ChainOfManyNodes_DoesNotExhaustTheStack) {
 }
 
 TEST(GltfFileTest, JsonNestedWithoutEnd_IsAnError) {
-  Parts parts;
+  GltfParts parts;
   parts.more = R"(, "extras": )" + std::string(100000, '[') + std::string(100000, ']');
-  EXPECT_THAT(complaint_about(parts), HasSubstr("nested"));
+  EXPECT_THAT(complaint_about_gltf(parts), HasSubstr("nested"));
 }
 
 TEST(GltfFileTest, NotFiniteVertex_IsNamedByTheMesh) {
-  Parts parts;
+  GltfParts parts;
   const float bad = std::numeric_limits<float>::quiet_NaN();
   std::memcpy(parts.buffer.data() + 16, &bad, sizeof bad);
   const TestFolder folder;
   folder.write("data.bin", parts.buffer);
-  ImportedModel model = import_gltf(folder.write("test.gltf", json_of(parts)));
+  ImportedModel model = import_gltf(folder.write("test.gltf", gltf_of(parts)));
   Scene scene = add_model({}, std::move(model));
   const Error error = error_of([&] { validate_geometry(scene, "test.gltf"); });
   EXPECT_THAT(error.message(), AllOf(HasSubstr("'quad'"), HasSubstr("not finite")));
@@ -293,41 +295,41 @@ TEST(GltfFileTest, NotFiniteVertex_IsNamedByTheMesh) {
 
 TEST(GltfFileTest, ReferencesOutsideTheFolder_AreRefused) {
   const TestFolder folder;
-  folder.write("secret.bin", Parts().buffer);
+  folder.write("secret.bin", GltfParts().buffer);
   const std::vector<std::string> outside{"../secret.bin", "sub/../../secret.bin", "%2e%2e/secret.bin"};
   for (const std::string& uri : outside) {
-    Parts parts;
+    GltfParts parts;
     parts.uri = uri;
-    const Error error = error_of([&] { import_gltf(folder.write("model/test.gltf", json_of(parts))); });
+    const Error error = error_of([&] { import_gltf(folder.write("model/test.gltf", gltf_of(parts))); });
     EXPECT_THAT(error.message(), HasSubstr("outside its folder")) << uri;
   }
-  Parts absolute;
+  GltfParts absolute;
   absolute.uri = (folder.path() / "secret.bin").string();
-  error_of([&] { import_gltf(folder.write("model/test.gltf", json_of(absolute))); });
+  error_of([&] { import_gltf(folder.write("model/test.gltf", gltf_of(absolute))); });
 }
 
 TEST(GltfFileTest, MissingOrShortBuffer_IsAnError) {
-  Parts parts;
+  GltfParts parts;
   parts.uri = "absent.bin";
-  EXPECT_THAT(complaint_about(parts), HasSubstr("absent.bin"));
+  EXPECT_THAT(complaint_about_gltf(parts), HasSubstr("absent.bin"));
   const TestFolder folder;
   folder.write("data.bin", "short");
-  const Error error = error_of([&] { import_gltf(folder.write("test.gltf", json_of({}))); });
+  const Error error = error_of([&] { import_gltf(folder.write("test.gltf", gltf_of({}))); });
   EXPECT_THAT(error.message(), HasSubstr("data.bin"));
 }
 
 TEST(GltfFileTest, RequiredExtensionThatIsNotRead_IsNamed) {
   for (const std::string extension : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"}) {
-    Parts parts;
+    GltfParts parts;
     parts.more = fmt::format(R"(, "extensionsUsed": ["{0}"], "extensionsRequired": ["{0}"])", extension);
-    EXPECT_THAT(complaint_about(parts), HasSubstr(extension));
+    EXPECT_THAT(complaint_about_gltf(parts), HasSubstr(extension));
     parts.uri.clear();
-    EXPECT_THAT(complaint_about(parts), HasSubstr(extension));
+    EXPECT_THAT(complaint_about_gltf(parts), HasSubstr(extension));
   }
 }
 
 TEST(GltfFileTest, ExtensionThatIsOnlyUsed_IsIgnoredWithAWarning) {
-  Parts parts;
+  GltfParts parts;
   parts.more = R"(, "extensionsUsed": ["EXT_mesh_gpu_instancing", "KHR_materials_sheen"])";
   EXPECT_THAT(import_parts(parts).warnings, testing::ElementsAre(HasSubstr("EXT_mesh_gpu_instancing")));
 }
@@ -339,7 +341,7 @@ TEST(GltfFileTest, OtherVersion_IsAnError) {
 }
 
 TEST(GltfFileTest, Cameras_StandWhereTheirNodesAre) {
-  Parts parts;
+  GltfParts parts;
   parts.more = R"(, "cameras": [{"type": "perspective", "name": "eye", "perspective": {"yfov": 0.5, "znear": 0.1}},
       {"type": "orthographic", "orthographic": {"xmag": 3, "ymag": 2, "znear": 0, "zfar": 10}}])";
   parts.nodes =
@@ -358,7 +360,7 @@ TEST(GltfFileTest, Cameras_StandWhereTheirNodesAre) {
 }
 
 TEST(GltfFileTest, DirectionalLight_ShinesAlongItsNodesMinusZ) {
-  Parts parts;
+  GltfParts parts;
   parts.more = R"(, "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual": {"lights": [
       {"type": "point"}, {"type": "directional", "color": [1, 0.5, 0.25], "intensity": 100000}]}})";
   parts.nodes = R"([{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}},
@@ -373,7 +375,7 @@ TEST(GltfFileTest, DirectionalLight_ShinesAlongItsNodesMinusZ) {
 }
 
 TEST(GltfFileTest, Materials_KeepColourAndAlphaMode) {
-  Parts parts;
+  GltfParts parts;
   parts.more = R"(, "materials": [{"name": "leaf", "alphaMode": "MASK", "alphaCutoff": 0.25,
       "pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 0.4]}}, {"name": "glass", "alphaMode": "BLEND"}])";
   parts.primitive = R"({"attributes": {"POSITION": 0}, "indices": 1, "material": 0})";
@@ -392,8 +394,8 @@ std::string tga_bytes() {
   return tga + std::string("\x00\x00\xff\xff\xff\x00\x00\x80", 8);
 }
 
-Parts textured_parts(const std::string& image) {
-  Parts parts;
+GltfParts textured_parts(const std::string& image) {
+  GltfParts parts;
   parts.more = fmt::format(R"(, "images": [{}], "textures": [{{"source": 0}}], "materials": [{{"pbrMetallicRoughness":
       {{"baseColorTexture": {{"index": 0}}}}}}])",
                            image);
@@ -417,10 +419,10 @@ void expect_textured(const ImportedModel& model) {
 
 TEST(GltfFileTest, TextureInAFile_IsDecoded) {
   const TestFolder folder;
-  const Parts parts = textured_parts(R"({"uri": "a%20picture.tga"})");
+  const GltfParts parts = textured_parts(R"({"uri": "a%20picture.tga"})");
   folder.write("data.bin", parts.buffer);
   folder.write("a picture.tga", tga_bytes());
-  expect_textured(import_gltf(folder.write("test.gltf", json_of(parts))));
+  expect_textured(import_gltf(folder.write("test.gltf", gltf_of(parts))));
 }
 
 TEST(GltfFileTest, TextureInABufferView_IsDecoded) {
@@ -428,12 +430,12 @@ TEST(GltfFileTest, TextureInABufferView_IsDecoded) {
 }
 
 TEST(GltfFileTest, MissingUnreadableOrOutsideTexture_IsAnError) {
-  EXPECT_THAT(complaint_about(textured_parts(R"({"uri": "absent.png"})")), HasSubstr("'absent.png' is missing"));
-  EXPECT_THAT(complaint_about(textured_parts(R"({"uri": "data.bin"})")), HasSubstr("cannot be decoded"));
-  EXPECT_THAT(complaint_about(textured_parts(R"({"uri": "../x.png"})")), HasSubstr("outside its folder"));
-  Parts parts = textured_parts(R"({"bufferView": 3, "mimeType": "image/png"})");
+  EXPECT_THAT(complaint_about_gltf(textured_parts(R"({"uri": "absent.png"})")), HasSubstr("'absent.png' is missing"));
+  EXPECT_THAT(complaint_about_gltf(textured_parts(R"({"uri": "data.bin"})")), HasSubstr("cannot be decoded"));
+  EXPECT_THAT(complaint_about_gltf(textured_parts(R"({"uri": "../x.png"})")), HasSubstr("outside its folder"));
+  GltfParts parts = textured_parts(R"({"bufferView": 3, "mimeType": "image/png"})");
   parts.views.replace(parts.views.find("\"byteLength\": 26"), 16, "\"byteLength\": 99");
-  EXPECT_THAT(complaint_about(parts), HasSubstr("runs past its buffer"));
+  EXPECT_THAT(complaint_about_gltf(parts), HasSubstr("runs past its buffer"));
 }
 
 /// Damages single bytes at random; a sanitizer build makes this a fuzz test.

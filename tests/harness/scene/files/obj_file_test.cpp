@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* kQuad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+constexpr const char* kObjQuad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 ImportedModel import_text(const std::string& text) {
   const TestFolder folder;
@@ -18,7 +18,7 @@ ImportedModel import_text(const std::string& text) {
 }
 
 TEST(ObjFileTest, Polygon_BecomesTrianglesWithNormals) {
-  const ImportedModel model = import_text(std::string(kQuad) + "f 1 2 3 4\n");
+  const ImportedModel model = import_text(std::string(kObjQuad) + "f 1 2 3 4\n");
   ASSERT_EQ(model.meshes.size(), 1U);
   EXPECT_EQ(model.meshes[0].indices.size(), 6U);
   EXPECT_EQ(model.meshes[0].name, "test");
@@ -26,11 +26,11 @@ TEST(ObjFileTest, Polygon_BecomesTrianglesWithNormals) {
 }
 
 TEST(ObjFileTest, RelativeIndices_CountFromTheEnd) {
-  EXPECT_EQ(import_text(std::string(kQuad) + "f -4 -3 -2\n").meshes[0].vertices[0].position_ws, glm::vec3(0, 0, 0));
+  EXPECT_EQ(import_text(std::string(kObjQuad) + "f -4 -3 -2\n").meshes[0].vertices[0].position_ws, glm::vec3(0, 0, 0));
 }
 
 TEST(ObjFileTest, TextureCoordinates_RunFromTheTop) {
-  const ImportedModel model = import_text(std::string(kQuad) + "vt 0 0\nvt 0.25 1\nvt 1 1\nf 1/1 2/2 3/3\n");
+  const ImportedModel model = import_text(std::string(kObjQuad) + "vt 0 0\nvt 0.25 1\nvt 1 1\nf 1/1 2/2 3/3\n");
   EXPECT_EQ(model.meshes[0].vertices[0].uv, glm::vec2(0, 1));
   EXPECT_EQ(model.meshes[0].vertices[1].uv, glm::vec2(0.25f, 0));
 }
@@ -38,7 +38,7 @@ TEST(ObjFileTest, TextureCoordinates_RunFromTheTop) {
 TEST(ObjFileTest, Materials_GiveTheirColours) {
   const TestFolder folder;
   folder.write("m.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
-  const auto file = folder.write("test.obj", std::string("mtllib m.mtl\n") + kQuad +
+  const auto file = folder.write("test.obj", std::string("mtllib m.mtl\n") + kObjQuad +
                                                  "usemtl red\nf 1 2 3\nusemtl blue\nf 1 3 4\nusemtl none\nf 1 2 4\n");
   const ImportedModel model = import_obj(file);
   std::vector<glm::vec4> colours;
@@ -50,7 +50,7 @@ TEST(ObjFileTest, Materials_GiveTheirColours) {
 }
 
 TEST(ObjFileTest, MissingMaterialLibrary_IsAWarning) {
-  const ImportedModel model = import_text(std::string("mtllib absent.mtl\n") + kQuad + "f 1 2 3\n");
+  const ImportedModel model = import_text(std::string("mtllib absent.mtl\n") + kObjQuad + "f 1 2 3\n");
   EXPECT_THAT(model.warnings, testing::Contains(HasSubstr("absent.mtl")));
 }
 
@@ -59,7 +59,7 @@ TEST(ObjFileTest, LibraryOrTextureOutsideTheFolder_IsRefused) {
   EXPECT_THAT(library.message(), HasSubstr("outside its folder"));
   const TestFolder folder;
   folder.write("m.mtl", "newmtl red\nmap_Kd ../secret.png\n");
-  const auto file = folder.write("test.obj", std::string("mtllib m.mtl\n") + kQuad + "usemtl red\nf 1 2 3\n");
+  const auto file = folder.write("test.obj", std::string("mtllib m.mtl\n") + kObjQuad + "usemtl red\nf 1 2 3\n");
   EXPECT_THAT(error_of([&] { import_obj(file); }).message(), HasSubstr("outside its folder"));
 }
 
@@ -79,13 +79,13 @@ TEST(ObjFileTest, NumbersInEverySpelling_Read) {
 }
 
 TEST(ObjFileTest, IndexOutOfRange_IsAnError) {
-  EXPECT_THAT(error_of([] { import_text(std::string(kQuad) + "f 1 2 5\n"); }).message(), HasSubstr("vertex 5"));
-  EXPECT_THAT(error_of([] { import_text(std::string(kQuad) + "vn 0 0 1\nf 1//1 2//1 3//2\n"); }).message(),
+  EXPECT_THAT(error_of([] { import_text(std::string(kObjQuad) + "f 1 2 5\n"); }).message(), HasSubstr("vertex 5"));
+  EXPECT_THAT(error_of([] { import_text(std::string(kObjQuad) + "vn 0 0 1\nf 1//1 2//1 3//2\n"); }).message(),
               HasSubstr("normal 2"));
-  EXPECT_THAT(error_of([] { import_text(std::string(kQuad) + "vt 0 0\nf 1/1 2/1 3/2\n"); }).message(),
+  EXPECT_THAT(error_of([] { import_text(std::string(kObjQuad) + "vt 0 0\nf 1/1 2/1 3/2\n"); }).message(),
               HasSubstr("texture coordinate 2"));
-  error_of([] { import_text(std::string(kQuad) + "f 1 2 0\n"); });
-  error_of([] { import_text(std::string(kQuad) + "f 1 2 -9\n"); });
+  error_of([] { import_text(std::string(kObjQuad) + "f 1 2 0\n"); });
+  error_of([] { import_text(std::string(kObjQuad) + "f 1 2 -9\n"); });
 }
 
 }  // namespace
