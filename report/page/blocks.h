@@ -1,0 +1,123 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "report/page/chart.h"
+#include "report/records/text_table.h"
+
+namespace shadowbench::page {
+
+// A page is a list of sections, and a section is a list of blocks. The HTML writer and the Markdown writer know every
+// kind of block and escape every text; whoever makes a page writes neither HTML nor Markdown. Paths are relative to the
+// page.
+
+/// Names with what each is, such as the machine and the map.
+struct Facts {
+  std::vector<std::pair<std::string, std::string>> items;
+};
+
+/// A list of sentences, after a lead that may be empty.
+struct Sentences {
+  std::string lead;
+  std::vector<std::string> items;
+};
+
+/// A paragraph; a quiet one explains and is printed smaller.
+struct Paragraph {
+  std::string text;
+  bool quiet = false;
+};
+
+/// A heading within a section.
+struct Heading {
+  std::string text;
+};
+
+/// A file of the report, or another page, by its path.
+struct Link {
+  std::string path;
+  std::string text;
+};
+
+/// Links in one line, after a lead.
+struct Links {
+  std::string lead;
+  std::vector<Link> items;
+};
+
+/// A table with its caption. Numbers are aligned by the writers.
+struct Table {
+  std::string caption;
+  records::TextTable table;
+};
+
+/// A picture file with its caption, which is its description for those who cannot see it.
+struct Picture {
+  std::string path;
+  std::string caption;
+};
+
+/// Pictures beside each other that can be folded away; without a title one picture over the whole width.
+struct Gallery {
+  std::string title;
+  std::vector<Picture> pictures;
+  bool wide = false;  ///< fewer beside each other
+};
+
+/// Stacked bars with signed segments on a common scale, one row for each thing compared.
+struct Bars {
+  struct Segment {
+    double begin = 0.0;  ///< on the scale
+    double end = 0.0;
+    std::string color;  ///< "#rrggbb"
+  };
+  struct Row {
+    std::string label;
+    std::vector<Segment> segments;
+    double net = 0.0;  ///< where a tick marks the sum
+  };
+  std::string title;
+  std::vector<std::pair<std::string, std::string>> legend;  ///< colour and what it stands for
+  double low = 0.0;                                         ///< of the scale
+  double high = 1.0;
+  std::vector<Row> rows;
+};
+
+struct Details;
+
+/// Everything that a page is made of.
+using Block =
+    std::variant<Facts, Sentences, Paragraph, Heading, Links, Table, Gallery, Bars, Chart, ChartChoice, Details>;
+
+/// Blocks that the reader unfolds.
+struct Details {
+  std::string summary;
+  std::vector<Block> blocks;
+};
+
+/// A part of a page with a heading of its own.
+struct Section {
+  std::string id;       ///< for links to it; letters, digits and '-'
+  std::string heading;  ///< empty: none, as at the top of a page
+  std::vector<Block> blocks;
+  bool warns = false;  ///< printed so that it is not overlooked
+};
+
+/// A page: <stem>.html and <stem>.md say the same.
+struct Page {
+  std::string title;
+  std::vector<Section> sections;
+  std::vector<Link> siblings;  ///< the program's other pages that lie beside this one
+};
+
+/// Writes a page as HTML that opens from disk and loads nothing but what lies beside it.
+std::string write_html(const Page& page);
+
+/// Writes a page as Markdown. Charts become tables of their points where they are small, or the sentence that names the
+/// page.
+std::string write_markdown(const Page& page);
+
+}  // namespace shadowbench::page

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/analysis/front.h"
+#include "report/page/plot_axis.h"
+
+namespace shadowbench::page {
+
+/// How a series' points are joined.
+enum class LineStyle {
+  kNone,
+  kSteps,  ///< along x, then along y
+  kSolid,
+  kDashed
+};
+
+/// The mark at a point.
+enum class Mark { kNone, kCircle, kSquare, kTriangle, kDiamond, kTriangleDown, kCross };
+
+/// A point with its intervals, and what is said of it.
+struct ChartPoint {
+  analysis::Estimate x;
+  analysis::Estimate y;
+  std::string label = {};                 ///< beside the point; empty: none
+  std::vector<std::string> details = {};  ///< lines shown when one points at it
+};
+
+/// Points drawn alike.
+struct ChartSeries {
+  std::string title;  ///< in the key; empty: not in the key
+  std::string color;  ///< "#rrggbb"
+  Mark mark = Mark::kNone;
+  bool filled = true;
+  bool faint = false;
+  LineStyle line = LineStyle::kNone;
+  bool whiskers = false;
+  std::vector<ChartPoint> points;
+};
+
+/// One chart, drawn in the browser, where it can be saved as SVG and as PNG.
+struct Chart {
+  std::string id;  ///< unique on its page; names the file that is saved
+  std::string title;
+  std::string x_name;
+  std::string y_name;
+  PlotAxis x;
+  PlotAxis y;
+  std::vector<ChartSeries> series;
+  std::vector<std::string> notes;  ///< below the key
+};
+
+/// Charts of which the reader chooses one, with the sentences that belong to it.
+struct ChartChoice {
+  struct Selector {
+    std::string label;
+    std::vector<std::string> options;
+  };
+  struct Entry {
+    Chart chart;
+    std::vector<std::string> sentences;
+  };
+  std::string id;
+  std::vector<Selector> selectors;
+  std::vector<Entry> entries;  ///< in row-major order of the selectors' options: the last selector changes fastest
+};
+
+}  // namespace shadowbench::page
