@@ -11,7 +11,7 @@
 #include "report/analysis/summary.h"
 #include "report/files/file_name.h"
 #include "report/images/attribution_picture.h"
-#include "report/images/diverging.h"
+#include "report/images/color_values.h"
 #include "report/images/grid.h"
 #include "report/images/picture_io.h"
 #include "report/records/format.h"

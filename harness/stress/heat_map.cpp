@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "report/images/diverging.h"
+#include "report/images/color_values.h"
 #include "report/images/figure.h"
 #include "report/images/picture_io.h"
 

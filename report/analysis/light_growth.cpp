@@ -49,7 +49,7 @@ LightCurve make_curve(const TradeConfiguration& configuration, const records::Ce
   return curve;
 }
 
-LightChart make_chart(const TradeScope& scope, int map_size, const std::vector<records::CellRecord>& cells) {
+LightChart make_light_chart(const TradeScope& scope, int map_size, const std::vector<records::CellRecord>& cells) {
   std::vector<TradeConfiguration> timed;
   const records::CellRecord* reference = nullptr;
   for (const TradeConfiguration& each : scope.configurations) {
@@ -177,7 +177,7 @@ std::vector<LightChart> make_light_charts(const std::vector<records::CellRecord>
     std::set<int> map_sizes;
     for (const TradeConfiguration& each : scope.configurations) map_sizes.insert(each.map_size);
     for (const int map_size : map_sizes) {
-      LightChart chart = make_chart(scope, map_size, cells);
+      LightChart chart = make_light_chart(scope, map_size, cells);
       if (!chart.counts.empty()) charts.push_back(std::move(chart));
     }
   }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/images/rect.h"
+#include "report/images/image.h"
 #include "report/records/error_parts.h"
 
 namespace shadowbench::images {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "report/images/diverging.h"
+#include "report/images/color_values.h"
 #include "report/images/grid.h"
 #include "report/images/picture_io.h"
 #include "report/records/format.h"

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "report/images/image.h"
-#include "report/images/rect.h"
 #include "report/images/text.h"
 
 namespace shadowbench::images {

@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include "report/images/rect.h"
+#include "report/images/image.h"
 #include "report/images/text.h"
 
 namespace shadowbench::images {

@@ -7,7 +7,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "report/images/diverging.h"
+#include "report/images/color_values.h"
 #include "report/images/grid_layout.h"
 #include "report/images/picture_io.h"
 #include "report/images/text.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "report/images/diverging.h"
+#include "report/images/color_values.h"
 #include "report/records/format.h"
 
 namespace shadowbench::images {

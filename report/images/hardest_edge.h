@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "report/images/image.h"
-#include "report/images/rect.h"
 
 namespace shadowbench::images {
 

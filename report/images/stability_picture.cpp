@@ -9,7 +9,6 @@
 #include <limits>
 
 #include "report/images/color_values.h"
-#include "report/images/diverging.h"
 #include "report/images/figure.h"
 #include "report/images/fit_worst.h"
 #include "report/images/picture_io.h"
@@ -18,8 +17,8 @@
 namespace shadowbench::images {
 namespace {
 
-constexpr int kPanelWidth = 640;
-constexpr int kGap = 40;
+constexpr int kStabilityPanelWidth = 640;
+constexpr int kStabilityGap = 40;
 constexpr int kColorBarHeight = 16;
 constexpr Rgb kBroken{1.0f, 0.0f, 1.0f};
 constexpr Rgb kZeroTexel{0.93f, 0.94f, 0.95f};
@@ -36,12 +35,13 @@ struct StabilityPanel {
 };
 
 int shown_width(const Image& image) {
-  return image.width >= kPanelWidth ? kPanelWidth : image.width * (kPanelWidth / image.width);
+  return image.width >= kStabilityPanelWidth ? kStabilityPanelWidth
+                                             : image.width * (kStabilityPanelWidth / image.width);
 }
 
 Image show_worst(const Image& image, const Badness& badness) { return fit_worst(image, shown_width(image), badness); }
 
-Image make_bar() { return make_ramp(kPanelWidth, kColorBarHeight); }
+Image make_bar() { return make_ramp(kStabilityPanelWidth, kColorBarHeight); }
 
 /// Colours values in [0,1], dark for little.
 Image color_sequential(const Image& values) { return color_values(values, "viridis"); }
@@ -156,8 +156,8 @@ std::vector<StabilityPanel> make_panels(const StabilityPicture& picture) {
 }
 
 std::vector<std::string> list_lines(const StabilityPanel& panel) {
-  std::vector<std::string> lines = wrap_figure_text(panel.title, kPanelWidth);
-  for (const std::string& line : wrap_figure_text(panel.caption, kPanelWidth)) lines.push_back(line);
+  std::vector<std::string> lines = wrap_figure_text(panel.title, kStabilityPanelWidth);
+  for (const std::string& line : wrap_figure_text(panel.caption, kStabilityPanelWidth)) lines.push_back(line);
   return lines;
 }
 
@@ -168,7 +168,7 @@ int measure_height(const StabilityPanel& panel) {
 
 void draw_panel(Figure& figure, int x, int y, const StabilityPanel& panel) {
   const int line = figure_line_height();
-  const std::size_t of_title = wrap_figure_text(panel.title, kPanelWidth).size();
+  const std::size_t of_title = wrap_figure_text(panel.title, kStabilityPanelWidth).size();
   std::size_t number = 0;
   for (const std::string& text : list_lines(panel)) {
     figure.write(x, y, text, number++ < of_title ? kFigureInk : kFigureSecondInk);
@@ -179,7 +179,7 @@ void draw_panel(Figure& figure, int x, int y, const StabilityPanel& panel) {
   y += panel.picture.height + line / 2;
   figure.place(x, y, panel.bar);
   for (const auto& [place, label] : panel.ticks) {
-    const int at = x + static_cast<int>(place * static_cast<float>(kPanelWidth - 1));
+    const int at = x + static_cast<int>(place * static_cast<float>(kStabilityPanelWidth - 1));
     figure.fill({at, y + kColorBarHeight, 1, 5}, kFigureSecondInk);
     if (place <= 0.0f)
       figure.write(x, y + kColorBarHeight + 6, label);
@@ -210,10 +210,11 @@ Image draw_stability_picture(const StabilityPicture& picture) {
     row_heights[i / 2] = std::max(row_heights[i / 2], measure_height(panels[i]));
   int height = 0;
   for (const int row : row_heights) height += row;
-  Figure figure(picture.title, picture.note, {columns * kPanelWidth + (columns - 1) * kGap, height});
+  Figure figure(picture.title, picture.note, {columns * kStabilityPanelWidth + (columns - 1) * kStabilityGap, height});
   int y = figure.body().y;
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    draw_panel(figure, figure.body().x + static_cast<int>(i % 2) * (kPanelWidth + kGap), y, panels[i]);
+    draw_panel(figure, figure.body().x + static_cast<int>(i % 2) * (kStabilityPanelWidth + kStabilityGap), y,
+               panels[i]);
     if (i % 2 == 1) y += row_heights[i / 2];
   }
   return figure.canvas();

@@ -41,4 +41,12 @@ nlohmann::json value_json(const std::vector<SceneRecord>& value);
 template <class T>
 T read_value(const nlohmann::json& json);
 
+/// An array of records, each as `write` makes it.
+template <class T>
+nlohmann::json list_json(const std::vector<T>& items, nlohmann::json (*write)(const T&)) {
+  nlohmann::json result = nlohmann::json::array();
+  for (const T& item : items) result.push_back(write(item));
+  return result;
+}
+
 }  // namespace shadowbench::records

@@ -9,7 +9,6 @@
 
 #include "report/analysis/summary.h"
 #include "report/images/color_values.h"
-#include "report/images/diverging.h"
 #include "report/images/figure.h"
 #include "report/images/fit_worst.h"
 #include "report/images/hardest_edge.h"

@@ -11,8 +11,8 @@ namespace {
 
 using filters::Receiver;
 
-constexpr int kMapSize = 512;
-constexpr int kWidth = 320, kHeight = 180;
+constexpr int kMovedMapSize = 512;
+constexpr int kMovedWidth = 320, kMovedHeight = 180;
 constexpr glm::dvec2 kStepTexels{
     4.0, 3.0};                 // whole texels of the map: the texel grid lies on the moved casters as on the others
 constexpr double kRoom = 1.5;  // before and behind the planes that fit the scene, metres: for what moves
@@ -20,8 +20,8 @@ constexpr double kRoom = 1.5;  // before and behind the planes that fit the scen
 /// Coordinates that have moved are rounded otherwise: a silhouette that runs near a texel's centre may take one texel
 /// more or less. Measured: 3 of 38 845 receivers change at most.
 constexpr float kVisible = 0.02f;
-constexpr float kShaded = 0.9f;  // wide kernels leave much light behind thin casters
-constexpr double kLargestShare = 0.001;
+constexpr float kMovedShaded = 0.9f;  // wide kernels leave much light behind thin casters
+constexpr double kMovedShare = 0.001;
 
 /// Gives the mesh on which the others stand: flat, level, and the largest such.
 std::size_t find_floor(const scene::Scene& scene) {
@@ -42,7 +42,7 @@ std::size_t find_floor(const scene::Scene& scene) {
 
 /// Gives the scene a map that no longer follows what is in it.
 void freeze_frustum(scene::Scene& scene) {
-  const scene::LightFrustum fit = scene::fit_light(scene, scene::FitMode::kTight, kMapSize, 12.0);
+  const scene::LightFrustum fit = scene::fit_light(scene, scene::FitMode::kTight, kMovedMapSize, 12.0);
   const double half = 0.5 * fit.depth_range_ws;
   const glm::dvec3 center(glm::inverse(fit.light_from_world) * glm::dvec4(0.0, 0.0, -half, 1.0));
   scene.light.map_window =
@@ -75,9 +75,9 @@ struct Picture {
 };
 
 Picture draw(const scene::Scene& scene, const filters::FilterRequest& request) {
-  Bench bench(shared_context(), scene, kMapSize, kWidth, kHeight);
+  Bench bench(shared_context(), scene, kMovedMapSize, kMovedWidth, kMovedHeight);
   Picture picture{bench.draw(request),
-                  std::vector<std::optional<Receiver>>(static_cast<std::size_t>(kWidth * kHeight))};
+                  std::vector<std::optional<Receiver>>(static_cast<std::size_t>(kMovedWidth * kMovedHeight))};
   for (const Receiver& r : bench.receivers(request)) picture.receivers[bench.index(r)] = r;
   return picture;
 }
@@ -96,7 +96,7 @@ Change compare(const Picture& before, const Picture& after, const glm::vec3& way
     if (!a || !b || glm::distance(a->position_ws + way, b->position_ws) > 1e-3f * a->texel_size_ws) continue;
     ++change.compared;
     change.changed += std::abs(before.visibility[i] - after.visibility[i]) > visible ? 1 : 0;
-    change.shaded += before.visibility[i] < kShaded ? 1 : 0;
+    change.shaded += before.visibility[i] < kMovedShaded ? 1 : 0;
   }
   return change;
 }
@@ -109,7 +109,7 @@ class MovedCaster : public ::testing::TestWithParam<std::tuple<std::string, std:
     return scene;
   }();
   filters::FilterRequest request_ = request_of(std::get<1>(GetParam()));
-  glm::vec3 way_ = choose_way(scene::fit_light(scene_, scene::FitMode::kTight, kMapSize, 6.0));
+  glm::vec3 way_ = choose_way(scene::fit_light(scene_, scene::FitMode::kTight, kMovedMapSize, 6.0));
 };
 
 /// A camera that goes along sees the same picture on the floor, which stays, as on what moved.
@@ -120,13 +120,13 @@ TEST_P(MovedCaster, TakesItsShadowWithIt) {
   std::printf("%d receivers, %d shaded, %d changed\n", change.compared, change.shaded, change.changed);
   EXPECT_GT(change.compared, 10000);
   EXPECT_GT(change.shaded, change.compared / 100);
-  EXPECT_LE(change.changed, kLargestShare * change.compared);
+  EXPECT_LE(change.changed, kMovedShare * change.compared);
 }
 
 /// A camera that stays sees shadows leave places that stay, and reach others.
 TEST_P(MovedCaster, LeavesNoShadowBehind) {
   const Picture before = draw(scene_, request_), after = draw(move_casters(scene_, way_), request_);
-  const Change change = compare(before, after, glm::vec3(0.0f), 1.0f - kShaded);
+  const Change change = compare(before, after, glm::vec3(0.0f), 1.0f - kMovedShaded);
   std::printf("%d of %d changed\n", change.changed, change.compared);
   EXPECT_GT(change.compared, 5000);
   EXPECT_GT(change.changed, change.compared / 100);

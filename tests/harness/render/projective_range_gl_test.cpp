@@ -22,7 +22,7 @@ scene::Mesh moved(scene::Mesh mesh, const glm::dvec3& to) {
 }
 
 /// A floor; over it, off the axis, a board; above the light a deck over the half x > 0. Seen from straight above.
-scene::Scene make_scene() {
+scene::Scene make_projective_scene() {
   scene::Scene scene;
   scene.name = "projective";
   scene.materials.emplace_back();
@@ -62,7 +62,7 @@ class ProjectiveRange : public ::testing::Test {
  protected:
   ProjectiveRange()
       : context_(shared_context()),
-        scene_(make_scene()),
+        scene_(make_projective_scene()),
         shaders_(options::find_resources().shaders),
         geometry_(scene_),
         map_(256),

@@ -61,12 +61,12 @@ std::vector<records::CellRecord> make_lit_cells(int map_size = 1024) {
           make_lit_cell("esm", {{1.6, 1.501, 1.4, 1.4}, {4.5, 4.5, 4.5, 4.5}}, map_size)};
 }
 
-std::vector<LightChart> make_charts(const std::vector<records::CellRecord>& cells) {
+std::vector<LightChart> make_lit_charts(const std::vector<records::CellRecord>& cells) {
   return make_light_charts(cells, make_trade_scopes(cells));
 }
 
 TEST(LightGrowth, Times_AreRatiosTimesTheReference) {
-  const auto charts = make_charts(make_lit_cells());
+  const auto charts = make_lit_charts(make_lit_cells());
   ASSERT_THAT(charts, SizeIs(1));
   EXPECT_EQ(charts[0].title, "cubes · view main · 960 × 540 · map 1024");
   EXPECT_THAT(charts[0].counts, ElementsAre(1, 2, 4, 8));
@@ -81,7 +81,7 @@ TEST(LightGrowth, Times_AreRatiosTimesTheReference) {
 TEST(LightGrowth, WithoutTheReference_TimesAreMediansAndQuartiles) {
   std::vector<records::CellRecord> cells = make_lit_cells();
   cells.erase(cells.begin());
-  const LightPoint point = make_charts(cells)[0].curves[1].points[3];
+  const LightPoint point = make_lit_charts(cells)[0].curves[1].points[3];
   EXPECT_NEAR(point.still.value, 1.1 * 12.0, 1e-9);
   EXPECT_NEAR(point.still.low, 1.1 * 12.0 - 0.5, 1e-9);
 }
@@ -111,7 +111,7 @@ TEST(LightGrowth, HasTheIntervalThatQuartilesAllow) {
 }
 
 TEST(LightGrowth, IsSaidOfEveryFilter_StillAndMoving_WithItsClock) {
-  const auto words = describe_light_growth(make_charts(make_lit_cells()), make_run().gl);
+  const auto words = describe_light_growth(make_lit_charts(make_lit_cells()), make_run().gl);
   ASSERT_THAT(words, SizeIs(2));
   EXPECT_THAT(words[0], AllOf(HasSubstr("map 1024, 1 to 8 lights, casters still"),
                               HasSubstr("ms (CPU): none 1 [0.843, 1.16]; poisson 3.3 ["), HasSubstr("vsm 1.00 [")));
@@ -121,13 +121,13 @@ TEST(LightGrowth, IsSaidOfEveryFilter_StillAndMoving_WithItsClock) {
 TEST(LightGrowth, OfOneCount_IsNotSaid) {
   std::vector<records::CellRecord> cells = make_lit_cells();
   for (records::CellRecord& cell : cells) cell.lights->resize(1);
-  EXPECT_THAT(describe_light_growth(make_charts(cells), make_run().gl), IsEmpty());
-  EXPECT_THAT(pages::make_light_plots(make_charts(cells), list_filters(cells), make_run().gl), IsEmpty());
-  EXPECT_EQ(make_light_table(make_charts(cells)[0]).rows[0][3], records::kNothing);
+  EXPECT_THAT(describe_light_growth(make_lit_charts(cells), make_run().gl), IsEmpty());
+  EXPECT_THAT(pages::make_light_plots(make_lit_charts(cells), list_filters(cells), make_run().gl), IsEmpty());
+  EXPECT_EQ(make_light_table(make_lit_charts(cells)[0]).rows[0][3], records::kNothing);
 }
 
 TEST(LightOrder, OverlappingTimes_AreNotApart) {
-  const auto comparisons = compare_light_curves(make_charts(make_lit_cells())[0]);
+  const auto comparisons = compare_light_curves(make_lit_charts(make_lit_cells())[0]);
   ASSERT_THAT(comparisons, SizeIs(6));
   const LightComparison& vsm_esm = comparisons[5];
   EXPECT_THAT(vsm_esm.counts, ElementsAre(1, 2, 4, 8));
@@ -138,7 +138,7 @@ TEST(LightOrder, OverlappingTimes_AreNotApart) {
 }
 
 TEST(LightOrder, SaysWhereOneOvertakesAnother_AndNoMore) {
-  const auto words = describe_light_order(make_charts(make_lit_cells()));
+  const auto words = describe_light_order(make_lit_charts(make_lit_cells()));
   ASSERT_THAT(words, SizeIs(4));
   EXPECT_EQ(words[0],
             "esm is cheaper than poisson with casters still at each of 1, 2, 4, 8 lights; with casters moving at none "
@@ -157,14 +157,14 @@ TEST(LightOrder, FromAnyNumberOn_IsSaidAsThat) {
   const std::vector<records::CellRecord> cells = {make_lit_cell("none", {{1, 1, 1, 1}, {1, 1, 1, 1}}),
                                                   make_lit_cell("vsm", {{2, 2, 2, 2}, {2, 2, 2, 2}}),
                                                   make_lit_cell("esm", {{2.5, 2.0, 1.5, 1.5}, {2.5, 2.01, 2.0, 1.5}})};
-  const auto words = describe_light_order(make_charts(cells));
+  const auto words = describe_light_order(make_lit_charts(cells));
   ASSERT_THAT(words, SizeIs(2));
   EXPECT_THAT(words[0], HasSubstr("vsm is cheaper than esm with casters still at 1 light, of 1, 2, 4, 8 (dearer at 4, "
                                   "8, not to be told apart at 2)"));
   std::vector<records::CellRecord> turned = cells;
   for (records::LightCountRecord& each : *turned[2].lights) each.still_ratio = make_ratio(each.count > 1 ? 2.5 : 1.5);
   for (records::LightCountRecord& each : *turned[2].lights) each.moving_ratio = make_ratio(each.count > 1 ? 1.5 : 2.5);
-  EXPECT_THAT(describe_light_order(make_charts(turned))[0],
+  EXPECT_THAT(describe_light_order(make_lit_charts(turned))[0],
               HasSubstr("esm is cheaper than vsm with casters still at 1 light, of 1, 2, 4, 8 (dearer at 2, 4, 8); "
                         "with casters moving from 2 lights on, of 1, 2, 4, 8 (dearer at 1)"));
 }
@@ -176,7 +176,7 @@ TEST(LightOrder, WhereNothingChanges_ThatIsSaid_OfEveryMapAtOnce) {
     cells.push_back(make_lit_cell("vsm", {{2, 2}, {2, 2}}, map_size));
     cells.push_back(make_lit_cell("esm", {{2.01, 2.01}, {2.01, 2.01}}, map_size));
   }
-  EXPECT_THAT(describe_light_order(make_charts(cells)),
+  EXPECT_THAT(describe_light_order(make_lit_charts(cells)),
               ElementsAre("Of 3 pairs of filters, over all numbers of lights, casters still and moving, none changes "
                           "its order, 2 keep it wherever the two can be told "
                           "apart, 1 cannot be told apart anywhere: cubes, picture 960 × 540, map 512, 1024."));
@@ -188,7 +188,7 @@ TEST(LightCharts, HoldOnlyWhatWasTimed_WithParametersThatTell) {
   cells.push_back(make_lit_cell("vsm", {{2, 2}, {2, 2}}));
   cells.back().params["radius"] = 8.0;
   cells.push_back(make_lit_cell("none", {{1}, {1}}, 2048));
-  const auto charts = make_charts(cells);
+  const auto charts = make_lit_charts(cells);
   ASSERT_THAT(charts, SizeIs(2));
   ASSERT_THAT(charts[0].curves, SizeIs(4));
   EXPECT_EQ(charts[0].curves[0].label, "none");
@@ -196,11 +196,11 @@ TEST(LightCharts, HoldOnlyWhatWasTimed_WithParametersThatTell) {
   EXPECT_EQ(charts[0].curves[3].label, "vsm (radius 8)");
   EXPECT_EQ(make_light_table(charts[0]).rows[6][4], records::kNothing) << "4 lights were not timed with it";
   for (records::CellRecord& cell : cells) cell.lights.reset();
-  EXPECT_THAT(make_charts(cells), IsEmpty());
+  EXPECT_THAT(make_lit_charts(cells), IsEmpty());
 }
 
 TEST(LightTable, HasBothStates) {
-  const records::TextTable table = make_light_table(make_charts(make_lit_cells())[0]);
+  const records::TextTable table = make_light_table(make_lit_charts(make_lit_cells())[0]);
   EXPECT_THAT(table.header, ElementsAre("filter", "casters", "1 light", "2 lights", "4 lights", "8 lights",
                                         "ms per added light", "exponent", "MiB of maps at the most lights"));
   ASSERT_THAT(table.rows, SizeIs(8));

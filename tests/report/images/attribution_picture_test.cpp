@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "report/images/diverging.h"
+#include "report/images/color_values.h"
 #include "report/images/picture_io.h"
 #include "report/images/text.h"
 #include "tests/report/records/synthetic.h"

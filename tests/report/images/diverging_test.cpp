@@ -1,8 +1,8 @@
-#include "report/images/diverging.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
+
+#include "report/images/color_values.h"
 
 namespace shadowbench::images {
 namespace {

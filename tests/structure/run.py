@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""Checks that the folders are what DESIGN says of them. Standard library only.
+
+An include runs from a room to one that stands before it in ROOMS, never back up. A room has a README, is one CMake target and
+one namespace, and holds at most 40 files (the filters' own do not count). No source has more than 500 lines.
+"""
+import argparse
+import pathlib
+import re
+import sys
+
+# From the ground up. What stands inside a room's folder and is not named here belongs to the room.
+ROOMS = [
+    "filters/base", "filters", "reference/metrics", "reference/truth", "report/files", "report/records", "report/images",
+    "report/analysis", "report/page", "report/pages", "report/regress", "harness/gl", "harness/scene", "harness/render",
+    "harness/options", "harness/measure", "harness/run", "harness/bias", "harness/tune", "harness/stress", "harness/flicker",
+    "harness/cli"]
+# What a room may not use, although it stands before it.
+FORBIDDEN = {
+    "reference/metrics": ["filters"], "report/files": ["reference/"], "harness/gl": ["reference/", "report/"],
+    "harness/scene": ["reference/", "report/", "harness/gl"], "harness/tune": ["harness/bias"],
+    "harness/stress": ["harness/bias", "harness/tune"], "harness/flicker": ["harness/bias", "harness/tune", "harness/stress"]}
+NAMESPACES = {"filters/base": "shadowbench"}
+MOST_FILES = 40
+MOST_LINES = 500
+SOURCES = {".cpp", ".h"}
+COUNTED_LINES = SOURCES | {".glsl", ".frag", ".vert", ".js", ".css", ".py"}
+
+
+def room_of(path):
+    """The innermost room that a path (relative, as text) lies in."""
+    within = [room for room in ROOMS if path.startswith(room + "/")]
+    return max(within, key=len) if within else None
+
+
+def check_source(root, path, faults):
+    name = path.relative_to(root).as_posix()
+    text = path.read_text(encoding="utf-8")
+    if path.suffix in COUNTED_LINES and text.count("\n") > MOST_LINES:
+        faults.append(f"{name}: {text.count(chr(10))} lines; {MOST_LINES} are the most")
+    room = room_of(name)
+    if path.suffix not in SOURCES or room is None:
+        return
+    wanted = NAMESPACES.get(room, "shadowbench::" + room.rsplit("/", 1)[-1])
+    opened = set(re.findall(r"^namespace (shadowbench(?:::\w+)?) \{", text, re.MULTILINE))
+    if opened - {wanted}:
+        faults.append(f"{name}: opens {', '.join(sorted(opened - {wanted}))}; the room's namespace is {wanted}")
+    for number, line in enumerate(text.splitlines(), 1):
+        include = re.match(r'#include "((?:filters|reference|report|harness)/[^"]+)"', line)
+        other = room_of(include.group(1)) if include else None
+        if other is None or other == room:
+            continue
+        if ROOMS.index(other) > ROOMS.index(room):
+            faults.append(f"{name}:{number}: {room} uses {other}, which stands above it")
+        elif any((other + "/").startswith(prefix) for prefix in FORBIDDEN.get(room, [])):
+            faults.append(f"{name}:{number}: {room} uses {other}, which is none of its business")
+
+
+def check_folder(root, folder, faults):
+    name = folder.relative_to(root).as_posix()
+    files = [path for path in folder.iterdir() if path.is_file()]
+    own = [path for path in files if not (name == "filters" and folder.joinpath(path.stem + ".glsl").exists())]
+    if len(own) > MOST_FILES:
+        faults.append(f"{name}: {len(own)} files; {MOST_FILES} are the most")
+    if any(path.suffix in SOURCES for path in files) and not folder.joinpath("README.md").exists():
+        faults.append(f"{name}: has no README.md")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
+    root = parser.parse_args().root
+    faults = []
+    for top in ("filters", "shaders", "reference", "report", "harness"):
+        for path in sorted(root.joinpath(top).rglob("*")):
+            if "out" in path.relative_to(root).parts:
+                continue
+            check_folder(root, path, faults) if path.is_dir() else check_source(root, path, faults) if path.suffix in COUNTED_LINES else None
+        check_folder(root, root.joinpath(top), faults)
+    for room in ROOMS:
+        if not root.joinpath(room, "CMakeLists.txt").exists():
+            faults.append(f"{room}: has no CMakeLists.txt, so it is no target")
+    print("\n".join(faults) if faults else f"{len(ROOMS)} rooms are as they should be")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
