@@ -1,15 +1,15 @@
 #!/bin/sh
-# Installs the Debian 12 packages that building and running Shadowbench need; does nothing where they are.
+# Installs the Debian 12 packages that building, packing and running Shadowbench need; does nothing where they are.
 # With --tests also what the tests need; with --fuzz that, and clang with its libFuzzer for the preset `fuzz`.
 set -eu
 
 packages="
-  cmake g++ git ninja-build pkg-config python3-glad
+  cmake dpkg-dev file g++ git ninja-build pkg-config python3-glad
   libcli11-dev libegl-dev libembree-dev libfmt-dev libfreetype-dev libgl-dev libglfw3-dev libglm-dev libgsl-dev
   libnlopt-cxx-dev libopenimageio-dev libosmesa6-dev libpugixml-dev libtbb-dev libtinygltf-dev libtinyobjloader-dev
   libtomlplusplus-dev nlohmann-json3-dev fonts-dejavu-core libjs-chart.js libegl1 libegl-mesa0 libgl1-mesa-dri
 "
-tests="chromium clang-format gcovr libbenchmark-dev libgmock-dev libgtest-dev openimageio-tools python3-jsonschema xauth xvfb"
+tests="chromium clang-format gcovr groff-base libbenchmark-dev libgmock-dev libgtest-dev openimageio-tools python3-jsonschema xauth xvfb"
 case "${1-}" in
   "") ;;
   --tests) packages="$packages $tests" ;;

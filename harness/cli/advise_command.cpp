@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -37,18 +38,14 @@ double parse_limit(const std::string& text, const char* option) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error == std::errc() && end == text.data() + text.size() && std::isfinite(value) && value >= 0.0) return value;
-  throw Error(ErrorKind::kUsage, fmt::format("{}: '{}' must be a number, 0 or more", option, text));
+  fail(fmt::format("{}: '{}' must be a number, 0 or more", option, text));
 }
 
-template <class T>
-T parse_choice(const std::string& text, const char* option, const std::vector<std::pair<const char*, T>>& choices) {
-  std::string known;
-  for (const auto& [name, value] : choices) {
-    if (text == name) return value;
-    known += (known.empty() ? "" : ", ") + std::string(name);
-  }
-  throw Error(ErrorKind::kUsage, fmt::format("{}: '{}' must be one of {}", option, text, known));
-}
+const std::map<std::string, analysis::LightMotion> kLights = {{"moving", analysis::LightMotion::kMoving},
+                                                              {"static", analysis::LightMotion::kStatic}};
+const std::map<std::string, analysis::CostKind> kCosts = {{"time", analysis::CostKind::kTime},
+                                                          {"bytes", analysis::CostKind::kBytes},
+                                                          {"fetches", analysis::CostKind::kFetches}};
 
 std::map<std::string, std::vector<std::string>> list_claims() {
   std::map<std::string, std::vector<std::string>> claims;
@@ -64,12 +61,8 @@ AdviceRequest make_request(const AdviseArguments& arguments) {
     if (arguments.limits[i]) request.demands.push_back({&spec, parse_limit(*arguments.limits[i], spec.option), {}});
   }
   for (const std::string& claim : arguments.claims) request.demands.push_back({nullptr, 0.0, claim});
-  using analysis::CostKind, analysis::LightMotion;
-  request.light = parse_choice<LightMotion>(arguments.light, "--light",
-                                            {{"moving", LightMotion::kMoving}, {"static", LightMotion::kStatic}});
-  request.cheapest =
-      parse_choice<CostKind>(arguments.cheapest, "--cheapest",
-                             {{"time", CostKind::kTime}, {"bytes", CostKind::kBytes}, {"fetches", CostKind::kFetches}});
+  request.light = kLights.at(arguments.light);
+  request.cheapest = kCosts.at(arguments.cheapest);
   request.scenes = arguments.scenes;
   if (!arguments.size.empty()) request.size = parse_picture_size(arguments.size);
   if (!arguments.claims.empty()) request.claims = list_claims();
@@ -90,41 +83,37 @@ int advise(const AdviseArguments& arguments) {
   return 0;
 }
 
-constexpr const char* kFooter =
-    "A configuration is all that makes a cell but scene and view: filter, parameters, map, picture size, bias. It "
-    "keeps a\n"
-    "limit where its worst scene does. Its cost is the mean over all views of all scenes; --max-ms holds for each of "
-    "them.\n"
-    "A frame with a moving light pays for map, prefilter and lookup, one with a static light for the lookup alone.\n"
-    "Costs are apart where their intervals are: the 95 % interval of the ratio to 'none' where both share map, bias "
-    "and\n"
-    "picture size, else the quartiles of the times. Without any limit the cheapest of all is advised, which does "
-    "least.\n"
-    "What was not measured on all the scenes, did not finish, or lacks a value that is asked for keeps no limit. A "
-    "limit on\n"
-    "a fault that has too few receivers to occur on in a scene is judged on the others; the answer names that scene.\n"
-    "Exit code 1: nothing keeps the limits; the message names the ones in the way.";
-
 }  // namespace
 
-void add_advise_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("advise", "Find a run's cheapest filter and map that keep your limits");
-  command->footer(kFooter);
+Command make_advise_command() {
+  Command command{"advise", "Find a run's cheapest filter and map that keep your limits"};
+  command.about =
+      "A configuration is all that makes a cell but scene and view: filter, parameters, map, picture size, bias. It "
+      "keeps a limit where its worst scene does. Its cost is the mean over all views of all scenes; --max-ms holds for "
+      "each of them. A frame with a moving light pays for map, prefilter and lookup, one with a static light for the "
+      "lookup alone.\n"
+      "Costs are apart where their intervals are: the 95 % interval of the ratio to 'none' where both share map, bias "
+      "and picture size, else the quartiles of the times. Without any limit the cheapest of all is advised, which does "
+      "least.\n"
+      "What was not measured on all the scenes, did not finish, or lacks a value that is asked for keeps no limit. A "
+      "limit on a fault that has too few receivers to occur on in a scene is judged on the others; the answer names "
+      "that scene.\n"
+      "Exit code 1: nothing keeps the limits; the message names the ones in the way.";
   auto a = std::make_shared<AdviseArguments>();
-  command->add_option("RUN", a->run, "a run's folder, or its results.json")->required();
+  command.add("RUN", &a->run, "a run's folder, or its results.json").names(ValueKind::kFile).require();
   for (std::size_t i = 0; i < a->limits.size(); ++i) {
     const analysis::LimitSpec& spec = analysis::limit_table()[i];
-    command->add_option(spec.option, a->limits[i], spec.text);
+    command.add(spec.option, &a->limits[i], spec.text);
   }
-  command->add_option("--requires", a->claims, "what the filter must claim, such as contact-hardening; may be repeated")
-      ->allow_extra_args(false);
-  command->add_option("--scene", a->scenes, "judge on this scene; may be repeated [all of the run]")
-      ->allow_extra_args(false);
-  command->add_option("--size", a->size, "judge pictures of WxH pixels [all of the run]");
-  command->add_option("--light", a->light, "moving or static: what a frame pays for")->capture_default_str();
-  command->add_option("--cheapest", a->cheapest, "time, bytes or fetches: what is to be cheap")->capture_default_str();
-  command->add_flag("--json", a->json, "as JSON");
-  command->callback([&action, a] { action = [a] { return advise(*a); }; });
+  command.add("--requires", &a->claims, "what the filter must claim, such as contact-hardening; may be repeated");
+  command.add("--scene", &a->scenes, "judge on this scene; may be repeated [all of the run]").names(ValueKind::kScene);
+  command.add("--size", &a->size, "judge pictures of WxH pixels [all of the run]");
+  command.add("--light", &a->light, "moving or static: what a frame pays for").one_of({"moving", "static"});
+  command.add("--cheapest", &a->cheapest, "time, bytes or fetches: what is to be cheap")
+      .one_of({"time", "bytes", "fetches"});
+  add_json_option(command, a->json);
+  command.action = [a](const CommandLine&) { return advise(*a); };
+  return command;
 }
 
 }  // namespace shadowbench::cli

@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <tuple>
 
 #include "filters/base/error.h"
 #include "harness/scene/load.h"
@@ -20,6 +21,55 @@ double parse_angle(const std::string& text, const char* name, double limit_deg) 
 }
 
 }  // namespace
+
+void add_backend_option(Command& command, std::string& backend) {
+  command.add("--gl", &backend, "OpenGL context: auto, osmesa, egl or glfw").such_as({"auto", "osmesa", "egl", "glfw"});
+}
+
+void add_drawing_options(Command& command, DrawingArguments& arguments, const std::string& cache_default) {
+  add_backend_option(command, arguments.backend);
+  command
+      .add("--cache", &arguments.cache,
+           fmt::format("folder that keeps traced images for later runs (default: {})", cache_default))
+      .names(ValueKind::kFolder);
+  command.add("--no-cache", &arguments.no_cache, "trace everything, keep nothing");
+  command.add("--out", &arguments.out, "folder of the report").names(ValueKind::kFolder);
+}
+
+void add_builtin_filters_option(Command& command, std::string& filters) {
+  command.add("--filters", &filters, "built-in filters with parameters (default: all; see 'list filters')")
+      .names(ValueKind::kFilters);
+}
+
+void add_scene_option(Command& command, std::string& scene) {
+  command.add("--scene", &scene, "a built-in scene, or a .toml, .gltf, .glb or .obj file").names(ValueKind::kScene);
+}
+
+void add_scenes_options(Command& command, std::vector<std::string>& scenes, bool& ground) {
+  command
+      .add("--scene", &scenes,
+           "a built-in scene, or a .toml, .gltf, .glb or .obj file; may be repeated (default: all built-in scenes)")
+      .names(ValueKind::kScene);
+  command.add("--ground", &ground, "put a floor under a bare model");
+}
+
+void add_picture_options(Command& command, PictureArguments& arguments) {
+  command.add("--map-size", &arguments.map_size, "texels along a side of the shadow map");
+  command.add("--size", &arguments.size, "picture size in pixels, WIDTHxHEIGHT");
+}
+
+void add_json_option(Command& command, bool& json) { command.add("--json", &json, "as JSON"); }
+
+std::filesystem::path choose_cache(const DrawingArguments& arguments) {
+  if (arguments.no_cache) return {};
+  return arguments.cache.empty() ? options::default_cache_folder() : std::filesystem::path(arguments.cache);
+}
+
+void take_picture_options(const PictureArguments& arguments, options::RunOptions& options) {
+  take_drawing_options(arguments, options);
+  options.map_sizes = {parse_count(arguments.map_size, "--map-size")};
+  std::tie(options.width, options.height) = parse_picture_size(arguments.size);
+}
 
 void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
 
@@ -56,6 +106,13 @@ void require_distinct(const std::vector<filters::FilterRequest>& requests) {
   }
 }
 
+std::vector<filters::FilterRequest> parse_builtin_filters(const std::string& text,
+                                                          const options::Resources& resources) {
+  std::vector<filters::FilterRequest> requests = filters::Catalogue(resources.filters).parse_requests(text);
+  require_distinct(requests);
+  return requests;
+}
+
 options::LightAngles parse_light(const std::string& text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string::npos)
@@ -74,11 +131,6 @@ std::filesystem::path find_results(const std::filesystem::path& run) {
   if (std::filesystem::exists(run)) return run;
   throw Error(ErrorKind::kInput,
               "there is no such folder or file; give a run's folder (its --out), or its results.json", run.string());
-}
-
-std::filesystem::path choose_cache(const std::string& folder, bool no_cache) {
-  if (no_cache) return {};
-  return folder.empty() ? options::default_cache_folder() : std::filesystem::path(folder);
 }
 
 }  // namespace shadowbench::cli

@@ -6,11 +6,64 @@
 #include <vector>
 
 #include "filters/catalogue.h"
+#include "harness/cli/command_line.h"
 #include "harness/options/options.h"
 
 namespace shadowbench::cli {
 
-// What commands share of reading their options. All but find_results() throw Error(kUsage) with the option's name.
+// What commands share: options of the same name and help, and the reading of their values. All functions but
+// find_results() throw Error(kUsage) with the option's name.
+
+/// The options of every command that draws, as text.
+struct DrawingArguments {
+  std::string filters;
+  std::string backend = "auto";
+  std::string cache;
+  bool no_cache = false;
+  std::string out;
+};
+
+/// The options of commands that draw pictures of one size with one map.
+struct PictureArguments : DrawingArguments {
+  std::string map_size = "1024";
+  std::string size;
+};
+
+/// Adds --gl, --cache, --no-cache and --out.
+void add_drawing_options(Command& command, DrawingArguments& arguments, const std::string& cache_default = "as 'run'");
+
+/// Adds --gl.
+void add_backend_option(Command& command, std::string& backend);
+
+/// Adds --filters, for commands that take built-in filters alone.
+void add_builtin_filters_option(Command& command, std::string& filters);
+
+/// Adds --scene for one scene.
+void add_scene_option(Command& command, std::string& scene);
+
+/// Adds --scene for several scenes, and --ground.
+void add_scenes_options(Command& command, std::vector<std::string>& scenes, bool& ground);
+
+/// Adds --map-size and --size.
+void add_picture_options(Command& command, PictureArguments& arguments);
+
+/// Adds --json.
+void add_json_option(Command& command, bool& json);
+
+/// Gives the folder for traced images; empty: nothing is kept.
+std::filesystem::path choose_cache(const DrawingArguments& arguments);
+
+/// Takes over what --gl, --cache, --no-cache and --out say, and finds the program's folders.
+template <class Options>
+void take_drawing_options(const DrawingArguments& arguments, Options& options) {
+  options.resources = options::find_resources();
+  options.backend = gl::parse_backend(arguments.backend);
+  options.cache = choose_cache(arguments);
+  options.out = arguments.out;
+}
+
+/// Takes over what the options of DrawingArguments, --map-size and --size say, but for the filters.
+void take_picture_options(const PictureArguments& arguments, options::RunOptions& options);
 
 /// Refuses what the command line says.
 [[noreturn]] void fail(const std::string& message);
@@ -33,11 +86,11 @@ std::vector<std::string> list_builtin_scenes(const options::Resources& resources
 /// Refuses filters that are named twice with the same parameters.
 void require_distinct(const std::vector<filters::FilterRequest>& requests);
 
+/// Parses the built-in filters that --filters names, and refuses one that is named twice.
+std::vector<filters::FilterRequest> parse_builtin_filters(const std::string& text, const options::Resources& resources);
+
 /// Gives the results.json of a run, which is named by its folder or by that file. Throws Error(kInput) where there is
 /// neither.
 std::filesystem::path find_results(const std::filesystem::path& run);
-
-/// Gives the folder for traced images; empty: nothing is kept.
-std::filesystem::path choose_cache(const std::string& folder, bool no_cache);
 
 }  // namespace shadowbench::cli

@@ -1,43 +1,24 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <functional>
-#include <string>
-#include <vector>
+#include "harness/cli/command_line.h"
 
 namespace shadowbench::cli {
 
-/// What a chosen subcommand does; gives the exit code.
-using Action = std::function<int()>;
+// One function for each command of the program.
 
-/// Adds `run`; on parsing, `action` is set to what it does. `words` is the whole command line, for the record.
-void add_run_command(CLI::App& app, Action& action, const std::vector<std::string>& words);
+Command make_run_command();
+Command make_merge_command();
+Command make_list_command();
+Command make_diff_command();
+Command make_bias_command();
+Command make_advise_command();
+Command make_tune_command();
+Command make_stress_command();
+Command make_regress_command();
+Command make_flicker_command();
 
-/// Adds `list filters|scenes|metrics|gl`.
-void add_list_command(CLI::App& app, Action& action);
-
-/// Adds `diff`.
-void add_diff_command(CLI::App& app, Action& action);
-
-/// Adds `bias`.
-void add_bias_command(CLI::App& app, Action& action);
-
-/// Adds `regress`; `words` as for `run`.
-void add_regress_command(CLI::App& app, Action& action, const std::vector<std::string>& words);
-
-/// Adds `merge`.
-void add_merge_command(CLI::App& app, Action& action);
-
-/// Adds `advise`.
-void add_advise_command(CLI::App& app, Action& action);
-
-/// Adds `tune`.
-void add_tune_command(CLI::App& app, Action& action);
-
-/// Adds `stress`; `words` as for `run`.
-void add_stress_command(CLI::App& app, Action& action, const std::vector<std::string>& words);
-
-/// Adds `flicker`; `words` as for `run`.
-void add_flicker_command(CLI::App& app, Action& action, const std::vector<std::string>& words);
+/// Makes the command that writes manual pages and completions for all commands of `program`, itself included, which
+/// must outlive it. Only the build of the package needs it, so that help does not show it.
+Command make_manual_command(const Command& program);
 
 }  // namespace shadowbench::cli

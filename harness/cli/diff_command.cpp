@@ -7,6 +7,7 @@
 
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
+#include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/diff_runs.h"
 #include "harness/run/compare_pictures.h"
@@ -20,7 +21,10 @@ constexpr double kLeastPixelsPerDegree = 0.1;    // below, no feature is left
 constexpr double kMostPixelsPerDegree = 1000.0;  // FLIP's time grows with it
 
 struct DiffArguments {
-  run::ComparisonOptions options;
+  std::string image;
+  std::string truth;
+  std::optional<std::string> mask;
+  double pixels_per_degree = metrics::kDefaultPixelsPerDegree;
   std::string metric = kAllMetrics;
   bool json = false;
 };
@@ -79,28 +83,27 @@ void print_json(const run::ComparisonOptions& options, const run::Comparison& re
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-/// Says whether two runs are meant, and not two pictures.
-bool name_runs(const CLI::App& command, const run::ComparisonOptions& options) {
-  const bool a = is_run(options.image), b = is_run(options.truth);
+/// Says whether the command line names two runs, and not two pictures.
+bool name_runs(const CommandLine& line, const DiffArguments& arguments) {
+  const bool a = is_run(arguments.image), b = is_run(arguments.truth);
   if (!a && !b) return false;
   if (a != b) {
     throw Error(
         ErrorKind::kInput,
         fmt::format(
             "'{}' is a run's folder or results, and '{}' is not: name two pictures, or the report folders of two runs",
-            a ? options.image : options.truth, a ? options.truth : options.image));
+            a ? arguments.image : arguments.truth, a ? arguments.truth : arguments.image));
   }
   for (const char* option : {"--metric", "--mask", "--pixels-per-degree"})
-    if (command.count(option) > 0)
-      throw Error(ErrorKind::kUsage, fmt::format("{} is of pictures, and these are runs: leave it out", option));
+    if (line.has(option)) fail(fmt::format("{} is of pictures, and these are runs: leave it out", option));
   return true;
 }
 
-int diff(const CLI::App& command, DiffArguments arguments) {
-  run::ComparisonOptions& options = arguments.options;
-  if (name_runs(command, options)) return diff_runs(options.image, options.truth, arguments.json);
-  options.metrics = choose_metrics(arguments.metric);
-  check_pixels_per_degree(options.pixels_per_degree);
+int diff(const CommandLine& line, const DiffArguments& arguments) {
+  if (name_runs(line, arguments)) return diff_runs(arguments.image, arguments.truth, arguments.json);
+  check_pixels_per_degree(arguments.pixels_per_degree);
+  const run::ComparisonOptions options{arguments.image, arguments.truth, arguments.mask,
+                                       choose_metrics(arguments.metric), arguments.pixels_per_degree};
   const run::Comparison result = run::compare_pictures(options);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
   if (arguments.json) print_json(options, result);
@@ -114,31 +117,25 @@ int diff(const CLI::App& command, DiffArguments arguments) {
 
 }  // namespace
 
-void add_diff_command(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("diff", "Compare two pictures as a run compares its own, or the times of two runs");
-  command->footer(
+Command make_diff_command() {
+  Command command{"diff", "Compare two pictures as a run compares its own, or the times of two runs"};
+  command.about =
       "A and B are pictures in any format that OpenImageIO reads; FILE#PART is one part of a multi-part EXR file, such "
-      "as\n"
-      "report/out/cubes.exr#vsm.visibility. All numbers are of A less B, over all channels but alpha, of the values "
-      "as\n"
-      "stored (8-bit codes as code/255). FLIP alone sees linear RGB clamped to [0,1], and the whole picture: sRGB "
-      "codes are\n"
-      "decoded, one channel is grey. Pixels that are NaN or infinite are counted and left out.\n"
+      "as report/out/cubes.exr#vsm.visibility. All numbers are of A less B, over all channels but alpha, of the values "
+      "as stored (8-bit codes as code/255). FLIP alone sees linear RGB clamped to [0,1], and the whole picture: sRGB "
+      "codes are decoded, one channel is grey. Pixels that are NaN or infinite are counted and left out.\n"
       "Where A and B are report folders of runs (or their results.json), it is counted how many of their cells' ratios "
-      "to\n"
-      "'none' repeat: 95 % intervals that overlap. Exit code 1: some do not.");
+      "to 'none' repeat: 95 % intervals that overlap. Exit code 1: some do not.";
   auto a = std::make_shared<DiffArguments>();
-  a->options.pixels_per_degree = metrics::kDefaultPixelsPerDegree;
-  command->add_option("A", a->options.image, "the picture, or a run's folder")->required();
-  command->add_option("B", a->options.truth, "what it should look like, or another run's folder")->required();
-  command->add_option("--metric", a->metric, fmt::format("{} (see 'list metrics')", fmt::join(metric_names(), ", ")))
-      ->capture_default_str();
-  command->add_option("--mask", a->options.mask, "a picture of one channel: pixels count where it is not 0");
-  command->add_option("--pixels-per-degree", a->options.pixels_per_degree, "how large FLIP's observer sees the pixels")
-      ->capture_default_str();
-  command->add_flag("--json", a->json, "as JSON");
-  command->callback([&action, command, a] { action = [command, a] { return diff(*command, *a); }; });
+  command.add("A", &a->image, "the picture, or a run's folder").names(ValueKind::kFile).require();
+  command.add("B", &a->truth, "what it should look like, or another run's folder").names(ValueKind::kFile).require();
+  command.add("--metric", &a->metric, fmt::format("{} (see 'list metrics')", fmt::join(metric_names(), ", ")))
+      .such_as(metric_names());
+  command.add("--mask", &a->mask, "a picture of one channel: pixels count where it is not 0").names(ValueKind::kFile);
+  command.add("--pixels-per-degree", &a->pixels_per_degree, "how large FLIP's observer sees the pixels");
+  add_json_option(command, a->json);
+  command.action = [a](const CommandLine& line) { return diff(line, *a); };
+  return command;
 }
 
 }  // namespace shadowbench::cli

@@ -6,6 +6,7 @@
 
 #include "filters/catalogue.h"
 #include "filters/model.h"
+#include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/gl/survey/measure.h"
 #include "harness/gl/timer.h"
@@ -162,24 +163,21 @@ int list_gl(const ListArguments& arguments) {
 
 }  // namespace
 
-void add_list_command(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("list", "Show what there is: filters, scenes, metrics, or the OpenGL underneath");
-  command->require_subcommand(1);
+Command make_list_command() {
+  Command command{"list", "Show what there is: filters, scenes, metrics, or the OpenGL underneath"};
   auto a = std::make_shared<ListArguments>();
-  CLI::App* filters = command->add_subcommand("filters", "Filters with parameters, ranges, units and source");
-  filters->add_flag("--json", a->json, "as JSON");
-  filters->callback([&action, a] { action = [a] { return list_filters(*a); }; });
-  CLI::App* scenes = command->add_subcommand("scenes", "Built-in scenes");
-  scenes->add_flag("--json", a->json, "as JSON");
-  scenes->callback([&action, a] { action = [a] { return list_scenes(*a); }; });
-  CLI::App* metrics = command->add_subcommand("metrics", "Numbers that a run reports, with unit, range and definition");
-  metrics->add_flag("--json", a->json, "as JSON");
-  metrics->callback([&action, a] { action = [a] { return list_metrics(*a); }; });
-  CLI::App* gl = command->add_subcommand("gl", "The OpenGL context that a run would use");
-  gl->add_flag("--measure", a->measure, "what this GL really does, by experiment");
-  gl->add_option("--gl", a->backend, "auto, osmesa, egl or glfw")->capture_default_str();
-  gl->callback([&action, a] { action = [a] { return list_gl(*a); }; });
+  const auto add = [&](const char* name, const char* title, int (*show)(const ListArguments&)) {
+    Command& sub = command.commands.emplace_back(Command{name, title});
+    sub.action = [a, show](const CommandLine&) { return show(*a); };
+    if (show != list_gl) add_json_option(sub, a->json);
+  };
+  add("filters", "Filters with parameters, ranges, units and source", list_filters);
+  add("scenes", "Built-in scenes", list_scenes);
+  add("metrics", "Numbers that a run reports, with unit, range and definition", list_metrics);
+  add("gl", "The OpenGL context that a run would use", list_gl);
+  command.commands.back().add("--measure", &a->measure, "what this GL really does, by experiment");
+  add_backend_option(command.commands.back(), a->backend);
+  return command;
 }
 
 }  // namespace shadowbench::cli

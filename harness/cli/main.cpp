@@ -11,14 +11,15 @@
 #include "filters/base/error.h"
 #include "harness/cli/commands.h"
 
+namespace shadowbench::cli {
 namespace {
 
-constexpr int kUsageError = 2;
-constexpr int kInputError = static_cast<int>(shadowbench::ErrorKind::kInput);
-constexpr int kOutputError = static_cast<int>(shadowbench::ErrorKind::kOutput);
+constexpr int kInputError = static_cast<int>(ErrorKind::kInput);
+constexpr int kOutputError = static_cast<int>(ErrorKind::kOutput);
 constexpr int kBug = 70;
 
-/// Control characters of names and files as "\x1b": they would steer the terminal. Lines of a shader's log stay lines.
+/// Writes control characters of names and files as "\x1b", because they would steer the terminal. Newlines stay, for
+/// the logs of shaders.
 std::string make_visible(const std::string& message) {
   std::string visible;
   for (const char c : message) {
@@ -28,33 +29,25 @@ std::string make_visible(const std::string& message) {
   return visible;
 }
 
-/// One line for one failure; nothing else of the program prints errors.
+/// Prints one message for one failure; nothing else in the program prints errors.
 void print_error(const std::string& message) { fmt::print(stderr, "shadowbench: {}\n", make_visible(message)); }
 
-/// Runs what the command line asks for. Throws what main() turns into messages.
+/// Does what the command line asks for. Throws what main() turns into messages.
 int run(int argc, char** argv) {
-  CLI::App app("Compares soft-shadow filters: pictures, cost and error of each, over the same scenes.", "shadowbench");
-  app.require_subcommand(1);
-  shadowbench::cli::Action action;
-  shadowbench::cli::add_run_command(app, action, {argv, argv + argc});
-  shadowbench::cli::add_list_command(app, action);
-  shadowbench::cli::add_diff_command(app, action);
-  shadowbench::cli::add_bias_command(app, action);
-  shadowbench::cli::add_merge_command(app, action);
-  shadowbench::cli::add_advise_command(app, action);
-  shadowbench::cli::add_tune_command(app, action);
-  shadowbench::cli::add_stress_command(app, action, {argv, argv + argc});
-  shadowbench::cli::add_regress_command(app, action, {argv, argv + argc});
-  shadowbench::cli::add_flicker_command(app, action, {argv, argv + argc});
-  try {
-    app.parse(argc, argv);
-    return action();
-  } catch (const CLI::Success& help) {
-    return app.exit(help);
-  }
+  Command program{"shadowbench",
+                  "Compares soft-shadow filters: pictures, cost and error of each, over the same scenes."};
+  program.about =
+      "Exit codes: 0 done; 1 a limit or a baseline was not met; 2 usage, such as an unknown name or a value out of "
+      "range; 3 an input file is missing, malformed or not finite; 4 there is no OpenGL context; 5 a filter's file; 6 "
+      "output cannot be written; 70 a bug in the program.";
+  program.commands = {make_run_command(),     make_list_command(),   make_diff_command(), make_bias_command(),
+                      make_merge_command(),   make_advise_command(), make_tune_command(), make_stress_command(),
+                      make_regress_command(), make_flicker_command()};
+  program.commands.push_back(make_manual_command(program));
+  return run_command_line(program, argc, argv);
 }
 
-/// What was printed may not have got anywhere: a disk is full, a pipe is closed.
+/// Reports where what was printed could not be written, because a disk is full or a pipe is closed.
 int finish_output(int exit_code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
   print_error(
@@ -63,14 +56,13 @@ int finish_output(int exit_code) {
 }
 
 }  // namespace
+}  // namespace shadowbench::cli
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of the write, as a full disk is
+  using namespace shadowbench::cli;
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes becomes an error of the write, as a full disk is
   try {
     return finish_output(run(argc, argv));
-  } catch (const CLI::ParseError& error) {
-    print_error(fmt::format("{}; see 'shadowbench --help'", error.what()));
-    return kUsageError;
   } catch (const shadowbench::Error& error) {
     print_error(error.what());
     return static_cast<int>(error.kind());

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 
 #include "harness/cli/commands.h"
@@ -9,25 +8,27 @@
 
 namespace shadowbench::cli {
 
-void add_merge_command(CLI::App& app, Action& action) {
+Command make_merge_command() {
   struct Arguments {
-    std::vector<std::filesystem::path> folders;
-    std::filesystem::path out;
+    std::vector<std::string> folders;
+    std::string out;
   };
-  CLI::App* command = app.add_subcommand("merge", "Join the report folders that 'run --shard 1/N' to 'N/N' wrote");
+  Command command{"merge", "Join the report folders that 'run --shard 1/N' to 'N/N' wrote"};
   auto a = std::make_shared<Arguments>();
-  command->add_option("DIR", a->folders, "the report folders of all shards of one experiment")->required();
-  command->add_option("--out", a->out, "folder of the whole report; new or empty")->required();
-  command->callback([&action, a] {
-    action = [a] {
-      {
-        const Interruption interruption(a->out, kStoppedAdvice);
-        run::merge_runs(a->folders, a->out);
-      }
-      fmt::print("report: {}\n", (a->out / "index.html").string());
-      return 0;
-    };
-  });
+  command.add("DIR", &a->folders, "the report folders of all shards of one experiment")
+      .names(ValueKind::kFolder)
+      .require();
+  command.add("--out", &a->out, "folder of the whole report; new or empty").names(ValueKind::kFolder).require();
+  command.action = [a](const CommandLine&) {
+    const std::filesystem::path out = a->out;
+    {
+      const Interruption interruption(out, kStoppedAdvice);
+      run::merge_runs({a->folders.begin(), a->folders.end()}, out);
+    }
+    fmt::print("report: {}\n", (out / "index.html").string());
+    return 0;
+  };
+  return command;
 }
 
 }  // namespace shadowbench::cli

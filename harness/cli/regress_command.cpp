@@ -33,7 +33,7 @@ std::vector<std::string> split_names(const std::string& text) {
   return names;
 }
 
-regress::RegressOptions make_options(const RegressArguments& a, const std::vector<std::string>& words) {
+regress::RegressOptions make_regress_options(const RegressArguments& a, const std::vector<std::string>& words) {
   regress::RegressOptions options;
   options.run = find_results(a.run).parent_path();
   options.baseline = a.baseline;
@@ -43,13 +43,12 @@ regress::RegressOptions make_options(const RegressArguments& a, const std::vecto
   options.remove_missing = a.remove_missing;
   if (!a.junit.empty()) options.junit = a.junit;
   options.command = words;
-  if (a.remove_missing && !a.accept)
-    throw Error(ErrorKind::kUsage, "--remove-missing changes the baseline: add --accept");
+  if (a.remove_missing && !a.accept) fail("--remove-missing changes the baseline: add --accept");
   return options;
 }
 
 int regress(const RegressArguments& arguments, const std::vector<std::string>& words) {
-  const regress::RegressOptions options = make_options(arguments, words);
+  const regress::RegressOptions options = make_regress_options(arguments, words);
   regress::RegressOutcome outcome;
   {
     const Interruption interruption(options.accept ? options.baseline : options.out, kStoppedAdvice);
@@ -62,28 +61,27 @@ int regress(const RegressArguments& arguments, const std::vector<std::string>& w
 
 }  // namespace
 
-void add_regress_command(CLI::App& app, Action& action, const std::vector<std::string>& words) {
-  CLI::App* command = app.add_subcommand(
-      "regress", "Compare a run with a baseline: which outputs moved, and whether they are still as accurate");
-  command->footer(
+Command make_regress_command() {
+  Command command{"regress",
+                  "Compare a run with a baseline: which outputs moved, and whether they are still as accurate"};
+  command.about =
       "Exit code 1: a cell is less accurate, has changed, is slower, extra, missing or unreadable. Compared are "
-      "visibility, errors, artefacts, attribution\n"
-      "and costs, and times as their ratio to 'none' where machine and OpenGL are the baseline's. "
-      "BASELINE/baseline.toml holds the tolerances with\n"
-      "their reasons. Make runs for a baseline with --uncertainty: then pixels that rounding or another seed may move "
-      "are known one by one.");
+      "visibility, errors, artefacts, attribution and costs, and times as their ratio to 'none' where machine and "
+      "OpenGL are the baseline's. BASELINE/baseline.toml holds the tolerances with their reasons. Make runs for a "
+      "baseline with --uncertainty: then pixels that rounding or another seed may move are known one by one.";
   auto a = std::make_shared<RegressArguments>();
-  command->add_option("RUN", a->run, "the report folder of a run")->required();
-  command->add_option("--baseline", a->baseline, "folder of the expected results")->required();
-  command->add_option("--filters", a->filters, "compare these filters only, ids with commas");
-  command->add_option("--scene", a->scenes, "compare this scene only; may be repeated")->allow_extra_args(false);
-  command->add_flag("--accept", a->accept, "make what differs the baseline, and log it in BASELINE/accepted.md");
-  command->add_flag("--remove-missing", a->remove_missing,
-                    "with --accept: cells that the run lacks leave the baseline");
-  command->add_option("--junit", a->junit, "also write JUnit XML for a build server");
-  command->add_flag("--json", a->json, "print JSON; it also goes to OUT/regress.json");
-  command->add_option("--out", a->out, "folder for regress.json and the pictures (default: 'regress' in RUN)");
-  command->callback([&action, a, words] { action = [a, words] { return regress(*a, words); }; });
+  command.add("RUN", &a->run, "the report folder of a run").names(ValueKind::kFolder).require();
+  command.add("--baseline", &a->baseline, "folder of the expected results").names(ValueKind::kFolder).require();
+  command.add("--filters", &a->filters, "compare these filters only, ids with commas").names(ValueKind::kFilters);
+  command.add("--scene", &a->scenes, "compare this scene only; may be repeated").names(ValueKind::kScene);
+  command.add("--accept", &a->accept, "make what differs the baseline, and log it in BASELINE/accepted.md");
+  command.add("--remove-missing", &a->remove_missing, "with --accept: cells that the run lacks leave the baseline");
+  command.add("--junit", &a->junit, "also write JUnit XML for a build server").names(ValueKind::kFile);
+  command.add("--json", &a->json, "print JSON; it also goes to OUT/regress.json");
+  command.add("--out", &a->out, "folder for regress.json and the pictures (default: 'regress' in RUN)")
+      .names(ValueKind::kFolder);
+  command.action = [a](const CommandLine& line) { return regress(*a, line.words()); };
+  return command;
 }
 
 }  // namespace shadowbench::cli

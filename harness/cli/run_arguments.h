@@ -1,22 +1,22 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "harness/cli/arguments.h"
+
 namespace shadowbench::cli {
 
-/// A run of more filters has no grids, unless it is told to: nobody could read them.
+/// A run of more filters draws grids only where it is told to, because nobody could read them.
 inline constexpr int kFiltersOfAGrid = 16;
 
 /// The command line as text; parsed and checked before anything is made.
-struct RunArguments {
+struct RunArguments : DrawingArguments {
   std::string experiment = "default";
   std::vector<std::string> scenes;
   bool ground = false;
-  std::string filters;
   std::vector<std::string> filter_files;
   std::string map_sizes = "1024";
   std::string sizes = "960x540";
@@ -36,9 +36,7 @@ struct RunArguments {
   double precision = 0.05;
   double budget_s = 0.4;
   std::uint32_t seed = 1;
-  std::string backend = "auto";
   double cell_timeout_s = 60.0;
-  std::string out = "report/out";
   std::vector<std::string> views;
   bool truth = true;
   bool attribution = true;
@@ -49,19 +47,16 @@ struct RunArguments {
   bool fresh = false;
   bool yes = false;
   std::string tuned;
-  std::string cache;
-  bool no_cache = false;
   bool worker = false;
   std::optional<double> pad_texels;
 };
 
-/// Adds the options of `shadowbench run`; parsing fills `arguments`, which must outlive the application.
-void add_run_options(CLI::App& command, RunArguments& arguments);
+/// Adds the options of `shadowbench run`; parsing fills `arguments`, which must outlive the command.
+void add_run_options(Command& command, RunArguments& arguments);
 
-/// Takes what an experiment file says for every option that was not given on the command line.
-/// `command` must have been parsed. Gives the experiment's title.
-/// Throws Error as options::read_experiment and options::expand_filters, and Error(kInput) for a value that its option
-/// refuses.
-std::string apply_experiment(CLI::App& command, RunArguments& arguments);
+/// Takes what an experiment file says for every option that was not given on the command line. Returns the
+/// experiment's title. Throws Error as options::read_experiment and options::expand_filters, and Error(kInput) for a
+/// value that its option refuses.
+std::string apply_experiment(const CommandLine& line, RunArguments& arguments);
 
 }  // namespace shadowbench::cli

@@ -6,13 +6,8 @@
 #include <algorithm>
 #include <csignal>
 #include <memory>
-#include <optional>
-#include <tuple>
 
-#include "filters/base/error.h"
-#include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
-#include "harness/cli/interruption.h"
 #include "harness/cli/progress_bar.h"
 #include "harness/cli/run_arguments.h"
 #include "harness/gl/pixel_format.h"
@@ -49,7 +44,7 @@ std::vector<int> parse_lights(const std::string& text) {
   return counts;
 }
 
-void add_filters(options::RunOptions& options, const RunArguments& arguments) {
+void choose_filters(options::RunOptions& options, const RunArguments& arguments) {
   filters::Catalogue catalogue(options.resources.filters);
   for (const std::string& file : arguments.filter_files) catalogue.add_user_file(file);
   options.filters = catalogue.parse_requests(arguments.filters);
@@ -64,23 +59,20 @@ void add_filters(options::RunOptions& options, const RunArguments& arguments) {
   require_distinct(options.filters);
 }
 
-void check_padding(const std::optional<double>& texels) {
-  if (!texels || (*texels >= 0.0 && *texels <= kMostPadding)) return;
-  fail(fmt::format("--pad-texels: {} is out of range: choose 0 .. {:g}", *texels, kMostPadding));
+void require_in_range(const char* option, double value, double more_than, double most, const char* unit = "") {
+  if (value > more_than && value <= most) return;
+  fail(fmt::format("{}: {} is out of range: choose more than {:g}, at most {:g}{}", option, value, more_than, most,
+                   unit));
 }
 
-void check(const RunArguments& arguments) {
-  check_padding(arguments.pad_texels);
-  if (!(arguments.cell_timeout_s > 0.0 && arguments.cell_timeout_s <= 86400.0)) {
-    fail(fmt::format("--cell-timeout: {} is out of range: choose more than 0, at most 86400 seconds",
-                     arguments.cell_timeout_s));
-  }
-  // Above, single precision cannot tell the ratio from the ratio less 1, by which depth is linearised.
-  const double ratio = arguments.perspective_depth.value_or(2.0);
-  if (!(ratio > 1.0 && ratio <= kLargestDepthRatio)) {
-    fail(fmt::format("--perspective-depth: {} is out of range: choose far over near, more than 1, at most {:g}", ratio,
-                     kLargestDepthRatio));
-  }
+void check_ranges(const RunArguments& arguments) {
+  const double padding = arguments.pad_texels.value_or(0.0);
+  if (!(padding >= 0.0 && padding <= kMostPadding))
+    fail(fmt::format("--pad-texels: {} is out of range: choose 0 .. {:g}", padding, kMostPadding));
+  require_in_range("--cell-timeout", arguments.cell_timeout_s, 0.0, 86400.0, " seconds");
+  // With a larger ratio, single precision cannot tell it from the ratio less 1, which linearises depth.
+  require_in_range("--perspective-depth", arguments.perspective_depth.value_or(2.0), 1.0, kLargestDepthRatio,
+                   " (the far plane's distance over the near one's)");
 }
 
 void set_map_and_light(options::RunOptions& options, const RunArguments& arguments) {
@@ -92,10 +84,8 @@ void set_map_and_light(options::RunOptions& options, const RunArguments& argumen
 }
 
 options::RoundLimits parse_rounds(const RunArguments& arguments) {
-  if (!(arguments.precision > 0.0 && arguments.precision <= 1.0))
-    fail(fmt::format("--precision: {} is out of range: choose more than 0, at most 1", arguments.precision));
-  if (!(arguments.budget_s > 0.0 && arguments.budget_s <= 3600.0))
-    fail(fmt::format("--budget: {} is out of range: choose more than 0, at most 3600 seconds", arguments.budget_s));
+  require_in_range("--precision", arguments.precision, 0.0, 1.0);
+  require_in_range("--budget", arguments.budget_s, 0.0, 3600.0, " seconds");
   if (arguments.rounds != "auto") {
     const int rounds = parse_count(arguments.rounds, "--rounds");
     if (rounds > kMostRounds)
@@ -130,14 +120,14 @@ options::Shard parse_shard(const std::string& text) {
   return shard;
 }
 
-options::RunOptions make_options(const RunArguments& arguments, std::vector<std::string> command) {
-  check(arguments);
+options::RunOptions make_run_options(const RunArguments& arguments, std::vector<std::string> words) {
+  check_ranges(arguments);
   options::RunOptions options;
-  options.resources = options::find_resources();
+  take_drawing_options(arguments, options);
   options.scenes = arguments.scenes.empty() ? list_builtin_scenes(options.resources) : arguments.scenes;
   options.ground = arguments.ground;
   options.map_sizes = parse_counts(arguments.map_sizes, "--map-size");
-  add_filters(options, arguments);
+  choose_filters(options, arguments);
   options.sizes = parse_sizes(arguments.sizes);
   options.views = arguments.views;
   set_map_and_light(options, arguments);
@@ -152,10 +142,8 @@ options::RunOptions make_options(const RunArguments& arguments, std::vector<std:
   options::require_light_maps_fit(options);
   options.reference = filters::Catalogue(options.resources.filters).parse_requests(kReferenceFilter).front();
   options.seed = arguments.seed;
-  options.backend = gl::parse_backend(arguments.backend);
   options.cell_timeout_s = arguments.cell_timeout_s;
-  options.out = arguments.out;
-  options.command = std::move(command);
+  options.command = std::move(words);
   options.truth = arguments.truth && !arguments.worker;
   options.attribution = arguments.attribution;
   options.stability = arguments.stability;
@@ -166,46 +154,52 @@ options::RunOptions make_options(const RunArguments& arguments, std::vector<std:
     fail("--shard needs --no-grids: a grid shows all filters of a view, and a shard has some of them");
   options.fresh = arguments.fresh;
   options.large_is_fine = arguments.yes;
-  options.cache = choose_cache(arguments.cache, arguments.no_cache);
   options.worker = arguments.worker;
   options.pad_texels = arguments.pad_texels;
   return options;
 }
 
-/// A worker must not outlive the run that waits for it: that reads what the worker writes to standard error.
+/// Ends this worker together with the run that waits for it and reads what it writes to standard error.
 void end_with_parent() {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   pollfd reader{STDERR_FILENO, 0, 0};
-  if (poll(&reader, 1, 0) > 0 && (reader.revents & POLLERR) != 0)
-    raise(SIGKILL);  // it ended before this could be heard
+  if (poll(&reader, 1, 0) > 0 && (reader.revents & POLLERR) != 0) raise(SIGKILL);  // the run had ended before that
 }
 
-int run(CLI::App& command_line, RunArguments& arguments, std::vector<std::string> command) {
-  if (arguments.worker) end_with_parent();
-  // A worker is told everything by the run it belongs to.
-  const std::string title = arguments.worker ? std::string() : apply_experiment(command_line, arguments);
-  options::RunOptions options = make_options(arguments, std::move(command));
-  options.title = title;
-  {
-    std::optional<Interruption> interruption;
-    if (!options.worker)
-      interruption.emplace(options.out, "what was finished stays, and the same command goes on from there");
-    const std::unique_ptr<options::Progress> progress = make_progress();
-    for (const std::string& note : options.notes) progress->note("note: " + note);
-    run::run_experiment(options, *progress);
+void run_with_notes(const options::RunOptions& options, options::Progress& progress) {
+  for (const std::string& note : options.notes) progress.note("note: " + note);
+  run::run_experiment(options, progress);
+}
+
+/// Measures a user's filter for the run that started this process and gave it all options on the command line.
+int run_as_worker(const options::RunOptions& options) {
+  run_with_notes(options, *make_progress());
+  return 0;
+}
+
+int run(const CommandLine& line, RunArguments& arguments) {
+  if (arguments.worker) {
+    end_with_parent();
+    return run_as_worker(make_run_options(arguments, line.words()));
   }
-  if (!options.worker) fmt::print("report: {}\n", (options.out / "index.html").string());
+  const std::string title = apply_experiment(line, arguments);
+  options::RunOptions options = make_run_options(arguments, line.words());
+  options.title = title;
+  work_with_progress(
+      options.out, [&](options::Progress& progress) { run_with_notes(options, progress); },
+      "what was finished stays, and the same command goes on from there");
+  fmt::print("report: {}\n", (options.out / "index.html").string());
   return 0;
 }
 
 }  // namespace
 
-void add_run_command(CLI::App& app, Action& action, const std::vector<std::string>& words) {
-  CLI::App* command = app.add_subcommand("run", "Render scenes with filters and write a report");
+Command make_run_command() {
+  Command command{"run", "Render scenes with filters and write a report"};
   auto a = std::make_shared<RunArguments>();
-  add_run_options(*command, *a);
-  command->callback(
-      [&action, command, a, words] { action = [command, a, words] { return run(*command, *a, words); }; });
+  add_run_options(command, *a);
+  command.action = [a](const CommandLine& line) { return run(line, *a); };
+  return command;
 }
 
 }  // namespace shadowbench::cli

@@ -38,6 +38,9 @@ struct Experiment {
   std::vector<SweptFilter> filters;  ///< none: as the options say
 };
 
+/// Names the experiments of a folder.
+std::vector<std::string> list_experiments(const std::filesystem::path& folder);
+
 /// Finds an experiment: a path that ends in .toml, or the name of one that comes with the program.
 /// Throws Error(kUsage) for another name, with the nearest or all there are.
 std::filesystem::path find_experiment(const std::filesystem::path& folder, const std::string& name);

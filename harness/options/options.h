@@ -24,22 +24,22 @@ struct Resources {
   std::filesystem::path experiments;
 };
 
-/// Finds the program's folders: below $SHADOWBENCH_ROOT where that is set, else where the program was built from.
-/// Throws Error(kUsage) when they are not there.
+/// Finds the program's folders: below $SHADOWBENCH_ROOT where that is set, else in ../share/shadowbench beside the
+/// program where that is, else in the sources that it was built from. Throws Error(kUsage) where one is missing.
 Resources find_resources();
 
 /// Gives the folder for traced images: $XDG_CACHE_HOME/shadowbench, else ~/.cache/shadowbench; empty where neither is
 /// set. Source: XDG Base Directory Specification 0.8.
 std::filesystem::path default_cache_folder();
 
-/// Of a picture, in pixels.
+/// The size of a picture, in pixels.
 struct PictureSize {
   int width = 960;
   int height = 540;
   bool operator==(const PictureSize&) const = default;
 };
 
-/// Every `count`-th cell of an experiment, from the `index`-th on, counted from 0.
+/// A part of an experiment: every `count`-th cell, from the `index`-th on, counted from 0.
 struct Shard {
   int index = 0;
   int count = 1;
@@ -51,15 +51,15 @@ struct LightAngles {
   double elevation_deg = 0.0;
 };
 
-/// Everything that `shadowbench run` is told.
+/// All options of `shadowbench run`; the other commands that draw use some of them.
 struct RunOptions {
   Resources resources;
   std::vector<std::string> scenes;  ///< names or paths
   bool ground = false;
   std::vector<filters::FilterRequest> filters;
   std::vector<int> map_sizes = {1024};
-  std::vector<PictureSize> sizes = {{}};  ///< of a run; of what one size of it is told, width and height hold
-  int width = 960;
+  std::vector<PictureSize> sizes = {{}};  ///< of all pictures of a run
+  int width = 960;                        ///< of the pictures that are drawn at present, in pixels
   int height = 540;
   std::vector<std::string> views;  ///< names of cameras; none: all that each scene has
   render::MapSettings map;

@@ -7,11 +7,28 @@
 
 namespace shadowbench::options {
 
+namespace {
+
+/// The folder that holds what comes with the program: the one that the user names, else the one that is installed
+/// beside this program, else the sources that it was built from.
+std::filesystem::path choose_root() {
+  if (const char* chosen = std::getenv("SHADOWBENCH_ROOT")) return chosen;
+  std::error_code ignored;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  const std::filesystem::path installed = program.parent_path().parent_path() / "share" / "shadowbench";
+  return std::filesystem::is_directory(installed / "filters", ignored) ? installed : SHADOWBENCH_BUILT_FROM;
+}
+
+}  // namespace
+
 Resources find_resources() {
-  const char* chosen = std::getenv("SHADOWBENCH_ROOT");
-  const std::filesystem::path root = chosen ? chosen : SHADOWBENCH_BUILT_FROM;
-  Resources resources{root / "filters", root / "shaders", root / "harness" / "scenes",
-                      root / "harness" / "experiments"};
+  const std::filesystem::path root = choose_root();
+  const auto find = [&](const char* name) {
+    // Sources have these folders in harness/, an installed program beside the others.
+    const std::filesystem::path folder = root / "harness" / name;
+    return std::filesystem::is_directory(folder) ? folder : root / name;
+  };
+  Resources resources{root / "filters", root / "shaders", find("scenes"), find("experiments")};
   for (const auto& folder : {resources.filters, resources.shaders, resources.scenes, resources.experiments}) {
     if (std::filesystem::is_directory(folder)) continue;
     throw Error(ErrorKind::kUsage,

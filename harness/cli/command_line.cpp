@@ -1,0 +1,132 @@
+#include "harness/cli/command_line.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <sstream>
+#include <type_traits>
+
+#include "filters/base/error.h"
+
+namespace shadowbench::cli {
+namespace {
+
+constexpr std::size_t kColumns = 110;
+
+std::string wrap(const std::string& paragraph) {
+  if (paragraph.starts_with(' ')) return paragraph;
+  std::string lines;
+  std::size_t column = 0;
+  std::istringstream text(paragraph);
+  for (std::string word; text >> word; column += word.size() + 1) {
+    const bool full = column + word.size() > kColumns;
+    if (column > 0) lines += full ? '\n' : ' ';
+    if (full) column = 0;
+    lines += word;
+  }
+  return lines;
+}
+
+std::string wrap_all(const std::string& about) {
+  std::string lines;
+  std::istringstream text(about);
+  for (std::string paragraph; std::getline(text, paragraph);) lines += (lines.empty() ? "" : "\n") + wrap(paragraph);
+  return lines;
+}
+
+std::string check_value(const Option& option, const std::string& value) {
+  if (value.empty() && !option.not_empty.empty()) return fmt::format("a value is missing: give {}", option.not_empty);
+  if (option.only_choices && std::ranges::find(option.choices, value) == option.choices.end())
+    return fmt::format("'{}' must be one of {}", value, fmt::join(option.choices, ", "));
+  return {};
+}
+
+void add_option(CLI::App& app, const Option& option) {
+  const auto add = [&](auto* variable) -> CLI::Option* {
+    using Value = std::remove_pointer_t<decltype(variable)>;
+    if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, int>)
+      return app.add_flag(option.opposite ? option.name + ",!--no-" + option.name.substr(2) : option.name, *variable,
+                          option.help);
+    else
+      return app.add_option(option.name, *variable, option.help)->type_name(option.value_name());
+  };
+  CLI::Option* parsed = std::visit(add, option.variable);
+  if (option.required) parsed->required();
+  if (option.hidden) parsed->group("");
+  if (option.is_flag()) return;
+  if (option.is_repeatable() && !option.is_argument()) parsed->allow_extra_args(false);
+  if (!option.default_value().empty()) parsed->default_str(option.default_value());
+  if (option.only_choices || !option.not_empty.empty())
+    parsed->check([&option](const std::string& value) { return check_value(option, value); },
+                  option.only_choices ? fmt::format("{{{}}}", fmt::join(option.choices, ",")) : std::string());
+}
+
+struct Chosen {
+  const Command* command = nullptr;
+  CLI::App* parsed = nullptr;
+};
+
+void add_command(CLI::App& app, const Command& command, Chosen& chosen) {
+  app.footer(wrap_all(command.about));  // an empty one too: else that of the program is inherited
+  if (command.hidden) app.group("");
+  for (const Option& option : command.options) add_option(app, option);
+  for (const Command& sub : command.commands) add_command(*app.add_subcommand(sub.name, sub.title), sub, chosen);
+  if (!command.commands.empty()) app.require_subcommand(1);
+  if (command.action) app.callback([&] { chosen = {&command, &app}; });
+}
+
+}  // namespace
+
+std::string Option::value_name() const {
+  switch (kind) {
+    case ValueKind::kFile: return "FILE";
+    case ValueKind::kFolder: return "FOLDER";
+    case ValueKind::kScene: return "SCENE";
+    case ValueKind::kFilters: return "FILTERS";
+    default: break;
+  }
+  if (std::holds_alternative<std::uint32_t*>(variable)) return "UINT";
+  return std::holds_alternative<double*>(variable) || std::holds_alternative<std::optional<double>*>(variable) ? "FLOAT"
+                                                                                                               : "TEXT";
+}
+
+std::string Option::default_value() const {
+  if (const auto* text = std::get_if<std::string*>(&variable)) return **text;
+  if (const auto* number = std::get_if<double*>(&variable)) return fmt::format("{:g}", **number);
+  if (const auto* number = std::get_if<std::uint32_t*>(&variable)) return fmt::format("{}", **number);
+  return {};
+}
+
+bool CommandLine::has(const std::string& option) const { return parsed_->count(option) > 0; }
+
+void CommandLine::set(const std::string& option, const std::vector<std::string>& values,
+                      const std::string& where) const {
+  CLI::Option* parsed = parsed_->get_option(option);
+  try {
+    if (parsed->get_items_expected_max() > 1)
+      for (const std::string& value : values) parsed->add_result(value);
+    else
+      parsed->add_result(fmt::format("{}", fmt::join(values, ",")));
+    parsed->run_callback();
+  } catch (const CLI::Error& error) {
+    throw Error(ErrorKind::kInput, error.what(), where);
+  }
+}
+
+int run_command_line(const Command& program, int argc, char** argv) {
+  CLI::App app(program.title, program.name);
+  Chosen chosen;
+  add_command(app, program, chosen);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    throw Error(ErrorKind::kUsage, fmt::format("{}; see 'shadowbench --help'", error.what()));
+  }
+  return chosen.command->action(CommandLine({argv, argv + argc}, chosen.parsed));
+}
+
+}  // namespace shadowbench::cli

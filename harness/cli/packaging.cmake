@@ -1,0 +1,76 @@
+# What `cmake --install` and `cpack -G DEB` give users: the program, its files, manual pages and completions.
+include(GNUInstallDirs)
+
+# Who publishes a package gives an address of their own: -DSHADOWBENCH_MAINTAINER="NAME <ADDRESS>".
+set(SHADOWBENCH_MAINTAINER "The Shadowbench authors <shadowbench@localhost>" CACHE STRING "Maintainer of the Debian package")
+
+# Debian asks for a changelog of its own form.
+string(TIMESTAMP _date "%a, %d %b %Y 00:00:00 +0000" UTC)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/changelog @ONLY CONTENT "shadowbench (${PROJECT_VERSION}) stable; urgency=low
+
+  * CHANGELOG.md beside this file says what changed.
+
+ -- ${SHADOWBENCH_MAINTAINER}  ${_date}
+")
+
+# The program writes its manual pages and completions itself, from the description of its options.
+set(_manual ${PROJECT_BINARY_DIR}/manual)
+file(GLOB _named CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/filters/*.glsl ${PROJECT_SOURCE_DIR}/harness/scenes/*.toml
+     ${PROJECT_SOURCE_DIR}/harness/scenes/teaching/*.toml ${PROJECT_SOURCE_DIR}/harness/experiments/*.toml)
+add_custom_command(
+  OUTPUT ${_manual}/written
+  COMMAND ${CMAKE_COMMAND} -E rm -rf ${_manual}
+  COMMAND ${CMAKE_COMMAND} -E env --unset=SHADOWBENCH_ROOT ASAN_OPTIONS=detect_leaks=0 $<TARGET_FILE:shadowbench> manual ${_manual}/pages
+  COMMAND gzip -9n -r ${_manual}/pages
+  COMMAND gzip -d ${_manual}/pages/shadowbench.bash.gz ${_manual}/pages/_shadowbench.gz
+  COMMAND gzip -9nc ${PROJECT_BINARY_DIR}/changelog > ${_manual}/changelog.gz
+  COMMAND ${CMAKE_COMMAND} -E touch ${_manual}/written
+  DEPENDS shadowbench ${_named} ${PROJECT_BINARY_DIR}/changelog
+  COMMENT "Writing manual pages and completions"
+  VERBATIM)
+add_custom_target(shadowbench_manual ALL DEPENDS ${_manual}/written)
+
+set(_share ${CMAKE_INSTALL_DATADIR}/shadowbench)
+install(TARGETS shadowbench RUNTIME COMPONENT program)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/filters/ DESTINATION ${_share}/filters COMPONENT program FILES_MATCHING PATTERN "*.glsl"
+        PATTERN "base" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders/ DESTINATION ${_share}/shaders COMPONENT program PATTERN "*.md" EXCLUDE)
+foreach(_folder IN ITEMS scenes experiments)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/harness/${_folder}/ DESTINATION ${_share}/${_folder} COMPONENT program PATTERN "*.md" EXCLUDE)
+endforeach()
+install(DIRECTORY ${_manual}/pages/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program FILES_MATCHING PATTERN "*.1.gz")
+install(FILES ${_manual}/pages/shadowbench.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME shadowbench
+        COMPONENT program)
+install(FILES ${_manual}/pages/_shadowbench DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${_manual}/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+file(READ ${PROJECT_SOURCE_DIR}/LICENSE _licence)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/copyright CONTENT "${_licence}
+The program holds Chart.js, which its pages show charts with: Copyright (c) 2014-2022 Chart.js Contributors, under the same licence.
+" @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_COMPONENTS_ALL program)
+set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_PACKAGE_NAME shadowbench)
+set(CPACK_PACKAGE_VENDOR "The Shadowbench authors")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "compares soft-shadow filters: pictures, cost and error of each")
+set(CPACK_PACKAGE_DESCRIPTION
+    "Shadowbench draws a scene with each of many shadow-map filters, measures what
+each costs and how far each is from ray-traced truth, says where the error
+comes from, and writes a report of pictures, charts and tables. A filter is one
+GLSL file; a file of your own gets all that a built-in one gets. It draws on a
+GPU or in software, and its runs can be compared with a baseline on a build
+server.")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${SHADOWBENCH_MAINTAINER}")
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# What the program opens only at run time: the font of its pictures, and the drivers behind EGL and GLFW.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "fonts-dejavu-core, libgl1, libgl1-mesa-dri")
+include(CPack)

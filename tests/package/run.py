@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""Installs the built program, moves it elsewhere, uses it there, and reads the Debian package that cpack makes."""
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+TINY = ["--size", "32x18", "--map-size", "32", "--rounds", "1", "--no-attribution", "--no-cache", "--gl", "osmesa"]
+OPENED_AT_RUN_TIME = ("fonts-dejavu-core", "libgl1-mesa-dri")
+LINKED = ("libosmesa6", "libembree3-3", "libopenimageio2.4")
+
+
+def call(*words, **options):
+    done = subprocess.run([str(word) for word in words], text=True, capture_output=True, check=False, **options)
+    if done.returncode != 0:
+        sys.exit(f"exit code {done.returncode}: {words}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def expect(condition, message):
+    if not condition:
+        sys.exit(message)
+
+
+def install(build, folder):
+    """Installs into one folder and moves it to another, so that no path of the installation can be right by chance."""
+    call("cmake", "--install", build, "--prefix", folder / "first", "--component", "program")
+    (folder / "first").rename(folder / "moved")
+    return folder / "moved"
+
+
+def check_files(prefix):
+    expect([file.name for file in (prefix / "bin").iterdir()] == ["shadowbench"], "bin/ holds more than the program")
+    folders = sorted(folder.name for folder in (prefix / "share/shadowbench").iterdir())
+    expect(folders == ["experiments", "filters", "scenes", "shaders"], f"share/shadowbench/ holds {folders}")
+    suffixes = {file.suffix for file in (prefix / "share/shadowbench").rglob("*") if file.is_file()}
+    expect(suffixes == {".frag", ".glsl", ".toml", ".vert"}, f"share/shadowbench/ holds files {suffixes}")
+    help_text = call(prefix / "bin/shadowbench", "--help")
+    commands = re.findall(r"^  ([a-z]+) {2,}\S", help_text, re.MULTILINE)
+    expect("run" in commands, f"no commands in {help_text}")
+    for page in ["shadowbench", *(f"shadowbench-{command}" for command in commands)]:
+        expect((prefix / f"share/man/man1/{page}.1.gz").is_file(), f"there is no manual page {page}(1)")
+    for file in ("bash-completion/completions/shadowbench", "zsh/vendor-completions/_shadowbench",
+                 "doc/shadowbench/README.md", "doc/shadowbench/CHANGELOG.md", "doc/shadowbench/copyright"):
+        expect((prefix / "share" / file).is_file(), f"there is no {file}")
+
+
+def check_use(prefix, folder):
+    """Only the prefix has this scene, and no longer has another: what the program finds, it finds there."""
+    scenes = prefix / "share/shadowbench/scenes"
+    (scenes / "ball.toml").unlink()
+    text = (scenes / "cubes.toml").read_text(encoding="utf-8")
+    (scenes / "moved.toml").write_text(re.sub(r'title = ".*"', 'title = "Of the moved prefix"', text), encoding="utf-8")
+    environment = {name: value for name, value in os.environ.items() if name != "SHADOWBENCH_ROOT"}
+    program = prefix / "bin/shadowbench"
+    listed = call(program, "list", "scenes", env=environment)
+    expect("Of the moved prefix" in listed and "ball" not in listed, f"these are not the prefix's scenes:\n{listed}")
+    broken = prefix / "share/shadowbench/filters/esm.glsl"
+    broken.unlink()
+    filters = call(program, "list", "filters", env=environment)
+    expect("vsm " in filters and "esm " not in filters, f"these are not the prefix's filters:\n{filters}")
+    call(program, "run", "--scene", "moved", "--filters", "none,vsm", *TINY, "--out", folder / "out", env=environment)
+    expect((folder / "out/index.html").is_file(), "the run wrote no report")
+
+
+def check_package(build, folder):
+    call("cpack", "-G", "DEB", "--config", build / "CPackConfig.cmake", "-B", folder / "package")
+    packages = list((folder / "package").glob("*.deb"))
+    expect(len(packages) == 1, f"cpack made {packages}")
+    expect(re.fullmatch(r"shadowbench_[\d.]+_[a-z0-9]+\.deb", packages[0].name), f"a package named {packages[0].name}")
+    depends = call("dpkg-deb", "--field", packages[0], "Depends")
+    for package in OPENED_AT_RUN_TIME + LINKED:
+        expect(re.search(rf"(^|, ){re.escape(package)}( |,|$)", depends), f"no dependency on {package} in: {depends}")
+    expect(call("dpkg-deb", "--field", packages[0], "Section").strip() == "graphics", "another section than graphics")
+    files = call("dpkg-deb", "--contents", packages[0])
+    expect("./usr/bin/shadowbench\n" in files, f"no ./usr/bin/shadowbench in the package:\n{files}")
+    others = [line for line in files.splitlines() if re.search(r" \./usr/(?!bin/|share/|$)| \./(?!usr/)\w|_test|_bench", line)]
+    expect(not others, f"what is no part of the program is in the package: {others}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--build", required=True, type=Path, help="a folder in which everything is built")
+    build = parser.parse_args().build.resolve()
+    expect(shutil.which("dpkg-deb"), "dpkg-deb is missing: install dpkg-dev (harness/setup.sh does)")
+    with tempfile.TemporaryDirectory(prefix="shadowbench.package.") as name:
+        folder = Path(name)
+        prefix = install(build, folder)
+        check_files(prefix)
+        check_use(prefix, folder)
+        check_package(build, folder)
+
+
+if __name__ == "__main__":
+    main()
