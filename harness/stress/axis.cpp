@@ -57,28 +57,6 @@ const char* name_of(Level level) {
   return level == Level::kModel ? "model" : "arithmetic";
 }
 
-Case start_case(const filters::FilterRequest& request, std::string variant, Level level) {
-  Case item;
-  item.filter = request.spec.id;
-  item.variant = std::move(variant);
-  item.level = level;
-  item.params = request.values;
-  return item;
-}
-
-Case make_absent_case(std::string filter, std::string variant, Level level, std::string reason) {
-  Case item;
-  item.filter = std::move(filter);
-  item.variant = std::move(variant);
-  item.level = level;
-  item.not_available = std::move(reason);
-  return item;
-}
-
-Case make_undriven_case(const std::string& what) {
-  return make_absent_case({}, "filters", Level::kGl, fmt::format("no chosen filter's front matter declares {}", what));
-}
-
 std::vector<Axis> choose_axes(const std::string& text) {
   if (text.empty()) return axis_table();
   std::vector<Axis> axes;

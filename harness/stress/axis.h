@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/stress/context.h"
+#include "harness/stress/axis_inputs.h"
 #include "harness/stress/verdict.h"
 
 namespace shadowbench::stress {
@@ -24,10 +24,10 @@ enum class SearchFrom { kLow, kHigh };
 enum class Level {
   kGl,         ///< the passes of harness/render
   kModel,      ///< the filter's scalar model
-  kArithmetic  ///< the axis' own few lines, in the precision that is to be tested
+  kArithmetic  ///< the axis' own few lines, in the precision that is tested
 };
 
-/// A limit known beforehand.
+/// A limit that is known before anything is measured.
 struct Theory {
   std::optional<double> onset;  ///< value of the axis; empty: theory says that there is none
   TheoryKind kind = TheoryKind::kOverflow;
@@ -36,7 +36,7 @@ struct Theory {
   Verdict predicts = Verdict::kBroken;  ///< the verdict that the case reaches at `onset`
 };
 
-/// What a theory was measured against: the first value with the verdict that it predicts.
+/// A theory, and the first value at which the verdict that it predicts was observed.
 struct Disagreement {
   const Theory& theory;
   std::optional<double> measured;     ///< empty: nowhere in the range
@@ -45,26 +45,27 @@ struct Disagreement {
 
 /// One filter in one variant on an axis.
 struct Case {
-  std::string filter;   ///< id; empty: arithmetic that no filter has yet
-  std::string variant;  ///< "r16f, linear"
+  std::string filter = {};   ///< id; empty: arithmetic that no filter has yet
+  std::string variant = {};  ///< "r16f, linear"
   Level level = Level::kGl;
-  filters::ParamValues params;
-  std::vector<Theory> theories;  ///< none: nothing is known
-  /// Tells why a theory is not met, from what was measured; empty where the reason that it knows does not apply. May be
-  /// null.
-  std::function<std::string(const Disagreement&)> explain;
-  /// Says what else a record shows, and why, where its numbers bear that out; printed with the axis. May be null.
-  std::function<std::vector<std::string>(const records::StressCase&)> remark;
-  /// Null where `not_available` says why. An Error thrown at the first value makes the case not available; later ones
-  /// count as broken there.
-  std::function<Observation(double)> observe;
-  std::string not_available;
+  filters::ParamValues params = {};
+  std::vector<Theory> theories = {};  ///< none: no limit is known
+  /// Explains from what was measured why a theory is not met; empty where no known reason applies. May be null.
+  std::function<std::string(const Disagreement&)> explain = {};
+  /// Says what else a record shows, where its numbers bear that out; printed with the axis. May be null.
+  std::function<std::vector<std::string>(const records::StressCase&)> remark = {};
+  /// Null where `not_available` gives a reason. A case whose first value throws Error is not available; a later value
+  /// that throws is broken.
+  std::function<Observation(double)> observe = {};
+  std::string not_available = {};
+
+  bool is_available() const { return not_available.empty(); }
 };
 
-/// One way to drive filters to where their numbers break. Each lives in axes/<id>.cpp as `Axis make_<id>_axis()`, '-'
-/// in the id written '_'; CMake finds it there.
+/// One way to drive filters to where their numbers break. Each lives in axes/<id>.cpp as `Axis make_<id>_axis()`, where
+/// '-' in the id is written '_'. CMake finds it there.
 struct Axis {
-  std::string id;  ///< file stem; given by axis_table()
+  std::string id;  ///< the file's name; axis_table() sets it
   std::string title;
   std::string quantity;  ///< "exponent c"
   std::string unit;      ///< empty: a pure number
@@ -78,24 +79,13 @@ struct Axis {
   std::string measured;       ///< what observations measure: "largest error of visibility"
   std::string measured_unit;  ///< empty: a pure number
   Scale measured_scale = Scale::kLog;
-  double bound = 0.0;       ///< `degraded` is said where what is measured is over it
+  double bound = 0.0;       ///< a measured value above it is `degraded`
   std::string broken_when;  ///< in words: "infinities in the map; NaN, all lit or all dark"
 
-  DrivenParam driven_param = nullptr;  ///< for axes that drive a parameter of filters; else null
-  std::function<std::vector<Case>(const StressContext&)> make_cases;
-  std::function<std::vector<Exhibit>(const StressContext&)>
-      make_exhibits;  ///< tables and pictures of its own; may be null
+  DrivenParam driven_param = nullptr;  ///< of an axis that drives a parameter of filters; else null
+  std::function<std::vector<Case>(const AxisInputs&)> make_cases;
+  std::function<std::vector<Exhibit>(const AxisInputs&)> make_exhibits;  ///< its own tables and pictures; may be null
 };
-
-/// Makes a case of a filter, with nothing known of it and nothing to observe yet.
-Case start_case(const filters::FilterRequest& request, std::string variant, Level level);
-
-/// Makes a case that reports why it was not measured.
-Case make_absent_case(std::string filter, std::string variant, Level level, std::string reason);
-
-/// Makes a case that reports that no chosen filter's front matter declares what an axis needs: "'exponent' without
-/// 'moments'".
-Case make_undriven_case(const std::string& what);
 
 /// Names a level: "GL", "model", "arithmetic".
 const char* name_of(Level level);

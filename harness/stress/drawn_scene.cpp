@@ -31,7 +31,7 @@ Differences count_differences(const std::vector<float>& seen, const std::vector<
   return found;
 }
 
-/// Background is lit and says nothing; a picture of background alone is all lit.
+/// Says whether all surfaces are lit, or dark. The background does not count, but a picture of background alone is lit.
 bool is_all(const Drawing& drawing, float of) {
   bool any = false;
   for (std::size_t i = 0; i < drawing.visibility.size(); ++i) {
@@ -52,38 +52,31 @@ std::vector<glm::vec4> read_positions(const gl::Texture& texture) {
 
 }  // namespace
 
-scene::Scene load_drawn_scene(const StressContext& context, const std::string& name, const DrawingSize& size) {
+scene::Scene load_drawn_scene(const AxisInputs& inputs, const std::string& name, const DrawingSize& size) {
   return scene::load(
-      name, {.scenes_folder = context.resources.scenes, .aspect = static_cast<double>(size.width) / size.height});
+      name, {.scenes_folder = inputs.resources.scenes, .aspect = static_cast<double>(size.width) / size.height});
 }
 
-SceneDrawer::SceneDrawer(const StressContext& context, filters::FilterRequest request, const DrawingSize& size)
-    : shaders_(context.renderer->shaders), seed_(context.seed), request_(std::move(request)), size_(size) {}
+SceneDrawer::SceneDrawer(const AxisInputs& inputs, filters::FilterRequest request, const DrawingSize& size)
+    : seed_(inputs.seed), size_(size), stage_(inputs, std::move(request)) {}
 
 scene::LightFrustum SceneDrawer::fit(const scene::Scene& scene) const {
+  const filters::FilterRequest& request = stage_.request();
   const double padding =
-      std::min(std::ceil(filters::radius_texels(request_.spec, request_.values)) + 1.0, 0.25 * (size_.map - 1));
+      std::min(std::ceil(filters::radius_texels(request.spec, request.values)) + 1.0, 0.25 * (size_.map - 1));
   return scene::fit_light(scene, scene::FitMode::kTight, size_.map, padding);
 }
 
-void SceneDrawer::prepare(const render::LightSetup& light) {
-  if (!stage_) stage_.emplace(size_);
-  if (passes_)
-    passes_->retune(shaders_, request_.values, light);
-  else
-    passes_.emplace(shaders_, request_, stage_->map, light);
-}
-
 Drawing SceneDrawer::draw(const scene::Scene& scene) {
+  const filters::FilterRequest& request = stage_.request();
   const scene::LightFrustum frustum = fit(scene);
-  const render::Bias bias = render::resolve_bias({}, frustum, request_.spec, request_.values);
-  prepare(render::make_light_setup(frustum, scene.light, bias, seed_));
+  const render::Bias bias = render::resolve_bias({}, frustum, request.spec, request.values);
   const render::Geometry geometry(scene);
-  stage_->map.draw(shaders_, geometry, frustum);
-  stage_->gbuffer.draw(shaders_, geometry, scene, scene.cameras.front());
-  passes_->prefilter(stage_->map);
-  passes_->lookup(stage_->gbuffer, stage_->map, stage_->target);
-  return {stage_->target.texture().read_floats(1), read_positions(stage_->gbuffer.position())};
+  stage_.resize({size_.map, size_.width, size_.height});
+  stage_.map().draw(stage_.shaders(), geometry, frustum);
+  stage_.gbuffer().draw(stage_.shaders(), geometry, scene, scene.cameras.front());
+  return {stage_.look_up(render::make_light_setup(frustum, scene.light, bias, seed_), request.values),
+          read_positions(stage_.gbuffer().position())};
 }
 
 Observation judge_drawing(const Drawing& seen, const Drawing& expected, double bound) {

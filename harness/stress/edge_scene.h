@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "harness/stress/probe.h"
+#include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
 
@@ -17,7 +17,7 @@ struct EdgeDepths {
 /// Across each edge stand receivers, at the depth of their band's surface, whose kernel holds both depths and nothing
 /// else.
 struct EdgeScene {
-  ProbeScene scene;
+  SyntheticScene scene;
   std::vector<double> lit_share;  ///< of each receiver's kernel: the weight of its own surface, in (0,1)
   std::vector<std::size_t> band;  ///< of each receiver
   std::size_t run = 0;            ///< receivers per band, from dark to light

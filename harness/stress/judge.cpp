@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/stress/probe.h"
+#include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
 namespace {
 
-constexpr double kNearlyLit = 1e-3;  ///< all is lit, or dark: every receiver is this near to it
-
-double find_largest_error(const std::vector<double>& seen, const std::vector<double>& expected) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < seen.size(); ++i) largest = std::max(largest, std::abs(seen[i] - expected[i]));
-  return largest;
-}
+constexpr double kNearlyLit = 1e-3;  // all is lit, or dark: every receiver is this near to it
 
 bool is_all(const std::vector<double>& values, double of) {
   return std::ranges::all_of(
@@ -36,22 +30,32 @@ double find_largest_fall(const std::vector<double>& values, std::size_t run) {
 
 }  // namespace
 
-Observation judge(const ProbeResult& result, const Expected& expected) {
-  const auto unusable = std::ranges::count_if(result.visibility, [](double v) { return !std::isfinite(v); });
+double find_largest_error(const std::vector<double>& seen, const std::vector<double>& expected) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < seen.size(); ++i) largest = std::max(largest, std::abs(seen[i] - expected[i]));
+  return largest;
+}
+
+std::optional<Observation> judge_not_finite(const std::vector<double>& visibility) {
+  const auto unusable = std::ranges::count_if(visibility, [](double v) { return !std::isfinite(v); });
+  if (unusable == 0) return std::nullopt;
+  return Observation{Verdict::kBroken, std::nullopt,
+                     fmt::format("{} of {} receivers are NaN or infinite", unusable, visibility.size())};
+}
+
+Observation judge(const LookupResult& result, const Expected& expected) {
+  std::optional<Observation> not_finite = judge_not_finite(result.visibility);
+  const double error = find_largest_error(result.visibility, expected.visibility);
   const auto broken = [&](std::string why) {
-    const std::optional<double> error =
-        unusable ? std::nullopt : std::optional(find_largest_error(result.visibility, expected.visibility));
-    return Observation{Verdict::kBroken, error, std::move(why)};
+    return Observation{Verdict::kBroken, not_finite ? std::nullopt : std::optional(error), std::move(why)};
   };
   if (result.broken_texels > 0) return broken(fmt::format("{} texels of the map overflowed", result.broken_texels));
-  if (unusable)
-    return broken(fmt::format("{} of {} receivers are NaN or infinite", unusable, result.visibility.size()));
+  if (not_finite) return *not_finite;
   for (const auto& [of, name] : {std::pair(1.0, "lit"), std::pair(0.0, "dark")})
     if (is_all(result.visibility, of) && !is_all(expected.visibility, of))
       return broken(fmt::format("all {} receivers are {}", result.visibility.size(), name));
   const double fall = find_largest_fall(result.visibility, expected.rising_run);
   if (fall > kLargestFall) return broken(fmt::format("visibility falls by {:.2g} where it must rise", fall));
-  const double error = find_largest_error(result.visibility, expected.visibility);
   if (error > expected.bound)
     return {Verdict::kDegraded, error, fmt::format("error {:.2g}, over {:g}", error, expected.bound)};
   return {Verdict::kOk, error, {}};

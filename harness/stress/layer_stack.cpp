@@ -55,7 +55,7 @@ LayerStack make_layer_stack(int count, double first_gap, double gap_ratio, doubl
 
 LayerScene make_layer_scene(int radius_texels, const LayerStack& stack) {
   LayerScene layers;
-  ProbeScene& scene = layers.scene;
+  SyntheticScene& scene = layers.scene;
   scene.size = std::max(64, 2 * radius_texels + kStackReceivers + 2);
   for (int y = 0; y < scene.size; ++y)
     for (int x = 0; x < scene.size; ++x)

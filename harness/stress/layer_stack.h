@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "harness/stress/probe.h"
+#include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
 
@@ -18,7 +18,7 @@ LayerStack make_layer_stack(int count, double first_gap, double gap_ratio, doubl
 
 /// A map in which a stack's occluders take turns, texel by texel along rows and columns, and receivers in its middle.
 struct LayerScene {
-  ProbeScene scene;
+  SyntheticScene scene;
   std::vector<std::vector<double>>
       shares;  ///< of each receiver's kernel: what each occluder's texels weigh; they sum to 1
 };

@@ -41,29 +41,29 @@ std::vector<std::string> list_setups(const Mistake& mistake) {
   return setups;
 }
 
-options::RunOptions make_options(const StressContext& context, const Mistake& mistake) {
+options::RunOptions make_options(const AxisInputs& inputs, const Mistake& mistake) {
   options::RunOptions options;
-  options.resources = context.resources;
+  options.resources = inputs.resources;
   options.scenes = {mistake.scene};
-  const filters::Catalogue catalogue(context.resources.filters);
+  const filters::Catalogue catalogue(inputs.resources.filters);
   for (const std::string& setup : list_setups(mistake))
     options.filters.push_back(catalogue.parse_requests(setup).front());
   options.map_sizes = {kMapSize};
   options.width = kWidth;
   options.height = kHeight;
-  options.seed = context.seed;
+  options.seed = inputs.seed;
   return options;
 }
 
 /// One view of the scene, with its truth.
 class Stage {
  public:
-  Stage(const StressContext& context, const Mistake& mistake)
-      : renderer_(*context.renderer),
-        options_(make_options(context, mistake)),
+  Stage(const AxisInputs& inputs, const Mistake& mistake)
+      : renderer_(*inputs.renderer),
+        options_(make_options(inputs, mistake)),
         scene_(run::load_scene(options_, mistake.scene)),
-        cache_(context.cache,
-               [progress = context.progress](const std::string& message) {
+        cache_(inputs.cache,
+               [progress = inputs.progress](const std::string& message) {
                  if (progress) progress->note("warning: " + message);
                }),
         assets_(renderer_, options_, scene_, cache_, measure::largest_padding_texels(options_.filters)),
@@ -194,8 +194,8 @@ void write_pictures(const std::filesystem::path& file, std::vector<Result> resul
 
 }  // namespace
 
-Exhibit replay(const StressContext& context, const Mistake& mistake, const std::string& id) {
-  Stage stage(context, mistake);
+Exhibit replay(const AxisInputs& inputs, const Mistake& mistake, const std::string& id) {
+  Stage stage(inputs, mistake);
   std::vector<Result> results = stage.draw_all();
   const Parts parts = split(results, mistake);
   Exhibit exhibit;
@@ -205,7 +205,7 @@ Exhibit replay(const StressContext& context, const Mistake& mistake, const std::
   exhibit.table = make_table(results, parts);
   exhibit.pictures.push_back({fmt::format("stress.{}.png", id),
                               fmt::format("picture, visibility and error of each set-up on {}", mistake.scene)});
-  write_pictures(context.out / exhibit.pictures.front().file, std::move(results), stage.truth(), mistake);
+  write_pictures(inputs.out / exhibit.pictures.front().file, std::move(results), stage.truth(), mistake);
   return exhibit;
 }
 

@@ -17,8 +17,8 @@ struct Mistake {
 
 /// Replays a mistake on the scene's first view: the error of every set-up against the area truth, the texels of its map
 /// that overflowed, its rank in the wrong comparison (`wrong` and `others`) and in the corrected one (the first of
-/// `variants` and `others`), and a grid of pictures in context.out. Requires context.renderer. Throws Error(kOutput).
-/// Cost: one traced view, kept in context.cache.
-Exhibit replay(const StressContext& context, const Mistake& mistake, const std::string& id);
+/// `variants` and `others`), and a grid of pictures in inputs.out. Requires inputs.renderer. Throws Error(kOutput).
+/// Cost: one traced view, kept in inputs.cache.
+Exhibit replay(const AxisInputs& inputs, const Mistake& mistake, const std::string& id);
 
 }  // namespace shadowbench::stress

@@ -47,7 +47,7 @@ class StressRun {
         progress_(progress),
         axes_(read_axes(options)),
         renderer_(measure::make_renderer(options.backend, options.resources)) {
-    context_ = {&renderer_, options.resources, options.filters, options.seed, options.cache, options.out, &progress};
+    inputs_ = {&renderer_, options.resources, options.filters, options.seed, options.cache, options.out, &progress};
   }
 
   StressOutcome run() {
@@ -69,7 +69,7 @@ class StressRun {
   options::Progress& progress_;
   std::vector<Axis> axes_;
   measure::Renderer renderer_;
-  StressContext context_;
+  AxisInputs inputs_;
   std::vector<std::vector<Case>> cases_;  ///< of each axis; gone before the renderer
   records::StressRecord record_;
   int done_ = 0;
@@ -87,7 +87,7 @@ class StressRun {
   void make_all_cases() {
     int count = 0;
     for (const Axis& axis : axes_) {
-      cases_.push_back(axis.make_cases(context_));
+      cases_.push_back(axis.make_cases(inputs_));
       count += static_cast<int>(cases_.back().size()) + (axis.make_exhibits ? 1 : 0);
     }
     progress_.begin(count, 0);
@@ -106,7 +106,7 @@ class StressRun {
     cases.clear();  // and with them their maps
     if (axis.make_exhibits) {
       progress_.show(done_++, axis.id + " · exhibits");
-      record.exhibits = axis.make_exhibits(context_);
+      record.exhibits = axis.make_exhibits(inputs_);
     }
     return record;
   }
@@ -133,13 +133,12 @@ StressOutcome run_stress(const StressOptions& options, options::Progress& progre
 
 std::string describe_axes(const std::vector<filters::FilterRequest>& filters) {
   std::string text;
-  StressContext context;
-  context.filters = filters;
   for (const Axis& axis : axis_table()) {
     std::vector<std::string> driven;
-    if (axis.driven_param)
-      for (const DrivenFilter& filter : find_driven(context, axis.driven_param))
-        driven.push_back(fmt::format("{}:{}", filter.request.spec.id, filter.param));
+    for (const filters::FilterRequest& request : filters) {
+      const std::string param = axis.driven_param ? axis.driven_param(request.spec) : std::string();
+      if (!param.empty()) driven.push_back(fmt::format("{}:{}", request.spec.id, param));
+    }
     text += fmt::format(
         "{}  {}\n  {}{}, {:g} .. {:g} (--range: within {:g} .. {:g})\n  measures {}; degraded over {:g}\n  broken: "
         "{}\n",

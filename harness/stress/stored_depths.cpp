@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/stress/filter_stage.h"
+
 namespace shadowbench::stress {
 namespace {
 
@@ -19,7 +21,8 @@ filters::DepthCurve make_curve(const DepthPlan& plan) {
   return {plan.reversed, plan.perspective ? plan.far_over_near : 1.0};
 }
 
-/// A third over the range, at equal ratios; a third at each end of depth, for as many quanta as that gives.
+/// Places a third of the depths over the range, at equal ratios of distance, and a third within some quanta of each
+/// end.
 std::vector<double> place_depths(const DepthPlan& plan, double quantum) {
   std::vector<double> depths;
   for (int i = 0; i < kCount; ++i) {
@@ -35,7 +38,8 @@ std::vector<double> place_depths(const DepthPlan& plan, double quantum) {
   return depths;
 }
 
-/// A square for every texel, at its depth: what is drawn there is the depth itself, as a 32-bit float.
+/// Makes a square for every texel, at its depth. World and clip space of the light are the same, so that the depth that
+/// is drawn is this one, as a 32-bit float.
 scene::Scene make_squares(const std::vector<double>& depths) {
   scene::Scene scene;
   scene.materials.emplace_back();
@@ -53,16 +57,6 @@ scene::Scene make_squares(const std::vector<double>& depths) {
   }
   scene.meshes.push_back(std::move(mesh));
   return scene;
-}
-
-/// The world is the light's clip space.
-scene::LightFrustum make_frustum() {
-  scene::LightFrustum frustum;
-  frustum.width_ws = 2.0;
-  frustum.texel_size_ws = 2.0 / kSize;
-  frustum.depth_range_ws = 1.0;
-  frustum.direction_ws = {0.0f, 0.0f, 1.0f};
-  return frustum;
 }
 
 }  // namespace
@@ -87,7 +81,7 @@ double find_distance_error(GLenum format, const DepthPlan& plan, double distance
 
 std::vector<double> StoredDepths::keep(const std::vector<double>& depths) {
   if (!map_) map_.emplace(kSize, render::MapSettings{format_, {}});
-  map_->draw(shaders_, render::Geometry(make_squares(depths)), make_frustum());
+  map_->draw(shaders_, render::Geometry(make_squares(depths)), make_axis_frustum(2.0, kSize));
   const std::vector<float> read = map_->texture().read_floats(1);
   std::vector<double> kept(read.begin(), read.end());
   if (format_ == GL_DEPTH_COMPONENT32F) return kept;

@@ -13,11 +13,10 @@ constexpr float kOccluder = 0.3f, kSurface = 0.6f;
 
 }  // namespace
 
-ProbeScene make_straight_edge(double radius_texels) {
-  ProbeScene scene;
+SyntheticScene make_straight_edge(double radius_texels) {
+  SyntheticScene scene;
   scene.size = kEdgeSize;
-  for (int i = 0; i < kEdgeSize * kEdgeSize; ++i)
-    scene.depths.push_back(i % kEdgeSize < kEdgeSize / 2 ? kOccluder : kSurface);
+  scene.depths = make_split_depths(kEdgeSize, kOccluder, kSurface);
   const double reach = 0.5 + std::min(kWidestRadius - radius_texels, radius_texels + 2.0);
   for (int i = 0; i < kEdgeReceivers; ++i) {
     const double texels = kEdgeSize / 2 + reach * (2.0 * (i + 0.5) / kEdgeReceivers - 1.0);
@@ -26,7 +25,7 @@ ProbeScene make_straight_edge(double radius_texels) {
   return scene;
 }
 
-std::vector<double> compare_whole_kernel(const ProbeScene& scene, const filters::Kernel& kernel) {
+std::vector<double> compare_whole_kernel(const SyntheticScene& scene, const filters::Kernel& kernel) {
   const filters::DepthMap map{scene.size, scene.depths};
   const filters::PercentageCloser closer(kernel, map);
   std::vector<double> visibility;
@@ -39,7 +38,7 @@ std::vector<double> compare_whole_kernel(const ProbeScene& scene, const filters:
   return visibility;
 }
 
-Observation judge_edge(const ProbeResult& seen, std::vector<double> expected, double bound, filters::FilterKind kind) {
+Observation judge_edge(const LookupResult& seen, std::vector<double> expected, double bound, filters::FilterKind kind) {
   const bool rises = kind == filters::FilterKind::kComparison || kind == filters::FilterKind::kBound;
   return judge(seen, {std::move(expected), bound, rises ? seen.visibility.size() : 0});
 }

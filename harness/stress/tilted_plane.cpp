@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "harness/render/image_target.h"
+#include "filters/model.h"
+#include "harness/stress/filter_stage.h"
 
 namespace shadowbench::stress {
 namespace {
@@ -48,11 +49,9 @@ std::vector<glm::dvec2> place_receivers() {
   return places;
 }
 
-scene::LightFrustum make_frustum(const PlaneTilt& tilt) {
+scene::LightFrustum make_plane_frustum(const PlaneTilt& tilt) {
   const LightAxes axes = make_axes(tilt);
-  scene::LightFrustum frustum;
-  frustum.width_ws = 1.0;
-  frustum.texel_size_ws = kPlaneTexel_m;
+  scene::LightFrustum frustum = make_axis_frustum(1.0, kPlaneMapTexels);
   frustum.depth_range_ws = find_depth_range_m(tilt);
   frustum.direction_ws = glm::vec3(axes.away);
   frustum.light_from_world = glm::transpose(glm::dmat4(glm::dvec4(axes.right, 0.0), glm::dvec4(axes.up, 0.0),
@@ -67,8 +66,8 @@ scene::LightFrustum make_frustum(const PlaneTilt& tilt) {
   return frustum;
 }
 
-/// Larger than the map on every side.
-scene::Scene make_scene(const PlaneTilt& tilt) {
+/// Makes the plane, larger than the map on every side.
+scene::Scene make_plane_scene(const PlaneTilt& tilt) {
   scene::Scene scene;
   scene.materials.emplace_back();
   scene::Mesh mesh;
@@ -101,47 +100,28 @@ class Plane : public TiltedPlane {
 
 class GlPlane final : public Plane {
  public:
-  GlPlane(const StressContext& context, filters::FilterRequest request)
-      : shaders_(context.renderer->shaders), seed_(context.seed), request_(std::move(request)) {}
+  GlPlane(const AxisInputs& inputs, filters::FilterRequest request)
+      : seed_(inputs.seed), stage_(inputs, std::move(request)) {}
 
   void tilt(const PlaneTilt& tilt) override {
     tilt_ = tilt;
-    if (!stage_) stage_.emplace();
-    stage_->map.draw(shaders_, render::Geometry(make_scene(tilt)), make_frustum(tilt));
-    std::vector<float> positions, normals;
-    for (const glm::dvec2& place : place_receivers()) {
-      const glm::vec3 point(find_point(tilt, place));
-      positions.insert(positions.end(), {point.x, point.y, point.z, 1.0f});  // view depth 1: there is something
-      normals.insert(normals.end(), {0.0f, 1.0f, 0.0f, 0.0f});
-    }
-    stage_->gbuffer.upload(positions, normals);
+    stage_.resize({kPlaneMapTexels, kReceivers, kReceivers});
+    stage_.map().draw(stage_.shaders(), render::Geometry(make_plane_scene(tilt)), make_plane_frustum(tilt));
+    std::vector<glm::vec3> receivers;
+    for (const glm::dvec2& place : place_receivers()) receivers.emplace_back(find_point(tilt, place));
+    stage_.upload_receivers(receivers, {0.0f, 1.0f, 0.0f});
   }
 
   Acne find_acne(double bias_m) override {
-    const scene::LightFrustum frustum = make_frustum(tilt_);
+    const scene::LightFrustum frustum = make_plane_frustum(tilt_);
     render::Bias bias;
     bias.constant_depth = bias_m / frustum.depth_range_ws;
-    const render::LightSetup light{frustum, 0.0, bias, seed_, {}};
-    if (passes_)
-      passes_->retune(shaders_, request_.values, light);
-    else
-      passes_.emplace(shaders_, request_, stage_->map, light);
-    passes_->prefilter(stage_->map);
-    passes_->lookup(stage_->gbuffer, stage_->map, stage_->target);
-    return measure(stage_->target.texture().read_floats(1));
+    return measure(stage_.look_up({frustum, 0.0, bias, seed_, {}}, stage_.request().values));
   }
 
  private:
-  struct Stage {
-    render::ShadowMap map{kPlaneMapTexels};
-    render::GBuffer gbuffer{kReceivers, kReceivers};
-    render::ImageTarget target{"acne", GL_R32F, kReceivers, kReceivers};
-  };
-  render::ShaderLibrary& shaders_;
   std::uint32_t seed_;
-  filters::FilterRequest request_;
-  std::optional<Stage> stage_;
-  std::optional<render::FilterPasses> passes_;
+  FilterStage stage_;
 };
 
 class ModelPlane final : public Plane {
@@ -193,8 +173,8 @@ double find_gain_m(const PlaneTilt& tilt, double reach_texels) {
   return reach_texels * kPlaneTexel_m * tangent(tilt) * (tilt.diagonal ? std::numbers::sqrt2 : 1.0);
 }
 
-std::unique_ptr<TiltedPlane> make_gl_plane(const StressContext& context, const filters::FilterRequest& request) {
-  return std::make_unique<GlPlane>(context, request);
+std::unique_ptr<TiltedPlane> make_gl_plane(const AxisInputs& inputs, const filters::FilterRequest& request) {
+  return std::make_unique<GlPlane>(inputs, request);
 }
 
 std::unique_ptr<TiltedPlane> make_model_plane(const filters::FilterRequest& request) {

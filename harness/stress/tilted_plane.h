@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "harness/stress/probe.h"
+#include "harness/stress/axis_inputs.h"
 
 namespace shadowbench::stress {
 
@@ -17,8 +17,8 @@ struct PlaneTilt {
 inline constexpr int kPlaneMapTexels = 64;
 inline constexpr double kPlaneTexel_m = 1.0 / kPlaneMapTexels;
 
-/// Gives the depth that the plane gains over a kernel which reaches so many texels on each axis, in metres: s r
-/// tan(angle), and sqrt 2 times that on the diagonal. What a bias has to cover.
+/// Gives the depth in metres that the plane gains over a kernel which reaches so many texels on each axis, and which a
+/// bias has to cover: s r tan(angle), and sqrt 2 times that on the diagonal.
 double find_gain_m(const PlaneTilt& tilt, double reach_texels);
 
 /// The acne on a plane that is lit.
@@ -27,7 +27,7 @@ struct Acne {
   double share = 0.0;        ///< of the receivers: darker than lit by a step of an 8-bit picture or more
 };
 
-/// An empty plane without end, and receivers all over it, between texels too: whatever is not lit there is acne.
+/// An empty plane without end, with receivers all over it, between texels too. Every shadow on it is acne.
 class TiltedPlane {
  public:
   virtual ~TiltedPlane() = default;
@@ -39,11 +39,12 @@ class TiltedPlane {
   virtual double rounding_m() const = 0;
 };
 
-/// Requires context.renderer, which outlives the plane. Throws Error as render::FilterPasses and render::ShadowMap, at
+/// Requires inputs.renderer, which outlives the plane. Throws Error as render::FilterPasses and render::ShadowMap, at
 /// tilt().
-std::unique_ptr<TiltedPlane> make_gl_plane(const StressContext& context, const filters::FilterRequest& request);
+std::unique_ptr<TiltedPlane> make_gl_plane(const AxisInputs& inputs, const filters::FilterRequest& request);
 
-/// Depths computed at the texels' centres, looked up by the filter's scalar model. Requires a filter that has one.
+/// Computes the map's depths at the texels' centres, and looks them up by the filter's scalar model. Requires a filter
+/// that has one.
 std::unique_ptr<TiltedPlane> make_model_plane(const filters::FilterRequest& request);
 
 /// Finds the least bias without acne, in metres, to a thousandth of `theory_m`; empty where twice that is not enough.

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "filters/base/error.h"
-#include "harness/stress/axis.h"
+#include "harness/stress/case_tools.h"
 #include "harness/stress/stored_depths.h"
 #include "report/records/text_table.h"
 
@@ -32,8 +32,9 @@ std::string name(const Setting& setting) {
                      setting.reversed ? ", reversed" : "");
 }
 
-/// The relative error is (f/n - 1) times half a quantum at one end: orthographic at the near plane, where a distance is
-/// smallest; perspective at the far plane, where a step is largest. What counts is the quantum of what is stored there.
+/// Gives half a quantum of the depth that is stored where the relative error, (f/n - 1) times that, is largest: at the
+/// near plane of an orthographic light, where a distance is smallest; at the far plane of a perspective one, where a
+/// step is largest.
 double find_quantum(const Setting& setting) {
   const bool stores_one = setting.perspective != setting.reversed;
   return largest_rounding(setting.format, stores_one ? 1.0 : 0.0);
@@ -62,18 +63,14 @@ Observation judge_error(const DepthError& seen) {
   };
   if (!std::isfinite(seen.relative))
     return {Verdict::kBroken, std::nullopt, "a distance reads back as NaN or infinite"};
-  if (seen.relative > kBroken) return {Verdict::kBroken, seen.relative, why(kBroken)};
-  if (seen.relative > kBound) return {Verdict::kDegraded, seen.relative, why(kBound)};
-  return {Verdict::kOk, seen.relative, {}};
+  return judge_by_bounds(seen.relative, kBound, kBroken, why);
 }
 
-Case make_case(const StressContext& context, const Setting& setting) {
-  if (!context.renderer) return make_absent_case({}, name(setting), Level::kGl, "there is no GL");
-  Case item;
-  item.variant = name(setting);
-  item.level = Level::kGl;
+Case make_case(const AxisInputs& inputs, const Setting& setting) {
+  if (!inputs.renderer) return {.variant = name(setting), .not_available = "there is no GL"};
+  Case item{.variant = name(setting)};
   item.theories = {make_theory(setting, kBound, Verdict::kDegraded), make_theory(setting, kBroken, Verdict::kBroken)};
-  const auto depths = std::make_shared<StoredDepths>(context.renderer->shaders, setting.format);
+  const auto depths = std::make_shared<StoredDepths>(inputs.renderer->shaders, setting.format);
   item.observe = [setting, depths](double ratio) {
     return judge_error(depths->find_largest_error({ratio, setting.perspective, setting.reversed}));
   };
@@ -89,15 +86,15 @@ std::vector<Setting> list_settings() {
   return settings;
 }
 
-std::vector<Case> make_cases(const StressContext& context) {
+std::vector<Case> make_cases(const AxisInputs& inputs) {
   std::vector<Case> cases;
-  for (const Setting& setting : list_settings()) cases.push_back(make_case(context, setting));
+  for (const Setting& setting : list_settings()) cases.push_back(make_case(inputs, setting));
   return cases;
 }
 
 constexpr double kShownRatio = 1000.0;
 
-/// The error at a few distances, beside half a step of the format there.
+/// Tabulates the error at a few distances, over the error that theory has there.
 records::TextTable make_growth_table(render::ShaderLibrary& shaders) {
   records::TextTable table{{"case"}, {}};
   for (const double distance : {2.0, 10.0, 100.0, 900.0}) table.header.push_back(fmt::format("at {:g} n", distance));
@@ -119,8 +116,8 @@ records::TextTable make_growth_table(render::ShaderLibrary& shaders) {
   return table;
 }
 
-std::vector<Exhibit> make_exhibits(const StressContext& context) {
-  if (!context.renderer) return {};
+std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
+  if (!inputs.renderer) return {};
   Exhibit exhibit;
   exhibit.id = "growth";
   exhibit.title = "What a stored distance is off by, at most, against theory";
@@ -130,7 +127,7 @@ std::vector<Exhibit> make_exhibits(const StressContext& context) {
       "which grows with the square of the distance d, and is more where a step is no longer small against d. "
       "The GL is handed 32-bit floats, whose own rounding adds up to as much again in D24.",
       kShownRatio)};
-  exhibit.table = make_growth_table(context.renderer->shaders);
+  exhibit.table = make_growth_table(inputs.renderer->shaders);
   return {exhibit};
 }
 

@@ -1,8 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <memory>
 
 #include "filters/store_format.h"
 #include "harness/stress/edge_scene.h"
@@ -11,7 +10,6 @@
 namespace shadowbench::stress {
 namespace esm_exponent {
 
-constexpr double kBound = 0.02;    // of visibility: five steps of an 8-bit picture
 constexpr float kOccluder = 0.3f;  // of the largest depth
 constexpr const char* kSource = "derived: exp(c z) must stay below the largest finite number (IEEE 754)";
 
@@ -25,17 +23,14 @@ struct Setting {
 
 bool is_log(const Setting& setting) { return setting.combine == "log"; }
 
-double largest_number(const std::string& store) {
-  return filters::store_precision(store) == filters::StorePrecision::kHalf
-             ? 65504.0
-             : static_cast<double>(std::numeric_limits<float>::max());
-}
+double largest_number(const std::string& store) { return filters::largest_number(filters::store_precision(store)); }
 
 double unit_roundoff(const std::string& store) {
   return filters::store_precision(store) == filters::StorePrecision::kHalf ? 0x1p-11 : 0x1p-24;
 }
 
-/// The blur reads the border, which is the encoding of depth 1, whatever the map holds; receivers far from it do not.
+/// Gives the deepest depth that is encoded. A blur on the GL also encodes the border, whose depth is 1 whatever the map
+/// holds; a model looks up only what its receivers reach.
 double find_deepest(const Setting& setting, Level level) {
   return level == Level::kGl && setting.radius > 0 ? 1.0 : static_cast<double>(setting.largest_depth);
 }
@@ -54,8 +49,8 @@ Theory make_overflow(const Setting& setting, Level level) {
 /// A stored c z is off by c z times the unit round-off, and so is the logarithm of visibility.
 Theory make_rounding(const Setting& setting) {
   const double z = static_cast<double>(setting.largest_depth);
-  return {kBound / (unit_roundoff(setting.store) * z), TheoryKind::kRounding,
-          fmt::format("{:g} / ({:.3g} x {:g}): where c z is rounded by as much as visibility may be off", kBound,
+  return {kVisibleError / (unit_roundoff(setting.store) * z), TheoryKind::kRounding,
+          fmt::format("{:g} / ({:.3g} x {:g}): where c z is rounded by as much as visibility may be off", kVisibleError,
                       unit_roundoff(setting.store), z),
           "derived: d ln V = c z u", Verdict::kDegraded};
 }
@@ -70,8 +65,8 @@ std::vector<double> expect_visibility(const EdgeScene& edge, const Setting& sett
   return visibility;
 }
 
-/// exp(-c z) of the lookup underflows before exp(c z) of the map overflows; where the GL flushes denormals, all is dark
-/// from there.
+/// Where the GL flushes denormals, all is dark from where exp(-c z) of the lookup underflows. That is before exp(c z)
+/// of the map overflows.
 std::vector<std::string> remark_underflow(const Setting& setting, const records::StressCase& record) {
   constexpr double kSmallestNormal = 87.3365;  // -ln(2^-126)
   if (is_log(setting) || !record.broken || record.broken->why.find("dark") == std::string::npos) return {};
@@ -83,45 +78,40 @@ std::vector<std::string> remark_underflow(const Setting& setting, const records:
                   record.broken->value, kSmallestNormal, setting.largest_depth)};
 }
 
-filters::ParamValues make_values(const DrivenFilter& driven, const Setting& setting) {
-  filters::ParamValues values = driven.request.values;
-  values["store"] = setting.store;
-  if (!setting.combine.empty()) values["combine"] = setting.combine;
-  values["radius"] = static_cast<double>(setting.radius);
-  return values;
-}
-
 std::string name(const Setting& setting) {
   return fmt::format("{}{}{}, depths to {:g}{}", setting.store, setting.combine.empty() ? "" : ", ", setting.combine,
                      setting.largest_depth, setting.radius == 0 ? ", no blur" : "");
 }
 
-Case make_case(const StressContext& context, const DrivenFilter& driven, const Setting& setting, Level level) {
-  filters::FilterRequest request = driven.request;
-  request.values = make_values(driven, setting);
-  const auto [probe, reason] = make_probe(context, request, level);
-  if (!probe) return make_absent_case(request.spec.id, name(setting), level, reason);
-  Case item = start_case(request, name(setting), level);
-  item.params.erase(driven.param);
+Case make_case(const AxisInputs& inputs, filters::FilterRequest request, const Setting& setting, Level level) {
+  request.values["store"] = setting.store;
+  if (!setting.combine.empty()) request.values["combine"] = setting.combine;
+  request.values["radius"] = static_cast<double>(setting.radius);
+  Case item = start_case(inputs, request, name(setting), level);
+  if (!item.is_available()) return item;
+  const std::string param = find_exponent(request.spec);
+  item.params.erase(param);
   item.theories = {make_overflow(setting, level)};
   if (is_log(setting)) item.theories.push_back(make_rounding(setting));
   item.remark = [setting](const records::StressCase& record) { return remark_underflow(setting, record); };
   const EdgeScene edge = make_edge_scene(setting.radius, {{kOccluder * setting.largest_depth, setting.largest_depth}});
-  item.observe = [probe = probe, edge, setting, values = request.values, param = driven.param](double c) mutable {
+  item.observe = [lookup = make_lookup(inputs, request, level), edge, setting, values = request.values,
+                  param](double c) mutable {
     values[param] = c;
-    return judge(probe->look(edge.scene, values), {expect_visibility(edge, setting, c), kBound, edge.run});
+    return judge(lookup->look(edge.scene, values), {expect_visibility(edge, setting, c), kVisibleError, edge.run});
   };
   return item;
 }
 
-/// With the blur that the filter asks for, and without: then nothing but the map's own depths counts. Maps of
-/// logarithms are read with the nearest texel, and without a blur have no penumbra.
-std::vector<Setting> list_settings(const DrivenFilter& driven) {
-  const int radius = filters::prefilter_radius_texels(driven.request.spec, driven.request.values);
-  std::vector<std::string> combines = list_choices(driven.request, "combine");
+/// Lists each store with the filter's blur and without, where nothing but the map's own depths counts. Maps of
+/// logarithms are read with the nearest texel, and have no penumbra without a blur.
+std::vector<Setting> list_settings(const filters::FilterRequest& request) {
+  if (find_exponent(request.spec).empty()) return {};
+  const int radius = filters::prefilter_radius_texels(request.spec, request.values);
+  std::vector<std::string> combines = list_choices(request, "combine");
   if (combines.empty()) combines.emplace_back();
   std::vector<Setting> settings;
-  for (const std::string& store : list_choices(driven.request, "store")) {
+  for (const std::string& store : list_choices(request, "store")) {
     for (const std::string& combine : combines) {
       const Setting setting{store, combine, radius, 1.0f};
       if (radius > 0 || !is_log(setting)) settings.push_back(setting);
@@ -133,25 +123,21 @@ std::vector<Setting> list_settings(const DrivenFilter& driven) {
   return settings;
 }
 
-std::vector<Case> make_cases(const StressContext& context) {
-  std::vector<Case> cases;
-  for (const DrivenFilter& driven : find_driven(context, find_exponent)) {
-    for (const Setting& setting : list_settings(driven))
-      for (const Level level : {Level::kGl, Level::kModel}) cases.push_back(make_case(context, driven, setting, level));
-  }
-  if (cases.empty()) cases.push_back(make_undriven_case("'exponent' without 'moments'"));
-  return cases;
+std::vector<Case> make_cases(const AxisInputs& inputs) {
+  return make_filter_cases(inputs, list_settings, make_case,
+                           "no chosen filter's front matter declares 'exponent' without 'moments'");
 }
 
-/// A published comparison let a 16-bit exponential variance map overflow, at exponent 10 where 5.54 is the limit, and
-/// ranked the filter by what came of it. The same with an exponent that is fine in 32 bits.
-std::vector<Exhibit> make_exhibits(const StressContext& context) {
-  if (!context.renderer || find_driven(context, find_exponent).empty()) return {};
+/// A published comparison ranked a filter by a 16-bit exponential variance map that overflowed: its exponent was 10,
+/// and the limit is 5.54. This does the same with an exponent that is fine in 32 bits.
+std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
+  const auto has_exponent = [](const filters::FilterRequest& request) { return !find_exponent(request.spec).empty(); };
+  if (!inputs.renderer || std::ranges::none_of(inputs.filters, has_exponent)) return {};
   const Mistake mistake{"stack",
                         "esm:c=80,store=r16f",
                         {"esm:c=80", "esm:c=80,store=r16f,combine=log", "esm:c=10,store=r16f", "esm:c=20,store=r16f"},
                         {"vsm", "poisson"}};
-  return {replay(context, mistake, "mistake")};
+  return {replay(inputs, mistake, "mistake")};
 }
 
 }  // namespace esm_exponent
@@ -166,7 +152,7 @@ Axis make_esm_exponent_axis() {
   axis.limits = {1.0, 1e6};
   axis.coarse_samples = 34;
   axis.measured = "largest error of visibility across a two-depth edge";
-  axis.bound = kBound;
+  axis.bound = kVisibleError;
   axis.broken_when =
       "texels of the map overflowed (GL), or visibility is not finite, all lit, all dark, or falls by more than 0.1 "
       "from dark to light";

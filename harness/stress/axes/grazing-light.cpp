@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "harness/render/bias_theory.h"
+#include "harness/stress/case_tools.h"
 #include "harness/stress/heat_map.h"
 #include "harness/stress/tilted_plane.h"
 
@@ -36,7 +37,7 @@ std::string describe_theory(const Reach& reach, bool diagonal) {
   return fmt::format("s ({:g} + {:g}){} tan(angle)", reach.shape, reach.between, diagonal ? " sqrt(2)" : "");
 }
 
-/// The angle at which the bias reaches the bound, and the law itself: nowhere is the bias anything else.
+/// Gives the angle at which the bias reaches the bound, and the law that the bias follows at every angle.
 std::vector<Theory> make_theories(const Reach& reach, bool diagonal) {
   const double gain = find_gain_m({45.0, diagonal}, reach.texels()) / kPlaneTexel_m;
   const std::string law = describe_theory(reach, diagonal);
@@ -80,17 +81,14 @@ std::vector<std::string> remark_ratio(const records::StressCase& record, const R
                       record.samples.back().value)};
 }
 
-Case make_case(const StressContext& context, const filters::FilterRequest& request, bool diagonal, Level level) {
-  const std::string variant = diagonal ? "light along the diagonal" : "light along a row";
-  if (!filters::make_model(request.spec.id))
-    return make_absent_case(request.spec.id, variant, level, "the filter has no scalar model, which names its kernel");
-  if (level == Level::kGl && !context.renderer)
-    return make_absent_case(request.spec.id, variant, level, "there is no GL");
+Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, bool diagonal, Level level) {
+  const char* variant = diagonal ? "light along the diagonal" : "light along a row";
+  Case item = start_case(inputs, request, variant, level, Reference::kModel);
+  if (!item.is_available()) return item;
   const Reach reach = find_reach(request);
-  Case item = start_case(request, variant, level);
   item.theories = make_theories(reach, diagonal);
   const std::shared_ptr<TiltedPlane> plane =
-      level == Level::kGl ? make_gl_plane(context, request) : make_model_plane(request);
+      level == Level::kGl ? make_gl_plane(inputs, request) : make_model_plane(request);
   item.observe = [plane, reach, diagonal](double angle) { return observe_plane(*plane, {angle, diagonal}, reach); };
   if (level == Level::kGl)
     item.remark = [reach, diagonal](const records::StressCase& record) {
@@ -99,31 +97,31 @@ Case make_case(const StressContext& context, const filters::FilterRequest& reque
   return item;
 }
 
-std::vector<filters::FilterRequest> list_comparisons(const StressContext& context) {
+std::vector<filters::FilterRequest> list_comparisons(const AxisInputs& inputs) {
   std::vector<filters::FilterRequest> chosen;
-  std::ranges::copy_if(context.filters, std::back_inserter(chosen),
+  std::ranges::copy_if(inputs.filters, std::back_inserter(chosen),
                        [](const auto& request) { return request.spec.kind == filters::FilterKind::kComparison; });
   return chosen;
 }
 
-/// Models stand in where there is no GL; beside it they would draw the same lines.
-std::vector<Case> make_cases(const StressContext& context) {
+/// Models are observed only where there is no GL: beside it they would draw the same lines.
+std::vector<Case> make_cases(const AxisInputs& inputs) {
   std::vector<Case> cases;
-  for (const filters::FilterRequest& request : list_comparisons(context)) {
+  for (const filters::FilterRequest& request : list_comparisons(inputs)) {
     for (const bool diagonal : {false, true}) {
-      cases.push_back(make_case(context, request, diagonal, Level::kGl));
-      if (!context.renderer) cases.push_back(make_case(context, request, diagonal, Level::kModel));
+      cases.push_back(make_case(inputs, request, diagonal, Level::kGl));
+      if (!inputs.renderer) cases.push_back(make_case(inputs, request, diagonal, Level::kModel));
     }
   }
-  if (cases.empty()) cases.push_back(make_absent_case({}, "any", Level::kGl, "no chosen filter is of kind comparison"));
+  if (cases.empty()) cases.push_back(make_absent_case("no chosen filter is of kind comparison"));
   return cases;
 }
 
 constexpr int kColumns = 110, kRows = 60;
 constexpr double kHighestBias = 12.0;  // texels
 
-/// The share of receivers with acne, a column for each angle. More bias never brings more acne: above the first bias
-/// without, nothing needs to be drawn.
+/// Measures the share of receivers with acne, a column for each angle. More bias never brings more acne: above the
+/// first bias without acne nothing needs to be drawn.
 images::Image measure_acne(TiltedPlane& plane, bool diagonal) {
   images::Image acne(kColumns, kRows, 1);
   for (int x = 0; x < kColumns; ++x) {
@@ -150,7 +148,7 @@ std::string describe_growth(TiltedPlane& plane, const std::string& label, const 
                      fmt::join(needs, ", "));
 }
 
-/// The filter with the widest kernel: its curve is the farthest from all others'.
+/// Chooses the filter with the widest kernel, whose curve is the farthest from all others'.
 const filters::FilterRequest* choose_shown(const std::vector<filters::FilterRequest>& chosen) {
   const filters::FilterRequest* shown = nullptr;
   for (const filters::FilterRequest& request : chosen)
@@ -159,10 +157,10 @@ const filters::FilterRequest* choose_shown(const std::vector<filters::FilterRequ
   return shown;
 }
 
-std::vector<Exhibit> make_exhibits(const StressContext& context) {
-  const std::vector<filters::FilterRequest> chosen = list_comparisons(context);
+std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
+  const std::vector<filters::FilterRequest> chosen = list_comparisons(inputs);
   const filters::FilterRequest* shown = choose_shown(chosen);
-  if (!context.renderer || !shown) return {};
+  if (!inputs.renderer || !shown) return {};
   const Reach reach = find_reach(*shown);
   HeatMap map;
   map.title = "Acne over angle and bias";
@@ -172,7 +170,7 @@ std::vector<Exhibit> make_exhibits(const StressContext& context) {
   map.x = {
       "angle between the light and the plane's normal, degrees", {0.0, 90.0}, {0, 10, 20, 30, 40, 50, 60, 70, 80, 90}};
   map.y = {"bias, texels along the light", {0.0, kHighestBias}, {0, 2, 4, 6, 8, 10, 12}};
-  const auto plane = make_gl_plane(context, *shown);
+  const auto plane = make_gl_plane(inputs, *shown);
   map.values = measure_acne(*plane, false);
   map.scale = 1.0;
   map.curve = [reach](double angle) {
@@ -184,7 +182,7 @@ std::vector<Exhibit> make_exhibits(const StressContext& context) {
   exhibit.title = map.title;
   exhibit.sentences = {describe_growth(*plane, shown->label(), reach)};
   exhibit.pictures = {{"stress.acne.png", fmt::format("{}: acne, and the bias that theory asks for", shown->label())}};
-  write_heat_map(context.out / exhibit.pictures.front().file, map);
+  write_heat_map(inputs.out / exhibit.pictures.front().file, map);
   return {exhibit};
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/stress/explain.h"
 #include "harness/stress/layer_stack.h"
 
 namespace shadowbench::stress {
@@ -17,14 +16,14 @@ constexpr double kFirstGap = 0.1;  // of the depth range
 constexpr double kReceiver = 0.95;
 constexpr Range kRange{1e-4, 8.0};
 
-/// What a filter must say by its own formula; `visibility` is null where none is known.
+/// The visibility that a filter has by its own formula; `visibility` is null where no formula is known.
 struct ClosedForm {
   std::function<double(const LayerStack&, const std::vector<double>&)> visibility;
   std::string formula;
   std::string source;
 };
 
-/// A filter's front matter tells its formula: what its map holds.
+/// Finds a filter's formula from what its map holds, as its front matter declares it.
 ClosedForm find_closed_form(const filters::FilterRequest& request) {
   const filters::FilterSpec& spec = request.spec;
   if (spec.holds_moments && !spec.exponent.empty())
@@ -42,14 +41,14 @@ ClosedForm find_closed_form(const filters::FilterRequest& request) {
 
 LayerStack make_stack(int occluders, double ratio) { return make_layer_stack(occluders, kFirstGap, ratio, kReceiver); }
 
-/// The most that any receiver's kernel lets through.
+/// Gives the most that any receiver's kernel lets through.
 double find_largest(const ClosedForm& form, const LayerScene& layers, const LayerStack& stack) {
   double largest = 0.0;
   for (const std::vector<double>& shares : layers.shares) largest = std::max(largest, form.visibility(stack, shares));
   return largest;
 }
 
-/// The gap ratio at which the closed form crosses the bound: it falls as the gap grows.
+/// Finds the gap ratio at which the closed form, which falls as the gap grows, crosses the bound.
 Theory make_theory(const ClosedForm& form, int radius, int occluders) {
   constexpr int kHalvings = 60;
   Theory theory{std::nullopt, TheoryKind::kSlope, fmt::format("{} = {:g}", form.formula, kBound), form.source,
@@ -69,23 +68,20 @@ Theory make_theory(const ClosedForm& form, int radius, int occluders) {
   return theory;
 }
 
-Observation judge_bleeding(const ProbeResult& seen) {
+Observation judge_bleeding(const LookupResult& seen) {
   if (seen.broken_texels > 0)
     return {Verdict::kBroken, std::nullopt, fmt::format("{} texels of the map overflowed", seen.broken_texels)};
   if (!std::ranges::all_of(seen.visibility, [](double v) { return std::isfinite(v); }))
     return {Verdict::kBroken, std::nullopt, "visibility is NaN or infinite"};
   const double largest = *std::ranges::max_element(seen.visibility);
-  const auto why = [&](double bound) {
+  return judge_by_bounds(largest, kBound, kLit, [&](double bound) {
     return fmt::format("visibility {:.3g} where nothing is lit, over {:g}", largest, bound);
-  };
-  if (largest > kLit) return {Verdict::kBroken, largest, why(kLit)};
-  if (largest > kBound) return {Verdict::kDegraded, largest, why(kBound)};
-  return {Verdict::kOk, largest, {}};
+  });
 }
 
-/// A filter whose exact arithmetic says the same as what was drawn does not follow the formula, and is not wrong by
-/// rounding.
-std::string explain_by_model(const Disagreement& missed, Probe& exact, const filters::FilterRequest& request,
+/// Explains a filter whose exact arithmetic says the same as what was drawn: it does not follow the formula, and is not
+/// wrong by rounding.
+std::string explain_by_model(const Disagreement& missed, SyntheticLookup& exact, const filters::FilterRequest& request,
                              int occluders) {
   if (std::string words = explain_broken_throughout(missed); !words.empty() || !missed.measured) return words;
   const LayerScene layers = make_layer_scene(filters::prefilter_radius_texels(request.spec, request.values),
@@ -100,13 +96,11 @@ std::string explain_by_model(const Disagreement& missed, Probe& exact, const fil
                                   : fmt::format("the chosen {}", fmt::join(request.set_by_user, ", ")));
 }
 
-Case make_case(const StressContext& context, const filters::FilterRequest& request, int occluders, Level level) {
-  const std::string variant = fmt::format("{} occluders", occluders);
-  const auto [probe, reason] = make_probe(context, request, level);
-  if (!probe) return make_absent_case(request.spec.id, variant, level, reason);
+Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, int occluders, Level level) {
+  Case item = start_case(inputs, request, fmt::format("{} occluders", occluders), level);
+  if (!item.is_available()) return item;
   const int radius = filters::prefilter_radius_texels(request.spec, request.values);
   const ClosedForm form = find_closed_form(request);
-  Case item = start_case(request, variant, level);
   if (form.visibility)
     item.theories = {make_theory(form, radius, occluders)};
   else
@@ -115,28 +109,25 @@ Case make_case(const StressContext& context, const filters::FilterRequest& reque
           "its front matter tells of no formula: there is nothing to hold it against but truth"};
     };
   if (filters::make_model(request.spec.id)) {
-    const std::shared_ptr<Probe> exact = make_model_probe(context, request, filters::Precision::kExtended);
+    const std::shared_ptr<SyntheticLookup> exact = make_model_lookup(inputs, request, filters::Precision::kExtended);
     item.explain = [exact, request, occluders](const Disagreement& missed) {
       return explain_by_model(missed, *exact, request, occluders);
     };
   }
-  item.observe = [probe = probe, values = request.values, radius, occluders](double ratio) {
-    return judge_bleeding(probe->look(make_layer_scene(radius, make_stack(occluders, ratio)).scene, values));
+  item.observe = [lookup = make_lookup(inputs, request, level), values = request.values, radius,
+                  occluders](double ratio) {
+    return judge_bleeding(lookup->look(make_layer_scene(radius, make_stack(occluders, ratio)).scene, values));
   };
   return item;
 }
 
-std::vector<Case> make_cases(const StressContext& context) {
-  std::vector<Case> cases;
-  for (const filters::FilterRequest& request : context.filters) {
-    if (request.spec.kind != filters::FilterKind::kBound || !request.spec.has_encode) continue;
-    for (const int occluders : {2, 4, 8, 16})
-      for (const Level level : {Level::kGl, Level::kModel})
-        cases.push_back(make_case(context, request, occluders, level));
-  }
-  if (cases.empty())
-    cases.push_back(make_absent_case({}, "any", Level::kGl, "no chosen filter of kind bound encodes its map"));
-  return cases;
+std::vector<int> list_occluders(const filters::FilterRequest& request) {
+  const bool bleeds = request.spec.kind == filters::FilterKind::kBound && request.spec.has_encode;
+  return bleeds ? std::vector{2, 4, 8, 16} : std::vector<int>();
+}
+
+std::vector<Case> make_cases(const AxisInputs& inputs) {
+  return make_filter_cases(inputs, list_occluders, make_case, "no chosen filter of kind bound encodes its map");
 }
 
 }  // namespace light_bleeding

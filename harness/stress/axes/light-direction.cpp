@@ -14,7 +14,7 @@ namespace light_direction {
 constexpr double kBound = 0.005;    // of the receivers whose visibility is known
 constexpr double kPixels_m = 0.05;  // the widest pixel on the floor: nearer to an edge, a pixel's centre decides
 
-/// A way that light may go straight along, and the rotation that turns the scene's down to it; exact.
+/// A way that light may go along, and the exact rotation that turns the scene's down to it.
 struct Way {
   const char* name;
   glm::dmat3 world_from_local;
@@ -30,8 +30,8 @@ std::array<Way, 6> list_ways() {
            {"+z", {x, -z, y}}}};
 }
 
-/// Ways to lean: along the scene's axes, where the light's basis may switch, and between them.
-constexpr std::array<double, 4> kLeanTo{0.0, 0.5, 0.25, 1.3};  // of half a turn
+/// Where the light leans to, in half turns: along the scene's axes, where the light's basis may switch, and between.
+constexpr std::array<double, 4> kLeanTo{0.0, 0.5, 0.25, 1.3};
 
 SlabSetting lean(const Way& way, double degrees, double to) {
   const double angle = glm::radians(degrees), about = to * 3.14159265358979323846;
@@ -40,7 +40,7 @@ SlabSetting lean(const Way& way, double degrees, double to) {
           true};
 }
 
-/// What came of one picture.
+/// Counts of one picture's pixels.
 struct Tally {
   int unusable = 0;  ///< not finite, or not in [0,1]
   int known = 0;
@@ -101,43 +101,39 @@ class Leaner {
     const double share = static_cast<double>(tally.wrong) / std::max(tally.known, 1);
     if (tally.unusable > 0)
       return {Verdict::kBroken, std::nullopt, fmt::format("{} pixels are not finite, or not in [0,1]", tally.unusable)};
-    const std::string why = fmt::format("{:.2g} of the receivers are wrong, {} too dark and {} too bright", share,
-                                        tally.wrong_dark, tally.wrong - tally.wrong_dark);
-    if (tally.known == 0 || share > 0.5) return {Verdict::kBroken, share, why};
-    if (share > kBound) return {Verdict::kDegraded, share, why};
-    return {Verdict::kOk, share, {}};
+    return judge_by_bounds(share, kBound, tally.known == 0 ? -1.0 : 0.5, [&](double) {
+      return fmt::format("{:.2g} of the receivers are wrong, {} too dark and {} too bright", share, tally.wrong_dark,
+                         tally.wrong - tally.wrong_dark);
+    });
   }
 };
 
 std::vector<std::string> remark(const records::StressCase& record) {
-  if (record.degraded || record.broken || record.samples.empty()) return {};
-  double largest = 0.0;
-  for (const records::StressSample& sample : record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
+  if (!is_ok_throughout(record)) return {};
   return {fmt::format(
       "exactly along the axis, and from {:g} to {:g} degrees beside it, at most {:.2g} of the receivers are wrong",
-      record.samples.front().value, record.samples.back().value, largest)};
+      record.samples.front().value, record.samples.back().value, find_largest_measured(record))};
 }
 
-Case make_case(const StressContext& context, const filters::FilterRequest& request, const Way& way) {
-  const std::string variant = fmt::format("light along {}", way.name);
-  if (!context.renderer) return make_absent_case(request.spec.id, variant, Level::kGl, "there is no GL");
-  Case item = start_case(request, variant, Level::kGl);
+Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, const Way& way) {
+  Case item = start_case(inputs, request, fmt::format("light along {}", way.name), Level::kGl);
+  if (!item.is_available()) return item;
   item.theories = {{std::nullopt, TheoryKind::kSlope,
                     "none: the light's axes are chosen beside the axis that its direction is least parallel to",
                     "by construction: h tan(angle)", Verdict::kDegraded}};
   item.remark = remark;
-  Leaner leaner(std::make_shared<SceneDrawer>(context, request), request, way);
+  Leaner leaner(std::make_shared<SceneDrawer>(inputs, request), request, way);
   item.observe = [leaner](double degrees) mutable { return leaner.observe(degrees); };
   return item;
 }
 
-/// One filter sees all ways; which way the light goes is nothing to the others.
-std::vector<Case> make_cases(const StressContext& context) {
+/// The first filter sees all ways. The others see one: a filter does not know which way the light goes.
+std::vector<Case> make_cases(const AxisInputs& inputs) {
   std::vector<Case> cases;
   const auto ways = list_ways();
-  for (const Way& way : ways) cases.push_back(make_case(context, context.filters.front(), way));
-  for (std::size_t i = 1; i < context.filters.size(); ++i)
-    cases.push_back(make_case(context, context.filters[i], ways.front()));
+  for (const Way& way : ways) cases.push_back(make_case(inputs, inputs.filters.front(), way));
+  for (std::size_t i = 1; i < inputs.filters.size(); ++i)
+    cases.push_back(make_case(inputs, inputs.filters[i], ways.front()));
   return cases;
 }
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/stress/probe.h"
+#include "harness/stress/filter_stage.h"
+#include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
 namespace map_edge {
@@ -13,9 +14,9 @@ constexpr int kMapSize = 128;
 constexpr float kOccluder = 0.3f, kReceiver = 0.6f;
 constexpr double kNear = 0.01;  // of the perspective map; its far plane is at 1
 constexpr std::size_t kSides = 4;
-constexpr double kEarlier = 0.25;  // texels: light must not be less than so much nearer to the map
+constexpr double kEarlier = 0.25;  // texels: a receiver must not be darker than one that is so much nearer to the map
 
-/// What stands at which border.
+/// A border, and what stands there.
 enum class Place { kFloor, kOccluders, kFarPlane, kBehindLight };
 
 constexpr Place kPlaces[] = {Place::kFloor, Place::kOccluders, Place::kFarPlane, Place::kBehindLight};
@@ -30,12 +31,9 @@ const char* name_of_place(Place place) {
   return "";
 }
 
-/// Light at (0.5, 0.5, 0) that looks along z, a quarter turn wide.
+/// Makes the frustum of a light at (0.5, 0.5, 0) that looks along z and is a quarter turn wide.
 scene::LightFrustum make_perspective() {
-  scene::LightFrustum frustum;
-  frustum.width_ws = frustum.depth_range_ws = 1.0;
-  frustum.texel_size_ws = 1.0 / kMapSize;
-  frustum.direction_ws = {0.0f, 0.0f, 1.0f};
+  scene::LightFrustum frustum = make_axis_frustum(1.0, kMapSize);
   frustum.projective = true;
   const auto steep = static_cast<float>(1.0 / (1.0 - kNear));
   glm::mat4 m(1.0f);
@@ -45,8 +43,7 @@ scene::LightFrustum make_perspective() {
   return frustum;
 }
 
-/// Receivers beside all four sides in turn, `outside` texels from them, at places all over the texels; corners are left
-/// out.
+/// Places receivers beside all four sides in turn, `outside` texels from them, all over the texels but for the corners.
 std::vector<glm::vec3> place_beside(double outside, float depth) {
   std::vector<glm::vec3> receivers;
   const auto across = static_cast<float>(outside / kMapSize);
@@ -59,7 +56,7 @@ std::vector<glm::vec3> place_beside(double outside, float depth) {
   return receivers;
 }
 
-/// Receivers all over the middle of the map, at a depth so many texels' lengths beyond the far plane.
+/// Places receivers all over the middle of the map, so many texels' lengths beyond the far plane.
 std::vector<glm::vec3> place_beyond(double outside) {
   std::vector<glm::vec3> receivers;
   const auto depth = static_cast<float>(1.0 + outside / kMapSize);
@@ -68,7 +65,7 @@ std::vector<glm::vec3> place_beyond(double outside) {
   return receivers;
 }
 
-/// Receivers behind the light that a map mirrored through it would hold.
+/// Places receivers behind the light where a map that is mirrored through it would hold them.
 std::vector<glm::vec3> place_behind(double outside) {
   std::vector<glm::vec3> receivers;
   const double z = -outside / kMapSize;
@@ -89,7 +86,8 @@ std::vector<glm::vec3> place(Place where, double outside) {
   return {};
 }
 
-/// Says whether the map can hold nothing of receivers there, so that they must be lit; a floor shadows itself nowhere.
+/// Says whether receivers must be lit: where the map holds nothing that could shadow them, and on a floor, which does
+/// not shadow itself.
 bool must_be_lit(Place where, double outside, double reach) {
   switch (where) {
     case Place::kFloor: return true;
@@ -106,8 +104,8 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// Gives the largest difference along any side. Texels are half-open: on the very border two sides are inside, two
-/// outside.
+/// Gives the largest difference along any side. Sides are not compared with each other: on the very border two of them
+/// are inside the map and two outside.
 double find_unevenness(const std::vector<double>& beside) {
   double largest = 0.0;
   for (std::size_t side = 0; side < kSides; ++side) {
@@ -121,13 +119,13 @@ double find_unevenness(const std::vector<double>& beside) {
   return largest;
 }
 
-/// Says how far off light is, and from where on that is too much.
+/// Judges by how much visibility is off. An error under a wider bound than the axis' own is not reported.
 Observation judge_line(double off, const char* what, double bound = kBound) {
   off = std::max(off, 0.0);
-  const std::string why = fmt::format("by {:.2g} {}", off, what);
-  if (off > kLargestFall) return {Verdict::kBroken, off, why};
-  if (off > bound) return {Verdict::kDegraded, off, why};
-  return {Verdict::kOk, bound > kBound ? 0.0 : off, {}};
+  Observation seen =
+      judge_by_bounds(off, bound, kLargestFall, [&](double) { return fmt::format("by {:.2g} {}", off, what); });
+  if (seen.verdict == Verdict::kOk && bound > kBound) seen.measured = 0.0;
+  return seen;
 }
 
 const Observation& worse(const Observation& a, const Observation& b) {
@@ -135,32 +133,29 @@ const Observation& worse(const Observation& a, const Observation& b) {
   return a.measured.value_or(0.0) >= b.measured.value_or(0.0) ? a : b;
 }
 
-/// A map that goes on beyond the border, with nothing in it, for a blur to be held against: what it makes of texels
-/// inside must be the same. Filters that do not blur decide by the texel, and have nothing there to be wrong.
+/// A map that goes on beyond the border with nothing in it. A blur must make the same of the texels inside. Filters
+/// that do not blur decide by the texel, and are not held against it.
 class WiderMap {
  public:
-  WiderMap(const StressContext& context, const filters::FilterRequest& request)
+  WiderMap(const AxisInputs& inputs, const filters::FilterRequest& request)
       : values_(request.values), margin_(2 * filters::prefilter_radius_texels(request.spec, request.values)) {
     if (margin_ > 0 && filters::make_model(request.spec.id))
-      probe_ = make_model_probe(context, request, filters::Precision::kDouble);
+      lookup_ = make_model_lookup(inputs, request, filters::Precision::kDouble);
   }
 
   /// Gives the largest difference of what is seen of a map of occluders; 0 where there is nothing to hold it against.
   double find_difference(const std::vector<glm::vec3>& receivers, const std::vector<double>& seen) const {
-    if (!probe_) return 0.0;
-    const std::vector<double> wider = probe_->look(widen(receivers), values_).visibility;
-    double largest = 0.0;
-    for (std::size_t i = 0; i < seen.size(); ++i) largest = std::max(largest, std::abs(seen[i] - wider[i]));
-    return largest;
+    if (!lookup_) return 0.0;
+    return find_largest_error(seen, lookup_->look(widen(receivers), values_).visibility);
   }
 
  private:
   filters::ParamValues values_;
   int margin_;
-  std::shared_ptr<Probe> probe_;
+  std::shared_ptr<SyntheticLookup> lookup_;
 
-  ProbeScene widen(const std::vector<glm::vec3>& receivers) const {
-    ProbeScene scene;
+  SyntheticScene widen(const std::vector<glm::vec3>& receivers) const {
+    SyntheticScene scene;
     scene.size = kMapSize + 2 * margin_;
     for (int i = 0; i < scene.size * scene.size; ++i) {
       const int x = i % scene.size, y = i / scene.size;
@@ -177,23 +172,20 @@ class WiderMap {
 
 /// Looks along one border.
 struct Looker {
-  std::shared_ptr<Probe> probe;
+  std::shared_ptr<SyntheticLookup> lookup;
   filters::FilterRequest request;
   std::shared_ptr<const WiderMap> wider;
   Place where = Place::kFloor;
-  ProbeScene scene = {};
+  SyntheticScene scene = {};
 
   std::vector<double> look(double outside) {
     scene.receivers = place(where, outside);
-    return probe->look(scene, request.values).visibility;
+    return lookup->look(scene, request.values).visibility;
   }
 
   Observation observe(double outside) {
     const std::vector<double> seen = look(outside);
-    const auto unusable = std::ranges::count_if(seen, [](double v) { return !std::isfinite(v); });
-    if (unusable > 0)
-      return {Verdict::kBroken, std::nullopt,
-              fmt::format("{} of {} receivers are NaN or infinite", unusable, seen.size())};
+    if (const auto not_finite = judge_not_finite(seen)) return *not_finite;
     const double reach = filters::radius_texels(request.spec, request.values) + 1.0;
     if (must_be_lit(where, outside, reach)) return judge_line(1.0 - *std::ranges::min_element(seen), "too dark");
     if (where != Place::kOccluders) return {};
@@ -204,8 +196,8 @@ struct Looker {
     return worse(blurred, judge_across(seen, look(outside - kEarlier)));
   }
 
-  /// Where a kernel holds both: even along the border, and never darker than nearer to the map. Its random turns make a
-  /// stochastic filter uneven anywhere.
+  /// Judges receivers whose kernel reaches across the border: they must be even along it, and never darker than those
+  /// nearer to the map. A stochastic filter is uneven anywhere, and need not be even here.
   Observation judge_across(const std::vector<double>& seen, const std::vector<double>& nearer) const {
     const bool even = request.spec.kind != filters::FilterKind::kStochastic;
     const Observation along = judge_line(even ? find_unevenness(seen) : 0.0, "uneven along the border");
@@ -234,31 +226,24 @@ Observation observe_all(std::vector<Looker>& lookers, double outside) {
 }
 
 std::vector<std::string> remark(const records::StressCase& record) {
-  if (record.degraded || record.broken || record.samples.empty()) return {};
+  if (!is_ok_throughout(record)) return {};
   return {"lit outside the map, beyond its far plane and behind the light, and no line along the border"};
 }
 
-Case make_case(const StressContext& context, const filters::FilterRequest& request) {
-  constexpr const char* kVariant = "all borders";
-  if (!context.renderer) return make_absent_case(request.spec.id, kVariant, Level::kGl, "there is no GL");
-  Case item = start_case(request, kVariant, Level::kGl);
+Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request) {
+  Case item = start_case(inputs, request, "all borders", Level::kGl);
+  if (!item.is_available()) return item;
   item.theories = {{std::nullopt, TheoryKind::kSlope, "none: what the map does not hold is lit",
                     "by definition: border = encode of depth 1", Verdict::kDegraded}};
   item.remark = remark;
-  const std::shared_ptr<Probe> orthographic = make_gl_probe(context, request),
-                               perspective = make_gl_probe(context, request);
+  const std::shared_ptr<SyntheticLookup> orthographic = make_gl_lookup(inputs, request),
+                                         perspective = make_gl_lookup(inputs, request);
   std::vector<Looker> lookers;
-  const auto wider = std::make_shared<const WiderMap>(context, request);
+  const auto wider = std::make_shared<const WiderMap>(inputs, request);
   for (const Place where : kPlaces)
     lookers.push_back(make_looker({where == Place::kBehindLight ? perspective : orthographic, request, wider}, where));
   item.observe = [lookers](double outside) mutable { return observe_all(lookers, outside); };
   return item;
-}
-
-std::vector<Case> make_cases(const StressContext& context) {
-  std::vector<Case> cases;
-  for (const filters::FilterRequest& request : context.filters) cases.push_back(make_case(context, request));
-  return cases;
 }
 
 }  // namespace map_edge
@@ -277,7 +262,7 @@ Axis make_map_edge_axis() {
   axis.measured_scale = Scale::kLinear;
   axis.bound = kBound;
   axis.broken_when = "visibility is not finite, or off by more than 0.1";
-  axis.make_cases = make_cases;
+  axis.make_cases = [](const AxisInputs& inputs) { return make_gl_cases(inputs, make_case); };
   return axis;
 }
 

@@ -10,8 +10,8 @@
 #include "filters/base/error.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/validate.h"
-#include "harness/stress/probe.h"
 #include "harness/stress/slab_scene.h"
+#include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
 namespace poisoned_input {
@@ -21,36 +21,25 @@ constexpr float kOccluder = 0.3f, kReceiver = 0.6f;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kDenormal = 1e-40f;
 
-/// A number that does not belong into a map, and the depth that it should do no more harm than.
+/// A number that does not belong into a map, and a depth: the number should do no more harm than that depth does.
 struct Drop {
   float value;
   float harmless;
 };
 
-/// What is put into a map's texels, in turn.
+/// The numbers that are put into a map's texels, in turn.
 struct Poison {
   const char* name;
   std::vector<Drop> drops;
 };
 
-const Poison& not_numbers() {
-  static const Poison poison{"NaN in the map", {{kNaN, kReceiver}}};
-  return poison;
-}
-const Poison& infinities() {
-  static const Poison poison{"infinities in the map", {{kInfinity, 1.0f}, {-kInfinity, 0.0f}}};
-  return poison;
-}
-const Poison& denormals() {
-  static const Poison poison{"denormals in the map", {{kDenormal, 0.0f}, {-kDenormal, 0.0f}}};
-  return poison;
-}
-const Poison& overflows() {
-  static const Poison poison{"overflow in the map", {{1.0f, kReceiver}}};
-  return poison;
-}
-constexpr double kOverflowingExponent =
-    100.0;  // exp(100) is infinite in 32 bits, exp(60) of the receivers' own depth is not
+Poison not_numbers() { return {"NaN in the map", {{kNaN, kReceiver}}}; }
+Poison infinities() { return {"infinities in the map", {{kInfinity, 1.0f}, {-kInfinity, 0.0f}}}; }
+Poison denormals() { return {"denormals in the map", {{kDenormal, 0.0f}, {-kDenormal, 0.0f}}}; }
+Poison overflows() { return {"overflow in the map", {{1.0f, kReceiver}}}; }
+
+/// exp(100) is infinite in 32 bits, exp(60) of the receivers' own depth is not.
+constexpr double kOverflowingExponent = 100.0;
 
 /// Spreads texels all over the map, in an order that does not depend on how many there are; no texel twice.
 glm::ivec2 place_texel(int i) {
@@ -59,28 +48,25 @@ glm::ivec2 place_texel(int i) {
   return {at % kMapSize, at / kMapSize};
 }
 
-/// Occluders on the left half, receivers before every texel of it and behind.
-ProbeScene make_scene() {
-  ProbeScene scene;
-  scene.size = kMapSize;
-  for (int y = 0; y < kMapSize; ++y) {
-    for (int x = 0; x < kMapSize; ++x) {
-      scene.depths.push_back(2 * x < kMapSize ? kOccluder : kReceiver);
-      scene.receivers.emplace_back(scene.uv(x), scene.uv(y), kReceiver);
-    }
-  }
+/// Makes a map with occluders on its left half, and a receiver at every texel, behind them or beside.
+SyntheticScene make_scene() {
+  SyntheticScene scene{kMapSize, make_split_depths(kMapSize, kOccluder, kReceiver), {}};
+  for (int y = 0; y < kMapSize; ++y)
+    for (int x = 0; x < kMapSize; ++x) scene.receivers.emplace_back(scene.uv(x), scene.uv(y), kReceiver);
   return scene;
 }
 
-void poison(ProbeScene& scene, int count, const Poison& poison, float Drop::*part) {
+/// Gives the scene with so many texels poisoned, or made as deep as is harmless.
+SyntheticScene poison(SyntheticScene scene, int count, const Poison& poison, float Drop::*part) {
   for (int i = 0; i < count; ++i) {
     const glm::ivec2 texel = place_texel(i);
     scene.depths[static_cast<std::size_t>(texel.y * kMapSize + texel.x)] =
         poison.drops[static_cast<std::size_t>(i) % poison.drops.size()].*part;
   }
+  return scene;
 }
 
-/// Gives which receivers' kernels hold a poisoned texel; what lies outside the map is as deep as the deepest poison.
+/// Marks the receivers whose kernel holds a poisoned texel, and those nearer to the map's border than `border` texels.
 std::vector<bool> find_reached(int count, int reach, int border) {
   std::vector<bool> reached(static_cast<std::size_t>(kMapSize) * kMapSize, false);
   for (int i = 0; i < kMapSize * kMapSize; ++i) {
@@ -96,7 +82,7 @@ std::vector<bool> find_reached(int count, int reach, int border) {
   return reached;
 }
 
-/// Harm, by where it is.
+/// Counts of harmed receivers, by where they are.
 struct Harm {
   int reachable = 0;   ///< receivers whose kernel holds poison
   int inside = 0;      ///< of them: not finite, or not what the harmless depth gives
@@ -129,28 +115,27 @@ Observation judge_harm(const Harm& harm, int count, int reach) {
                       harm.inside, harm.reachable, reach, harm.not_finite)};
 }
 
-/// Which of its texels a kernel's bilinear reads touch, from a texel's centre.
+/// Gives how many texels the bilinear reads of a kernel reach from a texel's centre.
 int find_reach(const filters::FilterRequest& request) {
   return static_cast<int>(std::ceil(filters::radius_texels(request.spec, request.values))) + 1;
 }
 
 std::vector<std::string> remark_spread(const records::StressCase& record) {
-  double largest = 0.0;
-  for (const records::StressSample& sample : record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
+  const double largest = find_largest_measured(record);
   if (record.broken || record.samples.empty() || largest == 0.0) return {};
   return {
       fmt::format("up to {:.0f} % of the receivers whose kernel holds poison are harmed, and none beyond the kernel",
                   100.0 * largest)};
 }
 
-/// What one filter's map is poisoned with.
+/// How one filter's map is poisoned.
 struct MapSetting {
   Poison poison;
   Level level = Level::kGl;
   bool border_is_poison = false;  ///< what lies outside the map is encoded as the poison is
 };
 
-/// Finds what a GL makes of poison that is uploaded: it may clamp it.
+/// Says what a GL stores of poison that is uploaded, if it clamps it.
 std::string describe_stored(const Poison& poison) {
   render::ShadowMap map(1);
   std::vector<std::string> changed;
@@ -171,41 +156,40 @@ std::vector<std::string> remark_map(const MapSetting& setting, const records::St
   return sentences;
 }
 
-Case make_map_case(const StressContext& context, const filters::FilterRequest& request, const MapSetting& setting) {
-  const std::string variant = setting.poison.name;
-  const auto [probe, reason] = make_probe(context, request, setting.level);
-  if (!probe) return make_absent_case(request.spec.id, variant, setting.level, reason);
-  Case item = start_case(request, variant, setting.level);
+Case make_map_case(const AxisInputs& inputs, const filters::FilterRequest& request, const MapSetting& setting) {
+  Case item = start_case(inputs, request, setting.poison.name, setting.level);
+  if (!item.is_available()) return item;
   item.theories = {{std::nullopt, TheoryKind::kQuantum, "none: poison stays within the kernel",
                     "derived: a blur of finite support", Verdict::kBroken}};
   item.remark = [setting](const records::StressCase& record) { return remark_map(setting, record); };
-  item.observe = [probe = probe, values = request.values, setting, reach = find_reach(request),
-                  scene = make_scene()](double number) {
+  item.observe = [lookup = make_lookup(inputs, request, setting.level), values = request.values, setting,
+                  reach = find_reach(request), scene = make_scene()](double number) {
     const int count = static_cast<int>(number);
-    ProbeScene poisoned = scene, harmless = scene;
-    poison(poisoned, count, setting.poison, &Drop::value);
-    poison(harmless, count, setting.poison, &Drop::harmless);
-    const std::vector<double> expected = probe->look(harmless, values).visibility;
+    const auto look = [&](float Drop::*part) {
+      return lookup->look(poison(scene, count, setting.poison, part), values).visibility;
+    };
+    const std::vector<double> harmless = look(&Drop::harmless);
     const std::vector<bool> reached = find_reached(count, reach, setting.border_is_poison ? reach : 0);
-    return judge_harm(count_harm(probe->look(poisoned, values).visibility, expected, reached), count, reach);
+    return judge_harm(count_harm(look(&Drop::value), harmless, reached), count, reach);
   };
   return item;
 }
 
-/// A map of exponentials is poisoned by an exponent that overflows at the deepest texels, and at no others.
-std::vector<Case> make_overflow_cases(const StressContext& context) {
+/// Poisons maps of exponentials by an exponent that overflows at the deepest texels, and at no others.
+std::vector<Case> make_overflow_cases(const AxisInputs& inputs) {
   std::vector<Case> cases;
-  for (DrivenFilter& driven : find_driven(context, find_exponent)) {
-    filters::ParamValues& values = driven.request.values;
-    values[driven.param] = kOverflowingExponent;
-    if (values.contains("combine")) values["combine"] = std::string("linear");
-    if (values.contains("store")) values["store"] = std::string("r32f");
-    cases.push_back(make_map_case(context, driven.request, {overflows(), Level::kGl, true}));
+  for (filters::FilterRequest request : inputs.filters) {
+    const std::string param = find_exponent(request.spec);
+    if (param.empty()) continue;
+    request.values[param] = kOverflowingExponent;
+    if (request.values.contains("combine")) request.values["combine"] = std::string("linear");
+    if (request.values.contains("store")) request.values["store"] = std::string("r32f");
+    cases.push_back(make_map_case(inputs, request, {overflows(), Level::kGl, true}));
   }
   return cases;
 }
 
-/// A way to poison a scene before it is validated, as what reads a file does.
+/// Poisons a scene before it is validated, as a reader of files may.
 using PoisonScene = std::function<void(scene::Scene&, int count, double value)>;
 
 void poison_vertices(scene::Scene& scene, int count, double value) {
@@ -237,7 +221,7 @@ std::vector<ScenePlace> list_places() {
        }}};
 }
 
-/// A kind of poison; what is refused must be, of what is not something finite must come.
+/// A poisonous number. A scene that holds it must be refused, or else become a finite scene.
 struct SceneInput {
   const char* name;
   double value;
@@ -270,7 +254,7 @@ Observation observe_place(const SceneInput& input, const ScenePlace& place, int 
     if (!is_finite(checked))
       return {Verdict::kBroken, 1.0, fmt::format("what is made of it in {} is not finite", place.name)};
   } catch (const Error& error) {
-    // Of a scene that nothing but denormals was left of, saying so is right.
+    // A scene that denormals leave nothing of may be refused as empty.
     if (error.kind() != ErrorKind::kInput) return {Verdict::kBroken, 1.0, error.what()};
   }
   return {Verdict::kOk, 0.0, {}};
@@ -292,9 +276,7 @@ std::vector<std::string> remark_refusal(const SceneInput& input, const records::
 }
 
 Case make_input_case(const SceneInput& input) {
-  Case item;
-  item.variant = input.name;
-  item.level = Level::kArithmetic;
+  Case item{.variant = input.name, .level = Level::kArithmetic};
   item.theories = {{std::nullopt, TheoryKind::kQuantum,
                     input.refused ? "none: it is refused" : "none: they are numbers", "by definition",
                     Verdict::kBroken}};
@@ -303,17 +285,17 @@ Case make_input_case(const SceneInput& input) {
   return item;
 }
 
-std::vector<Case> make_cases(const StressContext& context) {
-  std::vector<Case> cases;
-  for (const filters::FilterRequest& request : context.filters)
-    cases.push_back(make_map_case(context, request, {not_numbers()}));
-  for (const filters::FilterRequest& request : context.filters) {
+std::vector<Case> make_cases(const AxisInputs& inputs) {
+  std::vector<Case> cases = make_gl_cases(inputs, [](const AxisInputs& all, const filters::FilterRequest& request) {
+    return make_map_case(all, request, {not_numbers()});
+  });
+  for (const filters::FilterRequest& request : inputs.filters) {
     if (!request.spec.has_encode) continue;  // what compares has nothing to spread poison with
-    for (const Poison& kind : {infinities(), denormals()}) cases.push_back(make_map_case(context, request, {kind}));
+    for (const Poison& kind : {infinities(), denormals()}) cases.push_back(make_map_case(inputs, request, {kind}));
     for (const Poison& kind : {not_numbers(), infinities()})
-      cases.push_back(make_map_case(context, request, {kind, Level::kModel}));
+      cases.push_back(make_map_case(inputs, request, {kind, Level::kModel}));
   }
-  for (Case& item : make_overflow_cases(context)) cases.push_back(std::move(item));
+  append(cases, make_overflow_cases(inputs));
   for (const SceneInput& input : kSceneInputs) cases.push_back(make_input_case(input));
   return cases;
 }

@@ -18,11 +18,11 @@ constexpr double kSingleStep = 0x1p-23;      // ulp of a coordinate, relative
 constexpr double kDoubleStep = 0x1p-52;
 constexpr const char* kSource = "derived: step of a float coordinate (IEEE 754)";
 
-/// Relative to what, and when, positions become floats.
+/// The origin that positions are relative to when they become floats.
 enum class Origin {
   kWorld,         ///< the world's: where the scene stands
-  kSceneLate,     ///< the scene's, taken off what is float already
-  kSceneInDouble  ///< the scene's, taken off in double
+  kSceneLate,     ///< the scene's, subtracted after positions became floats
+  kSceneInDouble  ///< the scene's, subtracted before, in double
 };
 
 struct Setting {
@@ -39,7 +39,7 @@ const char* describe(Origin origin) {
   return "";
 }
 
-/// The compiler may not take (p + way) - way for p: these are doubles in the order that is written.
+/// The sums are doubles in the order that is written: the compiler may not simplify (p + way) - way to p.
 glm::vec3 move(const glm::vec3& p, const glm::dvec3& way, Origin origin) {
   const glm::dvec3 moved = glm::dvec3(p) + way;
   switch (origin) {
@@ -62,8 +62,8 @@ double find_size(const scene::Scene& scene) {
   return glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
 }
 
-/// How far off a receiver may be along the light before the map's own surface shadows it: the constant bias, and what
-/// the plane's bias leaves of its texels over the half that the sampling grid needs.
+/// How far a receiver may be off along the light before its own surface in the map shadows it: by the constant bias,
+/// and by what the plane's bias has left over the half texel that the sampling grid needs.
 double find_slack(const scene::Scene& scene, const scene::LightFrustum& frustum,
                   const filters::FilterRequest& request) {
   const glm::dvec3 normal(scene.meshes.front().vertices.front().normal_ws), light(frustum.direction_ws);
@@ -73,7 +73,7 @@ double find_slack(const scene::Scene& scene, const scene::LightFrustum& frustum,
   return bias.constant_depth * frustum.depth_range_ws + 0.5 * frustum.texel_size_ws * tangent;
 }
 
-/// Shadows move by whole texels where a coordinate's step reaches half of one.
+/// Shadows move by whole texels where the step of a coordinate reaches half a texel.
 Theory make_theory(const scene::Scene& scene, const scene::LightFrustum& frustum, const filters::FilterRequest& request,
                    Origin origin) {
   const double slack = std::min(find_slack(scene, frustum, request), 0.5 * frustum.texel_size_ws);
@@ -85,14 +85,15 @@ Theory make_theory(const scene::Scene& scene, const scene::LightFrustum& frustum
           kSource, Verdict::kDegraded};
 }
 
-/// Nothing is left of a scene that is smaller than the step between the coordinates that it could have.
+/// A scene that is smaller than the step of its coordinates collapses.
 Theory make_collapse() {
   return {1.0 / (kSingleStep * kWay.x), TheoryKind::kRounding,
           fmt::format("1 / (2^-23 x {:g}): where a coordinate's step is the scene's size", kWay.x), kSource,
           Verdict::kBroken};
 }
 
-/// How much slack a bound has of its own is not known beforehand: it is soft where a comparison has acne.
+/// Filters of kind bound get no theory of acne: they answer a small error with a soft shadow, and by how much is not
+/// known beforehand.
 std::vector<Theory> list_theories(const scene::Scene& scene, const scene::LightFrustum& frustum,
                                   const filters::FilterRequest& request, Origin origin) {
   if (origin == Origin::kSceneLate) return {};
@@ -121,12 +122,12 @@ std::vector<std::string> remark(Origin origin, const records::StressCase& record
   return {};
 }
 
-Case make_case(const StressContext& context, const filters::FilterRequest& request, const scene::Scene& scene,
+Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, const scene::Scene& scene,
                const Setting& setting) {
   const std::string variant = fmt::format("{}, {}", setting.name, describe(setting.origin));
-  if (!context.renderer) return make_absent_case(request.spec.id, variant, Level::kGl, "there is no GL");
-  const auto drawer = std::make_shared<SceneDrawer>(context, request);
-  Case item = start_case(request, variant, Level::kGl);
+  Case item = start_case(inputs, request, variant, Level::kGl);
+  if (!item.is_available()) return item;
+  const auto drawer = std::make_shared<SceneDrawer>(inputs, request);
   item.theories = list_theories(scene, drawer->fit(scene), request, setting.origin);
   item.remark = [origin = setting.origin](const records::StressCase& record) { return remark(origin, record); };
   item.observe = [drawer, scene, size = find_size(scene), origin = setting.origin,
@@ -145,15 +146,15 @@ scene::Scene make_facing_floor() {
   return make_slab_scene({.world_from_local = glm::dmat3(turned)});
 }
 
-std::vector<Case> make_cases(const StressContext& context) {
+std::vector<Case> make_cases(const AxisInputs& inputs) {
   const scene::Scene floor = scene::validate(make_facing_floor(), "facing floor");
-  const scene::Scene cubes = load_drawn_scene(context, "cubes");
-  std::vector<Case> cases;
-  for (const filters::FilterRequest& request : context.filters)
-    cases.push_back(make_case(context, request, floor, {"floor", Origin::kWorld}));
-  cases.push_back(make_case(context, context.filters.front(), floor, {"floor", Origin::kSceneInDouble}));
+  const scene::Scene cubes = load_drawn_scene(inputs, "cubes");
+  std::vector<Case> cases = make_gl_cases(inputs, [&](const AxisInputs&, const filters::FilterRequest& request) {
+    return make_case(inputs, request, floor, {"floor", Origin::kWorld});
+  });
+  cases.push_back(make_case(inputs, inputs.filters.front(), floor, {"floor", Origin::kSceneInDouble}));
   for (const Origin origin : {Origin::kWorld, Origin::kSceneLate, Origin::kSceneInDouble})
-    cases.push_back(make_case(context, context.filters.front(), cubes, {"cubes", origin}));
+    cases.push_back(make_case(inputs, inputs.filters.front(), cubes, {"cubes", origin}));
   return cases;
 }
 

@@ -20,7 +20,7 @@ scene::Scene scale(scene::Scene scene, double factor) {
   return scene::validate(std::move(scene), "scaled scene");
 }
 
-/// Every length in the chain is relative to the scene, the light's frustum or the map's texels.
+/// Every length in the passes is relative to the scene, to the light's frustum or to the map's texels.
 Theory make_theory() {
   return {std::nullopt, TheoryKind::kRounding,
           "none: no length in the chain is absolute, and floats round alike at every scale",
@@ -28,31 +28,23 @@ Theory make_theory() {
 }
 
 std::vector<std::string> remark(const records::StressCase& record) {
-  double largest = 0.0;
-  for (const records::StressSample& sample : record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
-  if (record.degraded || record.broken || record.samples.empty()) return {};
+  if (!is_ok_throughout(record)) return {};
   return {fmt::format("from {:g} to {:g} times its size no more than {:.2g} of the pixels change",
-                      record.samples.front().value, record.samples.back().value, largest)};
+                      record.samples.front().value, record.samples.back().value, find_largest_measured(record))};
 }
 
-Case make_case(const StressContext& context, const filters::FilterRequest& request, const scene::Scene& scene) {
-  if (!context.renderer) return make_absent_case(request.spec.id, scene.name, Level::kGl, "there is no GL");
-  Case item = start_case(request, scene.name, Level::kGl);
+Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request) {
+  const scene::Scene scene = load_drawn_scene(inputs, "cubes");
+  Case item = start_case(inputs, request, scene.name, Level::kGl);
+  if (!item.is_available()) return item;
   item.theories = {make_theory()};
   item.remark = remark;
-  const auto drawer = std::make_shared<SceneDrawer>(context, request);
+  const auto drawer = std::make_shared<SceneDrawer>(inputs, request);
   item.observe = [drawer, scene, expected = std::optional<Drawing>()](double factor) mutable {
     if (!expected) expected = drawer->draw(scene);
     return judge_drawing(drawer->draw(scale(scene, factor)), *expected, kBound);
   };
   return item;
-}
-
-std::vector<Case> make_cases(const StressContext& context) {
-  const scene::Scene cubes = load_drawn_scene(context, "cubes");
-  std::vector<Case> cases;
-  for (const filters::FilterRequest& request : context.filters) cases.push_back(make_case(context, request, cubes));
-  return cases;
 }
 
 }  // namespace scale
@@ -69,7 +61,7 @@ Axis make_scale_axis() {
   axis.measured_scale = Scale::kLinear;
   axis.bound = kBound;
   axis.broken_when = "visibility is not finite, all lit or all dark";
-  axis.make_cases = make_cases;
+  axis.make_cases = [](const AxisInputs& inputs) { return make_gl_cases(inputs, make_case); };
   return axis;
 }
 

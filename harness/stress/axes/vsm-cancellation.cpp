@@ -9,10 +9,9 @@
 namespace shadowbench::stress {
 namespace vsm_cancellation {
 
-constexpr double kBound = 0.02;  // of visibility: five steps of an 8-bit picture
-constexpr int kBands = 12;       // depths at which a gap is tried: how a moment is rounded is luck
-constexpr int kDepths = 512;     // the same, where no map is needed
-constexpr int kTaps = 81;        // of a 9 x 9 box
+constexpr int kBands = 12;    // depths at which a gap is tried, since each rounds a moment by another amount
+constexpr int kDepths = 512;  // the same, where no map is needed
+constexpr int kTaps = 81;     // of a 9 x 9 box
 constexpr double kSingleRounding = 0x1p-24;
 constexpr const char* kSource =
     "derived; Higham 2002, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 1.9, on the textbook "
@@ -28,18 +27,14 @@ double store_rounding(filters::StorePrecision store) {
   return 0.0;
 }
 
-/// How far off E[z^2] - E[z]^2 may be, z in [0,1]: both moments are stored `stores` times and are sums of `taps`
-/// products; an error of the mean counts twice.
+/// Gives how far E[z^2] - E[z]^2 may be off, z in [0,1], where both moments are stored `stores` times and are sums of
+/// `taps` products. An error of the mean counts twice.
 double bound_variance_error(filters::StorePrecision store, int stores, int taps) {
   return 3.0 * (stores * store_rounding(store) + taps * kSingleRounding);
 }
 
 /// Spreads depths over the far half of the range, where squares are rounded most.
 float place_depth(int i, int count) { return static_cast<float>(0.5 + 0.499 * (i + 0.618) / count); }
-
-double read_minimum(const DrivenFilter& driven, const filters::ParamValues& values) {
-  return filters::number(values, driven.param);
-}
 
 /// Variance shadow maps are exact where a kernel holds two depths and the receiver is at the farther one: visibility is
 /// that depth's share. With a minimum of the variance it is more.
@@ -78,13 +73,12 @@ Theory make_theory(double error, double minimum, double bound, Verdict predicts)
   return theory;
 }
 
-/// A bound adds all roundings up. Where the minimum keeps the error below, it is enough that the error seen comes near.
+/// Explains an error that the minimum variance keeps below a bound, but near to it: theory adds all roundings up.
 std::string explain_unmet_bound(const Disagreement& missed) {
   if (missed.measured) return {};
-  double largest = 0.0;
-  for (const records::StressSample& sample : missed.record.samples)
-    largest = std::max(largest, sample.measured.value_or(0.0));
-  const double bound = missed.theory.predicts == Verdict::kDegraded ? kBound : kLargestFall, factor = bound / largest;
+  const double largest = find_largest_measured(missed.record);
+  const double bound = missed.theory.predicts == Verdict::kDegraded ? kVisibleError : kLargestFall,
+               factor = bound / largest;
   if (factor > records::tolerance_of(TheoryKind::kRounding)) return {};
   return fmt::format(
       "the minimum variance stops the error at {:.2g}, a factor {:.1f} below {:g}; theory adds all roundings up, which "
@@ -92,31 +86,39 @@ std::string explain_unmet_bound(const Disagreement& missed) {
       largest, factor, bound);
 }
 
-Case make_filter_case(const StressContext& context, const DrivenFilter& driven, const std::string& store,
-                      double minimum, Level level) {
-  filters::FilterRequest request = driven.request;
+/// What is varied besides the gap.
+struct Setting {
+  std::string store;
+  double minimum = 0.0;  ///< of the variance
+};
+
+std::string driven_param(const filters::FilterSpec& spec) {
+  return spec.exponent.empty() ? spec.variance_floor : std::string();
+}
+
+Case make_filter_case(const AxisInputs& inputs, filters::FilterRequest request, const Setting& setting, Level level) {
+  const auto& [store, minimum] = setting;
+  const std::string param = driven_param(request.spec);
   request.values["store"] = store;
-  request.values[driven.param] = minimum;
-  const std::string variant = fmt::format("{}, {} {:g}", store, driven.param, minimum);
-  const auto [probe, reason] = make_probe(context, request, level);
-  if (!probe) return make_absent_case(request.spec.id, variant, level, reason);
+  request.values[param] = minimum;
+  Case item = start_case(inputs, request, fmt::format("{}, {} {:g}", store, param, minimum), level);
+  if (!item.is_available()) return item;
   const int radius = filters::prefilter_radius_texels(request.spec, request.values);
   const double error =
       bound_variance_error(filters::store_precision(store), radius > 0 ? 3 : 1, radius > 0 ? 2 * (2 * radius + 1) : 2);
-  Case item = start_case(request, variant, level);
-  item.theories = {make_theory(error, minimum, kBound, Verdict::kDegraded),
+  item.theories = {make_theory(error, minimum, kVisibleError, Verdict::kDegraded),
                    make_theory(error, minimum, kLargestFall, Verdict::kBroken)};
   item.explain = explain_unmet_bound;
-  item.observe = [probe = probe, edge = make_edge_scene(radius, make_bands(1.0)), values = request.values,
-                  minimum](double ratio) mutable {
+  item.observe = [lookup = make_lookup(inputs, request, level), edge = make_edge_scene(radius, make_bands(1.0)),
+                  values = request.values, minimum = minimum](double ratio) mutable {
     const std::vector<EdgeDepths> bands = make_bands(ratio);
     set_depths(edge, bands);
-    return judge(probe->look(edge.scene, values), {expect_visibility(edge, bands, minimum), kBound, edge.run});
+    return judge(lookup->look(edge.scene, values), {expect_visibility(edge, bands, minimum), kVisibleError, edge.run});
   };
   return item;
 }
 
-/// The textbook variance of one depth, 81 times, in single precision with stored moments; it should be 0.
+/// Gives the textbook variance of one depth, 81 times, in single precision with stored moments; it should be 0.
 double find_variance(float depth, filters::StorePrecision store) {
   const float first = filters::round_to_store(depth, store), second = filters::round_to_store(depth * depth, store);
   float mean = 0.0f, mean_of_squares = 0.0f;
@@ -127,55 +129,47 @@ double find_variance(float depth, filters::StorePrecision store) {
   return static_cast<double>(mean_of_squares) - static_cast<double>(mean) * static_cast<double>(mean);
 }
 
-/// A wall that blocks everything, a gap before the receiver: what light passes is made by the variance that is not
-/// there.
+/// Observes a wall that blocks everything, a gap before the receiver. All light behind it comes from a variance that
+/// should be 0.
 Observation observe_wall(double largest_variance, double ratio) {
   const double gap = 1.0 / ratio, leak = largest_variance / (largest_variance + gap * gap);
-  const std::string why =
-      fmt::format("visibility {:.2g} behind a wall: its variance is {:.2g} instead of 0, the gap squared {:.2g}", leak,
-                  largest_variance, gap * gap);
-  if (leak > 1.0 - kBound) return {Verdict::kBroken, leak, why + "; all is lit"};
-  if (leak > kBound) return {Verdict::kDegraded, leak, why};
-  return {Verdict::kOk, leak, {}};
+  return judge_by_bounds(leak, kVisibleError, 1.0 - kVisibleError, [&](double bound) {
+    return fmt::format("visibility {:.2g} behind a wall: its variance is {:.2g} instead of 0, the gap squared {:.2g}{}",
+                       leak, largest_variance, gap * gap, bound > kVisibleError ? "; all is lit" : "");
+  });
 }
 
 Case make_wall_case(const char* name, filters::StorePrecision store) {
   double largest = 0.0;
   for (int i = 0; i < kDepths; ++i) largest = std::max(largest, find_variance(place_depth(i, kDepths), store));
   const double error = bound_variance_error(store, 1, kTaps);
-  Case item;
-  item.variant = fmt::format("{}, {} taps of one depth, no minimum", name, kTaps);
-  item.level = Level::kArithmetic;
+  Case item{.variant = fmt::format("{}, {} taps of one depth, no minimum", name, kTaps), .level = Level::kArithmetic};
   const auto theory = [&](double leak, Verdict predicts) {
     return Theory{std::sqrt(leak / ((1.0 - leak) * error)), TheoryKind::kRounding,
                   fmt::format("sqrt({:g} / ({:g} x {:.2g}))", leak, 1.0 - leak, error), kSource, predicts};
   };
-  item.theories = {theory(kBound, Verdict::kDegraded), theory(1.0 - kBound, Verdict::kBroken)};
+  item.theories = {theory(kVisibleError, Verdict::kDegraded), theory(1.0 - kVisibleError, Verdict::kBroken)};
   item.observe = [largest](double ratio) { return observe_wall(largest, ratio); };
   return item;
 }
 
-/// With the minimum that the filter has by default, and without, unless the user asks for one.
-std::vector<double> list_minima(const DrivenFilter& driven) {
-  const double chosen = read_minimum(driven, driven.request.values);
-  const bool set = std::ranges::find(driven.request.set_by_user, driven.param) != driven.request.set_by_user.end();
-  return set || chosen == 0.0 ? std::vector{chosen} : std::vector{chosen, 0.0};
-}
-
-std::string driven_param(const filters::FilterSpec& spec) {
-  return spec.exponent.empty() ? spec.variance_floor : std::string();
-}
-
-std::vector<Case> make_cases(const StressContext& context) {
-  std::vector<Case> cases;
-  for (const DrivenFilter& driven : find_driven(context, driven_param)) {
-    for (const std::string& store : list_choices(driven.request, "store")) {
-      for (const double minimum : list_minima(driven))
-        for (const Level level : {Level::kGl, Level::kModel})
-          cases.push_back(make_filter_case(context, driven, store, minimum, level));
-    }
+/// Lists each store with the filter's own minimum of the variance, and with none unless the user set one.
+std::vector<Setting> list_settings(const filters::FilterRequest& request) {
+  const std::string param = driven_param(request.spec);
+  if (param.empty()) return {};
+  const double minimum = filters::number(request.values, param);
+  std::vector<Setting> settings;
+  for (const std::string& store : list_choices(request, "store")) {
+    settings.push_back({store, minimum});
+    if (minimum != 0.0 && !is_set_by_user(request, param)) settings.push_back({store, 0.0});
   }
-  if (cases.empty()) cases.push_back(make_undriven_case("'variance_floor' without 'exponent'"));
+  return settings;
+}
+
+std::vector<Case> make_cases(const AxisInputs& inputs) {
+  std::vector<Case> cases =
+      make_filter_cases(inputs, list_settings, make_filter_case,
+                        "no chosen filter's front matter declares 'variance_floor' without 'exponent'");
   cases.push_back(make_wall_case("32-bit float", filters::StorePrecision::kSingle));
   cases.push_back(make_wall_case("16-bit float", filters::StorePrecision::kHalf));
   cases.push_back(make_wall_case("16-bit unorm", filters::StorePrecision::kUnorm16));
@@ -193,7 +187,7 @@ Axis make_vsm_cancellation_axis() {
   axis.limits = {1.0, 1e9};
   axis.coarse_samples = 43;
   axis.measured = "largest error of visibility";
-  axis.bound = kBound;
+  axis.bound = kVisibleError;
   axis.broken_when =
       "visibility is not finite, all lit or all dark, or falls by more than 0.1 from dark to light; of arithmetic: "
       "over 0.98 behind a wall";

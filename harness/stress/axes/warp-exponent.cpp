@@ -4,62 +4,58 @@
 #include <limits>
 
 #include "filters/store_format.h"
-#include "harness/stress/probe.h"
+#include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
 namespace warp_exponent {
 
-constexpr double kBound = 0.02;
 constexpr int kTaps = 81;  // of a 9 x 9 box
 constexpr const char* kSource = "derived: exp(2 c) must stay below the largest finite number (IEEE 754)";
 
 /// A store, and how many second moments are added before they are divided.
-struct Setting {
+struct Moments {
   const char* name;
   filters::StorePrecision store;
-  double largest;
   int taps;
+  double largest() const { return filters::largest_number(store); }
 };
 
 /// The largest second moment, of the warped depth 1, as the store keeps it.
-float sum_moments(const Setting& setting, double c) {
+float sum_moments(const Moments& moments, double c) {
   const float warped = std::exp(static_cast<float>(c));
   float sum = 0.0f;
-  for (int i = 0; i < setting.taps; ++i)
-    sum = filters::round_to_store(sum + filters::round_to_store(warped * warped, setting.store), setting.store);
+  for (int i = 0; i < moments.taps; ++i)
+    sum = filters::round_to_store(sum + filters::round_to_store(warped * warped, moments.store), moments.store);
   return sum;
 }
 
 /// Measures the relative error: against exp(2 c), which double holds up to c = 354.
-Observation observe_moment(const Setting& setting, double c) {
-  const auto sum = static_cast<double>(sum_moments(setting, c));
+Observation observe_moment(const Moments& moments, double c) {
+  const auto sum = static_cast<double>(sum_moments(moments, c));
   if (!std::isfinite(sum))
     return {Verdict::kBroken, std::nullopt,
             fmt::format("{:.3g}{} is more than {:.5g}", std::exp(2.0 * c),
-                        setting.taps == 1 ? "" : fmt::format(" x {}", setting.taps), setting.largest)};
-  const double error = std::abs(sum / (setting.taps * std::exp(2.0 * c)) - 1.0);
-  if (error > kBound)
-    return {Verdict::kDegraded, error, fmt::format("relative error {:.2g}, over {:g}", error, kBound)};
-  return {Verdict::kOk, error, {}};
+                        moments.taps == 1 ? "" : fmt::format(" x {}", moments.taps), moments.largest())};
+  const double error = std::abs(sum / (moments.taps * std::exp(2.0 * c)) - 1.0);
+  return judge_by_bounds(error, kVisibleError, std::numeric_limits<double>::infinity(),
+                         [&](double bound) { return fmt::format("relative error {:.2g}, over {:g}", error, bound); });
 }
 
-Case make_moment_case(const Setting& setting) {
-  Case item;
-  item.variant =
-      fmt::format("{}, {}", setting.name,
-                  setting.taps == 1 ? "one second moment" : fmt::format("sum of {} second moments", setting.taps));
-  item.level = Level::kArithmetic;
+Case make_moment_case(const Moments& moments) {
+  const std::string what =
+      moments.taps == 1 ? "one second moment" : fmt::format("sum of {} second moments", moments.taps);
+  Case item{.variant = fmt::format("{}, {}", moments.name, what), .level = Level::kArithmetic};
   item.theories = {
-      {0.5 * std::log(setting.largest / setting.taps), TheoryKind::kOverflow,
-       fmt::format("ln({:.5g}{}) / 2", setting.largest, setting.taps == 1 ? "" : fmt::format(" / {}", setting.taps)),
+      {0.5 * std::log(moments.largest() / moments.taps), TheoryKind::kOverflow,
+       fmt::format("ln({:.5g}{}) / 2", moments.largest(), moments.taps == 1 ? "" : fmt::format(" / {}", moments.taps)),
        kSource, Verdict::kBroken}};
-  item.observe = [setting](double c) { return observe_moment(setting, c); };
+  item.observe = [moments](double c) { return observe_moment(moments, c); };
   return item;
 }
 
-/// A map of depths 0 .. 1 with receivers behind each column, held against the filter's own model in double precision.
-ProbeScene make_ramp_scene() {
-  ProbeScene scene;
+/// Makes a map of depths from 0 to 1 with receivers behind each column.
+SyntheticScene make_ramp_scene() {
+  SyntheticScene scene;
   scene.size = 64;
   for (int i = 0; i < scene.size * scene.size; ++i)
     scene.depths.push_back(static_cast<float>(i % scene.size) / static_cast<float>(scene.size - 1));
@@ -69,50 +65,41 @@ ProbeScene make_ramp_scene() {
 }
 
 Theory make_filter_theory(const std::string& store) {
-  const double largest = filters::store_precision(store) == filters::StorePrecision::kHalf
-                             ? 65504.0
-                             : static_cast<double>(std::numeric_limits<float>::max());
+  const double largest = filters::largest_number(filters::store_precision(store));
   return {0.5 * std::log(largest), TheoryKind::kOverflow, fmt::format("ln({:.5g}) / 2", largest), kSource,
           Verdict::kBroken};
 }
 
-Case make_filter_case(const StressContext& context, const DrivenFilter& driven, const std::string& store, Level level) {
-  filters::FilterRequest request = driven.request;
+std::string driven_param(const filters::FilterSpec& spec) { return spec.holds_moments ? spec.exponent : std::string(); }
+
+/// Makes a case of one store, held against the filter's own model in double precision.
+Case make_filter_case(const AxisInputs& inputs, filters::FilterRequest request, const std::string& store, Level level) {
   request.values["store"] = store;
-  const auto [probe, reason] = make_probe(context, request, level);
-  if (!probe || !filters::make_model(request.spec.id)) {
-    return make_absent_case(request.spec.id, store, level,
-                            probe ? "the filter has no scalar model to be held against" : reason);
-  }
-  Case item = start_case(request, store, level);
-  item.params.erase(driven.param);
+  Case item = start_case(inputs, request, store, level, Reference::kModel);
+  if (!item.is_available()) return item;
+  const std::string param = driven_param(request.spec);
+  item.params.erase(param);
   item.theories = {make_filter_theory(store)};
-  const std::shared_ptr<Probe> exact = make_model_probe(context, request, filters::Precision::kDouble);
-  item.observe = [probe = probe, exact, values = request.values, param = driven.param,
-                  scene = make_ramp_scene()](double c) mutable {
+  const std::shared_ptr<SyntheticLookup> lookup = make_lookup(inputs, request, level),
+                                         exact = make_model_lookup(inputs, request, filters::Precision::kDouble);
+  item.observe = [lookup, exact, values = request.values, param, scene = make_ramp_scene()](double c) mutable {
     values[param] = c;
-    return judge(probe->look(scene, values), {exact->look(scene, values).visibility, kBound, 0});
+    return judge(lookup->look(scene, values), {exact->look(scene, values).visibility, kVisibleError, 0});
   };
   return item;
 }
 
-std::string driven_param(const filters::FilterSpec& spec) { return spec.holds_moments ? spec.exponent : std::string(); }
+std::vector<std::string> list_stores(const filters::FilterRequest& request) {
+  return driven_param(request.spec).empty() ? std::vector<std::string>() : list_choices(request, "store");
+}
 
-std::vector<Case> make_cases(const StressContext& context) {
-  const double single = static_cast<double>(std::numeric_limits<float>::max());
+std::vector<Case> make_cases(const AxisInputs& inputs) {
   std::vector<Case> cases;
-  for (const Setting& setting : {Setting{"32-bit float", filters::StorePrecision::kSingle, single, 1},
-                                 {"32-bit float", filters::StorePrecision::kSingle, single, kTaps},
-                                 {"16-bit float", filters::StorePrecision::kHalf, 65504.0, 1},
-                                 {"16-bit float", filters::StorePrecision::kHalf, 65504.0, kTaps}})
-    cases.push_back(make_moment_case(setting));
-  const std::vector<DrivenFilter> driven = find_driven(context, driven_param);
-  if (driven.empty()) cases.push_back(make_undriven_case("'exponent' with 'moments'"));
-  for (const DrivenFilter& filter : driven) {
-    for (const std::string& store : list_choices(filter.request, "store"))
-      for (const Level level : {Level::kGl, Level::kModel})
-        cases.push_back(make_filter_case(context, filter, store, level));
-  }
+  for (const auto& [name, store] : {std::pair("32-bit float", filters::StorePrecision::kSingle),
+                                    std::pair("16-bit float", filters::StorePrecision::kHalf)})
+    for (const int taps : {1, kTaps}) cases.push_back(make_moment_case({name, store, taps}));
+  append(cases, make_filter_cases(inputs, list_stores, make_filter_case,
+                                  "no chosen filter's front matter declares 'exponent' with 'moments'"));
   return cases;
 }
 
@@ -127,7 +114,7 @@ Axis make_warp_exponent_axis() {
   axis.limits = {0.1, 350.0};  // the reference, exp(2 c) in double, ends at 354
   axis.coarse_samples = 24;
   axis.measured = "relative error of the second moment; of filters: error of visibility";
-  axis.bound = kBound;
+  axis.bound = kVisibleError;
   axis.broken_when =
       "a moment or a sum of moments is infinite, or texels of the map overflowed; of filters also: visibility is not "
       "finite, all lit or all dark";

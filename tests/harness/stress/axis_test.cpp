@@ -52,9 +52,9 @@ TEST(AxisTable, EveryAxisSaysWhatItIs) {
 }
 
 TEST(AxisTable, EveryCaseObserves_OrSaysWhyNot) {
-  const StressContext context = make_context();
+  const AxisInputs inputs = make_inputs();
   for (const Axis& axis : axis_table()) {
-    const std::vector<Case> cases = axis.make_cases(context);
+    const std::vector<Case> cases = axis.make_cases(inputs);
     EXPECT_FALSE(cases.empty()) << axis.id;
     for (const Case& item : cases) {
       EXPECT_NE(item.observe == nullptr, item.not_available.empty()) << axis.id << " " << item.variant;
@@ -123,19 +123,23 @@ TEST(ApplyRange, BadRanges_AreRefusedInOneLine) {
 }
 
 TEST(Driven, ComesFromTheFrontMatter_AndKeepsTheUsersValues) {
-  const auto driven = find_driven(make_context("vsm,esm:radius=3"), choose_axes("esm-exponent")[0].driven_param);
-  ASSERT_THAT(driven, SizeIs(1));
-  EXPECT_EQ(driven[0].request.spec.id, "esm");
-  EXPECT_EQ(driven[0].param, "c");
-  EXPECT_EQ(filters::number(driven[0].request.values, "radius"), 3.0);
-  EXPECT_THAT(list_choices(driven[0].request, "store"), ::testing::ElementsAre("r32f", "r16f"));
-  EXPECT_THAT(list_choices(make_context("esm:store=r16f").filters[0], "store"), ::testing::ElementsAre("r16f"));
-  EXPECT_THAT(list_choices(driven[0].request, "nothing"), SizeIs(0));
+  const Axis axis = choose_axes("esm-exponent")[0];
+  const AxisInputs inputs = make_inputs("vsm,esm:radius=3");
+  EXPECT_EQ(axis.driven_param(inputs.filters[0].spec), "");
+  EXPECT_EQ(axis.driven_param(inputs.filters[1].spec), "c");
+  for (const Case& item : axis.make_cases(inputs)) {
+    EXPECT_EQ(item.filter, "esm");
+    const bool blurs = item.variant.find("no blur") == std::string::npos;
+    EXPECT_TRUE(!item.is_available() || !blurs || filters::number(item.params, "radius") == 3.0) << item.variant;
+  }
+  EXPECT_THAT(list_choices(inputs.filters[1], "store"), ::testing::ElementsAre("r32f", "r16f"));
+  EXPECT_THAT(list_choices(make_inputs("esm:store=r16f").filters[0], "store"), ::testing::ElementsAre("r16f"));
+  EXPECT_THAT(list_choices(inputs.filters[1], "nothing"), SizeIs(0));
 }
 
 TEST(Driven, FiltersThatWereNotChosen_AreReported) {
   for (const char* id : {"esm-exponent", "warp-exponent", "vsm-cancellation"}) {
-    const std::vector<Case> cases = choose_axes(id)[0].make_cases(make_context("none"));
+    const std::vector<Case> cases = choose_axes(id)[0].make_cases(make_inputs("none"));
     EXPECT_TRUE(std::ranges::any_of(cases, [](const Case& item) {
       return item.not_available.find("front matter declares '") != std::string::npos;
     })) << id;
@@ -143,22 +147,22 @@ TEST(Driven, FiltersThatWereNotChosen_AreReported) {
 }
 
 TEST(Driven, WithoutAGl_GlCasesSayThatThereIsNone) {
-  for (const Case& item : choose_axes("esm-exponent")[0].make_cases(make_context()))
+  for (const Case& item : choose_axes("esm-exponent")[0].make_cases(make_inputs()))
     EXPECT_EQ(item.not_available.find("no GL") != std::string::npos, item.level == Level::kGl) << item.variant;
 }
 
 TEST(DescribeAxes, NamesThemAll) {
-  const std::string text = describe_axes(make_context().filters);
+  const std::string text = describe_axes(make_inputs().filters);
   for (const Axis& axis : axis_table()) EXPECT_THAT(text, HasSubstr(axis.id));
   EXPECT_THAT(text, AllOf(HasSubstr("esm:c"), HasSubstr("vsm:min_variance")));
 }
 
 /// Every case that runs without a GL keeps to its theory, or says why not.
 TEST(Axes, ModelsAndArithmetic_MeetTheirTheories) {
-  const StressContext context = make_context("vsm,esm");
+  const AxisInputs inputs = make_inputs("vsm,esm");
   for (const char* id : {"esm-exponent", "warp-exponent", "vsm-cancellation"}) {
     const Axis axis = choose_axes(id)[0];
-    for (const Case& item : axis.make_cases(context)) {
+    for (const Case& item : axis.make_cases(inputs)) {
       const records::StressCase found = find_onsets(item, axis);
       for (const records::StressLimit& limit : compare(item, found, axis)) {
         EXPECT_NE(limit.agreement, records::StressAgreement::kDisagrees)
@@ -172,7 +176,7 @@ TEST(Axes, ModelsAndArithmetic_MeetTheirTheories) {
 /// The case of an axis that has this variant and level.
 Case find_case(const std::string& axis, const std::string& variant, Level level,
                const std::string& filters = "vsm,esm") {
-  for (Case& item : choose_axes(axis)[0].make_cases(make_context(filters)))
+  for (Case& item : choose_axes(axis)[0].make_cases(make_inputs(filters)))
     if (item.variant == variant && item.level == level) return std::move(item);
   ADD_FAILURE() << "no case " << variant;
   return {};

@@ -19,9 +19,8 @@ using ::testing::AllOf;
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
-Case find_case(const StressContext& context, const std::string& axis, const std::string& filter,
-               const std::string& part) {
-  for (Case& item : choose_axes(axis)[0].make_cases(context))
+Case find_case(const AxisInputs& inputs, const std::string& axis, const std::string& filter, const std::string& part) {
+  for (Case& item : choose_axes(axis)[0].make_cases(inputs))
     if (item.filter == filter && item.level == Level::kGl && item.variant.find(part) != std::string::npos)
       return std::move(item);
   ADD_FAILURE() << "no case " << part;
@@ -32,10 +31,10 @@ Case find_case(const StressContext& context, const std::string& axis, const std:
 class ExtremeAxis : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ExtremeAxis, GlCases_MeetTheirTheories) {
-  const StressContext context = make_gl_context("none,box3x3,poisson,esm,vsm");
+  const AxisInputs inputs = make_gl_inputs("none,box3x3,poisson,esm,vsm");
   Axis axis = choose_axes(GetParam())[0];
   axis.range.high = std::min(axis.range.high, axis.whole ? 512.0 : axis.range.high);  // larger maps cost seconds
-  for (const Case& item : axis.make_cases(context)) {
+  for (const Case& item : axis.make_cases(inputs)) {
     if (item.level != Level::kGl) continue;
     const records::StressCase found = find_onsets(item, axis);
     EXPECT_EQ(found.not_available, "");
@@ -59,30 +58,30 @@ INSTANTIATE_TEST_SUITE_P(All, ExtremeAxis,
                          name_axis);
 
 TEST(Position, AcneComesFarAway_AndNotRelativeToTheScene) {
-  const StressContext context = make_gl_context("none,vsm");
+  const AxisInputs inputs = make_gl_inputs("none,vsm");
   const double far = 200.0;
-  const Observation acne = find_case(context, "position", "none", "floor, as it is").observe(far);
+  const Observation acne = find_case(inputs, "position", "none", "floor, as it is").observe(far);
   EXPECT_EQ(acne.verdict, Verdict::kDegraded);
   EXPECT_THAT(acne.why, HasSubstr("0 brighter"));
-  EXPECT_EQ(find_case(context, "position", "vsm", "floor, as it is").observe(far).verdict, Verdict::kOk);
-  EXPECT_EQ(find_case(context, "position", "none", "floor, relative in double").observe(far).verdict, Verdict::kOk);
+  EXPECT_EQ(find_case(inputs, "position", "vsm", "floor, as it is").observe(far).verdict, Verdict::kOk);
+  EXPECT_EQ(find_case(inputs, "position", "none", "floor, relative in double").observe(far).verdict, Verdict::kOk);
 }
 
 TEST(Position, RemedyHolds_OnlyWhereItComesBeforeTheFloats) {
-  const StressContext context = make_gl_context("none");
-  EXPECT_EQ(find_case(context, "position", "none", "cubes, relative in double").observe(1e8).verdict, Verdict::kOk);
-  EXPECT_NE(find_case(context, "position", "none", "cubes, relative too late").observe(1e6).verdict, Verdict::kOk);
+  const AxisInputs inputs = make_gl_inputs("none");
+  EXPECT_EQ(find_case(inputs, "position", "none", "cubes, relative in double").observe(1e8).verdict, Verdict::kOk);
+  EXPECT_NE(find_case(inputs, "position", "none", "cubes, relative too late").observe(1e6).verdict, Verdict::kOk);
 }
 
 TEST(Scale, ScalesTheScene) {
-  const Case item = find_case(make_gl_context("none"), "scale", "none", "cubes");
+  const Case item = find_case(make_gl_inputs("none"), "scale", "none", "cubes");
   EXPECT_EQ(item.observe(3.0).verdict, Verdict::kOk);
   EXPECT_THROW(item.observe(1e13), Error) << "farther than scenes may reach";
 }
 
 TEST(LightDirection, ShadowOfALeaningLight_IsWhereConstructionSays) {
-  const StressContext context = make_gl_context("none");
-  SceneDrawer drawer(context, context.filters[0]);
+  const AxisInputs inputs = make_gl_inputs("none");
+  SceneDrawer drawer(inputs, inputs.filters[0]);
   const SlabSetting setting{.light_local = {0.3, -1.0, 0.1}};
   const Drawing drawing = drawer.draw(scene::validate(make_slab_scene(setting), "test"));
   int lit = 0, dark = 0;
@@ -100,15 +99,15 @@ TEST(LightDirection, ShadowOfALeaningLight_IsWhereConstructionSays) {
 
 TEST(MapSize, OneTexelIsAMap) {
   for (const char* id : {"none", "pcf2x2", "poisson", "vsm", "esm"}) {
-    const Observation seen = find_case(make_gl_context(id), "map-size", id, "half").observe(1.0);
+    const Observation seen = find_case(make_gl_inputs(id), "map-size", id, "half").observe(1.0);
     EXPECT_EQ(seen.verdict, Verdict::kOk) << id << ": " << seen.why;
     EXPECT_TRUE(seen.measured);
   }
 }
 
 TEST(MapSize, AboveTheLimit_IsRefusedBeforeAnythingIsAllocated) {
-  const StressContext context = make_gl_context("none");
-  const std::vector<Exhibit> exhibits = choose_axes("map-size")[0].make_exhibits(context);
+  const AxisInputs inputs = make_gl_inputs("none");
+  const std::vector<Exhibit> exhibits = choose_axes("map-size")[0].make_exhibits(inputs);
   ASSERT_EQ(exhibits.size(), 1u);
   const auto& rows = exhibits[0].table->rows;
   ASSERT_EQ(rows.size(), 3u);

@@ -73,7 +73,7 @@ TEST(JudgeDrawing, NotFinite_AllLit_OrAllDark_IsBroken) {
 
 TEST(Extremes, WithoutAGl_GlCasesSayThatThereIsNone) {
   for (const char* id : {"position", "scale", "map-edge", "map-size", "light-direction", "poisoned-input"}) {
-    for (const Case& item : choose_axes(id)[0].make_cases(make_context("none,vsm"))) {
+    for (const Case& item : choose_axes(id)[0].make_cases(make_inputs("none,vsm"))) {
       EXPECT_EQ(item.not_available.find("no GL") != std::string::npos, item.level == Level::kGl)
           << id << " " << item.variant;
     }
@@ -83,7 +83,7 @@ TEST(Extremes, WithoutAGl_GlCasesSayThatThereIsNone) {
 TEST(PoisonedInput, Scenes_AreRefused_AndModelsKeepPoisonWithinTheKernel) {
   const Axis axis = choose_axes("poisoned-input")[0];
   int refused = 0, spread = 0;
-  for (const Case& item : axis.make_cases(make_context(""))) {
+  for (const Case& item : axis.make_cases(make_inputs(""))) {
     if (item.level == Level::kGl) continue;
     const records::StressCase found = find_onsets(item, axis);
     EXPECT_FALSE(found.broken) << item.filter << " " << item.variant << ": " << found.broken->why;

@@ -11,11 +11,11 @@ namespace shadowbench::stress {
 namespace {
 
 TEST(GeometryAxes, GlCases_MeetTheirTheories) {
-  const StressContext context = make_gl_context("none,box4x4,poisson,vsm,esm");
+  const AxisInputs inputs = make_gl_inputs("none,box4x4,poisson,vsm,esm");
   for (const char* id : {"grazing-light", "depth-formats", "light-bleeding", "kernel-radius", "taps"}) {
     const Axis axis = choose_axes(id)[0];
     int limits = 0;
-    for (const Case& item : axis.make_cases(context)) {
+    for (const Case& item : axis.make_cases(inputs)) {
       if (item.level != Level::kGl) continue;
       const records::StressCase found = find_onsets(item, axis);
       EXPECT_EQ(found.not_available, "");
@@ -31,8 +31,8 @@ TEST(GeometryAxes, GlCases_MeetTheirTheories) {
 }
 
 TEST(TiltedPlane, DrawnAcne_EndsWhereTheModelsDoes) {
-  const StressContext context = make_gl_context("tent3x3");
-  const auto drawn = make_gl_plane(context, context.filters[0]), model = make_model_plane(context.filters[0]);
+  const AxisInputs inputs = make_gl_inputs("tent3x3");
+  const auto drawn = make_gl_plane(inputs, inputs.filters[0]), model = make_model_plane(inputs.filters[0]);
   for (const PlaneTilt& tilt : {PlaneTilt{20.0, false}, PlaneTilt{75.0, true}, PlaneTilt{89.9, true}}) {
     drawn->tilt(tilt);
     model->tilt(tilt);

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "harness/stress/explain.h"
+#include "harness/stress/case_tools.h"
 #include "harness/stress/heat_map.h"
 #include "harness/stress/layer_stack.h"
 #include "harness/stress/onset.h"
@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 
 /// The bias that a filter's model needs on a plane, in texels.
 double find_model_bias(const std::string& filter, const PlaneTilt& tilt) {
-  const auto plane = make_model_plane(make_context(filter).filters[0]);
+  const auto plane = make_model_plane(make_inputs(filter).filters[0]);
   plane->tilt(tilt);
   return find_needed_bias(*plane, find_gain_m(tilt, 4.0)).value() / kPlaneTexel_m;
 }
@@ -44,14 +44,14 @@ TEST(TiltedPlane, ModelNeeds_WhatThePlaneGainsOverTheKernel) {
 TEST(TiltedPlane, FacingTheLight_NeedsNoBias) { EXPECT_EQ(find_model_bias("tent3x3", {0.0, false}), 0.0); }
 
 TEST(TiltedPlane, TwiceTheTheory_IsTheMostThatIsTried) {
-  const auto plane = make_model_plane(make_context("box4x4").filters[0]);
+  const auto plane = make_model_plane(make_inputs("box4x4").filters[0]);
   const PlaneTilt tilt{60.0, false};
   plane->tilt(tilt);
   EXPECT_FALSE(find_needed_bias(*plane, find_gain_m(tilt, 0.5)));
 }
 
 TEST(TiltedPlane, AcneGrowsAsTheBiasShrinks) {
-  const auto plane = make_model_plane(make_context("tent3x3").filters[0]);
+  const auto plane = make_model_plane(make_inputs("tent3x3").filters[0]);
   const PlaneTilt tilt{70.0, false};
   plane->tilt(tilt);
   const double theory = find_gain_m(tilt, 1.5);
@@ -80,12 +80,12 @@ TEST(LayerStack, Exponential_OfTwoLayers) {
 
 TEST(LayerScene, SharesAreThoseOfTheFiltersKernel) {
   for (const int radius : {0, 1, 4, 9}) {
-    const StressContext context = make_context(fmt::format("vsm:radius={},min_variance=0", radius));
+    const AxisInputs inputs = make_inputs(fmt::format("vsm:radius={},min_variance=0", radius));
     for (const int count : {2, 4, 16}) {
       const LayerStack stack = make_layer_stack(count, 0.2, 0.5, 0.9);
       const LayerScene layers = make_layer_scene(radius, stack);
-      const auto seen = make_model_probe(context, context.filters[0], filters::Precision::kExtended)
-                            ->look(layers.scene, context.filters[0].values)
+      const auto seen = make_model_lookup(inputs, inputs.filters[0], filters::Precision::kExtended)
+                            ->look(layers.scene, inputs.filters[0].values)
                             .visibility;
       for (std::size_t i = 0; i < seen.size(); ++i) {
         EXPECT_NEAR(std::accumulate(layers.shares[i].begin(), layers.shares[i].end(), 0.0), 1.0, 1e-12);
@@ -96,7 +96,7 @@ TEST(LayerScene, SharesAreThoseOfTheFiltersKernel) {
 }
 
 TEST(StraightEdge, WithoutAKernel_IsTheRampBetweenTwoTexels) {
-  const ProbeScene scene = make_straight_edge(0.0);
+  const SyntheticScene scene = make_straight_edge(0.0);
   const auto lit = compare_whole_kernel(scene, filters::Kernel::make_point(filters::Reconstruction::kBilinear));
   for (std::size_t i = 0; i < lit.size(); ++i) {
     const double texels = static_cast<double>(scene.receivers[i].x) * scene.size - 0.5 * scene.size;
@@ -108,15 +108,15 @@ TEST(StraightEdge, WithoutAKernel_IsTheRampBetweenTwoTexels) {
 
 /// A kernel that met the border, which is deeper than all else, would light an exponential map up.
 TEST(StraightEdge, WidestKernel_StaysWithinTheMap) {
-  const StressContext context = make_context(fmt::format("esm:radius={}", kWidestRadius));
-  const auto seen = make_model_probe(context, context.filters[0], filters::Precision::kExtended)
-                        ->look(make_straight_edge(kWidestRadius), context.filters[0].values)
+  const AxisInputs inputs = make_inputs(fmt::format("esm:radius={}", kWidestRadius));
+  const auto seen = make_model_lookup(inputs, inputs.filters[0], filters::Precision::kExtended)
+                        ->look(make_straight_edge(kWidestRadius), inputs.filters[0].values)
                         .visibility;
   for (const double v : seen) EXPECT_NEAR(v, 0.5, 0.02);
 }
 
 TEST(StraightEdge, FiltersThatFall_AreBroken_UnlessTheyAreStochastic) {
-  const ProbeResult falling{{0.0, 0.6, 0.4, 1.0}, 0};
+  const LookupResult falling{{0.0, 0.6, 0.4, 1.0}, 0};
   EXPECT_EQ(judge_edge(falling, falling.visibility, 0.02, filters::FilterKind::kBound).verdict, Verdict::kBroken);
   EXPECT_EQ(judge_edge(falling, falling.visibility, 0.02, filters::FilterKind::kComparison).verdict, Verdict::kBroken);
   EXPECT_EQ(judge_edge(falling, falling.visibility, 0.02, filters::FilterKind::kStochastic).verdict, Verdict::kOk);
@@ -161,11 +161,11 @@ TEST(HeatMap, HighValuesLieAbove_AndTheCurveWhereItSays) {
 
 /// Every case that runs without a GL keeps to its theory.
 TEST(GeometryAxes, Models_MeetTheirTheories) {
-  const StressContext context = make_context("none,tent3x3,teach4x4,poisson,vsm,esm");
+  const AxisInputs inputs = make_inputs("none,tent3x3,teach4x4,poisson,vsm,esm");
   for (const char* id : {"grazing-light", "light-bleeding", "kernel-radius", "taps"}) {
     const Axis axis = choose_axes(id)[0];
     int limits = 0;
-    for (const Case& item : axis.make_cases(context)) {
+    for (const Case& item : axis.make_cases(inputs)) {
       const records::StressCase found = find_onsets(item, axis);
       EXPECT_EQ(found.not_available.empty(), item.level == Level::kModel) << id << " " << found.not_available;
       for (const records::StressLimit& limit : compare(item, found, axis)) {
@@ -179,8 +179,8 @@ TEST(GeometryAxes, Models_MeetTheirTheories) {
   }
 }
 
-Case find_model_case(const std::string& axis, const StressContext& context, const std::string& variant) {
-  for (Case& item : choose_axes(axis)[0].make_cases(context))
+Case find_model_case(const std::string& axis, const AxisInputs& inputs, const std::string& variant) {
+  for (Case& item : choose_axes(axis)[0].make_cases(inputs))
     if (item.level == Level::kModel && item.variant == variant) return std::move(item);
   ADD_FAILURE() << "no case " << variant;
   return {};
@@ -188,7 +188,7 @@ Case find_model_case(const std::string& axis, const StressContext& context, cons
 
 /// Half each, first gap 1, second g: 1 / (1 + (1 + 2 g)^2), which is 0.1 at g = 1.
 TEST(LightBleeding, TwoOccluders_FollowTheClosedForm) {
-  const Case item = find_model_case("light-bleeding", make_context("vsm"), "2 occluders");
+  const Case item = find_model_case("light-bleeding", make_inputs("vsm"), "2 occluders");
   EXPECT_NEAR(item.theories.at(0).onset.value(), 1.0, 0.01);
   for (const double ratio : {1e-4, 0.01, 0.2, 1.0, 4.0})
     EXPECT_NEAR(item.observe(ratio).measured.value(), 1.0 / (1.0 + std::pow(1.0 + 2.0 * ratio, 2.0)), 2e-3) << ratio;
@@ -198,7 +198,7 @@ TEST(LightBleeding, TwoOccluders_FollowTheClosedForm) {
 
 TEST(LightBleeding, ParametersThatChangeTheFormula_AreNamed) {
   const Axis axis = choose_axes("light-bleeding")[0];
-  const Case item = find_model_case("light-bleeding", make_context("vsm:bleed_reduction=0.2"), "2 occluders");
+  const Case item = find_model_case("light-bleeding", make_inputs("vsm:bleed_reduction=0.2"), "2 occluders");
   const auto limits = compare(item, find_onsets(item, axis), axis);
   ASSERT_EQ(limits.at(0).agreement, records::StressAgreement::kExplained);
   EXPECT_THAT(limits[0].explanation, HasSubstr("bleed_reduction"));
@@ -206,7 +206,7 @@ TEST(LightBleeding, ParametersThatChangeTheFormula_AreNamed) {
 
 /// An explanation must not cover for numbers that the exact model does not have.
 TEST(LightBleeding, WhatTheExactModelDoesNotDo_IsNotExplained) {
-  const Case item = find_model_case("light-bleeding", make_context("vsm"), "2 occluders");
+  const Case item = find_model_case("light-bleeding", make_inputs("vsm"), "2 occluders");
   records::StressCase record;
   record.samples = {{3.0, Verdict::kDegraded, 0.2, ""}};
   EXPECT_EQ(item.explain({item.theories.at(0), 3.0, record}), "");
@@ -215,7 +215,7 @@ TEST(LightBleeding, WhatTheExactModelDoesNotDo_IsNotExplained) {
 /// 16 bits do not hold exp(80), with or without a kernel.
 TEST(KernelRadius, OverflowOfTheStore_IsNotBlamedOnTheRadius) {
   const Axis axis = choose_axes("kernel-radius")[0];
-  const Case item = find_model_case("kernel-radius", make_context("esm:store=r16f"), "blurred map");
+  const Case item = find_model_case("kernel-radius", make_inputs("esm:store=r16f"), "blurred map");
   const auto limits = compare(item, find_onsets(item, axis), axis);
   EXPECT_EQ(limits.at(0).agreement, records::StressAgreement::kExplained);
   EXPECT_THAT(limits[0].explanation, HasSubstr("every value"));
@@ -234,19 +234,19 @@ TEST(Explain, WhatBreaksWithinTheRange_IsNotBrokenThroughout) {
 TEST(KernelRadius, RadiusZero_IsNamedForWhatItIs) {
   const Axis axis = choose_axes("kernel-radius")[0];
   const records::StressCase disk =
-      find_onsets(find_model_case("kernel-radius", make_context("poisson"), "disk of comparisons"), axis);
+      find_onsets(find_model_case("kernel-radius", make_inputs("poisson"), "disk of comparisons"), axis);
   ASSERT_EQ(disk.notes.size(), 1u);
   EXPECT_THAT(disk.notes[0], HasSubstr("one hardware 2x2 comparison"));
   const records::StressCase blurred =
-      find_onsets(find_model_case("kernel-radius", make_context("vsm"), "blurred map"), axis);
+      find_onsets(find_model_case("kernel-radius", make_inputs("vsm"), "blurred map"), axis);
   ASSERT_EQ(blurred.notes.size(), 1u);
   EXPECT_THAT(blurred.notes[0], HasSubstr("its formula on one texel"));
 }
 
 TEST(Taps, MoreOfThem_AreNearerToTheDisk) {
-  const StressContext context = make_context("poisson");
+  const AxisInputs inputs = make_inputs("poisson");
   const records::StressCase found =
-      find_onsets(find_model_case("taps", context, "taps at radius 3"), choose_axes("taps")[0]);
+      find_onsets(find_model_case("taps", inputs, "taps at radius 3"), choose_axes("taps")[0]);
   ASSERT_EQ(found.notes.size(), 1u);
   for (const char* count : {"with 4,", "with 8,", "with 16,", "with 32;"})
     EXPECT_THAT(found.notes[0], HasSubstr(count));
@@ -254,7 +254,7 @@ TEST(Taps, MoreOfThem_AreNearerToTheDisk) {
 
 TEST(GeometryAxes, FiltersThatTheyHaveNothingToAsk_AreReported) {
   const auto sole = [](const char* axis, const char* filters) {
-    return choose_axes(axis)[0].make_cases(make_context(filters)).at(0);
+    return choose_axes(axis)[0].make_cases(make_inputs(filters)).at(0);
   };
   EXPECT_THAT(sole("grazing-light", "vsm").not_available, HasSubstr("kind comparison"));
   EXPECT_THAT(sole("light-bleeding", "none").not_available, HasSubstr("encodes"));

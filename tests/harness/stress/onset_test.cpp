@@ -129,7 +129,7 @@ TEST(FindOnsets, ErrorAtTheFirstValue_IsNotAvailable_LaterOnesAreBroken) {
 
 TEST(FindOnsets, AbsentCase_KeepsItsReason) {
   const records::StressCase found =
-      find_onsets(make_absent_case("vsm", "r8", Level::kGl, "no such format"), make_axis(1.0, 2.0));
+      find_onsets(Case{.filter = "vsm", .not_available = "no such format"}, make_axis(1.0, 2.0));
   EXPECT_EQ(found.not_available, "no such format");
   EXPECT_THAT(found.samples, SizeIs(0));
 }

@@ -2,17 +2,17 @@
 
 #include <string>
 
-#include "harness/stress/context.h"
+#include "harness/stress/axis_inputs.h"
 
 namespace shadowbench::stress {
 
-/// Makes a context of these filters without a GL.
-inline StressContext make_context(const std::string& filters = "") {
+/// Makes a inputs of these filters without a GL.
+inline AxisInputs make_inputs(const std::string& filters = "") {
   static const filters::Catalogue catalogue(options::find_resources().filters);
-  StressContext context;
-  context.resources = options::find_resources();
-  context.filters = catalogue.parse_requests(filters);
-  return context;
+  AxisInputs inputs;
+  inputs.resources = options::find_resources();
+  inputs.filters = catalogue.parse_requests(filters);
+  return inputs;
 }
 
 /// Gives the one renderer of a test program.
@@ -22,10 +22,10 @@ inline measure::Renderer& shared_renderer() {
 }
 
 /// The same with a GL.
-inline StressContext make_gl_context(const std::string& filters) {
-  StressContext context = make_context(filters);
-  context.renderer = &shared_renderer();
-  return context;
+inline AxisInputs make_gl_inputs(const std::string& filters) {
+  AxisInputs inputs = make_inputs(filters);
+  inputs.renderer = &shared_renderer();
+  return inputs;
 }
 
 }  // namespace shadowbench::stress

@@ -12,10 +12,9 @@
 
 namespace shadowbench::stress {
 
-/// What axes make their cases from. Outlives all cases.
-struct StressContext {
-  measure::Renderer* renderer =
-      nullptr;  ///< null: no GL (tests of scalar cases); GL cases are reported as not available
+/// What axes make their cases from. It outlives all cases.
+struct AxisInputs {
+  measure::Renderer* renderer = nullptr;  ///< null: there is no GL, and cases that need one are not available
   options::Resources resources;
   std::vector<filters::FilterRequest> filters;  ///< the chosen ones, each with its parameter values
   std::uint32_t seed = 1;
@@ -24,24 +23,16 @@ struct StressContext {
   options::Progress* progress = nullptr;  ///< for exhibits' notes; may be null
 };
 
-/// Names the parameter of a filter that an axis drives, from what the front matter declares; empty: not for this
-/// filter.
+/// Names the parameter of a filter that an axis drives, from what the front matter declares; empty: it has none.
 using DrivenParam = std::string (*)(const filters::FilterSpec&);
 
 /// Names the exponent of a filter that stores exponentials and no moments of them.
 std::string find_exponent(const filters::FilterSpec& spec);
 
-/// A chosen filter with the parameter that an axis drives.
-struct DrivenFilter {
-  filters::FilterRequest request;
-  std::string param;
-};
+bool is_set_by_user(const filters::FilterRequest& request, const std::string& param);
 
-/// Finds the chosen filters that have such a parameter, in the order they were chosen.
-std::vector<DrivenFilter> find_driven(const StressContext& context, DrivenParam param_of);
-
-/// Gives the choices of a filter's text parameter, such as `store`, for a case each: the chosen value alone where the
-/// user set it, all otherwise; empty where the filter has no such parameter.
+/// Lists the values of a filter's text parameter, such as `store`, that get a case each: the chosen value alone where
+/// the user set it, all otherwise; none where the filter has no such parameter.
 std::vector<std::string> list_choices(const filters::FilterRequest& request, const std::string& param);
 
 }  // namespace shadowbench::stress
