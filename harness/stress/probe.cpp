@@ -14,7 +14,6 @@ scene::LightFrustum make_frustum(int map_size) {
   frustum.width_ws = 1.0;
   frustum.texel_size_ws = 1.0 / map_size;
   frustum.depth_range_ws = 1.0;
-  frustum.direction_ws = {0.0f, 0.0f, 1.0f};
   return frustum;
 }
 

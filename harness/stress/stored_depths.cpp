@@ -61,7 +61,6 @@ scene::LightFrustum make_frustum() {
   frustum.width_ws = 2.0;
   frustum.texel_size_ws = 2.0 / kSize;
   frustum.depth_range_ws = 1.0;
-  frustum.direction_ws = {0.0f, 0.0f, 1.0f};
   return frustum;
 }
 

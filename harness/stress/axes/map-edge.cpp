@@ -35,7 +35,6 @@ scene::LightFrustum make_perspective() {
   scene::LightFrustum frustum;
   frustum.width_ws = frustum.depth_range_ws = 1.0;
   frustum.texel_size_ws = 1.0 / kMapSize;
-  frustum.direction_ws = {0.0f, 0.0f, 1.0f};
   frustum.projective = true;
   const auto steep = static_cast<float>(1.0 / (1.0 - kNear));
   glm::mat4 m(1.0f);

@@ -103,7 +103,6 @@ std::string look_once(const StressContext& context, int size) {
   frustum.width_ws = 2.0;
   frustum.texel_size_ws = 2.0 / size;
   frustum.depth_range_ws = 1.0;
-  frustum.direction_ws = {0.0f, 0.0f, 1.0f};
   frustum.uv_depth_from_world = {
       {0.5f, 0.0f, 0.0f, 0.0f}, {0.0f, 0.5f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f, 0.0f}, {0.5f, 0.5f, 0.0f, 1.0f}};
   render::ShaderLibrary& shaders = context.renderer->shaders;
