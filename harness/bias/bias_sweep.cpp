@@ -67,7 +67,7 @@ class BiasSweep {
   options::Progress& progress_;
   scene::Scene scene_;
   measure::Renderer renderer_;
-  measure::TruthCache cache_;
+  truth::TruthCache cache_;
   measure::SceneAssets assets_;
   measure::LightMap& light_;
   render::ImageTarget target_;

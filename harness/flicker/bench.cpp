@@ -25,16 +25,14 @@ double sum_squares(const std::vector<float>& errors, const std::vector<std::uint
 }  // namespace
 
 FlickerBench::FlickerBench(measure::Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
-                           measure::TruthCache& cache)
+                           truth::TruthCache& cache)
     : renderer_(renderer),
       options_(options),
       scene_(scene),
       assets_(renderer, options, scene, cache, choose_padding(options)),
       map_(assets_.make_light_map(scene.light, scene.cameras.front(), options.map_sizes.front())),
       target_("visibility", GL_R32F, options.width, options.height),
-      receivers_(measure::read_view_receivers(assets_.gbuffer(camera()), -scene.light.direction_ws)),
-      turned_(scene),
-      turned_tracer_(turned_, cache, options.seed) {
+      receivers_(measure::read_view_receivers(assets_.gbuffer(camera()), scene.light)) {
   if (!receivers_.any_counts())
     throw Error(ErrorKind::kInput,
                 fmt::format("{}: no surface in view faces the light; choose another scene", scene.name));
@@ -58,16 +56,16 @@ TruthFrames FlickerBench::trace(Motion motion, const std::vector<Frame>& frames,
   double squares = 0.0, before = 0.0;
   for (std::size_t t = 0; t < frames.size(); ++t) {
     on_frame(static_cast<int>(t));
-    turned_.light = frames[t].light;
-    const auto rays =
-        turned_tracer_.trace_view(measure::read_view_receivers(assets_.gbuffer(camera()), -turned_.light.direction_ws));
+    const scene::Light& light = frames[t].light;
+    const auto receivers = measure::read_view_receivers(assets_.gbuffer(camera()), light);
+    const auto rays = assets_.tracer().trace_view(receivers.image, scene::make_area_light(light));
     const double errors = sum_squares(rays.area.standard_error, mask);
     if (t > 0) squares += before + errors;
     before = errors;
     truth.visibility.push_back(rays.area.visibility);
   }
-  const auto receivers = static_cast<double>(std::ranges::count(mask, std::uint8_t{1}));
-  truth.noise = std::sqrt(squares / (receivers * static_cast<double>(frames.size() - 1)));
+  const auto count = static_cast<double>(std::ranges::count(mask, std::uint8_t{1}));
+  truth.noise = std::sqrt(squares / (count * static_cast<double>(frames.size() - 1)));
   return truth;
 }
 

@@ -26,7 +26,7 @@ class FlickerBench {
   /// Compiles every filter of the options once. Everything must outlive this object.
   /// Throws Error(kInput) where no surface in view faces the light.
   FlickerBench(measure::Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
-               measure::TruthCache& cache);
+               truth::TruthCache& cache);
 
   /// Gives how the map follows: the padding of the widest kernel, as a run has it.
   MapFollowing following(bool snap) const;
@@ -52,8 +52,6 @@ class FlickerBench {
   render::ImageTarget target_;
   measure::ViewReceivers receivers_;
   std::vector<std::unique_ptr<render::FilterPasses>> filters_;
-  scene::Scene turned_;  ///< the scene under the frame's light
-  measure::SceneTracer turned_tracer_;
 
   const scene::Camera& camera() const { return scene_.cameras.front(); }
   images::Image draw(render::FilterPasses& filter);

@@ -82,7 +82,7 @@ class FlickerRun {
   std::vector<Motion> motions_;
   scene::Scene scene_;
   measure::Renderer renderer_;
-  measure::TruthCache cache_;
+  truth::TruthCache cache_;
   FlickerBench bench_;
   records::FlickerRecord record_;
   int done_ = 0;

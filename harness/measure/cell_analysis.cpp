@@ -45,10 +45,11 @@ void note_parts(records::CellRecord& record, const metrics::Attribution& attribu
 
 }  // namespace
 
-metrics::ArtefactMasks find_artefact_masks(SceneTracer& tracer, const scene::LightFrustum& frustum,
+metrics::ArtefactMasks find_artefact_masks(truth::CachedTracer& tracer, const scene::LightFrustum& frustum,
                                            const SceneTruth& truth, double widest_kernel_texels) {
   const double half_width = widest_kernel_texels + metrics::kArtefactLimits.guard_texels;
-  const truth::TracedVisibility around = tracer.trace_surroundings(truth.receivers, half_width, frustum);
+  const truth::TracedVisibility around =
+      tracer.trace_surroundings(truth.receivers.image, half_width, scene::make_map_grid(frustum));
   const std::vector<std::uint8_t> area_settled = find_settled(truth.rays.area), around_settled = find_settled(around);
   return metrics::make_artefact_masks({truth.mask, truth.rays.area.visibility, area_settled, around.visibility,
                                        around_settled, truth.rays.first_blockers_ws,
@@ -70,7 +71,9 @@ CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& option
 const std::vector<float>& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {
   if (kernel.is_point()) return truth_.rays.hard;
   const auto [place, is_new] = kernels_.try_emplace(kernel.name());
-  if (is_new) place->second = assets_.tracer().trace_kernel(truth_.receivers, kernel, light_.frustum).visibility;
+  if (is_new)
+    place->second =
+        assets_.tracer().trace_kernel(truth_.receivers.image, kernel, scene::make_map_grid(light_.frustum)).visibility;
   return place->second;
 }
 

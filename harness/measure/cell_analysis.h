@@ -14,7 +14,7 @@ namespace shadowbench::measure {
 
 /// Finds where artefacts can occur in a view: the guard around a receiver is `widest_kernel_texels` and a little more.
 /// Requires a truth. Cost: traces the receivers' surroundings, or takes them from the cache.
-metrics::ArtefactMasks find_artefact_masks(SceneTracer& tracer, const scene::LightFrustum& frustum,
+metrics::ArtefactMasks find_artefact_masks(truth::CachedTracer& tracer, const scene::LightFrustum& frustum,
                                            const SceneTruth& truth, double widest_kernel_texels);
 
 /// Says why the cells of one task are wrong: takes their errors apart, and counts the artefacts a person sees.

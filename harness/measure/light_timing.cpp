@@ -6,7 +6,7 @@
 
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/statistics.h"
-#include "harness/scene/lights/light_ring.h"
+#include "harness/scene/lights/light.h"
 
 namespace shadowbench::measure {
 namespace {

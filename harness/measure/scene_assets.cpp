@@ -7,19 +7,20 @@
 
 #include "filters/base/error.h"
 #include "harness/measure/mean_flip.h"
+#include "harness/measure/occluders.h"
 #include "harness/render/shade_pass.h"
 #include "report/images/picture_io.h"
 
 namespace shadowbench::measure {
 
 SceneAssets::SceneAssets(Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
-                         TruthCache& cache, double pad_texels)
+                         truth::TruthCache& cache, double pad_texels)
     : renderer_(renderer),
       options_(options),
       scene_(scene),
       pad_texels_(pad_texels),
       geometry_(scene),
-      tracer_(scene, cache, options.seed) {}
+      tracer_([&scene] { return list_occluders(scene); }, cache, options.seed) {}
 
 LightMap& SceneAssets::light_map(const scene::Camera& camera, int map_size) {
   const std::pair key(options_.fit == scene::FitMode::kView ? &camera : nullptr, map_size);
@@ -87,7 +88,7 @@ SceneTruth SceneAssets::make_truth(const scene::Camera& camera) {
     return truth;
   }
   render::GBuffer& view = gbuffer(camera);
-  truth = trace_scene(tracer_, read_view_receivers(view, -scene_.light.direction_ws));
+  truth = trace_scene(tracer_, scene_.light, read_view_receivers(view, scene_.light));
   if (!truth.absent.empty()) return truth;
   const auto shaded = [&](const images::Image& visibility) {
     return render::shade(renderer_.shaders, view, render::upload_image(visibility), scene_, camera);

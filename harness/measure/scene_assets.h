@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "harness/measure/renderer.h"
-#include "harness/measure/scene_tracer.h"
 #include "harness/measure/scene_truth.h"
 #include "harness/options/options.h"
 #include "harness/render/gbuffer.h"
@@ -24,8 +23,8 @@ struct LightMap {
 class SceneAssets {
  public:
   /// `pad_texels` is the half-width of the run's widest kernel: every filter sees the same map.
-  SceneAssets(Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene, TruthCache& cache,
-              double pad_texels);
+  SceneAssets(Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
+              truth::TruthCache& cache, double pad_texels);
 
   /// Gives the light's map; one for all cameras, unless the light is fitted to what each sees.
   /// Throws Error(kUsage) when the GL cannot give a map of this size.
@@ -41,7 +40,7 @@ class SceneAssets {
   const SceneTruth& truth(const scene::Camera& camera);
 
   /// Gives what traces this scene.
-  SceneTracer& tracer() { return tracer_; }
+  truth::CachedTracer& tracer() { return tracer_; }
 
   /// Draws a map again, as a moving light would; for timing.
   void redraw(LightMap& light) { redraw(light, options_.bias.map); }
@@ -58,7 +57,7 @@ class SceneAssets {
   const scene::Scene& scene_;
   double pad_texels_;
   render::Geometry geometry_;
-  SceneTracer tracer_;
+  truth::CachedTracer tracer_;
   std::map<std::pair<const scene::Camera*, int>, LightMap> maps_;  ///< the camera is null where all share a map
   std::map<const scene::Camera*, render::GBuffer> gbuffers_;
   std::map<const scene::Camera*, SceneTruth> truths_;

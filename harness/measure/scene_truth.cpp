@@ -26,7 +26,7 @@ void summarise_errors(SceneTruth& truth, const truth::TracedVisibility& area) {
 
 }  // namespace
 
-SceneTruth trace_scene(SceneTracer& tracer, ViewReceivers receivers) {
+SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, ViewReceivers receivers) {
   SceneTruth truth;
   truth.mask = receivers.mask();
   truth.receivers = std::move(receivers);
@@ -34,7 +34,7 @@ SceneTruth trace_scene(SceneTracer& tracer, ViewReceivers receivers) {
     truth.absent = records::explain_nothing_to_see("no surface in view faces the light");
     return truth;
   }
-  truth.rays = tracer.trace_view(truth.receivers);
+  truth.rays = tracer.trace_view(truth.receivers.image, scene::make_area_light(light));
   truth.hard = truth.receivers.to_image(truth.rays.hard);
   truth.area = truth.receivers.to_image(truth.rays.area.visibility);
   summarise_errors(truth, truth.rays.area);

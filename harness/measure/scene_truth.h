@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "harness/measure/scene_tracer.h"
 #include "harness/measure/view_receivers.h"
+#include "harness/scene/lights/light.h"
 #include "reference/metrics/flip.h"
+#include "reference/truth/cached_tracer.h"
 #include "report/images/image.h"
 #include "report/records/records.h"
 
@@ -17,7 +18,7 @@ namespace shadowbench::measure {
 struct SceneTruth {
   std::string absent;  ///< why there is none; empty where there is
   ViewReceivers receivers;
-  ViewRays rays;
+  truth::ViewRays rays;
   images::Image hard;                          ///< the light as a point: 1 seen, 0 blocked
   images::Image area;                          ///< the fraction of the light that is seen
   images::Image hard_picture;                  ///< shaded with `hard`, linear RGB
@@ -29,7 +30,7 @@ struct SceneTruth {
 };
 
 /// Traces the receivers of a view; the pictures are left empty.
-SceneTruth trace_scene(SceneTracer& tracer, ViewReceivers receivers);
+SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, ViewReceivers receivers);
 
 /// Scores a cell's images against the truth and notes the errors, or why there are none, in its record: visibility over
 /// the pixels that count, and the mean LDR-FLIP of the shaded picture against the picture shaded with the area truth.

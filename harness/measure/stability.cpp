@@ -83,7 +83,7 @@ const filters::DepthMap& StabilityMeter::depth_map() {
 }
 
 const std::vector<std::uint8_t>& StabilityMeter::mask() {
-  if (!mask_) mask_ = read_view_receivers(assets_.gbuffer(*task_.camera), -task_.scene->light.direction_ws).mask();
+  if (!mask_) mask_ = read_view_receivers(assets_.gbuffer(*task_.camera), task_.scene->light).mask();
   return *mask_;
 }
 

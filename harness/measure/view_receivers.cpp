@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "filters/base/content_hash.h"
 #include "filters/receiver.h"
-#include "harness/measure/content_hash.h"
 #include "harness/render/image_target.h"
 
 namespace shadowbench::measure {
@@ -26,24 +26,24 @@ std::vector<std::uint8_t> ViewReceivers::mask() const {
   return result;
 }
 
-ViewReceivers read_view_receivers(const render::GBuffer& gbuffer, const glm::vec3& to_light) {
+ViewReceivers read_view_receivers(const render::GBuffer& gbuffer, const scene::Light& light) {
   const images::Image positions = render::read_image(gbuffer.position(), 4);
   const images::Image normals = render::read_image(gbuffer.normal(), 4);
-  ViewReceivers receivers{{gbuffer.width(), gbuffer.height(), {}}, {}, {}};
+  ViewReceivers receivers{{gbuffer.width(), gbuffer.height(), {}}, {}};
   for (std::size_t i = 0; i < positions.texels.size(); i += 4) {
     const float* p = &positions.texels[i];
     const float* n = &normals.texels[i];
-    const glm::vec3 normal(n[0], n[1], n[2]);
+    const glm::vec3 position(p[0], p[1], p[2]), normal(n[0], n[1], n[2]);
     const bool is_surface = p[3] != 0.0f;
     receivers.is_surface.push_back(is_surface ? 1 : 0);
     receivers.image.points.push_back(
-        {{p[0], p[1], p[2]}, normal, is_surface && glm::dot(normal, to_light) > filters::kFacesLight});
+        {position, normal, is_surface && glm::dot(normal, scene::to_light(light, position)) > filters::kFacesLight});
   }
   ContentHash hash;
   hash.add_values(std::span<const float>(positions.texels));
   hash.add_values(std::span<const float>(normals.texels));
-  hash.add_values(std::span<const float>(&to_light.x, 3));
-  receivers.content = hash.name();
+  hash.add_values(std::span<const std::uint8_t>(receivers.mask()));
+  receivers.image.content = hash.name();
   return receivers;
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "harness/render/gbuffer.h"
+#include "harness/scene/lights/light.h"
 #include "reference/truth/receiver_image.h"
 #include "report/images/image.h"
 
@@ -14,7 +14,6 @@ namespace shadowbench::measure {
 struct ViewReceivers {
   truth::ReceiverImage image;
   std::vector<std::uint8_t> is_surface;  ///< 0: background
-  std::string content;                   ///< names positions, normals and which of them count
 
   bool any_counts() const;
 
@@ -26,7 +25,7 @@ struct ViewReceivers {
   std::vector<std::uint8_t> mask() const;
 };
 
-/// Reads the receivers that a G-buffer holds. `to_light` is of unit length.
-ViewReceivers read_view_receivers(const render::GBuffer& gbuffer, const glm::vec3& to_light);
+/// Reads the receivers that a G-buffer holds; those count that face the light.
+ViewReceivers read_view_receivers(const render::GBuffer& gbuffer, const scene::Light& light);
 
 }  // namespace shadowbench::measure

@@ -1,7 +1,5 @@
 #include "harness/render/light_setup.h"
 
-#include <cmath>
-
 namespace shadowbench::render {
 namespace {
 
@@ -11,8 +9,7 @@ glm::vec3 row(const glm::dmat4& m, int r) { return glm::vec3(glm::dvec3(m[0][r],
 
 LightSetup make_light_setup(const scene::LightFrustum& frustum, const scene::Light& light, const Bias& bias,
                             std::uint32_t seed, const filters::RangeRule& range) {
-  const double half_angle = 0.5 * glm::radians(static_cast<double>(light.angular_diameter_deg));
-  return {frustum, 2.0 * std::tan(half_angle), bias, seed, range};
+  return {frustum, scene::penumbra_per_metre(light), bias, seed, range};
 }
 
 void set_light(gl::Program& program, const LightSetup& light) {

@@ -20,7 +20,7 @@ struct LightSetup {
   filters::RangeRule range = {};  ///< what becomes of receivers that the map does not hold
 };
 
-/// Describes a directional light; `light_size` follows from its angular diameter.
+/// Describes a light whose map has this frustum.
 LightSetup make_light_setup(const scene::LightFrustum& frustum, const scene::Light& light, const Bias& bias,
                             std::uint32_t seed, const filters::RangeRule& range = {});
 

@@ -16,7 +16,7 @@ images::Image shade(ShaderLibrary& shaders, const GBuffer& gbuffer, const gl::Te
   program.set("camera_position_ws", camera.position_ws);
   program.set("camera_forward_ws", camera.forward_ws);
   program.set("orthographic", camera.orthographic_height_m > 0.0f ? 1 : 0);
-  program.set("light_direction_ws", scene.light.direction_ws);
+  program.set("light_direction_ws", -scene::to_light(scene.light, {}));
   program.set("light_radiance", scene.light.color * scene.light.intensity);
   program.set("background", scene.background);
   target.bind();

@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "harness/measure/content_hash.h"
+#include "filters/base/content_hash.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/run/run_facts.h"
 
 namespace shadowbench::run {
 namespace {
 
-void add_options(measure::ContentHash& hash, const options::RunOptions& options) {
+void add_options(ContentHash& hash, const options::RunOptions& options) {
   const options::RoundLimits& rounds = options.rounds;
   hash.add(fmt::format("seed {} truth {} attribution {} stability {} uncertainty {} grids {} pad {} rounds {} {} {} {}",
                        options.seed, options.truth, options.attribution, options.stability, options.uncertainty,
@@ -22,27 +22,18 @@ void add_options(measure::ContentHash& hash, const options::RunOptions& options)
   hash.add(fmt::format("lights {}", fmt::join(options.lights, " ")));
 }
 
-void add_material(measure::ContentHash& hash, const scene::Material& m) {
+void add_material(ContentHash& hash, const scene::Material& m) {
   hash.add(fmt::format("{} {} {} {} {} {} {}", m.base_color.r, m.base_color.g, m.base_color.b, m.base_color.a,
                        m.base_color_texture, static_cast<int>(m.alpha_mode), m.alpha_cutoff));
 }
 
-void add_camera(measure::ContentHash& hash, const scene::Camera& c) {
+void add_camera(ContentHash& hash, const scene::Camera& c) {
   hash.add(c.name);
   for (const glm::vec3& v : {c.position_ws, c.forward_ws, c.up_ws}) hash.add(fmt::format("{} {} {}", v.x, v.y, v.z));
   hash.add(fmt::format("{} {}", c.vertical_fov_rad, c.orthographic_height_m));
 }
 
-void add_light(measure::ContentHash& hash, const scene::Light& l) {
-  hash.add(fmt::format("{} {} {} {} {} {} {} {} {}", static_cast<int>(l.kind), l.direction_ws.x, l.direction_ws.y,
-                       l.direction_ws.z, l.color.r, l.color.g, l.color.b, l.intensity, l.angular_diameter_deg));
-  if (!l.map_window) return;
-  const scene::MapWindow& w = *l.map_window;
-  hash.add(fmt::format("window {} {} {} {}", w.center_ws.x, w.center_ws.y, w.center_ws.z, w.width_m));
-  if (w.planes) hash.add(fmt::format("planes {} {}", w.planes->near_m, w.planes->far_m));
-}
-
-void add_scene(measure::ContentHash& hash, const scene::Scene& scene) {
+void add_scene(ContentHash& hash, const scene::Scene& scene) {
   for (const scene::Mesh& mesh : scene.meshes) {
     hash.add(fmt::format("mesh {} {} {}", mesh.material, mesh.casts_shadow, mesh.may_cull_front));
     hash.add_values(std::span<const scene::Vertex>(mesh.vertices));
@@ -54,7 +45,7 @@ void add_scene(measure::ContentHash& hash, const scene::Scene& scene) {
     hash.add_values(std::span<const std::uint8_t>(texture.rgba));
   }
   for (const scene::Camera& camera : scene.cameras) add_camera(hash, camera);
-  add_light(hash, scene.light);
+  for (const std::string& piece : scene::list_light_content(scene.light)) hash.add(piece);
   hash.add(fmt::format("{} {} {}", scene.background.r, scene.background.g, scene.background.b));
 }
 
@@ -62,7 +53,7 @@ void add_scene(measure::ContentHash& hash, const scene::Scene& scene) {
 
 std::string name_scene_content(const options::RunOptions& options, const scene::Scene& scene,
                                const std::string& renderer) {
-  measure::ContentHash hash;
+  ContentHash hash;
   hash.add(build_commit());
   hash.add(renderer);
   add_options(hash, options);
@@ -71,7 +62,7 @@ std::string name_scene_content(const options::RunOptions& options, const scene::
 }
 
 std::string name_cell_content(const std::string& scene_content, const filters::FilterRequest& request) {
-  measure::ContentHash hash;
+  ContentHash hash;
   hash.add(scene_content);
   hash.add(request.spec.body);
   hash.add(fmt::format("{} claims {}", request.user_file, fmt::join(request.spec.claims, " ")));

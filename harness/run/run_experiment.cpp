@@ -88,7 +88,7 @@ class Experiment {
   const options::RunOptions& options_;
   options::Progress& progress_;
   measure::Renderer renderer_;
-  measure::TruthCache cache_;
+  truth::TruthCache cache_;
   records::RunRecord run_;
   std::optional<files::FolderLock> lock_;
   int done_ = 0;

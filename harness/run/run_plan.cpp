@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <set>
 
+#include "filters/base/content_hash.h"
 #include "filters/base/error.h"
-#include "harness/measure/content_hash.h"
 #include "harness/run/cell_content.h"
 #include "harness/run/scene_loading.h"
 #include "report/records/json_io.h"
@@ -68,7 +68,7 @@ class Planner {
   const options::RunOptions& options_;
   const std::string& renderer_;
   RunPlan plan_;
-  measure::ContentHash hash_;
+  ContentHash hash_;
 
   void add_scene(std::size_t index) {
     const PlannedScene& scene = plan_.scenes[index];

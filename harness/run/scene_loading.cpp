@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "filters/base/error.h"
-#include "harness/scene/framing.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::run {
@@ -16,10 +15,8 @@ scene::Scene load_scene(const options::RunOptions& options, const std::string& a
   load.ground = options.ground;
   load.aspect = static_cast<double>(options.width) / options.height;
   scene::Scene scene = scene::load(argument, load);
-  if (options.light) {
-    scene.light.direction_ws =
-        glm::vec3(scene::light_direction(options.light->azimuth_deg, options.light->elevation_deg));
-  }
+  if (options.light)
+    scene.light = scene::place_in_sky(scene.light, options.light->azimuth_deg, options.light->elevation_deg);
   return scene;
 }
 

@@ -36,8 +36,7 @@ images::Metadata describe(const options::RunOptions& options, const measure::Sce
   metadata["shadowbench:renderer"] = info.renderer;
   metadata["shadowbench:camera_position_ws"] = text(camera.position_ws);
   metadata["shadowbench:camera_forward_ws"] = text(camera.forward_ws);
-  metadata["shadowbench:light_direction_ws"] = text(light.direction_ws);
-  metadata["shadowbench:light_angular_diameter_deg"] = static_cast<double>(light.angular_diameter_deg);
+  for (const auto& [name, value] : scene::light_metadata(light)) metadata["shadowbench:" + name] = value;
   return metadata;
 }
 
@@ -66,10 +65,8 @@ images::Rect choose_crop(const options::RunOptions& options, const std::vector<m
 /// The truth comes first: what every filter would like to look like.
 std::vector<images::GridTile> make_truth_tiles(const measure::SceneTask& task, const measure::SceneTruth& truth) {
   if (!truth.absent.empty()) return {};
-  const std::string sun =
-      fmt::format("rays to a sun of {} degrees, standard error {}",
-                  records::format_number(static_cast<double>(task.scene->light.angular_diameter_deg)),
-                  records::format_number(truth.standard_error));
+  const std::string sun = fmt::format("rays to {}, standard error {}", scene::describe_light(task.scene->light),
+                                      records::format_number(truth.standard_error));
   return {{"truth, hard", "one ray to the light's centre", truth.hard_picture, truth.hard,
            measure::make_error_image(truth.hard, truth), ""},
           {"truth, area", sun, truth.area_picture, truth.area, measure::make_error_image(truth.area, truth), ""}};

@@ -100,7 +100,7 @@ void TaskRun::cover(measure::SceneMeasurement& measured) {
     const measure::SceneTruth& truth = assets_.truth(*task_.camera);
     std::optional<measure::ViewReceivers> untraced;
     if (truth.receivers.image.points.empty())
-      untraced = measure::read_view_receivers(assets_.gbuffer(*task_.camera), -task_.scene->light.direction_ws);
+      untraced = measure::read_view_receivers(assets_.gbuffer(*task_.camera), task_.scene->light);
     coverage_ = measure::measure_coverage(untraced ? *untraced : truth.receivers, *task_.camera, light.frustum,
                                           measure::read_linear_depth(light.map));
   }

@@ -45,7 +45,7 @@ RoundTime draw_round(measure::Renderer& renderer, const PlannedScene& planned, c
 /// Draws the planned tasks scene by scene until that has taken long enough.
 class Probe {
  public:
-  Probe(measure::Renderer& renderer, const RunPlan& plan, measure::TruthCache& cache)
+  Probe(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache)
       : renderer_(renderer), plan_(plan), cache_(cache) {}
 
   TimeFloor run() {
@@ -60,7 +60,7 @@ class Probe {
 
   measure::Renderer& renderer_;
   const RunPlan& plan_;
-  measure::TruthCache& cache_;
+  truth::TruthCache& cache_;
   Clock::time_point start_ = Clock::now();
   double drawn_ms_ = 0.0;
   std::size_t left_cells_ = 0;
@@ -92,7 +92,7 @@ class Probe {
 
 }  // namespace
 
-TimeFloor probe_time_floor(measure::Renderer& renderer, const RunPlan& plan, measure::TruthCache& cache) {
+TimeFloor probe_time_floor(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache) {
   assert(!plan.scenes.empty() && plan.scenes.front().options.rounds.is_fixed());
   return Probe(renderer, plan, cache).run();
 }

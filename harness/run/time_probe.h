@@ -1,8 +1,8 @@
 #pragma once
 
 #include "harness/measure/renderer.h"
-#include "harness/measure/truth_cache.h"
 #include "harness/run/run_plan.h"
+#include "reference/truth/truth_cache.h"
 
 namespace shadowbench::run {
 
@@ -17,6 +17,6 @@ struct TimeFloor {
 /// is the quickest, and multiplies by rounds and cells. Prefilters and rounds that warm up are left out, and of the
 /// cells of one view the map is counted once, so that the run takes longer. Requires fixed rounds. Throws Error(kUsage)
 /// when the GL cannot give a map of a planned size. Cost: some 2 s at most beside one view's.
-TimeFloor probe_time_floor(measure::Renderer& renderer, const RunPlan& plan, measure::TruthCache& cache);
+TimeFloor probe_time_floor(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache);
 
 }  // namespace shadowbench::run

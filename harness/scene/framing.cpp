@@ -21,13 +21,6 @@ constexpr double kMargin = 1.04;
 constexpr double kSunFromCameraDeg = 80.0;
 constexpr double kSunElevationDeg = 50.0;
 
-/// Points from the scene to where something stands; azimuth 0 is +z, 90 is +x.
-glm::dvec3 direction_to(double azimuth_deg, double elevation_deg) {
-  const double azimuth = glm::radians(azimuth_deg);
-  const double elevation = glm::radians(elevation_deg);
-  return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation), std::cos(elevation) * std::cos(azimuth)};
-}
-
 /// Three quarters; a scene much longer than wide is seen from one of its ends, since it would be a thin line otherwise.
 double camera_azimuth_deg(const Bounds& bounds) {
   constexpr float kElongated = 3.0f;
@@ -39,8 +32,8 @@ double camera_azimuth_deg(const Bounds& bounds) {
 /// Where the light throws a point on the plane y = ground_y; nothing for a light that does not come from above.
 std::optional<glm::dvec3> shadow_of(const glm::vec3& p, const Light& light, float ground_y) {
   constexpr double kLowestSine = 0.1;
-  const glm::dvec3 direction = glm::normalize(glm::dvec3(light.direction_ws));
-  if (direction.y > -kLowestSine) return std::nullopt;
+  const glm::dvec3 direction = glm::normalize(glm::dvec3(to_light(light, p)));
+  if (direction.y < kLowestSine) return std::nullopt;
   return glm::dvec3(p) + direction * ((static_cast<double>(ground_y) - static_cast<double>(p.y)) / direction.y);
 }
 
@@ -72,13 +65,9 @@ struct Slab {
 
 }  // namespace
 
-glm::dvec3 light_direction(double azimuth_deg, double elevation_deg) {
-  return -direction_to(azimuth_deg, elevation_deg);
-}
-
 Camera frame_camera(const Scene& scene, double aspect, std::optional<float> ground_y) {
   const Bounds bounds = scene.bounds();
-  const glm::dvec3 forward = -direction_to(camera_azimuth_deg(bounds), kCameraElevationDeg);
+  const glm::dvec3 forward = light_direction(camera_azimuth_deg(bounds), kCameraElevationDeg);
   const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0.0, 1.0, 0.0)));
   const glm::dvec3 up = glm::cross(right, forward);
   const double tangent = std::tan(0.5 * glm::radians(kVerticalFovDeg)) / kMargin;
@@ -101,10 +90,7 @@ Camera frame_camera(const Scene& scene, double aspect, std::optional<float> grou
 }
 
 Light make_default_sun(const Bounds& bounds) {
-  Light sun;
-  const double azimuth = camera_azimuth_deg(bounds) + kSunFromCameraDeg;
-  sun.direction_ws = glm::vec3(light_direction(azimuth, kSunElevationDeg));
-  return sun;
+  return place_in_sky({}, camera_azimuth_deg(bounds) + kSunFromCameraDeg, kSunElevationDeg);
 }
 
 float ground_height(const Scene& scene) {

@@ -6,9 +6,6 @@
 
 namespace shadowbench::scene {
 
-/// Returns the way light travels that comes from a place in the sky: azimuth 0 is +z, 90 is +x; degrees.
-glm::dvec3 light_direction(double azimuth_deg, double elevation_deg);
-
 /// Returns a camera that looks at the scene's meshes from three quarters (along a scene much longer than wide) and
 /// slightly from above, as near as it can while every vertex stays inside a picture of the given width / height.
 /// Where `ground_y` is given, the shadows that the meshes throw on that plane are inside as well.

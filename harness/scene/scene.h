@@ -2,9 +2,10 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <optional>
 #include <string>
 #include <vector>
+
+#include "harness/scene/lights/light.h"
 
 namespace shadowbench::scene {
 
@@ -51,31 +52,6 @@ struct Camera {
   glm::vec3 up_ws{0.0f, 1.0f, 0.0f};        ///< unit length, not parallel to forward_ws
   float vertical_fov_rad = 0.8f;
   float orthographic_height_m = 0.0f;  ///< full height of the view; 0: perspective
-};
-
-/// Spot and point lights get their place here.
-enum class LightKind { kDirectional };
-
-/// A light's map that is not fitted to the scene: it may leave receivers outside.
-struct MapWindow {
-  /// Planes across the light's direction, metres from the centre along it; negative is before the centre.
-  struct Planes {
-    double near_m = 0.0;  ///< depth 0; what lies before it casts nothing
-    double far_m = 0.0;   ///< depth 1
-  };
-
-  glm::dvec3 center_ws{0.0};
-  double width_m = 0.0;          ///< side of the square map
-  std::optional<Planes> planes;  ///< none: fitted to the scene
-};
-
-struct Light {
-  LightKind kind = LightKind::kDirectional;
-  glm::vec3 direction_ws{0.0f, -1.0f, 0.0f};  ///< the way the light travels, unit length
-  glm::vec3 color{1.0f};                      ///< linear
-  float intensity = 1.0f;
-  float angular_diameter_deg = 0.53f;   ///< seen from the scene; 0: a point at infinity
-  std::optional<MapWindow> map_window;  ///< none: the map is fitted to the scene
 };
 
 /// An axis-aligned box; empty while min > max.

@@ -15,8 +15,6 @@
 namespace shadowbench::scene {
 namespace {
 
-constexpr Range kColor{0.0, 1.0};
-
 /// Builds a scene from its tables; materials come before the objects that use them.
 class SceneBuilder {
  public:
@@ -27,7 +25,9 @@ class SceneBuilder {
     scene_.name = file_.stem().string();
     scene_.title = root_.string("title");
     scene_.background = glm::vec3(root_.vec3("background", kColor, glm::dvec3(scene_.background)));
-    scene_.light = read_light();
+    const std::optional<TomlTable> light = root_.table("light");
+    if (!light) throw root_.error("light", "the scene has no [light]");
+    scene_.light = read_light(*light);
     for (const TomlTable& table : root_.tables("material")) add_material(table);
     for (const TomlTable& table : root_.tables("object")) add_object(table);
     if (root_.has("model")) scene_ = add_model(std::move(scene_), read_model(root_, "model"));
@@ -39,55 +39,6 @@ class SceneBuilder {
 
  private:
   static constexpr double kPictureAspect = 16.0 / 9.0;
-
-  Light read_light() const {
-    const std::optional<TomlTable> table = root_.table("light");
-    if (!table) throw root_.error("light", "the scene has no [light]");
-    table->require_known_keys({"type", "direction", "azimuth_deg", "elevation_deg", "color", "intensity",
-                               "angular_diameter_deg", "map_center", "map_width", "map_near", "map_far"});
-    table->choice("type", {"directional"}, "directional");
-    Light light;
-    light.direction_ws = glm::vec3(read_direction(*table));
-    light.color = glm::vec3(table->vec3("color", kColor, glm::dvec3(1.0)));
-    light.intensity = table->number_f("intensity", {0.0, 1000.0}, 1.0);
-    light.angular_diameter_deg = table->number_f("angular_diameter_deg", {0.0, 90.0}, 0.53);
-    light.map_window = read_map_window(*table);
-    return light;
-  }
-
-  static std::optional<MapWindow> read_map_window(const TomlTable& table) {
-    if (!table.has("map_width")) {
-      for (const char* key : {"map_center", "map_near", "map_far"})
-        if (table.has(key)) throw table.error(key, fmt::format("'{}' in [light] needs 'map_width'", key));
-      return std::nullopt;
-    }
-    MapWindow window;
-    window.center_ws = table.vec3("map_center", kAnyNumber);
-    window.width_m = table.number("map_width", kPositive);
-    if (!table.has("map_near") && !table.has("map_far")) return window;
-    const MapWindow::Planes planes{table.number("map_near", kAnyNumber), table.number("map_far", kAnyNumber)};
-    if (!(planes.far_m - planes.near_m >= kPositive.min)) {
-      throw table.error("map_far", fmt::format("'map_far' in [light] is {}: it must lie beyond 'map_near', which is {}",
-                                               planes.far_m, planes.near_m));
-    }
-    window.planes = planes;
-    return window;
-  }
-
-  static glm::dvec3 read_direction(const TomlTable& table) {
-    const bool by_angles = table.has("azimuth_deg") || table.has("elevation_deg");
-    if (table.has("direction") == by_angles) {
-      throw table.error("direction",
-                        "[light] needs a direction: either 'direction', or 'azimuth_deg' and 'elevation_deg'");
-    }
-    if (by_angles) {
-      const double azimuth = table.number("azimuth_deg", {-360.0, 360.0});
-      return light_direction(azimuth, table.number("elevation_deg", {-90.0, 90.0}));
-    }
-    const glm::dvec3 direction = table.vec3("direction", kAnyNumber);
-    if (glm::length(direction) > 0.0) return direction;
-    throw table.error("direction", "the light has no direction: 'direction' is [0, 0, 0]");
-  }
 
   void add_camera(const TomlTable& table) {
     table.require_known_keys({"name", "position", "target", "up", "vertical_fov_deg"});

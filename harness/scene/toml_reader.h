@@ -21,6 +21,8 @@ struct Range {
 
 /// Every finite number a scene may hold.
 inline constexpr Range kAnyNumber{-1e12, 1e12};
+/// A part of a linear colour.
+inline constexpr Range kColor{0.0, 1.0};
 /// Lengths: anything with an extent.
 inline constexpr Range kPositive{1e-9, 1e12};
 

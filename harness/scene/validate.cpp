@@ -92,13 +92,6 @@ Mesh with_unit_normals(Mesh mesh) {
   return mesh;
 }
 
-glm::vec3 unit_direction(const glm::vec3& v, const std::string& owner, const std::string& where) {
-  const glm::dvec3 direction(v);
-  const double length = glm::length(direction);
-  if (!std::isfinite(length) || !(length > 0.0)) fail(fmt::format("{} has no direction: {}", owner, text_of(v)), where);
-  return glm::vec3(direction / length);
-}
-
 /// The given up, or, where it is parallel to the view, the axis least parallel to it; at right angles to the view.
 glm::vec3 usable_up(const glm::vec3& up, const glm::vec3& forward) {
   constexpr double kLeastSine = 1e-4;
@@ -131,16 +124,6 @@ Camera checked_camera(Camera camera, const std::string& where) {
   return camera;
 }
 
-Light checked_light(Light light, const std::string& where) {
-  light.direction_ws = unit_direction(light.direction_ws, "the light", where);
-  const bool shines = is_finite(light.color) && glm::all(glm::greaterThanEqual(light.color, glm::vec3(0.0f))) &&
-                      std::isfinite(light.intensity) && light.intensity >= 0.0f;
-  if (!shines) fail(fmt::format("the light has colour {}, intensity {}", text_of(light.color), light.intensity), where);
-  if (!(light.angular_diameter_deg >= 0.0f && light.angular_diameter_deg < 180.0f))
-    fail(fmt::format("the light's angular diameter is {} degrees", light.angular_diameter_deg), where);
-  return light;
-}
-
 /// Renames cameras of equal name, since names tell their pictures apart.
 std::vector<Camera> with_unique_names(std::vector<Camera> cameras) {
   std::set<std::string> taken;
@@ -165,6 +148,13 @@ void check_material(const Material& material, const Scene& scene, const std::str
 }
 
 }  // namespace
+
+glm::vec3 unit_direction(const glm::vec3& v, const std::string& owner, const std::string& where) {
+  const glm::dvec3 direction(v);
+  const double length = glm::length(direction);
+  if (!std::isfinite(length) || !(length > 0.0)) fail(fmt::format("{} has no direction: {}", owner, text_of(v)), where);
+  return glm::vec3(direction / length);
+}
 
 Scene validate_geometry(Scene scene, const std::string& where) {
   const std::size_t given = scene.triangle_count();

@@ -17,4 +17,7 @@ Scene validate(Scene scene, const std::string& where);
 /// Does the part of `validate` that concerns meshes and materials; what frames or measures a scene can rely on it.
 Scene validate_geometry(Scene scene, const std::string& where);
 
+/// Returns `v` with unit length. Throws kInput, naming `owner`, where it has no direction.
+glm::vec3 unit_direction(const glm::vec3& v, const std::string& owner, const std::string& where);
+
 }  // namespace shadowbench::scene

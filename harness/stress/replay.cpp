@@ -9,10 +9,10 @@
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/map_limits.h"
 #include "harness/measure/scene_assets.h"
-#include "harness/measure/truth_cache.h"
 #include "harness/render/shade_pass.h"
 #include "harness/run/scene_loading.h"
 #include "reference/metrics/error_stats.h"
+#include "reference/truth/truth_cache.h"
 #include "report/analysis/summary.h"
 #include "report/images/grid.h"
 #include "report/images/hardest_edge.h"
@@ -82,7 +82,7 @@ class Stage {
   measure::Renderer& renderer_;
   options::RunOptions options_;
   scene::Scene scene_;
-  measure::TruthCache cache_;
+  truth::TruthCache cache_;
   measure::SceneAssets assets_;
   measure::LightMap& light_;
   render::ImageTarget target_;

@@ -51,7 +51,7 @@ scene::Scene make_slab_scene(const SlabSetting& setting) {
     scene.meshes.push_back(scene::transform_mesh(scene::make_plane(wall, 4), world * local_from_wall()));
     scene.meshes.back().casts_shadow = false;
   }
-  scene.light.direction_ws = glm::vec3(setting.world_from_local * glm::normalize(setting.light_local));
+  scene.light.kind = scene::Sun{glm::vec3(setting.world_from_local * glm::normalize(setting.light_local))};
   scene.cameras.push_back(make_camera(setting.world_from_local));
   return scene;
 }

@@ -92,7 +92,7 @@ class Tuner {
   std::vector<TunedFilter> filters_;
   std::vector<scene::Scene> scenes_;
   measure::Renderer renderer_;
-  measure::TruthCache cache_;
+  truth::TruthCache cache_;
   TuneSettings settings_;
   records::TunedRecord record_;
   std::string evaluations_;  ///< rows of evaluations.csv

@@ -50,7 +50,7 @@ bool is_artefact(TuneMetricKind kind) { return kind == TuneMetricKind::kAcne || 
 
 }  // namespace
 
-TuneStage::TuneStage(measure::Renderer& renderer, const TuneSettings& settings, measure::TruthCache& cache,
+TuneStage::TuneStage(measure::Renderer& renderer, const TuneSettings& settings, truth::TruthCache& cache,
                      const scene::Scene& scene, const std::vector<TuneView>& views,
                      const std::function<void(const std::string&)>& on_view)
     : renderer_(renderer),

@@ -26,7 +26,7 @@ struct TuneSettings {
 class TuneStage {
  public:
   /// `on_view` hears of each view before it is traced. All but the scene must outlive this object.
-  TuneStage(measure::Renderer& renderer, const TuneSettings& settings, measure::TruthCache& cache,
+  TuneStage(measure::Renderer& renderer, const TuneSettings& settings, truth::TruthCache& cache,
             const scene::Scene& scene, const std::vector<TuneView>& views,
             const std::function<void(const std::string&)>& on_view);
   TuneStage(const TuneStage&) = delete;

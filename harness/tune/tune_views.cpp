@@ -65,7 +65,9 @@ scene::Scene make_tune_scene(const scene::Scene& scene, const std::vector<TuneVi
     added.name = view.name();
   }
   const double light_turn = views.front().light_turn_deg;
-  if (light_turn != 0.0) turned.light.direction_ws = glm::normalize(turn(scene.light.direction_ws, light_turn));
+  if (light_turn != 0.0)
+    turned.light =
+        scene::turn_light(scene.light, [&](const glm::vec3& v) { return glm::normalize(turn(v, light_turn)); });
   return turned;
 }
 

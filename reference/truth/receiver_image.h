@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <string>
 #include <vector>
 
 namespace shadowbench::truth {
@@ -17,6 +18,7 @@ struct ReceiverImage {
   int width = 0;
   int height = 0;
   std::vector<ReceiverPoint> points;  ///< width * height
+  std::string content = {};           ///< a name for these points, by which a cache knows them; may be empty
 };
 
 }  // namespace shadowbench::truth

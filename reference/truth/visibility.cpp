@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -109,7 +110,8 @@ std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& r
 }
 
 std::vector<float> trace_first_blockers(const Occluders& occluders, const ReceiverImage& receivers,
-                                        const glm::dvec3& to_light) {
+                                        const AreaLight& light) {
+  assert(std::isinf(light.reach()));
   std::vector<float> distances(receivers.points.size(), std::numeric_limits<float>::infinity());
   for_each_group(receivers, [&](const std::vector<std::size_t>& group) {
     RayPacket packet;
@@ -119,7 +121,7 @@ std::vector<float> trace_first_blockers(const Occluders& occluders, const Receiv
       const glm::vec3 origin = occluders.offset_origin(point.position_ws, point.normal_ws);
       // From beyond everything, back to the receiver.
       lengths[lane] = 1.01f * (glm::length(origin) + occluders.farthest());
-      const glm::vec3 way = glm::vec3(glm::normalize(to_light)) * lengths[lane];
+      const glm::vec3 way = glm::vec3(light.centre_direction(glm::dvec3(0.0))) * lengths[lane];
       packet.set(lane, origin + way, -way, 1.0f);
     }
     const RayPacket::Lanes hits = occluders.find_nearest(packet);

@@ -62,9 +62,10 @@ TracedVisibility trace_square(const Occluders& occluders, const ReceiverImage& r
 /// Traces one ray from each receiver to the light's centre: 1 seen, 0 blocked, 1 where a point does not count.
 std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light);
 
-/// Gives for each receiver how far along the light the surface lies that light from infinity meets first, in metres:
-/// what an ideal depth map would hold. Infinity where nothing blocks and where a point does not count.
+/// Returns how far from each receiver, towards the light, the surface lies that the light meets first; metres. An ideal
+/// depth map would hold that surface. Infinity where nothing blocks the light and where a point does not count.
+/// Requires a light at infinity.
 std::vector<float> trace_first_blockers(const Occluders& occluders, const ReceiverImage& receivers,
-                                        const glm::dvec3& to_light);
+                                        const AreaLight& light);
 
 }  // namespace shadowbench::truth

@@ -11,3 +11,6 @@ uniform float bias_slope;          // depth, times 1 - n.l
 uniform float bias_plane_texels;
 uniform float bias_normal_texels;
 uniform float bias_max_tangent;    // steeper planes are treated as this steep
+
+// The direction from a point to the light's centre, unit length.
+vec3 direction_to_light(vec3 position_ws) { return -light_direction_ws; }

@@ -22,7 +22,7 @@ Receiver make_receiver(vec3 position_ws, vec3 normal_ws, float view_depth, ivec2
   Receiver r;
   r.position_ws = position_ws;
   r.normal_ws = normal_ws;
-  r.n_dot_l = -dot(normal_ws, light_direction_ws);
+  r.n_dot_l = dot(normal_ws, direction_to_light(position_ws));
   // `precise`: the pass that hands these values to the models must get the very same bits.
   float sin_theta = sqrt(max(1.0 - r.n_dot_l * r.n_dot_l, 0.0));
   precise vec3 offset_ws = position_ws + normal_ws * (bias_normal_texels * texel_size_ws * sin_theta);

@@ -15,11 +15,13 @@
 #include <vector>
 
 #include "harness/gl/context/context.h"
-#include "harness/measure/scene_tracer.h"
+#include "harness/measure/occluders.h"
+#include "harness/measure/view_receivers.h"
 #include "harness/options/options.h"
 #include "harness/render/gbuffer.h"
 #include "harness/render/shader_library.h"
 #include "harness/scene/load.h"
+#include "reference/truth/cached_tracer.h"
 
 namespace shadowbench::bench {
 namespace {
@@ -42,7 +44,7 @@ struct View {
     const render::Geometry geometry(scene);
     render::GBuffer gbuffer(width, height);
     gbuffer.draw(shaders, geometry, scene, scene.cameras.front());
-    receivers = measure::read_view_receivers(gbuffer, -scene.light.direction_ws);
+    receivers = measure::read_view_receivers(gbuffer, scene.light);
   }
 
   scene::Scene scene;
@@ -114,10 +116,9 @@ struct Recording {
 /// The same rays, traced by the truth and by a bare loop in turns: few enough of them to stay near the cores.
 void occlusion_rays(benchmark::State& state, const char* scene) {
   const View view(scene, 160, 90);
-  const truth::Occluders occluders = measure::make_occluders(view.scene);
+  const truth::Occluders occluders(measure::list_occluders(view.scene));
   const BareEmbree bare(view.scene);
-  const auto light = truth::AreaLight::make_sun(-glm::dvec3(view.scene.light.direction_ws),
-                                                static_cast<double>(view.scene.light.angular_diameter_deg));
+  const auto light = scene::make_area_light(view.scene.light);
   truth::TraceSettings settings;
   settings.standard_error = 1.0;
   settings.max_points = 16;
@@ -149,17 +150,22 @@ BENCHMARK_CAPTURE(occlusion_rays, fence, "fence")->Iterations(1);
 BENCHMARK_CAPTURE(occlusion_rays, ball, "ball")->Iterations(1);
 BENCHMARK_CAPTURE(occlusion_rays, steps, "steps")->Iterations(1);
 
+void trace_view(const View& view, truth::TruthCache& cache) {
+  truth::CachedTracer tracer([&] { return measure::list_occluders(view.scene); }, cache, 1);
+  tracer.trace_view(view.receivers.image, scene::make_area_light(view.scene.light));
+}
+
 /// All that does not depend on the map, 960 x 540, standard error 0.005: traced, then read back.
 void area_truth(benchmark::State& state, const char* scene) {
   const auto folder = std::filesystem::temp_directory_path() / ("shadowbench_truth_bench." + std::to_string(getpid()));
   const View view(scene, 960, 540);
   for (auto _ : state) {
-    measure::TruthCache cache(folder, [](const std::string&) {});
+    truth::TruthCache cache(folder, [](const std::string&) {});
     const auto cold = Clock::now();
-    measure::SceneTracer(view.scene, cache, 1).trace_view(view.receivers);
+    trace_view(view, cache);
     state.counters["cold_s"] = seconds_since(cold);
     const auto warm = Clock::now();
-    measure::SceneTracer(view.scene, cache, 1).trace_view(view.receivers);
+    trace_view(view, cache);
     state.counters["warm_s"] = seconds_since(warm);
     if (cache.loaded() != 1) state.SkipWithError("the cache did not hold the view");
   }

@@ -235,7 +235,8 @@ class GltfImporter {
     if (index < 0 || static_cast<std::size_t>(index) >= source_.lights.size())
       fail(fmt::format("there is no light {}", index));
     const tinygltf::Light& source = source_.lights[static_cast<std::size_t>(index)];
-    if (source.type != "directional") {
+    const std::optional<LightKind> kind = make_gltf_light(source.type, world_from_node);
+    if (!kind) {
       warn(fmt::format("{} lights are not modelled yet; they are left out", source.type));
       return;
     }
@@ -244,7 +245,7 @@ class GltfImporter {
       return;
     }
     Light light;
-    light.direction_ws = glm::vec3(-world_from_node[2]);
+    light.kind = *kind;
     if (source.color.size() == 3)
       for (int i = 0; i < 3; ++i) light.color[i] = static_cast<float>(source.color[static_cast<std::size_t>(i)]);
     result_.light = light;

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "harness/scene/scene.h"
+#include "reference/truth/visibility.h"
 
 namespace shadowbench::scene {
 
@@ -14,9 +15,9 @@ enum class FitMode {
   kView,    ///< what the camera sees of the scene, with the casters between that and the light
 };
 
-/// Give a fit's name on the command line and in records, and the fit of a name.
+/// The fit's name on the command line and in records.
 std::string_view name_of(FitMode mode);
-/// Throws Error(kUsage) with the names there are.
+/// Throws kUsage for a name that is no fit, with those there are.
 FitMode parse_fit_mode(std::string_view name);
 
 /// What a light's frustum is fitted to, and how.
@@ -38,29 +39,32 @@ struct LightFrustum {
   glm::mat4 uv_depth_from_world{1.0f};  ///< to (u, v, depth) in [0,1]; v = 0 is the map's first row, as in GL
   double width_ws = 0.0;                ///< side of the map, padding included
   double texel_size_ws = 0.0;
-  double depth_range_ws = 0.0;   ///< from depth 0 to depth 1
-  bool projective = false;       ///< uv_depth_from_world ends with a division by w, which is negative behind the light
-  glm::vec3 direction_ws{0.0f};  ///< the way the light travels, unit length
+  double depth_range_ws = 0.0;  ///< from depth 0 to depth 1
+  bool projective = false;      ///< uv_depth_from_world ends with a division by w, which is negative behind the light
+  glm::vec3 direction_ws{0.0f, 0.0f, 1.0f};  ///< the way the light travels, unit length
 };
 
-/// Fits a directional light's frustum to a validated scene.
-///
-/// `map_size` is the side of the map in texels; `pad_texels` of them stay free on every side, so that a kernel of that
-/// half-width around any point of the scene stays inside the map. Texels are square.
-/// Depth runs from the vertex nearest to the light to the farthest one, whether it casts or not, so that every
-/// receiver's depth lies inside (0,1), in 16 bits too; a scene without depth gets a thousandth of the map's width.
-/// A light with a map window gets exactly that: no padding, and receivers may lie outside and beyond the far plane.
-/// Throws kUsage where the padding leaves no texel for the scene. Cost: one or two passes over the vertices, in double.
-LightFrustum fit_light(const Scene& scene, FitMode mode, int map_size, double pad_texels);
+/// Where a filter's kernel lies in the world.
+truth::MapGrid make_map_grid(const LightFrustum& frustum);
 
-/// Fits as the other; FitMode::kView encloses every point that the camera sees, in front of others or behind them. Its
-/// depth runs from the caster nearest to the light that can reach the map to the farthest point in view: what lies
-/// beyond throws no shadow on anything in view. A camera that sees nothing gets the tight fit.
+/// Fits the frustum of a light's map to a validated scene.
 ///
-/// With `snap`, the map's origin lies a whole number of texels from the world's origin, as the light sees it, and the
-/// texel's size is rounded up to a power of 2^(1/8), at most 9 % larger: a camera that moves by less than a texel
-/// leaves the grid where it was, and shadows' edges do not crawl. One texel of the map's side is spent on that.
-/// Requires a camera for FitMode::kView.
+/// `pad_texels` of the map stay free on every side, so that a kernel of that half-width around any point of the scene
+/// stays inside the map. Texels are square. Depth runs from the vertex nearest to the light to the farthest one,
+/// whether it casts or not, so that every receiver's depth lies inside (0,1), even in 16 bits; a scene without depth
+/// gets a thousandth of the map's width. A light with a map window gets exactly that: no padding, and receivers may lie
+/// outside and beyond the far plane.
+///
+/// FitMode::kView encloses every point that the camera sees, hidden ones too. Its depth runs from the nearest caster
+/// over the map to the farthest point in view. A camera that sees nothing gets the tight fit.
+///
+/// With `snap`, the map's origin lies a whole number of texels from the world's origin, and a texel's size is rounded
+/// up to a power of 2^(1/8), at most 9 % larger: while the camera moves by less than a texel the grid stays where it
+/// is, and the edges of shadows do not crawl. That costs one texel of the map's side.
+///
+/// Requires a camera for FitMode::kView. Throws kUsage where the padding leaves no texel for the scene. Cost: one or
+/// two passes over the vertices.
 LightFrustum fit_light(const Scene& scene, const FitRequest& request);
+LightFrustum fit_light(const Scene& scene, FitMode mode, int map_size, double pad_texels);
 
 }  // namespace shadowbench::scene

@@ -210,15 +210,21 @@ struct ScenePlace {
 };
 
 std::vector<ScenePlace> list_places() {
-  return {
-      {"vertices", poison_vertices},
-      {"an object's matrix", poison_matrix},
-      {"the light's direction", [](scene::Scene& scene, int count,
-                                   double value) { scene.light.direction_ws[count % 3] = static_cast<float>(value); }},
-      {"the camera's position",
-       [](scene::Scene& scene, int count, double value) {
-         scene.cameras.front().position_ws[count % 3] = static_cast<float>(value);
-       }}};
+  return {{"vertices", poison_vertices},
+          {"an object's matrix", poison_matrix},
+          {"the light's direction",
+           [](scene::Scene& scene, int count, double value) {
+             scene.light = scene::turn_light(
+                 scene.light,
+                 [&](glm::vec3 v) {
+                   v[count % 3] = static_cast<float>(value);
+                   return v;
+                 });
+           }},
+          {"the camera's position",
+           [](scene::Scene& scene, int count, double value) {
+             scene.cameras.front().position_ws[count % 3] = static_cast<float>(value);
+           }}};
 }
 
 /// A poisonous number. A scene that holds it must be refused, or else become a finite scene.

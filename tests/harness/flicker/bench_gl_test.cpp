@@ -48,7 +48,7 @@ class FlickerBenchTest : public ::testing::Test {
   options::RunOptions options_;
   scene::Scene scene_;
   measure::Renderer renderer_;
-  measure::TruthCache cache_;
+  truth::TruthCache cache_;
   FlickerBench bench_;
   TruthFrames truth_;
 };

@@ -56,11 +56,11 @@ TEST(Motion, NamesAreReadOnceEach) {
 TEST(Motion, FirstFrameIsTheScenes_AndOnlyOneThingMoves) {
   const scene::Scene scene = load_cubes();
   const auto turned = make_frames(Motion::kLight, scene, 0.01, 3), moved = make_frames(Motion::kCamera, scene, 0.5, 3);
-  EXPECT_EQ(turned[0].light.direction_ws, scene.light.direction_ws);
-  EXPECT_NEAR(glm::length(turned[2].light.direction_ws), 1.0f, 1e-6f);
-  EXPECT_EQ(turned[2].light.direction_ws.y, scene.light.direction_ws.y) << "about the vertical";
+  EXPECT_EQ(scene::to_light(turned[0].light, {}), scene::to_light(scene.light, {}));
+  EXPECT_NEAR(glm::length(-scene::to_light(turned[2].light, {})), 1.0f, 1e-6f);
+  EXPECT_EQ(scene::to_light(turned[2].light, {}).y, scene::to_light(scene.light, {}).y) << "about the vertical";
   EXPECT_EQ(turned[2].camera.position_ws, scene.cameras.front().position_ws);
-  EXPECT_EQ(moved[2].light.direction_ws, scene.light.direction_ws);
+  EXPECT_EQ(scene::to_light(moved[2].light, {}), scene::to_light(scene.light, {}));
   EXPECT_NEAR(glm::distance(moved[2].camera.position_ws, scene.cameras.front().position_ws), 1.0f, 1e-5f);
 }
 
@@ -87,7 +87,7 @@ TEST(Motion, ReceiversThatLeaveTheMapOrTurnAway_AreNotMarked) {
 
 TEST(Motion, LightOverhead_IsSaid) {
   scene::Scene scene = load_cubes();
-  scene.light.direction_ws = {0.0f, -1.0f, 0.0f};
+  scene.light.kind = scene::Sun{{0.0f, -1.0f, 0.0f}};
   try {
     choose_step(Motion::kLight, scene, make_floor(), {512, 5.0, 16.0 / 9.0, false});
     FAIL() << "a step was found";

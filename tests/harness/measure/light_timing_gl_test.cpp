@@ -1,6 +1,6 @@
 #include "harness/measure/light_timing.h"
-#include "harness/measure/truth_cache.h"
-#include "harness/scene/lights/light_ring.h"
+#include "harness/scene/lights/light.h"
+#include "reference/truth/truth_cache.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {
@@ -49,7 +49,7 @@ class LightFrames {
   scene::Scene scene_;
   options::RunOptions options_ = make_options();
   measure::Renderer renderer_;
-  measure::TruthCache cache_;
+  truth::TruthCache cache_;
   measure::SceneAssets assets_;
   std::vector<filters::FilterRequest> requests_;
   std::vector<std::unique_ptr<render::FilterPasses>> passes_;
@@ -58,7 +58,7 @@ class LightFrames {
   /// A light that is not overhead: turned about the vertical it is another.
   static scene::Scene load_tilted(const std::string& name) {
     scene::Scene scene = load_builtin(name);
-    scene.light.direction_ws = glm::normalize(scene.light.direction_ws + glm::vec3(0.3f, 0.0f, 0.1f));
+    scene.light.kind = scene::Sun{glm::normalize(-scene::to_light(scene.light, {}) + glm::vec3(0.3f, 0.0f, 0.1f))};
     return scene;
   }
 

@@ -26,7 +26,7 @@ std::vector<measure::MeasuredCell> measure(const std::string& scene_name, const 
   options.reference = catalogue().parse_requests("none").front();
   options.truth = false;
   options.stability = true;
-  measure::TruthCache cache({}, [](const std::string&) {});
+  truth::TruthCache cache({}, [](const std::string&) {});
   measure::SceneAssets assets(renderer, options, scene, cache, measure::largest_padding_texels(options.filters));
   const measure::SceneTask task{&scene, &scene.cameras.front(), map_size, options.filters};
   return measure::measure_scene(renderer, options, task, assets, [](const std::string&) {}).cells;

@@ -68,7 +68,7 @@ class AnalyticFloor {
     camera.up_ws = {0.0f, 0.0f, 1.0f};
     camera.vertical_fov_rad = 2.0f * std::atan(0.5f * static_cast<float>(view_) / kCamera);
     scene.cameras.push_back(camera);
-    scene.light.direction_ws = {0.0f, -1.0f, 0.0f};
+    scene.light.kind = scene::Sun{{0.0f, -1.0f, 0.0f}};
     scene.light.map_window =
         scene::MapWindow{{0.0, 0.0, 0.0}, static_cast<double>(map_), scene::MapWindow::Planes{-kNear, kFar}};
     return scene::validate(scene, scene.name);

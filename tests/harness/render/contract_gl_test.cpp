@@ -28,7 +28,7 @@ scene::Scene floor_scene(bool roof) {
   camera.forward_ws = glm::normalize(glm::vec3(0.0f, -2.0f, -0.5f));
   camera.up_ws = {0.0f, 0.0f, -1.0f};
   scene.cameras.push_back(camera);
-  scene.light.direction_ws = glm::normalize(glm::vec3(-0.1f, -1.0f, 0.05f));
+  scene.light.kind = scene::Sun{glm::normalize(glm::vec3(-0.1f, -1.0f, 0.05f))};
   return scene::validate(scene, "floor");
 }
 

@@ -34,7 +34,7 @@ scene::Scene make_scene() {
   scene::Scene scene;
   scene.materials.emplace_back();
   scene.meshes = {make_quad(4.0f, 0.0f), make_box(1.0f, 1.0f, 2.0f)};
-  scene.light.direction_ws = {0.0f, -1.0f, 0.0f};
+  scene.light.kind = scene::Sun{{0.0f, -1.0f, 0.0f}};
   scene::Camera camera;
   camera.position_ws = {0.0f, 6.0f, 0.1f};
   camera.forward_ws = {0, -1, 0};
@@ -90,7 +90,7 @@ TEST(MapBias, Midpoint_LiesBetweenFirstAndSecondSurface) {
 
 TEST(MapBias, PolygonOffset_MovesByFactorTimesSlope_AndUnitsOfTheFormat) {
   scene::Scene scene = make_scene();
-  scene.light.direction_ws = glm::normalize(glm::vec3(-1.0f, -1.0f, 0.0f));
+  scene.light.kind = scene::Sun{glm::normalize(glm::vec3(-1.0f, -1.0f, 0.0f))};
   Bench bench(shared_context(), scene, 128, 16, 16);
   const double plain = height_in_map(bench, 3.0);
   const filters::Receiver r =
@@ -115,7 +115,7 @@ scene::Scene make_wall(double tilt) {
     wall.vertices.push_back({{0.0f, p.y, p.x}, {1, 0, 0}, {0, 0}});
   wall.indices = {0, 1, 2, 2, 1, 3};
   scene.meshes = {make_quad(4.0f, 0.0f), wall};
-  scene.light.direction_ws = glm::vec3(-std::sin(tilt), -std::cos(tilt), 0.0);
+  scene.light.kind = scene::Sun{glm::vec3(-std::sin(tilt), -std::cos(tilt), 0.0)};
   scene::Camera camera;
   camera.position_ws = {-0.5f, 6.0f, 0.0f};
   camera.forward_ws = {0, -1, 0};

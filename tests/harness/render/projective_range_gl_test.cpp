@@ -30,7 +30,7 @@ scene::Scene make_projective_scene() {
   scene.meshes.back().casts_shadow = false;
   scene.meshes.push_back(moved(scene::make_box({0.8f, 0.2f, 0.8f}, 1), {-0.8, 2.0, 0.4}));
   scene.meshes.push_back(moved(scene::make_plane({4.0f, 8.0f}, 4), {2.0, kDeckHeight, 0.0}));
-  scene.light.direction_ws = {0.0f, -1.0f, 0.0f};
+  scene.light.kind = scene::Sun{{0.0f, -1.0f, 0.0f}};
   scene::Camera camera;
   camera.position_ws = {0.0f, 12.0f, 0.0f};
   camera.forward_ws = {0.0f, -1.0f, 0.0f};

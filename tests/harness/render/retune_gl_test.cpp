@@ -28,7 +28,7 @@ class Retune : public ::testing::TestWithParam<const char*> {};
 TEST_P(Retune, DrawsTheSameBitsAsNewPasses_ForEveryFilterAndLight) {
   const scene::Scene scene = load_builtin(GetParam());
   scene::Scene other = scene;
-  other.light.direction_ws = glm::normalize(other.light.direction_ws + glm::vec3(0.3f, 0.0f, 0.0f));
+  other.light.kind = scene::Sun{glm::normalize(-scene::to_light(other.light, {}) + glm::vec3(0.3f, 0.0f, 0.0f))};
   Bench bench(shared_context(), scene, 128, 96, 54), turned(shared_context(), other, 128, 96, 54);
   for (const filters::FilterRequest& request : catalogue().parse_requests("")) {
     SCOPED_TRACE(request.spec.id);

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "harness/measure/scene_tracer.h"
+#include "harness/measure/occluders.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {
@@ -13,7 +13,7 @@ class Geometry : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Geometry, HasTheSameTrianglesAndBounds) {
   const scene::Scene scene = load_builtin(GetParam());
-  const truth::Occluders occluders = measure::make_occluders(scene);
+  const truth::Occluders occluders(measure::list_occluders(scene));
   std::int64_t casting = 0;
   scene::Bounds bounds;
   for (const scene::Mesh& mesh : scene.meshes) {
@@ -61,7 +61,7 @@ TEST_P(Geometry, RaysHitWhatTheDepthMapSees) {
   const scene::Scene scene = load_builtin(GetParam());
   Bench bench(shared_context(), scene, kSize, 64, 36);
   const filters::DepthMap map = bench.map().read();
-  const truth::Occluders occluders = measure::make_occluders(scene);
+  const truth::Occluders occluders(measure::list_occluders(scene));
   const DepthRays rays(occluders, bench.frustum());
   int seen = 0, different = 0;
   for (int i = 0; i < kSize * kSize; ++i) {

@@ -69,7 +69,7 @@ TEST(LoadTest, BuiltInScenes_LoadWithoutWarningsOnASmallFloor) {
     const glm::vec3 size = scene.bounds().max - scene.bounds().min;
     EXPECT_LT(std::max(size.x, size.z), 14.0f);
     EXPECT_NEAR(scene.bounds().min.y, 0.0f, 0.01f);
-    EXPECT_LT(scene.light.direction_ws.y, 0.0f);
+    EXPECT_GT(to_light(scene.light, {}).y, 0.0f);
   }
 }
 
@@ -82,7 +82,7 @@ TEST(LoadTest, BuiltInScenes_ShowTheirCastersShadowsOnTheFloor) {
     for (std::size_t i = 1; i < scene.meshes.size(); ++i) {
       for (const Vertex& vertex : scene.meshes[i].vertices) {
         const glm::vec3 p = vertex.position_ws;
-        const glm::vec3 shadow = p - scene.light.direction_ws * (p.y / scene.light.direction_ws.y);
+        const glm::vec3 shadow = p - to_light(scene.light, {}) * (p.y / to_light(scene.light, {}).y);
         const glm::dvec3 seen = seen_at(scene.cameras[0], shadow);
         ++all;
         if (std::abs(seen.x) < 1.0 && std::abs(seen.y) < 1.0 && seen.z > 0.0) ++shown;
@@ -94,7 +94,7 @@ TEST(LoadTest, BuiltInScenes_ShowTheirCastersShadowsOnTheFloor) {
 
 TEST(LoadTest, BallScene_TouchesItsFloorUnderAWideLight) {
   const Scene scene = load("ball", make_options());
-  EXPECT_FLOAT_EQ(scene.light.angular_diameter_deg, 3.0f);
+  EXPECT_FLOAT_EQ(std::get<Sun>(scene.light.kind).angular_diameter_deg, 3.0f);
   for (const Mesh& mesh : scene.meshes) {
     Bounds box;
     for (const Vertex& v : mesh.vertices) box.add(v.position_ws);
@@ -164,8 +164,8 @@ TEST(LoadTest, BareModel_FillsThePictureAndFitsInside) {
 TEST(LoadTest, BareModel_HasASunFromAboveAcrossTheView) {
   const TestFolder folder;
   const Scene scene = load(write_tower(folder).string(), make_options());
-  EXPECT_NEAR(scene.light.direction_ws.y, -std::sin(glm::radians(50.0f)), 1e-5f);
-  EXPECT_LT(std::abs(glm::dot(glm::vec2(scene.light.direction_ws.x, scene.light.direction_ws.z),
+  EXPECT_NEAR(to_light(scene.light, {}).y, std::sin(glm::radians(50.0f)), 1e-5f);
+  EXPECT_LT(std::abs(glm::dot(glm::vec2(to_light(scene.light, {}).x, to_light(scene.light, {}).z),
                               glm::vec2(scene.cameras[0].forward_ws.x, scene.cameras[0].forward_ws.z))),
             0.3f);
 }
@@ -185,7 +185,7 @@ TEST(LoadTest, Ground_LiesJustBelowTheModelAndCatchesItsShadow) {
   EXPECT_GT(box.max.y, bare.bounds().min.y - 0.01f);
   for (const Vertex& v : bare.meshes[0].vertices) {
     const glm::vec3 shadow =
-        v.position_ws + scene.light.direction_ws * ((box.max.y - v.position_ws.y) / scene.light.direction_ws.y);
+        v.position_ws + to_light(scene.light, {}) * ((box.max.y - v.position_ws.y) / to_light(scene.light, {}).y);
     EXPECT_TRUE(shadow.x > box.min.x && shadow.x < box.max.x && shadow.z > box.min.z && shadow.z < box.max.z);
     const glm::dvec3 seen = seen_at(scene.cameras[0], shadow);
     EXPECT_LT(std::max(std::abs(seen.x), std::abs(seen.y)), 1.0);
@@ -219,7 +219,7 @@ TEST(LoadTest, ModelsOwnCameraAndLight_AreUsed) {
   const Scene scene = load(file.string(), make_options());
   ASSERT_EQ(scene.cameras.size(), 1U);
   EXPECT_EQ(scene.cameras[0].position_ws, glm::vec3(0, 0, 9));
-  EXPECT_EQ(scene.light.direction_ws, glm::vec3(0, 0, -1));
+  EXPECT_EQ(-to_light(scene.light, {}), glm::vec3(0, 0, -1));
 }
 
 /// The models lie outside the project; SHADOWBENCH_SCENES names their folder.

@@ -59,8 +59,8 @@ TEST(SceneFileTest, WholeScene_HasItsParts) {
   EXPECT_EQ(scene.bounds().max, glm::vec3(0.5f, 2.0f, 1.5f));
   ASSERT_EQ(scene.cameras.size(), 1U);
   EXPECT_EQ(scene.cameras[0].position_ws, glm::vec3(0, 2, 5));
-  EXPECT_EQ(scene.light.direction_ws, glm::vec3(0, -1, 0));
-  EXPECT_FLOAT_EQ(scene.light.angular_diameter_deg, 0.53f);
+  EXPECT_EQ(-to_light(scene.light, {}), glm::vec3(0, -1, 0));
+  EXPECT_FLOAT_EQ(std::get<Sun>(scene.light.kind).angular_diameter_deg, 0.53f);
 }
 
 TEST(SceneFileTest, UnknownKey_NamesItsLineAndTheNearestKnownOne) {
@@ -155,9 +155,9 @@ TEST(SceneFileTest, Light_NeedsExactlyOneDirection) {
 
 TEST(SceneFileTest, AzimuthAndElevation_SayWhereTheLightStands) {
   const Scene scene = load_text(replaced(kBase, "direction = [0, -1, 0]", "azimuth_deg = 90\nelevation_deg = 30"));
-  EXPECT_NEAR(scene.light.direction_ws.x, -std::sqrt(0.75f), 1e-6f);
-  EXPECT_NEAR(scene.light.direction_ws.y, -0.5f, 1e-6f);
-  EXPECT_NEAR(scene.light.direction_ws.z, 0.0f, 1e-6f);
+  EXPECT_NEAR(-to_light(scene.light, {}).x, -std::sqrt(0.75f), 1e-6f);
+  EXPECT_NEAR(-to_light(scene.light, {}).y, -0.5f, 1e-6f);
+  EXPECT_NEAR(-to_light(scene.light, {}).z, 0.0f, 1e-6f);
 }
 
 TEST(SceneFileTest, Rotation_TurnsAboutXFirstThenYThenZ) {

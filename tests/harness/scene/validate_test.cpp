@@ -112,16 +112,16 @@ TEST(ValidateTest, NormalsOfAnyLength_BecomeUnitLength) {
 
 TEST(ValidateTest, LightWithoutDirection_IsAnError) {
   Scene scene = make_scene();
-  scene.light.direction_ws = glm::vec3(0.0f);
+  scene.light.kind = Sun{glm::vec3(0.0f)};
   EXPECT_THAT(message_of(scene), HasSubstr("light has no direction"));
-  scene.light.direction_ws = {0.0f, kNaN, 0.0f};
+  scene.light.kind = Sun{{0.0f, kNaN, 0.0f}};
   EXPECT_THAT(message_of(scene), HasSubstr("light has no direction"));
 }
 
 TEST(ValidateTest, LightDirection_BecomesUnitLength) {
   Scene scene = make_scene();
-  scene.light.direction_ws = {0.0f, -8.0f, 0.0f};
-  EXPECT_EQ(validate(scene, "file.toml").light.direction_ws, glm::vec3(0, -1, 0));
+  scene.light.kind = Sun{{0.0f, -8.0f, 0.0f}};
+  EXPECT_EQ(-to_light(validate(scene, "file.toml").light, {}), glm::vec3(0, -1, 0));
 }
 
 TEST(ValidateTest, NegativeOrInfiniteLight_IsAnError) {
@@ -132,7 +132,7 @@ TEST(ValidateTest, NegativeOrInfiniteLight_IsAnError) {
   scene.light.color.x = kInfinity;
   EXPECT_THAT(message_of(scene), HasSubstr("colour"));
   scene.light.color.x = 1.0f;
-  scene.light.angular_diameter_deg = kNaN;
+  std::get<Sun>(scene.light.kind).angular_diameter_deg = kNaN;
   EXPECT_THAT(message_of(scene), HasSubstr("angular diameter"));
 }
 

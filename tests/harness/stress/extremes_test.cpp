@@ -39,7 +39,7 @@ TEST(SlabScene, NearItsEdge_AndOnTheWall_NothingIsSaid) {
 TEST(SlabScene, TurnsAsAWhole) {
   const glm::dmat3 turned({0, 1, 0}, {-1, 0, 0}, {0, 0, 1});
   const scene::Scene scene = scene::validate(make_slab_scene({.world_from_local = turned, .wall = true}), "test");
-  EXPECT_EQ(scene.light.direction_ws, glm::vec3(1.0f, 0.0f, 0.0f));
+  EXPECT_EQ(-scene::to_light(scene.light, {}), glm::vec3(1.0f, 0.0f, 0.0f));
   EXPECT_EQ(find_slab_visibility({.world_from_local = turned}, turned * glm::dvec3(0.2, 0.0, -0.1), 0.01), 0.0);
   EXPECT_EQ(scene.meshes.size(), 3u);
 }

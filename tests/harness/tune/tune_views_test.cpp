@@ -76,9 +76,9 @@ TEST(FindPivot, WithTheSceneBehindTheCamera_IsItsMiddle) {
 
 TEST(MakeTuneScene, TurnsTheLightInAzimuth_AndNamesItsCameras) {
   scene::Scene scene = load_scene("cubes");
-  scene.light.direction_ws = glm::vec3(scene::light_direction(70.0, 40.0));
+  scene.light.kind = scene::Sun{glm::vec3(scene::light_direction(70.0, 40.0))};
   const scene::Scene turned = make_tune_scene(scene, {{10.0, 15.0, false}, {0.0, 15.0, false}});
-  expect_near(turned.light.direction_ws, glm::vec3(scene::light_direction(85.0, 40.0)));
+  expect_near(-scene::to_light(turned.light, {}), glm::vec3(scene::light_direction(85.0, 40.0)));
   ASSERT_EQ(turned.cameras.size(), 2u);
   EXPECT_EQ(turned.cameras[0].name, "camera +10 light +15");
   expect_near(turned.cameras[1].position_ws, scene.cameras.front().position_ws);
@@ -91,7 +91,7 @@ TEST(MakeTuneScene, WithoutATurn_ChangesNothing) {
   const scene::Scene same = make_tune_scene(scene, {{0.0, 0.0, true}});
   EXPECT_EQ(same.cameras.front().position_ws, scene.cameras.front().position_ws);
   EXPECT_EQ(same.cameras.front().forward_ws, scene.cameras.front().forward_ws);
-  EXPECT_EQ(same.light.direction_ws, scene.light.direction_ws);
+  EXPECT_EQ(scene::to_light(same.light, {}), scene::to_light(scene.light, {}));
 }
 
 }  // namespace

@@ -146,7 +146,8 @@ TEST(CutOut, HolesLetLightReachTheNextSurface) {
   open.cut_out = CutOut{std::vector<glm::vec2>(open.positions.size()), 0, 0, {}, 0.0f, 0.5f};
   const std::vector<OccluderMesh> meshes = {open, make_sheet(-1.0, 0.0, -1.0, 1.0, 1.0, 4)};
   const Occluders occluders(meshes);
-  const std::vector<float> distances = trace_first_blockers(occluders, make_line(-0.9, 0.9, 10, 1), {0.0, 1.0, 0.0});
+  const std::vector<float> distances =
+      trace_first_blockers(occluders, make_line(-0.9, 0.9, 10, 1), AreaLight::make_sun({0.0, 1.0, 0.0}, 0.0));
   for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(distances[i], 1.0f, 1e-5f);
   for (std::size_t i = 5; i < 10; ++i) EXPECT_EQ(distances[i], std::numeric_limits<float>::infinity());
 }
@@ -155,7 +156,8 @@ TEST(FirstBlockers, GiveTheSurfaceThatLightMeetsFirst) {
   const std::vector<OccluderMesh> stacked = {make_sheet(-5.0, 5.0, -5.0, 5.0, 0.5),
                                              make_sheet(-1.0, 1.0, -5.0, 5.0, 2.0)};
   const Occluders occluders(stacked);
-  const std::vector<float> distances = trace_first_blockers(occluders, make_line(-3.0, 3.0, 60, 1), {0.0, 2.0, 0.0});
+  const std::vector<float> distances =
+      trace_first_blockers(occluders, make_line(-3.0, 3.0, 60, 1), AreaLight::make_sun({0.0, 2.0, 0.0}, 0.0));
   for (std::size_t i = 0; i < 60; ++i) EXPECT_NEAR(distances[i], i < 20 || i >= 40 ? 0.5f : 2.0f, 1e-5f) << i;
 }
 

@@ -368,7 +368,7 @@ TEST(GltfFileTest, DirectionalLight_ShinesAlongItsNodesMinusZ) {
   parts.scenes = R"([{"nodes": [0, 1, 2]}])";
   const ImportedModel model = import_parts(parts);
   ASSERT_TRUE(model.light.has_value());
-  EXPECT_NEAR(glm::distance(model.light->direction_ws, glm::vec3(0, -1, 0)), 0.0f, 1e-6f);
+  EXPECT_NEAR(glm::distance(to_light(*model.light, {}), glm::vec3(0, 1, 0)), 0.0f, 1e-6f);
   EXPECT_EQ(model.light->color, glm::vec3(1.0f, 0.5f, 0.25f));
   EXPECT_FLOAT_EQ(model.light->intensity, 1.0f);
   EXPECT_THAT(model.warnings, testing::ElementsAre(HasSubstr("point lights are not modelled")));

@@ -22,7 +22,7 @@ Scene make_scene(glm::vec3 direction, glm::vec3 offset = glm::vec3(0.0f)) {
   scene.meshes.push_back(transform_mesh(make_plane({10.0f, 8.0f}, 4), moved));
   scene.meshes.back().casts_shadow = false;
   scene.meshes.push_back(transform_mesh(make_box({1.0f, 2.0f, 0.5f}, 2), raised));
-  scene.light.direction_ws = glm::normalize(direction);
+  scene.light.kind = Sun{glm::normalize(direction)};
   return scene;
 }
 
@@ -140,7 +140,7 @@ glm::dvec3 seen(const LightFrustum& fit, const glm::dvec3& p) {
 TEST_P(LightFitTest, Window_IsTheMap) {
   for (const glm::vec3& direction : kDirections) {
     Scene scene = make_scene(direction);
-    const glm::dvec3 center(1.0, 0.5, -2.0), along(scene.light.direction_ws);
+    const glm::dvec3 center(1.0, 0.5, -2.0), along(-to_light(scene.light, {}));
     scene.light.map_window = MapWindow{center, 3.0, MapWindow::Planes{-1.0, 4.0}};
     const LightFrustum fit = fit_light(scene, GetParam(), 256, 20.0);
     EXPECT_EQ(fit.width_ws, 3.0) << "no padding";

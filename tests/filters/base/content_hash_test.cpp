@@ -1,12 +1,12 @@
 // Names of content: other bytes, another order or other pieces give another name, in both of its halves.
 
-#include "harness/measure/content_hash.h"
+#include "filters/base/content_hash.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-namespace shadowbench::measure {
+namespace shadowbench {
 namespace {
 
 std::string name_of(const std::vector<std::string>& pieces) {
@@ -34,4 +34,4 @@ TEST(ContentHash, TellsBytesOrderAndPiecesApart) {
 }
 
 }  // namespace
-}  // namespace shadowbench::measure
+}  // namespace shadowbench

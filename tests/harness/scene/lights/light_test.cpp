@@ -1,4 +1,4 @@
-#include "harness/scene/lights/light_ring.h"
+#include "harness/scene/lights/light.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,8 @@ namespace {
 
 Light make_light(double azimuth_deg, double elevation_deg) {
   Light light;
-  light.direction_ws = glm::vec3(light_direction(azimuth_deg, elevation_deg));
+  light.kind = Sun{glm::vec3(light_direction(azimuth_deg, elevation_deg)), 2.0f};
   light.intensity = 3.0f;
-  light.angular_diameter_deg = 2.0f;
   return light;
 }
 
@@ -21,13 +20,13 @@ TEST(LightRing, LightsAreEvenlySpaced_AllAsHighAsTheFirst) {
   for (const int count : {1, 2, 3, 8, 16}) {
     const std::vector<Light> lights = make_light_ring(make_light(72.0, 38.0), count);
     ASSERT_EQ(lights.size(), static_cast<std::size_t>(count));
-    EXPECT_EQ(lights[0].direction_ws, make_light(72.0, 38.0).direction_ws);
+    EXPECT_EQ(to_light(lights[0], {}), to_light(make_light(72.0, 38.0), {}));
     for (int i = 0; i < count; ++i) {
-      const glm::vec3 expected = make_light(72.0 + 360.0 * i / count, 38.0).direction_ws;
-      EXPECT_LT(glm::length(lights[static_cast<std::size_t>(i)].direction_ws - expected), 1e-6f)
+      const glm::vec3 expected = to_light(make_light(72.0 + 360.0 * i / count, 38.0), {});
+      EXPECT_LT(glm::length(to_light(lights[static_cast<std::size_t>(i)], {}) - expected), 1e-6f)
           << i << " of " << count;
       EXPECT_EQ(lights[static_cast<std::size_t>(i)].intensity, 3.0f);
-      EXPECT_EQ(lights[static_cast<std::size_t>(i)].angular_diameter_deg, 2.0f);
+      EXPECT_EQ(penumbra_per_metre(lights[static_cast<std::size_t>(i)]), penumbra_per_metre(lights[0]));
     }
   }
 }

@@ -1,4 +1,4 @@
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "filters/base/error.h"
-#include "report/files/temporary_files.h"
+#include "filters/base/temporary_files.h"
 
-namespace shadowbench::files {
+namespace shadowbench {
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& path, const char* what, int code) {
@@ -70,4 +70,4 @@ void write_text_file(const std::filesystem::path& path, std::string_view text) {
   file.commit();
 }
 
-}  // namespace shadowbench::files
+}  // namespace shadowbench

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace shadowbench::measure {
+namespace shadowbench {
 
 /// Names content: equal bytes in equal order give equal names, on every machine of one byte order.
 ///
@@ -28,4 +28,4 @@ class ContentHash {
   std::uint64_t high_ = 1;
 };
 
-}  // namespace shadowbench::measure
+}  // namespace shadowbench

@@ -1,9 +1,9 @@
-#include "harness/measure/content_hash.h"
+#include "filters/base/content_hash.h"
 
 #include <OpenImageIO/hash.h>
 #include <fmt/format.h>
 
-namespace shadowbench::measure {
+namespace shadowbench {
 
 void ContentHash::add(std::span<const std::byte> bytes) {
   // The length goes in too, so that pieces cannot slide into each other.
@@ -15,4 +15,4 @@ void ContentHash::add(std::string_view text) { add(std::as_bytes(std::span(text)
 
 std::string ContentHash::name() const { return fmt::format("{:016x}{:016x}", high_, low_); }
 
-}  // namespace shadowbench::measure
+}  // namespace shadowbench

@@ -1,4 +1,4 @@
-#include "report/files/temporary_files.h"
+#include "filters/base/temporary_files.h"
 
 #include <fmt/format.h>
 #include <signal.h>
@@ -11,7 +11,7 @@
 #include <system_error>
 #include <vector>
 
-namespace shadowbench::files {
+namespace shadowbench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -83,4 +83,4 @@ void remove_temporary_files(const fs::path& folder, const std::function<bool(pid
 
 bool is_gone(pid_t process) { return kill(process, 0) != 0 && errno == ESRCH; }
 
-}  // namespace shadowbench::files
+}  // namespace shadowbench

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <functional>
+#include <glm/glm.hpp>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "harness/scene/lights/sun.h"
+#include "reference/truth/area_light.h"
+
+namespace shadowbench::scene {
+
+/// The kinds of light: each has a file of its own, and is chosen from in light.cpp alone.
+using LightKind = std::variant<Sun>;
+
+/// A light's map that is not fitted to the scene: it may leave receivers outside.
+struct MapWindow {
+  /// Planes across the light's direction, metres from the centre along it; negative is before the centre.
+  struct Planes {
+    double near_m = 0.0;  ///< depth 0; what lies before it casts nothing
+    double far_m = 0.0;   ///< depth 1
+  };
+
+  glm::dvec3 center_ws{0.0};
+  double width_m = 0.0;          ///< side of the square map
+  std::optional<Planes> planes;  ///< none: fitted to the scene
+};
+
+struct Light {
+  LightKind kind;
+  glm::vec3 color{1.0f};  ///< linear
+  float intensity = 1.0f;
+  std::optional<MapWindow> map_window;  ///< none: the map is fitted to the scene
+};
+
+/// The direction from a point to the light's centre, unit length.
+glm::vec3 to_light(const Light& light, const glm::vec3& point_ws);
+
+/// The width of a penumbra for each metre between a receiver and its occluder.
+double penumbra_per_metre(const Light& light);
+
+/// The light as the truth traces it.
+truth::AreaLight make_area_light(const Light& light);
+
+/// The light with all its directions and positions mapped by `turn`.
+Light turn_light(Light light, const std::function<glm::vec3(const glm::vec3&)>& turn);
+
+/// The light moved to a place in the sky; see light_direction().
+Light place_in_sky(Light light, double azimuth_deg, double elevation_deg);
+
+/// Turns a light about the vertical (+y): light i of `count` is `first`, turned by i * 360 / count degrees. A light
+/// straight overhead stays where it is. Requires `count` of 1 or more.
+std::vector<Light> make_light_ring(const Light& first, int count);
+
+/// Reads the [light] of a scene file. Throws kInput.
+Light read_light(const TomlTable& table);
+
+/// Returns the light of a glTF node, or nothing for a type that is not modelled.
+std::optional<LightKind> make_gltf_light(std::string_view type, const glm::dmat4& world_from_node);
+
+/// Throws kInput, with `where`, for a light that is not finite or has no direction.
+Light checked_light(Light light, const std::string& where);
+
+/// The light in words, for the caption of a picture: "a sun of 0.53 degrees".
+std::string describe_light(const Light& light);
+
+/// What a picture's metadata say of the light, by name.
+std::map<std::string, std::variant<double, std::string>> light_metadata(const Light& light);
+
+/// All that a result depends on, as text for the name of a cell.
+std::vector<std::string> list_light_content(const Light& light);
+
+}  // namespace shadowbench::scene

@@ -1,0 +1,249 @@
+#include "harness/scene/lights/sun.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "filters/base/error.h"
+#include "harness/scene/lights/light_fit.h"
+#include "harness/scene/toml_reader.h"
+#include "harness/scene/validate.h"
+#include "harness/scene/view_clip.h"
+
+namespace shadowbench::scene {
+namespace {
+
+/// A box in the light's space.
+struct Box {
+  glm::dvec3 min{std::numeric_limits<double>::max()};
+  glm::dvec3 max{std::numeric_limits<double>::lowest()};
+};
+
+glm::dvec3 axis_least_parallel(const glm::dvec3& direction) {
+  const glm::dvec3 size = glm::abs(direction);
+  if (size.z <= size.x && size.z <= size.y) return {0.0, 0.0, 1.0};
+  return size.x <= size.y ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+}
+
+/// World axes seen by the light, which looks along -z; rows are the light's x, y and z.
+glm::dmat3 light_rotation(const glm::dvec3& direction) {
+  const glm::dvec3 back = -direction;
+  const glm::dvec3 right = glm::normalize(glm::cross(axis_least_parallel(direction), back));
+  return glm::transpose(glm::dmat3(right, glm::cross(back, right), back));
+}
+
+glm::dvec3 center_of(const Bounds& bounds) { return 0.5 * (glm::dvec3(bounds.min) + glm::dvec3(bounds.max)); }
+
+template <typename Visit>
+void for_each_position(const Scene& scene, const Visit& visit) {
+  for (const Mesh& mesh : scene.meshes)
+    for (const Vertex& vertex : mesh.vertices) visit(glm::dvec3(vertex.position_ws));
+}
+
+/// The scene's extent around `center`, along the light's axes.
+Box tight_box(const Scene& scene, const glm::dmat3& rotation, const glm::dvec3& center) {
+  Box box;
+  for_each_position(scene, [&](const glm::dvec3& p) {
+    const glm::dvec3 seen = rotation * (p - center);
+    box.min = glm::min(box.min, seen);
+    box.max = glm::max(box.max, seen);
+  });
+  return box;
+}
+
+Box sphere_box(const Scene& scene, const glm::dvec3& center) {
+  double radius = 0.0;
+  for_each_position(scene, [&](const glm::dvec3& p) { radius = std::max(radius, glm::length(p - center)); });
+  return {glm::dvec3(-radius), glm::dvec3(radius)};
+}
+
+/// Depth is computed in float, from coordinates as large as `largest_coordinate`.
+double depth_padding(double range, double side, double largest_coordinate) {
+  constexpr double kRelative = 1e-4;
+  constexpr double kRoundings = 8.0 * double{std::numeric_limits<float>::epsilon()};
+  const double flat = range < 1e-3 * side ? 5e-4 * side : 0.0;
+  return std::max({kRelative * range, flat, kRoundings * largest_coordinate});
+}
+
+glm::dmat4 scale_then_move(const glm::dvec3& scale, const glm::dvec3& offset) {
+  glm::dmat4 m(1.0);
+  for (int i = 0; i < 3; ++i) m[i][i] = scale[i];
+  m[3] = glm::dvec4(offset, 1.0);
+  return m;
+}
+
+void add(Box& box, const glm::dvec3& seen) {
+  box.min = glm::min(box.min, seen);
+  box.max = glm::max(box.max, seen);
+}
+
+bool overlap(const Box& a, const Box& b) {
+  return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y;
+}
+
+/// Moves the box's near side towards the light until it holds every caster over the map; `margin` is the map's padding.
+void add_casters(Box& box, const Scene& scene, const glm::dmat3& rotation, const glm::dvec3& center, double margin) {
+  Box wide = box;
+  wide.min -= glm::dvec3(margin);
+  wide.max += glm::dvec3(margin);
+  for (const Mesh& mesh : scene.meshes) {
+    if (!mesh.casts_shadow) continue;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      Box triangle;
+      for (std::size_t k = 0; k < 3; ++k)
+        add(triangle, rotation * (glm::dvec3(mesh.vertices[mesh.indices[i + k]].position_ws) - center));
+      if (overlap(triangle, wide)) box.max.z = std::max(box.max.z, triangle.max.z);
+    }
+  }
+}
+
+/// The side of the square map over a box, padding left out.
+double square_side(const Box& box) {
+  const glm::dvec3 extent = box.max - box.min;
+  return std::max({extent.x, extent.y, 1e-3 * extent.z});
+}
+
+Box view_box(const Scene& scene, const FitRequest& request, const glm::dmat3& rotation, const glm::dvec3& center,
+             double used_texels) {
+  assert(request.camera);
+  Box box;
+  for (const glm::dvec3& p : list_visible_corners(scene, *request.camera, request.aspect))
+    add(box, rotation * (p - center));
+  if (box.min.x > box.max.x) return tight_box(scene, rotation, center);
+  // The square map may reach beyond the box on its shorter side, snapping included.
+  const double side = square_side(box);
+  const double map_side = 1.1 * side * request.map_size / used_texels;
+  add_casters(box, scene, rotation, center, map_side - std::min(box.max.x - box.min.x, box.max.y - box.min.y));
+  return box;
+}
+
+Box choose_box(const Scene& scene, const FitRequest& request, const glm::dmat3& rotation, const glm::dvec3& center,
+               double used_texels) {
+  switch (request.mode) {
+    case FitMode::kSphere: return sphere_box(scene, center);
+    case FitMode::kView: return view_box(scene, request, rotation, center, used_texels);
+    case FitMode::kTight: break;
+  }
+  return tight_box(scene, rotation, center);
+}
+
+double round_up_texel(double texel_ws) {
+  constexpr double kStepsPerOctave = 8.0;
+  return std::exp2(std::ceil(std::log2(texel_ws) * kStepsPerOctave - 1e-9) / kStepsPerOctave);
+}
+
+/// Moves a place in the light's space to a whole number of texels from the world's origin.
+glm::dvec3 snap_to_texels(const glm::dvec3& place, const glm::dvec3& world_origin, double texel_ws) {
+  const auto snapped = [&](int axis) {
+    return std::round((place[axis] - world_origin[axis]) / texel_ws) * texel_ws + world_origin[axis];
+  };
+  return {snapped(0), snapped(1), place.z};
+}
+
+double count_used_texels(const FitRequest& request) {
+  const double used = request.map_size - 2.0 * request.pad_texels - (request.snap ? 1.0 : 0.0);
+  if (used >= 1.0) return used;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("a map of {} texels has no room for a kernel of {} texels on every side{}; "
+                          "use a larger map or a smaller radius",
+                          request.map_size, request.pad_texels, request.snap ? " and a texel to snap" : ""));
+}
+
+void set_matrices(LightFrustum& fit) {
+  const double half = 2.0 / fit.width_ws;
+  fit.clip_from_light = scale_then_move({half, half, -1.0 / fit.depth_range_ws}, glm::dvec3(0.0));
+  const glm::dmat4 uv_from_clip = scale_then_move({0.5, 0.5, 1.0}, {0.5, 0.5, 0.0});
+  fit.clip_from_world = glm::mat4(fit.clip_from_light * fit.light_from_world);
+  fit.uv_depth_from_world = glm::mat4(uv_from_clip * fit.clip_from_light * fit.light_from_world);
+}
+
+glm::dvec3 read_sun_direction(const TomlTable& table) {
+  const bool by_angles = table.has("azimuth_deg") || table.has("elevation_deg");
+  if (table.has("direction") == by_angles) {
+    throw table.error("direction",
+                      "[light] needs a direction: either 'direction', or 'azimuth_deg' and 'elevation_deg'");
+  }
+  if (by_angles) {
+    const double azimuth = table.number("azimuth_deg", {-360.0, 360.0});
+    return light_direction(azimuth, table.number("elevation_deg", {-90.0, 90.0}));
+  }
+  const glm::dvec3 direction = table.vec3("direction", kAnyNumber);
+  if (glm::length(direction) > 0.0) return direction;
+  throw table.error("direction", "the light has no direction: 'direction' is [0, 0, 0]");
+}
+
+/// Replaces what was fitted by what the window says; the light's direction stays.
+void set_window(LightFrustum& fit, const MapWindow& window, int map_size) {
+  const glm::dvec3 center(fit.light_from_world * glm::dvec4(window.center_ws, 1.0));
+  glm::dvec3 eye(center.x, center.y, 0.0);
+  if (window.planes) {
+    eye.z = center.z - window.planes->near_m;
+    fit.depth_range_ws = window.planes->far_m - window.planes->near_m;
+  }
+  fit.light_from_world[3] -= glm::dvec4(eye, 0.0);
+  fit.width_ws = window.width_m;
+  fit.texel_size_ws = window.width_m / map_size;
+}
+
+}  // namespace
+
+glm::dvec3 light_direction(double azimuth_deg, double elevation_deg) {
+  const double azimuth = glm::radians(azimuth_deg);
+  const double elevation = glm::radians(elevation_deg);
+  return -glm::dvec3(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+                     std::cos(elevation) * std::cos(azimuth));
+}
+
+const std::vector<std::string>& sun_keys() {
+  static const std::vector<std::string> keys = {"direction", "azimuth_deg", "elevation_deg", "angular_diameter_deg"};
+  return keys;
+}
+
+Sun read_sun(const TomlTable& table) {
+  const glm::vec3 direction(read_sun_direction(table));
+  return {direction, table.number_f("angular_diameter_deg", {0.0, 90.0}, 0.53)};
+}
+
+Sun checked_sun(Sun sun, const std::string& where) {
+  sun.direction_ws = unit_direction(sun.direction_ws, "the light", where);
+  if (sun.angular_diameter_deg >= 0.0f && sun.angular_diameter_deg < 180.0f) return sun;
+  throw Error(ErrorKind::kInput, fmt::format("the light's angular diameter is {} degrees", sun.angular_diameter_deg),
+              where);
+}
+
+truth::AreaLight make_area_light(const Sun& sun) {
+  return truth::AreaLight::make_sun(-glm::dvec3(sun.direction_ws), static_cast<double>(sun.angular_diameter_deg));
+}
+
+LightFrustum fit_sun(const Sun& sun, const MapWindow* window, const Scene& scene, const FitRequest& request) {
+  const double used_texels = count_used_texels(request);
+  const Bounds bounds = scene.bounds();
+  const glm::dvec3 center = center_of(bounds);
+  const glm::dvec3 direction = glm::normalize(glm::dvec3(sun.direction_ws));
+  const glm::dmat3 rotation = light_rotation(direction);
+  const Box box = choose_box(scene, request, rotation, center, used_texels);
+
+  const double side = square_side(box);
+  const double range = box.max.z - box.min.z;
+  const glm::dvec3 farthest = glm::max(glm::abs(glm::dvec3(bounds.min)), glm::abs(glm::dvec3(bounds.max)));
+  const double padding = depth_padding(range, side, std::max({farthest.x, farthest.y, farthest.z}));
+
+  LightFrustum fit;
+  fit.texel_size_ws = side / used_texels;
+  if (request.snap) fit.texel_size_ws = round_up_texel(fit.texel_size_ws);
+  fit.width_ws = fit.texel_size_ws * request.map_size;
+  fit.depth_range_ws = range + 2.0 * padding;
+  fit.direction_ws = glm::vec3(direction);
+  glm::dvec3 eye(0.5 * (box.min.x + box.max.x), 0.5 * (box.min.y + box.max.y), box.max.z + padding);
+  if (request.snap) eye = snap_to_texels(eye, -(rotation * center), fit.texel_size_ws);
+  fit.light_from_world = glm::dmat4(rotation);
+  fit.light_from_world[3] = glm::dvec4(-(rotation * center) - eye, 1.0);
+  if (window) set_window(fit, *window, request.map_size);
+  set_matrices(fit);
+  return fit;
+}
+
+}  // namespace shadowbench::scene

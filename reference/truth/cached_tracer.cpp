@@ -1,0 +1,114 @@
+#include "reference/truth/cached_tracer.h"
+
+#include <fmt/format.h>
+
+#include "filters/base/content_hash.h"
+#include "reference/truth/version.h"
+
+namespace shadowbench::truth {
+namespace {
+
+constexpr std::size_t kTracedLayers = 4;
+constexpr std::size_t kViewLayers = kTracedLayers + 2;
+
+std::string name_geometry(const std::vector<OccluderMesh>& meshes) {
+  ContentHash hash;
+  hash.add(truth_version());
+  for (const OccluderMesh& mesh : meshes) {
+    hash.add_values(std::span<const glm::vec3>(mesh.positions));
+    hash.add_values(std::span<const std::uint32_t>(mesh.indices));
+    if (!mesh.cut_out) continue;
+    const CutOut& holes = *mesh.cut_out;
+    hash.add_values(std::span<const glm::vec2>(holes.uvs));
+    hash.add(fmt::format("{} {} {} {}", holes.width, holes.height, holes.base_alpha, holes.cutoff));
+    hash.add_values(std::span<const std::uint8_t>(holes.alpha));
+  }
+  return hash.name();
+}
+
+std::string name_vector(const glm::dvec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
+
+std::string name_grid(const MapGrid& grid) {
+  return fmt::format("texel {} light {} right {} up {}", grid.texel_size_ws, name_vector(grid.to_light),
+                     name_vector(grid.right), name_vector(grid.up));
+}
+
+Layers to_layers(const TracedVisibility& traced) {
+  return {traced.visibility,
+          traced.standard_error,
+          {traced.unanimous.begin(), traced.unanimous.end()},
+          {traced.rays.begin(), traced.rays.end()}};
+}
+
+TracedVisibility from_layers(Layers layers) {
+  return {std::move(layers[0]),
+          std::move(layers[1]),
+          {layers[2].begin(), layers[2].end()},
+          {layers[3].begin(), layers[3].end()}};
+}
+
+}  // namespace
+
+CachedTracer::CachedTracer(MeshList list_meshes, TruthCache& cache, std::uint32_t seed)
+    : list_meshes_(std::move(list_meshes)), cache_(cache) {
+  settings_.seed = seed;
+}
+
+const std::string& CachedTracer::geometry() {
+  if (geometry_.empty()) geometry_ = name_geometry(list_meshes_());
+  return geometry_;
+}
+
+const Occluders& CachedTracer::occluders() {
+  if (!occluders_) occluders_.emplace(list_meshes_());
+  return *occluders_;
+}
+
+Layers CachedTracer::find_or_trace(const ReceiverImage& receivers, const std::string& what, std::size_t count,
+                                   const std::function<Layers()>& trace) {
+  if (receivers.content.empty()) return trace();
+  ContentHash hash;
+  for (const std::string& part :
+       {geometry(), receivers.content, what,
+        fmt::format("{} {} {}", settings_.standard_error, settings_.max_points, settings_.seed)})
+    hash.add(part);
+  const std::string name = hash.name();
+  if (auto kept = cache_.load(name, count, receivers.points.size())) return std::move(*kept);
+  Layers layers = trace();
+  cache_.store(name, layers);
+  return layers;
+}
+
+ViewRays CachedTracer::trace_view(const ReceiverImage& receivers, const AreaLight& light) {
+  const std::string what = fmt::format("light at {} u {} v {}", name_vector(light.centre_direction(glm::dvec3(0.0))),
+                                       name_vector(light.half_u()), name_vector(light.half_v()));
+  Layers layers = find_or_trace(receivers, what, kViewLayers, [&] {
+    Layers traced = to_layers(trace_area(occluders(), receivers, light, settings_));
+    traced.push_back(trace_hard(occluders(), receivers, light));
+    traced.push_back(trace_first_blockers(occluders(), receivers, light));
+    return traced;
+  });
+  std::vector<float> hard = std::move(layers[kTracedLayers]), blockers = std::move(layers[kTracedLayers + 1]);
+  return {from_layers(std::move(layers)), std::move(hard), std::move(blockers)};
+}
+
+TracedVisibility CachedTracer::trace_kernel(const ReceiverImage& receivers, const filters::Kernel& kernel,
+                                            const MapGrid& grid) {
+  const std::string what = fmt::format("kernel {} {}", kernel.name(), name_grid(grid));
+  return from_layers(find_or_trace(receivers, what, kTracedLayers, [&] {
+    return to_layers(truth::trace_kernel(occluders(), receivers, kernel, grid, settings_));
+  }));
+}
+
+TracedVisibility CachedTracer::trace_surroundings(const ReceiverImage& receivers, double half_width_texels,
+                                                  const MapGrid& grid) {
+  const std::string what = fmt::format("square {} {}", half_width_texels, name_grid(grid));
+  return from_layers(find_or_trace(receivers, what, kTracedLayers, [&] {
+    TraceSettings rough = settings_;
+    rough.standard_error = 1.0;
+    rough.max_points = 16;  // every pixel is content with the first 16 points
+    return to_layers(trace_square(occluders(), receivers, half_width_texels, grid, rough));
+  }));
+}
+
+}  // namespace shadowbench::truth

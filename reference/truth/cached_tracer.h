@@ -1,0 +1,53 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reference/truth/truth_cache.h"
+#include "reference/truth/visibility.h"
+
+namespace shadowbench::truth {
+
+/// What rays find for one view of one light; it does not depend on any shadow map.
+struct ViewRays {
+  TracedVisibility area;                 ///< the fraction of the light that is seen
+  std::vector<float> hard;               ///< whether the light's centre is seen
+  std::vector<float> first_blockers_ws;  ///< see trace_first_blockers()
+};
+
+/// Traces one scene, or takes from the cache what an earlier run traced. The acceleration structure is built when the
+/// first rays are needed. Receivers without a `content` are always traced.
+class CachedTracer {
+ public:
+  using MeshList = std::function<std::vector<OccluderMesh>()>;
+
+  /// `cache`, and what `list_meshes` refers to, must outlive this object.
+  CachedTracer(MeshList list_meshes, TruthCache& cache, std::uint32_t seed);
+
+  /// Requires a light at infinity. Cost: 64 rays for most pixels, up to 16384 at the edges of shadows.
+  ViewRays trace_view(const ReceiverImage& receivers, const AreaLight& light);
+
+  /// Cost: as trace_view().
+  TracedVisibility trace_kernel(const ReceiverImage& receivers, const filters::Kernel& kernel, const MapGrid& grid);
+
+  /// Traces a square, with just enough rays to see where they all agree. Cost: 64 to 256 rays a pixel.
+  TracedVisibility trace_surroundings(const ReceiverImage& receivers, double half_width_texels, const MapGrid& grid);
+
+ private:
+  MeshList list_meshes_;
+  TruthCache& cache_;
+  TraceSettings settings_;
+  std::string geometry_;  ///< names all meshes and the code that traces; empty until it is needed
+  std::optional<Occluders> occluders_;
+
+  const std::string& geometry();
+  const Occluders& occluders();
+
+  /// Returns the `count` layers that `what` names: from the cache, or from `trace`, and then kept.
+  Layers find_or_trace(const ReceiverImage& receivers, const std::string& what, std::size_t count,
+                       const std::function<Layers()>& trace);
+};
+
+}  // namespace shadowbench::truth

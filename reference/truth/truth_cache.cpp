@@ -1,0 +1,122 @@
+#include "reference/truth/truth_cache.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "filters/base/atomic_file.h"
+#include "filters/base/content_hash.h"
+#include "filters/base/error.h"
+#include "filters/base/temporary_files.h"
+
+namespace shadowbench::truth {
+namespace {
+
+/// A file is this line, then all layers as floats, compressed with zlib.
+std::string make_header(const std::string& name, const std::vector<float>& values, std::size_t layers) {
+  ContentHash checksum;
+  checksum.add_values(std::span<const float>(values));
+  return fmt::format("shadowbench truth 1 {} {}x{} {}\n", name, layers, values.size(), checksum.name());
+}
+
+std::optional<std::string> read_whole_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return std::nullopt;
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+/// Returns all layers one after the other; nothing if the file is damaged or holds something else.
+std::optional<std::vector<float>> read_values(const std::filesystem::path& path, const std::string& name,
+                                              std::size_t layers, std::size_t values) {
+  const std::optional<std::string> file = read_whole_file(path);
+  if (!file) return std::nullopt;
+  const std::size_t begin = std::min(file->find('\n'), file->size() - 1) + 1;
+  std::vector<float> all(layers * values);
+  const uLong wanted = all.size() * sizeof(float);
+  uLong bytes = wanted;
+  const int status = uncompress(reinterpret_cast<Bytef*>(all.data()), &bytes,
+                                reinterpret_cast<const Bytef*>(file->data() + begin), file->size() - begin);
+  const bool is_whole = status == Z_OK && bytes == wanted && file->starts_with(make_header(name, all, layers));
+  return is_whole ? std::optional(std::move(all)) : std::nullopt;
+}
+
+void write_layers(const std::filesystem::path& path, const std::string& name, const Layers& layers) {
+  std::vector<float> all;
+  for (const std::vector<float>& layer : layers) all.insert(all.end(), layer.begin(), layer.end());
+  uLong bytes = compressBound(all.size() * sizeof(float));
+  std::string packed(bytes, '\0');
+  compress2(reinterpret_cast<Bytef*>(packed.data()), &bytes, reinterpret_cast<const Bytef*>(all.data()),
+            all.size() * sizeof(float), Z_BEST_SPEED);
+  AtomicFile file(path);
+  file.write(make_header(name, all, layers.size()));
+  file.write(std::string_view(packed).substr(0, bytes));
+  file.commit();
+}
+
+}  // namespace
+
+TruthCache::TruthCache(std::filesystem::path folder, std::function<void(const std::string&)> note)
+    : folder_(std::move(folder)), note_(std::move(note)) {
+  if (!folder_.empty()) remove_temporary_files(folder_, is_gone);
+}
+
+std::optional<Layers> TruthCache::load(const std::string& name, std::size_t layers, std::size_t values) {
+  std::error_code error;
+  std::optional<std::vector<float>> all;
+  if (!folder_.empty() && std::filesystem::is_regular_file(path_of(name), error))
+    all = read_values(path_of(name), name, layers, values);
+  if (!all) {
+    ++traced_;
+    return std::nullopt;
+  }
+  std::filesystem::last_write_time(path_of(name), std::filesystem::file_time_type::clock::now(), error);
+  ++loaded_;
+  Layers found;
+  for (std::size_t i = 0; i < layers; ++i) {
+    const auto begin = all->begin() + static_cast<std::ptrdiff_t>(i * values);
+    found.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(values));
+  }
+  return found;
+}
+
+void TruthCache::store(const std::string& name, const Layers& layers) {
+  if (folder_.empty() || !note_) return;
+  try {
+    write_layers(path_of(name), name, layers);
+  } catch (const Error& error) {
+    note_(fmt::format("traced images are not kept for the next run: {}; choose another folder with --cache",
+                      error.what()));
+    note_ = nullptr;  // nothing more is written, but what the folder holds is still read
+  }
+}
+
+void TruthCache::prune(std::uintmax_t max_bytes) const {
+  struct Entry {
+    std::filesystem::path path;
+    std::filesystem::file_time_type used;
+    std::uintmax_t bytes;
+  };
+  std::vector<Entry> entries;
+  std::uintmax_t total = 0;
+  std::error_code error;
+  std::filesystem::directory_iterator file(folder_, error);
+  for (; !error && file != std::filesystem::directory_iterator(); file.increment(error)) {
+    if (file->path().extension() != ".truth" && file->path().extension() != ".exr") continue;
+    std::error_code gone;
+    const Entry entry{file->path(), file->last_write_time(gone), file->file_size(gone)};
+    if (gone) continue;
+    total += entry.bytes;
+    entries.push_back(entry);
+  }
+  std::ranges::sort(entries, {}, &Entry::used);
+  for (const Entry& entry : entries) {
+    if (total <= max_bytes) return;
+    if (std::filesystem::remove(entry.path, error)) total -= entry.bytes;
+  }
+}
+
+}  // namespace shadowbench::truth

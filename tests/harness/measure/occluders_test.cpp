@@ -1,0 +1,83 @@
+// What rays hit of a scene: what casts a shadow, but for the holes of its material; and where kernels lie in a map.
+
+#include "harness/measure/occluders.h"
+
+#include <gtest/gtest.h>
+
+#include "harness/scene/lights/light_fit.h"
+#include "reference/truth/visibility.h"
+
+namespace shadowbench::measure {
+namespace {
+
+/// A roof over the left half of a floor that is seen from above.
+scene::Scene make_scene() {
+  scene::Scene scene;
+  scene.materials.emplace_back();
+  scene::Mesh roof;
+  for (const glm::vec3 p : {glm::vec3(-2, 1, -2), glm::vec3(0, 1, -2), glm::vec3(-2, 1, 2), glm::vec3(0, 1, 2)})
+    roof.vertices.push_back({p, {0.0f, 1.0f, 0.0f}, {0.5f * p.x, 0.5f * p.z}});
+  roof.indices = {0, 1, 2, 2, 1, 3};
+  scene.meshes = {roof};
+  return scene;
+}
+
+truth::ReceiverImage make_receivers() {
+  truth::ReceiverImage receivers{32, 1, {}};
+  for (int i = 0; i < 32; ++i) {
+    const float x = -1.0f + 2.0f * (static_cast<float>(i) + 0.5f) / 32.0f;
+    receivers.points.push_back({{x, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, true});
+  }
+  return receivers;
+}
+
+std::vector<float> trace_hard(const scene::Scene& scene) {
+  return truth::trace_hard(truth::Occluders(list_occluders(scene)), make_receivers(), make_area_light(scene.light));
+}
+
+TEST(Occluders, MeshesThatCastNoShadow_BlockNothing) {
+  scene::Scene scene = make_scene();
+  EXPECT_EQ(trace_hard(scene).front(), 0.0f);
+  EXPECT_EQ(trace_hard(scene).back(), 1.0f);
+  scene.meshes[0].casts_shadow = false;
+  EXPECT_TRUE(list_occluders(scene).empty());
+  EXPECT_EQ(trace_hard(scene), std::vector<float>(32, 1.0f));
+}
+
+TEST(Occluders, HolesOfAMaterial_LetRaysThrough) {
+  scene::Scene scene = make_scene();
+  scene.materials[0].alpha_mode = scene::AlphaMode::kMask;
+  scene.materials[0].base_color.a = 0.2f;
+  EXPECT_EQ(trace_hard(scene), std::vector<float>(32, 1.0f));
+  scene.materials[0].alpha_cutoff = 0.1f;
+  EXPECT_EQ(trace_hard(scene).front(), 0.0f);
+  // u runs from -1 to 0 under the roof, and from -0.5 above the receivers: the texture's second texel, then its first.
+  scene.materials[0] = {.base_color_texture = 0, .alpha_mode = scene::AlphaMode::kMask};
+  scene.textures.push_back(
+      {"striped", 4, 1, {255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 0, 255, 255, 255, 255}});
+  const std::vector<float> hard = trace_hard(scene);
+  EXPECT_NEAR(static_cast<double>(std::count(hard.begin(), hard.begin() + 16, 1.0f)), 8.0, 2.0)
+      << "the transparent texel";
+  EXPECT_EQ(hard[15], 0.0f) << "an opaque one";
+}
+
+TEST(MapGrid, IsThatOfTheLightsMap) {
+  scene::Scene scene = make_scene();
+  scene.light.kind = scene::Sun{glm::normalize(glm::vec3(-0.5f, -1.0f, -0.25f))};
+  const scene::LightFrustum frustum = scene::fit_light(scene, scene::FitMode::kTight, 64, 2.0);
+  const truth::MapGrid grid = scene::make_map_grid(frustum);
+  const auto texel_of = [&](const glm::dvec3& p) {
+    return 64.0 * glm::dvec3(glm::dmat4(frustum.uv_depth_from_world) * glm::dvec4(p, 1.0));
+  };
+  const glm::dvec3 start = texel_of(glm::dvec3(0.0));
+  const glm::dvec3 right = texel_of(grid.texel_size_ws * grid.right) - start;
+  const glm::dvec3 up = texel_of(grid.texel_size_ws * grid.up) - start;
+  const glm::dvec3 towards = texel_of(grid.to_light) - start;
+  EXPECT_LT(glm::distance(right, glm::dvec3(1.0, 0.0, 0.0)), 1e-4);
+  EXPECT_LT(glm::distance(up, glm::dvec3(0.0, 1.0, 0.0)), 1e-4);
+  EXPECT_LT(glm::length(glm::dvec2(towards)), 1e-4);
+  EXPECT_LT(towards.z, 0.0);
+}
+
+}  // namespace
+}  // namespace shadowbench::measure
