@@ -14,6 +14,9 @@ std::string_view bias_page_style();
 std::string_view trade_style();
 std::string_view trade_script();
 
+/// The script that draws the charts of a page: report/page/charts.js.
+std::string_view chart_script();
+
 /// Returns the plotting library that the script draws with: Chart.js (MIT licence, said in its first lines).
 std::string_view chart_library();
 

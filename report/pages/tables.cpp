@@ -363,7 +363,7 @@ std::string markdown_group(const analysis::CellGroup& group, const records::GlRe
       "## {}\n\n{}. Times are {}.\n\n{}\n### What it costs\n\n{}\n### How wrong it is, and why\n\n{}\n",
       page::escape_markdown(group.scene), page::escape_markdown(records::describe_settings(group.cells.front())),
       records::describe_clock(gl), markdown_list(analysis::describe_group(group, gl)),
-      page::markdown_table(make_cost_table(group, gl)), page::markdown_table(make_accuracy_table(group)));
+      page::write_markdown_table(make_cost_table(group, gl)), page::write_markdown_table(make_accuracy_table(group)));
 }
 
 std::string markdown_absences(const std::vector<records::CellRecord>& cells) {

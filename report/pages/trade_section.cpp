@@ -127,7 +127,7 @@ std::string markdown_lights(const records::RunRecord& run, const Trade& trade) {
                                  page::escape_markdown(kLightsNote));
   for (const analysis::LightChart& chart : trade.lights)
     text += page::escape_markdown(name_light_table(chart, run.gl)) + ":\n\n" +
-            page::markdown_table(analysis::make_light_table(chart)) + "\n";
+            page::write_markdown_table(analysis::make_light_table(chart)) + "\n";
   return text;
 }
 
