@@ -4,7 +4,9 @@
   const page = JSON.parse(document.getElementById("charts").textContent);
   const kFont = '"DejaVu Sans", Verdana, sans-serif', kSize = 13, kLine = 18;
   const kInk = "#1c1f24", kSecond = "#545a63", kGrid = "#e2e4e8", kPaper = "#ffffff";
-  const kFaint = 0.4, kReach = 24, kSavedWidth = 1120;
+  const kFaint = 0.55, kReach = 24, kSavedWidth = 1120;
+
+  let clips = 0;
 
   const ruler = document.createElement("canvas").getContext("2d");
   ruler.font = `${kSize}px ${kFont}`;
@@ -182,7 +184,8 @@
     top = area.bottom + 2 * kLine + 2;
     say(chart.x.name, { x: (area.left + area.right) / 2, "text-anchor": "middle", fill: kSecond });
 
-    const clip = svgElement(svgElement(svg, "defs", {}), "clipPath", { id: "clip-" + chart.id });
+    const clipId = `clip-${++clips}`;
+    const clip = svgElement(svgElement(svg, "defs", {}), "clipPath", { id: clipId });
     svgElement(clip, "rect", { x: area.left, y: area.top, width: area.right - area.left, height: area.bottom - area.top });
     const shown = listShown(chart, hidden), hits = [], labels = [], marks = [];
     const layers = shown.map((series) => svgElement(svg, "g", series.faint ? { opacity: kFaint } : {}));
@@ -191,7 +194,7 @@
       if (series.line !== "none") {
         svgElement(layers[i], "path", {
           d: pathOf(series.line, points.map((point) => [x(point.x[0]), y(point.y[0])])), stroke: series.color, "stroke-width": 1.6, fill: "none",
-          "stroke-linejoin": "round", "clip-path": `url(#clip-${chart.id})`, ...dashOf(series.line),
+          "stroke-linejoin": "round", "clip-path": `url(#${clipId})`, ...dashOf(series.line),
         });
       }
       for (const point of points.filter((each) => x.holds(each.x[0]) && y.holds(each.y[0]))) {

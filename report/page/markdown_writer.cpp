@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -41,7 +42,7 @@ std::string write_block(const Sentences& sentences) {
 
 std::string write_block(const Paragraph& paragraph) { return escape_markdown(paragraph.text) + "\n\n"; }
 
-std::string write_block(const Heading& heading) { return "### " + escape_markdown(heading.text) + "\n\n"; }
+std::string write_block(const Heading& heading) { return "#### " + escape_markdown(heading.text) + "\n\n"; }
 
 std::string write_block(const Links& links) {
   std::string text = escape_markdown(links.lead);
@@ -72,9 +73,10 @@ std::string write_block(const Chart& chart) {
 }
 
 std::string write_block(const ChartChoice& choice) {
-  if (choice.entries.size() == 1)
-    return write_block(choice.entries.front().chart) + write_list(choice.entries.front().sentences);
-  return fmt::format("The HTML page draws {} charts here, of which one chooses.\n\n", choice.entries.size());
+  std::vector<std::string> labels;
+  for (const ChartChoice::Selector& selector : choice.selectors) labels.push_back(escape_markdown(selector.label));
+  return fmt::format("The HTML page draws {} charts here, one for every {}.\n\n", choice.entries.size(),
+                     fmt::join(labels, " and "));
 }
 
 std::string write_block(const Details& details) {

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "report/page/html_parts.h"
-#include "report/pages/html.h"
 
 namespace shadowbench::pages {
 namespace {

@@ -8,7 +8,6 @@
 #include "report/page/embedded.h"
 #include "report/page/html_parts.h"
 #include "report/pages/bias_chart.h"
-#include "report/pages/html.h"
 #include "report/pages/tables.h"
 #include "report/records/csv.h"
 #include "report/records/text_table.h"

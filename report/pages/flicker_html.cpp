@@ -5,7 +5,6 @@
 #include "report/page/html_parts.h"
 #include "report/pages/flicker_plots.h"
 #include "report/pages/flicker_text.h"
-#include "report/pages/html.h"
 
 namespace shadowbench::pages {
 namespace {

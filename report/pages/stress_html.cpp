@@ -3,7 +3,6 @@
 
 #include "report/page/embedded.h"
 #include "report/page/html_parts.h"
-#include "report/pages/html.h"
 #include "report/pages/stress_plots.h"
 #include "report/pages/stress_text.h"
 

@@ -1,4 +1,4 @@
-#include "report/pages/trade_table.h"
+#include "report/pages/fronts_csv.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "report/pages/html.h"
+#include "report/pages/run_page.h"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,7 @@
 #include <set>
 
 #include "report/images/picture_io.h"
-#include "report/pages/report.h"
+#include "report/pages/write_report.h"
 #include "report/records/json_io.h"
 #include "tests/report/records/synthetic.h"
 
@@ -58,6 +58,14 @@ void expect_balanced(const std::string& page) {
   EXPECT_TRUE(open.empty());
 }
 
+std::string make_html(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
+  return page::write_html(make_run_page(run, cells, make_trade(cells)));
+}
+
+std::string make_summary(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
+  return page::write_markdown(make_run_page(run, cells, make_trade(cells)));
+}
+
 records::CellRecord make_illustrated_cell(const std::string& scene, const std::string& filter) {
   records::CellRecord cell = make_cell(scene, filter, 4.0);
   cell.images = {scene + "." + filter + ".png",
@@ -69,7 +77,7 @@ records::CellRecord make_illustrated_cell(const std::string& scene, const std::s
   return cell;
 }
 
-TEST(Html, HostileNames_AreEscaped) {
+TEST(RunPage, HostileNames_AreEscaped) {
   records::CellRecord cell = make_illustrated_cell("<script>alert('1', \"2\")</script>", "\"><img src=x onerror=y>");
   cell.status = records::CellStatus::kError;
   cell.message = "</td></table><b>";
@@ -77,51 +85,52 @@ TEST(Html, HostileNames_AreEscaped) {
   records::RunRecord run = make_run();
   run.warnings = {"<u>"};
   run.gl.renderer = "<s>";
-  const std::string page = make_index_html(run, {cell});
+  const std::string page = make_html(run, {cell});
   for (const char* tag : {"<script", "<img src=x", "\"2\"", "<b>", "<i>", "<u>", "<s>"})
     EXPECT_THAT(page, Not(HasSubstr(tag)));
   EXPECT_THAT(page, HasSubstr("&lt;script&gt;alert(&#39;1&#39;, &quot;2&quot;)"));
   expect_balanced(page);
 }
 
-TEST(Html, Bars_HaveTheirNumbersAsText) {
-  const std::string page = make_index_html(make_run(), {make_attributed_cell("vsm", 0.04, {0.0, 0.75, -0.25, 0.5}),
-                                                        make_attributed_cell("esm", 0.04, {0.0, 0.0, 1.0, 0.0})});
-  EXPECT_THAT(page, HasSubstr("role=\"img\" aria-label=\"vsm: numeric 0 %, estimator 75 %, discretisation -25 %, "
-                              "model 50 %\""));
+TEST(RunPage, Bars_HaveTheirNumbersAsText) {
+  const std::string page = make_html(make_run(), {make_attributed_cell("vsm", 0.04, {0.0, 0.75, -0.25, 0.5}),
+                                                  make_attributed_cell("esm", 0.04, {0.0, 0.0, 1.0, 0.0})});
+  EXPECT_THAT(page,
+              HasSubstr("role=\"img\" aria-label=\"vsm: RMSE 0.04 · numeric 0 %, estimator 75 %, discretisation -25 %, "
+                        "model 50 %\""));
   EXPECT_THAT(page, HasSubstr("the full width 0.06"));  // 0.01 to the left, 0.05 to the right of the zero line
   EXPECT_THAT(page, HasSubstr("<rect x=\"167\" y=\"4\" width=\"500\" height=\"16\" fill=\"#f0bf30\">"));
   EXPECT_THAT(page, HasSubstr("discretisation and bias"));
   expect_balanced(page);
 }
 
-TEST(Html, BarsLength_IsWrittenWithoutRoundingErrors) {
+TEST(RunPage, BarsLength_IsWrittenWithoutRoundingErrors) {
   const records::CellRecord cell = make_attributed_cell("vsm", 0.3, {0.0, 1.0, 0.0, 0.0});
-  EXPECT_THAT(make_index_html(make_run(), {cell}), HasSubstr("the full width 0.3.<"));
+  EXPECT_THAT(make_html(make_run(), {cell}), HasSubstr("the full width 0.3.<"));
 }
 
-TEST(Html, WithoutAttribution_ThereAreNoBarsOrAReason) {
-  EXPECT_THAT(make_index_html(make_run(), {make_cell("cubes", "vsm", 4.0)}), Not(HasSubstr("<figure class=\"bars\"")));
+TEST(RunPage, WithoutAttribution_ThereAreNoBarsOrAReason) {
+  EXPECT_THAT(make_html(make_run(), {make_cell("cubes", "vsm", 4.0)}), Not(HasSubstr("<figure class=\"bars\"")));
   records::CellRecord without = make_attributed_cell("mine", 0.03, {});
   without.attribution = {};
   without.absent["attribution"] = "<no> model";
   const records::CellRecord with = make_attributed_cell("vsm", 0.04, {0.0, 0.75, -0.25, 0.5});
-  const std::string page = make_index_html(make_run(), {with, without});
+  const std::string page = make_html(make_run(), {with, without});
   EXPECT_THAT(page, HasSubstr("RMSE 0.03 · no attribution: &lt;no&gt; model"));
   expect_balanced(page);
 }
 
-TEST(Html, HostileNamesInBarsAndPictures_AreEscaped) {
+TEST(RunPage, HostileNamesInBarsAndPictures_AreEscaped) {
   records::CellRecord cell = make_attributed_cell("\"><script>", 0.04, {0.0, 0.75, -0.25, 0.5});
   cell.images.attribution = "images/\"><script>.png";
-  const std::string page = make_index_html(make_run(), {cell});
+  const std::string page = make_html(make_run(), {cell});
   EXPECT_THAT(page, Not(HasSubstr("<script")));
   EXPECT_THAT(page, HasSubstr("&quot;&gt;&lt;script&gt;: the error and its four parts"));
   expect_balanced(page);
 }
 
-TEST(Html, Page_LoadsNothingFromElsewhere) {
-  const std::string page = make_index_html(make_run(), {make_illustrated_cell("cubes", "vsm")});
+TEST(RunPage, Page_LoadsNothingFromElsewhere) {
+  const std::string page = make_html(make_run(), {make_illustrated_cell("cubes", "vsm")});
   for (const std::string& url : list_links(page))
     EXPECT_THAT(url, Not(::testing::AnyOf(HasSubstr("//"), ::testing::StartsWith("/")))) << url;
   EXPECT_THAT(page, Not(HasSubstr("@import")));
@@ -130,7 +139,7 @@ TEST(Html, Page_LoadsNothingFromElsewhere) {
   expect_balanced(page);
 }
 
-TEST(Html, EveryLink_LeadsToAFileOfTheReport) {
+TEST(RunPage, EveryLink_LeadsToAFileOfTheReport) {
   const TemporaryFolder folder("html_links");
   std::vector<std::string> keys;
   for (const std::string scene : {"cubes", "we ird#%<scene>?"}) {
@@ -156,18 +165,43 @@ TEST(Html, EveryLink_LeadsToAFileOfTheReport) {
   EXPECT_EQ(files, 17u);
 }
 
-TEST(Html, Page_HoldsWhatTheReportIsOf) {
+TEST(RunPage, Page_HoldsWhatTheReportIsOf) {
   records::RunRecord run = make_run();
   run.warnings = {"something is odd"};
   records::CellRecord failed = make_cell("cubes", "mine", 4.0);
   failed.status = records::CellStatus::kCrashed;
   failed.message = "signal 11";
-  const std::string page = make_index_html(run, {make_illustrated_cell("cubes", "vsm"), failed});
+  const std::string page = make_html(run, {make_illustrated_cell("cubes", "vsm"), failed});
   for (const char* text :
        {"cubes: Three cubes on a floor", "Some CPU", "something is odd", "crashed: signal 11",
         "CPU time (software rasteriser)", "cubes.grid.png", "cubes.depth.png", "cubes.exr", "cubes.vsm.attribution.png",
         "timings.csv", "results.json", "no truth in this run", "class=\"scroll\""})
     EXPECT_THAT(page, HasSubstr(text));
+}
+
+TEST(SummaryMd, HoldsTheRunTheTablesAndTheReasons) {
+  records::RunRecord run = make_run();
+  run.warnings = {"something is odd"};
+  const std::string summary = make_summary(run, {make_cell("cubes", "vsm", 4.5), make_cell("stack", "vsm", 4.5)});
+  for (const char* text : {"Some CPU", "llvmpipe", "All times are CPU time (software rasteriser)", "## cubes",
+                           "## stack", "| vsm ", "something is odd", "error: no truth in this run (2 of 2 cells)",
+                           "**lookup_median_ms**: filtered lookup", "Debian GNU/Linux 12", "40 passes run"})
+    EXPECT_THAT(summary, HasSubstr(text));
+}
+
+TEST(SummaryMd, Names_CannotBreakTheTable) {
+  records::CellRecord cell = make_cell("a|b", "x|y", 4.0);
+  cell.message = "line 1\nline 2 | 3";
+  cell.status = records::CellStatus::kError;
+  EXPECT_THAT(make_summary(make_run(), {cell}), HasSubstr("| x\\|y "));
+  EXPECT_THAT(make_summary(make_run(), {cell}), HasSubstr("line 1 line 2 \\| 3 |"));
+}
+
+TEST(SummaryMd, HasATableOfCostsAndOneOfErrors) {
+  const std::string summary = make_summary(make_run(), {make_attributed_cell("vsm", 0.04, {0.001, 0.71, 0.089, 0.2})});
+  for (const char* text : {"What it costs: CPU time", "How wrong it is, and why", "| estimator 71 % ",
+                           "**estimator_share**:", "5 truths ray traced", "Most of the error of vsm"})
+    EXPECT_THAT(summary, HasSubstr(text));
 }
 
 TEST(Report, OfNoCell_IsWritten) {

@@ -1,18 +1,18 @@
-#include "report/pages/report.h"
+#include "report/pages/write_report.h"
 
 #include <algorithm>
 
 #include "report/files/atomic_file.h"
-#include "report/pages/html.h"
+#include "report/pages/fronts_csv.h"
+#include "report/pages/run_page.h"
 #include "report/pages/tables.h"
-#include "report/pages/trade_section.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::pages {
 
 namespace {
 
-/// What a run warns of is what concerns all of it, then what concerns its cells; each said once.
+/// Adds the warnings of the cells to those of the run, each once.
 void add_warnings(records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
   for (const records::CellRecord& cell : cells) {
     for (const std::string& warning : cell.warnings)
@@ -29,12 +29,11 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run, cons
   add_warnings(run, cells);
   files::write_text_file(dir / "timings.csv", make_csv(CsvTable::kTimings, run, cells));
   files::write_text_file(dir / "accuracy.csv", make_csv(CsvTable::kAccuracy, run, cells));
-  std::optional<Trade> trade = make_trade(run, cells);
-  if (trade) trade = write_trade_files(dir, cells, std::move(*trade));
-  files::write_text_file(dir / "summary.md",
-                         make_summary(run, cells, trade ? make_trade_markdown(run, cells, *trade) : ""));
-  files::write_text_file(dir / "index.html",
-                         make_index_html(run, cells, trade ? make_trade_html(run, cells, *trade) : ""));
+  const std::optional<Trade> trade = make_trade(cells);
+  if (trade && trade->has_fronts) files::write_text_file(dir / "fronts.csv", make_fronts_csv(cells, trade->scopes));
+  const page::Page page = make_run_page(run, cells, trade);
+  files::write_text_file(dir / "summary.md", page::write_markdown(page));
+  files::write_text_file(dir / "index.html", page::write_html(page));
   records::write_results(dir, run, keys);
 }
 
