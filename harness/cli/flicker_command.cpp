@@ -72,7 +72,7 @@ void add_flicker_command(CLI::App& app, Action& action, const std::vector<std::s
       "Looks the first frame's receivers up in every frame's map, without snapping the map's texel grid and with it, "
       "and holds\n"
       "what changes from frame to frame against what changes in ray-traced truth. Writes flicker.html, .md, .json, "
-      ".csv, plots\n"
+      ".csv\n"
       "and pictures by pixel.");
   auto a = std::make_shared<FlickerArguments>();
   command->add_option("--scene", a->scene, "a built-in scene, or a .toml, .gltf, .glb or .obj file")

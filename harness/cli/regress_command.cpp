@@ -82,7 +82,8 @@ void add_regress_command(CLI::App& app, Action& action, const std::vector<std::s
                     "with --accept: cells that the run lacks leave the baseline");
   command->add_option("--junit", a->junit, "also write JUnit XML for a build server");
   command->add_flag("--json", a->json, "print JSON; it also goes to OUT/regress.json");
-  command->add_option("--out", a->out, "folder for regress.json and the pictures (default: 'regress' in RUN)");
+  command->add_option("--out", a->out,
+                      "folder for regress.html, .md, .json and the pictures (default: 'regress' in RUN)");
   command->callback([&action, a, words] { action = [a, words] { return regress(*a, words); }; });
 }
 

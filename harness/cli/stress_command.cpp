@@ -84,8 +84,8 @@ void add_stress_command(CLI::App& app, Action& action, const std::vector<std::st
       "Along each axis every case is ok, degraded (an error over the axis' bound) or broken (NaN, infinity, all lit, "
       "all dark, or falling\n"
       "where it must rise). The first value of each is found to 1 % and compared with theory. Writes stress.html, .md, "
-      ".json, .csv\n"
-      "and a plot for each axis. Exit code 1: a limit is not what theory says, and nothing explains it.");
+      ".json\n"
+      "and .csv, with a chart for each axis. Exit code 1: a limit is not what theory says, and nothing explains it.");
   auto a = std::make_shared<StressArguments>();
   add_stress_options(*command, *a);
   command->callback([&action, a, words] { action = [a, words] { return stress_filters(*a, words); }; });

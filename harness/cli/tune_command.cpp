@@ -104,8 +104,8 @@ std::string describe_command() {
       "  training: {}\n  unseen:   {}\n"
       "Kept are the found parameters only where the gain on unseen views is more than the truth's standard error (for "
       "flip, leak and\n"
-      "acne: more than nothing), else the default. Writes tuned.json, for 'run --tuned', tune.md, and every setting "
-      "drawn to\n"
+      "acne: more than nothing), else the default. Writes tuned.json, for 'run --tuned', tune.html, .md, and every "
+      "setting drawn to\n"
       "evaluations.csv. The budget is of the search; the good ranges (error within 10 % of the best, the other "
       "parameters at theirs)\n"
       "take some 25 settings more per parameter.",

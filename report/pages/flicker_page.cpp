@@ -1,4 +1,4 @@
-#include "report/pages/flicker_text.h"
+#include "report/pages/flicker_page.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,12 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/analysis/summary.h"
-#include "report/page/markdown.h"
-#include "report/page/markdown_table.h"
-#include "report/pages/tables.h"
+#include "report/page/plot_style.h"
+#include "report/pages/write_page.h"
 #include "report/records/format.h"
-#include "report/records/text_table.h"
 
 namespace shadowbench::pages {
 namespace {
@@ -119,17 +116,69 @@ std::string describe_not_finite(const records::FlickerVariant& variant) {
                      variant.snap ? "With" : "Without", fmt::join(named, ", "));
 }
 
-std::string list_markdown(const std::vector<std::string>& sentences) {
-  std::string text;
-  for (const std::string& sentence : sentences) text += "- " + page::escape_markdown(sentence) + "\n";
-  return text + "\n";
+constexpr std::size_t kStepsPerMark = 8;
+
+/// A line over the steps. Only some points have a mark, so that lines of one colour are told apart.
+page::ChartSeries make_change_line(const std::string& title, const std::vector<double>& changes) {
+  page::ChartSeries series;
+  series.title = title;
+  series.line = page::LineStyle::kSolid;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const double step = static_cast<double>(i + 1), change = changes[i];
+    series.points.push_back(
+        {{step, step, step}, {change, change, change}, {}, {title, fmt::format("step {}: {:.4g}", i + 1, change)}});
+  }
+  return series;
 }
 
-records::TextTable escape(records::TextTable table) {
-  for (std::string& field : table.header) field = page::escape_markdown(field);
-  for (auto& row : table.rows)
-    for (std::string& field : row) field = page::escape_markdown(field);
-  return table;
+/// Adds a filter's marks, which the key shows, and its line.
+void add_filter(page::Chart& chart, const records::FlickerFilter& filter, std::size_t place) {
+  const page::PlotStyle style = page::style_of(place);
+  page::ChartSeries line = make_change_line(filter.filter, filter.mean_change);
+  line.color = style.color;
+  page::ChartSeries marks = line;
+  line.title.clear();
+  marks.line = page::LineStyle::kNone;
+  marks.mark = style.mark;
+  marks.filled = false;
+  marks.points.clear();
+  for (std::size_t i = place % kStepsPerMark; i < line.points.size(); i += kStepsPerMark)
+    marks.points.push_back(line.points[i]);
+  chart.series.push_back(std::move(marks));
+  chart.series.push_back(std::move(line));
+}
+
+/// A scale from 0 for everything that moves in this motion.
+page::PlotAxis choose_change_axis(const records::FlickerMotion& motion) {
+  std::vector<double> values = {0.0};
+  values.insert(values.end(), motion.truth.mean_change.begin(), motion.truth.mean_change.end());
+  for (const records::FlickerVariant& variant : motion.variants)
+    for (const records::FlickerFilter& filter : variant.filters)
+      values.insert(values.end(), filter.mean_change.begin(), filter.mean_change.end());
+  return page::choose_axis(values, {}, page::TickKind::kNumber);
+}
+
+std::vector<std::pair<std::string, std::string>> list_flicker_facts(const records::FlickerRecord& record) {
+  return {{"scene", fmt::format("{}, view {}, {} x {} pixels", record.scene, record.view, record.width, record.height)},
+          {"shadow map", fmt::format("{0} x {0} texels", record.map_size)},
+          {"frames", fmt::format("{}", record.frames)},
+          {"OpenGL", fmt::format("{} ({}), {}", record.gl.renderer, record.gl.backend, record.gl.version)},
+          {"program", record.commit},
+          {"command", fmt::format("{}", fmt::join(record.command, " "))},
+          {"took", fmt::format("{:.1f} s", record.seconds)}};
+}
+
+page::Section make_motion_section(const records::FlickerMotion& motion, int frames) {
+  page::Section section{motion.id, fmt::format("{}: {}", motion.id, motion.title), {}};
+  section.blocks = {
+      page::Sentences{{}, describe_flicker(motion)},
+      page::Table{"Change and flicker: root mean squares of visibility per step", make_flicker_table(motion)},
+      page::Sentences{{}, explain_motion(motion, frames)}};
+  for (const records::FlickerVariant& variant : motion.variants)
+    section.blocks.emplace_back(make_flicker_chart(motion, variant));
+  section.blocks.emplace_back(
+      page::Gallery{{}, {{motion.picture, "flicker by pixel, without snapping and with it; grey: less than 0.001"}}});
+  return section;
 }
 
 }  // namespace
@@ -210,19 +259,31 @@ records::TextTable make_flicker_table(const records::FlickerMotion& motion) {
   return table;
 }
 
-std::string make_flicker_text(const records::FlickerRecord& record) {
-  std::string text = "# Flicker\n\n";
-  text += fmt::format("{}, view {}, {} x {} pixels, map {}, {} frames; {} ({}), program {}, {:.1f} s.\n\n",
-                      page::escape_markdown(record.scene), page::escape_markdown(record.view), record.width,
-                      record.height, record.map_size, record.frames, page::escape_markdown(record.gl.renderer),
-                      record.gl.backend, record.commit, record.seconds);
-  text += list_markdown(define_flicker(record));
-  for (const records::FlickerMotion& motion : record.motions) {
-    text += fmt::format("## {}: {}\n\n", motion.id, page::escape_markdown(motion.title));
-    text += list_markdown(describe_flicker(motion)) + page::make_markdown_table(escape(make_flicker_table(motion))) +
-            list_markdown(explain_motion(motion, record.frames));
-  }
-  return text;
+page::Chart make_flicker_chart(const records::FlickerMotion& motion, const records::FlickerVariant& variant) {
+  page::Chart chart;
+  chart.id = fmt::format("flicker.{}{}", motion.id, variant.snap ? ".snapped" : "");
+  chart.title = fmt::format("{}, {} snapping", motion.title, variant.snap ? "with" : "without");
+  chart.x_name = "step";
+  chart.y_name = "mean |change| of visibility";
+  chart.x = page::choose_axis({0.0, static_cast<double>(motion.truth.mean_change.size())}, {}, page::TickKind::kNumber);
+  chart.y = choose_change_axis(motion);
+  for (std::size_t i = 0; i < variant.filters.size(); ++i) add_filter(chart, variant.filters[i], i);
+  page::ChartSeries truth = make_change_line("truth", motion.truth.mean_change);
+  truth.color = page::kInk;
+  truth.line = page::LineStyle::kDashed;
+  chart.series.push_back(std::move(truth));
+  chart.notes.push_back("one scale without snapping and with it");
+  return chart;
+}
+
+page::Page make_flicker_page(const records::FlickerRecord& record) {
+  page::Page page{"Flicker: filters in motion against the truth in motion", {}, {}};
+  page.sections.push_back(
+      {{}, {}, {page::Facts{list_flicker_facts(record)}, page::Sentences{{}, define_flicker(record)}}});
+  for (const records::FlickerMotion& motion : record.motions)
+    page.sections.push_back(make_motion_section(motion, record.frames));
+  page.sections.push_back({"data", "", {link_data({"flicker.json", "flicker.csv"})}});
+  return page;
 }
 
 }  // namespace shadowbench::pages

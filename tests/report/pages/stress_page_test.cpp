@@ -1,19 +1,17 @@
+#include "report/pages/stress_page.h"
+
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "report/pages/stress_plots.h"
-#include "report/pages/stress_text.h"
 #include "report/records/stress_json.h"
-#include "report/records/text_table.h"
 
 namespace shadowbench::pages {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
 
@@ -137,7 +135,7 @@ TEST(StressTables, LimitsThatNobodyExpectsToSee_AreCountedInstead) {
                                      "there is none, 1 where it puts it beyond the range."));
 }
 
-TEST(StressWords, DisagreementsAreSaid_ExplainedOnesWithTheReason) {
+TEST(StressPage, DisagreementsAreSaid_ExplainedOnesWithTheReason) {
   const records::StressRecord record = make_record();
   EXPECT_EQ(records::count_disagreements(record), 1);
   ASSERT_THAT(describe_disagreements(record.axes[0]), SizeIs(1));
@@ -148,19 +146,17 @@ TEST(StressWords, DisagreementsAreSaid_ExplainedOnesWithTheReason) {
               AllOf(HasSubstr("degraded at 11, where theory says none"), HasSubstr("the blur adds")));
 }
 
-TEST(StressPage, HasTablesPlotsWordsAndWarnings) {
-  const std::string page = make_stress_html(make_record());
-  for (const char* part : {"Measured against theoretical limits", "stress.esm-exponent.svg", "ln(65504)", "Warnings",
+TEST(StressPage, HasTablesChartSentencesAndWarnings_InBothFormats) {
+  const page::Page page = make_stress_page(make_record());
+  const std::string html = page::write_html(page), markdown = page::write_markdown(page);
+  for (const char* part : {"Measured against theoretical limits", "ln(65504)", "Warnings",
                            "not available: this GL lacks r8", "the blur adds", "ok again at 30", "A mistake",
-                           "stress.mistake.png", "prefers-color-scheme: dark", "stress.csv"})
-    EXPECT_THAT(page, HasSubstr(part));
-  EXPECT_THAT(page, Not(HasSubstr("http")));
-}
-
-TEST(StressPage, WithoutPlots_SaysWhy_AndNamesNone) {
-  records::StressRecord record = make_record();
-  record.no_plots = "gnuplot is gone";
-  EXPECT_THAT(make_stress_html(record), AllOf(HasSubstr("gnuplot is gone"), Not(HasSubstr("stress.esm-exponent.svg"))));
+                           "It was made.", "stress.mistake.png", "stress.csv", "stress.json"}) {
+    EXPECT_THAT(html, HasSubstr(part));
+    EXPECT_THAT(markdown, HasSubstr(part));
+  }
+  EXPECT_THAT(html, AllOf(HasSubstr("id=\"stress.esm-exponent\""), HasSubstr("prefers-color-scheme: dark")));
+  for (const char* loaded : {"src=\"http", "href=\"http", "url(http"}) EXPECT_THAT(html, Not(HasSubstr(loaded)));
 }
 
 TEST(StressPage, Texts_AreEscaped) {
@@ -171,39 +167,58 @@ TEST(StressPage, Texts_AreEscaped) {
   axis.cases[0].limits[0].formula = axis.cases[0].limits[1].explanation = axis.cases[1].not_available = "<u>";
   axis.exhibits[0].title = axis.exhibits[0].sentences[0] = "<s>";
   record.gl.renderer = record.filters[0] = "<tt>";
-  const std::string page = make_stress_html(record);
-  for (const char* raw : {"<b>", "<i>", "<u>", "<s>", "<tt>"}) EXPECT_THAT(page, Not(HasSubstr(raw)));
+  const std::string html = page::write_html(make_stress_page(record));
+  for (const char* raw : {"<b>", "<i>", "<u>", "<s>", "<tt>"}) EXPECT_THAT(html, Not(HasSubstr(raw)));
 }
 
-TEST(StressText, HasTheTables_WithPipesEscaped) {
-  const std::string text = make_stress_text(make_record());
-  EXPECT_THAT(text, AllOf(HasSubstr("## esm-exponent: Exponent"), HasSubstr("not explained"), HasSubstr("a\\|b"),
-                          HasSubstr("ratio")));
+TEST(StressPage, Markdown_EscapesPipes) {
+  EXPECT_THAT(page::write_markdown(make_stress_page(make_record())),
+              AllOf(HasSubstr("## esm-exponent: Exponent"), HasSubstr("not explained"), HasSubstr("a\\|b")));
 }
 
-TEST(StressPlot, HasCasesTheoryAndBound_BrokenAtTheTopWhereNothingIsMeasured) {
-  const page::Plot plot = make_stress_plot(make_record().axes[0]);
-  EXPECT_EQ(plot.file, "stress.esm-exponent.svg");
-  EXPECT_TRUE(plot.x.log && plot.y.log);
-  EXPECT_EQ(plot.series[0].title, "esm: r16f, linear (GL)");
-  EXPECT_THAT(plot.series[0].points, SizeIs(2));  // the third measured nothing
-  double highest = 0.0;
-  bool theory = false;
-  for (const page::PlotSeries& series : plot.series) {
-    for (const page::PlotPoint& point : series.points) {
-      if (point.x.value == 20.0) highest = point.y.value;
-      theory = theory || (point.x.value == 11.09 && series.title == "theoretical limits:");
-    }
-  }
-  EXPECT_EQ(highest, plot.y.high);
-  EXPECT_TRUE(theory) << page::make_gnuplot_script({plot});
-  EXPECT_THAT(plot.notes, ::testing::Contains("some cases have no theoretical limit"));
+TEST(StressPage, TerminalShowsTheLimits_AndWhatTheyLeaveOut) {
+  records::StressRecord record = make_record();
+  EXPECT_THAT(make_limit_text(record), AllOf(HasSubstr("| ratio "), Not(HasSubstr("Not met"))));
+  record.axes[0].cases[0].limits[1].measured.reset();
+  record.axes[0].cases[0].limits[1].agreement = records::StressAgreement::kAgrees;
+  EXPECT_THAT(make_limit_text(record), HasSubstr("Not met, and not expected:\n\n- esm-exponent: "));
 }
 
-TEST(StressPlot, CaseWithNothingMeasured_IsNotDrawn) {
+TEST(StressChart, HasCasesTheoryAndBound_BrokenAtTheTopWhereNothingIsMeasured) {
+  const page::Chart chart = make_stress_chart(make_record().axes[0]);
+  EXPECT_EQ(chart.id, "stress.esm-exponent");
+  EXPECT_TRUE(chart.x.log && chart.y.log);
+  ASSERT_THAT(chart.series, SizeIs(4));
+  EXPECT_EQ(chart.series[0].title, "esm: r16f, linear (GL)");
+  EXPECT_THAT(chart.series[0].points, SizeIs(2));  // the third measured nothing
+  EXPECT_FALSE(chart.series[0].filled);
+  ASSERT_THAT(chart.series[1].points, SizeIs(1));
+  EXPECT_TRUE(chart.series[1].filled);
+  EXPECT_EQ(chart.series[1].points[0].x.value, 20.0);
+  EXPECT_EQ(chart.series[1].points[0].y.value, chart.y.high);
+  EXPECT_THAT(chart.series[1].points[0].details, ::testing::Contains("7 texels overflowed"));
+  EXPECT_EQ(chart.series[2].title, "bound, 0.02");
+  EXPECT_EQ(chart.series[3].title, "theoretical limits");
+  for (const page::ChartPoint& point : chart.series[3].points) EXPECT_EQ(point.x.value, 11.09);
+  EXPECT_THAT(chart.notes, ::testing::Contains("some cases have no theoretical limit"));
+}
+
+TEST(StressChart, LevelsOfAVariant_ShareTheirColour_TheModelIsDashed) {
+  records::StressAxis axis = make_record().axes[0];
+  axis.cases[1] = axis.cases[0];
+  axis.cases[1].level = "model";
+  const page::Chart chart = make_stress_chart(axis);
+  const auto model = std::ranges::find(chart.series, "esm: r16f, linear (model)", &page::ChartSeries::title);
+  ASSERT_NE(model, chart.series.end());
+  EXPECT_EQ(model->color, chart.series[0].color);
+  EXPECT_EQ(model->line, page::LineStyle::kDashed);
+  EXPECT_EQ(model->mark, page::Mark::kNone);
+}
+
+TEST(StressChart, CaseWithNothingMeasured_IsNotDrawn) {
   records::StressAxis axis = make_record().axes[0];
   axis.cases.erase(axis.cases.begin());
-  EXPECT_FALSE(has_plot(axis));
+  EXPECT_FALSE(has_stress_chart(axis));
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
-// The words, tables and files that `shadowbench flicker` writes, from numbers made up here.
+// The sentences, tables and files that `shadowbench flicker` writes, from numbers made up here.
+
+#include "report/pages/flicker_page.h"
 
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 
 #include "report/images/flicker_picture.h"
-#include "report/pages/flicker_plots.h"
-#include "report/pages/flicker_text.h"
 #include "report/records/flicker_json.h"
 
 namespace shadowbench::pages {
@@ -36,7 +36,7 @@ records::FlickerMotion make_motion(double a, double a_snapped, double b = 0.01, 
   return motion;
 }
 
-TEST(FlickerText, NamesWhoFlickersMostAndLeast_AgainstTheTruth) {
+TEST(FlickerPage, NamesWhoFlickersMostAndLeast_AgainstTheTruth) {
   EXPECT_THAT(describe_flicker(make_motion(0.03, 0.02)),
               Contains("Without snapping a flickers most, 0.03, 3.00 times the truth's own change; b least, 0.01, 1.00 "
                        "times the truth's own change."));
@@ -44,7 +44,7 @@ TEST(FlickerText, NamesWhoFlickersMostAndLeast_AgainstTheTruth) {
               Contains(HasSubstr("Without snapping b flickers most, 0.01")));
 }
 
-TEST(FlickerText, SaysWhatSnappingBuys) {
+TEST(FlickerPage, SaysWhatSnappingBuys) {
   EXPECT_THAT(describe_flicker(make_motion(0.03, 0.02)),
               Contains("Snapping divides flicker by 1.50 (a); leaves it as it is, within 5 %, of b."));
   EXPECT_THAT(describe_flicker(make_motion(0.03, 0.0)),
@@ -56,7 +56,7 @@ TEST(FlickerText, SaysWhatSnappingBuys) {
               Contains("Snapping changes nothing: nothing flickers."));
 }
 
-TEST(FlickerText, StillTruth_IsNoYardstick) {
+TEST(FlickerPage, StillTruth_IsNoYardstick) {
   records::FlickerMotion motion = make_motion(0.03, 0.02);
   motion.truth = {};
   motion.truth.mean_change = {0.0, 0.0};
@@ -65,7 +65,7 @@ TEST(FlickerText, StillTruth_IsNoYardstick) {
   EXPECT_THAT(explain_motion(motion, 3), Contains(HasSubstr("all change is flicker")));
 }
 
-TEST(FlickerText, WhatIsNotFinite_IsSaid) {
+TEST(FlickerPage, WhatIsNotFinite_IsSaid) {
   records::FlickerMotion motion = make_motion(0.03, 0.02);
   for (const std::string& sentence : describe_flicker(motion)) EXPECT_THAT(sentence, Not(HasSubstr("not finite")));
   motion.variants[1].filters[0].not_finite = 7;
@@ -85,20 +85,28 @@ TEST(FlickerFiles, HoldEveryNumber) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5) << "a header, two filters, without snapping and with it";
   EXPECT_THAT(csv, HasSubstr(",on,a,1000000,0.02,0.01,0.0003,0.02,0.02,0.001,0\r\n"));
   EXPECT_EQ(make_flicker_table(record.motions[0]).rows.size(), 3u) << "the filters, and the truth";
-  EXPECT_THAT(make_flicker_html(record), HasSubstr("flicker.light.snapped.svg"));
+  const page::Page page = make_flicker_page(record);
+  for (const std::string& written : {page::write_html(page), page::write_markdown(page)})
+    for (const char* part : {"cubes", "The light turns", "flicker.light.png", "flicker.csv", "a flickers most, 0.03"})
+      EXPECT_THAT(written, HasSubstr(part));
+  EXPECT_THAT(page::write_html(page), HasSubstr("id=\"flicker.light.snapped\""));
 }
 
-TEST(FlickerPlots, OfOneMotion_ShareTheirScales_AndHoldTheTruth) {
+TEST(FlickerCharts, OfOneMotion_ShareTheirScales_AndHoldTheTruth) {
   records::FlickerMotion motion = make_motion(0.03, 0.02);
   motion.variants[0].filters[0].mean_change = {0.5, 0.1};
-  const page::Plot free = make_flicker_plot(motion, motion.variants[0]),
-                   snapped = make_flicker_plot(motion, motion.variants[1]);
-  EXPECT_NE(free.file, snapped.file);
+  const page::Chart free = make_flicker_chart(motion, motion.variants[0]),
+                    snapped = make_flicker_chart(motion, motion.variants[1]);
+  EXPECT_NE(free.id, snapped.id);
   EXPECT_EQ(free.y.high, snapped.y.high);
   EXPECT_GE(free.y.high, 0.5);
   EXPECT_EQ(free.series.back().title, "truth");
-  ASSERT_EQ(free.series.size(), 5u) << "a line and its points for each filter, and the truth";
-  EXPECT_NE(free.series[1].point_type, free.series[3].point_type);
+  ASSERT_EQ(free.series.size(), 5u) << "marks and their line for each filter, and the truth";
+  EXPECT_EQ(free.series[0].title, "a");
+  EXPECT_EQ(free.series[1].points.size(), 2u);
+  EXPECT_EQ(free.series[1].points[0].y.value, 0.5);
+  EXPECT_EQ(free.series[0].color, free.series[1].color);
+  EXPECT_NE(free.series[0].mark, free.series[2].mark);
 }
 
 TEST(FlickerPicture, ScaleIsLogarithmic_FromAThousandthOn) {
