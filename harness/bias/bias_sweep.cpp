@@ -18,8 +18,8 @@
 #include "report/files/folder_lock.h"
 #include "report/images/grid.h"
 #include "report/images/hardest_edge.h"
-#include "report/pages/bias_chart.h"
 #include "report/pages/bias_page.h"
+#include "report/pages/write_page.h"
 
 namespace shadowbench::bias {
 namespace {
@@ -57,8 +57,8 @@ class BiasSweep {
     for (const render::SweptMode& mode : render::swept_modes()) record_.modes.push_back(sweep_mode(mode));
     renderer_.context->require_no_gl_errors();
     lock.require_in_place();
+    pages::write_page(options_.out, "bias", pages::make_bias_page(record_));
     files::write_text_file(options_.out / "bias.csv", pages::make_bias_csv(record_));
-    files::write_text_file(options_.out / "bias.html", pages::make_bias_html(record_));
     progress_.show(done_, "done");
   }
 

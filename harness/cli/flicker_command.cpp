@@ -43,7 +43,7 @@ Command make_flicker_command() {
   command.about =
       "Looks the first frame's receivers up in every frame's map, without snapping the map's texel grid and with it, "
       "and holds what changes from frame to frame against what changes in ray-traced truth. Writes flicker.html, .md, "
-      ".json, .csv, plots and pictures by pixel.";
+      ".json, .csv and pictures by pixel.";
   auto a = std::make_shared<FlickerArguments>();
   a->map_size = "512";
   a->size = "320x180";

@@ -78,7 +78,7 @@ Command make_regress_command() {
   command.add("--remove-missing", &a->remove_missing, "with --accept: cells that the run lacks leave the baseline");
   command.add("--junit", &a->junit, "also write JUnit XML for a build server").names(ValueKind::kFile);
   command.add("--json", &a->json, "print JSON; it also goes to OUT/regress.json");
-  command.add("--out", &a->out, "folder for regress.json and the pictures (default: 'regress' in RUN)")
+  command.add("--out", &a->out, "folder for regress.html, .md, .json and the pictures (default: 'regress' in RUN)")
       .names(ValueKind::kFolder);
   command.action = [a](const CommandLine& line) { return regress(*a, line.words()); };
   return command;

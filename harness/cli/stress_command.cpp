@@ -55,9 +55,7 @@ Command make_stress_command() {
   command.about =
       "Along each axis every case is ok, degraded (an error over the axis' bound) or broken (NaN, infinity, all lit, "
       "all dark, or falling where it must rise). The first value of each is found to 1 % and compared with theory. "
-      "Writes stress.html, .md, .json, .csv and a plot for each axis. Exit code 1: a limit is not what theory says, "
-      "and "
-      "nothing explains it.";
+      "Writes stress.html, .md, .json and .csv. Exit code 1: a limit is not what theory says, and nothing explains it.";
   auto a = std::make_shared<StressArguments>();
   a->out = "report/out/stress";
   add_builtin_filters_option(command, a->filters);

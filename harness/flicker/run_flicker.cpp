@@ -9,9 +9,12 @@
 #include "harness/flicker/bench.h"
 #include "harness/run/run_facts.h"
 #include "harness/run/scene_loading.h"
+#include "report/files/atomic_file.h"
 #include "report/files/folder_lock.h"
 #include "report/images/flicker_picture.h"
-#include "report/pages/flicker_files.h"
+#include "report/pages/flicker_page.h"
+#include "report/pages/write_page.h"
+#include "report/records/flicker_json.h"
 
 namespace shadowbench::flicker {
 namespace {
@@ -73,7 +76,9 @@ class FlickerRun {
     record_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     progress_.show(done_, "writing");
     lock.require_in_place();
-    pages::write_flicker_files(options_.run.out, record_);
+    pages::write_page(options_.run.out, "flicker", pages::make_flicker_page(record_));
+    files::write_text_file(options_.run.out / "flicker.csv", records::make_flicker_csv(record_));
+    files::write_text_file(options_.run.out / "flicker.json", records::make_flicker_json(record_));
   }
 
  private:

@@ -9,7 +9,7 @@
 #include "filters/base/error.h"
 #include "report/files/atomic_file.h"
 #include "report/files/folder_lock.h"
-#include "report/pages/report.h"
+#include "report/pages/write_report.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::run {

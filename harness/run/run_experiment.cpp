@@ -20,7 +20,7 @@
 #include "report/analysis/summary.h"
 #include "report/files/atomic_file.h"
 #include "report/files/folder_lock.h"
-#include "report/pages/report.h"
+#include "report/pages/write_report.h"
 #include "report/records/format.h"
 #include "report/records/json_io.h"
 

@@ -41,7 +41,6 @@ scene::LightFrustum make_axis_frustum(double width_ws, int map_texels) {
   frustum.width_ws = width_ws;
   frustum.texel_size_ws = width_ws / map_texels;
   frustum.depth_range_ws = 1.0;
-  frustum.direction_ws = {0.0f, 0.0f, 1.0f};
   return frustum;
 }
 

@@ -9,9 +9,11 @@
 #include "filters/base/error.h"
 #include "harness/run/run_facts.h"
 #include "harness/stress/onset.h"
+#include "report/files/atomic_file.h"
 #include "report/files/folder_lock.h"
-#include "report/pages/stress_files.h"
-#include "report/pages/stress_text.h"
+#include "report/pages/stress_page.h"
+#include "report/pages/write_page.h"
+#include "report/records/stress_json.h"
 
 namespace shadowbench::stress {
 namespace {
@@ -60,8 +62,10 @@ class StressRun {
     warn();
     progress_.show(done_, "writing");
     lock.require_in_place();
-    pages::write_stress_files(options_.out, record_);
-    return {pages::make_limit_tables(record_), records::count_disagreements(record_)};
+    pages::write_page(options_.out, "stress", pages::make_stress_page(record_));
+    files::write_text_file(options_.out / "stress.csv", records::make_stress_csv(record_));
+    files::write_text_file(options_.out / "stress.json", records::make_stress_json(record_));
+    return {pages::make_limit_text(record_), records::count_disagreements(record_)};
   }
 
  private:

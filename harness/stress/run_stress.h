@@ -31,7 +31,7 @@ struct StressOutcome {
   int disagreements = 0;  ///< limits that are not what theory says, with no explanation
 };
 
-/// Drives the chosen filters along the chosen axes and writes stress.json, .md, .html, .csv and a plot for each axis.
+/// Drives the chosen filters along the chosen axes and writes stress.html, .md, .json and .csv.
 /// Bad axes and ranges are found before anything is made. Cost: about a second per axis and filter in software.
 /// Throws Error(kUsage) as choose_axes and apply_range, Error(kContext), Error(kOutput).
 StressOutcome run_stress(const StressOptions& options, options::Progress& progress);

@@ -14,8 +14,8 @@
 #include "harness/tune/tune_stage.h"
 #include "report/files/atomic_file.h"
 #include "report/files/folder_lock.h"
-#include "report/pages/tables.h"
-#include "report/pages/tuned_text.h"
+#include "report/pages/tune_page.h"
+#include "report/pages/write_page.h"
 #include "report/records/csv.h"
 #include "report/records/tuned_json.h"
 
@@ -280,12 +280,12 @@ class Tuner {
                             metric_.kind == TuneMetricKind::kStatistic);
       record_.filters.push_back(filter.record);
     }
-    const std::string text = pages::make_tuned_text(record_);
+    const page::Page page = pages::make_tune_page(record_);
+    pages::write_page(options_.run.out, "tune", page);
     files::write_text_file(options_.run.out / "evaluations.csv",
                            fmt::format("filter,evaluation,stage,parameters,{}\r\n", metric_.name) + evaluations_);
-    files::write_text_file(options_.run.out / "tune.md", text);
     files::write_text_file(options_.run.out / "tuned.json", records::make_tuned_json(record_));
-    return text;
+    return page::write_markdown(page);
   }
 };
 

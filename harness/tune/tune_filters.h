@@ -31,12 +31,12 @@ double find_widest_kernel(const std::vector<filters::FilterRequest>& requests);
 double choose_tune_padding(double widest_kernel_texels, int map_size);
 
 /// Finds the parameters of each filter that make the metric's mean over the training views (tune_views()) of all scenes
-/// least, and scores them, and the defaults, on views that were not trained on. Writes tuned.json, tune.md and
-/// evaluations.csv into the output folder. Returns the text of tune.md. Throws Error(kUsage) for an unknown metric, a
-/// filter named twice or without parameters to search, Error(kInput) where a scene that is not to be skipped, or every
-/// scene, has no view to measure the metric in, and as run_experiment. Cost: one prefilter per scene and one lookup per
-/// view for each setting; the truth of each view, once. Memory is that of the training views, whatever the number of
-/// settings.
+/// least, and scores them, and the defaults, on views that were not trained on. Writes tuned.json, tune.html, .md
+/// and evaluations.csv into the output folder. Returns the page as Markdown. Throws Error(kUsage) for an unknown
+/// metric, a filter named twice or without parameters to search, Error(kInput) where a scene that is not to be skipped,
+/// or every scene, has no view to measure the metric in, and as run_experiment. Cost: one prefilter per scene and one
+/// lookup per view for each setting; the truth of each view, once. Memory is that of the training views, whatever the
+/// number of settings.
 std::string tune_filters(const TuneOptions& options, options::Progress& progress);
 
 }  // namespace shadowbench::tune

@@ -116,8 +116,7 @@ struct Page {
 /// Writes a page as HTML that opens from disk and loads nothing but what lies beside it.
 std::string write_html(const Page& page);
 
-/// Writes a page as Markdown. Charts become tables of their points where they are small, or the sentence that names the
-/// page.
+/// Writes a page as Markdown. Only the HTML page draws charts; Markdown says which.
 std::string write_markdown(const Page& page);
 
 }  // namespace shadowbench::page

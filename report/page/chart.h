@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "report/analysis/front.h"
@@ -13,7 +14,8 @@ enum class LineStyle {
   kNone,
   kSteps,  ///< along x, then along y
   kSolid,
-  kDashed
+  kDashed,
+  kTies  ///< dotted, from each point to the one after it, in pairs
 };
 
 /// The mark at a point.
@@ -23,13 +25,14 @@ enum class Mark { kNone, kCircle, kSquare, kTriangle, kDiamond, kTriangleDown, k
 struct ChartPoint {
   analysis::Estimate x;
   analysis::Estimate y;
-  std::string label = {};                 ///< beside the point; empty: none
-  std::vector<std::string> details = {};  ///< lines shown when one points at it
+  std::string label = {};                                          ///< beside the point; empty: none
+  std::vector<std::string> details = {};                           ///< lines shown when one points at it
+  std::vector<std::pair<std::string, std::string>> pictures = {};  ///< paths and captions, shown when one clicks it
 };
 
 /// Points drawn alike.
 struct ChartSeries {
-  std::string title;  ///< in the key; empty: not in the key
+  std::string title;  ///< in the key; empty: not in the key, and shown and hidden with the titled series before it
   std::string color;  ///< "#rrggbb"
   Mark mark = Mark::kNone;
   bool filled = true;

@@ -10,7 +10,10 @@ namespace shadowbench::page {
 /// Escapes a text so that Markdown shows it as it is, also in a table's field.
 std::string escape_markdown(std::string_view text);
 
-/// Writes a table as Markdown.
-std::string markdown_table(const records::TextTable& table);
+/// Whether a table's field begins like a number.
+bool is_number_like(std::string_view field);
+
+/// Writes a Markdown table whose columns line up, for terminals too, and an empty line. Escapes its texts.
+std::string write_markdown_table(const records::TextTable& table);
 
 }  // namespace shadowbench::page

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "report/page/chart.h"
+
 namespace shadowbench::page {
 
 /// The colour of axes and texts of plots.
@@ -14,6 +16,7 @@ struct PlotStyle {
                       ///< triangle on its tip
   int hollow_point;   ///< gnuplot's point type of that shape
   int filled_point;
+  Mark mark;
 };
 
 /// Gives the style of the filter at a place in list_filters(): colours that people of every colour vision tell apart,

@@ -91,7 +91,7 @@ std::string list_limits(const records::RunRecord& run, const analysis::Advice& a
 }
 
 template <class T>
-std::string format_optional(const std::optional<T>& value) {
+std::string format_known(const std::optional<T>& value) {
   return value ? records::format_number(static_cast<double>(*value)) : records::kNothing;
 }
 
@@ -102,9 +102,9 @@ Row describe_cell(const records::CellRecord& cell, const analysis::Advice& advic
           time ? fmt::format("{} .. {}", records::format_number(time->q1), records::format_number(time->q3))
                : records::kNothing,
           records::format_ratio(analysis::frame_ratio(cell, advice.request.light)),
-          format_optional(cell.error.rmse),
-          format_optional(cell.cost.map_bytes),
-          format_optional(cell.cost.fetches),
+          format_known(cell.error.rmse),
+          format_known(cell.cost.map_bytes),
+          format_known(cell.cost.fetches),
           cell.key};
 }
 

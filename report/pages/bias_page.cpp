@@ -4,14 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
-#include "report/page/embedded.h"
-#include "report/page/html_parts.h"
-#include "report/pages/bias_chart.h"
-#include "report/pages/html.h"
-#include "report/pages/tables.h"
+#include "report/page/plot_style.h"
+#include "report/pages/write_page.h"
 #include "report/records/csv.h"
-#include "report/records/text_table.h"
 
 namespace shadowbench::pages {
 namespace {
@@ -81,25 +78,80 @@ records::TextTable make_fixed_table(const records::BiasModeRecord& mode) {
   return table;
 }
 
-std::string html_mode(const records::BiasModeRecord& mode, const records::BiasSweepRecord& sweep) {
-  const bool swept = !mode.key.empty();
-  std::string page = fmt::format("<section id=\"{0}\">\n<h2>{0}</h2>\n<p class=\"note\">{1}</p>\n",
-                                 page::escape_html(mode.mode), page::escape_html(mode.meaning));
-  std::vector<std::string> words = describe_bias_mode(mode);
-  words.insert(words.end(), mode.left_out.begin(), mode.left_out.end());
-  page += page::html_list(words) + "<div class=\"mode\">\n";
-  if (swept)
-    page += "<figure>" + make_bias_chart(mode, sweep.filters) + "<figcaption>" + make_bias_legend(mode, sweep.filters) +
-            "</figcaption></figure>\n";
-  if (mode.curves.empty()) return page + "</div>\n</section>\n";
-  page += swept ? page::html_table(make_amount_table(mode), "At theory: amount, move towards the light, rates", "sweep")
-                : page::html_table(make_fixed_table(mode), "Takes no amount", "sweep");
-  page += "</div>\n";
-  if (!mode.picture.empty()) page += page::figure(mode.picture, mode.picture_caption, "grid");
-  return page + "</section>\n";
+/// The factors that a mode's curves have, ascending and once each.
+std::vector<double> list_factors(const records::BiasModeRecord& mode) {
+  std::set<double> factors;
+  for (const records::BiasCurve& curve : mode.curves)
+    for (const records::BiasPoint& point : curve.points)
+      if (point.factor) factors.insert(*point.factor);
+  return {factors.begin(), factors.end()};
 }
 
-std::vector<std::pair<std::string, std::string>> list_facts(const records::BiasSweepRecord& sweep) {
+/// A logarithmic axis with a tick for each factor. It has no place for no bias at all, which is drawn at half the
+/// smallest amount.
+page::PlotAxis make_factor_axis(const std::vector<double>& factors) {
+  const auto positive = std::ranges::upper_bound(factors, 0.0);
+  const double least = positive == factors.end() ? 1.0 : *positive;
+  page::PlotAxis axis{true, least, least, {}};
+  for (const double factor : factors) {
+    axis.ticks.emplace_back(factor > 0.0 ? factor : 0.5 * least, name_factor(factor));
+    axis.low = std::min(axis.low, axis.ticks.back().first);
+    axis.high = std::max(axis.high, axis.ticks.back().first);
+  }
+  axis.low /= 1.2;
+  axis.high *= 1.2;
+  return axis;
+}
+
+page::PlotAxis make_rate_axis(const records::BiasModeRecord& mode) {
+  std::vector<double> rates = {0.0, 0.01};
+  for (const records::BiasCurve& curve : mode.curves)
+    for (const records::BiasPoint& point : curve.points)
+      for (const auto& rate : {point.acne, point.contact_gap})
+        if (rate) rates.push_back(*rate);
+  page::PlotAxis axis = page::choose_axis(rates, {}, page::TickKind::kNumber);
+  for (auto& [rate, label] : axis.ticks) label = fmt::format("{:.6g} %", 100.0 * rate);
+  return axis;
+}
+
+/// A filter's acne, solid with marks, or its contact gap, dashed with hollow ones.
+page::ChartSeries make_rate_series(const records::BiasCurve& curve, Rate rate, const page::PlotAxis& factors,
+                                   const page::PlotStyle& style) {
+  const bool gap = rate == &records::BiasPoint::contact_gap;
+  page::ChartSeries series;
+  series.title = curve.filter + (gap ? ": contact gap" : ": acne");
+  series.color = style.color;
+  series.mark = style.mark;
+  series.filled = !gap;
+  series.line = gap ? page::LineStyle::kDashed : page::LineStyle::kSolid;
+  for (const records::BiasPoint& point : curve.points) {
+    if (!point.factor || !(point.*rate)) continue;
+    const double x = *point.factor > 0.0 ? *point.factor : factors.ticks.front().first, y = *(point.*rate);
+    series.points.push_back({{x, x, x},
+                             {y, y, y},
+                             {},
+                             {series.title, fmt::format("{} of the theoretical amount: {}", name_factor(*point.factor),
+                                                        format_rate(point.*rate))}});
+  }
+  return series;
+}
+
+page::Section make_mode_section(const records::BiasModeRecord& mode, const records::BiasSweepRecord& sweep) {
+  const bool swept = !mode.key.empty();
+  page::Section section{mode.mode, mode.mode, {page::Paragraph{mode.meaning, true}}};
+  std::vector<std::string> sentences = describe_bias_mode(mode);
+  sentences.insert(sentences.end(), mode.left_out.begin(), mode.left_out.end());
+  if (!sentences.empty()) section.blocks.emplace_back(page::Sentences{{}, std::move(sentences)});
+  if (swept && !mode.curves.empty()) section.blocks.emplace_back(make_bias_chart(mode, sweep.filters));
+  if (!mode.curves.empty())
+    section.blocks.emplace_back(
+        swept ? page::Table{"At theory: amount, move towards the light, rates", make_amount_table(mode)}
+              : page::Table{"Takes no amount", make_fixed_table(mode)});
+  if (!mode.picture.empty()) section.blocks.emplace_back(page::Gallery{{}, {{mode.picture, mode.picture_caption}}});
+  return section;
+}
+
+std::vector<std::pair<std::string, std::string>> list_bias_facts(const records::BiasSweepRecord& sweep) {
   return {{"scene", sweep.title.empty() ? sweep.scene : sweep.scene + ": " + sweep.title},
           {"view", fmt::format("{}, {} x {} pixels", sweep.view, sweep.width, sweep.height)},
           {"shadow map", fmt::format("{0} x {0} texels of {1:.3g} m, depth range {2:.3g} m", sweep.map_size,
@@ -112,7 +164,7 @@ std::vector<std::pair<std::string, std::string>> list_facts(const records::BiasS
           {"drawn by", sweep.renderer}};
 }
 
-std::vector<std::string> explain(const records::BiasSweepRecord& sweep) {
+std::vector<std::string> define_bias_terms(const records::BiasSweepRecord& sweep) {
   const auto count = [&](const char* name, const char* which, long receivers) {
     return fmt::format(
         "{}: of {} receivers that rays find {}.{}", name, receivers, which,
@@ -155,28 +207,60 @@ std::vector<std::string> describe_bias_mode(const records::BiasModeRecord& mode)
   std::vector<std::string> needs;
   for (const records::BiasCurve& curve : mode.curves)
     if (has_any(curve, &records::BiasPoint::acne)) needs.push_back(describe_need(curve));
-  std::vector<std::string> words;
+  std::vector<std::string> sentences;
   if (!needs.empty()) {
-    words.push_back(
+    sentences.push_back(
         fmt::format("For acne below {} %, in theoretical amounts: {}.", 100.0 * kLittleAcne, fmt::join(needs, "; ")));
   }
   if (mode.curves.empty()) return {"No filter of this run can use it."};
-  words.push_back(fmt::format("At the theoretical amount, {}; {}.",
-                              describe_range(mode, &records::BiasPoint::acne, "acne"),
-                              describe_range(mode, &records::BiasPoint::contact_gap, "contact gap")));
-  return words;
+  sentences.push_back(fmt::format("At the theoretical amount, {}; {}.",
+                                  describe_range(mode, &records::BiasPoint::acne, "acne"),
+                                  describe_range(mode, &records::BiasPoint::contact_gap, "contact gap")));
+  return sentences;
 }
 
-std::string make_bias_html(const records::BiasSweepRecord& sweep) {
-  const std::string title = "Depth bias: acne against contact";
-  std::string page = page::html_head(title, std::string(page::page_style()) + std::string(page::bias_page_style()));
-  page += fmt::format("<body>\n<main>\n<h1>{}</h1>\n<nav>", title);
-  for (const records::BiasModeRecord& mode : sweep.modes)
-    page += fmt::format("<a href=\"#{0}\">{0}</a> ", page::escape_html(mode.mode));
-  page += "</nav>\n" + page::html_facts(list_facts(sweep)) + page::html_list(explain(sweep));
-  page += "<p>Data: " + page::link("bias.csv", "bias.csv") + ".</p>\n";
-  for (const records::BiasModeRecord& mode : sweep.modes) page += html_mode(mode, sweep);
-  return page + "</main>\n</body>\n</html>\n";
+std::string name_factor(double factor) {
+  return factor > 0.0 && factor < 1.0 ? fmt::format("1/{:.4g}", 1.0 / factor) : fmt::format("{:.4g}", factor);
+}
+
+page::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vector<std::string>& filters) {
+  page::Chart chart;
+  chart.id = "bias." + mode.mode;
+  chart.title = mode.mode + ": acne and contact gap over the amount";
+  chart.x_name = "amount / theoretical amount";
+  chart.y_name = "rate";
+  const std::vector<double> factors = list_factors(mode);
+  chart.x = make_factor_axis(factors);
+  chart.y = make_rate_axis(mode);
+  const std::pair<Rate, const char*> kinds[] = {{&records::BiasPoint::acne, "acne"},
+                                                {&records::BiasPoint::contact_gap, "contact gap"}};
+  for (const auto& [rate, name] : kinds) {
+    const std::size_t before = chart.series.size();
+    for (const records::BiasCurve& curve : mode.curves) {
+      const auto place = static_cast<std::size_t>(std::ranges::find(filters, curve.filter) - filters.begin());
+      page::ChartSeries series = make_rate_series(curve, rate, chart.x, page::style_of(place));
+      if (!series.points.empty()) chart.series.push_back(std::move(series));
+    }
+    if (chart.series.size() == before) chart.notes.push_back(fmt::format("{}: absent", name));
+  }
+  if (std::ranges::find(factors, 1.0) == factors.end()) return chart;
+  page::ChartSeries theory;
+  theory.title = "theory";
+  theory.color = page::kInk;
+  theory.line = page::LineStyle::kTies;
+  for (const double y : {chart.y.low, chart.y.high}) theory.points.push_back({{1.0, 1.0, 1.0}, {y, y, y}});
+  chart.series.push_back(std::move(theory));
+  return chart;
+}
+
+page::Page make_bias_page(const records::BiasSweepRecord& sweep) {
+  page::Page page{"Depth bias: acne against contact", {}, {}};
+  page.sections.push_back(
+      {{},
+       {},
+       {page::Facts{list_bias_facts(sweep)}, page::Sentences{{}, define_bias_terms(sweep)}, link_data({"bias.csv"})}});
+  for (const records::BiasModeRecord& mode : sweep.modes) page.sections.push_back(make_mode_section(mode, sweep));
+  return page;
 }
 
 std::string make_bias_csv(const records::BiasSweepRecord& sweep) {

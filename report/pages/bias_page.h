@@ -1,24 +1,33 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "report/page/blocks.h"
 #include "report/records/bias_record.h"
 
 namespace shadowbench::pages {
 
-/// The acne that words call none: a pixel in a thousand.
+/// A filter with less acne than this, a pixel in a thousand, is said to have enough bias.
 inline constexpr double kLittleAcne = 0.001;
 
-/// Gives the smallest swept factor at which a filter has less than kLittleAcne; nothing where there is none.
+/// The smallest swept factor at which a filter has less acne than kLittleAcne; nothing where there is none.
 std::optional<double> find_enough(const records::BiasCurve& curve);
+
+/// Names a factor: "0", "1/8", "4".
+std::string name_factor(double factor);
 
 /// Says of a mode, from its numbers: how much of the theoretical amount each filter needs, and what theory costs in
 /// contact.
 std::vector<std::string> describe_bias_mode(const records::BiasModeRecord& mode);
 
-/// Makes bias.html: one page that opens from disk and loads nothing but the pictures that it names, by relative links.
-std::string make_bias_html(const records::BiasSweepRecord& sweep);
+/// Draws a mode's rates over the amount: acne solid, contact gap dashed, theory as a vertical line. What is absent is
+/// left out, and said where a whole kind is. A filter's place in `filters` gives it its colour and its mark.
+page::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vector<std::string>& filters);
+
+/// Makes the page of `shadowbench bias`.
+page::Page make_bias_page(const records::BiasSweepRecord& sweep);
 
 /// Makes bias.csv (RFC 4180): one row per mode, filter and amount; what is absent is empty.
 std::string make_bias_csv(const records::BiasSweepRecord& sweep);

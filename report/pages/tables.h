@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "report/pages/text_tables.h"
+#include "report/page/blocks.h"
 #include "report/records/records.h"
 
 namespace shadowbench::pages {
@@ -29,9 +29,7 @@ std::vector<CsvColumn> list_csv_columns(CsvTable table);
 /// Numbers read back as the same doubles.
 std::string make_csv(CsvTable table, const records::RunRecord& run, const std::vector<records::CellRecord>& cells);
 
-/// Makes summary.md: what was run, per group of comparable cells a table and sentences from its numbers, what is absent
-/// and why, and the meaning of the columns of the CSV files. `trade` is Markdown that goes before the groups.
-std::string make_summary(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                         const std::string& trade = {});
+/// Says what the columns of a file mean, for readers who unfold it.
+page::Details explain_columns(const std::string& file, const std::vector<CsvColumn>& columns);
 
 }  // namespace shadowbench::pages

@@ -66,7 +66,6 @@ struct FlickerRecord {
   int frames = 0;
   float return_above = 0.0f;  ///< going back by more counts
   double seconds = 0.0;       ///< wall time
-  std::string no_plots;       ///< why the plots were not drawn; empty: they were
   std::vector<FlickerMotion> motions;
 };
 

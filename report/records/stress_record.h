@@ -121,7 +121,6 @@ struct StressRecord {
   std::vector<std::string> command;
   std::vector<std::string> filters;  ///< labels of what was chosen
   double seconds = 0.0;              ///< wall time
-  std::string no_plots;              ///< why the plots were not drawn; empty: they were
   std::vector<StressAxis> axes;
 };
 

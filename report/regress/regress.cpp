@@ -14,8 +14,10 @@
 #include "report/files/atomic_file.h"
 #include "report/files/file_name.h"
 #include "report/files/folder_lock.h"
+#include "report/pages/write_page.h"
 #include "report/regress/accept.h"
 #include "report/regress/junit.h"
+#include "report/regress/regress_page.h"
 #include "report/regress/regress_picture.h"
 #include "report/regress/regress_text.h"
 
@@ -292,6 +294,7 @@ RegressOutcome run_regress(const RegressOptions& options) {
   remove_old_pictures(options.out);
   const RegressReport found = Regression(options).compare();
   RegressOutcome outcome{make_regress_text(found), make_regress_json(found), describe_failure(found)};
+  pages::write_page(options.out, "regress", make_regress_page(found));
   files::write_text_file(options.out / "regress.json", outcome.json);
   if (options.junit) files::write_text_file(*options.junit, make_junit(found));
   return outcome;

@@ -14,7 +14,7 @@ namespace shadowbench::regress {
 struct RegressOptions {
   std::filesystem::path run;  ///< a run's report folder
   std::filesystem::path baseline;
-  std::filesystem::path out;  ///< gets regress.json and the pictures
+  std::filesystem::path out;  ///< gets regress.html, .md, .json and the pictures
   Selection selection;
   bool accept = false;          ///< what differs becomes the baseline
   bool remove_missing = false;  ///< with `accept`: cells that the run lacks leave the baseline
@@ -40,10 +40,11 @@ struct RegressOutcome {
   std::string failure;  ///< one line; empty where nothing is left that differs
 };
 
-/// Compares a run with its baseline, and writes regress.json, a picture of each cell that moved, and what else was
-/// asked for. Throws Error(kInput) where run or tolerances cannot be read, where there is no baseline and nothing is to
-/// be accepted, or for a name that is chosen and nowhere found; Error(kOutput), also where another process accepts into
-/// the same baseline. Cost: memory of one image file of the run, of one of the baseline, and of all that is accepted.
+/// Compares a run with its baseline, and writes regress.html, .md, .json, a picture of each cell that moved, and
+/// what else was asked for. Throws Error(kInput) where run or tolerances cannot be read, where there is no baseline and
+/// nothing is to be accepted, or for a name that is chosen and nowhere found; Error(kOutput), also where another
+/// process accepts into the same baseline. Cost: memory of one image file of the run, of one of the baseline, and of
+/// all that is accepted.
 RegressOutcome run_regress(const RegressOptions& options);
 
 }  // namespace shadowbench::regress

@@ -14,7 +14,6 @@ using nlohmann::ordered_json;
 
 constexpr std::array kOutcomes = {Outcome::kUnreadable,   Outcome::kMissing, Outcome::kExtra,
                                   Outcome::kLessAccurate, Outcome::kChanged, Outcome::kSlower};
-constexpr int kMostListed = 20;
 constexpr std::size_t kMostFindings = 8;
 
 std::string quote_word(const std::string& word) {
@@ -29,20 +28,6 @@ std::string quote_word(const std::string& word) {
   }
   quoted += '\'';
   return quoted;
-}
-
-std::string name_cell(const Comparison& comparison) {
-  return fmt::format("{} {} ({})", comparison.scene, comparison.label, comparison.settings);
-}
-
-std::string list_findings(const Comparison& comparison) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(comparison.findings.size(), kMostFindings); ++i)
-    text += fmt::format("  {}\n", comparison.findings[i].text);
-  if (comparison.findings.size() > kMostFindings)
-    text += fmt::format("  and {} more numbers\n", comparison.findings.size() - kMostFindings);
-  for (const std::string& note : comparison.notes) text += fmt::format("  note: {}\n", note);
-  return text;
 }
 
 ordered_json optional_json(const std::optional<double>& value) {
@@ -87,6 +72,27 @@ ordered_json to_json(const Comparison& comparison) {
 
 }  // namespace
 
+std::string name_cell(const Comparison& comparison) {
+  return fmt::format("{} {} ({})", comparison.scene, comparison.label, comparison.settings);
+}
+
+std::vector<std::string> describe_differences(const Comparison& comparison) {
+  std::vector<std::string> sentences;
+  for (std::size_t i = 0; i < std::min(comparison.findings.size(), kMostFindings); ++i)
+    sentences.push_back(comparison.findings[i].text);
+  if (comparison.findings.size() > kMostFindings)
+    sentences.push_back(fmt::format("and {} more numbers", comparison.findings.size() - kMostFindings));
+  for (const std::string& note : comparison.notes) sentences.push_back("note: " + note);
+  return sentences;
+}
+
+std::string describe_ending(const RegressReport& report) {
+  if (!report.options.accept) return report.failed() > 0 ? "if this is meant: " + report.accept_command : "";
+  if (report.accepted.empty()) return "nothing to accept";
+  return fmt::format("accepted: {} changes of the baseline, logged in {}", report.accepted.size(),
+                     (report.options.baseline / "accepted.md").string());
+}
+
 std::string make_accept_command(const RegressOptions& options) {
   std::string text;
   for (const std::string& word : options.command) text += quote_word(word) + ' ';
@@ -108,25 +114,19 @@ std::string describe_worst(const RegressReport& report) {
 
 std::string make_regress_text(const RegressReport& report) {
   std::string text;
-  int listed = 0;
+  std::size_t listed = 0;
   for (const Comparison& comparison : report.comparisons) {
     if (!comparison.differs()) continue;
     if (++listed > kMostListed) continue;
-    text += fmt::format("{}: {}\n{}", name_of(comparison.outcome), name_cell(comparison), list_findings(comparison));
+    text += fmt::format("{}: {}\n", name_of(comparison.outcome), name_cell(comparison));
+    for (const std::string& sentence : describe_differences(comparison)) text += fmt::format("  {}\n", sentence);
     if (comparison.picture) text += fmt::format("  picture: {}\n", (report.options.out / *comparison.picture).string());
   }
   if (listed > kMostListed)
     text += fmt::format("and {} more cells: see {}\n", listed - kMostListed,
                         (report.options.out / "regress.json").string());
   text += describe_counts(report) + "\n";
-  if (report.options.accept) {
-    text += report.accepted.empty()
-                ? "nothing to accept\n"
-                : fmt::format("accepted: {} changes of the baseline, logged in {}\n", report.accepted.size(),
-                              (report.options.baseline / "accepted.md").string());
-  } else if (report.failed() > 0) {
-    text += fmt::format("if this is meant: {}\n", report.accept_command);
-  }
+  if (const std::string ending = describe_ending(report); !ending.empty()) text += ending + "\n";
   return text;
 }
 

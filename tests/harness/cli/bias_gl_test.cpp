@@ -50,7 +50,7 @@ TEST_F(BiasCommand, WritesPageTableAndPictures_ForEveryMode) {
   }
 }
 
-/// The legend names the filters that are drawn; nothing is said of a map that culling emptied.
+/// The chart has the filters that are drawn; nothing is said of a map that culling emptied.
 TEST_F(BiasCommand, FiltersThatAreLeftOut_HaveNoCurve) {
   write("open.toml",
         "title = \"open\"\n[camera]\nposition = [3, 5, 5]\ntarget = [0, 0, 0]\n[light]\nazimuth_deg = "
@@ -61,10 +61,11 @@ TEST_F(BiasCommand, FiltersThatAreLeftOut_HaveNoCurve) {
   const std::string page = read_text(folder() / "out" / "bias.html");
   EXPECT_THAT(page, HasSubstr("Left out: none, which would read an empty map"));
   EXPECT_FALSE(std::filesystem::exists(folder() / "out" / "bias.front-cull.png"));
-  const std::size_t mode = page.find("<section id=\"receiver-plane\">"), legend = page.find("class=\"legend\"", mode);
-  const std::string names = page.substr(legend, page.find("</p>", legend) - legend);
-  EXPECT_THAT(names, HasSubstr("none"));
-  EXPECT_THAT(names, ::testing::Not(HasSubstr("vsm")));
+  const std::size_t chart = page.find("{\"id\":\"bias.receiver-plane\"");
+  ASSERT_NE(chart, std::string::npos);
+  const std::string series = page.substr(chart, page.find("\"selectors\"", chart) - chart);
+  EXPECT_THAT(series, HasSubstr("none: acne"));
+  EXPECT_THAT(series, ::testing::Not(HasSubstr("vsm: acne")));
 }
 
 TEST_F(BiasCommand, Acne_IsThereWithoutBias_AndGoesWithTheTheoreticalAmount) {

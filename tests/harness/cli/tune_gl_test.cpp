@@ -38,6 +38,7 @@ TEST_F(TuneCommand, FindsParametersThatAreBetterOnUnseenViews) {
        {"## vsm", "## esm", "Gain on unseen views", "within 10 % of the best", "out/tuned.json", "padded by 4"})
     EXPECT_THAT(outcome.out, HasSubstr(part));
   EXPECT_EQ(read_text(folder() / "out" / "tune.md") + "parameters: out/tuned.json\n", outcome.out);
+  EXPECT_THAT(read_text(folder() / "out" / "tune.html"), HasSubstr("tuned.json"));
   const nlohmann::json tuned = read_tuned();
   ASSERT_EQ(tuned["filters"].size(), 2u);
   const nlohmann::json& vsm = tuned["filters"][0];

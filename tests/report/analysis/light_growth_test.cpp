@@ -2,10 +2,8 @@
 
 #include <gmock/gmock.h>
 
-#include "report/pages/html.h"
-#include "report/pages/report.h"
-#include "report/pages/trade_plots.h"
 #include "report/pages/trade_section.h"
+#include "report/pages/write_report.h"
 #include "report/records/format.h"
 #include "report/records/json_io.h"
 #include "report/records/text_table.h"
@@ -122,7 +120,8 @@ TEST(LightGrowth, OfOneCount_IsNotSaid) {
   std::vector<records::CellRecord> cells = make_lit_cells();
   for (records::CellRecord& cell : cells) cell.lights->resize(1);
   EXPECT_THAT(describe_light_growth(make_lit_charts(cells), make_run().gl), IsEmpty());
-  EXPECT_THAT(pages::make_light_plots(make_lit_charts(cells), list_filters(cells), make_run().gl), IsEmpty());
+  const page::Section section = pages::make_trade_section(make_run(), cells, *pages::make_trade(cells));
+  for (const page::Block& block : section.blocks) EXPECT_FALSE(std::holds_alternative<page::Chart>(block));
   EXPECT_EQ(make_light_table(make_lit_charts(cells)[0]).rows[0][3], records::kNothing);
 }
 
@@ -220,21 +219,17 @@ std::filesystem::path write(const TemporaryFolder& folder, const std::vector<rec
   return folder.path();
 }
 
-TEST(LightSection, ShowsPlotTableAndWords) {
+TEST(LightSection, ShowsChartTableAndSentences) {
   const TemporaryFolder folder("light_section");
   const auto out = write(folder, make_lit_cells());
   const std::string page = read_text(out / "index.html"), summary = read_text(out / "summary.md");
-  const std::string plot = "plots/cubes.main.960x540.map1024.lights.svg";
   for (const char* text : {"with its lights</h3>", "vsm is cheaper than poisson", "each added light costs",
-                           "time of a frame, ms: CPU time (software rasteriser)"})
+                           "time of a frame, ms: CPU time (software rasteriser)",
+                           "<figure class=\"chart\" id=\"cubes.main.960x540.map1024.lights\">",
+                           "lights, each with a map of its own", "dashed, hollow: casters moving", "in proportion"})
     EXPECT_THAT(page, HasSubstr(text));
-  EXPECT_THAT(page, HasSubstr("<img src=\"" + plot + "\""));
-  for (const char* text : {"vsm is cheaper than poisson", "| vsm | still | 1.5 \\[1.48, 1.52\\] |"})
+  for (const char* text : {"vsm is cheaper than poisson", "| vsm     | still   | 1.5 \\[1.48, 1.52\\] |"})
     EXPECT_THAT(summary, HasSubstr(text));
-  const std::string svg = read_text(out / plot);
-  for (const char* text : {"lights, each with a map of its own", "CPU time (software rasteriser)",
-                           "dashed: casters moving", "in proportion", "poisson", ">8<"})
-    EXPECT_THAT(svg, HasSubstr(text));
 }
 
 /// Too few cells for a front, or none with an error: lights are there all the same.
@@ -245,20 +240,16 @@ TEST(LightSection, NeedsNoFront) {
   const auto out = write(folder, cells);
   const std::string page = read_text(out / "index.html");
   EXPECT_THAT(page, HasSubstr("with its lights</h3>"));
-  EXPECT_THAT(page, HasSubstr("map1024.lights.svg"));
-  EXPECT_THAT(page, Not(HasSubstr("<script")));
+  EXPECT_THAT(page, HasSubstr("map1024.lights"));
   EXPECT_THAT(page, Not(HasSubstr("fronts.csv")));
-  EXPECT_FALSE(std::filesystem::exists(out / "chart.min.js"));
   EXPECT_FALSE(std::filesystem::exists(out / "fronts.csv"));
-  EXPECT_THAT(read_text(out / "summary.md"), AllOf(HasSubstr("| poisson | still |"), Not(HasSubstr("fronts.csv"))));
+  EXPECT_THAT(read_text(out / "summary.md"), AllOf(HasSubstr("| poisson | still "), Not(HasSubstr("fronts.csv"))));
 }
 
 TEST(LightSection, IsNotThere_WhereNothingWasTimed) {
   const auto cells = make_crossing_cells("cubes");
-  EXPECT_THAT(pages::make_trade_html(make_run(), cells, *pages::make_trade(make_run(), cells)),
-              Not(HasSubstr("id=\"lights\"")));
-  EXPECT_THAT(pages::make_trade_markdown(make_run(), cells, *pages::make_trade(make_run(), cells)),
-              Not(HasSubstr("with its lights")));
+  const page::Page page{"", {pages::make_trade_section(make_run(), cells, *pages::make_trade(cells))}, {}};
+  EXPECT_THAT(page::write_markdown(page), Not(HasSubstr("with its lights")));
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "report/analysis/front_words.h"
-#include "report/pages/trade_table.h"
+#include "report/pages/fronts_csv.h"
 #include "trade_cells.h"
 
 namespace shadowbench::analysis {

@@ -10,7 +10,6 @@
 #include "report/files/atomic_file.h"
 #include "report/page/plot_files.h"
 #include "report/page/plot_style.h"
-#include "report/pages/trade_plots.h"
 #include "tests/report/analysis/trade_cells.h"
 
 namespace shadowbench::page {
@@ -64,23 +63,6 @@ TEST(Gnuplot, HostileTexts_AreTexts) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "plots" / "evil.svg"));
 }
 
-TEST(Gnuplot, PlotsOfCells_HoldFiltersMembersAndTheClock) {
-  const TemporaryFolder folder("gnuplot_cells");
-  const auto cells = make_crossing_cells("cubes");
-  const auto scopes = analysis::make_trade_scopes(cells);
-  const auto filters = analysis::list_filters(cells);
-  auto plots = pages::make_front_plots(scopes, filters, make_run().gl);
-  const std::string svg = draw(folder, plots);
-  for (const char* text : {"none", "poisson", "vsm", "RMSE to the area truth", "1: none", "2: poisson (radius 2)",
-                           "3: vsm (radius 2)", "CPU time (software rasteriser)", "cubes · view main"})
-    EXPECT_TRUE(has_text(svg, text)) << text;
-  const auto radius_plots =
-      pages::make_radius_plots(analysis::make_radius_charts(cells, scopes), filters, make_run().gl);
-  const std::string radius_svg = draw(folder, radius_plots);
-  for (const char* text : {"crossing", "kernel half-width, texels", ">3<"})
-    EXPECT_TRUE(has_text(radius_svg, text)) << text;
-}
-
 TEST(Gnuplot, WhereItFails_TheReasonIsGiven) {
   const TemporaryFolder folder("gnuplot_fails");
   files::write_text_file(folder.path() / "bad.gp", "plot nonsense(\n");
@@ -123,52 +105,6 @@ TEST(Gnuplot, WhereItIsMissing_ThatIsSaid) {
   const auto reason = run_gnuplot(folder.path(), "a.gp");
   setenv("PATH", path.c_str(), 1);
   EXPECT_THAT(reason.value_or(""), HasSubstr("install gnuplot-nox"));
-}
-
-TEST(PlotAxis, IsLogarithmic_WhereValuesArePositiveAndFarApart) {
-  const PlotAxis log = choose_axis({0.02, 0.2}, {-0.1, 0.3}, TickKind::kNumber);
-  EXPECT_TRUE(log.log);
-  EXPECT_GT(log.low, 0.0);
-  EXPECT_GT(log.high, 0.3);
-  EXPECT_THAT(log.ticks, Contains(std::pair<double, std::string>(0.1, "0.1")));
-  EXPECT_FALSE(choose_axis({0.0, 0.2}, {}, TickKind::kNumber).log);
-  EXPECT_FALSE(choose_axis({1.0, 1.1}, {}, TickKind::kNumber).log);
-}
-
-TEST(PlotAxis, HoldsItsTicks_WithZeroWrittenPlainly) {
-  for (const auto& values : {std::vector{0.0, 1.0}, std::vector{0.03, 7.0}, std::vector{5.0, 5.0},
-                             std::vector{0.0, 0.0}, std::vector{1e-5, 1e5}}) {
-    const PlotAxis axis = choose_axis(values, {}, TickKind::kNumber);
-    EXPECT_THAT(axis.ticks, Not(IsEmpty()));
-    EXPECT_LE(axis.ticks.size(), 12u);
-    for (const auto& [value, label] : axis.ticks) {
-      EXPECT_GE(value, axis.low);
-      EXPECT_LE(value, axis.high * (1.0 + 1e-9));
-      EXPECT_NE(label, "-0");
-    }
-    EXPECT_LT(axis.low, values[0]);
-    EXPECT_GT(axis.high, values[1]);
-  }
-}
-
-TEST(PlotAxis, ForcedToRatios_HasTicksInANarrowRangeToo) {
-  const PlotAxis axis = choose_log_axis({5.0, 5.1}, {});
-  EXPECT_TRUE(axis.log);
-  EXPECT_GE(axis.ticks.size(), 2u);
-  EXPECT_TRUE(choose_log_axis({5.0}, {}).log);
-}
-
-TEST(PlotAxis, BytesAreInPowersOfTwo) {
-  const PlotAxis axis = choose_axis({262144.0, 8388608.0}, {}, TickKind::kBytes);
-  EXPECT_EQ(axis.ticks.front().second, "256 KiB");
-  EXPECT_EQ(axis.ticks.back().second, "8 MiB");
-}
-
-TEST(PlotStyle, NeighboursDiffer_InColourAndShape) {
-  for (std::size_t i = 0; i + 1 < 12; ++i) {
-    EXPECT_STRNE(style_of(i).color, style_of(i + 1).color);
-    EXPECT_STRNE(style_of(i).shape, style_of(i + 1).shape);
-  }
 }
 
 }  // namespace

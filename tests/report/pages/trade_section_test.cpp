@@ -2,13 +2,11 @@
 
 #include <gmock/gmock.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "report/page/embedded.h"
-#include "report/pages/html.h"
-#include "report/pages/report.h"
+#include "report/pages/run_page.h"
+#include "report/pages/write_report.h"
 #include "report/records/json_io.h"
 #include "tests/report/analysis/trade_cells.h"
 
@@ -18,14 +16,19 @@ using namespace analysis;
 using namespace records;
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::SizeIs;
 
 constexpr const char* kHostile = "</script><script>alert('1', \"2\")</script><!--";
 
-nlohmann::json read_data(const std::string& page) {
-  const std::string start = "<script type=\"application/json\" id=\"trade-data\">";
+std::string write_trade(const std::vector<records::CellRecord>& cells) {
+  return page::write_html({"", {make_trade_section(make_run(), cells, *make_trade(cells))}, {}});
+}
+
+nlohmann::json read_charts(const std::string& page) {
+  const std::string start = "<script type=\"application/json\" id=\"charts\">";
   const auto begin = page.find(start) + start.size();
   return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
 }
@@ -41,26 +44,67 @@ std::string write_and_read(const TemporaryFolder& folder, const std::vector<reco
   return read_text(folder.path() / file);
 }
 
-TEST(TradeSection, Data_IsJsonThatHoldsEveryCellAndFront) {
+const page::ChartChoice& find_choice(const page::Section& section, const std::string& id) {
+  for (const page::Block& block : section.blocks)
+    if (const auto* choice = std::get_if<page::ChartChoice>(&block); choice && choice->id == id) return *choice;
+  throw std::runtime_error("the section has no choice of charts " + id);
+}
+
+std::vector<std::string> list_titles(const page::Chart& chart) {
+  std::vector<std::string> titles;
+  for (const page::ChartSeries& series : chart.series) titles.push_back(series.title);
+  return titles;
+}
+
+TEST(TradeSection, Fronts_AreChartsOfEveryErrorAndCost) {
   const auto cells = make_crossing_cells("cubes");
-  const std::string page = make_trade_html(make_run(), cells, *make_trade(make_run(), cells));
-  const nlohmann::json data = read_data(page);
-  ASSERT_THAT(data["scopes"], SizeIs(1));
-  const nlohmann::json& scope = data["scopes"][0];
-  EXPECT_THAT(scope["configurations"], SizeIs(7));
-  EXPECT_EQ(scope["configurations"][0]["costs"][0], nlohmann::json({4, 4, 4}));
-  EXPECT_EQ(scope["configurations"][0]["pictures"][0]["picture"], "cubes.none.png");
-  EXPECT_TRUE(scope["configurations"][0]["pictures"][0]["visibility"].is_null());
-  EXPECT_TRUE(scope["configurations"][0]["errors"][2].is_null());
-  const nlohmann::json& front = scope["fronts"][0][0];
-  EXPECT_EQ(front["members"], nlohmann::json({0, 1, 4}));
-  EXPECT_EQ(front["places"][3][1], "dominated");
-  EXPECT_EQ(front["places"][3][2], 1);
-  EXPECT_EQ(front["places"][5][1], "tied");
-  EXPECT_EQ(front["places"][5][2], 4);
-  EXPECT_THAT(front["words"].dump(), HasSubstr("vsm (radius 2)"));
-  EXPECT_NEAR(data["charts"][0]["still"]["crossings"][0]["radius"].get<double>(), 3.0, 1e-9);
-  EXPECT_THAT(data["costs"][0]["axis"].get<std::string>(), HasSubstr("CPU time (software rasteriser)"));
+  const page::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
+  const page::ChartChoice& choice = find_choice(section, "front");
+  ASSERT_THAT(choice.entries, SizeIs(16));
+  EXPECT_THAT(choice.selectors[1].options, SizeIs(4));
+  const page::Chart& chart = choice.entries[0].chart;
+  EXPECT_EQ(chart.id, "cubes.main.960x540.rmse.lookup");
+  EXPECT_THAT(chart.x_name, HasSubstr("CPU time (software rasteriser)"));
+  EXPECT_THAT(chart.notes, ElementsAre("1: none", "2: poisson (radius 2)", "3: vsm (radius 2)"));
+  EXPECT_THAT(choice.entries[0].sentences[0], HasSubstr("vsm (radius 2)"));
+  // Members of the front, tied, beaten, and the lines to what a cell is tied with.
+  EXPECT_THAT(list_titles(chart), ElementsAre("front", "none", "poisson", "", "vsm", "", ""));
+  const page::ChartSeries &line = chart.series[0], &beaten = chart.series[3], &tied = chart.series[5];
+  EXPECT_THAT(line.points, SizeIs(3));
+  EXPECT_EQ(line.points[2].label, "3");
+  EXPECT_TRUE(beaten.faint);
+  EXPECT_FALSE(tied.faint);
+  EXPECT_FALSE(tied.filled);
+  EXPECT_THAT(tied.points, SizeIs(2));
+  EXPECT_EQ(chart.series[6].line, page::LineStyle::kTies);
+  EXPECT_THAT(chart.series[6].points, SizeIs(4));
+  const page::ChartPoint& member = chart.series[1].points[0];
+  EXPECT_THAT(member.details, ElementsAre("none", "radius 0", "map 1024 × 1024",
+                                          HasSubstr("RMSE to the area truth: 0.1 [0.099, 0.101]"),
+                                          HasSubstr("time of the lookup: 4 ms"), "on the front"));
+  EXPECT_EQ(member.pictures.at(0).first, "cubes.none.png");
+}
+
+TEST(TradeSection, TimesOverRadius_AreChartsWithTheirCrossings) {
+  const auto cells = make_crossing_cells("cubes");
+  const page::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
+  const page::ChartChoice& choice = find_choice(section, "radius");
+  ASSERT_THAT(choice.entries, SizeIs(2));
+  const page::ChartSeries& crossings = choice.entries[0].chart.series.back();
+  ASSERT_THAT(crossings.points, SizeIs(1));
+  EXPECT_EQ(crossings.title, "crossing");
+  EXPECT_NEAR(crossings.points[0].x.value, 3.0, 1e-9);
+  EXPECT_EQ(crossings.points[0].label, "3");
+  EXPECT_EQ(choice.entries[0].chart.x_name, "kernel half-width, texels");
+}
+
+TEST(TradeSection, ChartsOfThePage_AreJsonThatHoldsEveryPoint) {
+  const nlohmann::json data = read_charts(write_trade(make_crossing_cells("cubes")));
+  const nlohmann::json& chart = data["charts"][0]["entries"][0]["chart"];
+  EXPECT_EQ(chart["series"][1]["points"][0][0], nlohmann::json(4));
+  EXPECT_EQ(chart["series"][1]["points"][0][1], nlohmann::json({0.1, 0.099, 0.101}));
+  const std::size_t detail = chart["series"][1]["points"][0][3][0];
+  EXPECT_EQ(data["texts"][detail], "none");
 }
 
 TEST(TradeSection, HostileTexts_EndNoElement) {
@@ -70,48 +114,27 @@ TEST(TradeSection, HostileTexts_EndNoElement) {
     cell.params["name"] = std::string(kHostile);
     cell.images.picture = kHostile;
   }
-  const std::string page = make_trade_html(make_run(), cells, *make_trade(make_run(), cells));
+  const std::string page = write_trade(cells);
   EXPECT_THAT(page, Not(HasSubstr("alert('1', \"2\")")));
   EXPECT_THAT(page, Not(HasSubstr("<!--")));
   const std::regex opening("<script"), closing("</script>");
-  EXPECT_EQ(std::distance(std::sregex_iterator(page.begin(), page.end(), opening), {}), 3);
-  EXPECT_EQ(std::distance(std::sregex_iterator(page.begin(), page.end(), closing), {}), 3);
-  EXPECT_EQ(read_data(page)["filters"][1]["id"], kHostile);
-  EXPECT_THAT(read_data(page)["scopes"][0]["configurations"][0]["pictures"][0]["picture"].get<std::string>(),
-              Not(HasSubstr("<")));
+  EXPECT_EQ(std::distance(std::sregex_iterator(page.begin(), page.end(), opening), {}), 2);
+  EXPECT_EQ(std::distance(std::sregex_iterator(page.begin(), page.end(), closing), {}), 2);
+  const nlohmann::json data = read_charts(page);
+  EXPECT_EQ(data["charts"][0]["entries"][0]["chart"]["series"][2]["title"], kHostile);
+  const std::size_t path = data["charts"][0]["entries"][0]["chart"]["series"][1]["points"][0][4][0][0];
+  EXPECT_THAT(data["texts"][path].get<std::string>(), Not(HasSubstr("<")));
 }
 
-TEST(TradeSection, Report_HasEveryFileItLinksTo) {
+TEST(TradeSection, Report_HasItBeforeTheScenes) {
   const TemporaryFolder folder("trade_report");
   const std::string page = write_and_read(folder, make_crossing_cells("cubes"), "index.html");
   EXPECT_THAT(page, HasSubstr("<h2>The trade: what less error costs</h2>"));
   EXPECT_LT(page.find("id=\"trade\""), page.find("id=\"group-0\""));
-  const std::regex links("(?:href|src)=\"((?:plots|chart|fronts)[^\"]*)\"");
-  int count = 0;
-  for (std::sregex_iterator found(page.begin(), page.end(), links), end; found != end; ++found, ++count)
-    EXPECT_TRUE(std::filesystem::exists(folder.path() / (*found)[1].str())) << (*found)[1];
-  EXPECT_GE(count, 8);
-  EXPECT_EQ(read_text(folder.path() / "chart.min.js"), page::chart_library());
+  EXPECT_THAT(page, HasSubstr("href=\"fronts.csv\""));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "fronts.csv"));
   for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
     EXPECT_NE(entry.path().filename().string().front(), '.');
-}
-
-TEST(TradeSection, LoadsNothingFromElsewhere) {
-  const auto cells = make_crossing_cells("cubes");
-  const std::string page = make_trade_html(make_run(), cells, *make_trade(make_run(), cells));
-  EXPECT_THAT(page, Not(HasSubstr("http")));
-  EXPECT_THAT(std::string(page::chart_library()), HasSubstr("MIT License"));
-  EXPECT_THAT(std::string(page::chart_library()), HasSubstr("Chart.js v3"));
-}
-
-/// In a dark page the ink is light, and cannot be read on paper that stays white.
-TEST(TradeSection, PaperOfAFixedColour_HasInkOfAFixedColour) {
-  const std::string style(page::trade_style());
-  const std::regex rules("[{][^{}]*background: #[^{}]*[}]");
-  int papers = 0;
-  for (std::sregex_iterator found(style.begin(), style.end(), rules), end; found != end; ++found, ++papers)
-    EXPECT_THAT(found->str(), HasSubstr(" color: #"));
-  EXPECT_EQ(papers, 1);
 }
 
 TEST(TradeSection, OfAFewCells_IsNotThere) {
@@ -119,28 +142,17 @@ TEST(TradeSection, OfAFewCells_IsNotThere) {
   const std::string page =
       write_and_read(folder, {make_sweep_cell({}), make_sweep_cell({"cubes", "vsm"})}, "index.html");
   EXPECT_THAT(page, Not(HasSubstr("<script")));
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "chart.min.js"));
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "plots"));
-}
-
-TEST(TradeSection, WithoutGnuplot_TheReportIsWrittenAndSaysSo) {
-  const TemporaryFolder folder("trade_no_gnuplot");
-  const std::string path = std::getenv("PATH");
-  setenv("PATH", folder.path().c_str(), 1);
-  const std::string page = write_and_read(folder, make_crossing_cells("cubes"), "index.html");
-  setenv("PATH", path.c_str(), 1);
-  EXPECT_THAT(page, HasSubstr("No plots for documents: gnuplot cannot be started"));
-  EXPECT_THAT(page, Not(HasSubstr(".svg")));
-  EXPECT_THAT(read_text(folder.path() / "summary.md"), HasSubstr("No plots for documents"));
+  EXPECT_THAT(page, Not(HasSubstr("id=\"trade\"")));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "fronts.csv"));
 }
 
 TEST(TradeSection, Summary_SaysFrontsCrossoversAndColumns) {
   const TemporaryFolder folder("trade_summary");
   const std::string summary = write_and_read(folder, make_crossing_cells("cubes"), "summary.md");
   for (const char* text : {"## The trade", "the front from the cheapest cell on: none",
-                           "from a kernel radius of 4 texels on", "`dominated_by`:"})
+                           "from a kernel radius of 4 texels on", "**dominated_by**:"})
     EXPECT_THAT(summary, HasSubstr(text));
-  EXPECT_LT(summary.find("## The trade"), summary.find("### What it costs"));
+  EXPECT_LT(summary.find("## The trade"), summary.find("What it costs: "));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "report/files/atomic_file.h"
-#include "report/pages/tuned_text.h"
+#include "report/pages/tune_page.h"
 
 namespace shadowbench::records {
 namespace {
@@ -89,17 +89,19 @@ TEST(TunedJson, ReadsBackAsItWasWritten) {
   EXPECT_EQ(settings.filters[0].params, filter.params);
 }
 
-TEST(TunedText, SaysParametersScoresGainAndRanges) {
-  const std::string text = pages::make_tuned_text(make_record(make_filter({0.10, 0.05}, {0.12, 0.08})));
-  for (const char* part : {"+33.3 %", "rmse 0.12 to 0.08", "standard error is 0.002", "5 .. 9, and 20", "12.5 %",
-                           "all of it: no effect", "107 settings", "1 of 1 views"})
-    EXPECT_THAT(text, HasSubstr(part));
-  EXPECT_THAT(text, Not(HasSubstr("Overfitted")));
-  EXPECT_THAT(text, Not(HasSubstr("Worse by them")));
+TEST(TunePage, SaysParametersScoresGainAndRanges_InBothFormats) {
   TunedRecord record = make_record(make_filter({0.10, 0.05}, {0.12, 0.08}));
+  for (const std::string& written :
+       {page::write_markdown(pages::make_tune_page(record)), page::write_html(pages::make_tune_page(record))}) {
+    for (const char* part : {"+33.3 %", "rmse 0.12 to 0.08", "standard error is 0.002", "5 .. 9, and 20", "12.5 %",
+                             "all of it: no effect", "107 settings", "1 of 1 views", "tuned.json"})
+      EXPECT_THAT(written, HasSubstr(part));
+    EXPECT_THAT(written, Not(HasSubstr("Overfitted")));
+    EXPECT_THAT(written, Not(HasSubstr("Worse by the parameters")));
+  }
   record.scenes.push_back("ball");
   record.filters[0].views.push_back({"ball", "camera +10", false, {0.02, 0.03}, 0.004});
-  EXPECT_THAT(pages::make_tuned_text(record), HasSubstr("Worse by them: ball."));
+  EXPECT_THAT(page::write_markdown(pages::make_tune_page(record)), HasSubstr("Worse by the parameters found: ball."));
 }
 
 }  // namespace

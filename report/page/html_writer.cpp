@@ -1,0 +1,264 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "report/files/file_name.h"
+#include "report/page/blocks.h"
+#include "report/page/embedded.h"
+#include "report/page/html_parts.h"
+#include "report/page/markdown.h"
+#include "report/records/json_values.h"
+
+namespace shadowbench::page {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kShortField = 28;  // characters that stay on one line
+
+/// Packs the charts of a page for charts.js. Texts that many points share are kept once, and named by their place.
+class ChartPacker {
+ public:
+  void add(const ChartChoice& choice) {
+    json selectors = json::array(), entries = json::array();
+    for (const ChartChoice::Selector& each : choice.selectors)
+      selectors.push_back({{"label", each.label}, {"options", each.options}});
+    for (const ChartChoice::Entry& each : choice.entries)
+      entries.push_back({{"chart", pack(each.chart)}, {"sentences", pack(each.sentences)}});
+    charts_.push_back({{"id", choice.id}, {"selectors", selectors}, {"entries", entries}});
+  }
+
+  bool is_empty() const { return charts_.empty(); }
+
+  /// No text in it can end the element that it stands in, or begin a comment.
+  std::string dump() const {
+    std::string safe;
+    for (const char c : records::dump_line(json{{"texts", texts_}, {"charts", charts_}}))
+      if (c == '<' || c == '>' || c == '&')
+        safe += fmt::format("\\u{:04x}", static_cast<int>(c));
+      else
+        safe += c;
+    return safe;
+  }
+
+ private:
+  std::size_t pack(const std::string& text) {
+    const auto [found, is_new] = places_.emplace(text, places_.size());
+    if (is_new) texts_.push_back(text);
+    return found->second;
+  }
+
+  json pack(const std::vector<std::string>& texts) {
+    json places = json::array();
+    for (const std::string& text : texts) places.push_back(pack(text));
+    return places;
+  }
+
+  /// Six digits are more than a chart shows.
+  static json pack(double value) { return std::isfinite(value) ? json::parse(fmt::format("{:.6g}", value)) : json(); }
+
+  static json pack(const analysis::Estimate& estimate) {
+    if (estimate.low == estimate.value && estimate.high == estimate.value) return pack(estimate.value);
+    return json::array({pack(estimate.value), pack(estimate.low), pack(estimate.high)});
+  }
+
+  json pack(const ChartPoint& point) {
+    json pictures = json::array();
+    for (const auto& [path, caption] : point.pictures)
+      pictures.push_back(json::array({pack(files::encode_url_path(path)), pack(caption)}));
+    json packed{pack(point.x), pack(point.y), point.label, pack(point.details), pictures};
+    for (int last = 4; last > 1 && packed.back().empty(); --last) packed.erase(packed.end() - 1);
+    return packed;
+  }
+
+  static json pack(const std::string& name, const PlotAxis& axis) {
+    return {{"name", name}, {"log", axis.log}, {"low", axis.low}, {"high", axis.high}, {"ticks", axis.ticks}};
+  }
+
+  json pack(const Chart& chart) {
+    static constexpr const char* kLines[] = {"none", "steps", "solid", "dashed", "ties"};
+    static constexpr const char* kMarks[] = {"none", "circle", "square", "triangle", "diamond", "down", "cross"};
+    json series = json::array();
+    for (const ChartSeries& each : chart.series) {
+      json points = json::array();
+      for (const ChartPoint& point : each.points) points.push_back(pack(point));
+      series.push_back({{"title", each.title},
+                        {"color", each.color},
+                        {"mark", kMarks[static_cast<std::size_t>(each.mark)]},
+                        {"filled", each.filled},
+                        {"faint", each.faint},
+                        {"line", kLines[static_cast<std::size_t>(each.line)]},
+                        {"whiskers", each.whiskers},
+                        {"points", points}});
+    }
+    return {{"id", chart.id},
+            {"title", chart.title},
+            {"x", pack(chart.x_name, chart.x)},
+            {"y", pack(chart.y_name, chart.y)},
+            {"series", series},
+            {"notes", chart.notes}};
+  }
+
+  std::map<std::string, std::size_t> places_;
+  json texts_ = json::array();
+  json charts_ = json::array();
+};
+
+/// What a column holds decides how it is aligned and broken into lines: numbers ("n"), short texts ("s") or others.
+std::string classify_column(const records::TextTable& table, std::size_t column) {
+  bool numbers = false, texts = false, long_texts = false;
+  for (const auto& row : table.rows) {
+    const std::string& field = row[column];
+    const bool number = is_number_like(field);
+    numbers = numbers || number;
+    texts = texts || !(number || field.size() < 4);  // such as "-"
+    long_texts = long_texts || field.size() > kShortField;
+  }
+  return long_texts ? "" : numbers && !texts ? " class=\"n\"" : " class=\"s\"";
+}
+
+/// Writes blocks as HTML, and collects the charts.
+class HtmlWriter {
+ public:
+  std::string write(const std::vector<Block>& blocks) {
+    std::string html;
+    for (const Block& block : blocks) html += std::visit([this](const auto& each) { return write(each); }, block);
+    return html;
+  }
+
+  const ChartPacker& charts() const { return charts_; }
+
+ private:
+  std::string write(const Facts& facts) { return html_facts(facts.items); }
+
+  std::string write(const Sentences& sentences) {
+    return write_lead(sentences.lead) + (sentences.items.empty() ? "" : html_list(sentences.items));
+  }
+
+  std::string write(const Paragraph& paragraph) {
+    return fmt::format("<p{}>{}</p>\n", paragraph.quiet ? " class=\"note\"" : "", escape_html(paragraph.text));
+  }
+
+  std::string write(const Heading& heading) { return fmt::format("<h3>{}</h3>\n", escape_html(heading.text)); }
+
+  std::string write(const Links& links) {
+    std::string html = "<p>" + escape_html(links.lead);
+    for (std::size_t i = 0; i < links.items.size(); ++i)
+      html += (i > 0 ? ", " : links.lead.empty() ? "" : " ") + link(links.items[i].path, links.items[i].text);
+    return html + "</p>\n";
+  }
+
+  std::string write(const Table& table) {
+    std::vector<std::string> classes;
+    for (std::size_t i = 0; i < table.table.header.size(); ++i) classes.push_back(classify_column(table.table, i));
+    const auto write_row = [&](const std::vector<std::string>& fields, std::string_view element) {
+      std::string html = "<tr>";
+      for (std::size_t i = 0; i < fields.size(); ++i)
+        html += fmt::format("<{0}{1}>{2}</{0}>", element, classes[i], escape_html(fields[i]));
+      return html + "</tr>\n";
+    };
+    std::string html = fmt::format(
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table>\n<caption>{0}</caption>\n"
+        "<thead>{1}</thead>\n<tbody>\n",
+        escape_html(table.caption), write_row(table.table.header, "th"));
+    for (const auto& row : table.table.rows) html += write_row(row, "td");
+    return html + "</tbody></table></div>\n";
+  }
+
+  std::string write(const Gallery& gallery) {
+    std::string figures;
+    for (const Picture& picture : gallery.pictures) figures += figure(picture.path, picture.caption, "picture");
+    if (gallery.title.empty() || figures.empty()) return figures;
+    return fmt::format("<details open><summary>{}</summary>\n<div class=\"gallery{}\">\n{}</div></details>\n",
+                       escape_html(gallery.title), gallery.wide ? " wide" : "", figures);
+  }
+
+  std::string write(const Bars& bars) {
+    std::string html = "<figure class=\"bars\">\n<figcaption>" + escape_html(bars.title) + "<span class=\"legend\">";
+    for (const auto& [color, name] : bars.legend)
+      html += fmt::format("<span><i style=\"background:{}\"></i>{}</span> ", escape_html(color), escape_html(name));
+    html += "</span></figcaption>\n<ul>\n";
+    for (const Bars::Row& row : bars.rows) html += write_row(bars, row);
+    return html + "</ul>\n</figure>\n";
+  }
+
+  /// The drawing is 1000 units wide and stretched to the page.
+  static std::string write_row(const Bars& bars, const Bars::Row& row) {
+    const std::string label = escape_html(row.label);
+    if (row.segments.empty()) return fmt::format("<li>{}</li>\n", label);
+    const auto place = [&](double value) {
+      return std::lround(1000.0 * std::clamp((value - bars.low) / (bars.high - bars.low), 0.0, 1.0));
+    };
+    std::string html = fmt::format(
+        "<li>{0}<svg viewBox=\"0 0 1000 24\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"{0}\">"
+        "<rect class=\"track\" x=\"0\" y=\"4\" width=\"1000\" height=\"16\"></rect>"
+        "<rect class=\"zero\" x=\"{1}\" y=\"0\" width=\"2\" height=\"24\"></rect>",
+        label, place(0.0) - 1);
+    for (const Bars::Segment& segment : row.segments)
+      html += fmt::format("<rect x=\"{}\" y=\"4\" width=\"{}\" height=\"16\" fill=\"{}\"></rect>", place(segment.begin),
+                          place(segment.end) - place(segment.begin), escape_html(segment.color));
+    return html + fmt::format("<rect class=\"net\" x=\"{}\" y=\"0\" width=\"3\" height=\"24\"></rect></svg></li>\n",
+                              place(row.net) - 1);
+  }
+
+  std::string write(const Chart& chart) { return write(ChartChoice{chart.id, {}, {{chart, {}}}}); }
+
+  /// The sentences of the first chart are there without scripts too.
+  std::string write(const ChartChoice& choice) {
+    if (choice.entries.empty()) return {};
+    charts_.add(choice);
+    const std::vector<std::string>& said = choice.entries.front().sentences;
+    return fmt::format(
+        "<figure class=\"chart\" id=\"{}\">\n<div class=\"controls\"></div>\n<div class=\"holder\">"
+        "<noscript>A script draws the chart \"{}\" here.</noscript></div>\n"
+        "<div class=\"gallery\" aria-live=\"polite\"></div>\n<div class=\"said\">{}</div>\n</figure>\n",
+        escape_html(choice.id), escape_html(choice.entries.front().chart.title), said.empty() ? "" : html_list(said));
+  }
+
+  std::string write(const Details& details) {
+    return fmt::format("<details><summary>{}</summary>\n{}</details>\n", escape_html(details.summary),
+                       write(details.blocks));
+  }
+
+  static std::string write_lead(const std::string& lead) {
+    return lead.empty() ? std::string() : "<p>" + escape_html(lead) + "</p>\n";
+  }
+
+  ChartPacker charts_;
+};
+
+std::string write_navigation(const Page& page) {
+  std::string siblings, sections;
+  for (const Link& sibling : page.siblings) siblings += link(sibling.path, sibling.text) + " ";
+  for (const Section& section : page.sections)
+    if (!section.heading.empty() && !section.id.empty())
+      sections += fmt::format("<a href=\"#{}\">{}</a> ", escape_html(section.id), escape_html(section.heading));
+  return (siblings.empty() ? "" : "<nav class=\"siblings\">" + siblings + "</nav>\n") +
+         (sections.empty() ? "" : "<nav>" + sections + "</nav>\n");
+}
+
+std::string write_section(const Section& section, HtmlWriter& writer) {
+  std::string html = "<section";
+  if (!section.id.empty()) html += fmt::format(" id=\"{}\"", escape_html(section.id));
+  html += section.warns ? " class=\"warns\">\n" : ">\n";
+  if (!section.heading.empty()) html += fmt::format("<h2>{}</h2>\n", escape_html(section.heading));
+  return html + writer.write(section.blocks) + "</section>\n";
+}
+
+}  // namespace
+
+std::string write_html(const Page& page) {
+  HtmlWriter writer;
+  std::string html = html_head(page.title, page_style()) +
+                     fmt::format("<body>\n<main>\n<h1>{}</h1>\n", escape_html(page.title)) + write_navigation(page);
+  for (const Section& section : page.sections) html += write_section(section, writer);
+  html += "</main>\n";
+  if (!writer.charts().is_empty())
+    html += fmt::format("<script type=\"application/json\" id=\"charts\">{}</script>\n<script>\n{}</script>\n",
+                        writer.charts().dump(), chart_script());
+  return html + "</body>\n</html>\n";
+}
+
+}  // namespace shadowbench::page

@@ -1,0 +1,111 @@
+#include "report/pages/fronts_csv.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "report/records/csv.h"
+#include "report/records/json_values.h"
+
+namespace shadowbench::pages {
+namespace {
+
+std::string join_row(std::vector<std::string> fields) {
+  for (std::string& field : fields) field = records::quote_csv(field);
+  return fmt::format("{}\r\n", fmt::join(fields, ","));
+}
+
+std::string join_keys(const std::vector<records::CellRecord>& cells,
+                      const analysis::TradeConfiguration& configuration) {
+  std::vector<std::string> keys;
+  for (const std::size_t i : configuration.cells) keys.push_back(cells[i].key);
+  return fmt::format("{}", fmt::join(keys, "+"));
+}
+
+void append(std::vector<std::string>& fields, const std::optional<analysis::Estimate>& estimate) {
+  for (double analysis::Estimate::*member :
+       {&analysis::Estimate::value, &analysis::Estimate::low, &analysis::Estimate::high})
+    fields.push_back(estimate ? fmt::format("{}", *estimate.*member) : std::string());
+}
+
+std::vector<std::string> describe_place(const std::vector<records::CellRecord>& cells,
+                                        const analysis::TradeScope& scope, const analysis::TradeFront& front,
+                                        std::size_t configuration) {
+  const auto found = std::find(front.configurations.begin(), front.configurations.end(), configuration);
+  if (found == front.configurations.end()) {
+    const analysis::TradeConfiguration& each = scope.configurations[configuration];
+    const analysis::Measured& error = each.errors[front.error];
+    return {"", "", "", error.estimate ? each.costs[front.cost].absent : error.absent};
+  }
+  const analysis::Placement& place = front.placements[static_cast<std::size_t>(found - front.configurations.begin())];
+  const std::string by = join_keys(cells, scope.configurations[front.configurations[place.by]]);
+  return {place.standing == analysis::Standing::kFront ? "1" : "0",
+          place.standing == analysis::Standing::kDominated ? by : "",
+          place.standing == analysis::Standing::kTied ? by : "", ""};
+}
+
+std::string make_row(const std::vector<records::CellRecord>& cells, const analysis::TradeScope& scope,
+                     const analysis::TradeFront& front, std::size_t i) {
+  const analysis::TradeConfiguration& each = scope.configurations[i];
+  std::vector<std::string> fields = {scope.id,
+                                     scope.scene,
+                                     scope.view,
+                                     fmt::format("{}", scope.width),
+                                     fmt::format("{}", scope.height),
+                                     analysis::list_error_measures()[front.error].id,
+                                     analysis::list_cost_measures()[front.cost].id,
+                                     join_keys(cells, each),
+                                     each.filter,
+                                     records::dump_line(records::value_json(each.params)),
+                                     fmt::format("{}", each.map_size)};
+  append(fields, each.errors[front.error].estimate);
+  append(fields, each.costs[front.cost].estimate);
+  const auto place = describe_place(cells, scope, front, i);
+  fields.insert(fields.end(), place.begin(), place.end());
+  return join_row(fields);
+}
+
+}  // namespace
+
+std::vector<CsvColumn> list_front_columns() {
+  return {{"scope", "what is compared on one front"},
+          {"scene", "the scene's name; empty: all scenes and views together"},
+          {"view", "the camera's name; empty likewise"},
+          {"width", "picture, pixels"},
+          {"height", "picture, pixels"},
+          {"error", "which error: rmse, kernel_rmse, leak, flip"},
+          {"cost", "which cost: lookup and moving in ms of the run's clock, fetches, bytes"},
+          {"cell", "the cell's key; of all scenes: the keys of its cells, joined by +"},
+          {"filter", "the filter's id"},
+          {"params", "the filter's parameters as JSON"},
+          {"map_size", "shadow map, texels along a side"},
+          {"error_value", "the error"},
+          {"error_low", "lower end of its interval; the value where it has none"},
+          {"error_high", "upper end likewise"},
+          {"cost_value", "the cost"},
+          {"cost_low", "lower end of its interval; the value where it has none"},
+          {"cost_high", "upper end likewise"},
+          {"on_front", "1: on the front, 0: not, empty: left out"},
+          {"dominated_by", "the cheapest cell of the front that beats it"},
+          {"tie_with", "the cell of the front from which it cannot be told apart"},
+          {"left_out", "why it has no place on this front"}};
+}
+
+std::string make_fronts_csv(const std::vector<records::CellRecord>& cells,
+                            const std::vector<analysis::TradeScope>& scopes) {
+  std::vector<std::string> names;
+  for (const CsvColumn& column : list_front_columns()) names.push_back(column.name);
+  std::string csv = join_row(names);
+  for (const analysis::TradeScope& scope : scopes) {
+    for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error) {
+      for (std::size_t cost = 0; cost < analysis::kCostMeasures; ++cost) {
+        const analysis::TradeFront front = analysis::make_trade_front(scope, error, cost);
+        for (std::size_t i = 0; i < scope.configurations.size(); ++i) csv += make_row(cells, scope, front, i);
+      }
+    }
+  }
+  return csv;
+}
+
+}  // namespace shadowbench::pages

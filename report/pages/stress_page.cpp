@@ -1,0 +1,328 @@
+#include "report/pages/stress_page.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+
+#include "report/page/markdown.h"
+#include "report/page/plot_style.h"
+#include "report/pages/write_page.h"
+#include "report/records/format.h"
+
+namespace shadowbench::pages {
+namespace {
+
+std::string format_value(const std::optional<double>& value, const char* nothing) {
+  return value ? fmt::format("{:.4g}", *value) : std::string(nothing);
+}
+
+std::string format_onset(const std::optional<records::StressOnset>& onset) {
+  if (!onset) return records::kNothing;
+  return onset->last_before ? fmt::format("{:.4g}", onset->value)
+                            : fmt::format("{:.4g} (where the range begins)", onset->value);
+}
+
+/// Gives the last value before anything changed.
+std::string format_last_ok(const records::StressCase& item) {
+  if (!item.not_available.empty()) return records::kNothing;
+  const records::StressOnset* onset = records::find_onset(item, records::StressVerdict::kDegraded);
+  if (!onset) return "all of the range";
+  return onset->last_before ? fmt::format("{:.4g}", *onset->last_before) : "nowhere";
+}
+
+std::string format_reason(const records::StressCase& item) {
+  if (!item.not_available.empty()) return "not available: " + item.not_available;
+  const records::StressOnset* onset = records::find_onset(item, records::StressVerdict::kBroken);
+  if (!onset) onset = records::find_onset(item, records::StressVerdict::kDegraded);
+  return onset ? onset->why : std::string();
+}
+
+std::vector<std::string> make_limit_row(const records::StressAxis& axis, const records::StressCase& item,
+                                        const records::StressLimit& limit) {
+  return {axis.id,
+          records::label_of(item),
+          records::name_of(limit.predicts),
+          limit.formula,
+          limit.onset ? fmt::format("{:.4g}", *limit.onset) : "none",
+          format_value(limit.measured, "not in the range"),
+          limit.ratio ? fmt::format("{:.3f}", *limit.ratio) : std::string(records::kNothing),
+          limit.kind == records::StressTheoryKind::kRounding ? "rounding, factor 8"
+                                                             : fmt::format("{}, 10 %", records::name_of(limit.kind)),
+          records::name_of(limit.agreement)};
+}
+
+/// There is nothing to see of a limit, and nothing should be: the range ends before it, or there is none.
+bool is_out_of_sight(const records::StressLimit& limit) {
+  return !limit.measured && limit.agreement == records::StressAgreement::kAgrees;
+}
+
+std::vector<std::string> list_limits(const records::StressAxis& axis, records::StressAgreement agreement) {
+  std::vector<std::string> sentences;
+  for (const records::StressCase& item : axis.cases) {
+    for (const records::StressLimit& limit : item.limits) {
+      if (limit.agreement != agreement) continue;
+      sentences.push_back(
+          fmt::format("{}: {} at {}, where theory says {} ({}){}{}.", records::label_of(item),
+                      records::name_of(limit.predicts), format_value(limit.measured, "no value of the range"),
+                      limit.onset ? fmt::format("{:.4g}", *limit.onset) : "none", limit.formula,
+                      limit.explanation.empty() ? ", and nothing explains it" : ": ", limit.explanation));
+    }
+  }
+  return sentences;
+}
+
+constexpr std::size_t kLimitsPerLine = 5;
+constexpr double kLeastShown = 1e-9;  // on a logarithmic axis
+
+/// A point of a chart, without intervals.
+page::ChartPoint at(double x, double y) { return {{x, x, x}, {y, y, y}}; }
+
+bool is_shown(const records::StressAxis& axis, const std::optional<double>& measured) {
+  return measured && (!axis.measured_log || *measured >= kLeastShown);
+}
+
+page::PlotAxis choose_value_axis(const records::StressAxis& axis) {
+  if (axis.log) return page::choose_log_axis({axis.range.low, axis.range.high}, {});
+  page::PlotAxis chosen = page::choose_axis({axis.range.low, axis.range.high}, {}, page::TickKind::kNumber);
+  if (chosen.log)  // choose_axis() prefers a logarithm for what is positive
+    chosen = page::choose_axis({0.0, axis.range.high}, {}, page::TickKind::kNumber);
+  return chosen;
+}
+
+page::PlotAxis choose_measured_axis(const records::StressAxis& axis) {
+  std::vector<double> values = {axis.bound};
+  for (const records::StressCase& item : axis.cases) {
+    for (const records::StressSample& sample : item.samples)
+      if (is_shown(axis, sample.measured)) values.push_back(*sample.measured);
+  }
+  return axis.measured_log ? page::choose_log_axis(values, {}) : page::choose_axis(values, {}, page::TickKind::kNumber);
+}
+
+page::ChartSeries make_line(std::string title, page::ChartPoint from, page::ChartPoint to, std::string color,
+                            page::LineStyle style) {
+  page::ChartSeries series;
+  series.title = std::move(title);
+  series.color = std::move(color);
+  series.line = style;
+  series.points = {std::move(from), std::move(to)};
+  return series;
+}
+
+void add_case(page::Chart& chart, const records::StressAxis& axis, const records::StressCase& item,
+              const page::PlotStyle& style) {
+  const bool model = item.level == "model";  // a dashed line beside the GL's, whose points would hide it
+  page::ChartSeries line, broken;
+  line.title = records::label_of(item);
+  line.color = broken.color = style.color;
+  line.mark = model ? page::Mark::kNone : style.mark;
+  broken.mark = style.mark;
+  line.filled = false;
+  line.line = model ? page::LineStyle::kDashed : page::LineStyle::kSolid;
+  for (const records::StressSample& sample : item.samples) {
+    const bool shown = is_shown(axis, sample.measured);
+    if (!shown && sample.verdict != records::StressVerdict::kBroken) continue;
+    page::ChartPoint point = at(sample.value, shown ? *sample.measured : chart.y.high);
+    point.details = {line.title, fmt::format("{} {:.4g}: {}", axis.quantity, sample.value, name_of(sample.verdict)),
+                     fmt::format("{}: {}", axis.measured, format_value(sample.measured, "nothing finite"))};
+    if (!sample.why.empty()) point.details.push_back(sample.why);
+    if (sample.verdict == records::StressVerdict::kBroken) broken.points.push_back(point);
+    if (shown) line.points.push_back(std::move(point));
+  }
+  chart.series.push_back(std::move(line));
+  if (!broken.points.empty()) chart.series.push_back(std::move(broken));
+}
+
+/// Adds a vertical line for each theoretical limit within the chart; equal limits are one line.
+void add_theory(page::Chart& chart, const records::StressAxis& axis) {
+  std::map<std::string, double> onsets;  // by what the label says
+  bool says_none = false;
+  for (const records::StressCase& item : axis.cases) {
+    for (const records::StressLimit& limit : item.limits) {
+      says_none = says_none || !limit.onset;
+      if (limit.onset && *limit.onset >= chart.x.low && *limit.onset <= chart.x.high)
+        onsets.emplace(fmt::format("{:.4g}", *limit.onset), *limit.onset);
+    }
+  }
+  std::vector<std::pair<double, std::string>> sorted;
+  for (const auto& [label, onset] : onsets) sorted.emplace_back(onset, label);
+  std::ranges::sort(sorted);
+  std::vector<std::string> labels;
+  for (const auto& [onset, label] : sorted) {
+    chart.series.push_back(make_line(labels.empty() ? "theoretical limits" : "", at(onset, chart.y.low),
+                                     at(onset, chart.y.high), page::kInk, page::LineStyle::kTies));
+    labels.push_back(label);
+  }
+  for (std::size_t i = 0; i < labels.size(); i += kLimitsPerLine) {
+    const auto begin = labels.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto end = labels.begin() + static_cast<std::ptrdiff_t>(std::min(i + kLimitsPerLine, labels.size()));
+    chart.notes.push_back(fmt::format("theoretical limits: {}", fmt::join(begin, end, ", ")));
+  }
+  if (says_none) chart.notes.push_back("some cases have no theoretical limit");
+}
+
+std::vector<std::pair<std::string, std::string>> list_stress_facts(const records::StressRecord& record) {
+  return {{"filters", fmt::format("{}", fmt::join(record.filters, "; "))},
+          {"OpenGL", fmt::format("{} ({}), {}", record.gl.renderer, record.gl.backend, record.gl.version)},
+          {"machine", fmt::format("{}, {} cores", record.machine.cpu, record.machine.cores)},
+          {"program", record.commit},
+          {"command", fmt::format("{}", fmt::join(record.command, " "))},
+          {"took", fmt::format("{:.1f} s", record.seconds)}};
+}
+
+void add_exhibit(std::vector<page::Block>& blocks, const records::StressExhibit& exhibit) {
+  blocks.emplace_back(page::Heading{exhibit.title});
+  blocks.emplace_back(page::Sentences{{}, exhibit.sentences});
+  if (exhibit.table) blocks.emplace_back(page::Table{exhibit.title, *exhibit.table});
+  for (const records::StressExhibit::Picture& picture : exhibit.pictures)
+    blocks.emplace_back(page::Gallery{{}, {{picture.file, picture.caption}}});
+}
+
+page::Section make_axis_section(const records::StressAxis& axis) {
+  page::Section section{axis.id, fmt::format("{}: {}", axis.id, axis.title), {}};
+  const auto add_sentences = [&](const char* lead, std::vector<std::string> sentences) {
+    if (!sentences.empty()) section.blocks.emplace_back(page::Sentences{lead, std::move(sentences)});
+  };
+  section.blocks = {page::Paragraph{describe_axis(axis), true},
+                    page::Table{"What is safe, and where it ends", make_case_table(axis)}};
+  if (has_stress_chart(axis)) section.blocks.emplace_back(make_stress_chart(axis));
+  add_sentences("Not what theory says, and why:", describe_explanations(axis));
+  add_sentences("Not what theory says, and not explained:", describe_disagreements(axis));
+  add_sentences("Also seen:", describe_notes(axis));
+  for (const records::StressExhibit& exhibit : axis.exhibits) add_exhibit(section.blocks, exhibit);
+  return section;
+}
+
+page::Section make_limit_section(const records::StressRecord& record) {
+  page::Section section{"limits", "Measured against theoretical limits", {}};
+  section.blocks.emplace_back(page::Table{"Where each verdict is first met, found to 1 %", make_limit_table(record)});
+  if (std::vector<std::string> unseen = describe_out_of_sight(record); !unseen.empty())
+    section.blocks.emplace_back(page::Sentences{"Not met, and not expected:", std::move(unseen)});
+  return section;
+}
+
+}  // namespace
+
+records::TextTable make_case_table(const records::StressAxis& axis) {
+  records::TextTable table{{"case", "last value that is ok", "degraded from", "broken from", "why", "observations"},
+                           {}};
+  for (const records::StressCase& item : axis.cases) {
+    table.rows.push_back({records::label_of(item), format_last_ok(item), format_onset(item.degraded),
+                          format_onset(item.broken), format_reason(item), fmt::format("{}", item.samples.size())});
+  }
+  return table;
+}
+
+records::TextTable make_limit_table(const records::StressRecord& record) {
+  records::TextTable table{
+      {"axis", "case", "verdict", "theory", "theoretical", "measured", "ratio", "kind, tolerance", "result"}, {}};
+  for (const records::StressAxis& axis : record.axes) {
+    for (const records::StressCase& item : axis.cases) {
+      for (const records::StressLimit& limit : item.limits)
+        if (!is_out_of_sight(limit)) table.rows.push_back(make_limit_row(axis, item, limit));
+    }
+  }
+  return table;
+}
+
+std::vector<std::string> describe_out_of_sight(const records::StressRecord& record) {
+  std::vector<std::string> sentences;
+  for (const records::StressAxis& axis : record.axes) {
+    int unlimited = 0, beyond = 0;
+    for (const records::StressCase& item : axis.cases) {
+      for (const records::StressLimit& limit : item.limits)
+        if (is_out_of_sight(limit)) ++(limit.onset ? beyond : unlimited);
+    }
+    std::vector<std::string> counts;
+    if (unlimited > 0) counts.push_back(fmt::format("{} where it says that there is none", unlimited));
+    if (beyond > 0) counts.push_back(fmt::format("{} where it puts it beyond the range", beyond));
+    if (!counts.empty())
+      sentences.push_back(
+          fmt::format("{}: no limit within the range, as theory says: {}.", axis.id, fmt::join(counts, ", ")));
+  }
+  return sentences;
+}
+
+std::vector<std::string> describe_explanations(const records::StressAxis& axis) {
+  return list_limits(axis, records::StressAgreement::kExplained);
+}
+
+std::vector<std::string> describe_disagreements(const records::StressAxis& axis) {
+  return list_limits(axis, records::StressAgreement::kDisagrees);
+}
+
+std::vector<std::string> describe_absences(const records::StressAxis& axis) {
+  std::vector<std::string> sentences;
+  for (const records::StressCase& item : axis.cases)
+    if (!item.not_available.empty()) sentences.push_back(records::label_of(item) + ": " + item.not_available);
+  return sentences;
+}
+
+std::vector<std::string> describe_notes(const records::StressAxis& axis) {
+  std::vector<std::string> sentences;
+  for (const records::StressCase& item : axis.cases)
+    for (const std::string& note : item.notes)
+      sentences.push_back(fmt::format("{}: {}.", records::label_of(item), note));
+  return sentences;
+}
+
+std::string describe_axis(const records::StressAxis& axis) {
+  return fmt::format("Over the {}{}, {:g} .. {:g}. Measured: {}{}; degraded where it is over {:g}. Broken: {}.",
+                     axis.quantity, axis.unit.empty() ? "" : ", " + axis.unit, axis.range.low, axis.range.high,
+                     axis.measured, axis.measured_unit.empty() ? "" : ", " + axis.measured_unit, axis.bound,
+                     axis.broken_when);
+}
+
+bool has_stress_chart(const records::StressAxis& axis) {
+  return std::ranges::any_of(
+      axis.cases, [](const records::StressCase& item) { return !item.samples.empty(); });
+}
+
+page::Chart make_stress_chart(const records::StressAxis& axis) {
+  const auto with_unit = [](const std::string& name, const std::string& unit) {
+    return unit.empty() ? name : fmt::format("{}, {}", name, unit);
+  };
+  page::Chart chart;
+  chart.id = "stress." + axis.id;
+  chart.title = axis.title;
+  chart.x_name = with_unit(axis.quantity, axis.unit);
+  chart.y_name = with_unit(axis.measured, axis.measured_unit);
+  chart.x = choose_value_axis(axis);
+  chart.y = choose_measured_axis(axis);
+  std::map<std::string, std::size_t> styles;  // the levels of one variant are drawn alike
+  for (const records::StressCase& item : axis.cases) {
+    if (item.samples.empty()) continue;
+    const auto style = styles.emplace(item.filter + ": " + item.variant, styles.size()).first;
+    add_case(chart, axis, item, page::style_of(style->second));
+  }
+  chart.series.push_back(make_line(fmt::format("bound, {:g}", axis.bound), at(chart.x.low, axis.bound),
+                                   at(chart.x.high, axis.bound), "#8a8f98", page::LineStyle::kDashed));
+  add_theory(chart, axis);
+  chart.notes.push_back("filled: broken, at the upper edge where nothing finite was measured");
+  return chart;
+}
+
+std::string make_limit_text(const records::StressRecord& record) {
+  std::string text = page::write_markdown_table(make_limit_table(record));
+  const std::vector<std::string> unseen = describe_out_of_sight(record);
+  if (unseen.empty()) return text;
+  text += "Not met, and not expected:\n\n";
+  for (const std::string& sentence : unseen) text += "- " + sentence + "\n";
+  return text + "\n";
+}
+
+page::Page make_stress_page(const records::StressRecord& record) {
+  page::Page page{"Where filters break", {{{}, {}, {page::Facts{list_stress_facts(record)}}}}, {}};
+  std::vector<std::string> warnings;
+  for (const records::StressAxis& axis : record.axes)
+    for (const std::string& sentence : describe_disagreements(axis)) warnings.push_back(axis.id + ": " + sentence);
+  if (!warnings.empty())
+    page.sections.push_back({"warnings", "Warnings", {page::Sentences{{}, std::move(warnings)}}, true});
+  page.sections.push_back(make_limit_section(record));
+  for (const records::StressAxis& axis : record.axes) page.sections.push_back(make_axis_section(axis));
+  page.sections.push_back({"data", "", {link_data({"stress.json", "stress.csv"})}});
+  return page;
+}
+
+}  // namespace shadowbench::pages

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/page/blocks.h"
+#include "report/records/stress_record.h"
+
+namespace shadowbench::pages {
+
+/// An axis' table of what is safe: a row per case, with its last value that is ok and the first ones that are not.
+records::TextTable make_case_table(const records::StressAxis& axis);
+
+/// Measured beside theoretical limits over all axes: a row per limit that was met, or should have been.
+records::TextTable make_limit_table(const records::StressRecord& record);
+
+/// Says of each axis how many limits that table leaves out: those that theory puts beyond the range, or says that there
+/// are none, and that were not met.
+std::vector<std::string> describe_out_of_sight(const records::StressRecord& record);
+
+/// The limits of an axis that are not what theory says: those explained, and those that are not.
+std::vector<std::string> describe_explanations(const records::StressAxis& axis);
+std::vector<std::string> describe_disagreements(const records::StressAxis& axis);
+
+/// The cases of an axis that were not measured, with the reason.
+std::vector<std::string> describe_absences(const records::StressAxis& axis);
+
+/// What else was seen on an axis: verdicts that got better again, and remarks of the axis.
+std::vector<std::string> describe_notes(const records::StressAxis& axis);
+
+/// Says in a sentence what an axis measures, over which range, and what its verdicts mean.
+std::string describe_axis(const records::StressAxis& axis);
+
+/// Writes the table of all limits, with what it leaves out, for a terminal.
+std::string make_limit_text(const records::StressRecord& record);
+
+/// Says whether an axis has anything to draw: one observation or more.
+bool has_stress_chart(const records::StressAxis& axis);
+
+/// Draws what was measured over an axis' quantity: a line per case, the same colour for the levels of one variant, the
+/// model's dashed; broken points filled, at the upper edge where nothing finite was measured; the bound dashed,
+/// and the theoretical limits dotted. Zeros are left out where the scale is logarithmic.
+page::Chart make_stress_chart(const records::StressAxis& axis);
+
+/// Makes the page of `shadowbench stress`.
+page::Page make_stress_page(const records::StressRecord& record);
+
+}  // namespace shadowbench::pages

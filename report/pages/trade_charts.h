@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/analysis/crossover.h"
+#include "report/analysis/light_growth.h"
+#include "report/analysis/trade.h"
+#include "report/page/chart.h"
+
+namespace shadowbench::pages {
+
+/// Draws the fronts of every scope, error and cost, with the sentences that say what each holds. Members are filled,
+/// joined and numbered; tied cells are hollow, dominated ones hollow and faint.
+page::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& scopes,
+                                    const std::vector<records::CellRecord>& cells, const records::GlRecord& gl);
+
+/// Draws time over kernel radius for every chart and state of the light, crossings marked.
+page::ChartChoice make_radius_choice(const std::vector<analysis::RadiusChart>& charts,
+                                     const std::vector<std::string>& filters, const records::GlRecord& gl);
+
+/// Draws the time of a frame over its lights, still and moving. Both axes are logarithmic: in proportion is the slope
+/// of the grey line. Requires two counts or more.
+page::Chart make_light_chart(const analysis::LightChart& chart, const std::vector<std::string>& filters,
+                             const records::GlRecord& gl);
+
+}  // namespace shadowbench::pages

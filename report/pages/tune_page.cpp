@@ -1,0 +1,172 @@
+#include "report/pages/tune_page.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "report/pages/write_page.h"
+#include "report/records/format.h"
+
+namespace shadowbench::pages {
+namespace {
+
+/// Writes a parameter as the command line takes it.
+std::string format_value(double value) { return fmt::format("{:.5g}", value); }
+
+std::string format_percent(double share) { return fmt::format("{:.3g} %", 100.0 * share); }
+
+std::string format_gain(const records::TunedScore& score) {
+  return score.at_default > 0.0 ? fmt::format("{:+.1f} %", 100.0 * score.gain() / score.at_default)
+                                : std::string(records::kNothing);
+}
+
+page::Table make_param_table(const records::TunedFilterRecord& filter, const std::string& metric) {
+  page::Table block{"Parameters and scores", {}};
+  records::TextTable& table = block.table;
+  table.header = {filter.id};
+  std::vector<std::string> defaults = {"default"}, found = {"found"};
+  for (const records::TunedParamRecord& param : filter.searched) {
+    table.header.push_back(param.unit.empty() ? param.name : fmt::format("{}, {}", param.name, param.unit));
+    defaults.push_back(format_value(param.default_value));
+    found.push_back(format_value(param.found));
+  }
+  const auto add = [&](const std::string& name, const records::TunedScore& score) {
+    table.header.push_back(fmt::format("{}, {}", metric, name));
+    defaults.push_back(records::format_number(score.at_default));
+    found.push_back(records::format_number(score.tuned));
+  };
+  add("training", filter.training);
+  add("unseen", filter.unseen);
+  table.rows = {defaults, found};
+  return block;
+}
+
+std::string format_intervals(const records::TunedParamRecord& param) {
+  if (param.no_effect) return "all of it: no effect";
+  std::vector<std::string> texts;
+  for (const records::Interval& interval : param.good) {
+    texts.push_back(interval.low == interval.high
+                        ? format_value(interval.low)
+                        : fmt::format("{} .. {}", format_value(interval.low), format_value(interval.high)));
+  }
+  return fmt::format("{}", fmt::join(texts, ", and "));
+}
+
+page::Table make_range_table(const records::TunedFilterRecord& filter, double tolerance) {
+  page::Table block{"How wide the good range of each parameter is, the others at theirs", {}};
+  records::TextTable& table = block.table;
+  table.header = {"parameter", "searched", "scale", fmt::format("within {:g} % of the best", 100.0 * tolerance),
+                  "share of the scale"};
+  for (const records::TunedParamRecord& param : filter.searched) {
+    table.rows.push_back({param.name, fmt::format("{} .. {}", format_value(param.min), format_value(param.max)),
+                          param.scale, format_intervals(param), format_percent(param.good_share)});
+  }
+  return block;
+}
+
+/// A filter's scores on a scene's unseen views.
+struct SceneScore {
+  std::string scene;
+  records::TunedScore mean;
+  double truth_se = 0.0;
+  int views = 0;
+  int better = 0;  ///< views that gain
+};
+
+std::vector<SceneScore> average_scenes(const records::TunedFilterRecord& filter, const records::TunedRecord& record) {
+  std::vector<SceneScore> scores;
+  for (const std::string& scene : record.scenes) {
+    SceneScore& score = scores.emplace_back();
+    score.scene = scene;
+    for (const records::TunedViewRecord& view : filter.views) {
+      if (view.scene != scene || view.training) continue;
+      score.mean.at_default += view.score.at_default;
+      score.mean.tuned += view.score.tuned;
+      score.truth_se += view.truth_se;
+      ++score.views;
+      score.better += view.score.gain() > 0.0 ? 1 : 0;
+    }
+    score.mean.at_default /= score.views;
+    score.mean.tuned /= score.views;
+    score.truth_se /= score.views;
+  }
+  return scores;
+}
+
+page::Table make_scene_table(const std::vector<SceneScore>& scores, const std::string& metric, bool truth_counts) {
+  page::Table block{
+      "Means over the unseen views of each scene",
+      {{"scene, unseen views", metric + ", default", metric + ", found", "gain", "better in", "truth's standard error"},
+       {}}};
+  for (const SceneScore& score : scores) {
+    block.table.rows.push_back(
+        {score.scene, records::format_number(score.mean.at_default), records::format_number(score.mean.tuned),
+         format_gain(score.mean), fmt::format("{} of {} views", score.better, score.views),
+         truth_counts ? records::format_number(score.truth_se) : std::string(records::kNothing)});
+  }
+  return block;
+}
+
+page::Section make_filter_section(const records::TunedFilterRecord& filter, const records::TunedRecord& record) {
+  const std::vector<SceneScore> scores = average_scenes(filter, record);
+  page::Section section{filter.id, filter.label, {}};
+  section.blocks = {make_param_table(filter, record.metric), page::Paragraph{describe_verdict(filter, record.metric)},
+                    make_scene_table(scores, record.metric, filter.unseen_truth_se.has_value())};
+  std::vector<std::string> losers;
+  for (const SceneScore& score : scores)
+    if (score.mean.gain() < 0.0) losers.push_back(score.scene);
+  if (!losers.empty())
+    section.blocks.emplace_back(page::Paragraph{fmt::format(
+        "Worse by the parameters found: {}. Tune for such scenes apart (--scene).", fmt::join(losers, ", "))});
+  section.blocks.emplace_back(make_range_table(filter, record.tolerance));
+  section.blocks.emplace_back(
+      page::Paragraph{fmt::format("{} settings were drawn: {} by the search, the others for the good ranges.",
+                                  filter.evaluations, filter.search_evaluations)});
+  return section;
+}
+
+std::vector<std::pair<std::string, std::string>> list_tune_facts(const records::TunedRecord& record) {
+  return {{"scenes", fmt::format("{}", fmt::join(record.scenes, ", "))},
+          {"training views", fmt::format("{} of each scene, in degrees", record.training_views)},
+          {"unseen views", record.unseen_views},
+          {"score", fmt::format("mean of {} over the views", record.metric)},
+          {"shadow map", fmt::format("{} texels, padded by {:g} (the widest kernel searched is {:g})", record.map_size,
+                                     record.pad_texels, record.widest_kernel)},
+          {"picture", fmt::format("{} x {} pixels", record.width, record.height)},
+          {"light", record.light.empty() ? "each scene's own" : record.light},
+          {"bias", record.bias.empty() ? "the default" : fmt::format("{}", fmt::join(record.bias, " "))},
+          {"seed", fmt::format("{}", record.seed)},
+          {"drawn by", record.renderer},
+          {"program", record.commit}};
+}
+
+}  // namespace
+
+std::string describe_verdict(const records::TunedFilterRecord& filter, const std::string& metric) {
+  const std::string numbers = fmt::format(
+      "Gain on unseen views: {} ({} {} to {}{})", format_gain(filter.unseen), metric,
+      records::format_number(filter.unseen.at_default), records::format_number(filter.unseen.tuned),
+      filter.unseen_truth_se ? "; the truth's standard error is " + records::format_number(*filter.unseen_truth_se)
+                             : std::string());
+  switch (filter.verdict) {
+    case records::TuneVerdict::kBetter: return numbers + ". Kept: the parameters found.";
+    case records::TuneVerdict::kOverfitted:
+      return numbers + ". Overfitted: better in training, but not on views it has not seen. Kept: the default.";
+    case records::TuneVerdict::kNoGain: break;
+  }
+  return fmt::format("{}. No gain{}. Kept: the default.", numbers,
+                     filter.unseen_truth_se
+                         ? ": the difference, in training or on unseen views, is within the truth's standard error"
+                         : "");
+}
+
+page::Page make_tune_page(const records::TunedRecord& record) {
+  page::Page page{fmt::format("Parameters tuned for {}", record.metric), {}, {}};
+  page.sections.push_back({{}, {}, {page::Facts{list_tune_facts(record)}}});
+  if (!record.notes.empty()) page.sections.back().blocks.emplace_back(page::Sentences{"Left out:", record.notes});
+  for (const records::TunedFilterRecord& filter : record.filters)
+    page.sections.push_back(make_filter_section(filter, record));
+  page.sections.push_back({"data", "", {link_data({"tuned.json", "evaluations.csv"})}});
+  return page;
+}
+
+}  // namespace shadowbench::pages

@@ -1,0 +1,60 @@
+#include "report/pages/write_page.h"
+
+#include <algorithm>
+#include <cassert>
+#include <optional>
+
+#include "report/files/atomic_file.h"
+
+namespace shadowbench::pages {
+namespace {
+
+/// Finds another page beside one in `dir`: in the same folder, or where a report's folder has it.
+std::optional<std::filesystem::path> find_sibling(const std::filesystem::path& dir, const PageFile& own,
+                                                  const PageFile& other) {
+  std::vector<std::filesystem::path> places = {other.html};
+  const std::filesystem::path in_report = std::filesystem::path(other.folder) / other.html;
+  if (own.folder.empty())
+    places.push_back(in_report);
+  else if (std::filesystem::absolute(dir / own.html).lexically_normal().parent_path().filename() == own.folder)
+    places.push_back(".." / in_report);
+  const auto exists = [&](const std::filesystem::path& place) {
+    std::error_code ignored;
+    return std::filesystem::exists((dir / place).lexically_normal(), ignored);
+  };
+  const auto found = std::ranges::find_if(places, exists);
+  return found == places.end() ? std::nullopt : std::optional(*found);
+}
+
+}  // namespace
+
+const std::vector<PageFile>& list_pages() {
+  static const std::vector<PageFile> pages = {
+      {"run", "", "index.html", "summary.md", "the run: cost, error and trade"},
+      {"stress", "stress", "stress.html", "stress.md", "stress: where filters break"},
+      {"flicker", "flicker", "flicker.html", "flicker.md", "flicker in motion"},
+      {"bias", "bias", "bias.html", "bias.md", "depth bias"},
+      {"tune", "tune", "tune.html", "tune.md", "tuned parameters"},
+      {"regress", "regress", "regress.html", "regress.md", "comparison with the baseline"}};
+  return pages;
+}
+
+void write_page(const std::filesystem::path& dir, std::string_view command, page::Page page) {
+  const auto own = std::ranges::find(list_pages(), command, &PageFile::command);
+  assert(own != list_pages().end());
+  for (const PageFile& other : list_pages()) {
+    if (other.command == command) continue;
+    if (const auto path = find_sibling(dir, *own, other))
+      page.siblings.push_back({path->generic_string(), std::string(other.title)});
+  }
+  files::write_text_file(dir / own->markdown, page::write_markdown(page));
+  files::write_text_file(dir / own->html, page::write_html(page));
+}
+
+page::Links link_data(const std::vector<std::string>& files) {
+  page::Links links{"Data:", {}};
+  for (const std::string& file : files) links.items.push_back({file, file});
+  return links;
+}
+
+}  // namespace shadowbench::pages

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "report/page/blocks.h"
+
+namespace shadowbench::pages {
+
+/// One of the program's pages, and where it lies in a report's folder.
+struct PageFile {
+  std::string_view command;   ///< the command that makes it
+  std::string_view folder;    ///< within the report's folder; empty: that folder itself
+  std::string_view html;      ///< file name
+  std::string_view markdown;  ///< file name
+  std::string_view title;     ///< for links to it
+};
+
+/// Lists the program's pages.
+const std::vector<PageFile>& list_pages();
+
+/// Writes a command's page into a folder as HTML and as Markdown, linked with the program's other pages that are there
+/// already. Throws Error(kOutput).
+void write_page(const std::filesystem::path& dir, std::string_view command, page::Page page);
+
+/// Links to data files that lie beside the page.
+page::Links link_data(const std::vector<std::string>& files);
+
+}  // namespace shadowbench::pages

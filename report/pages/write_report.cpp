@@ -1,0 +1,40 @@
+#include "report/pages/write_report.h"
+
+#include <algorithm>
+
+#include "report/files/atomic_file.h"
+#include "report/pages/fronts_csv.h"
+#include "report/pages/run_page.h"
+#include "report/pages/tables.h"
+#include "report/records/json_io.h"
+
+namespace shadowbench::pages {
+
+namespace {
+
+/// Adds the warnings of the cells to those of the run, each once.
+void add_warnings(records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
+  for (const records::CellRecord& cell : cells) {
+    for (const std::string& warning : cell.warnings)
+      if (std::find(run.warnings.begin(), run.warnings.end(), warning) == run.warnings.end())
+        run.warnings.push_back(warning);
+  }
+}
+
+}  // namespace
+
+void write_report(const std::filesystem::path& dir, records::RunRecord run, const std::vector<std::string>& keys) {
+  std::vector<records::CellRecord> cells;
+  for (const std::string& key : keys) cells.push_back(records::read_cell(dir, key));
+  add_warnings(run, cells);
+  files::write_text_file(dir / "timings.csv", make_csv(CsvTable::kTimings, run, cells));
+  files::write_text_file(dir / "accuracy.csv", make_csv(CsvTable::kAccuracy, run, cells));
+  const std::optional<Trade> trade = make_trade(cells);
+  if (trade && trade->has_fronts) files::write_text_file(dir / "fronts.csv", make_fronts_csv(cells, trade->scopes));
+  const page::Page page = make_run_page(run, cells, trade);
+  files::write_text_file(dir / "summary.md", page::write_markdown(page));
+  files::write_text_file(dir / "index.html", page::write_html(page));
+  records::write_results(dir, run, keys);
+}
+
+}  // namespace shadowbench::pages

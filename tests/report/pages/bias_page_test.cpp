@@ -1,0 +1,183 @@
+#include "report/pages/bias_page.h"
+
+#include <gmock/gmock.h>
+
+namespace shadowbench::pages {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::vector<double> kFactors = {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
+
+/// Acne goes to nothing at `enough`, contact opens from theory on.
+records::BiasCurve make_curve(const std::string& filter, double enough) {
+  records::BiasCurve curve{filter, 0.5, 0.01, 2.0, 0.4, {}};
+  for (const double factor : kFactors)
+    curve.points.push_back({factor, factor * 0.5, factor < enough ? 0.25 : 0.0, factor > 1.0 ? 0.5 : 0.01});
+  return curve;
+}
+
+records::BiasSweepRecord make_sweep() {
+  records::BiasSweepRecord sweep;
+  sweep.scene = "steps";
+  sweep.filters = {"none", "pcf2x2"};
+  sweep.acne_receivers = 5000;
+  sweep.contact_receivers = 300;
+  sweep.fewest_receivers = 100;
+  sweep.modes.push_back({"constant",
+                         "depth",
+                         "One depth.",
+                         {make_curve("none", 1.0), make_curve("pcf2x2", 0.5)},
+                         {},
+                         "bias.constant.png",
+                         "pictures"});
+  records::BiasModeRecord fixed{"midpoint", "", "Half-way.", {}, {}, {}, {}};
+  fixed.curves.push_back({"none", 0, 0, 0, 0, {{std::nullopt, 0.0, 0.125, std::nullopt}}});
+  sweep.modes.push_back(fixed);
+  return sweep;
+}
+
+void make_gap_absent(records::BiasSweepRecord& sweep) {
+  for (records::BiasCurve& curve : sweep.modes[0].curves)
+    for (records::BiasPoint& point : curve.points) point.contact_gap.reset();
+}
+
+const page::ChartSeries* find_series(const page::Chart& chart, const std::string& title) {
+  const auto found = std::ranges::find(chart.series, title, &page::ChartSeries::title);
+  return found == chart.series.end() ? nullptr : &*found;
+}
+
+TEST(BiasChart, Factors_AreEquallyFarApart_NoBiasIncluded) {
+  const records::BiasSweepRecord sweep = make_sweep();
+  const page::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
+  ASSERT_TRUE(chart.x.log);
+  ASSERT_EQ(chart.x.ticks.size(), kFactors.size());
+  EXPECT_EQ(chart.x.ticks[0].second, "0");
+  EXPECT_EQ(chart.x.ticks[1].second, "1/8");
+  for (std::size_t i = 1; i < kFactors.size(); ++i)
+    EXPECT_DOUBLE_EQ(chart.x.ticks[i].first / chart.x.ticks[i - 1].first, 2.0);
+}
+
+TEST(BiasChart, AcneIsSolid_ContactGapDashed_TheoryAVerticalLine) {
+  const records::BiasSweepRecord sweep = make_sweep();
+  const page::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
+  const page::ChartSeries* acne = find_series(chart, "pcf2x2: acne");
+  const page::ChartSeries* gap = find_series(chart, "pcf2x2: contact gap");
+  const page::ChartSeries* theory = find_series(chart, "theory");
+  ASSERT_TRUE(acne && gap && theory);
+  EXPECT_EQ(acne->line, page::LineStyle::kSolid);
+  EXPECT_EQ(gap->line, page::LineStyle::kDashed);
+  EXPECT_EQ(acne->color, gap->color);
+  EXPECT_NE(acne->color, find_series(chart, "none: acne")->color);
+  ASSERT_EQ(acne->points.size(), kFactors.size());
+  EXPECT_EQ(acne->points[1].x.value, 0.125);
+  EXPECT_EQ(acne->points[1].y.value, 0.25);
+  EXPECT_EQ(gap->points.back().y.value, 0.5);
+  ASSERT_EQ(theory->points.size(), 2u);
+  for (const page::ChartPoint& point : theory->points) EXPECT_EQ(point.x.value, 1.0);
+}
+
+TEST(BiasChart, EverythingLiesWithinTheAxes) {
+  records::BiasSweepRecord sweep = make_sweep();
+  sweep.modes[0].curves[0].points[0].acne = 1.0;
+  const page::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
+  const auto within = [](const page::PlotAxis& axis) {
+    return ::testing::AllOf(::testing::Ge(axis.low), ::testing::Le(axis.high));
+  };
+  for (const page::ChartSeries& series : chart.series) {
+    for (const page::ChartPoint& point : series.points) {
+      EXPECT_THAT(point.x.value, within(chart.x)) << series.title;
+      EXPECT_THAT(point.y.value, within(chart.y)) << series.title;
+    }
+  }
+}
+
+TEST(BiasChart, FactorNames_AreFractions) {
+  std::vector<std::string> names;
+  for (const double factor : kFactors) names.push_back(name_factor(factor));
+  EXPECT_THAT(names, ElementsAre("0", "1/8", "1/4", "1/2", "1", "2", "4", "8"));
+}
+
+TEST(BiasChart, AbsentRates_HaveNoLine_AndAreSaid) {
+  records::BiasSweepRecord sweep = make_sweep();
+  EXPECT_THAT(make_bias_chart(sweep.modes[0], sweep.filters).notes, ElementsAre());
+  make_gap_absent(sweep);
+  const page::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
+  EXPECT_THAT(chart.notes, ElementsAre("contact gap: absent"));
+  EXPECT_FALSE(find_series(chart, "none: contact gap"));
+  EXPECT_TRUE(find_series(chart, "none: acne"));
+}
+
+/// The key names the filters that are drawn, each in the colour that it has on the whole page.
+TEST(BiasChart, FiltersThatAreLeftOut_HaveNoSeries_AndTheOthersKeepTheirColours) {
+  records::BiasSweepRecord sweep = make_sweep();
+  const std::string color = find_series(make_bias_chart(sweep.modes[0], sweep.filters), "pcf2x2: acne")->color;
+  sweep.modes[0].curves.erase(sweep.modes[0].curves.begin());
+  const page::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
+  EXPECT_FALSE(find_series(chart, "none: acne"));
+  EXPECT_EQ(find_series(chart, "pcf2x2: acne")->color, color);
+}
+
+TEST(BiasPage, Enough_IsTheSmallestAmountWithoutAcne) {
+  EXPECT_EQ(find_enough(make_curve("a", 0.5)), 0.5);
+  EXPECT_EQ(find_enough(make_curve("a", 0.0)), 0.0);
+  EXPECT_EQ(find_enough(make_curve("a", 100.0)), std::nullopt);
+}
+
+TEST(BiasPage, Sentences_FollowFromNumbers) {
+  records::BiasModeRecord mode = make_sweep().modes[0];
+  mode.curves.push_back(make_curve("vsm", 0.0));
+  mode.curves.push_back(make_curve("esm", 100.0));
+  const auto sentences = describe_bias_mode(mode);
+  ASSERT_EQ(sentences.size(), 2u);
+  EXPECT_THAT(sentences[0], HasSubstr("below 0.1 %"));
+  EXPECT_THAT(sentences[0],
+              HasSubstr("none needs 1; pcf2x2 needs 1/2; vsm needs none; esm has more at every amount swept."));
+  EXPECT_THAT(sentences[1], HasSubstr("acne lies between 0 % (none) and 25 % (esm); contact gap is 1 %."));
+}
+
+TEST(BiasPage, AbsentRates_AreSaid_NeverNumbers) {
+  records::BiasSweepRecord sweep = make_sweep();
+  make_gap_absent(sweep);
+  sweep.contact_receivers = 7;
+  const std::string html = page::write_html(make_bias_page(sweep));
+  EXPECT_THAT(html, HasSubstr("contact gap is absent"));
+  EXPECT_THAT(html, HasSubstr("Absent: a rate needs 100."));
+  EXPECT_THAT(html, Not(HasSubstr("nan")));
+  EXPECT_THAT(describe_bias_mode(sweep.modes[1]), ElementsAre());
+}
+
+TEST(BiasPage, Texts_AreEscaped) {
+  records::BiasSweepRecord sweep = make_sweep();
+  sweep.scene = "<i>\"&";
+  sweep.title = "<u>";
+  sweep.filters[0] = sweep.modes[0].curves[0].filter = "<b>'x'";
+  sweep.modes[0].meaning = sweep.modes[0].picture_caption = "a < b";
+  sweep.modes[0].left_out = {"<s>"};
+  const std::string html = page::write_html(make_bias_page(sweep));
+  for (const char* raw : {"<i>", "<u>", "<b>'", "<s>", "a < b"}) EXPECT_THAT(html, Not(HasSubstr(raw)));
+  EXPECT_THAT(html, HasSubstr("&lt;b&gt;&#39;x&#39;"));
+}
+
+TEST(BiasPage, LoadsNothingButItsPictures) {
+  const std::string html = page::write_html(make_bias_page(make_sweep()));
+  EXPECT_THAT(html, HasSubstr("src=\"bias.constant.png\""));
+  for (const char* loaded : {"src=\"http", "href=\"http", "url(http", "<link rel=\"stylesheet"})
+    EXPECT_THAT(html, Not(HasSubstr(loaded)));
+  EXPECT_THAT(html, HasSubstr("prefers-color-scheme: dark"));
+}
+
+TEST(BiasPage, Csv_HasARowPerAmount_AbsentIsEmpty) {
+  records::BiasSweepRecord sweep = make_sweep();
+  sweep.modes[0].curves[1].filter = "poisson (taps 8, radius 2)";
+  const std::string csv = make_bias_csv(sweep);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 16 + 1);
+  EXPECT_THAT(csv, HasSubstr("steps,,0,constant,depth,none,0.5,0.25,0.005,1,0.2,0.25,0.01\r\n"));
+  EXPECT_THAT(csv, HasSubstr("\"poisson (taps 8, radius 2)\""));
+  EXPECT_THAT(csv, HasSubstr("steps,,0,midpoint,,none,,,,,,0.125,\r\n"));
+}
+
+}  // namespace
+}  // namespace shadowbench::pages

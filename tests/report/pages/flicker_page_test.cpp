@@ -1,0 +1,122 @@
+// The sentences, tables and files that `shadowbench flicker` writes, from numbers made up here.
+
+#include "report/pages/flicker_page.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "report/images/flicker_picture.h"
+#include "report/records/flicker_json.h"
+
+namespace shadowbench::pages {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr double kTruth = 0.01;
+
+records::FlickerFilter make_filter(const std::string& name, double flicker) {
+  return {name, flicker, flicker, 0.02, 0, {0.001, 0.002}};
+}
+
+/// Two filters over a truth that moves: "a" flickers at `a` without snapping.
+records::FlickerMotion make_motion(double a, double a_snapped, double b = 0.01, double b_snapped = 0.01) {
+  records::FlickerMotion motion;
+  motion.id = "light";
+  motion.title = "The light turns";
+  motion.receivers = 1000000;
+  motion.truth = {true, kTruth, 0.001, 0.0003, {0.001, 0.001}};
+  motion.variants = {{false, 0.02, 0.125, 2, {make_filter("a", a), make_filter("b", b)}},
+                     {true, 0.02, 0.0, 0, {make_filter("a", a_snapped), make_filter("b", b_snapped)}}};
+  motion.picture = "flicker.light.png";
+  return motion;
+}
+
+TEST(FlickerPage, NamesWhoFlickersMostAndLeast_AgainstTheTruth) {
+  EXPECT_THAT(describe_flicker(make_motion(0.03, 0.02)),
+              Contains("Without snapping a flickers most, 0.03, 3.00 times the truth's own change; b least, 0.01, 1.00 "
+                       "times the truth's own change."));
+  EXPECT_THAT(describe_flicker(make_motion(0.005, 0.005)),
+              Contains(HasSubstr("Without snapping b flickers most, 0.01")));
+}
+
+TEST(FlickerPage, SaysWhatSnappingBuys) {
+  EXPECT_THAT(describe_flicker(make_motion(0.03, 0.02)),
+              Contains("Snapping divides flicker by 1.50 (a); leaves it as it is, within 5 %, of b."));
+  EXPECT_THAT(describe_flicker(make_motion(0.03, 0.0)),
+              Contains(HasSubstr("takes away all flicker but rounding of a;")));
+  EXPECT_THAT(describe_flicker(make_motion(0.03, 1e-6, 0.01, 0.0)),
+              Contains("Snapping takes away all flicker but rounding of every filter."));
+  EXPECT_THAT(describe_flicker(make_motion(0.02, 0.03)), Contains(HasSubstr("multiplies flicker by 1.50 (a)")));
+  EXPECT_THAT(describe_flicker(make_motion(0.0, 0.0, 0.0, 0.0)),
+              Contains("Snapping changes nothing: nothing flickers."));
+}
+
+TEST(FlickerPage, StillTruth_IsNoYardstick) {
+  records::FlickerMotion motion = make_motion(0.03, 0.02);
+  motion.truth = {};
+  motion.truth.mean_change = {0.0, 0.0};
+  for (const std::string& sentence : describe_flicker(motion))
+    EXPECT_THAT(sentence, Not(HasSubstr("times"))) << sentence;
+  EXPECT_THAT(explain_motion(motion, 3), Contains(HasSubstr("all change is flicker")));
+}
+
+TEST(FlickerPage, WhatIsNotFinite_IsSaid) {
+  records::FlickerMotion motion = make_motion(0.03, 0.02);
+  for (const std::string& sentence : describe_flicker(motion)) EXPECT_THAT(sentence, Not(HasSubstr("not finite")));
+  motion.variants[1].filters[0].not_finite = 7;
+  EXPECT_THAT(describe_flicker(motion),
+              Contains("With snapping, changes left out because visibility is not finite there: a (7)."));
+}
+
+TEST(FlickerFiles, HoldEveryNumber) {
+  records::FlickerRecord record;
+  record.scene = "cubes";
+  record.frames = 3;
+  record.motions = {make_motion(0.03, 0.02)};
+  const nlohmann::json json = nlohmann::json::parse(records::make_flicker_json(record));
+  EXPECT_EQ(json["motions"][0]["variants"][1]["filters"][0]["flicker"], 0.02);
+  EXPECT_EQ(json["motions"][0]["truth"]["change"], kTruth);
+  const std::string csv = records::make_flicker_csv(record);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5) << "a header, two filters, without snapping and with it";
+  EXPECT_THAT(csv, HasSubstr(",on,a,1000000,0.02,0.01,0.0003,0.02,0.02,0.001,0\r\n"));
+  EXPECT_EQ(make_flicker_table(record.motions[0]).rows.size(), 3u) << "the filters, and the truth";
+  const page::Page page = make_flicker_page(record);
+  for (const std::string& written : {page::write_html(page), page::write_markdown(page)})
+    for (const char* part : {"cubes", "The light turns", "flicker.light.png", "flicker.csv", "a flickers most, 0.03"})
+      EXPECT_THAT(written, HasSubstr(part));
+  EXPECT_THAT(page::write_html(page), HasSubstr("id=\"flicker.light.snapped\""));
+}
+
+TEST(FlickerCharts, OfOneMotion_ShareTheirScales_AndHoldTheTruth) {
+  records::FlickerMotion motion = make_motion(0.03, 0.02);
+  motion.variants[0].filters[0].mean_change = {0.5, 0.1};
+  const page::Chart free = make_flicker_chart(motion, motion.variants[0]),
+                    snapped = make_flicker_chart(motion, motion.variants[1]);
+  EXPECT_NE(free.id, snapped.id);
+  EXPECT_EQ(free.y.high, snapped.y.high);
+  EXPECT_GE(free.y.high, 0.5);
+  EXPECT_EQ(free.series.back().title, "truth");
+  ASSERT_EQ(free.series.size(), 5u) << "marks and their line for each filter, and the truth";
+  EXPECT_EQ(free.series[0].title, "a");
+  EXPECT_EQ(free.series[1].points.size(), 2u);
+  EXPECT_EQ(free.series[1].points[0].y.value, 0.5);
+  EXPECT_EQ(free.series[0].color, free.series[1].color);
+  EXPECT_NE(free.series[0].mark, free.series[2].mark);
+}
+
+TEST(FlickerPicture, ScaleIsLogarithmic_FromAThousandthOn) {
+  EXPECT_DOUBLE_EQ(images::place_flicker(0.001).value(), 0.0);
+  EXPECT_NEAR(images::place_flicker(0.1).value(), 2.0 / 3.0, 1e-12);
+  EXPECT_DOUBLE_EQ(images::place_flicker(1.0).value(), 1.0);
+  EXPECT_DOUBLE_EQ(images::place_flicker(2.0).value(), 1.0) << "the largest change less the truth's";
+  EXPECT_FALSE(images::place_flicker(0.0009));
+  EXPECT_FALSE(images::place_flicker(0.0));
+}
+
+}  // namespace
+}  // namespace shadowbench::pages

@@ -1,0 +1,225 @@
+#include "report/pages/stress_page.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "report/records/stress_json.h"
+
+namespace shadowbench::pages {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+records::StressCase make_case() {
+  records::StressCase item;
+  item.filter = "esm";
+  item.variant = "r16f, linear";
+  item.level = "GL";
+  item.params = {{"radius", 4.0}, {"store", std::string("r16f")}};
+  item.samples = {{1.0, records::StressVerdict::kOk, 1e-4, ""},
+                  {11.0, records::StressVerdict::kDegraded, 0.05, "error 0.05"},
+                  {20.0, records::StressVerdict::kBroken, std::nullopt, "7 texels overflowed"}};
+  item.degraded = records::StressOnset{11.0, 1.0, "error 0.05"};
+  item.broken = records::StressOnset{20.0, 11.0, "7 texels overflowed"};
+  item.limits = {{11.09, records::StressTheoryKind::kOverflow, records::StressVerdict::kBroken, "ln(65504)", "derived",
+                  20.0, 1.803, records::StressAgreement::kDisagrees, ""},
+                 {std::nullopt, records::StressTheoryKind::kRounding, records::StressVerdict::kDegraded, "none",
+                  "derived", 11.0, std::nullopt, records::StressAgreement::kExplained, "the blur adds"}};
+  item.notes = {"broken at 20, but ok again at 30"};
+  return item;
+}
+
+records::StressRecord make_record() {
+  records::StressRecord record;
+  record.commit = "abc";
+  record.gl = {"osmesa", "llvmpipe", "4.5", true, records::TimerKind::kWallClock};
+  record.machine.cpu = "a cpu";
+  record.filters = {"esm"};
+  records::StressAxis axis;
+  axis.id = "esm-exponent";
+  axis.title = "Exponent";
+  axis.quantity = "exponent c";
+  axis.unit = "1/depth";
+  axis.log = axis.measured_log = true;
+  axis.range = {1.0, 100.0};
+  axis.measured = "error";
+  axis.bound = 0.02;
+  axis.broken_when = "infinite";
+  axis.cases.push_back(make_case());
+  records::StressCase absent;
+  absent.variant = "r8";
+  absent.level = "GL";
+  absent.not_available = "this GL lacks r8";
+  axis.cases.push_back(absent);
+  axis.exhibits.push_back({"mistake",
+                           "A mistake",
+                           {"It was made."},
+                           records::TextTable{{"set-up"}, {{"a|b"}}},
+                           {{"stress.mistake.png", "pictures"}}});
+  record.axes.push_back(axis);
+  return record;
+}
+
+TEST(StressJson, HoldsEverything_AbsentIsNull) {
+  const nlohmann::json json = nlohmann::json::parse(records::make_stress_json(make_record()));
+  EXPECT_EQ(json["schema_version"], records::kStressSchemaVersion);
+  EXPECT_EQ(json["gl"]["backend"], "osmesa");
+  EXPECT_EQ(json["machine"]["cpu"], "a cpu");
+  EXPECT_EQ(json["disagreements"], 1);
+  const nlohmann::json& axis = json["axes"][0];
+  EXPECT_EQ(axis["range"], nlohmann::json::parse("[1.0, 100.0]"));
+  const nlohmann::json& item = axis["cases"][0];
+  EXPECT_EQ(item["params"]["store"], "r16f");
+  EXPECT_EQ(item["samples"][1]["verdict"], "degraded");
+  EXPECT_TRUE(item["samples"][2]["measured"].is_null());
+  EXPECT_EQ(item["broken"]["last_before"], 11.0);
+  EXPECT_EQ(item["limits"][0]["agreement"], "disagrees");
+  EXPECT_EQ(item["limits"][0]["tolerance"], 1.1);
+  EXPECT_TRUE(item["limits"][1]["theory"].is_null());
+  EXPECT_EQ(item["limits"][1]["explanation"], "the blur adds");
+  EXPECT_EQ(axis["cases"][1]["not_available"], "this GL lacks r8");
+  EXPECT_TRUE(axis["cases"][1]["broken"].is_null());
+  EXPECT_EQ(axis["exhibits"][0]["table"]["rows"][0][0], "a|b");
+}
+
+TEST(StressCsv, HasARowPerObservation_AndOneForWhatIsAbsent) {
+  const std::string csv = records::make_stress_csv(make_record());
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 + 1);
+  EXPECT_THAT(csv, HasSubstr("esm-exponent,esm,\"r16f, linear\",GL,20,broken,,7 texels overflowed\r\n"));
+  EXPECT_THAT(csv, HasSubstr("esm-exponent,,r8,GL,,not available,,this GL lacks r8\r\n"));
+}
+
+TEST(StressTables, SayWhatIsSafe_AndWhatIsNotAvailable) {
+  const records::TextTable table = make_case_table(make_record().axes[0]);
+  ASSERT_THAT(table.rows, SizeIs(2));
+  EXPECT_EQ(table.rows[0][0], "esm: r16f, linear (GL)");
+  EXPECT_EQ(table.rows[0][1], "1");  // the last value that is ok
+  EXPECT_EQ(table.rows[0][2], "11");
+  EXPECT_EQ(table.rows[0][3], "20");
+  EXPECT_EQ(table.rows[0][4], "7 texels overflowed");
+  EXPECT_EQ(table.rows[1][4], "not available: this GL lacks r8");
+}
+
+TEST(StressTables, CaseThatNeverChanges_IsOkAllOver) {
+  records::StressRecord record = make_record();
+  record.axes[0].cases[0].degraded.reset();
+  record.axes[0].cases[0].broken.reset();
+  EXPECT_EQ(make_case_table(record.axes[0]).rows[0][1], "all of the range");
+}
+
+TEST(StressTables, LimitsStandBesideTheirTheory) {
+  const records::TextTable table = make_limit_table(make_record());
+  ASSERT_THAT(table.rows, SizeIs(2));
+  EXPECT_THAT(table.rows[0], ::testing::ElementsAre("esm-exponent", "esm: r16f, linear (GL)", "broken", "ln(65504)",
+                                                    "11.09", "20", "1.803", "overflow, 10 %", "disagrees"));
+  EXPECT_EQ(table.rows[1][4], "none");
+}
+
+TEST(StressTables, LimitsThatNobodyExpectsToSee_AreCountedInstead) {
+  records::StressRecord record = make_record();
+  std::vector<records::StressLimit>& limits = record.axes[0].cases[0].limits;
+  EXPECT_THAT(describe_out_of_sight(record), SizeIs(0));
+  limits[0].measured.reset();  // it should have been met
+  limits[1].measured.reset();
+  limits[1].agreement = records::StressAgreement::kAgrees;
+  limits.push_back(limits[1]);
+  limits.back().onset = 1e6;
+  EXPECT_THAT(make_limit_table(record).rows, SizeIs(1));
+  EXPECT_THAT(describe_out_of_sight(record),
+              ::testing::ElementsAre("esm-exponent: no limit within the range, as theory says: 1 where it says that "
+                                     "there is none, 1 where it puts it beyond the range."));
+}
+
+TEST(StressPage, DisagreementsAreSaid_ExplainedOnesWithTheReason) {
+  const records::StressRecord record = make_record();
+  EXPECT_EQ(records::count_disagreements(record), 1);
+  ASSERT_THAT(describe_disagreements(record.axes[0]), SizeIs(1));
+  EXPECT_THAT(describe_disagreements(record.axes[0])[0],
+              AllOf(HasSubstr("broken at 20, where theory says 11.09 (ln(65504))"), HasSubstr("nothing explains it")));
+  ASSERT_THAT(describe_explanations(record.axes[0]), SizeIs(1));
+  EXPECT_THAT(describe_explanations(record.axes[0])[0],
+              AllOf(HasSubstr("degraded at 11, where theory says none"), HasSubstr("the blur adds")));
+}
+
+TEST(StressPage, HasTablesChartSentencesAndWarnings_InBothFormats) {
+  const page::Page page = make_stress_page(make_record());
+  const std::string html = page::write_html(page), markdown = page::write_markdown(page);
+  for (const char* part : {"Measured against theoretical limits", "ln(65504)", "Warnings",
+                           "not available: this GL lacks r8", "the blur adds", "ok again at 30", "A mistake",
+                           "It was made.", "stress.mistake.png", "stress.csv", "stress.json"}) {
+    EXPECT_THAT(html, HasSubstr(part));
+    EXPECT_THAT(markdown, HasSubstr(part));
+  }
+  EXPECT_THAT(html, AllOf(HasSubstr("id=\"stress.esm-exponent\""), HasSubstr("prefers-color-scheme: dark")));
+  for (const char* loaded : {"src=\"http", "href=\"http", "url(http"}) EXPECT_THAT(html, Not(HasSubstr(loaded)));
+}
+
+TEST(StressPage, Texts_AreEscaped) {
+  records::StressRecord record = make_record();
+  records::StressAxis& axis = record.axes[0];
+  axis.title = axis.quantity = axis.measured = axis.broken_when = "<b>";
+  axis.cases[0].filter = axis.cases[0].variant = axis.cases[0].notes[0] = "<i>";
+  axis.cases[0].limits[0].formula = axis.cases[0].limits[1].explanation = axis.cases[1].not_available = "<u>";
+  axis.exhibits[0].title = axis.exhibits[0].sentences[0] = "<s>";
+  record.gl.renderer = record.filters[0] = "<tt>";
+  const std::string html = page::write_html(make_stress_page(record));
+  for (const char* raw : {"<b>", "<i>", "<u>", "<s>", "<tt>"}) EXPECT_THAT(html, Not(HasSubstr(raw)));
+}
+
+TEST(StressPage, Markdown_EscapesPipes) {
+  EXPECT_THAT(page::write_markdown(make_stress_page(make_record())),
+              AllOf(HasSubstr("## esm-exponent: Exponent"), HasSubstr("not explained"), HasSubstr("a\\|b")));
+}
+
+TEST(StressPage, TerminalShowsTheLimits_AndWhatTheyLeaveOut) {
+  records::StressRecord record = make_record();
+  EXPECT_THAT(make_limit_text(record), AllOf(HasSubstr("| ratio "), Not(HasSubstr("Not met"))));
+  record.axes[0].cases[0].limits[1].measured.reset();
+  record.axes[0].cases[0].limits[1].agreement = records::StressAgreement::kAgrees;
+  EXPECT_THAT(make_limit_text(record), HasSubstr("Not met, and not expected:\n\n- esm-exponent: "));
+}
+
+TEST(StressChart, HasCasesTheoryAndBound_BrokenAtTheTopWhereNothingIsMeasured) {
+  const page::Chart chart = make_stress_chart(make_record().axes[0]);
+  EXPECT_EQ(chart.id, "stress.esm-exponent");
+  EXPECT_TRUE(chart.x.log && chart.y.log);
+  ASSERT_THAT(chart.series, SizeIs(4));
+  EXPECT_EQ(chart.series[0].title, "esm: r16f, linear (GL)");
+  EXPECT_THAT(chart.series[0].points, SizeIs(2));  // the third measured nothing
+  EXPECT_FALSE(chart.series[0].filled);
+  ASSERT_THAT(chart.series[1].points, SizeIs(1));
+  EXPECT_TRUE(chart.series[1].filled);
+  EXPECT_EQ(chart.series[1].points[0].x.value, 20.0);
+  EXPECT_EQ(chart.series[1].points[0].y.value, chart.y.high);
+  EXPECT_THAT(chart.series[1].points[0].details, ::testing::Contains("7 texels overflowed"));
+  EXPECT_EQ(chart.series[2].title, "bound, 0.02");
+  EXPECT_EQ(chart.series[3].title, "theoretical limits");
+  for (const page::ChartPoint& point : chart.series[3].points) EXPECT_EQ(point.x.value, 11.09);
+  EXPECT_THAT(chart.notes, ::testing::Contains("some cases have no theoretical limit"));
+}
+
+TEST(StressChart, LevelsOfAVariant_ShareTheirColour_TheModelIsDashed) {
+  records::StressAxis axis = make_record().axes[0];
+  axis.cases[1] = axis.cases[0];
+  axis.cases[1].level = "model";
+  const page::Chart chart = make_stress_chart(axis);
+  const auto model = std::ranges::find(chart.series, "esm: r16f, linear (model)", &page::ChartSeries::title);
+  ASSERT_NE(model, chart.series.end());
+  EXPECT_EQ(model->color, chart.series[0].color);
+  EXPECT_EQ(model->line, page::LineStyle::kDashed);
+  EXPECT_EQ(model->mark, page::Mark::kNone);
+}
+
+TEST(StressChart, CaseWithNothingMeasured_IsNotDrawn) {
+  records::StressAxis axis = make_record().axes[0];
+  axis.cases.erase(axis.cases.begin());
+  EXPECT_FALSE(has_stress_chart(axis));
+}
+
+}  // namespace
+}  // namespace shadowbench::pages

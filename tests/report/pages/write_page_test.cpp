@@ -1,0 +1,60 @@
+#include "report/pages/write_page.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "report/files/atomic_file.h"
+
+namespace shadowbench::pages {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class WritePage : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::remove_all(report_); }
+  void TearDown() override { std::filesystem::remove_all(report_); }
+
+  /// Writes a page into a folder of the report, and reads its HTML back.
+  std::string write(const std::string& folder, const std::string& command) const {
+    write_page(report_ / folder, command, {"A page", {}, {}});
+    std::ifstream stream(report_ / folder / (command + ".html"));
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+  }
+
+  const std::filesystem::path report_ =
+      std::filesystem::temp_directory_path() / ("shadowbench.write_page_test." + std::to_string(::getpid()));
+};
+
+TEST_F(WritePage, WritesHtmlAndMarkdown) {
+  EXPECT_THAT(write("stress", "stress"), AllOf(HasSubstr("A page"), Not(HasSubstr("index.html"))));
+  EXPECT_TRUE(std::filesystem::exists(report_ / "stress" / "stress.md"));
+}
+
+TEST_F(WritePage, LinksThePagesThatLieInTheSameReport) {
+  write("flicker", "flicker");
+  files::write_text_file(report_ / "index.html", "");
+  EXPECT_THAT(write("stress", "stress"),
+              AllOf(HasSubstr("href=\"../index.html\""), HasSubstr("href=\"../flicker/flicker.html\""),
+                    Not(HasSubstr("href=\"../bias/bias.html\""))));
+}
+
+TEST_F(WritePage, LinksPagesOfOneFolder) {
+  write("all", "flicker");
+  EXPECT_THAT(write("all", "stress"), HasSubstr("href=\"flicker.html\""));
+}
+
+/// A folder of the user's choice may lie beside somebody else's index.html.
+TEST_F(WritePage, LinksNothingOutsideTheReport) {
+  files::write_text_file(report_ / "index.html", "");
+  EXPECT_THAT(write("mine", "stress"), Not(HasSubstr("index.html")));
+}
+
+}  // namespace
+}  // namespace shadowbench::pages
