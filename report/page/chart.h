@@ -30,6 +30,9 @@ struct ChartPoint {
   std::vector<std::pair<std::string, std::string>> pictures = {};  ///< paths and captions, shown when one clicks it
 };
 
+/// A point without intervals.
+inline ChartPoint exact_point(double x, double y) { return {{x, x, x}, {y, y, y}}; }
+
 /// Points drawn alike.
 struct ChartSeries {
   std::string title;  ///< in the key; empty: not in the key, and shown and hidden with the titled series before it

@@ -7,7 +7,6 @@
 #include "report/files/file_name.h"
 #include "report/page/blocks.h"
 #include "report/page/embedded.h"
-#include "report/page/html_parts.h"
 #include "report/page/markdown.h"
 #include "report/records/json_values.h"
 
@@ -17,6 +16,57 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kShortField = 28;  // characters that stay on one line
+
+/// For elements and quoted attributes; bytes that are not UTF-8 become U+FFFD.
+std::string escape_html(std::string_view text) {
+  const auto valid = nlohmann::json::parse(records::dump_line(std::string(text))).get<std::string>();
+  std::string escaped;
+  for (const char c : valid) {
+    switch (c) {
+      case '&': escaped += "&amp;"; break;
+      case '<': escaped += "&lt;"; break;
+      case '>': escaped += "&gt;"; break;
+      case '"': escaped += "&quot;"; break;
+      case '\'': escaped += "&#39;"; break;
+      default: escaped += c;
+    }
+  }
+  return escaped;
+}
+
+/// Everything before the body.
+std::string html_head(const std::string& title) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n"
+      "<title>{}</title>\n<style>\n{}</style>\n</head>\n",
+      escape_html(title), page_style());
+}
+
+std::string html_link(const Link& link) {
+  return fmt::format("<a href=\"{}\">{}</a>", files::encode_url_path(link.path), escape_html(link.text));
+}
+
+std::string html_picture(const Picture& picture) {
+  return fmt::format(
+      "<figure><a href=\"{0}\"><img src=\"{0}\" alt=\"{1}\" loading=\"lazy\"></a>"
+      "<figcaption>{1}</figcaption></figure>\n",
+      files::encode_url_path(picture.path), escape_html(picture.caption));
+}
+
+std::string html_facts(const std::vector<std::pair<std::string, std::string>>& facts) {
+  std::string html = "<dl>\n";
+  for (const auto& [name, value] : facts)
+    html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_html(name), escape_html(value));
+  return html + "</dl>\n";
+}
+
+std::string html_list(const std::vector<std::string>& items) {
+  std::string text = "<ul>\n";
+  for (const std::string& item : items) text += fmt::format("<li>{}</li>\n", escape_html(item));
+  return text + "</ul>\n";
+}
 
 /// Packs the charts of a page for charts.js. Texts that many points share are kept once, and named by their place.
 class ChartPacker {
@@ -146,7 +196,7 @@ class HtmlWriter {
   std::string write(const Links& links) {
     std::string html = "<p>" + escape_html(links.lead);
     for (std::size_t i = 0; i < links.items.size(); ++i)
-      html += (i > 0 ? ", " : links.lead.empty() ? "" : " ") + link(links.items[i].path, links.items[i].text);
+      html += (i > 0 ? ", " : links.lead.empty() ? "" : " ") + html_link(links.items[i]);
     return html + "</p>\n";
   }
 
@@ -169,7 +219,7 @@ class HtmlWriter {
 
   std::string write(const Gallery& gallery) {
     std::string figures;
-    for (const Picture& picture : gallery.pictures) figures += figure(picture.path, picture.caption, "picture");
+    for (const Picture& picture : gallery.pictures) figures += html_picture(picture);
     if (gallery.title.empty() || figures.empty()) return figures;
     return fmt::format("<details open><summary>{}</summary>\n<div class=\"gallery{}\">\n{}</div></details>\n",
                        escape_html(gallery.title), gallery.wide ? " wide" : "", figures);
@@ -231,7 +281,7 @@ class HtmlWriter {
 
 std::string write_navigation(const Page& page) {
   std::string siblings, sections;
-  for (const Link& sibling : page.siblings) siblings += link(sibling.path, sibling.text) + " ";
+  for (const Link& sibling : page.siblings) siblings += html_link(sibling) + " ";
   for (const Section& section : page.sections)
     if (!section.heading.empty() && !section.id.empty())
       sections += fmt::format("<a href=\"#{}\">{}</a> ", escape_html(section.id), escape_html(section.heading));
@@ -251,8 +301,8 @@ std::string write_section(const Section& section, HtmlWriter& writer) {
 
 std::string write_html(const Page& page) {
   HtmlWriter writer;
-  std::string html = html_head(page.title, page_style()) +
-                     fmt::format("<body>\n<main>\n<h1>{}</h1>\n", escape_html(page.title)) + write_navigation(page);
+  std::string html = html_head(page.title) + fmt::format("<body>\n<main>\n<h1>{}</h1>\n", escape_html(page.title)) +
+                     write_navigation(page);
   for (const Section& section : page.sections) html += write_section(section, writer);
   html += "</main>\n";
   if (!writer.charts().is_empty())

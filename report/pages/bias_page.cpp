@@ -37,7 +37,7 @@ std::string describe_need(const records::BiasCurve& curve) {
   return fmt::format("{} needs {}", curve.filter, name_factor(*enough));
 }
 
-/// Says between which values a rate lies over the filters, at theory.
+/// Says between which values a rate lies over all filters at the theoretical amount.
 std::string describe_range(const records::BiasModeRecord& mode, Rate rate, const std::string& name) {
   const records::BiasCurve *least = nullptr, *most = nullptr;
   const auto value = [&](const records::BiasCurve* curve) { return *(find_point(*curve, 1.0)->*rate); };
@@ -126,12 +126,10 @@ page::ChartSeries make_rate_series(const records::BiasCurve& curve, Rate rate, c
   series.line = gap ? page::LineStyle::kDashed : page::LineStyle::kSolid;
   for (const records::BiasPoint& point : curve.points) {
     if (!point.factor || !(point.*rate)) continue;
-    const double x = *point.factor > 0.0 ? *point.factor : factors.ticks.front().first, y = *(point.*rate);
-    series.points.push_back({{x, x, x},
-                             {y, y, y},
-                             {},
-                             {series.title, fmt::format("{} of the theoretical amount: {}", name_factor(*point.factor),
-                                                        format_rate(point.*rate))}});
+    const double x = *point.factor > 0.0 ? *point.factor : factors.ticks.front().first;
+    page::ChartPoint& added = series.points.emplace_back(page::exact_point(x, *(point.*rate)));
+    added.details = {series.title, fmt::format("{} of the theoretical amount: {}", name_factor(*point.factor),
+                                               format_rate(point.*rate))};
   }
   return series;
 }
@@ -248,7 +246,7 @@ page::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vect
   theory.title = "theory";
   theory.color = page::kInk;
   theory.line = page::LineStyle::kTies;
-  for (const double y : {chart.y.low, chart.y.high}) theory.points.push_back({{1.0, 1.0, 1.0}, {y, y, y}});
+  for (const double y : {chart.y.low, chart.y.high}) theory.points.push_back(page::exact_point(1.0, y));
   chart.series.push_back(std::move(theory));
   return chart;
 }

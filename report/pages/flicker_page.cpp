@@ -13,13 +13,13 @@
 namespace shadowbench::pages {
 namespace {
 
-constexpr double kSame = 0.05;  // relative difference that is not spoken of
+constexpr double kSame = 0.05;  // a smaller relative difference is called none
 
 using Filters = std::vector<records::FlickerFilter>;
 
 std::string percent(double share) { return fmt::format("{:.3g} %", 100.0 * share); }
 
-/// The flicker of one receiver flipping once, and of nothing else: less is rounding.
+/// What flickers less than this, which is one receiver that flips once, is called rounding.
 double find_least(const records::FlickerMotion& motion) {
   return 1.0 / std::sqrt(static_cast<double>(motion.receivers) *
                          static_cast<double>(std::max<std::size_t>(1, motion.truth.mean_change.size())));
@@ -46,7 +46,7 @@ std::string describe_extremes(const records::FlickerVariant& variant, const reco
                             against_truth(least->flicker, motion.truth));
 }
 
-/// Says who changes more than the truth, and who less: less is a shadow that is too soft to move as the truth does.
+/// Says which filters change more than the truth, and which less. A shadow that is too soft changes less.
 std::string describe_changes(const records::FlickerVariant& variant, const records::FlickerTruth& truth) {
   const auto [least, most] = std::ranges::minmax_element(variant.filters, {}, &records::FlickerFilter::change);
   std::vector<std::string> less;
@@ -57,7 +57,7 @@ std::string describe_changes(const records::FlickerVariant& variant, const recor
                      less.empty() ? std::string() : fmt::format("; less than the truth's: {}", fmt::join(less, ", ")));
 }
 
-/// A filter's flicker without snapping over that with it.
+/// The ratio of a filter's flicker without snapping to its flicker with it.
 struct Gain {
   std::string filter;
   double ratio = 1.0;
@@ -124,9 +124,8 @@ page::ChartSeries make_change_line(const std::string& title, const std::vector<d
   series.title = title;
   series.line = page::LineStyle::kSolid;
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    const double step = static_cast<double>(i + 1), change = changes[i];
-    series.points.push_back(
-        {{step, step, step}, {change, change, change}, {}, {title, fmt::format("step {}: {:.4g}", i + 1, change)}});
+    page::ChartPoint& point = series.points.emplace_back(page::exact_point(static_cast<double>(i + 1), changes[i]));
+    point.details = {title, fmt::format("step {}: {:.4g}", i + 1, changes[i])};
   }
   return series;
 }

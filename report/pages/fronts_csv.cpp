@@ -11,7 +11,7 @@
 namespace shadowbench::pages {
 namespace {
 
-std::string join_row(std::vector<std::string> fields) {
+std::string join_front_row(std::vector<std::string> fields) {
   for (std::string& field : fields) field = records::quote_csv(field);
   return fmt::format("{}\r\n", fmt::join(fields, ","));
 }
@@ -63,7 +63,7 @@ std::string make_row(const std::vector<records::CellRecord>& cells, const analys
   append(fields, each.costs[front.cost].estimate);
   const auto place = describe_place(cells, scope, front, i);
   fields.insert(fields.end(), place.begin(), place.end());
-  return join_row(fields);
+  return join_front_row(fields);
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ std::string make_fronts_csv(const std::vector<records::CellRecord>& cells,
                             const std::vector<analysis::TradeScope>& scopes) {
   std::vector<std::string> names;
   for (const CsvColumn& column : list_front_columns()) names.push_back(column.name);
-  std::string csv = join_row(names);
+  std::string csv = join_front_row(names);
   for (const analysis::TradeScope& scope : scopes) {
     for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error) {
       for (std::size_t cost = 0; cost < analysis::kCostMeasures; ++cost) {

@@ -24,7 +24,7 @@ std::string format_onset(const std::optional<records::StressOnset>& onset) {
                             : fmt::format("{:.4g} (where the range begins)", onset->value);
 }
 
-/// Gives the last value before anything changed.
+/// The last value before the filter degrades.
 std::string format_last_ok(const records::StressCase& item) {
   if (!item.not_available.empty()) return records::kNothing;
   const records::StressOnset* onset = records::find_onset(item, records::StressVerdict::kDegraded);
@@ -53,7 +53,7 @@ std::vector<std::string> make_limit_row(const records::StressAxis& axis, const r
           records::name_of(limit.agreement)};
 }
 
-/// There is nothing to see of a limit, and nothing should be: the range ends before it, or there is none.
+/// Whether a limit was not met, as theory says: the range ends before it, or theory says that there is none.
 bool is_out_of_sight(const records::StressLimit& limit) {
   return !limit.measured && limit.agreement == records::StressAgreement::kAgrees;
 }
@@ -75,9 +75,6 @@ std::vector<std::string> list_limits(const records::StressAxis& axis, records::S
 
 constexpr std::size_t kLimitsPerLine = 5;
 constexpr double kLeastShown = 1e-9;  // on a logarithmic axis
-
-/// A point of a chart, without intervals.
-page::ChartPoint at(double x, double y) { return {{x, x, x}, {y, y, y}}; }
 
 bool is_shown(const records::StressAxis& axis, const std::optional<double>& measured) {
   return measured && (!axis.measured_log || *measured >= kLeastShown);
@@ -123,7 +120,7 @@ void add_case(page::Chart& chart, const records::StressAxis& axis, const records
   for (const records::StressSample& sample : item.samples) {
     const bool shown = is_shown(axis, sample.measured);
     if (!shown && sample.verdict != records::StressVerdict::kBroken) continue;
-    page::ChartPoint point = at(sample.value, shown ? *sample.measured : chart.y.high);
+    page::ChartPoint point = page::exact_point(sample.value, shown ? *sample.measured : chart.y.high);
     point.details = {line.title, fmt::format("{} {:.4g}: {}", axis.quantity, sample.value, name_of(sample.verdict)),
                      fmt::format("{}: {}", axis.measured, format_value(sample.measured, "nothing finite"))};
     if (!sample.why.empty()) point.details.push_back(sample.why);
@@ -150,8 +147,8 @@ void add_theory(page::Chart& chart, const records::StressAxis& axis) {
   std::ranges::sort(sorted);
   std::vector<std::string> labels;
   for (const auto& [onset, label] : sorted) {
-    chart.series.push_back(make_line(labels.empty() ? "theoretical limits" : "", at(onset, chart.y.low),
-                                     at(onset, chart.y.high), page::kInk, page::LineStyle::kTies));
+    chart.series.push_back(make_line(labels.empty() ? "theoretical limits" : "", page::exact_point(onset, chart.y.low),
+                                     page::exact_point(onset, chart.y.high), page::kInk, page::LineStyle::kTies));
     labels.push_back(label);
   }
   for (std::size_t i = 0; i < labels.size(); i += kLimitsPerLine) {
@@ -296,8 +293,8 @@ page::Chart make_stress_chart(const records::StressAxis& axis) {
     const auto style = styles.emplace(item.filter + ": " + item.variant, styles.size()).first;
     add_case(chart, axis, item, page::style_of(style->second));
   }
-  chart.series.push_back(make_line(fmt::format("bound, {:g}", axis.bound), at(chart.x.low, axis.bound),
-                                   at(chart.x.high, axis.bound), "#8a8f98", page::LineStyle::kDashed));
+  chart.series.push_back(make_line(fmt::format("bound, {:g}", axis.bound), page::exact_point(chart.x.low, axis.bound),
+                                   page::exact_point(chart.x.high, axis.bound), "#8a8f98", page::LineStyle::kDashed));
   add_theory(chart, axis);
   chart.notes.push_back("filled: broken, at the upper edge where nothing finite was measured");
   return chart;

@@ -9,7 +9,7 @@
 namespace shadowbench::pages {
 namespace {
 
-/// Finds another page beside one in `dir`: in the same folder, or where a report's folder has it.
+/// Finds another page as seen from one in `dir`: in the same folder, or at its place in the same report.
 std::optional<std::filesystem::path> find_sibling(const std::filesystem::path& dir, const PageFile& own,
                                                   const PageFile& other) {
   std::vector<std::filesystem::path> places = {other.html};

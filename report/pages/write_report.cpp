@@ -6,6 +6,7 @@
 #include "report/pages/fronts_csv.h"
 #include "report/pages/run_page.h"
 #include "report/pages/tables.h"
+#include "report/pages/write_page.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::pages {
@@ -31,9 +32,7 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run, cons
   files::write_text_file(dir / "accuracy.csv", make_csv(CsvTable::kAccuracy, run, cells));
   const std::optional<Trade> trade = make_trade(cells);
   if (trade && trade->has_fronts) files::write_text_file(dir / "fronts.csv", make_fronts_csv(cells, trade->scopes));
-  const page::Page page = make_run_page(run, cells, trade);
-  files::write_text_file(dir / "summary.md", page::write_markdown(page));
-  files::write_text_file(dir / "index.html", page::write_html(page));
+  write_page(dir, "run", make_run_page(run, cells, trade));
   records::write_results(dir, run, keys);
 }
 

@@ -7,7 +7,7 @@
 
 namespace shadowbench::regress {
 
-/// So many cells that differ are told one by one; the others are counted, or listed in a table.
+/// How many cells that differ are described one by one; the others are counted, or listed in a table.
 inline constexpr std::size_t kMostListed = 20;
 
 /// Names a cell: "cubes vsm (view main, map 512, 256 x 144)".
@@ -31,7 +31,7 @@ std::string describe_worst(const RegressReport& report);
 /// Says for people what differs, the worst first, and how to accept it.
 std::string make_regress_text(const RegressReport& report);
 
-/// Writes the same for programs.
+/// Makes regress.json: the same for programs.
 std::string make_regress_json(const RegressReport& report);
 
 }  // namespace shadowbench::regress
