@@ -58,7 +58,7 @@ struct RunOptions {
   bool ground = false;
   std::vector<filters::FilterRequest> filters;
   std::vector<int> map_sizes = {1024};
-  std::vector<PictureSize> sizes = {{}};  ///< of a run; of what one size of it is told, width and height hold
+  std::vector<PictureSize> sizes = {{}};  ///< of a run; what handles one size reads `width` and `height`
   int width = 960;
   int height = 540;
   std::vector<std::string> views;  ///< names of cameras; none: all that each scene has

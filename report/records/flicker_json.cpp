@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "report/records/csv.h"
-#include "report/records/json_io.h"
 
 namespace shadowbench::records {
 namespace {
@@ -59,24 +58,14 @@ json list_flicker(const std::vector<T>& records) {
 }  // namespace
 
 std::string make_flicker_json(const FlickerRecord& record) {
-  RunRecord run;
-  run.gl = record.gl;
-  run.machine = record.machine;
-  const json head = records::to_json(run);
-  const json result = {{"schema_version", kFlickerSchemaVersion},
-                       {"commit", record.commit},
-                       {"gl", head.at("gl")},
-                       {"machine", head.at("machine")},
-                       {"seed", record.seed},
-                       {"command", record.command},
-                       {"scene", record.scene},
-                       {"view", record.view},
-                       {"size", {record.width, record.height}},
-                       {"map_size", record.map_size},
-                       {"frames", record.frames},
-                       {"back_and_forth_above", static_cast<double>(record.return_above)},
-                       {"seconds", record.seconds},
-                       {"motions", list_flicker(record.motions)}};
+  json result = to_json(record, kFlickerSchemaVersion);
+  result["scene"] = record.scene;
+  result["view"] = record.view;
+  result["size"] = {record.width, record.height};
+  result["map_size"] = record.map_size;
+  result["frames"] = record.frames;
+  result["back_and_forth_above"] = static_cast<double>(record.return_above);
+  result["motions"] = list_flicker(record.motions);
   return result.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
