@@ -7,12 +7,14 @@
 
 #include "filters/base/error.h"
 #include "harness/measure/cell_analysis.h"
+#include "harness/measure/filter_setup.h"
+#include "harness/measure/receiver_pixels.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/render/bias_theory.h"
 #include "harness/render/filter_passes.h"
 #include "harness/render/receivers.h"
 #include "harness/render/shade_pass.h"
-#include "harness/run/run_facts.h"
+#include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
 #include "report/files/atomic_file.h"
 #include "report/files/folder_lock.h"
@@ -93,11 +95,11 @@ class BiasSweep {
     return render::make_light_setup(light_.frustum, scene_.light, bias, options_.seed);
   }
 
-  /// Finds the lit receivers, which theory is reckoned for.
+  /// Finds the lit receivers, for which theory is computed.
   void find_lit() {
     lit_ = render::read_receivers(renderer_.shaders, assets_.gbuffer(camera()), make_light({}));
     std::erase_if(lit_, [&](const filters::Receiver& r) {
-      return !masks_.acne[static_cast<std::size_t>((options_.height - 1 - r.pixel.y) * options_.width + r.pixel.x)];
+      return !masks_.acne[measure::find_pixel(r, options_.width, options_.height)];
     });
     if (static_cast<int>(lit_.size()) < metrics::kFewestReceivers) {
       throw Error(
@@ -149,7 +151,7 @@ class BiasSweep {
     assets_.redraw(light_, drawn_);
   }
 
-  /// Says why a filter has no say under a mode; empty where it has.
+  /// Says why a filter is left out of a mode; empty where it is not.
   std::string explain_left_out(const render::BiasRule& rule, const filters::FilterSpec& spec) {
     draw_map(rule.map);
     if (rule.map.cull_front && !measure::SceneAssets::has_casters(light_))
@@ -161,9 +163,7 @@ class BiasSweep {
     draw_map(rule.map);
     const render::Bias bias = render::resolve_bias(rule, light_.frustum, request.spec, request.values);
     render::FilterPasses filter(renderer_.shaders, request, light_.map, make_light(bias));
-    filter.prefilter(light_.map);
-    filter.lookup(assets_.gbuffer(camera()), light_.map, target_);
-    return render::read_image(target_.texture(), 1);
+    return measure::draw_visibility(filter, light_.map, assets_.gbuffer(camera()), target_);
   }
 
   Shot shoot(const render::SweptMode& mode, const filters::FilterRequest& request, std::optional<double> factor,

@@ -10,9 +10,8 @@
 namespace shadowbench::flicker {
 namespace {
 
-/// As SceneAssets pads: a map smaller than the padding keeps half of its texels for the scene.
 double choose_padding(const options::RunOptions& options) {
-  return std::min(measure::largest_padding_texels(options.filters), 0.25 * (options.map_sizes.front() - 1));
+  return measure::limit_padding(measure::largest_padding_texels(options.filters), options.map_sizes.front());
 }
 
 double sum_squares(const std::vector<float>& errors, const std::vector<std::uint8_t>& mask) {
@@ -72,9 +71,7 @@ TruthFrames FlickerBench::trace(Motion motion, const std::vector<Frame>& frames,
 images::Image FlickerBench::draw(render::FilterPasses& filter) {
   filter.retune(renderer_.shaders, filter.request().values,
                 measure::make_filter_light(options_, scene_.light, map_.frustum, filter.request()));
-  filter.prefilter(map_.map);
-  filter.lookup(assets_.gbuffer(camera()), map_.map, target_);
-  return render::read_image(target_.texture(), 1);
+  return measure::draw_visibility(filter, map_.map, assets_.gbuffer(camera()), target_);
 }
 
 std::vector<metrics::FlickerStats> FlickerBench::measure(const std::vector<scene::LightFrustum>& frusta,

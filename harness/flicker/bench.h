@@ -12,7 +12,7 @@
 
 namespace shadowbench::flicker {
 
-/// What rays say of every frame.
+/// The ray-traced visibility of every frame.
 struct TruthFrames {
   std::vector<std::vector<float>> visibility;  ///< of each frame, by pixel
   double noise =
@@ -28,7 +28,7 @@ class FlickerBench {
   FlickerBench(measure::Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
                truth::TruthCache& cache);
 
-  /// Gives how the map follows: the padding of the widest kernel, as a run has it.
+  /// Says how the map follows the frames; it has the padding of the widest kernel, as in a run.
   MapFollowing following(bool snap) const;
 
   const measure::ViewReceivers& receivers() const { return receivers_; }

@@ -7,7 +7,7 @@
 
 #include "filters/base/error.h"
 #include "harness/flicker/bench.h"
-#include "harness/run/run_facts.h"
+#include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
 #include "report/files/atomic_file.h"
 #include "report/files/folder_lock.h"
@@ -101,11 +101,8 @@ class FlickerRun {
 
   void describe() {
     for (const std::string& reason : renderer_.refused) progress_.note("not used: " + reason);
-    record_.commit = run::build_commit();
-    record_.gl = run::describe_gl(renderer_);
-    record_.machine = run::describe_machine();
-    record_.seed = options_.run.seed;
-    record_.command = options_.run.command;
+    static_cast<records::Provenance&>(record_) =
+        run::describe_provenance(renderer_, options_.run.seed, options_.run.command);
     record_.scene = scene_.name;
     record_.view = scene_.cameras.front().name;
     record_.width = options_.run.width;
@@ -153,7 +150,7 @@ class FlickerRun {
     return record;
   }
 
-  /// The receivers that count without snapping and with it.
+  /// Marks the receivers that count both without snapping and with it.
   std::vector<std::uint8_t> mark(const std::vector<std::vector<scene::LightFrustum>>& frusta) const {
     std::vector<scene::LightFrustum> all;
     for (const auto& some : frusta) all.insert(all.end(), some.begin(), some.end());

@@ -7,7 +7,7 @@
 
 namespace shadowbench::flicker {
 
-/// Everything that `shadowbench flicker` is told.
+/// The options of `shadowbench flicker`.
 struct FlickerOptions {
   options::RunOptions run;  ///< one scene, one map size; fit and snap are the motion's
   std::string motions = "light,camera";

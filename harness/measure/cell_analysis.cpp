@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/measure/model_images.h"
 #include "harness/render/receivers.h"
 #include "reference/metrics/attribution.h"
 #include "reference/metrics/error_stats.h"
@@ -107,6 +106,17 @@ std::vector<filters::Receiver> CellAnalyser::read_receivers(const render::Bias& 
   return render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera), light);
 }
 
+ModelImages CellAnalyser::evaluate(const filters::FilterRequest& request) {
+  if (!map_) map_ = light_.map.read();
+  const render::Bias own = render::resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
+  const render::Bias comparison =
+      render::resolve_comparison_bias(options_.bias, light_.frustum, request.spec, request.values);
+  ModelReceivers receivers{read_receivers(own), {}};
+  receivers.closer = own == comparison ? receivers.filter : read_receivers(comparison);
+  return evaluate_model(request, *map_, receivers, options_.bias.plane_max_tangent(), options_.seed, options_.width,
+                        options_.height);
+}
+
 void CellAnalyser::attribute(MeasuredCell& cell) {
   records::CellRecord& record = cell.record;
   const filters::FilterRequest& request = cell.request;
@@ -118,15 +128,7 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
       record.absent[field] = reason;
     return;
   }
-  if (!map_) map_ = light_.map.read();
-  const render::Bias own = render::resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
-  const render::Bias comparison =
-      render::resolve_comparison_bias(options_.bias, light_.frustum, request.spec, request.values);
-  ModelReceivers receivers{read_receivers(own), {}};
-  receivers.closer = own == comparison ? receivers.filter : read_receivers(comparison);
-  const double plane_max_tangent = options_.bias.plane_max_tangent();
-  const ModelImages images =
-      evaluate_model(request, *map_, receivers, plane_max_tangent, options_.seed, options_.width, options_.height);
+  const ModelImages images = evaluate(request);
   const std::vector<float>& kernel = kernel_truth(model->kernel(request.values));
   const std::vector<float>& image = cell.visibility.texels;
   metrics::Attribution attribution =

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "filters/model.h"
+#include "harness/measure/model_images.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/measure/scene_truth.h"
@@ -46,6 +47,7 @@ class CellAnalyser {
   const std::vector<float>& kernel_truth(const filters::Kernel& kernel);
   std::vector<filters::Receiver> read_receivers(const render::Bias& bias) const;
   void count_artefacts(MeasuredCell& cell) const;
+  ModelImages evaluate(const filters::FilterRequest& request);
   void attribute(MeasuredCell& cell);
 };
 

@@ -15,4 +15,11 @@ std::unique_ptr<render::FilterPasses> make_filter_passes(Renderer& renderer, con
                                                 make_filter_light(options, scene.light, light.frustum, request));
 }
 
+images::Image draw_visibility(render::FilterPasses& filter, const render::ShadowMap& map,
+                              const render::GBuffer& gbuffer, render::ImageTarget& target) {
+  filter.prefilter(map);
+  filter.lookup(gbuffer, map, target);
+  return render::read_image(target.texture(), 1);
+}
+
 }  // namespace shadowbench::measure

@@ -5,6 +5,7 @@
 #include "harness/measure/renderer.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/render/filter_passes.h"
+#include "harness/render/image_target.h"
 
 namespace shadowbench::measure {
 
@@ -17,5 +18,9 @@ render::LightSetup make_filter_light(const options::RunOptions& options, const s
 std::unique_ptr<render::FilterPasses> make_filter_passes(Renderer& renderer, const options::RunOptions& options,
                                                          const scene::Scene& scene, const LightMap& light,
                                                          const filters::FilterRequest& request);
+
+/// Runs a filter's prefilter and lookup, and reads the visibility; `target` is of the G-buffer's size.
+images::Image draw_visibility(render::FilterPasses& filter, const render::ShadowMap& map,
+                              const render::GBuffer& gbuffer, render::ImageTarget& target);
 
 }  // namespace shadowbench::measure

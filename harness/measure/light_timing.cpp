@@ -93,13 +93,9 @@ RoundTimes LightFrameBench::time() {
   const gl::TimerKind timer = renderer_.timer;
   std::vector<TimedFilter> timed;
   for (std::size_t i = 0; i < frame_.filters.size(); ++i) {
-    TimedFilter& passes = timed.emplace_back();
-    if (frame_.filters[i]->has_prefilter())
-      passes.prefilter = [this, timer, i] {
-        return gl::time_ms(
-            timer, [&] { prefilter(i); });
-      };
-    passes.lookup = [this, timer, i] { return gl::time_ms(timer, [&] { look_up(i); }); };
+    std::function<void()> prefilters;
+    if (frame_.filters[i]->has_prefilter()) prefilters = [this, i] { prefilter(i); };
+    timed.push_back(make_timed(timer, prefilters, [this, i] { look_up(i); }));
   }
   return run_rounds(
       timed, frame_.reference, [&] { return gl::time_ms(timer, [&] { draw_maps(); }); }, options_.rounds,
@@ -108,12 +104,9 @@ RoundTimes LightFrameBench::time() {
 
 std::vector<std::vector<float>> LightFrameBench::draw(std::size_t filter) {
   prefilter(filter);
+  look_up(filter);
   std::vector<std::vector<float>> pictures;
-  for (std::size_t i = 0; i < maps_.size(); ++i) {
-    frame_.filters[filter]->turn_to(prepared_[filter][i]);
-    frame_.filters[filter]->lookup(gbuffer_, maps_[i].map, *targets_[i]);
-    pictures.push_back(targets_[i]->texture().read_floats(1));
-  }
+  for (const auto& target : targets_) pictures.push_back(target->texture().read_floats(1));
   return pictures;
 }
 

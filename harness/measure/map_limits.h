@@ -12,7 +12,7 @@
 
 namespace shadowbench::measure {
 
-/// Makes a filter's encoded map with other parameters, and says what numbers became of in it.
+/// Makes a filter's encoded map with other parameters, and gives the health of its texels.
 using MapTrial = std::function<metrics::TexelHealth(const filters::ParamValues&)>;
 
 /// A filter's encoded map as it was read back, in the terms of metrics::check_texels.

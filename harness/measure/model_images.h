@@ -8,15 +8,15 @@
 
 namespace shadowbench::measure {
 
-/// What a filter's scalar model makes of a view, rows top to bottom; 1 where there is no receiver, and where the map
-/// does not reach: lit by convention.
+/// What a filter's scalar model makes of a view; rows run from top to bottom. Visibility is 1 where there is no
+/// receiver, and where the map does not reach.
 struct ModelImages {
   std::vector<double> model;   ///< the filter in double precision
   std::vector<double> closer;  ///< brute-force percentage-closer filter with its kernel
   std::int64_t excused = 0;    ///< receivers where rounding decides which texel is read, or a comparison
 };
 
-/// The receivers of one view, with the biases that the two get.
+/// The receivers of one view, with the bias of the filter and with that of its percentage-closer filter.
 struct ModelReceivers {
   std::vector<filters::Receiver> filter;
   std::vector<filters::Receiver> closer;  ///< the same pixels in the same order

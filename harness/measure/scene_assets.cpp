@@ -32,8 +32,7 @@ LightMap& SceneAssets::light_map(const scene::Camera& camera, int map_size) {
 }
 
 LightMap SceneAssets::make_light_map(const scene::Light& light, const scene::Camera& camera, int map_size) {
-  // A map smaller than the padding keeps half of its texels for the scene.
-  const double pad_texels = std::min(pad_texels_, 0.25 * (map_size - 1));
+  const double pad_texels = limit_padding(pad_texels_, map_size);
   const double aspect = static_cast<double>(options_.width) / options_.height;
   LightMap made{scene::fit_light(scene_, {options_.fit, map_size, pad_texels, options_.snap, &camera, aspect, &light}),
                 render::ShadowMap(map_size, options_.map)};
@@ -109,6 +108,8 @@ double largest_radius_texels(const std::vector<filters::FilterRequest>& requests
 double largest_padding_texels(const std::vector<filters::FilterRequest>& requests) {
   return std::ceil(largest_radius_texels(requests)) + 1.0;
 }
+
+double limit_padding(double pad_texels, int map_size) { return std::min(pad_texels, 0.25 * (map_size - 1)); }
 
 double padding_texels(const options::RunOptions& options) {
   return options.pad_texels.value_or(largest_padding_texels(options.filters));

@@ -76,8 +76,11 @@ double largest_radius_texels(const std::vector<filters::FilterRequest>& requests
 /// Gives the padding that the widest kernel of these filters needs, in whole texels.
 double largest_padding_texels(const std::vector<filters::FilterRequest>& requests);
 
-/// Give a run's padding, and the half-width of the widest kernel that it makes room for: as it was told, or of its own
-/// filters.
+/// Limits padding so that a map that is smaller than it keeps half of its texels for the scene.
+double limit_padding(double pad_texels, int map_size);
+
+/// Give a run's padding, and the half-width of the widest kernel that it makes room for: those that the options state,
+/// or else those of the run's own filters.
 double padding_texels(const options::RunOptions& options);
 double widest_kernel_texels(const options::RunOptions& options);
 

@@ -8,7 +8,7 @@
 
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/light_timing.h"
-#include "harness/measure/stability.h"
+#include "harness/measure/stability_meter.h"
 #include "harness/measure/statistics.h"
 #include "harness/measure/timing.h"
 #include "harness/measure/uncertainty.h"
@@ -52,7 +52,7 @@ class SceneBench {
       warn_of_broken_pixels(result.cells.back());
       if (options_.stability) stability.measure(result.cells.back(), *filters.back());
       if (options_.uncertainty)
-        measure_uncertainty({renderer_, options_, task_, assets_}, result.cells.back(), *filters.back());
+        result.cells.back().uncertainty = measure_uncertainty({renderer_, options_, task_, assets_}, *filters.back());
     }
     time(result, filters);
     result.stored_map = light_.map.read_picture();

@@ -133,6 +133,13 @@ std::vector<double> add_moving(const std::vector<double>& map, const FilterTimes
   return sum;
 }
 
+TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std::function<void()> lookup) {
+  TimedFilter timed;
+  if (prefilter) timed.prefilter = [timer, prefilter = std::move(prefilter)] { return gl::time_ms(timer, prefilter); };
+  timed.lookup = [timer, lookup = std::move(lookup)] { return gl::time_ms(timer, lookup); };
+  return timed;
+}
+
 RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference,
                       const std::function<double()>& draw_map, const options::RoundLimits& limits, std::uint64_t seed,
                       double drawn_ms) {
@@ -156,13 +163,9 @@ RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::s
   render::ImageTarget target("timed visibility", GL_R32F, gbuffer.width(), gbuffer.height());
   std::vector<TimedFilter> timed;
   for (render::FilterPasses* filter : filters) {
-    TimedFilter& passes = timed.emplace_back();
-    if (filter->has_prefilter())
-      passes.prefilter = [&map, timer, filter] {
-        return gl::time_ms(
-            timer, [&] { filter->prefilter(map); });
-      };
-    passes.lookup = [&, filter] { return gl::time_ms(timer, [&] { filter->lookup(gbuffer, map, target); }); };
+    std::function<void()> prefilter;
+    if (filter->has_prefilter()) prefilter = [&map, filter] { filter->prefilter(map); };
+    timed.push_back(make_timed(timer, prefilter, [&, filter] { filter->lookup(gbuffer, map, target); }));
   }
   return run_rounds(
       timed, reference, [&] { return gl::time_ms(timer, draw_map); }, limits, seed, drawn_ms);

@@ -41,9 +41,12 @@ struct TimedFilter {
   std::function<double()> lookup;
 };
 
+/// Makes passes that are timed; `prefilter` is empty for filters that read depth.
+TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std::function<void()> lookup);
+
 /// Times interleaved rounds: every round draws the map and runs each filter once, in a shuffled order, so that drift of
 /// the machine's speed hits all of them alike. After a prefilter three lookups go untimed, and the fourth is timed:
-/// right after one, a CPU's lookups are up to 1.6 times as slow, which in a frame of lookups alone they are not. One
+/// right after a prefilter, a CPU's lookups are up to 1.6 times as slow as in a frame of lookups alone. One
 /// round warms up and is not counted; none where `drawn_ms`, which is what running every filter once has cost before,
 /// spends the budget already. A filter drops out when its ratios to the filter `reference`, of the lookup and of map,
 /// prefilter and lookup, are precise enough; `reference` stays as long as any other. When the budget is spent, all

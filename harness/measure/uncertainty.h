@@ -13,9 +13,9 @@ struct DrawnTask {
   SceneAssets& assets;
 };
 
-/// Leaves in the cell how far rounding can move each pixel (filters with a scalar model), and how far other seeds move
-/// it (stochastic filters). Requires that the filter's map was made; its passes are turned back to the run's own seed.
-/// Cost: the scalar model with its running error bound for every receiver, and images::kSpreadSeeds lookups.
-void measure_uncertainty(const DrawnTask& drawn, MeasuredCell& cell, render::FilterPasses& filter);
+/// Measures how far rounding can move each pixel (filters with a scalar model), and how far other seeds move it
+/// (stochastic filters). Requires that the filter's map was made. The passes keep the run's own seed. Cost: the scalar
+/// model with its running error bound for every receiver, and images::kSpreadSeeds lookups.
+images::UncertaintyImages measure_uncertainty(const DrawnTask& drawn, render::FilterPasses& filter);
 
 }  // namespace shadowbench::measure

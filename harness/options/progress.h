@@ -4,7 +4,7 @@
 
 namespace shadowbench::options {
 
-/// Is told how far a run is; the command line shows it.
+/// Hears how far a run is; the command line shows it.
 class Progress {
  public:
   virtual ~Progress() = default;

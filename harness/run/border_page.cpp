@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "harness/render/filter_passes.h"
+#include "harness/measure/filter_setup.h"
 #include "harness/render/shade_pass.h"
 #include "report/images/grid.h"
 
@@ -49,13 +49,11 @@ class TilePainter {
     const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed, variant.rule);
     light_.map.set_border(variant.rule.border);
     render::FilterPasses passes(renderer_.shaders, request, light_.map, light);
-    passes.prefilter(light_.map);
-    passes.lookup(gbuffer_, light_.map, target_);
     images::GridTile tile;
+    tile.visibility = measure::draw_visibility(passes, light_.map, gbuffer_, target_);
     tile.label = request.label();
     tile.caption = variant.caption;
     tile.picture = render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera);
-    tile.visibility = render::read_image(target_.texture(), 1);
     return tile;
   }
 

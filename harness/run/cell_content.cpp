@@ -5,7 +5,7 @@
 
 #include "filters/base/content_hash.h"
 #include "harness/measure/scene_assets.h"
-#include "harness/run/run_facts.h"
+#include "harness/run/provenance.h"
 
 namespace shadowbench::run {
 namespace {

@@ -83,7 +83,7 @@ bool is_taken(const std::filesystem::path& out, const std::set<std::string>& key
   return false;
 }
 
-/// A folder that has something else in it is not added to; what a merge left that did not come to its end is.
+/// Refuses a folder with other results in it; what an unfinished merge of the same shards left there may stay.
 void require_free(const std::filesystem::path& out, const std::vector<ShardRun>& shards) {
   std::set<std::string> keys;
   for (const ShardRun& shard : shards)

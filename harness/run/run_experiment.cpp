@@ -10,10 +10,10 @@
 
 #include "filters/base/error.h"
 #include "harness/measure/scene_assets.h"
-#include "harness/run/run_facts.h"
+#include "harness/run/provenance.h"
 #include "harness/run/run_plan.h"
 #include "harness/run/task_run.h"
-#include "harness/run/time_probe.h"
+#include "harness/run/time_floor.h"
 #include "harness/scene/closed_mesh.h"
 #include "reference/truth/occluders.h"
 #include "report/analysis/repeat.h"
@@ -27,7 +27,7 @@
 namespace shadowbench::run {
 namespace {
 
-/// A default run's truths take some 15 MiB.
+/// The cache may hold this much; the truths of a default run take some 15 MiB.
 constexpr std::uintmax_t kMaxCacheBytes = std::uintmax_t{1} << 30;
 
 std::string describe_duration(double seconds) {
@@ -41,7 +41,7 @@ std::string describe_duration(double seconds) {
 /// A folder that cannot be written is better found before the work than after it.
 void require_writable(const std::filesystem::path& folder) { files::AtomicFile(folder / "cells" / "probe").write(""); }
 
-/// More than that many cells are asked about: they take hours.
+/// A run of more cells than this takes hours, and needs --yes.
 constexpr int kManyCells = 2000;
 constexpr double kManySeconds = 3600.0;
 
@@ -92,7 +92,7 @@ class Experiment {
   records::RunRecord run_;
   std::optional<files::FolderLock> lock_;
   int done_ = 0;
-  std::set<std::string> told_;  ///< what cells warn of, of which the user has heard
+  std::set<std::string> told_;  ///< warnings that the user has seen
   TaskListener listener_{[this](const std::string& what) { progress_.show(done_, what); },
                          [this](const std::string& message) { progress_.note(message); },
                          [this](const measure::SceneMeasurement& measured) { count(measured); }};
@@ -146,7 +146,7 @@ class Experiment {
                                                options_.rounds.is_fixed() ? "fewer --rounds" : "a smaller --budget"));
   }
 
-  /// Nothing is known of rays and pictures before the first are made: the bar counts them in.
+  /// Forecasts timed work alone. The progress bar counts rays and pictures in once the first are made.
   TimeForecast forecast_time(const RunPlan& plan, int left) {
     const char* on_top = options_.truth ? "rays and pictures come on top" : "pictures come on top";
     if (!options_.rounds.is_fixed()) {
@@ -155,7 +155,7 @@ class Experiment {
       return {seconds, fmt::format("; {} of timed work at most, more where four rounds take longer; {}",
                                    describe_duration(seconds), on_top)};
     }
-    const TimeFloor floor = probe_time_floor(renderer_, plan, cache_);
+    const TimeFloor floor = measure_time_floor(renderer_, plan, cache_);
     return {floor.seconds, fmt::format("; {} {} of timed work, what --rounds {} of the unfiltered lookup take; {}",
                                        floor.whole ? "at least" : "about", describe_duration(floor.seconds),
                                        options_.rounds.most, on_top)};
@@ -226,7 +226,7 @@ class Experiment {
         scene.name, farthest, offset));
   }
 
-  /// Culling front faces leaves nothing, or less than a shadow, of a mesh that encloses no volume.
+  /// A mesh that encloses no volume casts no shadow, or only a part of one, where front faces are culled.
   void warn_of_open_meshes(const scene::Scene& scene) {
     if (!options_.bias.map.cull_front) return;
     for (const scene::Mesh& mesh : scene.meshes) {

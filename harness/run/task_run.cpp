@@ -7,8 +7,8 @@
 #include <chrono>
 
 #include "harness/run/border_page.h"
-#include "harness/run/map_output.h"
-#include "harness/run/scene_output.h"
+#include "harness/run/map_pictures.h"
+#include "harness/run/task_images.h"
 #include "harness/run/user_filter.h"
 #include "report/records/json_io.h"
 
@@ -65,8 +65,8 @@ void TaskRun::run_group(const Requests& built_in, const Requests& of_users) {
   Requests all = built_in;
   all.insert(all.end(), of_users.begin(), of_users.end());
   if (!options_.worker) {
-    explain(measured);
-    cover(measured);
+    score(measured);
+    measure_coverage(measured);
   }
   show("pictures");
   write_images(task_of(all), measured);
@@ -78,8 +78,8 @@ measure::MeasuredCell TaskRun::measure_user_cell(const filters::FilterRequest& r
   return measure_user_filter(options_, task_, request, planned_.argument, renderer_.context->info().backend);
 }
 
-/// Says how wrong each cell is, and why.
-void TaskRun::explain(measure::SceneMeasurement& measured) {
+/// Scores each cell against the truth, and takes its error apart.
+void TaskRun::score(measure::SceneMeasurement& measured) {
   show("truth");
   const measure::SceneTruth& truth = assets_.truth(*task_.camera);
   tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
@@ -93,8 +93,8 @@ void TaskRun::explain(measure::SceneMeasurement& measured) {
   measured.masks = analyser_->masks();
 }
 
-/// Says how the map's texels are spent on the view.
-void TaskRun::cover(measure::SceneMeasurement& measured) {
+/// Measures how the map's texels are spent on the view.
+void TaskRun::measure_coverage(measure::SceneMeasurement& measured) {
   if (!coverage_) {
     measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
     const measure::SceneTruth& truth = assets_.truth(*task_.camera);

@@ -14,7 +14,7 @@
 
 namespace shadowbench::run {
 
-/// Is told how a task gets on.
+/// Hears how a task proceeds.
 struct TaskListener {
   std::function<void(const std::string& what)> show;                        ///< what is under way
   std::function<void(const std::string& message)> note;                     ///< something the user should know, once
@@ -50,8 +50,8 @@ class TaskRun {
   void run_group(const Requests& built_in, const Requests& of_users);
   measure::SceneTask task_of(const Requests& requests) const;
   measure::MeasuredCell measure_user_cell(const filters::FilterRequest& request);
-  void explain(measure::SceneMeasurement& measured);
-  void cover(measure::SceneMeasurement& measured);
+  void score(measure::SceneMeasurement& measured);
+  void measure_coverage(measure::SceneMeasurement& measured);
   void write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured);
   void draw_border_page(const measure::SceneTask& task);
   void write_cells(measure::SceneMeasurement& measured);

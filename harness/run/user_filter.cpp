@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
 
 #include "filters/base/error.h"
 #include "harness/gl/pixel_format.h"
-#include "harness/run/scene_output.h"
+#include "harness/run/task_images.h"
 #include "harness/run/worker_process.h"
 #include "report/files/temporary_files.h"
 #include "report/images/picture_io.h"
@@ -68,32 +69,20 @@ std::vector<std::string> worker_arguments(const options::RunOptions& options, co
                                         "--behind-test", options.range.behind_test ? "on" : "off",
                                         "--gl",          backend,
                                         "--out",         folder.string()};
-  const std::vector<std::string> rounds = round_arguments(options.rounds);
-  arguments.insert(arguments.end(), rounds.begin(), rounds.end());
-  if (options.ground) arguments.push_back("--ground");
-  if (options.stability) arguments.push_back("--stability");
-  if (options.uncertainty) arguments.push_back("--uncertainty");
-  if (options.map.curve.reversed) arguments.push_back("--reversed-depth");
-  if (!options.map.curve.is_linear()) {
-    arguments.push_back("--perspective-depth");
-    arguments.push_back(fmt::format("{}", options.map.curve.far_over_near));
-  }
-  if (options.light) {
-    arguments.push_back("--light");
-    arguments.push_back(measure::describe_light(*options.light));
-  }
-  if (!options.lights.empty()) {
-    arguments.push_back("--lights");
-    arguments.push_back(fmt::format("{}", fmt::join(options.lights, ",")));
-  }
-  for (const std::string& bias : options.bias_texts) {
-    arguments.push_back("--bias");
-    arguments.push_back(bias);
-  }
+  const auto add = [&](std::vector<std::string> more) { std::ranges::move(more, std::back_inserter(arguments)); };
+  add(round_arguments(options.rounds));
+  if (options.ground) add({"--ground"});
+  if (options.stability) add({"--stability"});
+  if (options.uncertainty) add({"--uncertainty"});
+  if (options.map.curve.reversed) add({"--reversed-depth"});
+  if (!options.map.curve.is_linear()) add({"--perspective-depth", fmt::format("{}", options.map.curve.far_over_near)});
+  if (options.light) add({"--light", measure::describe_light(*options.light)});
+  if (!options.lights.empty()) add({"--lights", fmt::format("{}", fmt::join(options.lights, ","))});
+  for (const std::string& bias : options.bias_texts) add({"--bias", bias});
   return arguments;
 }
 
-/// The worker's message without the program's name in front.
+/// Gives the worker's message without the program's name in front.
 std::string clean(const std::string& text) {
   const std::string prefix = "shadowbench: ";
   const std::size_t begin = text.find(prefix);

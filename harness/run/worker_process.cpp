@@ -48,18 +48,25 @@ pid_t spawn_self(const std::vector<std::string>& arguments, int error_write_end)
   return pid;
 }
 
-/// Collects what the worker writes until it closes the pipe or the deadline passes; gives whether it closed it.
-bool read_until(int fd, Clock::time_point deadline, std::string& text) {
+/// What a worker wrote.
+struct WorkerText {
+  std::string text;
+  bool complete = false;  ///< false: the deadline passed before the worker closed the pipe
+};
+
+WorkerText read_until(int fd, Clock::time_point deadline) {
+  WorkerText result;
   std::array<char, 4096> buffer;
-  for (;;) {
+  while (!result.complete) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    if (left <= 0) return false;
+    if (left <= 0) return result;
     pollfd waiting{fd, POLLIN, 0};
     if (poll(&waiting, 1, static_cast<int>(left)) <= 0) continue;
     const ssize_t got = read(fd, buffer.data(), buffer.size());
-    if (got == 0 || (got < 0 && errno != EINTR)) return true;
-    if (got > 0) text.append(buffer.data(), static_cast<std::size_t>(got));
+    if (got > 0) result.text.append(buffer.data(), static_cast<std::size_t>(got));
+    result.complete = got == 0 || (got < 0 && errno != EINTR);
   }
+  return result;
 }
 
 }  // namespace
@@ -71,8 +78,8 @@ WorkerOutcome run_worker(const std::vector<std::string>& arguments, double timeo
   const auto deadline = Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(timeout_s * 1000.0));
   const pid_t pid = spawn_self(arguments, ends[1]);
   close(ends[1]);
-  WorkerOutcome outcome;
-  outcome.timed_out = !read_until(ends[0], deadline, outcome.error_text);
+  const WorkerText written = read_until(ends[0], deadline);
+  WorkerOutcome outcome{.timed_out = !written.complete, .error_text = written.text};
   close(ends[0]);
   if (outcome.timed_out) kill(-pid, SIGKILL);
   int status = 0;

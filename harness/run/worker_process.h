@@ -8,10 +8,10 @@ namespace shadowbench::run {
 
 /// How a worker process ended.
 struct WorkerOutcome {
-  std::optional<int> exit_code;  ///< empty: killed by a signal or out of time
+  std::optional<int> exit_code = {};  ///< empty: killed by a signal or out of time
   bool timed_out = false;
-  int signal = 0;          ///< that killed it; 0: none
-  std::string error_text;  ///< what it wrote to standard error
+  int signal = 0;               ///< that killed it; 0: none
+  std::string error_text = {};  ///< what it wrote to standard error
 };
 
 /// Runs this same program with other arguments in a process group of its own, and kills it after `timeout_s` seconds.

@@ -28,7 +28,7 @@ Case start_case(const AxisInputs& inputs, const filters::FilterRequest& request,
   return item;
 }
 
-Case make_absent_case(std::string reason) { return {.variant = "any", .not_available = std::move(reason)}; }
+Case make_absent_case(std::string reason) { return {.variant = "filters", .not_available = std::move(reason)}; }
 
 void append(std::vector<Case>& cases, std::vector<Case> more) { std::ranges::move(more, std::back_inserter(cases)); }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/measure/scene_assets.h"
 #include "harness/render/bias_rule.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/load.h"
@@ -62,8 +63,7 @@ SceneDrawer::SceneDrawer(const AxisInputs& inputs, filters::FilterRequest reques
 
 scene::LightFrustum SceneDrawer::fit(const scene::Scene& scene) const {
   const filters::FilterRequest& request = stage_.request();
-  const double padding =
-      std::min(std::ceil(filters::radius_texels(request.spec, request.values)) + 1.0, 0.25 * (size_.map - 1));
+  const double padding = measure::limit_padding(measure::largest_padding_texels({request}), size_.map);
   return scene::fit_light(scene, scene::FitMode::kTight, size_.map, padding);
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "filters/base/error.h"
+#include "harness/measure/scene_measurement.h"
 
 namespace shadowbench::stress {
 namespace {
@@ -114,13 +115,6 @@ class Search {
   }
 };
 
-records::ParamMap to_record(const filters::ParamValues& values) {
-  records::ParamMap params;
-  for (const auto& [name, value] : values)
-    std::visit([&params, &key = name](const auto& v) { params[key] = v; }, value);
-  return params;
-}
-
 /// Says whether a theory that was met nowhere in the range, or right where the range begins, can be true: its onset,
 /// give or take the tolerance, lies beyond the range or before it.
 bool agrees_outside(double onset, double tolerance, bool met, const Axis& axis) {
@@ -144,7 +138,7 @@ records::StressCase find_onsets(const Case& item, const Axis& axis) {
   record.filter = item.filter;
   record.variant = item.variant;
   record.level = name_of(item.level);
-  record.params = to_record(item.params);
+  record.params = measure::record_params(item.params);
   record.not_available = item.not_available;
   if (!item.observe) return record;
   Observer observer(item);

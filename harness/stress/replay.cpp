@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kMapSize = 512, kWidth = 480, kHeight = 270;
 
-/// What one set-up came to.
+/// What one set-up of the filters resulted in.
 struct Result {
   std::string label;
   double rmse = 0.0;
@@ -91,12 +91,10 @@ class Stage {
 
   Result draw(const filters::FilterRequest& request) {
     const auto passes = measure::make_filter_passes(renderer_, options_, scene_, light_, request);
-    passes->prefilter(light_.map);
-    passes->lookup(assets_.gbuffer(camera()), light_.map, target_);
     Result result;
     result.label = request.label();
+    result.visibility = measure::draw_visibility(*passes, light_.map, assets_.gbuffer(camera()), target_);
     result.broken_texels = measure::count_broken_texels(*passes, light_.map);
-    result.visibility = render::read_image(target_.texture(), 1);
     result.picture = render::shade(renderer_.shaders, assets_.gbuffer(camera()), target_.texture(), scene_, camera());
     score(result);
     return result;

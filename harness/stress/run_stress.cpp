@@ -7,7 +7,7 @@
 #include <chrono>
 
 #include "filters/base/error.h"
-#include "harness/run/run_facts.h"
+#include "harness/run/provenance.h"
 #include "harness/stress/onset.h"
 #include "report/files/atomic_file.h"
 #include "report/files/folder_lock.h"
@@ -80,11 +80,7 @@ class StressRun {
 
   void describe_run() {
     for (const std::string& reason : renderer_.refused) progress_.note("not used: " + reason);
-    record_.commit = run::build_commit();
-    record_.gl = run::describe_gl(renderer_);
-    record_.machine = run::describe_machine();
-    record_.seed = options_.seed;
-    record_.command = options_.command;
+    static_cast<records::Provenance&>(record_) = run::describe_provenance(renderer_, options_.seed, options_.command);
     for (const filters::FilterRequest& request : options_.filters) record_.filters.push_back(request.label());
   }
 

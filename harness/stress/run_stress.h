@@ -12,7 +12,7 @@
 
 namespace shadowbench::stress {
 
-/// Everything that `shadowbench stress` is told.
+/// The options of `shadowbench stress`.
 struct StressOptions {
   options::Resources resources;
   std::vector<filters::FilterRequest> filters;
@@ -25,7 +25,7 @@ struct StressOptions {
   std::vector<std::string> command;  ///< the command line, for the record
 };
 
-/// What a run of all axes came to.
+/// The outcome of all axes.
 struct StressOutcome {
   std::string text;       ///< the table of limits, for a terminal
   int disagreements = 0;  ///< limits that are not what theory says, with no explanation

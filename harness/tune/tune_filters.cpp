@@ -9,7 +9,7 @@
 
 #include "filters/base/error.h"
 #include "harness/measure/scene_measurement.h"
-#include "harness/run/run_facts.h"
+#include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
 #include "harness/tune/tune_stage.h"
 #include "report/files/atomic_file.h"
@@ -22,7 +22,6 @@
 namespace shadowbench::tune {
 namespace {
 
-constexpr double kWorstError = 1.0;  // of every metric that is tuned
 constexpr double kLargestPaddingShare = 1.0 / 64.0;
 constexpr double kLeastPadding = 4.0;
 

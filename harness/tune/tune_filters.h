@@ -8,7 +8,7 @@
 
 namespace shadowbench::tune {
 
-/// Everything that `shadowbench tune` is told.
+/// The options of `shadowbench tune`.
 struct TuneOptions {
   options::RunOptions
       run;  ///< scenes, filters with the parameters that stay fixed, one map size, picture size, light, bias, folders

@@ -16,9 +16,7 @@
 namespace shadowbench::tune {
 namespace {
 
-constexpr double kWorst = 1.0;  // of every metric that is tuned
-
-/// What was drawn of one view.
+/// The pictures of one view.
 struct Shot {
   images::Image visibility;
   images::Image picture;  ///< only for FLIP
@@ -28,7 +26,7 @@ double score_statistic(const TuneMetric& metric, images::Image visibility, const
   for (std::size_t i = 0; i < visibility.texels.size(); ++i)
     if (!std::isfinite(visibility.texels[i])) visibility.texels[i] = truth.area.texels[i] > 0.5f ? 0.0f : 1.0f;
   const auto stats = metrics::measure_error(visibility.texels, truth.area.texels, truth.mask);
-  return stats ? (*stats).*metric.statistic : kWorst;
+  return stats ? (*stats).*metric.statistic : kWorstError;
 }
 
 double score_shot(const TuneMetric& metric, const Shot& shot, const TuneStage::View& view) {
@@ -39,11 +37,13 @@ double score_shot(const TuneMetric& metric, const Shot& shot, const TuneStage::V
     case TuneMetricKind::kFlip:
       return measure::measure_mean_flip(measure::view_picture(images::round_to_half(shot.picture)),
                                         view.truth->area_seen)
-          .value_or(kWorst);
-    case TuneMetricKind::kAcne: return metrics::rate_below(image, view.masks->acne, limits.acne_below).value_or(kWorst);
-    case TuneMetricKind::kLeak: return metrics::rate_above(image, view.masks->leak, limits.leak_above).value_or(kWorst);
+          .value_or(kWorstError);
+    case TuneMetricKind::kAcne:
+      return metrics::rate_below(image, view.masks->acne, limits.acne_below).value_or(kWorstError);
+    case TuneMetricKind::kLeak:
+      return metrics::rate_above(image, view.masks->leak, limits.leak_above).value_or(kWorstError);
   }
-  return kWorst;
+  return kWorstError;
 }
 
 bool is_artefact(TuneMetricKind kind) { return kind == TuneMetricKind::kAcne || kind == TuneMetricKind::kLeak; }

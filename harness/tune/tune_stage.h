@@ -13,6 +13,9 @@
 
 namespace shadowbench::tune {
 
+/// The worst value of every metric that is tuned.
+inline constexpr double kWorstError = 1.0;
+
 /// Says how tuning draws and scores, whatever the filter.
 struct TuneSettings {
   const options::RunOptions* options = nullptr;  ///< one map size, no rounds

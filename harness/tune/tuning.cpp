@@ -15,16 +15,20 @@ constexpr int kRepeatsPerSetting = 50;  // places that round to known settings c
 constexpr int kRangeRounds = 3;
 constexpr double kWorthAnotherRound = 0.01;  // relative
 
-/// One search: what NLopt calls back.
+std::vector<double> list_defaults(const std::vector<ParamScale>& params) {
+  std::vector<double> defaults;
+  for (const ParamScale& scale : params) defaults.push_back(scale.param().default_value);
+  return defaults;
+}
+
+/// One search. NLopt calls it back.
 class Search {
  public:
   Search(const std::vector<ParamScale>& params, const SearchSettings& settings, SettingsDrawn& drawn)
       : params_(params), settings_(settings), drawn_(drawn) {}
 
   void run() {
-    std::vector<double> defaults;
-    for (const ParamScale& scale : params_) defaults.push_back(scale.param().default_value);
-    drawn_.error(defaults, "default");
+    drawn_.error(list_defaults(params_), "default");
     run_stage(nlopt::GN_DIRECT_L, "global", std::max(1, static_cast<int>(kGlobalShare * settings_.budget)));
     run_stage(nlopt::LN_SBPLX, "local", settings_.budget);
   }
@@ -118,9 +122,7 @@ SearchResult search_parameters(const std::vector<ParamScale>& params, const Sear
     for (std::size_t i = 0; i < params.size(); ++i)
       result.ranges.push_back(find_good_range(params, i, result.best, settings.tolerance, drawn));
   }
-  std::vector<double> defaults;
-  for (const ParamScale& scale : params) defaults.push_back(scale.param().default_value);
-  result.default_error = drawn.error(defaults, "range");
+  result.default_error = drawn.error(list_defaults(params), "range");
   result.evaluations = drawn.count();
   return result;
 }

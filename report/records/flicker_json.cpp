@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "report/records/csv.h"
-#include "report/records/json_io.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::records {
@@ -50,24 +49,14 @@ json to_json(const FlickerMotion& motion) {
 }  // namespace
 
 std::string make_flicker_json(const FlickerRecord& record) {
-  RunRecord run;
-  run.gl = record.gl;
-  run.machine = record.machine;
-  const json head = records::to_json(run);
-  const json result = {{"schema_version", kFlickerSchemaVersion},
-                       {"commit", record.commit},
-                       {"gl", head.at("gl")},
-                       {"machine", head.at("machine")},
-                       {"seed", record.seed},
-                       {"command", record.command},
-                       {"scene", record.scene},
-                       {"view", record.view},
-                       {"size", {record.width, record.height}},
-                       {"map_size", record.map_size},
-                       {"frames", record.frames},
-                       {"back_and_forth_above", static_cast<double>(record.return_above)},
-                       {"seconds", record.seconds},
-                       {"motions", list_json(record.motions, to_json)}};
+  json result = to_json(record, kFlickerSchemaVersion);
+  result["scene"] = record.scene;
+  result["view"] = record.view;
+  result["size"] = {record.width, record.height};
+  result["map_size"] = record.map_size;
+  result["frames"] = record.frames;
+  result["back_and_forth_above"] = static_cast<double>(record.return_above);
+  result["motions"] = list_json(record.motions, to_json);
   return result.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/records/records.h"
+#include "report/records/provenance.h"
 
 namespace shadowbench::records {
 
@@ -29,7 +29,7 @@ struct FlickerVariant {
   std::vector<FlickerFilter> filters;
 };
 
-/// Is what the truth does meanwhile.
+/// Holds how the truth changes while the light or the camera moves.
 struct FlickerTruth {
   bool moves = false;  ///< false: it cannot change, and is not traced
   double change = 0.0;
@@ -54,18 +54,12 @@ struct FlickerMotion {
 };
 
 /// Holds everything that `shadowbench flicker` found.
-struct FlickerRecord {
-  std::string commit;
-  GlRecord gl;
-  MachineRecord machine;
-  std::uint64_t seed = 0;
-  std::vector<std::string> command;
+struct FlickerRecord : Provenance {
   std::string scene, view;
   int width = 0, height = 0;  ///< of the pictures, pixels
   int map_size = 0;           ///< texels along a side
   int frames = 0;
   float return_above = 0.0f;  ///< going back by more counts
-  double seconds = 0.0;       ///< wall time
   std::vector<FlickerMotion> motions;
 };
 

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "report/records/csv.h"
-#include "report/records/json_io.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::records {
@@ -93,20 +92,10 @@ std::string optional_field(const std::optional<double>& value) {
 }  // namespace
 
 std::string make_stress_json(const StressRecord& record) {
-  RunRecord run;
-  run.gl = record.gl;
-  run.machine = record.machine;
-  const json head = records::to_json(run);
-  const json result = {{"schema_version", kStressSchemaVersion},
-                       {"commit", record.commit},
-                       {"gl", head.at("gl")},
-                       {"machine", head.at("machine")},
-                       {"seed", record.seed},
-                       {"command", record.command},
-                       {"filters", record.filters},
-                       {"seconds", record.seconds},
-                       {"disagreements", count_disagreements(record)},
-                       {"axes", list_json(record.axes, to_json)}};
+  json result = to_json(record, kStressSchemaVersion);
+  result["filters"] = record.filters;
+  result["disagreements"] = count_disagreements(record);
+  result["axes"] = list_json(record.axes, to_json);
   return result.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/records/records.h"
+#include "report/records/provenance.h"
 #include "report/records/text_table.h"
 
 namespace shadowbench::records {
@@ -113,14 +113,8 @@ struct StressAxis {
 };
 
 /// Holds everything that `shadowbench stress` found.
-struct StressRecord {
-  std::string commit;
-  GlRecord gl;
-  MachineRecord machine;
-  std::uint64_t seed = 0;
-  std::vector<std::string> command;
+struct StressRecord : Provenance {
   std::vector<std::string> filters;  ///< labels of what was chosen
-  double seconds = 0.0;              ///< wall time
   std::vector<StressAxis> axes;
 };
 

@@ -1,8 +1,6 @@
-#include "harness/measure/stability.h"
+#include "harness/measure/stability_meter.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <limits>
@@ -12,6 +10,7 @@
 #include "filters/percentage_closer.h"
 #include "filters/store_format.h"
 #include "harness/measure/filter_setup.h"
+#include "harness/measure/receiver_pixels.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/render/receivers.h"
 #include "reference/metrics/error_stats.h"
@@ -38,7 +37,7 @@ images::Image make_view_image(std::vector<float> values, const options::RunOptio
   return image;
 }
 
-void explain(records::CellRecord& record, std::initializer_list<const char*> fields, const std::string& reason) {
+void note_absent(records::CellRecord& record, std::initializer_list<const char*> fields, const std::string& reason) {
   for (const char* field : fields) record.absent[std::string("stability.") + field] = reason;
 }
 
@@ -104,7 +103,7 @@ void StabilityMeter::measure(MeasuredCell& cell, render::FilterPasses& filter) {
 void StabilityMeter::check_texels(MeasuredCell& cell, render::FilterPasses& filter) const {
   records::StabilityRecord& stability = cell.record.stability;
   if (!filter.encoded_map()) {
-    explain(
+    note_absent(
         cell.record,
         {"overflow_texels", "nan_texels", "negative_variance_texels", "lowest_variance", "headroom", "safe_exponent"},
         kReadsDepth);
@@ -119,14 +118,14 @@ void StabilityMeter::check_texels(MeasuredCell& cell, render::FilterPasses& filt
   if (health.largest && *health.largest > 0.0)
     stability.headroom = std::log(map.largest_number) - std::log(*health.largest);
   else
-    explain(cell.record, {"headroom"}, health.largest ? "the map holds nothing but 0" : "the map overflowed");
+    note_absent(cell.record, {"headroom"}, health.largest ? "the map holds nothing but 0" : "the map overflowed");
   stability.safe_exponent = find_safe_exponent(cell.request, make_trial(cell.request));
   if (!stability.safe_exponent)
-    explain(cell.record, {"safe_exponent"},
-            "the map holds no exponentials, or none that a smaller exponent keeps finite");
+    note_absent(cell.record, {"safe_exponent"},
+                "the map holds no exponentials, or none that a smaller exponent keeps finite");
   if (!map.moments) {
-    explain(cell.record, {"negative_variance_texels", "lowest_variance"},
-            "the filter does not say that its map holds moments");
+    note_absent(cell.record, {"negative_variance_texels", "lowest_variance"},
+                "the filter does not say that its map holds moments");
     return;
   }
   stability.negative_variance_texels = health.negative_variance;
@@ -137,17 +136,15 @@ void StabilityMeter::check_texels(MeasuredCell& cell, render::FilterPasses& filt
 void StabilityMeter::compare_stores(MeasuredCell& cell) {
   const auto other_store = find_other_store(cell.request);
   if (!other_store) {
-    explain(cell.record, {"half_difference_max", "half_difference_rms"},
-            cell.request.spec.has_encode ? "the filter has no other store with as many channels" : kReadsDepth);
+    note_absent(cell.record, {"half_difference_max", "half_difference_rms"},
+                cell.request.spec.has_encode ? "the filter has no other store with as many channels" : kReadsDepth);
     return;
   }
   filters::FilterRequest request = cell.request;
   request.values["store"] = *other_store;
   const auto passes = make_filter_passes(renderer_, options_, *task_.scene, light_, request);
   render::ImageTarget target("visibility with the other store", GL_R32F, options_.width, options_.height);
-  passes->prefilter(light_.map);
-  passes->lookup(assets_.gbuffer(*task_.camera), light_.map, target);
-  const images::Image other = render::read_image(target.texture(), 1);
+  const images::Image other = draw_visibility(*passes, light_.map, assets_.gbuffer(*task_.camera), target);
   const bool other_is_half = filters::store_precision(*other_store) == filters::StorePrecision::kHalf;
   const images::Image& half = other_is_half ? other : cell.visibility;
   const images::Image& single = other_is_half ? cell.visibility : other;
@@ -158,8 +155,8 @@ void StabilityMeter::compare_stores(MeasuredCell& cell) {
     cell.record.stability.half_difference_max = stats->max;
     cell.record.stability.half_difference_rms = stats->rmse;
   } else {
-    explain(cell.record, {"half_difference_max", "half_difference_rms"},
-            "no surface in view faces the light, or no pixel is finite");
+    note_absent(cell.record, {"half_difference_max", "half_difference_rms"},
+                "no surface in view faces the light, or no pixel is finite");
   }
   cell.stability.half_difference = std::move(difference);
 }
@@ -168,19 +165,19 @@ void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filte
   const std::initializer_list<const char*> fields = {"bound_shortfall_max", "bound_violations",
                                                      "bound_exact_violations"};
   if (cell.request.spec.kind != filters::FilterKind::kBound) {
-    explain(cell.record, fields,
-            "only a filter of the kind 'bound' promises never to be darker than its percentage-closer filter");
+    note_absent(cell.record, fields,
+                "only a filter of the kind 'bound' promises never to be darker than its percentage-closer filter");
     return;
   }
   const auto model = filters::make_model(cell.request.spec.id);
   if (!model || cell.request.user_file) {
-    explain(cell.record, fields, "the filter has no scalar model");
+    note_absent(cell.record, fields, "the filter has no scalar model");
     return;
   }
   const auto receivers = render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera), filter.light());
   metrics::BoundCheck check = compare_with_closer(cell, *model, receivers);
   if (check.receivers == 0) {
-    explain(cell.record, fields, "no receiver can be compared");
+    note_absent(cell.record, fields, "no receiver can be compared");
     return;
   }
   cell.record.stability.bound_shortfall_max = check.shortfall_max;
@@ -190,7 +187,7 @@ void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filte
   cell.stability.violation = make_view_image(std::move(check.violation), options_);
 }
 
-/// Both at the depth that the filter itself compares with: another bias is another bound.
+/// Compares both at the depth that the filter itself compares with: another bias would be another bound.
 metrics::BoundCheck StabilityMeter::compare_with_closer(const MeasuredCell& cell, const filters::Model& model,
                                                         const std::vector<filters::Receiver>& receivers) {
   const double plane_max_tangent = options_.bias.plane_max_tangent();
@@ -203,19 +200,15 @@ metrics::BoundCheck StabilityMeter::compare_with_closer(const MeasuredCell& cell
   const bool overflowed = cell.record.stability.overflow_texels.value_or(0) > 0;
   std::vector<double> of_model(pixels, 1.0), of_closer(pixels, 1.0),
       tolerance(pixels, std::numeric_limits<double>::quiet_NaN());
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, receivers.size(), 1024), [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          const filters::Receiver& r = receivers[i];
-          const filters::ModelResult bounded = tracked->at(r);
-          if (bounded.excused) continue;
-          const auto pixel = static_cast<std::size_t>((options_.height - 1 - r.pixel.y) * options_.width + r.pixel.x);
-          of_model[pixel] = exact->at(r).visibility;
-          of_closer[pixel] = closer.at(r);
-          // An overflow is no rounding: where a bound on that is infinite in such a map, nothing is explained by it.
-          tolerance[pixel] = std::isfinite(bounded.bound) ? bounded.bound : overflowed ? 0.0 : HUGE_VAL;
-        }
-      });
+  visit_in_parallel(receivers.size(), [&](std::size_t i) {
+    const filters::ModelResult bounded = tracked->at(receivers[i]);
+    if (bounded.excused) return;
+    const std::size_t pixel = find_pixel(receivers[i], options_.width, options_.height);
+    of_model[pixel] = exact->at(receivers[i]).visibility;
+    of_closer[pixel] = closer.at(receivers[i]);
+    // In a map that overflowed an infinite bound on rounding explains nothing: the overflow is no rounding.
+    tolerance[pixel] = std::isfinite(bounded.bound) ? bounded.bound : overflowed ? 0.0 : HUGE_VAL;
+  });
   return metrics::check_bound({cell.visibility.texels, of_model, of_closer, tolerance});
 }
 

@@ -1,4 +1,4 @@
-#include "harness/run/scene_output.h"
+#include "harness/run/task_images.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "harness/measure/stability.h"
-#include "harness/run/run_facts.h"
+#include "harness/measure/stability_meter.h"
+#include "harness/run/provenance.h"
 #include "report/analysis/summary.h"
 #include "report/files/file_name.h"
 #include "report/images/attribution_picture.h"

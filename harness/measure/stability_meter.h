@@ -10,7 +10,7 @@
 
 namespace shadowbench::measure {
 
-/// Says where the numbers of one task's cells break: in the encoded map as the GL made it, in visibility with the
+/// Measures where the numbers of one task's cells break: in the encoded map as the GL made it, in visibility with the
 /// 16-bit store against the 32-bit one, and where a bound is darker than what it bounds.
 class StabilityMeter {
  public:

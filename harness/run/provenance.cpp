@@ -1,4 +1,4 @@
-#include "harness/run/run_facts.h"
+#include "harness/run/provenance.h"
 
 #include <fmt/format.h>
 #include <sys/utsname.h>
@@ -41,6 +41,11 @@ records::GlRecord describe_gl(const measure::Renderer& renderer) {
   const bool query = renderer.timer == gl::TimerKind::kQuery;
   return {info.backend, info.renderer, info.version, info.software,
           query ? records::TimerKind::kTimerQuery : records::TimerKind::kWallClock};
+}
+
+records::Provenance describe_provenance(const measure::Renderer& renderer, std::uint64_t seed,
+                                        const std::vector<std::string>& command) {
+  return {build_commit(), describe_gl(renderer), describe_machine(), seed, command};
 }
 
 }  // namespace shadowbench::run

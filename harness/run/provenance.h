@@ -3,7 +3,7 @@
 #include <string>
 
 #include "harness/measure/renderer.h"
-#include "report/records/records.h"
+#include "report/records/provenance.h"
 
 namespace shadowbench::run {
 
@@ -15,5 +15,9 @@ records::MachineRecord describe_machine();
 
 /// Describes the GL and the clock that times come from.
 records::GlRecord describe_gl(const measure::Renderer& renderer);
+
+/// Says what makes a record: this program on this machine and this GL. Its time is not known yet.
+records::Provenance describe_provenance(const measure::Renderer& renderer, std::uint64_t seed,
+                                        const std::vector<std::string>& command);
 
 }  // namespace shadowbench::run

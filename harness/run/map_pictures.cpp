@@ -1,8 +1,8 @@
-#include "harness/run/map_output.h"
+#include "harness/run/map_pictures.h"
 
 #include <fmt/format.h>
 
-#include "harness/run/scene_output.h"
+#include "harness/run/task_images.h"
 #include "report/analysis/summary.h"
 #include "report/images/depth_picture.h"
 #include "report/images/texel_pictures.h"

@@ -1,4 +1,4 @@
-#include "harness/run/time_probe.h"
+#include "harness/run/time_floor.h"
 
 #include <algorithm>
 #include <cassert>
@@ -14,7 +14,7 @@
 namespace shadowbench::run {
 namespace {
 
-constexpr double kMostProbe_s = 2.0;
+constexpr double kMostDrawing_s = 2.0;
 constexpr int kDrawn = 3;  // the first of them warms up
 
 /// What a round of one view through one map takes.
@@ -37,15 +37,15 @@ RoundTime draw_round(measure::Renderer& renderer, const PlannedScene& planned, c
   measure::LightMap& light = assets.light_map(*task.camera, task.map_size);
   render::GBuffer& gbuffer = assets.gbuffer(*task.camera);
   const auto reference = measure::make_filter_passes(renderer, options, planned.scene, light, options.reference);
-  render::ImageTarget target("probed visibility", GL_R32F, options.width, options.height);
+  render::ImageTarget target("timed visibility", GL_R32F, options.width, options.height);
   return {find_quickest_ms(renderer.timer, [&] { assets.redraw(light); }),
           find_quickest_ms(renderer.timer, [&] { reference->lookup(gbuffer, light.map, target); })};
 }
 
 /// Draws the planned tasks scene by scene until that has taken long enough.
-class Probe {
+class FloorMeter {
  public:
-  Probe(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache)
+  FloorMeter(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache)
       : renderer_(renderer), plan_(plan), cache_(cache) {}
 
   TimeFloor run() {
@@ -69,7 +69,7 @@ class Probe {
   int rounds() const { return plan_.scenes.front().options.rounds.most; }
 
   bool is_time_left() const {
-    return std::chrono::duration<double>(Clock::now() - start_).count() < kMostProbe_s || drawn_ms_ == 0.0;
+    return std::chrono::duration<double>(Clock::now() - start_).count() < kMostDrawing_s || drawn_ms_ == 0.0;
   }
 
   void add_scene(std::size_t scene) {
@@ -92,9 +92,9 @@ class Probe {
 
 }  // namespace
 
-TimeFloor probe_time_floor(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache) {
+TimeFloor measure_time_floor(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache) {
   assert(!plan.scenes.empty() && plan.scenes.front().options.rounds.is_fixed());
-  return Probe(renderer, plan, cache).run();
+  return FloorMeter(renderer, plan, cache).run();
 }
 
 }  // namespace shadowbench::run

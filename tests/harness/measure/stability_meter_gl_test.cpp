@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/measure/stability.h"
+#include "harness/measure/stability_meter.h"
 #include "harness/run/run_plan.h"
 #include "tests/harness/render/bench_fixture.h"
 
