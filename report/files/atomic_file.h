@@ -7,8 +7,8 @@
 
 namespace shadowbench::files {
 
-/// Reserves a file that appears whole or not at all: write to temporary_path(), then commit().
-/// What was not committed is removed. The folder is created where it is missing.
+/// A file that appears whole or not at all: write to temporary_path(), then commit().
+/// A file that is never committed is removed. The folder is created where it is missing.
 class PendingFile {
  public:
   /// Throws Error(kOutput) where the folder cannot be created.
@@ -37,7 +37,7 @@ class AtomicFile {
   /// Throws Error(kOutput) where the file cannot be created.
   explicit AtomicFile(std::filesystem::path path);
 
-  /// Throws Error(kOutput), for a full disk say.
+  /// Throws Error(kOutput), for example where the disk is full.
   void write(std::string_view text);
 
   /// Closes the file and gives it its name.

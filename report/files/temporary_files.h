@@ -15,14 +15,14 @@ std::filesystem::path make_temporary_path(const std::filesystem::path& path);
 /// "plots".
 std::filesystem::path make_temporary_folder_path(const std::filesystem::path& folder, std::string_view what);
 
-/// Says whether a path is one of the two.
+/// Says whether a path is one of these two kinds.
 bool is_temporary(const std::filesystem::path& path);
 
 /// Removes from a folder and the folders right in it what was written under those two names by processes that
 /// `is_stale` picks. What cannot be listed or removed stays.
 void remove_temporary_files(const std::filesystem::path& folder, const std::function<bool(pid_t)>& is_stale);
 
-/// Says whether no process of this machine has the number.
+/// Says whether no process of this machine has this number.
 bool is_gone(pid_t process);
 
 }  // namespace shadowbench::files

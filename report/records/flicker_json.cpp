@@ -6,6 +6,7 @@
 
 #include "report/records/csv.h"
 #include "report/records/json_io.h"
+#include "report/records/json_values.h"
 
 namespace shadowbench::records {
 namespace {
@@ -26,15 +27,12 @@ json to_json(const FlickerTruth& truth) {
           {"mean_change", truth.mean_change}};
 }
 
-template <class T>
-json list_flicker(const std::vector<T>& records);
-
 json to_json(const FlickerVariant& variant) {
   return {{"snap", variant.snap},
           {"texel_m", variant.texel_m},
           {"grid_texels", variant.grid_texels},
           {"resizes", variant.resizes},
-          {"filters", list_flicker(variant.filters)}};
+          {"filters", list_json(variant.filters, to_json)}};
 }
 
 json to_json(const FlickerMotion& motion) {
@@ -45,15 +43,8 @@ json to_json(const FlickerMotion& motion) {
           {"fit", motion.fit},
           {"receivers", motion.receivers},
           {"truth", to_json(motion.truth)},
-          {"variants", list_flicker(motion.variants)},
+          {"variants", list_json(motion.variants, to_json)},
           {"picture", motion.picture}};
-}
-
-template <class T>
-json list_flicker(const std::vector<T>& records) {
-  json result = json::array();
-  for (const T& record : records) result.push_back(to_json(record));
-  return result;
 }
 
 }  // namespace
@@ -76,7 +67,7 @@ std::string make_flicker_json(const FlickerRecord& record) {
                        {"frames", record.frames},
                        {"back_and_forth_above", static_cast<double>(record.return_above)},
                        {"seconds", record.seconds},
-                       {"motions", list_flicker(record.motions)}};
+                       {"motions", list_json(record.motions, to_json)}};
   return result.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

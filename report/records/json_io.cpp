@@ -113,7 +113,7 @@ struct FieldReader {
 
 constexpr const char* kNotMeasured = "not measured";
 
-// A path's group, its group's group and so on, itself first.
+// A path, its group, that group's group and so on.
 std::vector<std::string> list_path_and_groups(std::string path) {
   std::vector<std::string> names{path};
   for (auto dot = path.rfind('.'); dot != std::string::npos; dot = path.rfind('.')) {
@@ -136,7 +136,7 @@ bool has_value(const json& value) {
 
 std::map<std::string, std::string> explain_nulls(const json& root, std::map<std::string, std::string> absent,
                                                  const std::vector<std::string>& nulls) {
-  // A record that was read again says so of what has been measured since.
+  // A record that was read again still says "not measured" of values that have been measured since.
   std::erase_if(absent, [](const auto& entry) { return entry.second == kNotMeasured; });
   for (const std::string& path : nulls) {
     if (is_explained(absent, path)) continue;

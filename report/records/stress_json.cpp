@@ -58,23 +58,16 @@ json to_json(const StressExhibit& exhibit) {
 json to_json(const StressCase& item);
 json to_json(const StressAxis& axis);
 
-template <class T>
-json list(const std::vector<T>& records) {
-  json result = json::array();
-  for (const T& record : records) result.push_back(to_json(record));
-  return result;
-}
-
 json to_json(const StressCase& item) {
   return {{"filter", text_or_null(item.filter)},
           {"variant", item.variant},
           {"level", item.level},
           {"params", value_json(item.params)},
           {"not_available", text_or_null(item.not_available)},
-          {"samples", list(item.samples)},
+          {"samples", list_json(item.samples, to_json)},
           {"degraded", to_json(item.degraded)},
           {"broken", to_json(item.broken)},
-          {"limits", list(item.limits)},
+          {"limits", list_json(item.limits, to_json)},
           {"notes", item.notes}};
 }
 
@@ -89,8 +82,8 @@ json to_json(const StressAxis& axis) {
           {"measured_unit", axis.measured_unit},
           {"bound", axis.bound},
           {"broken_when", axis.broken_when},
-          {"cases", list(axis.cases)},
-          {"exhibits", list(axis.exhibits)}};
+          {"cases", list_json(axis.cases, to_json)},
+          {"exhibits", list_json(axis.exhibits, to_json)}};
 }
 
 std::string optional_field(const std::optional<double>& value) {
@@ -113,7 +106,7 @@ std::string make_stress_json(const StressRecord& record) {
                        {"filters", record.filters},
                        {"seconds", record.seconds},
                        {"disagreements", count_disagreements(record)},
-                       {"axes", list(record.axes)}};
+                       {"axes", list_json(record.axes, to_json)}};
   return result.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

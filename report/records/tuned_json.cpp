@@ -52,13 +52,6 @@ const char* name_of(TuneVerdict verdict) {
 
 json to_json(const TunedFilterRecord& filter);
 
-template <class T>
-json list(const std::vector<T>& records) {
-  json result = json::array();
-  for (const T& record : records) result.push_back(to_json(record));
-  return result;
-}
-
 json to_json(const TunedFilterRecord& filter) {
   json result = {{"id", filter.id},
                  {"params", to_json(filter.params)},
@@ -66,8 +59,8 @@ json to_json(const TunedFilterRecord& filter) {
                  {"verdict", name_of(filter.verdict)},
                  {"training", to_json(filter.training)},
                  {"unseen", to_json(filter.unseen)},
-                 {"searched", list(filter.searched)},
-                 {"views", list(filter.views)},
+                 {"searched", list_json(filter.searched, to_json)},
+                 {"views", list_json(filter.views, to_json)},
                  {"search_evaluations", filter.search_evaluations},
                  {"evaluations", filter.evaluations}};
   result["unseen_truth_se"] = filter.unseen_truth_se ? json(*filter.unseen_truth_se) : json();
@@ -162,7 +155,7 @@ std::string make_tuned_json(const TunedRecord& record) {
                        {"training_views", record.training_views},
                        {"unseen_views", record.unseen_views},
                        {"notes", record.notes},
-                       {"filters", list(record.filters)}};
+                       {"filters", list_json(record.filters, to_json)}};
   return result.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/records/records.h"
+
+namespace shadowbench::records {
+
+/// A column of a CSV table.
+struct CsvColumn {
+  std::string name;
+  std::string meaning;  ///< with its unit
+};
+
+/// Names the tables that a report has as CSV.
+enum class CsvTable {
+  kTimings,   ///< timings.csv: what each cell costs
+  kAccuracy,  ///< accuracy.csv: how far each cell is from the truth
+};
+
+/// Lists the columns of a table, in order: the cell's settings, its times or none, and the metrics of its groups.
+std::vector<CsvColumn> list_csv_columns(CsvTable table);
+
+/// Makes a table: a header and one row per cell, each with every column; a value that does not exist is an empty field.
+/// Numbers read back as the same doubles.
+std::string make_csv(CsvTable table, const RunRecord& run, const std::vector<CellRecord>& cells);
+
+}  // namespace shadowbench::records
