@@ -28,7 +28,7 @@ std::optional<pid_t> parse_process(std::string_view text, std::string_view end) 
   return process;
 }
 
-/// The process that a temporary file belongs to; nothing for other files.
+/// Gives the number of the process that a temporary file belongs to; nothing where it is no temporary file.
 std::optional<pid_t> owner_of_file(const fs::path& path) {
   const std::string name = path.filename().string();
   const std::size_t mark = name.rfind(kFileMark);
@@ -44,7 +44,7 @@ std::optional<pid_t> owner_of_folder(const fs::path& path) {
   return std::nullopt;
 }
 
-/// Removes what is stale right in a folder, and gives the folders that are not.
+/// Removes the stale entries of one folder, and gives its folders that are not stale.
 std::vector<fs::path> clean(const fs::path& folder, const std::function<bool(pid_t)>& is_stale) {
   std::vector<fs::path> stale, folders;
   std::error_code error;

@@ -16,7 +16,7 @@
 #include "harness/render/shade_pass.h"
 #include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 #include "report/files/folder_lock.h"
 #include "report/images/grid.h"
 #include "report/images/hardest_edge.h"
@@ -60,7 +60,7 @@ class BiasSweep {
     renderer_.context->require_no_gl_errors();
     lock.require_in_place();
     pages::write_page(options_.out, "bias", pages::make_bias_page(record_));
-    files::write_text_file(options_.out / "bias.csv", pages::make_bias_csv(record_));
+    write_text_file(options_.out / "bias.csv", pages::make_bias_csv(record_));
     progress_.show(done_, "done");
   }
 

@@ -58,7 +58,8 @@ AdviceRequest make_request(const AdviseArguments& arguments) {
   AdviceRequest request;
   for (std::size_t i = 0; i < arguments.limits.size(); ++i) {
     const analysis::LimitSpec& spec = analysis::limit_table()[i];
-    if (arguments.limits[i]) request.demands.push_back({&spec, parse_limit(*arguments.limits[i], spec.option), {}});
+    if (arguments.limits[i])
+      request.demands.push_back({&spec, parse_limit(*arguments.limits[i], spec.option.c_str()), {}});
   }
   for (const std::string& claim : arguments.claims) request.demands.push_back({nullptr, 0.0, claim});
   request.light = kLights.at(arguments.light);

@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-#include "report/files/temporary_files.h"
+#include "filters/base/temporary_files.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -72,7 +72,7 @@ void Interruption::wait() const {
 
 void Interruption::end(int signal) const {
   const pid_t own = getpid();
-  files::remove_temporary_files(out_, [own](pid_t owner) { return owner == own; });
+  remove_temporary_files(out_, [own](pid_t owner) { return owner == own; });
   fmt::print(stderr, "{}shadowbench: stopped by {}; {}\n", isatty(STDERR_FILENO) ? "\n" : "", name_of(signal), advice_);
   std::fflush(stderr);
   std::signal(signal, SIG_DFL);

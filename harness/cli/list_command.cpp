@@ -12,7 +12,7 @@
 #include "harness/gl/timer.h"
 #include "harness/options/options.h"
 #include "harness/scene/load.h"
-#include "reference/metrics/metric_table.h"
+#include "report/records/metric_list.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -118,33 +118,8 @@ int list_scenes(const ListArguments& arguments) {
   return 0;
 }
 
-std::string describe_range(const metrics::Metric& metric) {
-  const auto& [min, max] = metric.range;
-  if (min && max) return fmt::format("{} .. {}", *min, *max);
-  return min ? fmt::format("{} or more", *min) : "any number";
-}
-
-nlohmann::json to_json(const metrics::Metric& metric) {
-  nlohmann::json json = {{"path", metric.path},
-                         {"name", metric.name()},
-                         {"unit", metric.unit},
-                         {"min", nullptr},
-                         {"max", nullptr},
-                         {"definition", metric.definition},
-                         {"diff", metric.source != metrics::MetricSource::kRun}};
-  if (metric.range.min) json["min"] = *metric.range.min;
-  if (metric.range.max) json["max"] = *metric.range.max;
-  return json;
-}
-
 int list_metrics(const ListArguments& arguments) {
-  nlohmann::json json = nlohmann::json::array();
-  for (const metrics::Metric& metric : metrics::metric_table())
-    if (arguments.json)
-      json.push_back(to_json(metric));
-    else
-      fmt::print("{}  {}, {}\n  {}\n", metric.path, metric.unit, describe_range(metric), metric.definition);
-  if (arguments.json) fmt::print("{}\n", json.dump(2));
+  fmt::print("{}", arguments.json ? records::make_metric_json() : records::make_metric_text());
   return 0;
 }
 

@@ -8,7 +8,7 @@
 #include "harness/cli/manual_page.h"
 #include "harness/options/experiment_file.h"
 #include "harness/scene/load.h"
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -27,12 +27,12 @@ KnownNames list_known_names() {
 int write_manual(const Command& program, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   const KnownNames names = list_known_names();
-  files::write_text_file(folder / (program.name + ".1"), make_program_page(program));
+  write_text_file(folder / (program.name + ".1"), make_program_page(program));
   for (const Command& command : program.commands)
     if (!command.hidden)
-      files::write_text_file(folder / (program.name + "-" + command.name + ".1"), make_command_page(program, command));
-  files::write_text_file(folder / (program.name + ".bash"), make_bash_completion(program, names));
-  files::write_text_file(folder / ("_" + program.name), make_zsh_completion(program, names));
+      write_text_file(folder / (program.name + "-" + command.name + ".1"), make_command_page(program, command));
+  write_text_file(folder / (program.name + ".bash"), make_bash_completion(program, names));
+  write_text_file(folder / ("_" + program.name), make_zsh_completion(program, names));
   return 0;
 }
 

@@ -9,7 +9,7 @@
 #include "harness/flicker/bench.h"
 #include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 #include "report/files/folder_lock.h"
 #include "report/images/flicker_picture.h"
 #include "report/pages/flicker_page.h"
@@ -77,8 +77,8 @@ class FlickerRun {
     progress_.show(done_, "writing");
     lock.require_in_place();
     pages::write_page(options_.run.out, "flicker", pages::make_flicker_page(record_));
-    files::write_text_file(options_.run.out / "flicker.csv", records::make_flicker_csv(record_));
-    files::write_text_file(options_.run.out / "flicker.json", records::make_flicker_json(record_));
+    write_text_file(options_.run.out / "flicker.csv", records::make_flicker_csv(record_));
+    write_text_file(options_.run.out / "flicker.json", records::make_flicker_json(record_));
   }
 
  private:

@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "filters/base/error.h"
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/write_report.h"
 #include "report/records/json_io.h"
@@ -94,7 +94,7 @@ void require_free(const std::filesystem::path& out, const std::vector<ShardRun>&
 }
 
 void copy_whole(const std::filesystem::path& from, const std::filesystem::path& to) {
-  files::PendingFile pending(to);
+  PendingFile pending(to);
   std::error_code error;
   std::filesystem::copy_file(from, pending.temporary_path(), std::filesystem::copy_options::overwrite_existing, error);
   if (error)

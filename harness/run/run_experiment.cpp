@@ -18,7 +18,7 @@
 #include "reference/truth/occluders.h"
 #include "report/analysis/repeat.h"
 #include "report/analysis/summary.h"
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/write_report.h"
 #include "report/records/format.h"
@@ -39,7 +39,7 @@ std::string describe_duration(double seconds) {
 }
 
 /// A folder that cannot be written is better found before the work than after it.
-void require_writable(const std::filesystem::path& folder) { files::AtomicFile(folder / "cells" / "probe").write(""); }
+void require_writable(const std::filesystem::path& folder) { AtomicFile(folder / "cells" / "probe").write(""); }
 
 /// A run of more cells than this takes hours, and needs --yes.
 constexpr int kManyCells = 2000;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "harness/measure/renderer.h"
-#include "harness/measure/truth_cache.h"
+#include "reference/truth/truth_cache.h"
 #include "harness/run/run_plan.h"
 
 namespace shadowbench::run {

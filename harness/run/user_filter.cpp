@@ -12,7 +12,7 @@
 #include "harness/gl/pixel_format.h"
 #include "harness/run/task_images.h"
 #include "harness/run/worker_process.h"
-#include "report/files/temporary_files.h"
+#include "filters/base/temporary_files.h"
 #include "report/images/picture_io.h"
 #include "report/records/json_io.h"
 
@@ -138,7 +138,7 @@ measure::MeasuredCell read_cell(const options::RunOptions& options, const measur
 measure::MeasuredCell measure_user_filter(const options::RunOptions& options, const measure::SceneTask& task,
                                           const filters::FilterRequest& request, const std::string& scene_argument,
                                           const std::string& backend) {
-  const TemporaryFolder folder(files::make_temporary_folder_path(options.out, "worker"));
+  const TemporaryFolder folder(make_temporary_folder_path(options.out, "worker"));
   const WorkerOutcome outcome = run_worker(
       worker_arguments(options, task, request, scene_argument, backend, folder.path()), options.cell_timeout_s);
   if (outcome.exit_code == 0) return read_cell(options, task, request, folder.path());

@@ -9,7 +9,7 @@
 #include "filters/base/error.h"
 #include "harness/run/provenance.h"
 #include "harness/stress/onset.h"
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/stress_page.h"
 #include "report/pages/write_page.h"
@@ -63,8 +63,8 @@ class StressRun {
     progress_.show(done_, "writing");
     lock.require_in_place();
     pages::write_page(options_.out, "stress", pages::make_stress_page(record_));
-    files::write_text_file(options_.out / "stress.csv", records::make_stress_csv(record_));
-    files::write_text_file(options_.out / "stress.json", records::make_stress_json(record_));
+    write_text_file(options_.out / "stress.csv", records::make_stress_csv(record_));
+    write_text_file(options_.out / "stress.json", records::make_stress_json(record_));
     return {pages::make_limit_text(record_), records::count_disagreements(record_)};
   }
 

@@ -12,7 +12,7 @@
 #include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
 #include "harness/tune/tune_stage.h"
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/tune_page.h"
 #include "report/pages/write_page.h"
@@ -281,9 +281,9 @@ class Tuner {
     }
     const page::Page page = pages::make_tune_page(record_);
     pages::write_page(options_.run.out, "tune", page);
-    files::write_text_file(options_.run.out / "evaluations.csv",
+    write_text_file(options_.run.out / "evaluations.csv",
                            fmt::format("filter,evaluation,stage,parameters,{}\r\n", metric_.name) + evaluations_);
-    files::write_text_file(options_.run.out / "tuned.json", records::make_tuned_json(record_));
+    write_text_file(options_.run.out / "tuned.json", records::make_tuned_json(record_));
     return page::write_markdown(page);
   }
 };

@@ -16,27 +16,28 @@ struct RaysAtReceivers {
   std::span<const float> area;                 ///< fraction of the light that is seen
   std::span<const std::uint8_t> area_settled;  ///< all rays of the pixel and of its eight neighbours agree
   std::span<const float> surroundings;         ///< fraction of a square, wider than any kernel of the run, that is lit
-  std::span<const std::uint8_t> surroundings_settled;  ///< likewise
-  std::span<const float> first_blocker_ws;             ///< metres along the light to the surface that light meets first
+  std::span<const std::uint8_t> surroundings_settled;  ///< the same for the surroundings
+  std::span<const float> first_blocker_ws;             ///< metres along the light to the first surface that it meets
   double contact_ws = 0.0;                             ///< metres: nearer blockers touch the receiver
 };
 
 /// Where each fault can occur; 1 inside.
 struct ArtefactMasks {
-  std::vector<std::uint8_t> acne;         ///< wholly lit, and so are the surroundings and the neighbouring pixels
-  std::vector<std::uint8_t> leak;         ///< wholly blocked, likewise, by something that does not touch the receiver
+  std::vector<std::uint8_t> acne;  ///< wholly lit, and so are the surroundings and the neighbouring pixels
+  std::vector<std::uint8_t>
+      leak;  ///< wholly blocked, with its neighbours, by something that does not touch the receiver
   std::vector<std::uint8_t> contact_gap;  ///< wholly blocked, by something that touches the receiver
 };
 
-/// From which visibility on, and in which receivers, an image has a fault that a person sees.
+/// The limits from which on an image has a fault that a person sees.
 struct ArtefactLimits {
-  double acne_below = 0.9;    ///< visibility of a wholly lit receiver
-  double guard_texels = 1.0;  ///< the surroundings of a receiver are the run's widest kernel and this much around it
-  double leak_above = 0.1;    ///< visibility of a wholly blocked receiver
+  double acne_below = 0.9;         ///< visibility of a wholly lit receiver
+  double guard_texels = 1.0;       ///< the surroundings reach beyond the run's widest kernel by this much
+  double leak_above = 0.1;         ///< visibility of a wholly blocked receiver
   double contact_gap_above = 0.5;  ///< visibility of a receiver that is blocked by what touches it (peter-panning)
   double contact_texels =
-      8.0;                    ///< how near along the light that is at most; what leaks is blocked by something farther
-  double noise_above = 0.05;  ///< image less its percentage-closer filter, away from its 3 x 3 mean
+      8.0;  ///< a blocker that is nearer along the light touches the receiver; leaks have farther ones
+  double noise_above = 0.05;  ///< how far image less percentage-closer filter is from its own 3 x 3 mean
 };
 inline constexpr ArtefactLimits kArtefactLimits;
 
@@ -49,7 +50,7 @@ ArtefactMasks make_artefact_masks(const RaysAtReceivers& rays);
 /// Gives nothing for a mask of fewer than kFewestReceivers.
 std::optional<double> rate_below(std::span<const float> image, std::span<const std::uint8_t> mask, double limit);
 
-/// The share of a mask's pixels whose value is greater than a limit, likewise.
+/// The share of a mask's pixels whose value is greater than a limit, under the same rules.
 std::optional<double> rate_above(std::span<const float> image, std::span<const std::uint8_t> mask, double limit);
 
 /// The share of a filter's penumbra that is noisy: the image less the brute-force percentage-closer filter of its

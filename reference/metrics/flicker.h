@@ -7,21 +7,21 @@
 
 namespace shadowbench::metrics {
 
-/// A receiver's visibility went back and forth once it came back by more than this from where it had gone.
+/// A visibility goes back and forth where it turns and comes back by more than this.
 inline constexpr float kReturn = 0.05f;
 
 /// How the visibility of fixed receivers changes from frame to frame, and how that differs from how the truth changes.
 /// Source: derived; with d and e the changes of image and truth from one frame to the next, at one receiver.
 struct FlickerStats {
-  std::int64_t receivers = 0;  ///< of the mask
+  std::int64_t receivers = 0;  ///< pixels of the mask
   std::int64_t not_finite =
       0;  ///< pairs of a receiver and a step that are left out, because the image is NaN or infinite there
-  double change = 0.0;                    ///< root mean square of d, over receivers and steps
-  double truth_change = 0.0;              ///< of e
-  double flicker = 0.0;                   ///< of d - e: change that the truth does not have, or lacks
-  double returning = 0.0;                 ///< share of the receivers that went back and forth by more than kReturn
-  double truth_returning = 0.0;           ///< the same of the truth
-  std::vector<double> mean_change;        ///< of each step, the mean of |d| over receivers
+  double change = 0.0;              ///< root mean square of d, over receivers and steps
+  double truth_change = 0.0;        ///< root mean square of e
+  double flicker = 0.0;             ///< root mean square of d - e: change that the image has too much or too little
+  double returning = 0.0;           ///< share of the receivers that went back and forth by more than kReturn
+  double truth_returning = 0.0;     ///< the same share for the truth
+  std::vector<double> mean_change;  ///< of each step, the mean of |d| over receivers
   std::vector<double> truth_mean_change;  ///< of each step, the mean of |e|
   std::vector<float> by_pixel;            ///< root mean square of d - e over the steps; 0 outside the mask
 };
@@ -41,19 +41,19 @@ class FlickerMeter {
  private:
   /// Follows one value's turns.
   struct Turn {
-    float farthest = 0.0f;  ///< since it last turned
-    std::int8_t way = 0;    ///< 1 up, -1 down, 0: has not gone anywhere
+    float farthest = 0.0f;  ///< the farthest value since the last turn
+    std::int8_t way = 0;    ///< 1 up, -1 down, 0: no way yet
     bool returned = false;
     void follow(float value);
   };
 
-  /// What is kept of an image, or of the truth.
+  /// The sums and turns that are kept of an image, or of the truth.
   struct Track {
     std::vector<float> last;
     std::vector<Turn> turns;
     std::vector<double> mean_change;
     double squares = 0.0;
-    std::int64_t steps = 0;  ///< of receivers
+    std::int64_t steps = 0;  ///< counted receiver by receiver
   };
 
   std::vector<std::uint8_t> mask_;

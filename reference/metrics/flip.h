@@ -21,7 +21,7 @@ struct FlipView {
   int height = 0;
   std::vector<glm::dvec3> colors;  ///< blurred as by the eye, in Hunt-adjusted CIELAB
   std::vector<double> edges;       ///< strength of the luminance's first derivative
-  std::vector<double> points;      ///< of its second
+  std::vector<double> points;      ///< strength of its second derivative
 };
 
 /// Looks at a picture from a distance. Requires finite pixels. Cost: about 0.2 s per megapixel on one core.
@@ -35,7 +35,7 @@ FlipView view_for_flip(const LinearPicture& picture, double pixels_per_degree = 
 /// Requires two pictures of one size, seen from one distance.
 std::vector<float> measure_flip(const FlipView& a, const FlipView& b);
 
-/// The same of pictures that are compared only once; their pixels must be finite.
+/// The same difference for pictures that are compared only once; their pixels must be finite.
 std::vector<float> measure_flip(const LinearPicture& a, const LinearPicture& b,
                                 double pixels_per_degree = kDefaultPixelsPerDegree);
 

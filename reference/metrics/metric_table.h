@@ -4,42 +4,103 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "reference/metrics/error_stats.h"
+#include "reference/metrics/metric_values.h"
 
 namespace shadowbench::metrics {
 
-/// Says what a number is measured from.
+/// Where a metric's value stands: a real number or a count.
+using MetricMember =
+    std::variant<std::optional<double>& (*)(MetricValues&), std::optional<std::int64_t>& (*)(MetricValues&)>;
+
+/// The least and largest value that a metric can have; empty: there is none.
+struct MetricRange {
+  std::optional<double> min;
+  std::optional<double> max;
+};
+
+/// Which values of a metric are better.
+enum class MetricDirection {
+  kLess,     ///< smaller values
+  kMore,     ///< larger values
+  kZero,     ///< values near 0; the sign says to which side an image is wrong
+  kNeither,  ///< none: the metric describes what was measured
+};
+
+/// What a metric is measured from.
 enum class MetricSource {
   kRun,       ///< a scene, its rays and models: `shadowbench run` alone has them
   kValues,    ///< the values of two pictures, pixel by pixel: measure_error()
   kPictures,  ///< two whole pictures: measure_flip()
 };
 
-/// Holds the least and largest value that a number can have; empty: there is none.
-struct MetricRange {
-  std::optional<double> min;
-  std::optional<double> max;
+/// What a baseline keeps of a metric, and how far a run may be from it.
+enum class MetricBaseline {
+  kNotKept,  ///< the pixels themselves say more
+  kKept,     ///< kept for the other tolerances, and not compared itself
+  kError,    ///< a mean of errors: it moves by what the pixels may move by
+  kRate,     ///< a share of receivers: one of them may fall on the other side of a limit
+  kCount,    ///< the same to the last digit
+  kScale,    ///< a length, the same but for rounding
 };
 
-/// Describes one number of a cell's `error`, `truth`, `artefact` and `attribution` groups.
+/// Describes one number of a cell.
 struct Metric {
-  std::string_view path;  ///< in a cell's record: "error.rmse", "attribution.numeric.share"
+  std::string_view path;  ///< in results.json: "error.rmse", "attribution.numeric.share"
+  MetricMember member;
   std::string_view unit;
   MetricRange range;
+  MetricDirection direction;
+  std::string_view title;  ///< a few words for tables and axes
+  std::string definition;
+  MetricBaseline baseline = MetricBaseline::kNotKept;
+  bool tabled = false;          ///< has a column in the tables for people
+  std::string_view limit = {};  ///< the option of `advise` that limits it: "--max-rmse"; empty: none
   MetricSource source = MetricSource::kRun;
   double ErrorStats::*statistic = nullptr;  ///< where measure_error() puts it; null for other sources
-  std::string_view definition;
 
+  /// The path up to its first dot: "error"; empty where it has none.
+  std::string_view group() const { return path.substr(0, path.find('.') == path.npos ? 0 : path.find('.')); }
   /// The path without its group: "rmse", "numeric.share".
   std::string_view name() const { return path.substr(path.find('.') + 1); }
+  bool is_count() const { return member.index() == 1; }
+  /// The value as a number, where it exists.
+  std::optional<double> read(const MetricValues& values) const;
 };
 
-/// Gives every number of those groups, in the order of the record: the one list of metrics that there is.
+/// Calls `visit(path, value)` with a metric's optional value.
+template <class Values, class Visitor>
+void visit_metric(const Metric& metric, Values& values, Visitor&& visit) {
+  std::visit(
+      [&](auto member) {
+        // The members only find their value: what is const stays so.
+        auto& value = member(const_cast<MetricValues&>(static_cast<const MetricValues&>(values)));
+        if constexpr (std::is_const_v<Values>)
+          visit(std::string(metric.path), std::as_const(value));
+        else
+          visit(std::string(metric.path), value);
+      },
+      metric.member);
+}
+
+/// All metrics, in the order in which they are listed: the one list of metrics that there is.
 std::span<const Metric> metric_table();
 
-/// Gives the metrics that two pictures are enough for, in the order of the table.
+/// The metric of a path. Requires that the table has it.
+const Metric& find_metric(std::string_view path);
+
+/// The metrics that two pictures are enough for, in the order of the table.
 std::vector<Metric> picture_metrics();
+
+/// Names a direction: "less is better".
+std::string_view describe_direction(MetricDirection direction);
+
+/// Names a range: "0 .. 1", "0 or more", "any number".
+std::string describe_range(const MetricRange& range);
 
 }  // namespace shadowbench::metrics

@@ -8,7 +8,7 @@
 namespace shadowbench::metrics {
 namespace {
 
-constexpr double kWeightSlack = 1e-6;  // of the kernel's weights, which are single precision
+constexpr double kWeightSlack = 1e-6;  // the kernel's weights are single precision, and their sum is off by this much
 
 std::size_t count_texels(const StoredMap& map) { return map.values.size() / static_cast<std::size_t>(map.channels); }
 
@@ -17,7 +17,7 @@ std::span<const float> texel(const StoredMap& map, std::size_t i) {
   return map.values.subspan(i * channels, channels);
 }
 
-/// NaN where a channel is: std::max would pass it over.
+/// The largest magnitude of a texel's channels; NaN where a channel is NaN, which std::max would pass over.
 float find_largest(std::span<const float> channels) {
   float largest = 0.0f;
   for (const float value : channels) {
@@ -27,7 +27,7 @@ float find_largest(std::span<const float> channels) {
   return largest;
 }
 
-/// Spreads what is marked to `radius` texels on either side, along rows or columns.
+/// Spreads the marks to `radius` texels on either side, along rows or columns.
 std::vector<std::uint8_t> spread(const std::vector<std::uint8_t>& marked, std::size_t side, int radius,
                                  bool along_rows) {
   std::vector<std::uint8_t> result(marked.size(), 0);

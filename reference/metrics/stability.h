@@ -11,22 +11,22 @@ namespace shadowbench::metrics {
 struct StoredMap {
   std::span<const float> values;  ///< texels x channels, interleaved
   int channels = 1;
-  double largest_number = 0.0;  ///< that the map's format holds
+  double largest_number = 0.0;  ///< the largest number that the map's format holds
   bool moments = false;         ///< channels in pairs, a mean and the mean of its square; requires an even number
   /// Where a format may saturate instead of becoming infinite, which a GL is free to do: the same map before its blur,
   /// in which the largest number of the format stands for overflow; a square. Empty: only infinity does.
   std::span<const float> before_blur = {};
   int blur_radius_texels = 0;
   std::span<const float> border =
-      {};  ///< what that blur reads outside the map, one value a channel; empty: nothing of its own
+      {};  ///< what that blur reads outside the map, one value per channel; empty: no value of its own
 };
 
-/// What numbers became of in an encoded map. min() and clamp() in a lookup hide them in the image.
+/// What is wrong with the numbers of an encoded map. min() and clamp() in a lookup hide it in the image.
 struct TexelHealth {
   std::int64_t texels = 0;
   std::int64_t overflowed = 0;  ///< texels that overflowed, or into which the blur mixed one that did; none that is NaN
   std::int64_t nan = 0;         ///< texels with a channel that is NaN
-  std::optional<double> largest;                  ///< magnitude stored; nothing where a texel is broken
+  std::optional<double> largest;  ///< largest stored magnitude; empty where a texel is NaN or overflowed
   std::optional<std::int64_t> negative_variance;  ///< texels whose variance is below 0 before any clamp; moments only
   std::optional<double> lowest_variance;          ///< moments only, and only where some texel is finite
 
@@ -50,18 +50,18 @@ struct BoundStations {
   std::span<const float> image;       ///< as the GPU made it
   std::span<const double> model;      ///< the filter in double precision
   std::span<const double> closer;     ///< percentage-closer filter of its own kernel and biased depth
-  std::span<const double> tolerance;  ///< that the image may be off the model by rounding; NaN: no receiver there
+  std::span<const double> tolerance;  ///< how far rounding may move the image from the model; NaN: no receiver there
 };
 
-/// How far a bound is kept.
+/// Where an image breaks its bound, and by how much.
 struct BoundCheck {
-  std::int64_t receivers = 0;   ///< that were compared: image and tolerance are numbers
-  std::int64_t violations = 0;  ///< darker by more than rounding explains
+  std::int64_t receivers = 0;   ///< receivers that were compared: image and tolerance are numbers
+  std::int64_t violations = 0;  ///< receivers that are darker by more than rounding explains
   std::int64_t exact_violations =
-      0;  ///< where the model in double precision is darker: the formula with these parameters is no bound
+      0;  ///< receivers where the model in double precision is darker: with these parameters it is no bound
   double shortfall_max = 0.0;    ///< largest closer - image, whether rounding explains it or not
   std::vector<float> shortfall;  ///< per pixel: closer - image where that is positive, else 0
-  std::vector<float> violation;  ///< per pixel: what of that is more than the tolerance
+  std::vector<float> violation;  ///< per pixel: the part of the shortfall that is more than the tolerance
 };
 
 /// Compares a bound with what it bounds; sums of weights may differ by 1e-6 on either side.

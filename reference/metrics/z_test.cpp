@@ -32,7 +32,7 @@ double find_p(const Share& a, const Share& b) {
   const unsigned of_a = whole(a.lookups), of_b = whole(b.lookups);
   const unsigned lit_a = std::min(whole(a.lit), of_a), lit = lit_a + std::min(whole(b.lit), of_b);
   const unsigned dark = of_a + of_b - lit;
-  // The number of lit ones among a's draws out of an urn that holds all of both.
+  // The number of lit lookups of a, drawn from an urn that holds the lookups of both.
   const double at_most = gsl_cdf_hypergeometric_P(lit_a, lit, dark, of_a);
   const double at_least = lit_a == 0 ? 1.0 : gsl_cdf_hypergeometric_Q(lit_a - 1, lit, dark, of_a);
   return std::min(1.0, 2.0 * std::min(at_most, at_least));

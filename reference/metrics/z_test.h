@@ -5,11 +5,11 @@
 
 namespace shadowbench::metrics {
 
-/// Is what two measurements of one pixel differ by, with what chance makes of it.
+/// The difference of two measurements of one pixel, and how much chance may contribute to it.
 struct NoisyDifference {
   double difference = 0.0;
-  double variance = 0.0;            ///< of the difference; 0: nothing may differ
-  double degrees_of_freedom = 1.0;  ///< of the estimate of that variance
+  double variance = 0.0;            ///< variance of the difference; 0: the two must be equal
+  double degrees_of_freedom = 1.0;  ///< degrees of freedom of the variance's estimate
 };
 
 /// Gives the probability, two-sided, of such a difference or a larger one by chance; 0 for one that is not finite.
@@ -20,24 +20,24 @@ double find_p(const NoisyDifference& difference);
 /// Satterthwaite 1946, An Approximate Distribution of Estimates of Variance Components.
 NoisyDifference add_differences(std::span<const NoisyDifference> differences);
 
-/// Is how many of so many lookups were lit.
+/// How many lookups were lit, out of how many.
 struct Share {
   double lit = 0.0;
   double lookups = 0.0;
 };
 
-/// Gives the probability, two-sided, that two shares differ so much or more where both are of one probability,
-/// whichever it is: right for few lookups, and where nearly all agree. Counts are rounded to whole numbers. Source:
-/// Fisher 1935, The Logic of Inductive Inference (the exact test), twice its one-sided value.
+/// Gives the two-sided probability that two shares differ at least so much where both come from one probability,
+/// whatever that is: it is right for few lookups, and where nearly all agree. Counts are rounded to whole numbers.
+/// Source: Fisher 1935, The Logic of Inductive Inference (the exact test), twice its one-sided value.
 double find_p(const Share& a, const Share& b);
 
 /// Says whether chance explains the differences of many pixels.
 struct PixelTest {
   std::int64_t tested = 0;
-  std::int64_t beyond = 0;       ///< that differ by more than chance explains at the corrected level
+  std::int64_t beyond = 0;       ///< pixels that differ by more than chance explains at the corrected level
   std::size_t worst = 0;         ///< index of the least likely difference
   double smallest_p = 1.0;       ///< its probability, not corrected
-  double corrected_level = 0.0;  ///< the level over the number of tests: what is below it is beyond chance
+  double corrected_level = 0.0;  ///< the level divided by the number of tests: a smaller probability is beyond chance
 };
 
 /// Tests every pixel's probability at `level`, corrected for their number: the probability that any is found where all

@@ -4,12 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <utility>
 
-#include "reference/metrics/artefacts.h"
+#include "reference/metrics/metric_table.h"
 #include "report/analysis/cell_group.h"
 #include "report/records/format.h"
 
@@ -133,43 +134,26 @@ std::vector<std::string> explain_offsets(const std::vector<AttributedCell>& cell
              : std::vector<std::string>();
 }
 
-using RateMember = std::optional<double> records::ArtefactRecord::*;
-
-// A sentence on one kind of fault, "what it is: filters with their rates"; none where no filter has it.
-std::vector<std::string> describe_artefact(const CellGroup& group, RateMember member, const std::string& definition) {
+// A sentence on one kind of fault, "Acne: filters with their rates", and one that defines it; none where no filter has
+// it.
+std::vector<std::string> describe_artefact(const CellGroup& group, const metrics::Metric& fault) {
   std::vector<std::string> rates;
-  for (const records::CellRecord& cell : group.cells)
-    if ((cell.artefact.*member).value_or(0.0) >= kSmallestRate)
-      rates.push_back(fmt::format("{} {}", label_cell(group, cell), records::format_rate(*(cell.artefact.*member))));
+  for (const records::CellRecord& cell : group.cells) {
+    const double rate = fault.read(cell).value_or(0.0);
+    if (rate >= kSmallestRate)
+      rates.push_back(fmt::format("{} {}", label_cell(group, cell), records::format_rate(rate)));
+  }
   if (rates.empty()) return {};
-  return {fmt::format("{}: {}.", definition, fmt::join(rates, ", "))};
-}
-
-std::vector<std::pair<RateMember, std::string>> list_artefacts() {
-  const metrics::ArtefactLimits& limits = metrics::kArtefactLimits;
-  return {
-      {&records::ArtefactRecord::acne,
-       fmt::format("Acne, the share of wholly lit receivers (no occluder before the light, nor in the map within the "
-                   "run's widest kernel and {} texel) that are darker than {}",
-                   limits.guard_texels, limits.acne_below)},
-      {&records::ArtefactRecord::leak,
-       fmt::format("Leaks, the share of receivers wholly blocked by something farther than {} texels that are "
-                   "brighter than {}",
-                   limits.contact_texels, limits.leak_above)},
-      {&records::ArtefactRecord::contact_gap,
-       fmt::format("Contact gaps, the share of receivers blocked by a surface within {} texels that are brighter "
-                   "than {}",
-                   limits.contact_texels, limits.contact_gap_above)},
-      {&records::ArtefactRecord::noise,
-       fmt::format("Noise, the share of receivers in the filter's penumbra where the image less its own "
-                   "percentage-closer filter is more than {} off its 3 × 3 mean",
-                   limits.noise_above)}};
+  std::string name(fault.title);
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return {fmt::format("{}: {}. The rate is the share {}.", name, fmt::join(rates, ", "), fault.definition)};
 }
 
 std::vector<std::string> describe_artefacts(const CellGroup& group) {
   std::vector<std::string> sentences;
-  for (const auto& [member, definition] : list_artefacts()) {
-    const auto more = describe_artefact(group, member, definition);
+  for (const metrics::Metric& metric : metrics::metric_table()) {
+    if (metric.group() != "artefact") continue;
+    const auto more = describe_artefact(group, metric);
     sentences.insert(sentences.end(), more.begin(), more.end());
   }
   return sentences;

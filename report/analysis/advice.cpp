@@ -74,13 +74,13 @@ std::optional<std::string> find_gap(const std::vector<const records::CellRecord*
   for (const records::CellRecord* cell : cells) {
     if (spec.read(*cell, advice.request.light)) continue;
     return fmt::format("no {} on {}: {}", spec.field, describe_place(place_of(*cell), advice.places),
-                       explain_absence(*cell, spec.field));
+                       records::explain_absence(*cell, spec.field));
   }
   return std::nullopt;
 }
 
 bool has_nothing_to_see(const records::CellRecord& cell, const LimitSpec& spec, LightMotion light) {
-  return !spec.read(cell, light) && records::is_nothing_to_see(explain_absence(cell, spec.field));
+  return !spec.read(cell, light) && records::is_nothing_to_see(records::explain_absence(cell, spec.field));
 }
 
 // Says why a limit cannot be judged: a value is missing, or there is nothing to see anywhere.
@@ -90,7 +90,8 @@ std::optional<std::string> find_limit_gap(const Configuration& configuration, co
   std::erase_if(telling,
                 [&](const records::CellRecord* cell) { return has_nothing_to_see(*cell, spec, advice.request.light); });
   if (!telling.empty()) return find_gap(telling, spec, advice);
-  return fmt::format("no {} anywhere: {}", spec.field, explain_absence(*configuration.cells.front(), spec.field));
+  return fmt::format("no {} anywhere: {}", spec.field,
+                     records::explain_absence(*configuration.cells.front(), spec.field));
 }
 
 // What the filter of a configuration claims; nothing where nobody knows.
@@ -113,7 +114,7 @@ std::optional<std::string> find_missing_cell(const Configuration& configuration,
 
 Verdict judge_limit(const std::vector<const records::CellRecord*>& cells, const Demand& demand, LightMotion light) {
   Verdict verdict{true, -kInfinity};
-  const bool is_rmse = demand.spec->field == std::string(kRmse);
+  const bool is_rmse = demand.spec->field == kRmse;
   for (const records::CellRecord* cell : cells) {
     if (!demand.spec->read(*cell, light)) {
       verdict.nothing_to_see.push_back(cell);
@@ -185,7 +186,7 @@ double mean_or_infinity(const Candidate& candidate, const LimitSpec& spec, Light
 }
 
 void sort_by_cost(std::vector<Candidate>& candidates, LightMotion light) {
-  const LimitSpec& rmse = *std::ranges::find(limit_table(), std::string(kRmse), &LimitSpec::field);
+  const LimitSpec& rmse = *std::ranges::find(limit_table(), kRmse, &LimitSpec::field);
   const auto key = [&](const Candidate& candidate) {
     return std::tuple(candidate.cost.mean, mean_or_infinity(candidate, cost_spec(CostKind::kTime), light),
                       mean_or_infinity(candidate, rmse, light));

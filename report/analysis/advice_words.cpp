@@ -9,6 +9,7 @@
 #include <set>
 
 #include "report/analysis/summary.h"
+#include "report/records/absence.h"
 #include "report/records/format.h"
 
 namespace shadowbench::analysis {
@@ -133,7 +134,7 @@ void add_notes_of_nothing_to_see(std::vector<std::string>& notes, const Advice& 
       for (const records::CellRecord* cell : candidate.verdicts[i].nothing_to_see) {
         const std::string place = describe_place(place_of(*cell), advice.places);
         if (std::ranges::count(places, place) == 0) places.push_back(place);
-        if (reason.empty()) reason = explain_absence(*cell, advice.request.demands[i].spec->field);
+        if (reason.empty()) reason = records::explain_absence(*cell, advice.request.demands[i].spec->field);
       }
       if (fits) break;
     }

@@ -3,42 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
+#include <vector>
 
 namespace shadowbench::analysis {
 namespace {
 
-template <class T>
-std::optional<double> as_double(const std::optional<T>& value) {
-  return value ? std::optional<double>(static_cast<double>(*value)) : std::nullopt;
-}
-
-std::optional<double> read_frame_time(const records::CellRecord& cell, LightMotion light) {
-  const auto time = frame_time(cell, light);
-  return time ? std::optional<double>(time->median) : std::nullopt;
-}
-
-constexpr LimitSpec kTable[] = {
-    {"--max-rmse", "error.rmse", "root mean square error of visibility against the area truth",
-     [](const records::CellRecord& cell, LightMotion) { return cell.error.rmse; }},
-    {"--max-leak", "artefact.leak", "share of blocked receivers that are bright",
-     [](const records::CellRecord& cell, LightMotion) { return cell.artefact.leak; }},
-    {"--max-acne", "artefact.acne", "share of lit receivers that are dark",
-     [](const records::CellRecord& cell, LightMotion) { return cell.artefact.acne; }},
-    {"--max-contact-gap", "artefact.contact_gap", "share of receivers blocked by what touches them that are bright",
-     [](const records::CellRecord& cell, LightMotion) { return cell.artefact.contact_gap; }},
-    {"--max-flip", "error.flip", "LDR-FLIP of the shaded picture",
-     [](const records::CellRecord& cell, LightMotion) { return cell.error.flip; }},
-    {"--max-ms", "time_ms", "median time of a frame, ms; see --light", read_frame_time},
-    {"--max-bytes", "cost.map_bytes", "bytes of the map that is looked up",
-     [](const records::CellRecord& cell, LightMotion) { return as_double(cell.cost.map_bytes); }},
-    {"--max-fetches", "cost.fetches", "mean texture fetches per receiver",
-     [](const records::CellRecord& cell, LightMotion) { return cell.cost.fetches; }},
-};
-
 const LimitSpec& find_spec(const std::string& field) {
-  return *std::find_if(
-      std::begin(kTable), std::end(kTable), [&](const LimitSpec& spec) { return spec.field == field; });
+  return *std::ranges::find(limit_table(), field, &LimitSpec::field);
 }
 
 void add(records::Quartiles& sum, const records::Quartiles& pass) {
@@ -50,7 +21,26 @@ void add(records::Quartiles& sum, const records::Quartiles& pass) {
 
 }  // namespace
 
-std::span<const LimitSpec> limit_table() { return kTable; }
+std::optional<double> LimitSpec::read(const records::CellRecord& cell, LightMotion light) const {
+  if (metric) return metric->read(cell);
+  const auto time = frame_time(cell, light);
+  return time ? std::optional(time->median) : std::nullopt;
+}
+
+std::span<const LimitSpec> limit_table() {
+  static const std::vector<LimitSpec> table = [] {
+    std::vector<LimitSpec> limits;
+    for (const metrics::Metric& metric : metrics::metric_table())
+      if (!metric.limit.empty())
+        limits.push_back({std::string(metric.limit), std::string(metric.path),
+                          fmt::format("{}: {}, {} (see 'list metrics')", metric.title, metric.unit,
+                                      metrics::describe_range(metric.range)),
+                          &metric});
+    limits.push_back({"--max-ms", "time_ms", "median time of a frame, ms; see --light", nullptr});
+    return limits;
+  }();
+  return table;
+}
 
 const LimitSpec& cost_spec(CostKind kind) {
   switch (kind) {
@@ -76,18 +66,6 @@ std::optional<records::Quartiles> frame_time(const records::CellRecord& cell, Li
 
 const std::optional<records::Ratio>& frame_ratio(const records::CellRecord& cell, LightMotion light) {
   return light == LightMotion::kStatic ? cell.ratio_to_none.static_map : cell.ratio_to_none.moving;
-}
-
-std::string explain_absence(const records::CellRecord& cell, const std::string& field) {
-  std::string name = field;
-  for (;;) {
-    if (const auto found = cell.absent.find(name); found != cell.absent.end()) return found->second;
-    const std::size_t dot = name.rfind('.');
-    if (dot == std::string::npos) break;
-    name.resize(dot);
-  }
-  const auto part = cell.absent.lower_bound(field + ".");
-  return part != cell.absent.end() && part->first.starts_with(field + ".") ? part->second : "not measured";
 }
 
 std::string describe_demand(const Demand& demand) {

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "reference/metrics/metric_table.h"
 #include "report/records/records.h"
 
 namespace shadowbench::analysis {
@@ -16,13 +17,15 @@ enum class CostKind { kTime, kBytes, kFetches };
 
 /// Describes one number of a cell that may be limited; less is better.
 struct LimitSpec {
-  const char* option;  ///< "--max-rmse"
-  const char* field;   ///< of the record: "error.rmse"; "time_ms" for a sum over passes
-  const char* text;    ///< for help
-  std::optional<double> (*read)(const records::CellRecord& cell, LightMotion light);
+  std::string option;             ///< "--max-rmse"
+  std::string field;              ///< of the record: "error.rmse"; "time_ms" for a sum over passes
+  std::string text;               ///< for help
+  const metrics::Metric* metric;  ///< null: the time of a frame
+
+  std::optional<double> read(const records::CellRecord& cell, LightMotion light) const;
 };
 
-/// Lists everything that may be limited.
+/// Lists everything that may be limited: the metrics of the table that have an option, and the time of a frame.
 std::span<const LimitSpec> limit_table();
 
 /// Returns the entry of the table that a cost is read by.
@@ -34,9 +37,6 @@ std::optional<records::Quartiles> frame_time(const records::CellRecord& cell, Li
 
 /// Returns the ratio to `none` of what one frame takes.
 const std::optional<records::Ratio>& frame_ratio(const records::CellRecord& cell, LightMotion light);
-
-/// Returns why a cell lacks a value: what `absent` says of the field, of its group, or of a part of it.
-std::string explain_absence(const records::CellRecord& cell, const std::string& field);
 
 /// Is one thing asked of a configuration: a limit, or, without `spec`, a claim of its filter.
 struct Demand {

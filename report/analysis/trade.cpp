@@ -85,7 +85,7 @@ class CellReader {
       if (!one.estimate || indices.size() == 1) return one;
       estimates.push_back(*one.estimate);
     }
-    return {is_error ? combine_errors(estimates, measure) : combine_costs(estimates, measure), {}};
+    return {(is_error ? list_error_measures()[measure] : list_cost_measures()[measure]).combine(estimates), {}};
   }
 };
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "reference/metrics/metric_table.h"
 #include "report/analysis/front.h"
 #include "report/records/records.h"
 
@@ -16,11 +17,13 @@ inline constexpr std::size_t kCostMeasures = 4;
 
 /// Describes one axis of the trade.
 struct Measure {
-  const char* id;           ///< in file names, CSV and JSON: "rmse"
-  const char* name;         ///< for axes and sentences: "RMSE to the area truth"
-  const char* meaning;      ///< what it is and what its interval is
-  const char* over_scenes;  ///< how one number is made of several scenes'
-  bool is_time;             ///< milliseconds of the run's clock
+  std::string id;                                     ///< in file names, CSV and JSON: "rmse"
+  std::string name;                                   ///< for axes and sentences: "RMSE to the area truth"
+  std::string meaning;                                ///< what it is and what its interval is
+  const char* over_scenes;                            ///< how one number is made of several scenes'
+  Estimate (*combine)(const std::vector<Estimate>&);  ///< makes it; requires at least one scene
+  const metrics::Metric* metric;  ///< where it is read from; null for milliseconds of the run's clock
+  bool is_time;                   ///< milliseconds of the run's clock
   bool is_bytes;
 };
 
@@ -59,9 +62,5 @@ Measured read_cost(const records::CellRecord& cell, const records::CellRecord* r
 
 /// Is a cell the one that ratios refer to? That is the one whose own ratio is exactly 1 [1, 1].
 bool is_reference(const records::CellRecord& cell);
-
-/// Makes one number of several scenes', as `over_scenes` of the measure says. Requires at least one.
-Estimate combine_errors(const std::vector<Estimate>& errors, std::size_t measure);
-Estimate combine_costs(const std::vector<Estimate>& costs, std::size_t measure);
 
 }  // namespace shadowbench::analysis

@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "filters/base/error.h"
-#include "report/files/temporary_files.h"
+#include "filters/base/temporary_files.h"
 
 namespace shadowbench::files {
 namespace {
@@ -31,7 +31,7 @@ constexpr const char* kName = ".shadowbench-lock";
       folder.string());
 }
 
-/// Reads who holds the lock; it has it before it can say so.
+/// Reads which process holds the lock, and waits a moment for it to write its number.
 std::string read_owner(int descriptor) {
   for (int tries = 0; tries < 50; ++tries) {
     char text[32] = {};
@@ -42,7 +42,7 @@ std::string read_owner(int descriptor) {
   return "another process";
 }
 
-/// Some network file systems have no such locks.
+/// Says whether the file system has no such locks, like some network file systems.
 bool has_no_locks(int code) { return code == ENOLCK || code == ENOSYS || code == EOPNOTSUPP; }
 
 }  // namespace

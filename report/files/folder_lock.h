@@ -4,11 +4,11 @@
 
 namespace shadowbench::files {
 
-/// Keeps an output folder for this process, so that two runs do not write into one, and clears away what killed ones
+/// Keeps an output folder for this process, so that two runs never write into one, and removes what killed runs
 /// left half-written. The system lets go of the lock of a process that ends, however it ends.
 class FolderLock {
  public:
-  /// Creates the folder where it is missing; takes it, or refuses at once where another process has it.
+  /// Creates the folder where it is missing, and takes it, or refuses at once where another process has it.
   /// Throws Error(kOutput), which names the folder, and the other process.
   explicit FolderLock(std::filesystem::path folder);
   ~FolderLock();

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "filters/base/error.h"
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 
 namespace shadowbench::images {
 namespace {
@@ -64,7 +64,7 @@ class CheckedFile final : public OIIO::Filesystem::IOProxy {
 }  // namespace
 
 void write_image_file(const std::filesystem::path& path, const ImageWriting& write) {
-  files::PendingFile pending(path);
+  PendingFile pending(path);
   const std::string name = pending.temporary_path().string();
   CheckedFile file(name);
   std::string reason;

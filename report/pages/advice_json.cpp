@@ -4,6 +4,7 @@
 #include "report/analysis/advice_words.h"
 #include "report/analysis/summary.h"
 #include "report/pages/advice_text.h"
+#include "report/records/absence.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
 #include "report/records/json_values.h"
@@ -45,12 +46,12 @@ void set(Json& object, const char* name, const std::optional<T>& value, const st
 Json cell_json(const records::CellRecord& cell, analysis::LightMotion light) {
   Json json = {{"key", cell.key}, {"scene", cell.scene}, {"view", cell.view}};
   json["absent"] = Json::object();
-  set(json, "time_ms", analysis::frame_time(cell, light), analysis::explain_absence(cell, "time_ms"));
-  set(json, "ratio_to_none", analysis::frame_ratio(cell, light), analysis::explain_absence(cell, "ratio_to_none"));
-  set(json, "rmse", cell.error.rmse, analysis::explain_absence(cell, "error.rmse"));
-  set(json, "truth_se", cell.truth.se, analysis::explain_absence(cell, "truth.se"));
-  set(json, "map_bytes", cell.cost.map_bytes, analysis::explain_absence(cell, "cost.map_bytes"));
-  set(json, "fetches", cell.cost.fetches, analysis::explain_absence(cell, "cost.fetches"));
+  set(json, "time_ms", analysis::frame_time(cell, light), records::explain_absence(cell, "time_ms"));
+  set(json, "ratio_to_none", analysis::frame_ratio(cell, light), records::explain_absence(cell, "ratio_to_none"));
+  set(json, "rmse", cell.error.rmse, records::explain_absence(cell, "error.rmse"));
+  set(json, "truth_se", cell.truth.se, records::explain_absence(cell, "truth.se"));
+  set(json, "map_bytes", cell.cost.map_bytes, records::explain_absence(cell, "cost.map_bytes"));
+  set(json, "fetches", cell.cost.fetches, records::explain_absence(cell, "cost.fetches"));
   return json;
 }
 
@@ -70,7 +71,7 @@ Json nothing_to_see_json(const analysis::Demand& demand, const analysis::Verdict
   for (const records::CellRecord* cell : verdict.nothing_to_see) {
     list.push_back({{"scene", cell->scene},
                     {"view", cell->view},
-                    {"reason", analysis::explain_absence(*cell, demand.spec->field)}});
+                    {"reason", records::explain_absence(*cell, demand.spec->field)}});
   }
   return list;
 }
@@ -101,7 +102,7 @@ Json settings_json(const records::CellRecord& cell) {
 std::string explain_no_interval(const analysis::Candidate& candidate, const analysis::AdviceRequest& request) {
   if (request.cheapest != analysis::CostKind::kTime) return "only times have an interval";
   for (const records::CellRecord* cell : candidate.configuration.cells)
-    if (!analysis::frame_ratio(*cell, request.light)) return analysis::explain_absence(*cell, "ratio_to_none");
+    if (!analysis::frame_ratio(*cell, request.light)) return records::explain_absence(*cell, "ratio_to_none");
   return "a ratio to none is 0";
 }
 

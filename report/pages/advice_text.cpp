@@ -90,11 +90,6 @@ std::string list_limits(const records::RunRecord& run, const analysis::Advice& a
   return align(rows);
 }
 
-template <class T>
-std::string format_known(const std::optional<T>& value) {
-  return value ? records::format_number(static_cast<double>(*value)) : records::kNothing;
-}
-
 Row describe_cell(const records::CellRecord& cell, const analysis::Advice& advice) {
   const auto time = analysis::frame_time(cell, advice.request.light);
   return {place_name(cell, advice),
@@ -102,9 +97,9 @@ Row describe_cell(const records::CellRecord& cell, const analysis::Advice& advic
           time ? fmt::format("{} .. {}", records::format_number(time->q1), records::format_number(time->q3))
                : records::kNothing,
           records::format_ratio(analysis::frame_ratio(cell, advice.request.light)),
-          format_known(cell.error.rmse),
-          format_known(cell.cost.map_bytes),
-          format_known(cell.cost.fetches),
+          records::format_number(cell.error.rmse),
+          records::format_number(cell.cost.map_bytes),
+          records::format_number(cell.cost.fetches),
           cell.key};
 }
 

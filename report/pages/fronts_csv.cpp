@@ -68,7 +68,7 @@ std::string make_row(const std::vector<records::CellRecord>& cells, const analys
 
 }  // namespace
 
-std::vector<CsvColumn> list_front_columns() {
+std::vector<records::CsvColumn> list_front_columns() {
   return {{"scope", "what is compared on one front"},
           {"scene", "the scene's name; empty: all scenes and views together"},
           {"view", "the camera's name; empty likewise"},
@@ -95,7 +95,7 @@ std::vector<CsvColumn> list_front_columns() {
 std::string make_fronts_csv(const std::vector<records::CellRecord>& cells,
                             const std::vector<analysis::TradeScope>& scopes) {
   std::vector<std::string> names;
-  for (const CsvColumn& column : list_front_columns()) names.push_back(column.name);
+  for (const records::CsvColumn& column : list_front_columns()) names.push_back(column.name);
   std::string csv = join_front_row(names);
   for (const analysis::TradeScope& scope : scopes) {
     for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error) {

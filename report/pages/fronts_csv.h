@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "report/analysis/trade.h"
-#include "report/pages/tables.h"
+#include "report/records/csv_tables.h"
 
 namespace shadowbench::pages {
 
 /// Lists the columns of fronts.csv with their meanings.
-std::vector<CsvColumn> list_front_columns();
+std::vector<records::CsvColumn> list_front_columns();
 
 /// Makes fronts.csv: a header and one row per scope, error, cost and cell. A scope of all scenes names a configuration
 /// by the keys of its cells, joined by '+'. What a front leaves out has its reason and empty fields.

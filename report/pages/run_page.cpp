@@ -8,7 +8,7 @@
 #include "report/analysis/cell_group.h"
 #include "report/analysis/summary.h"
 #include "report/images/attribution_bar.h"
-#include "report/pages/tables.h"
+#include "report/pages/column_list.h"
 #include "report/pages/text_tables.h"
 #include "report/records/error_parts.h"
 #include "report/records/format.h"
@@ -157,8 +157,8 @@ page::Page make_run_page(const records::RunRecord& run, const std::vector<record
   if (!analysis::count_absences(cells).empty()) add(make_absence_section(cells));
   add({"columns",
        "What the columns mean",
-       {explain_columns("timings.csv", list_csv_columns(CsvTable::kTimings)),
-        explain_columns("accuracy.csv", list_csv_columns(CsvTable::kAccuracy))}});
+       {explain_columns("timings.csv", records::list_csv_columns(records::CsvTable::kTimings)),
+        explain_columns("accuracy.csv", records::list_csv_columns(records::CsvTable::kAccuracy))}});
   return page;
 }
 

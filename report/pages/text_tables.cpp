@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "reference/metrics/metric_table.h"
 #include "report/analysis/accuracy_words.h"
 #include "report/analysis/cell_group.h"
 #include "report/records/error_parts.h"
@@ -18,18 +19,32 @@ std::string format_quartiles(const std::optional<records::Quartiles>& time) {
               : records::kNothing;
 }
 
-template <class T>
-std::string format_optional(const std::optional<T>& value) {
-  return value ? records::format_number(static_cast<double>(*value)) : records::kNothing;
+using Metrics = std::vector<const metrics::Metric*>;
+
+/// The metrics of a group that have a column here.
+Metrics list_tabled(std::string_view group) {
+  Metrics tabled;
+  for (const metrics::Metric& metric : metrics::metric_table())
+    if (metric.tabled && metric.group() == group) tabled.push_back(&metric);
+  return tabled;
 }
 
-std::string format_optional_rate(const std::optional<double>& rate) {
-  return rate ? records::format_rate(*rate) : records::kNothing;
+// The area truth is the only one that has an error of its own.
+bool has_standard_error(const metrics::Metric& metric) { return metric.path == "error.rmse"; }
+
+void add_titles(std::vector<std::string>& header, const Metrics& tabled) {
+  for (const metrics::Metric* metric : tabled)
+    header.push_back(std::string(metric->title) + (has_standard_error(*metric) ? " (its standard error)" : ""));
 }
 
-std::string format_rmse(const records::CellRecord& cell) {
-  if (!cell.error.rmse || !cell.truth.se) return format_optional(cell.error.rmse);
-  return fmt::format("{} ({})", records::format_number(*cell.error.rmse), records::format_number(*cell.truth.se));
+void add_values(std::vector<std::string>& row, const Metrics& tabled, const records::CellRecord& cell) {
+  for (const metrics::Metric* metric : tabled) {
+    const std::optional<double> value = metric->read(cell);
+    std::string text = metric->unit == "share" ? records::format_rate(value) : records::format_number(value);
+    if (value && has_standard_error(*metric) && cell.truth.se)
+      text += fmt::format(" ({})", records::format_number(*cell.truth.se));
+    row.push_back(text);
+  }
 }
 
 std::string format_dominating_part(const records::CellRecord& cell) {
@@ -60,45 +75,41 @@ std::string format_shares(const records::CellRecord& cell) {
 
 records::TextTable make_cost_table(const analysis::CellGroup& group, const records::GlRecord& gl) {
   const std::string unit = records::time_unit(gl);
+  const Metrics costs = list_tabled("cost");
   records::TextTable table;
   table.header = {"filter",
                   "parameters",
                   fmt::format("lookup, {}, median [quartiles]", unit),
                   "lookup / none, median [95 %]",
                   fmt::format("prefilter, {}", unit),
-                  fmt::format("map, {}", unit),
-                  "fetches per receiver",
-                  "bytes per texel",
-                  "passes",
-                  "status"};
+                  fmt::format("map, {}", unit)};
+  add_titles(table.header, costs);
+  table.header.emplace_back("status");
   for (const records::CellRecord& cell : group.cells) {
-    table.rows.push_back({cell.filter, cell.params.empty() ? records::kNothing : records::describe_params(cell.params),
-                          format_quartiles(cell.time_ms.lookup), records::format_ratio(cell.ratio_to_none.lookup),
-                          format_quartiles(cell.time_ms.prefilter), format_quartiles(cell.time_ms.map),
-                          format_optional(cell.cost.fetches), format_optional(cell.cost.bytes_per_texel),
-                          format_optional(cell.cost.passes), records::describe_status(cell)});
+    auto& row = table.rows.emplace_back(std::vector<std::string>{
+        cell.filter, cell.params.empty() ? records::kNothing : records::describe_params(cell.params),
+        format_quartiles(cell.time_ms.lookup), records::format_ratio(cell.ratio_to_none.lookup),
+        format_quartiles(cell.time_ms.prefilter), format_quartiles(cell.time_ms.map)});
+    add_values(row, costs, cell);
+    row.push_back(records::describe_status(cell));
   }
   return table;
 }
 
 records::TextTable make_accuracy_table(const analysis::CellGroup& group) {
+  const Metrics errors = list_tabled("error"), artefacts = list_tabled("artefact");
   records::TextTable table;
-  table.header = {"filter",
-                  "RMSE to the area truth (its standard error)",
-                  "mean signed error",
-                  "RMSE to the kernel truth",
-                  "dominating part",
-                  "acne",
-                  "leak",
-                  "contact gap",
-                  "noise",
-                  "share of " + join_part_names()};
+  table.header = {"filter"};
+  add_titles(table.header, errors);
+  table.header.emplace_back("dominating part");
+  add_titles(table.header, artefacts);
+  table.header.push_back("share of " + join_part_names());
   for (const records::CellRecord& cell : group.cells) {
-    table.rows.push_back({analysis::label_cell(group, cell), format_rmse(cell), format_optional(cell.error.mean),
-                          format_optional(cell.error.kernel_rmse), format_dominating_part(cell),
-                          format_optional_rate(cell.artefact.acne), format_optional_rate(cell.artefact.leak),
-                          format_optional_rate(cell.artefact.contact_gap), format_optional_rate(cell.artefact.noise),
-                          format_shares(cell)});
+    auto& row = table.rows.emplace_back(std::vector<std::string>{analysis::label_cell(group, cell)});
+    add_values(row, errors, cell);
+    row.push_back(format_dominating_part(cell));
+    add_values(row, artefacts, cell);
+    row.push_back(format_shares(cell));
   }
   return table;
 }

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <optional>
 
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 
 namespace shadowbench::pages {
 namespace {
@@ -47,8 +47,8 @@ void write_page(const std::filesystem::path& dir, std::string_view command, page
     if (const auto path = find_sibling(dir, *own, other))
       page.siblings.push_back({path->generic_string(), std::string(other.title)});
   }
-  files::write_text_file(dir / own->markdown, page::write_markdown(page));
-  files::write_text_file(dir / own->html, page::write_html(page));
+  write_text_file(dir / own->markdown, page::write_markdown(page));
+  write_text_file(dir / own->html, page::write_html(page));
 }
 
 page::Links link_data(const std::vector<std::string>& files) {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 #include "report/pages/fronts_csv.h"
 #include "report/pages/run_page.h"
-#include "report/pages/tables.h"
+#include "report/records/csv_tables.h"
 #include "report/pages/write_page.h"
 #include "report/records/json_io.h"
 
@@ -28,10 +28,10 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run, cons
   std::vector<records::CellRecord> cells;
   for (const std::string& key : keys) cells.push_back(records::read_cell(dir, key));
   add_warnings(run, cells);
-  files::write_text_file(dir / "timings.csv", make_csv(CsvTable::kTimings, run, cells));
-  files::write_text_file(dir / "accuracy.csv", make_csv(CsvTable::kAccuracy, run, cells));
+  write_text_file(dir / "timings.csv", records::make_csv(records::CsvTable::kTimings, run, cells));
+  write_text_file(dir / "accuracy.csv", records::make_csv(records::CsvTable::kAccuracy, run, cells));
   const std::optional<Trade> trade = make_trade(cells);
-  if (trade && trade->has_fronts) files::write_text_file(dir / "fronts.csv", make_fronts_csv(cells, trade->scopes));
+  if (trade && trade->has_fronts) write_text_file(dir / "fronts.csv", make_fronts_csv(cells, trade->scopes));
   write_page(dir, "run", make_run_page(run, cells, trade));
   records::write_results(dir, run, keys);
 }

@@ -3,16 +3,22 @@
 #include <string>
 #include <string_view>
 
+#include "report/records/records.h"
+
 namespace shadowbench::records {
 
-/// Begins the reason of a value that has nothing to be measured on: the fault it counts cannot occur there, which is
-/// something else than a value that nobody measured. Stands in `absent`, for readers of results.json too.
+/// The beginning of the reason of a value that has nothing to be measured on, since its fault cannot occur there: that
+/// is not a value that nobody measured. Readers of results.json find it in `absent`.
 inline constexpr std::string_view kNothingToSee = "nothing to see: ";
 
-/// Makes the reason of a value that has nothing to be measured on; `why` says what there is too little of.
+/// Makes such a reason; `why` says what there is too little of.
 std::string explain_nothing_to_see(std::string_view why);
 
-/// Does a reason of `absent` say that there is nothing on which the value could be measured?
+/// Says whether a reason of `absent` begins like that.
 bool is_nothing_to_see(std::string_view reason);
+
+/// Says why a cell lacks a value: what `absent` holds for the field, for a group that it is in, or for a part of it;
+/// "not measured" where it holds nothing.
+std::string explain_absence(const CellRecord& cell, const std::string& field);
 
 }  // namespace shadowbench::records

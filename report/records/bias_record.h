@@ -6,19 +6,19 @@
 
 namespace shadowbench::records {
 
-/// Holds what one amount of bias did to one filter's image.
+/// The faults of one filter's image under one amount of bias.
 struct BiasPoint {
-  std::optional<double> factor;       ///< times the theoretical amount; empty: the mode takes none
-  double setting = 0.0;               ///< what the mode's key was set to; 0 where it takes none
+  std::optional<double> factor;       ///< multiple of the theoretical amount; empty: the mode takes no amount
+  double setting = 0.0;               ///< value of the mode's key; 0 where it has none
   std::optional<double> acne;         ///< share of wholly lit receivers that are dark
   std::optional<double> contact_gap;  ///< share of receivers blocked by what touches them that are lit
 };
 
-/// Holds one filter under one mode, over the amount.
+/// One filter under one mode of bias, over its amount.
 struct BiasCurve {
   std::string filter;             ///< label: id and the parameters that were asked for
-  double theory_setting = 0.0;    ///< what theory sets the mode's key to
-  double lift_depth = 0.0;        ///< how far that moves the receiver it is reckoned for towards the light, [0,1]
+  double theory_setting = 0.0;    ///< value that theory gives the mode's key
+  double lift_depth = 0.0;        ///< how far that moves the receiver towards the light, depth in [0,1]
   double lift_texels = 0.0;       ///< the same, in widths of a texel
   double lift_m = 0.0;            ///< the same, in metres
   std::vector<BiasPoint> points;  ///< by ascending factor
@@ -50,11 +50,11 @@ struct BiasSweepRecord {
   double angle_deg = 0.0;    ///< between that receiver's normal and the light
   double texel_m = 0.0;
   double depth_range_m = 0.0;
-  double gap_above = 0.0;      ///< visibility from which on a contact is lit
+  double gap_above = 0.0;      ///< visibility above which a contact is lit
   double acne_below = 0.0;     ///< visibility below which a lit receiver is dark
-  long acne_receivers = 0;     ///< in the mask
-  long contact_receivers = 0;  ///< in the mask
-  int fewest_receivers = 0;    ///< a rate over fewer is absent
+  long acne_receivers = 0;     ///< receivers of the mask
+  long contact_receivers = 0;  ///< receivers of the mask
+  int fewest_receivers = 0;    ///< a rate over fewer receivers is absent
   std::vector<BiasModeRecord> modes;
 };
 

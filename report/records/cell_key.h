@@ -14,7 +14,7 @@ namespace shadowbench::records {
 nlohmann::json cell_settings(const CellRecord& cell);
 
 /// Returns the key of settings: 16 hexadecimal digits, the hash of their canonical JSON (sorted keys, no white space,
-/// 4 and 4.0 alike). Whoever has more settings than cell_settings() adds them to its answer.
+/// 4 and 4.0 alike). A caller with further settings adds them to what cell_settings() returns.
 std::string cell_key(const nlohmann::json& settings);
 
 /// Returns the key of cell_settings(cell).

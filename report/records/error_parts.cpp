@@ -41,13 +41,6 @@ std::optional<PartValues> list_shares(const CellRecord& cell) {
   return shares;
 }
 
-std::string format_share(double share) {
-  const double percent = std::round(100.0 * share);
-  return fmt::format("{:.0f} %", percent == 0.0 ? 0.0 : percent);  // no "-0 %"
-}
-
-std::string format_rate(double rate) { return format_number(100.0 * rate) + " %"; }
-
 std::string describe_shares(const PartValues& shares) {
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < metrics::kErrorParts; ++i)

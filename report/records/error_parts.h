@@ -6,6 +6,7 @@
 #include <string>
 
 #include "reference/metrics/attribution.h"
+#include "report/records/format.h"
 #include "report/records/records.h"
 
 namespace shadowbench::records {
@@ -28,12 +29,6 @@ using PartValues = std::array<double, metrics::kErrorParts>;
 
 /// Returns the shares of a cell's error, or nothing where one of them does not exist.
 std::optional<PartValues> list_shares(const CellRecord& cell);
-
-/// Writes a share for people, in whole percent: "71 %".
-std::string format_share(double share);
-
-/// Writes a rate for people, in percent with three digits: "4.2 %".
-std::string format_rate(double rate);
 
 /// Lists all parts with their shares: "numeric 0 %, estimator 71 %, discretisation 9 %, model 20 %".
 std::string describe_shares(const PartValues& shares);

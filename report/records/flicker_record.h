@@ -10,7 +10,7 @@ namespace shadowbench::records {
 
 inline constexpr int kFlickerSchemaVersion = 1;
 
-/// Is what one filter does while something moves; see metrics::FlickerStats.
+/// How one filter's image changes while something moves; see metrics::FlickerStats.
 struct FlickerFilter {
   std::string filter;  ///< with the parameters that were asked for
   double change = 0.0;
@@ -20,18 +20,18 @@ struct FlickerFilter {
   std::vector<double> mean_change;  ///< by step
 };
 
-/// Is one motion with the map's texel grid free, or fixed in the world.
+/// One motion, with the map's texel grid free or fixed in the world.
 struct FlickerVariant {
   bool snap = false;
-  double texel_m = 0.0;      ///< in the first frame
-  double grid_texels = 0.0;  ///< that a receiver moves against the texel grid in a step, whole texels left out; median
+  double texel_m = 0.0;      ///< width of a texel in the first frame
+  double grid_texels = 0.0;  ///< median motion of a receiver against the texel grid in a step, without whole texels
   int resizes = 0;           ///< steps in which the texel's size changes by more than a millionth
   std::vector<FlickerFilter> filters;
 };
 
 /// Holds how the truth changes while the light or the camera moves.
 struct FlickerTruth {
-  bool moves = false;  ///< false: it cannot change, and is not traced
+  bool moves = false;  ///< false: the truth cannot change, and is not traced
   double change = 0.0;
   double returning = 0.0;
   double noise =
@@ -39,18 +39,18 @@ struct FlickerTruth {
   std::vector<double> mean_change;  ///< by step
 };
 
-/// Is one motion.
+/// What was found while one thing moved.
 struct FlickerMotion {
   std::string id;     ///< "light"
   std::string title;  ///< for people
-  std::string how;    ///< what moves, a sentence
+  std::string how;    ///< a sentence that says what moves
   double step = 0.0;
   std::string step_unit;  ///< "degrees", "m"
-  std::string fit;        ///< of the light's map, as --fit names it
+  std::string fit;        ///< fit of the light's frustum, as --fit names it
   std::int64_t receivers = 0;
   FlickerTruth truth;
-  std::vector<FlickerVariant> variants;  ///< without snapping, with it; filters in the same order
-  std::string picture;                   ///< flicker by pixel
+  std::vector<FlickerVariant> variants;  ///< without snapping, then with it; both have the filters in one order
+  std::string picture;                   ///< path of the picture of the flicker, pixel by pixel
 };
 
 /// Holds everything that `shadowbench flicker` found.

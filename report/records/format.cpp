@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "report/records/json_values.h"
@@ -63,7 +64,7 @@ std::string describe_bias(const records::BiasRecord& bias, const records::MapSca
   return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, " + "));
 }
 
-/// Says what differs from the default.
+/// Names the fit and the light where they are not the default.
 std::string describe_fit_and_light(const records::CellRecord& cell) {
   const records::CellRecord usual;
   std::string text;
@@ -72,7 +73,7 @@ std::string describe_fit_and_light(const records::CellRecord& cell) {
   return text;
 }
 
-/// Names what is not as it should be, each with a separator before it; nothing for the right rule.
+/// Names the settings outside the map that are not right, each with a separator before it; nothing where all are.
 std::string describe_wrong_range(const records::RangeRecord& range) {
   std::string text;
   if (range.border != records::RangeRecord().border) text += " · outside the map: " + range.border;
@@ -89,6 +90,21 @@ std::string format_number(double value) {
   if (size >= 99.95 && size < 1e15) return fmt::format("{:.0f}", value);
   return fmt::format("{:.3g}", value);
 }
+
+std::string format_bytes(double bytes) {
+  const char* const units[] = {"B", "KiB", "MiB", "GiB"};
+  std::size_t unit = 0;
+  for (; bytes >= 1024.0 && unit + 1 < std::size(units); ++unit) bytes /= 1024.0;
+  return fmt::format("{} {}", format_number(bytes), units[unit]);
+}
+
+std::string format_share(double share) {
+  const double percent = std::round(100.0 * share);
+  return fmt::format("{:.0f} %", percent == 0.0 ? 0.0 : percent);  // no "-0 %"
+}
+
+std::string format_rate(double rate) { return format_number(100.0 * rate) + " %"; }
+std::string format_rate(const std::optional<double>& rate) { return rate ? format_rate(*rate) : kNothing; }
 
 std::string format_ratio(const std::optional<records::Ratio>& ratio) {
   return ratio ? fmt::format("{} [{}, {}]", format_number(ratio->median), format_number(ratio->ci95.low),

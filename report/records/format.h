@@ -13,6 +13,21 @@ inline constexpr const char* kNothing = "–";
 /// Writes a number for people: three significant digits, no exponent where it can be helped.
 std::string format_number(double value);
 
+template <class T>
+std::string format_number(const std::optional<T>& value) {
+  return value ? format_number(static_cast<double>(*value)) : kNothing;
+}
+
+/// Writes bytes for people: "1.5 MiB".
+std::string format_bytes(double bytes);
+
+/// Writes a share for people, in whole percent: "71 %".
+std::string format_share(double share);
+
+/// Writes a rate for people, in percent with three digits: "4.2 %".
+std::string format_rate(double rate);
+std::string format_rate(const std::optional<double>& rate);
+
 /// Writes a ratio for people: "1.09 [1.08, 1.1]".
 std::string format_ratio(const std::optional<records::Ratio>& ratio);
 

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "filters/base/error.h"
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 #include "report/records/cell_key.h"
 #include "report/records/json_values.h"
 #include "report/records/record_fields.h"
@@ -113,7 +113,7 @@ struct FieldReader {
 
 constexpr const char* kNotMeasured = "not measured";
 
-// A path's group, its group's group and so on, itself first.
+// A path, its group, that group's group and so on.
 std::vector<std::string> list_path_and_groups(std::string path) {
   std::vector<std::string> names{path};
   for (auto dot = path.rfind('.'); dot != std::string::npos; dot = path.rfind('.')) {
@@ -136,7 +136,7 @@ bool has_value(const json& value) {
 
 std::map<std::string, std::string> explain_nulls(const json& root, std::map<std::string, std::string> absent,
                                                  const std::vector<std::string>& nulls) {
-  // A record that was read again says so of what has been measured since.
+  // A record that was read again still says "not measured" of values that have been measured since.
   std::erase_if(absent, [](const auto& entry) { return entry.second == kNotMeasured; });
   for (const std::string& path : nulls) {
     if (is_explained(absent, path)) continue;
@@ -258,7 +258,7 @@ std::filesystem::path cell_path(const std::filesystem::path& dir, const std::str
 
 void write_cell(const std::filesystem::path& dir, const CellRecord& cell) {
   const json file{{"schema_version", kSchemaVersion}, {"cell", to_json(cell)}};
-  files::write_text_file(cell_path(dir, cell.key), file.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+  write_text_file(cell_path(dir, cell.key), file.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
 CellRecord read_cell(const std::filesystem::path& dir, const std::string& key) {
@@ -269,8 +269,8 @@ CellRecord read_cell(const std::filesystem::path& dir, const std::string& key) {
 }
 
 void write_results(const std::filesystem::path& dir, const RunRecord& run, const std::vector<std::string>& keys) {
-  files::write_text_file(dir / "results.schema.json", results_schema());
-  files::AtomicFile file(dir / "results.json");
+  write_text_file(dir / "results.schema.json", results_schema());
+  AtomicFile file(dir / "results.json");
   std::string head = to_json(run).dump(1, ' ', false, json::error_handler_t::replace);
   head.resize(head.rfind('\n'));  // the closing brace comes after the cells
   file.write(head + ",\n \"cells\": [");

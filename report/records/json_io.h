@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "report/records/records.h"
@@ -49,7 +48,8 @@ struct Results {
 /// Throws Error(kInput) where the file is missing, cut off or of another schema version.
 Results read_results(const std::filesystem::path& file);
 
-/// Returns the JSON Schema (draft 2020-12) of results.json; cell files follow its `$defs/cell_file`.
-std::string_view results_schema();
+/// The JSON Schema (draft 2020-12) of results.json, with every metric of the table; cell files follow its
+/// `$defs/cell_file`.
+std::string results_schema();
 
 }  // namespace shadowbench::records

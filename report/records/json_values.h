@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "report/records/records.h"
@@ -17,6 +18,14 @@ nlohmann::json number_json(double value);
 
 /// Writes JSON on one line; bytes that are not UTF-8 become U+FFFD.
 std::string dump_line(const nlohmann::json& value);
+
+/// Writes an array of records, each as `write` has it.
+template <class T>
+nlohmann::json list_json(const std::vector<T>& records, nlohmann::json (*write)(const std::type_identity_t<T>&)) {
+  nlohmann::json result = nlohmann::json::array();
+  for (const T& record : records) result.push_back(write(record));
+  return result;
+}
 
 /// Writes one value of a record as JSON.
 nlohmann::json value_json(const std::string& value);

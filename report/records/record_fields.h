@@ -3,6 +3,7 @@
 #include <array>
 #include <string_view>
 
+#include "reference/metrics/metric_table.h"
 #include "report/records/records.h"
 
 namespace shadowbench::records {
@@ -31,7 +32,8 @@ void visit_bias_fields(Bias& bias, Visitor&& visit) {
   visit("midpoint", bias.midpoint);
 }
 
-/// Calls `visit(path, value)` for every field of a cell: the one list that writing, reading and `absent` follow.
+/// Calls `visit(path, value)` for every field of a cell, its metrics included: the one list that writing, reading and
+/// `absent` follow.
 /// A dot in the path is a group; optional values may be null in the JSON.
 template <class Cell, class Visitor>
 void visit_cell_fields(Cell& cell, Visitor&& visit) {
@@ -50,16 +52,12 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("fit", cell.fit);
   visit("light", cell.light);
   visit("bias", cell.bias);
-  visit("map_scale.texel_m", cell.map_scale.texel_m);
-  visit("map_scale.depth_range_m", cell.map_scale.depth_range_m);
   visit("range.border", cell.range.border);
   visit("range.far_test", cell.range.far_test);
   visit("range.behind_test", cell.range.behind_test);
   visit("size.width", cell.width);
   visit("size.height", cell.height);
-  visit("receivers", cell.receivers);
   visit("excused", cell.excused);
-  visit("nan", cell.nan);
   visit("time_ms.map", cell.time_ms.map);
   visit("time_ms.prefilter", cell.time_ms.prefilter);
   visit("time_ms.lookup", cell.time_ms.lookup);
@@ -68,47 +66,6 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("ratio_to_none.static", cell.ratio_to_none.static_map);
   visit("ratio_to_none.moving", cell.ratio_to_none.moving);
   visit("lights", cell.lights);
-  visit("cost.fetches", cell.cost.fetches);
-  visit("cost.bytes_per_texel", cell.cost.bytes_per_texel);
-  visit("cost.passes", cell.cost.passes);
-  visit("cost.map_bytes", cell.cost.map_bytes);
-  visit("cost.prefilter_texels", cell.cost.prefilter_texels);
-  visit("error.rmse", cell.error.rmse);
-  visit("error.mae", cell.error.mae);
-  visit("error.p95", cell.error.p95);
-  visit("error.max", cell.error.max);
-  visit("error.mean", cell.error.mean);
-  visit("error.flip", cell.error.flip);
-  visit("error.kernel_rmse", cell.error.kernel_rmse);
-  visit("truth.se", cell.truth.se);
-  visit("truth.unanimous", cell.truth.unanimous);
-  visit("coverage.texels_per_pixel", cell.coverage.texels_per_pixel);
-  visit("coverage.fewest_texels_per_pixel", cell.coverage.fewest_texels_per_pixel);
-  visit("coverage.map_used", cell.coverage.map_used);
-  visit("coverage.map_filled", cell.coverage.map_filled);
-  visit("artefact.acne", cell.artefact.acne);
-  visit("artefact.leak", cell.artefact.leak);
-  visit("artefact.contact_gap", cell.artefact.contact_gap);
-  visit("artefact.noise", cell.artefact.noise);
-  visit("attribution.numeric.rms", cell.attribution.numeric.rms);
-  visit("attribution.numeric.share", cell.attribution.numeric.share);
-  visit("attribution.estimator.rms", cell.attribution.estimator.rms);
-  visit("attribution.estimator.share", cell.attribution.estimator.share);
-  visit("attribution.discretisation.rms", cell.attribution.discretisation.rms);
-  visit("attribution.discretisation.share", cell.attribution.discretisation.share);
-  visit("attribution.model.rms", cell.attribution.model.rms);
-  visit("attribution.model.share", cell.attribution.model.share);
-  visit("stability.overflow_texels", cell.stability.overflow_texels);
-  visit("stability.nan_texels", cell.stability.nan_texels);
-  visit("stability.negative_variance_texels", cell.stability.negative_variance_texels);
-  visit("stability.lowest_variance", cell.stability.lowest_variance);
-  visit("stability.headroom", cell.stability.headroom);
-  visit("stability.safe_exponent", cell.stability.safe_exponent);
-  visit("stability.half_difference_max", cell.stability.half_difference_max);
-  visit("stability.half_difference_rms", cell.stability.half_difference_rms);
-  visit("stability.bound_shortfall_max", cell.stability.bound_shortfall_max);
-  visit("stability.bound_violations", cell.stability.bound_violations);
-  visit("stability.bound_exact_violations", cell.stability.bound_exact_violations);
   visit("images.picture", cell.images.picture);
   visit("images.visibility", cell.images.visibility);
   visit("images.depth_map", cell.images.depth_map);
@@ -121,6 +78,7 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("images.stability", cell.images.stability);
   visit("warnings", cell.warnings);
   visit("absent", cell.absent);
+  for (const metrics::Metric& metric : metrics::metric_table()) metrics::visit_metric(metric, cell, visit);
 }
 
 /// Calls `visit(path, value)` for every field of a run.

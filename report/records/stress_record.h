@@ -12,10 +12,10 @@ namespace shadowbench::records {
 /// Version of stress.json.
 inline constexpr int kStressSchemaVersion = 1;
 
-/// Says what became of a filter at one value of a stress axis; each is worse than the one before.
+/// The verdict on a filter at one value of a stress axis; each is worse than the one before.
 enum class StressVerdict {
   kOk,
-  kDegraded,  ///< the axis' error is over its stated bound
+  kDegraded,  ///< the error is larger than the axis' bound
   kBroken     ///< NaN, infinity, all lit, all dark, or falling where the filter must rise
 };
 
@@ -34,7 +34,7 @@ enum class StressAgreement {
   kDisagrees
 };
 
-/// Is a range of an axis, ends included.
+/// The range of an axis, with both ends.
 struct StressRange {
   double low = 0.0;
   double high = 0.0;
@@ -42,47 +42,47 @@ struct StressRange {
 
 /// Holds one observation.
 struct StressSample {
-  double value = 0.0;  ///< of the axis' quantity
+  double value = 0.0;  ///< value of the axis' quantity
   StressVerdict verdict = StressVerdict::kOk;
-  std::optional<double> measured;  ///< what the axis measures; empty: not finite, or there was nothing to measure
+  std::optional<double> measured;  ///< the axis' measure; empty: it is not finite, or there was nothing to measure
   std::string why;                 ///< what decided the verdict
 };
 
-/// Holds where a verdict was first met.
+/// The first place on an axis with a verdict.
 struct StressOnset {
   double value = 0.0;                 ///< the first value with that verdict or a worse one
-  std::optional<double> last_before;  ///< the last value without; empty: the range begins with it
-  std::string why;                    ///< of the observation at `value`
+  std::optional<double> last_before;  ///< the last value without it; empty: the range begins with the verdict
+  std::string why;                    ///< what decided the verdict at `value`
 };
 
-/// Holds one theoretical limit of a case, and what was measured beside it.
+/// A theoretical limit of a case, and the measured one beside it.
 struct StressLimit {
-  std::optional<double> onset;  ///< empty: theory says that there is none
+  std::optional<double> onset;  ///< value of the axis; empty: theory knows no limit
   StressTheoryKind kind = StressTheoryKind::kOverflow;
   StressVerdict predicts = StressVerdict::kBroken;  ///< the verdict that the case reaches at `onset`
   std::string formula;
   std::string source;
-  std::optional<double> measured;  ///< where that verdict was first met; empty: nowhere in the range
-  std::optional<double> ratio;     ///< measured / onset; empty where one of them is
+  std::optional<double> measured;  ///< the first value with that verdict; empty: none in the range
+  std::optional<double> ratio;     ///< measured / onset; empty where one of the two is empty
   StressAgreement agreement = StressAgreement::kAgrees;
-  std::string explanation;  ///< of kExplained
+  std::string explanation;  ///< why the two do not agree, for kExplained
 };
 
 /// Holds one filter in one variant on one axis.
 struct StressCase {
   std::string filter;  ///< id; empty: the axis tests arithmetic that no filter has yet
   std::string variant;
-  std::string level;  ///< what ran: "GL", "model" or "arithmetic"
+  std::string level;  ///< what was tested: "GL", "model" or "arithmetic"
   ParamMap params;
   std::string not_available;          ///< why nothing was measured; empty: it was
-  std::vector<StressSample> samples;  ///< all, by ascending value
+  std::vector<StressSample> samples;  ///< all observations, by ascending value
   std::optional<StressOnset> degraded;
   std::optional<StressOnset> broken;
   std::vector<StressLimit> limits;
   std::vector<std::string> notes;  ///< verdicts that got better again, and the axis' remarks
 };
 
-/// Is a table, with pictures, that an axis adds to its part of the page.
+/// A table with pictures that an axis adds to its part of the page.
 struct StressExhibit {
   struct Picture {
     std::string file;  ///< relative to the page
@@ -105,9 +105,9 @@ struct StressAxis {
   StressRange range;
   std::string measured;  ///< what samples measure
   std::string measured_unit;
-  double bound = 0.0;  ///< `degraded` is said above it
+  double bound = 0.0;  ///< an error above it is `degraded`
   bool measured_log = false;
-  std::string broken_when;  ///< in words
+  std::string broken_when;  ///< a description in words
   std::vector<StressCase> cases;
   std::vector<StressExhibit> exhibits;
 };
@@ -121,15 +121,15 @@ struct StressRecord : Provenance {
 /// Names a case: "esm: r16f, linear (GL)".
 std::string label_of(const StressCase& item);
 
-/// Gives the words of records: "ok", "overflow", "agrees".
+/// Gives the names that records hold: "ok", "overflow", "agrees".
 const char* name_of(StressVerdict verdict);
 const char* name_of(StressTheoryKind kind);
 const char* name_of(StressAgreement agreement);
 
-/// Gives how far measured / theory may be from 1 for a kind, as a factor: 1.1 or 8.
+/// Gives the factor by which measured and theory may differ for a kind: 1.1 or 8.
 double tolerance_of(StressTheoryKind kind);
 
-/// Gives where a case first has `verdict` or a worse one; null: nowhere in the range.
+/// Finds the first place where a case has `verdict` or a worse one; null: there is none in the range.
 const StressOnset* find_onset(const StressCase& item, StressVerdict verdict);
 
 /// Counts the limits that disagree with no explanation.

@@ -12,7 +12,7 @@ TuneVerdict find_verdict(const TunedFilterRecord& filter) {
   return filter.unseen.gain() > 0.0 ? TuneVerdict::kNoGain : TuneVerdict::kOverfitted;
 }
 
-/// Means over the views that were trained on, or over the others.
+/// The means over the training views, or over the unseen ones.
 struct Means {
   TunedScore score;
   double truth_se = 0.0;

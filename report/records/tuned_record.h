@@ -28,17 +28,18 @@ struct TunedViewRecord {
 struct TunedParamRecord {
   std::string name;
   std::string unit;
-  std::string scale;  ///< on which it was searched: "linear", "log"
+  std::string scale;  ///< scale of the search: "linear", "log"
   double min = 0.0;
   double max = 0.0;
   double default_value = 0.0;
   double found = 0.0;
-  std::vector<Interval> good;  ///< where the training error stays near the best, the other parameters at theirs
-  double good_share = 0.0;     ///< of the scaled range that these take, [0,1]
-  bool no_effect = false;      ///< the training error is the same all over the range
+  std::vector<Interval>
+      good;                 ///< where the training error stays near the best, with the other parameters at their best
+  double good_share = 0.0;  ///< share of the scaled range that they take, [0,1]
+  bool no_effect = false;   ///< the training error is the same all over the range
 };
 
-/// Says what views that were not trained on make of the parameters that were found.
+/// The verdict of the unseen views on the parameters that were found.
 enum class TuneVerdict {
   kBetter,      ///< better by more than the truth's standard error
   kNoGain,      ///< not better by more than that, in training or on unseen views
@@ -53,12 +54,13 @@ struct TunedFilterRecord {
   ParamMap params;    ///< complete: what to run with; the defaults, unless the verdict is kBetter
   std::vector<TunedParamRecord> searched;
   std::vector<TunedViewRecord> views;
-  TunedScore training;                    ///< mean over the training views
-  TunedScore unseen;                      ///< mean over the others
-  std::optional<double> unseen_truth_se;  ///< mean over these; empty: the metric is not in units of visibility
+  TunedScore training;  ///< mean over the training views
+  TunedScore unseen;    ///< mean over the unseen views
+  std::optional<double>
+      unseen_truth_se;  ///< mean over the unseen views; empty: the metric is not in units of visibility
   TuneVerdict verdict = TuneVerdict::kNoGain;
   int search_evaluations = 0;  ///< settings that the search drew
-  int evaluations = 0;         ///< those of the good ranges included
+  int evaluations = 0;         ///< settings drawn in all, with those for the good ranges
 };
 
 /// Holds a whole tuning.
@@ -69,15 +71,15 @@ struct TunedRecord {
   int map_size = 0;
   int width = 0;               ///< pixels
   int height = 0;              ///< pixels
-  double pad_texels = 0.0;     ///< around the scene in the map
+  double pad_texels = 0.0;     ///< texels around the scene in the map
   double widest_kernel = 0.0;  ///< half-width in texels of the widest kernel that was searched
   int budget = 0;
-  double tolerance = 0.0;  ///< of the good range, relative
+  double tolerance = 0.0;  ///< by which share the error of the good range may exceed the best
   std::uint32_t seed = 0;
   std::string light;              ///< "AZIMUTH,ELEVATION"; empty: each scene's own
   std::vector<std::string> bias;  ///< as asked for; empty: the default
   std::string training_views;     ///< in words
-  std::string unseen_views;       ///< likewise
+  std::string unseen_views;       ///< in words
   std::vector<std::string> scenes;
   std::vector<std::string> notes;  ///< views left out, and why
   std::vector<TunedFilterRecord> filters;

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "filters/base/error.h"
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 
 namespace shadowbench::regress {
 namespace {
@@ -30,7 +30,7 @@ std::string read_log(const std::filesystem::path& file) {
 
 }  // namespace
 
-/// What nothing is compared with is not kept: it would only make the files differ.
+/// Ratios that no run is compared with are not kept: they would only make the files differ.
 BaselineCell Accepter::make_cell(const ActualCell& cell) const {
   const records::CellRecord& record = cell.record;
   ComparedValues values = read_values(record);
@@ -42,7 +42,7 @@ BaselineCell Accepter::make_cell(const ActualCell& cell) const {
           record.map_size, record.width, record.height, cell.origin,   std::move(values)};
 }
 
-/// What cannot be read of a file stays unreadable, but for what is taken over now.
+/// A file that cannot be read keeps only its numbers, if those can be read, and the cells that are taken over now.
 CellFile& Accepter::file(const std::string& scene, const std::string& filter) {
   const auto [place, is_new] = files_.try_emplace({scene, filter});
   if (!is_new) return place->second;
@@ -109,15 +109,15 @@ void Accepter::log(Comparison& comparison, const std::string& what) {
 }
 
 std::vector<std::string> Accepter::write(const Origin& origin) {
-  // Tolerances and log come first: whatever is written is then known to be a baseline, and why it is so.
-  if (!baseline_.exists()) files::write_text_file(baseline_.tolerance_file(), write_tolerances(tolerances_));
+  // Tolerances and log come first: a folder that is written only in part is then known to be a baseline, and why.
+  if (!baseline_.exists()) write_text_file(baseline_.tolerance_file(), write_tolerances(tolerances_));
   if (lines_.empty()) return lines_;
   std::string entry =
       fmt::format("## {:%Y-%m-%d %H:%M} UTC, program {}, {}, seed {}\n\n",
                   fmt::gmtime(std::chrono::system_clock::now()), origin.commit, origin.renderer, origin.seed);
   for (const std::string& line : lines_) entry += "- " + line + "\n";
   const std::string before = read_log(baseline_.log_file());
-  files::write_text_file(baseline_.log_file(),
+  write_text_file(baseline_.log_file(),
                          (before.empty() ? "# What was accepted into this baseline\n" : before) + "\n" + entry);
   for (const auto& [name, own] : files_) baseline_.write_cells(name.first, name.second, own);
   for (const auto& [scene, truths] : truths_) baseline_.write_truths(scene, truths);

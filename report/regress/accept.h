@@ -8,19 +8,19 @@
 
 namespace shadowbench::regress {
 
-/// Turns what differs into the baseline, and nothing else: cells that are as they were keep their files' content.
+/// Takes what differs over into the baseline; cells that did not change keep their files' content.
 class Accepter {
  public:
   Accepter(const Baseline& baseline, const Tolerances& tolerances) : baseline_(baseline), tolerances_(tolerances) {}
 
-  /// Takes a cell over, and notes that. Does nothing for one that is the same, or that the run could not measure.
+  /// Takes a cell over, and notes it. Does nothing for a cell that is the same, or that the run could not measure.
   void take(Comparison& comparison, const ActualCell& cell);
   void take(Comparison& comparison, const ActualTruth& truth);
 
-  /// Lets a cell, or a truth, go that the run lacks.
+  /// Removes a cell or a truth that the run lacks.
   void drop(Comparison& comparison);
 
-  /// Writes what was taken, and one entry into the log. Gives the entry's lines.
+  /// Writes what was taken over, and one entry of the log. Gives the entry's lines.
   /// Throws Error(kOutput).
   std::vector<std::string> write(const Origin& origin);
 

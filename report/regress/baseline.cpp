@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "filters/base/error.h"
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 #include "report/files/file_name.h"
-#include "report/files/temporary_files.h"
+#include "filters/base/temporary_files.h"
 #include "report/images/picture_io.h"
 #include "report/records/json_values.h"
 
@@ -163,7 +163,7 @@ Baseline::Index Baseline::read_index() const {
   for (const std::filesystem::path& folder : list_folder(folder_)) {
     if (!std::filesystem::is_directory(folder)) continue;
     for (const std::filesystem::path& file : list_folder(folder)) {
-      if (file.extension() != ".json" || files::is_temporary(file)) continue;
+      if (file.extension() != ".json" || is_temporary(file)) continue;
       try {
         for (BaselineCell& cell : read_cell_list(file)) index.cells.push_back(std::move(cell));
       } catch (const Error& error) {
@@ -202,7 +202,7 @@ void Baseline::write_cells(const std::string& scene, const std::string& filter, 
     remove_file(images);
   else
     images::write_exr(images, parts, {});
-  files::write_text_file(numbers, root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  write_text_file(numbers, root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }
 
 std::map<std::string, TruthImages> Baseline::read_truths(const std::string& scene) const {

@@ -14,19 +14,19 @@
 
 namespace shadowbench::regress {
 
-/// What of a run decides whether its numbers can be compared.
+/// The origin of a run's numbers: whether two can be compared depends on it.
 struct Origin {
   std::uint64_t seed = 0;
   std::string renderer;  ///< GL_RENDERER
-  std::string machine;   ///< its processor and number of cores
-  std::string commit;    ///< of the program
+  std::string machine;   ///< processor and number of cores
+  std::string commit;    ///< commit of the program
 
   bool operator==(const Origin&) const = default;
 };
 
-/// What a baseline knows of one cell, without its images.
+/// One cell of a baseline, without its images.
 struct BaselineCell {
-  std::string key;  ///< of the cell's settings
+  std::string key;  ///< key of the cell's settings
   std::string scene;
   std::string view;
   std::string filter;
@@ -47,7 +47,7 @@ struct TruthImages {
 /// Stands for the filter in comparisons of a view's truth.
 inline constexpr const char* kTruthName = "truth";
 
-/// Names a view's truth in a baseline: of all that it depends on, what tells truths of one scene apart.
+/// Names a view's truth in a baseline by the settings that tell truths of one scene apart.
 std::string truth_key(const records::CellRecord& cell);
 
 /// The cells of one filter on one scene, with their images by key.
@@ -91,7 +91,7 @@ class Baseline {
   /// Error(kOutput).
   void write_cells(const std::string& scene, const std::string& filter, const CellFile& cells) const;
 
-  /// The same for the truths of a scene, by truth_key().
+  /// Reads and writes the truths of a scene in the same way, by truth_key().
   std::map<std::string, TruthImages> read_truths(const std::string& scene) const;
   void write_truths(const std::string& scene, const std::map<std::string, TruthImages>& truths) const;
 

@@ -3,79 +3,43 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
+#include <type_traits>
 
+#include "report/records/absence.h"
 #include "report/records/record_fields.h"
 
 namespace shadowbench::regress {
 namespace {
 
-/// Says what a field's change means; nothing for fields that a baseline does not keep. The largest error of a single
-/// pixel, percentiles, which move in steps, and shares of errors, which divide by them, say less than the pixels
-/// themselves.
-std::optional<MetricRole> role_of(const std::string& path) {
-  if (path == "error.max" || path == "error.p95" || path.ends_with(".share")) return std::nullopt;
-  for (const char* group : {"error.", "artefact.", "attribution."})
-    if (path.starts_with(group)) return MetricRole::kError;
-  if (path.starts_with("cost.")) return MetricRole::kCost;
-  if (path == "receivers" || path == "nan" || path == "truth.se" || path.starts_with("map_scale."))
-    return MetricRole::kCount;
-  return std::nullopt;
+template <class Visitor>
+void visit_ratios(const records::CellRecord& cell, Visitor visit) {
+  records::visit_cell_fields(
+      cell,
+      [&]<class T>(const std::string& path, const T& value) {
+        if constexpr (std::is_same_v<T, std::optional<records::Ratio>>) visit(path, value);
+      });
 }
-
-struct MetricLister {
-  std::vector<ComparedMetric>& metrics;
-
-  void operator()(const std::string& path, const std::optional<double>&) const { add(path); }
-  void operator()(const std::string& path, const std::optional<std::int64_t>&) const { add(path); }
-  template <class T>
-  void operator()(const std::string&, const T&) const {}
-
-  void add(const std::string& path) const {
-    if (const auto role = role_of(path)) metrics.push_back({path, *role});
-  }
-};
-
-struct ValueReader {
-  ComparedValues& values;
-
-  void operator()(const std::string& path, const std::optional<double>& value) const {
-    if (value && std::isfinite(*value) && role_of(path)) values.numbers[path] = *value;
-  }
-  void operator()(const std::string& path, const std::optional<std::int64_t>& value) const {
-    if (value && role_of(path)) values.numbers[path] = static_cast<double>(*value);
-  }
-  void operator()(const std::string& path, const std::optional<records::Ratio>& value) const {
-    if (value) values.ratios[path] = *value;
-  }
-  template <class T>
-  void operator()(const std::string&, const T&) const {}
-};
-
-struct RatioLister {
-  std::vector<std::string>& paths;
-
-  void operator()(const std::string& path, const std::optional<records::Ratio>&) const { paths.push_back(path); }
-  template <class T>
-  void operator()(const std::string&, const T&) const {}
-};
 
 }  // namespace
 
-const std::vector<ComparedMetric>& list_compared_metrics() {
-  static const std::vector<ComparedMetric> metrics = [] {
-    std::vector<ComparedMetric> all;
-    const records::CellRecord cell;
-    records::visit_cell_fields(cell, MetricLister{all});
+const std::vector<metrics::Metric>& list_compared_metrics() {
+  static const std::vector<metrics::Metric> kept = [] {
+    std::vector<metrics::Metric> all(metrics::metric_table().begin(), metrics::metric_table().end());
+    std::erase_if(all, [](const metrics::Metric& m) { return m.baseline == metrics::MetricBaseline::kNotKept; });
     return all;
   }();
-  return metrics;
+  return kept;
+}
+
+bool is_error(const metrics::Metric& metric) {
+  return metric.baseline == metrics::MetricBaseline::kError || metric.baseline == metrics::MetricBaseline::kRate;
 }
 
 const std::vector<std::string>& list_compared_ratios() {
   static const std::vector<std::string> paths = [] {
     std::vector<std::string> all;
-    const records::CellRecord cell;
-    records::visit_cell_fields(cell, RatioLister{all});
+    visit_ratios(records::CellRecord(), [&](const std::string& path, const auto&) { all.push_back(path); });
     return all;
   }();
   return paths;
@@ -83,8 +47,14 @@ const std::vector<std::string>& list_compared_ratios() {
 
 ComparedValues read_values(const records::CellRecord& cell) {
   ComparedValues values;
-  records::visit_cell_fields(cell, ValueReader{values});
-  if (!cell.time_ms.lookup || cell.time_ms.lookup->n < kFewestRounds) values.ratios.clear();
+  for (const metrics::Metric& metric : list_compared_metrics()) {
+    const std::optional<double> value = metric.read(cell);
+    if (value && std::isfinite(*value)) values.numbers[std::string(metric.path)] = *value;
+  }
+  if (!cell.time_ms.lookup || cell.time_ms.lookup->n < kFewestRounds) return values;
+  visit_ratios(cell, [&](const std::string& path, const std::optional<records::Ratio>& ratio) {
+    if (ratio) values.ratios[path] = *ratio;
+  });
   return values;
 }
 
@@ -93,10 +63,7 @@ std::string find_absence(const records::CellRecord& cell, const std::string& pat
     return fmt::format("it was timed over {} rounds, and {} are the fewest that give an interval",
                        cell.time_ms.lookup->n, kFewestRounds);
   }
-  for (std::string name = path;; name.resize(name.rfind('.'))) {
-    if (const auto reason = cell.absent.find(name); reason != cell.absent.end()) return reason->second;
-    if (name.find('.') == std::string::npos) return "not measured";
-  }
+  return records::explain_absence(cell, path);
 }
 
 }  // namespace shadowbench::regress

@@ -1,29 +1,19 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "reference/metrics/metric_table.h"
 #include "report/records/records.h"
 
 namespace shadowbench::regress {
 
-/// Says what a change of a number means.
-enum class MetricRole {
-  kError,  ///< away from 0 is less accurate
-  kCost,   ///< a change of what the filter does
-  kCount,  ///< a change of what it was measured on
-};
+/// Lists the metrics that a baseline keeps, in the order of their table.
+const std::vector<metrics::Metric>& list_compared_metrics();
 
-/// Is one number of a cell that a baseline keeps.
-struct ComparedMetric {
-  std::string path;  ///< as in results.json: "error.rmse"
-  MetricRole role;
-};
-
-/// Lists the numbers that a baseline keeps, in the order of the record.
-const std::vector<ComparedMetric>& list_compared_metrics();
+/// Says whether a metric is an error or a rate of faults: farther from 0 is less accurate.
+bool is_error(const metrics::Metric& metric);
 
 /// Lists the ratios to `none` that a baseline keeps: "ratio_to_none.lookup", ...
 const std::vector<std::string>& list_compared_ratios();
@@ -38,10 +28,10 @@ struct ComparedValues {
   std::map<std::string, records::Ratio> ratios;
 };
 
-/// Takes them out of a record.
+/// Reads these values from a record.
 ComparedValues read_values(const records::CellRecord& cell);
 
-/// Says why a record lacks a number: its own reason, that of its group, or "not measured".
+/// Says why a record lacks a number that a baseline keeps.
 std::string find_absence(const records::CellRecord& cell, const std::string& path);
 
 }  // namespace shadowbench::regress

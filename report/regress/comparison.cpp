@@ -29,7 +29,7 @@ class CellComparer {
   Comparison compare() {
     compare_images();
     const ComparedValues values = read_values(actual_.record);
-    for (const ComparedMetric& metric : list_compared_metrics()) compare_number(metric, values);
+    for (const metrics::Metric& metric : list_compared_metrics()) compare_number(metric, values);
     compare_ratios(values);
     return std::move(result_);
   }
@@ -108,49 +108,50 @@ class CellComparer {
                              test.beyond, test.tested, many, one, x, y, test.smallest_p, test.corrected_level)});
   }
 
-  void compare_number(const ComparedMetric& metric, const ComparedValues& values) {
-    const Tolerance& allowed = tolerance(metric.path);
+  void compare_number(const metrics::Metric& metric, const ComparedValues& values) {
+    const std::string path(metric.path);
+    const Tolerance& allowed = tolerance(path);
     if (std::isinf(allowed.limit)) return;
-    const auto before = expected_.values.numbers.find(metric.path);
-    const auto now = values.numbers.find(metric.path);
+    const auto before = expected_.values.numbers.find(path);
+    const auto now = values.numbers.find(path);
     if (before == expected_.values.numbers.end()) {
       if (now == values.numbers.end()) return;
-      result_.add(Outcome::kChanged, {metric.path, std::nullopt, now->second, allowed.limit,
-                                      fmt::format("{} is {}, and missing in the baseline", metric.path,
-                                                  records::format_number(now->second))});
+      result_.add(Outcome::kChanged,
+                  {path, std::nullopt, now->second, allowed.limit,
+                   fmt::format("{} is {}, and missing in the baseline", path, records::format_number(now->second))});
       return;
     }
     if (now == values.numbers.end()) {
       result_.add(Outcome::kChanged,
-                  {metric.path, before->second, std::nullopt, allowed.limit,
-                   fmt::format("{} was {}, and is missing: {}", metric.path, records::format_number(before->second),
-                               find_absence(actual_.record, metric.path))});
+                  {path, before->second, std::nullopt, allowed.limit,
+                   fmt::format("{} was {}, and is missing: {}", path, records::format_number(before->second),
+                               find_absence(actual_.record, path))});
       return;
     }
     compare_values(metric, before->second, now->second, allowed);
   }
 
-  void compare_values(const ComparedMetric& metric, double before, double now, const Tolerance& allowed) {
-    if (metric.path.starts_with("artefact.") && has_spread() && !same_seed()) {
+  void compare_values(const metrics::Metric& metric, double before, double now, const Tolerance& allowed) {
+    if (metric.baseline == metrics::MetricBaseline::kRate && has_spread() && !same_seed()) {
       result_.notes.push_back(fmt::format("{} is not compared with that of another seed: {}, was {}", metric.path,
                                           records::format_number(now), records::format_number(before)));
       return;
     }
-    const double limit = allowed.limit + (metric.role == MetricRole::kError ? explained_change() : 0.0);
+    const bool error = is_error(metric);
+    const double limit = allowed.limit + (error ? explained_change() : 0.0);
     if (std::abs(now - before) <= limit) return;
-    const bool error = metric.role == MetricRole::kError;
     const bool worse = error && std::abs(now) > std::abs(before);
     const char* kind = worse ? "less accurate" : error ? "more accurate" : "changed";
-    // Parts of an error may grow while the error itself does not: they say why, not how well.
+    // A part of an error may grow while the error itself does not: it says why an image is wrong, not how much.
     const bool regression = worse && !metric.path.starts_with("attribution.");
     result_.add(regression ? Outcome::kLessAccurate : Outcome::kChanged,
-                {metric.path, before, now, limit,
+                {std::string(metric.path), before, now, limit,
                  fmt::format("{}: {}, was {} ({}; limit {}: {})", metric.path, records::format_number(now),
                              records::format_number(before), kind, records::format_number(limit), allowed.reason)});
   }
 
-  /// What excused pixels, and the noise of truth and filter, may move a mean of errors by. The truth of one seed is the
-  /// same, but for what another machine's instructions make of its rays.
+  /// How far excused pixels and the noise of truth and filter may move a mean of errors. The truth of one seed is the
+  /// same, except that another machine's instructions may move its rays.
   double explained_change() const {
     const auto find = [&](const std::map<std::string, double>& numbers, const char* path) {
       const auto found = numbers.find(path);
@@ -165,7 +166,7 @@ class CellComparer {
     return excused + noise + (has_spread() && !same_seed() ? spread_of_errors(receivers) : 0.0);
   }
 
-  /// Three standard deviations of what another seed makes of the root mean square error, to first order: its slope in
+  /// Three standard deviations of the root mean square error over seeds, to first order: its derivative by
   /// pixel i is e_i / (n RMSE), and |e_i| is at most 1.
   double spread_of_errors(double receivers) const {
     double squares = 0.0;

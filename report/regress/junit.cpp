@@ -8,7 +8,7 @@
 namespace shadowbench::regress {
 namespace {
 
-/// XML holds no control characters, and no bytes that are not UTF-8; names of files may.
+/// Replaces what XML cannot hold and file names can: control characters, and bytes that are not UTF-8.
 std::string clean(const std::string& text) {
   using nlohmann::json;
   const auto valid = json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();

@@ -7,7 +7,7 @@
 namespace shadowbench::regress {
 
 /// Writes a comparison as JUnit XML, which build servers show: a suite per scene, a case per cell.
-/// Source: the format's common subset, as Jenkins' and GitLab's readers take it.
+/// Source: the subset of the format that the readers of Jenkins and GitLab share.
 std::string make_junit(const RegressReport& report);
 
 }  // namespace shadowbench::regress

@@ -10,9 +10,9 @@ namespace {
 using metrics::NoisyDifference;
 
 constexpr int kBlock = 8;
-constexpr double kScrambles = 16.0;  ///< that a truth's standard error is of (reference/truth)
+constexpr double kScrambles = 16.0;  ///< scrambles that a truth's standard error is estimated from (reference/truth)
 constexpr double kUnanimousLimit = 3.0 / 64.0;
-constexpr double kHalfVariance = 0x1p-22 / 12.0;  ///< of rounding to 16 bits below 1, steps of 2^-11
+constexpr double kHalfVariance = 0x1p-22 / 12.0;  ///< variance of rounding to 16 bits below 1, in steps of 2^-11
 
 /// A pixel, or several together, as two tests see it: by the deviation that was measured over seeds, and as lookups
 /// that were counted. Few seeds do not tell the deviation of what hardly ever happens, and counts do not know of
@@ -22,7 +22,7 @@ struct Noise {
   metrics::Share drawn;
   metrics::Share expected;
 
-  /// Chance, if either says so.
+  /// The larger probability: chance explains the pixel where either test says so.
   double p() const { return std::max(metrics::find_p(difference), metrics::find_p(drawn, expected)); }
 };
 

@@ -15,8 +15,8 @@ struct SpreadTest {
 SpreadTest test_spread(const images::Image& image, const images::UncertaintyImages& expected, double lookups,
                        double level);
 
-/// Tests two truths, each with its standard errors; where all rays of one agree, it has no such error, and may be off
-/// by the limit of 3 in 64 rays.
+/// Tests two truths, each with its standard errors; where all rays of a truth agree, it has no such error, and may be
+/// off by the limit of 3 in 64 rays.
 metrics::PixelTest test_truth(const TruthImages& a, const TruthImages& b, double level);
 
 }  // namespace shadowbench::regress

@@ -35,7 +35,7 @@ PixelChange compare_pixels(const CellImages& actual, const CellImages& expected,
   const auto width = static_cast<std::size_t>(actual.visibility.width);
   for (std::size_t i = 0; i < actual.visibility.texels.size(); ++i) {
     const float own = bound_at(bounds, i), known = bound_at(known_bounds, i);
-    // What is not finite on both sides is the same; how many such pixels there may be is a number of its own.
+    // A pixel that is not finite on both sides counts as the same; the metric 'nan' limits how many there are.
     const bool same = !std::isfinite(actual.visibility.texels[i]) && !std::isfinite(expected.visibility.texels[i]);
     const bool finite =
         same || (std::isfinite(actual.visibility.texels[i]) && std::isfinite(expected.visibility.texels[i]));

@@ -7,7 +7,7 @@
 
 namespace shadowbench::regress {
 
-/// A rounding bound from here on says nothing of its pixel.
+/// A rounding bound of this size or more says nothing about its pixel.
 inline constexpr float kWidestBound = 0x1p-5f;
 
 /// One cell's visibility, with how far rounding and other seeds can move it. All images have one size or are empty.
@@ -20,17 +20,17 @@ struct CellImages {
 /// power of two above; 1 from kWidestBound on; images::kMayFlip stays.
 images::Image coarsen_rounding(const images::Image& rounding);
 
-/// How far an image is from what was expected.
+/// How an image differs from the expected one.
 struct PixelChange {
-  std::int64_t compared = 0;          ///< pixels that were
-  std::int64_t changed = 0;           ///< that differ by more than their tolerance, or are not finite
+  std::int64_t compared = 0;          ///< pixels that were compared
+  std::int64_t changed = 0;           ///< compared pixels that differ by more than their tolerance, or are not finite
   std::int64_t excused_flips = 0;     ///< left out: a comparison may flip there, or another texel be read
   std::int64_t excused_rounding = 0;  ///< left out: rounding alone may move them by kWidestBound or more
   std::int64_t excused_expected = 0;  ///< pixels that the baseline alone leaves out
-  std::int64_t excused_changed = 0;   ///< of those left out, that do differ by more than the tolerance
-  double excused_squares = 0.0;       ///< sum of the squared differences of those left out
+  std::int64_t excused_changed = 0;   ///< pixels left out that do differ by more than the tolerance
+  double excused_squares = 0.0;       ///< sum of the squared differences of the pixels left out
   double max = 0.0;                   ///< largest difference of a pixel that was compared
-  int max_x = 0;                      ///< where, from the left and the top
+  int max_x = 0;                      ///< its column from the left and its row from the top
   int max_y = 0;
   double mean = 0.0;  ///< mean magnitude over the compared pixels
   double rms = 0.0;

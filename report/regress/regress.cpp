@@ -11,7 +11,7 @@
 
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 #include "report/files/file_name.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/write_page.h"
@@ -24,13 +24,13 @@
 namespace shadowbench::regress {
 namespace {
 
-/// Pictures are for people: the worst cells of a run that moved as a whole are enough.
+/// Pictures are for people: where a whole run moved, those of the worst cells are enough.
 constexpr int kMostPictures = 50;
 
 /// The truths of one scene, as the baseline has them.
 struct ExpectedTruths {
   std::map<std::string, TruthImages> by_key;
-  std::string unreadable;  ///< why there are none
+  std::string unreadable;  ///< why they cannot be read
 };
 
 /// One comparison of a run with its baseline.
@@ -82,9 +82,9 @@ class Regression {
   std::set<std::string> named_unreadable_;        ///< files of the baseline whose trouble a cell reports
   std::set<std::string> seen_truths_;             ///< scene and key
   std::map<std::string, ExpectedTruths> truths_;  ///< by scene
-  std::optional<files::FolderLock> lock_;         ///< of a baseline that may change
+  std::optional<files::FolderLock> lock_;         ///< held on a baseline that may change
   RegressReport report_;
-  CellFile file_;  ///< of the last cell's scene and filter
+  CellFile file_;  ///< the file of the last cell's scene and filter
   std::pair<std::string, std::string> file_name_;
   int pictures_ = 0;
 
@@ -235,7 +235,7 @@ class Regression {
     return place->second;
   }
 
-  /// Files of the baseline that no cell of the run stands for.
+  /// Reports the files of the baseline that cannot be read and that no cell of the run belongs to.
   void name_unreadable_files() {
     for (const auto& [file, reason] : index_.unreadable) {
       const std::filesystem::path path(file);
@@ -257,7 +257,7 @@ class Regression {
   }
 };
 
-/// Pictures of an earlier comparison would be taken for this one's.
+/// Removes the pictures of an earlier comparison, which would be taken for this one's.
 void remove_old_pictures(const std::filesystem::path& out) {
   std::ifstream stream(out / "regress.json", std::ios::binary);
   const auto old = nlohmann::json::parse(stream, nullptr, false);
@@ -270,7 +270,7 @@ void remove_old_pictures(const std::filesystem::path& out) {
   }
 }
 
-/// Sums a comparison up. What was accepted is no failure; what could not be accepted is.
+/// Sums a comparison up. A difference that was accepted is no failure; one that could not be accepted is.
 std::string describe_failure(const RegressReport& report) {
   if (report.failed() == 0) return "";
   if (report.options.accept)
@@ -295,8 +295,8 @@ RegressOutcome run_regress(const RegressOptions& options) {
   const RegressReport found = Regression(options).compare();
   RegressOutcome outcome{make_regress_text(found), make_regress_json(found), describe_failure(found)};
   pages::write_page(options.out, "regress", make_regress_page(found));
-  files::write_text_file(options.out / "regress.json", outcome.json);
-  if (options.junit) files::write_text_file(*options.junit, make_junit(found));
+  write_text_file(options.out / "regress.json", outcome.json);
+  if (options.junit) write_text_file(*options.junit, make_junit(found));
   return outcome;
 }
 

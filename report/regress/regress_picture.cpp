@@ -34,7 +34,7 @@ using Colors = std::function<Rgb(float)>;
 struct Panel {
   std::string title;
   Image values;
-  images::Badness badness;  ///< of the pixels that share one of the reduced picture
+  images::Badness badness;  ///< how bad the pixels are that share one pixel of the reduced picture
   Colors colors;
 };
 
@@ -52,7 +52,7 @@ Image cut(const Image& image, const Rect& rect) {
   return part;
 }
 
-/// Where the images differ most.
+/// The place where the images differ most.
 Rect crop_worst(const Image& difference) {
   const auto smaller = [](float a, float b) { return magnitude(a) < magnitude(b); };
   const int worst = static_cast<int>(std::max_element(difference.texels.begin(), difference.texels.end(), smaller) -

@@ -28,7 +28,7 @@ class RunCells {
 
   const records::RunRecord& run() const { return results_.run; }
   const std::vector<records::CellRecord>& cells() const { return results_.cells; }
-  const std::vector<records::CellRecord>& all_cells() const { return all_; }  ///< those that are not compared, too
+  const std::vector<records::CellRecord>& all_cells() const { return all_; }  ///< with those that are not compared
 
   /// Hands out every cell, and the truth of every view once, where there is one.
   void visit(const std::function<void(const ActualCell&)>& on_cell,

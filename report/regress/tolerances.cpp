@@ -17,15 +17,22 @@ namespace {
 
 constexpr double kHalfRounding = 0x1p-12;
 
-Tolerance tolerate(const ComparedMetric& metric) {
-  if (metric.path.starts_with("map_scale."))
-    return {1e-9, "a map of another scale is another map: the widest kernel of a run pads it, see --pad-texels"};
-  if (metric.role != MetricRole::kError) return {0.0, "a count: it does not depend on rounding"};
-  if (metric.path.starts_with("artefact."))
-    return {0.01, "a rate counts over 100 receivers or more: one of them may fall on the other side of its limit"};
-  return {kHalfRounding,
-          "no mean of errors moves by more than the pixels do; what excused pixels and the truth's noise move it by is "
-          "allowed on top"};
+Tolerance tolerate(metrics::MetricBaseline baseline) {
+  switch (baseline) {
+    case metrics::MetricBaseline::kNotKept:
+    case metrics::MetricBaseline::kKept: return {HUGE_VAL, "the truth itself is tested pixel by pixel"};
+    case metrics::MetricBaseline::kScale:
+      return {1e-9, "a map of another scale is another map: the widest kernel of a run pads it, see --pad-texels"};
+    case metrics::MetricBaseline::kRate:
+      return {0.01, "a rate counts over 100 receivers or more: one of them may fall on the other side of its limit"};
+    case metrics::MetricBaseline::kError:
+      return {
+          kHalfRounding,
+          "no mean of errors moves by more than the pixels do; what excused pixels and the truth's noise move it by "
+          "is allowed on top"};
+    case metrics::MetricBaseline::kCount: break;
+  }
+  return {0.0, "a count: it does not depend on rounding"};
 }
 
 /// Reads one file and says where in it something is wrong.
@@ -127,8 +134,8 @@ Tolerances::Tolerances() {
                           "of the pixels that a last bit decides few are decided otherwise elsewhere, and none on any "
                           "llvmpipe that was measured"};
   all[kLevel] = {0.01, "one comparison in a hundred of the same thing may fail by chance"};
-  for (const ComparedMetric& metric : list_compared_metrics()) all[metric.path] = tolerate(metric);
-  all["truth.se"] = {HUGE_VAL, "the truth itself is tested pixel by pixel"};
+  for (const metrics::Metric& metric : list_compared_metrics())
+    all[std::string(metric.path)] = tolerate(metric.baseline);
   for (const std::string& path : list_compared_ratios()) {
     all[path] = {
         0.25,
@@ -152,7 +159,7 @@ void Tolerances::set(const std::string& filter, const std::string& metric, Toler
 const std::vector<std::string>& list_limited_metrics() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all = {kPixel, kShare, kLargest, kMean, kExcused, kExcusedChanged, kLevel};
-    for (const ComparedMetric& metric : list_compared_metrics()) all.push_back(metric.path);
+    for (const metrics::Metric& metric : list_compared_metrics()) all.emplace_back(metric.path);
     for (const std::string& path : list_compared_ratios()) all.push_back(path);
     return all;
   }();

@@ -13,22 +13,22 @@ struct Tolerance {
   std::string reason;
 };
 
-/// What of the pixels is limited, beside the numbers of list_compared_metrics() and the ratios:
+/// The limits on pixels, beside those on the metrics of list_compared_metrics() and on the ratios:
 inline constexpr const char* kPixel =
-    "visibility.pixel";  ///< what a pixel may differ by, beside what rounding explains
+    "visibility.pixel";  ///< how far a pixel may differ, beyond what rounding explains
 inline constexpr const char* kShare = "visibility.share";  ///< share of the pixels that may differ by more
 inline constexpr const char* kLargest = "visibility.max";  ///< largest difference of a pixel that is not excused
 inline constexpr const char* kMean = "visibility.mean";    ///< mean magnitude of the differences of pixels not excused
 inline constexpr const char* kExcused =
-    "visibility.excused";  ///< share of pixels excused, more than the baseline excuses
+    "visibility.excused";  ///< by how much the share of excused pixels may exceed the baseline's
 inline constexpr const char* kExcusedChanged =
-    "visibility.excused_changed";                     ///< share of pixels excused that do differ
+    "visibility.excused_changed";                     ///< share of the excused pixels that do differ
 inline constexpr const char* kLevel = "noise.level";  ///< probability that chance alone fails a test of noise
 
 /// The tolerances of a baseline: those of all filters, and what single filters have in their place.
 class Tolerances {
  public:
-  /// What a new baseline begins with: limits that follow from how goldens are stored and from single precision.
+  /// The tolerances of a new baseline: they follow from how goldens are stored, and from single precision.
   Tolerances();
 
   /// Gives a filter's tolerance. Requires a metric of list_limited_metrics().
@@ -43,7 +43,7 @@ class Tolerances {
   friend std::string write_tolerances(const Tolerances& tolerances);
 };
 
-/// Lists what may be limited.
+/// Lists the metrics, ratios and limits on pixels that may have a tolerance.
 const std::vector<std::string>& list_limited_metrics();
 
 /// Reads a baseline's tolerances; what the file leaves out is as in a new baseline.

@@ -20,7 +20,25 @@ TEST(MetricTable, EveryMetric_IsDescribedOnce) {
     EXPECT_FALSE(metric.definition.empty()) << metric.path;
     EXPECT_EQ(metric.statistic != nullptr, metric.source == MetricSource::kValues) << metric.path;
     EXPECT_EQ(std::string(metric.path).substr(metric.path.size() - metric.name().size()), metric.name());
+    EXPECT_FALSE(metric.title.empty()) << metric.path;
+    EXPECT_TRUE(metric.limit.empty() || metric.direction == MetricDirection::kLess) << metric.path;
   }
+}
+
+TEST(MetricTable, EveryRow_HasAMemberOfItsOwn) {
+  MetricValues values;
+  std::set<const void*> members;
+  for (const Metric& metric : metric_table()) {
+    visit_metric(
+        metric, values,
+        [&](const std::string& path, auto& value) {
+          EXPECT_TRUE(members.insert(&value).second) << path;
+          EXPECT_FALSE(metric.read(values)) << path;
+          value = 3;
+          EXPECT_EQ(metric.read(values), 3.0) << path;
+        });
+  }
+  EXPECT_EQ(sizeof(MetricValues) / sizeof(std::optional<double>), members.size()) << "a member has no row";
 }
 
 TEST(MetricTable, TwoPictures_GiveTheErrorsThatNeedNoRays) {

@@ -113,7 +113,7 @@ TEST(TradeMeasures, AllScenes_AreCombinedAsTheMeasureSays) {
 
 TEST(TradeMeasures, IntervalsOfSeveralTimes_AddInQuadrature) {
   const Estimate one{4.0, 2.0, 8.0};
-  const Estimate two = combine_costs({one, one, one, one}, 0);
+  const Estimate two = list_cost_measures()[0].combine({one, one, one, one});
   EXPECT_NEAR(two.value, 4.0, 1e-12);
   EXPECT_NEAR(two.high, 4.0 * std::sqrt(2.0), 1e-12);  // a fourth of sqrt(4 log(2)^2)
   EXPECT_NEAR(two.low, 4.0 / std::sqrt(2.0), 1e-12);

@@ -1,4 +1,4 @@
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 
 #include <gmock/gmock.h>
 #include <sys/resource.h>

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "filters/base/error.h"
-#include "report/files/atomic_file.h"
-#include "report/files/temporary_files.h"
+#include "filters/base/atomic_file.h"
+#include "filters/base/temporary_files.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::files {

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "filters/base/error.h"
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::images {
@@ -176,14 +176,14 @@ TEST(PictureIo, PartsOfOneName_AreAnOutputError) {
 
 TEST(PictureIo, FolderThatIsAFile_IsAnOutputError) {
   const TemporaryFolder folder("exr_folder");
-  files::write_text_file(folder.path() / "file", "");
+  write_text_file(folder.path() / "file", "");
   EXPECT_THROW(write_grey_png(folder.path() / "file" / "a.png", Image(2, 2, 1)), Error);
   EXPECT_THROW(write_exr(folder.path() / "file" / "a.exr", {{"a", {"Y"}, Image(2, 2, 1)}}, {}), Error);
 }
 
 TEST(PictureIo, DamagedFile_IsAnInputError) {
   const TemporaryFolder folder("exr_damaged");
-  files::write_text_file(folder.path() / "a.exr", "not an image");
+  write_text_file(folder.path() / "a.exr", "not an image");
   for (const char* name : {"a.exr", "missing.exr"}) {
     try {
       read_exr(folder.path() / name);

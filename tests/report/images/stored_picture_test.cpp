@@ -7,7 +7,7 @@
 #include <array>
 
 #include "filters/base/error.h"
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 #include "report/images/picture_io.h"
 #include "tests/report/records/synthetic.h"
 
@@ -134,9 +134,9 @@ TEST_F(StoredPictureTest, FilesThatAreNoPictures_AreRefused) {
   expect_refusal("missing.png", {"missing.png: ", "no such file"});
   expect_refusal("missing.exr#truth.area", {"missing.exr: ", "no such file"});
   expect_refusal("", {"folder"});
-  files::write_text_file(path("text.png"), "hello");
+  write_text_file(path("text.png"), "hello");
   expect_refusal("text.png", {"text.png: ", "cannot be read"});
-  files::write_text_file(path("text.abc"), "hello");
+  write_text_file(path("text.abc"), "hello");
   expect_refusal("text.abc", {"text.abc: ", "cannot be read"});
 }
 

@@ -9,7 +9,7 @@
 #include <pugixml.hpp>
 #include <regex>
 
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 #include "tests/report/page/example_page.h"
 #include "tests/report/records/synthetic.h"
 
@@ -72,7 +72,7 @@ std::string read_output(const std::string& command) {
 std::string open_in_browser(const std::filesystem::path& folder, int width) {
   std::string html = write_html(make_example_page());
   html.replace(html.find("</body>"), 7, kProbe);
-  files::write_text_file(folder / "page.html", html);
+  write_text_file(folder / "page.html", html);
   return read_output(
       "timeout 100 chromium --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking "
       "--disable-component-update --disable-sync --virtual-time-budget=5000 --user-data-dir='" +
@@ -130,7 +130,7 @@ TEST_P(Charts, AreSaved_AsSvgAndAsPng) {
   EXPECT_STREQ(svg.select_node("//text").node().text().get(), "Cost & error of <all> filters");
   EXPECT_GT(svg.select_nodes("//path[@transform]").size(), 12u);
   const std::filesystem::path png = folder.path() / "a.png";
-  files::write_text_file(png, decode_hex(found["saved-example.d.png"]));
+  write_text_file(png, decode_hex(found["saved-example.d.png"]));
   const auto image = OIIO::ImageInput::open(png.string());
   ASSERT_TRUE(image);
   EXPECT_EQ(image->spec().width, 2240);

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 
 namespace shadowbench::pages {
 namespace {
@@ -39,7 +39,7 @@ TEST_F(WritePage, WritesHtmlAndMarkdown) {
 
 TEST_F(WritePage, LinksThePagesThatLieInTheSameReport) {
   write("flicker", "flicker");
-  files::write_text_file(report_ / "index.html", "");
+  write_text_file(report_ / "index.html", "");
   EXPECT_THAT(write("stress", "stress"),
               AllOf(HasSubstr("href=\"../index.html\""), HasSubstr("href=\"../flicker/flicker.html\""),
                     Not(HasSubstr("href=\"../bias/bias.html\""))));
@@ -52,7 +52,7 @@ TEST_F(WritePage, LinksPagesOfOneFolder) {
 
 /// A folder of the user's choice may lie beside somebody else's index.html.
 TEST_F(WritePage, LinksNothingOutsideTheReport) {
-  files::write_text_file(report_ / "index.html", "");
+  write_text_file(report_ / "index.html", "");
   EXPECT_THAT(write("mine", "stress"), Not(HasSubstr("index.html")));
 }
 

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "report/files/atomic_file.h"
+#include "filters/base/atomic_file.h"
 #include "report/pages/tune_page.h"
 
 namespace shadowbench::records {
@@ -79,7 +79,7 @@ TEST(TunedJson, ReadsBackAsItWasWritten) {
   filter.params["min_variance"] = 3.881e-08;
   filter.params["flag"] = true;
   const auto file = std::filesystem::temp_directory_path() / "shadowbench.tuned_json_test.json";
-  files::write_text_file(file, make_tuned_json(make_record(filter)));
+  write_text_file(file, make_tuned_json(make_record(filter)));
   const TunedSettings settings = read_tuned_settings(file);
   std::filesystem::remove(file);
   EXPECT_EQ(settings.metric, "rmse");

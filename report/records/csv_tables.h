@@ -1,16 +1,13 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "report/page/blocks.h"
 #include "report/records/records.h"
 
-namespace shadowbench::pages {
+namespace shadowbench::records {
 
-/// Is one column of timings.csv.
+/// A column of a CSV table.
 struct CsvColumn {
   std::string name;
   std::string meaning;  ///< with its unit
@@ -22,14 +19,11 @@ enum class CsvTable {
   kAccuracy,  ///< accuracy.csv: how far each cell is from the truth
 };
 
-/// Lists the columns of a table, in order.
+/// Lists the columns of a table, in order: the cell's settings, its times or none, and the metrics of its groups.
 std::vector<CsvColumn> list_csv_columns(CsvTable table);
 
 /// Makes a table: a header and one row per cell, each with every column; a value that does not exist is an empty field.
 /// Numbers read back as the same doubles.
-std::string make_csv(CsvTable table, const records::RunRecord& run, const std::vector<records::CellRecord>& cells);
+std::string make_csv(CsvTable table, const RunRecord& run, const std::vector<CellRecord>& cells);
 
-/// Says what the columns of a file mean, for readers who unfold it.
-page::Details explain_columns(const std::string& file, const std::vector<CsvColumn>& columns);
-
-}  // namespace shadowbench::pages
+}  // namespace shadowbench::records
