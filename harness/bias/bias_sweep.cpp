@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
@@ -16,7 +17,6 @@
 #include "harness/render/shade_pass.h"
 #include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
-#include "filters/base/atomic_file.h"
 #include "report/files/folder_lock.h"
 #include "report/images/grid.h"
 #include "report/images/hardest_edge.h"

@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "filters/base/atomic_file.h"
 #include "filters/catalogue.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
@@ -8,7 +9,6 @@
 #include "harness/cli/manual_page.h"
 #include "harness/options/experiment_file.h"
 #include "harness/scene/load.h"
-#include "filters/base/atomic_file.h"
 
 namespace shadowbench::cli {
 namespace {

@@ -82,7 +82,8 @@ std::string describe_tuning() {
       "azimuth; degrees:\n"
       "  training: {}\n  unseen:   {}\n"
       "Kept are the found parameters only where the gain on unseen views is more than the truth's standard error (for "
-      "flip, leak and acne: more than nothing), else the default. Writes tuned.json, for 'run --tuned', tune.html and .md, and "
+      "flip, leak and acne: more than nothing), else the default. Writes tuned.json, for 'run --tuned', tune.html and "
+      ".md, and "
       "every setting drawn to evaluations.csv. The budget is of the search; the good ranges (error within 10 % of the "
       "best, the other parameters at theirs) take some 25 settings more per parameter.",
       tune::describe_tune_views(true), tune::describe_tune_views(false));

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <chrono>
 
+#include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
 #include "harness/flicker/bench.h"
 #include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
-#include "filters/base/atomic_file.h"
 #include "report/files/folder_lock.h"
 #include "report/images/flicker_picture.h"
 #include "report/pages/flicker_page.h"

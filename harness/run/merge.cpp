@@ -6,8 +6,8 @@
 #include <set>
 #include <system_error>
 
-#include "filters/base/error.h"
 #include "filters/base/atomic_file.h"
+#include "filters/base/error.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/write_report.h"
 #include "report/records/json_io.h"

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/run/provenance.h"
@@ -18,7 +19,6 @@
 #include "reference/truth/occluders.h"
 #include "report/analysis/repeat.h"
 #include "report/analysis/summary.h"
-#include "filters/base/atomic_file.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/write_report.h"
 #include "report/records/format.h"

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "harness/measure/renderer.h"
-#include "reference/truth/truth_cache.h"
 #include "harness/run/run_plan.h"
+#include "reference/truth/truth_cache.h"
 
 namespace shadowbench::run {
 

@@ -9,10 +9,10 @@
 #include <system_error>
 
 #include "filters/base/error.h"
+#include "filters/base/temporary_files.h"
 #include "harness/gl/pixel_format.h"
 #include "harness/run/task_images.h"
 #include "harness/run/worker_process.h"
-#include "filters/base/temporary_files.h"
 #include "report/images/picture_io.h"
 #include "report/records/json_io.h"
 

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <chrono>
 
+#include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
 #include "harness/run/provenance.h"
 #include "harness/stress/onset.h"
-#include "filters/base/atomic_file.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/stress_page.h"
 #include "report/pages/write_page.h"

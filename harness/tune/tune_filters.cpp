@@ -7,12 +7,12 @@
 #include <memory>
 #include <numeric>
 
+#include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
 #include "harness/tune/tune_stage.h"
-#include "filters/base/atomic_file.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/tune_page.h"
 #include "report/pages/write_page.h"
@@ -282,7 +282,7 @@ class Tuner {
     const page::Page page = pages::make_tune_page(record_);
     pages::write_page(options_.run.out, "tune", page);
     write_text_file(options_.run.out / "evaluations.csv",
-                           fmt::format("filter,evaluation,stage,parameters,{}\r\n", metric_.name) + evaluations_);
+                    fmt::format("filter,evaluation,stage,parameters,{}\r\n", metric_.name) + evaluations_);
     write_text_file(options_.run.out / "tuned.json", records::make_tuned_json(record_));
     return page::write_markdown(page);
   }

@@ -10,8 +10,8 @@
 #include <system_error>
 #include <utility>
 
-#include "filters/base/error.h"
 #include "filters/base/atomic_file.h"
+#include "filters/base/error.h"
 
 namespace shadowbench::images {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "report/analysis/front_words.h"
 #include "report/analysis/growth.h"
-#include "report/pages/fronts_csv.h"
 #include "report/pages/column_list.h"
+#include "report/pages/fronts_csv.h"
 #include "report/pages/trade_charts.h"
 #include "report/records/format.h"
 

@@ -5,8 +5,8 @@
 #include "filters/base/atomic_file.h"
 #include "report/pages/fronts_csv.h"
 #include "report/pages/run_page.h"
-#include "report/records/csv_tables.h"
 #include "report/pages/write_page.h"
+#include "report/records/csv_tables.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::pages {

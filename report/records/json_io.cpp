@@ -8,8 +8,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "filters/base/error.h"
 #include "filters/base/atomic_file.h"
+#include "filters/base/error.h"
 #include "report/records/cell_key.h"
 #include "report/records/json_values.h"
 #include "report/records/record_fields.h"

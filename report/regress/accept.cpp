@@ -9,8 +9,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "filters/base/error.h"
 #include "filters/base/atomic_file.h"
+#include "filters/base/error.h"
 
 namespace shadowbench::regress {
 namespace {
@@ -118,7 +118,7 @@ std::vector<std::string> Accepter::write(const Origin& origin) {
   for (const std::string& line : lines_) entry += "- " + line + "\n";
   const std::string before = read_log(baseline_.log_file());
   write_text_file(baseline_.log_file(),
-                         (before.empty() ? "# What was accepted into this baseline\n" : before) + "\n" + entry);
+                  (before.empty() ? "# What was accepted into this baseline\n" : before) + "\n" + entry);
   for (const auto& [name, own] : files_) baseline_.write_cells(name.first, name.second, own);
   for (const auto& [scene, truths] : truths_) baseline_.write_truths(scene, truths);
   return lines_;

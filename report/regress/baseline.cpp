@@ -6,10 +6,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "filters/base/error.h"
 #include "filters/base/atomic_file.h"
-#include "report/files/file_name.h"
+#include "filters/base/error.h"
 #include "filters/base/temporary_files.h"
+#include "report/files/file_name.h"
 #include "report/images/picture_io.h"
 #include "report/records/json_values.h"
 

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
-#include "filters/base/atomic_file.h"
 #include "report/files/file_name.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/write_page.h"

@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "filters/base/error.h"
 #include "filters/base/atomic_file.h"
+#include "filters/base/error.h"
 #include "filters/base/temporary_files.h"
 #include "tests/report/records/synthetic.h"
 
