@@ -81,7 +81,6 @@ TEST(TemporaryFiles, NamesOfThisProcess_AreRecognised) {
   { PendingFile(folder.path() / "x.png"); }
   for (const char* name : {"x.png", "x", "x.y.exr"}) write_text_file(make_temporary_path(folder.path() / name), "x");
   std::filesystem::create_directories(make_temporary_folder_path(folder.path(), "worker"));
-  std::filesystem::create_directories(make_temporary_folder_path(folder.path(), "plots"));
   remove_temporary_files(folder.path(), [](pid_t process) { return process == getpid(); });
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
