@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kFileMark = ".shadowbench-tmp-";
-constexpr std::string_view kFolderMarks[] = {".worker-", ".plots-"};
+constexpr std::string_view kFolderMarks[] = {".worker-"};
 
 /// Reads the number at the beginning of a text; nothing where other characters follow than `end`.
 std::optional<pid_t> parse_process(std::string_view text, std::string_view end) {

@@ -11,7 +11,7 @@ namespace shadowbench {
 /// The path at which this process writes what will be `path`: beside it, with the same extension.
 std::filesystem::path make_temporary_path(const std::filesystem::path& path);
 
-/// The path of a hidden folder of this process, for work that is renamed out of it. `what` is "worker" or "plots".
+/// The path of a hidden folder of this process, for work that is renamed out of it. `what` is "worker".
 std::filesystem::path make_temporary_folder_path(const std::filesystem::path& folder, std::string_view what);
 
 /// Whether a path is one of the two.

@@ -116,6 +116,9 @@ struct Page {
 /// Writes a page as HTML that opens from disk and loads nothing but what lies beside it.
 std::string write_html(const Page& page);
 
+/// Links a page that write_html() wrote with other siblings than it had when it was written.
+std::string replace_siblings(std::string html, const std::vector<Link>& siblings);
+
 /// Writes a page as Markdown. Only the HTML page draws charts; Markdown says which.
 std::string write_markdown(const Page& page);
 

@@ -279,14 +279,20 @@ class HtmlWriter {
   ChartPacker charts_;
 };
 
+constexpr std::string_view kSiblingsBegin = "<nav class=\"siblings\">", kSiblingsEnd = "</nav>\n";
+
+std::string write_siblings(const std::vector<Link>& siblings) {
+  std::string html(kSiblingsBegin);
+  for (const Link& sibling : siblings) html += html_link(sibling) + " ";
+  return html.append(kSiblingsEnd);
+}
+
 std::string write_navigation(const Page& page) {
-  std::string siblings, sections;
-  for (const Link& sibling : page.siblings) siblings += html_link(sibling) + " ";
+  std::string sections;
   for (const Section& section : page.sections)
     if (!section.heading.empty() && !section.id.empty())
       sections += fmt::format("<a href=\"#{}\">{}</a> ", escape_html(section.id), escape_html(section.heading));
-  return (siblings.empty() ? "" : "<nav class=\"siblings\">" + siblings + "</nav>\n") +
-         (sections.empty() ? "" : "<nav>" + sections + "</nav>\n");
+  return write_siblings(page.siblings) + (sections.empty() ? "" : "<nav>" + sections + "</nav>\n");
 }
 
 std::string write_section(const Section& section, HtmlWriter& writer) {
@@ -298,6 +304,13 @@ std::string write_section(const Section& section, HtmlWriter& writer) {
 }
 
 }  // namespace
+
+std::string replace_siblings(std::string html, const std::vector<Link>& siblings) {
+  const std::size_t begin = html.find(kSiblingsBegin), end = html.find(kSiblingsEnd, begin);
+  if (begin != std::string::npos && end != std::string::npos)
+    html.replace(begin, end + kSiblingsEnd.size() - begin, write_siblings(siblings));
+  return html;
+}
 
 std::string write_html(const Page& page) {
   HtmlWriter writer;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <fstream>
+#include <iterator>
 #include <optional>
 
 #include "filters/base/atomic_file.h"
@@ -26,6 +28,25 @@ std::optional<std::filesystem::path> find_sibling(const std::filesystem::path& d
   return found == places.end() ? std::nullopt : std::optional(*found);
 }
 
+std::vector<page::Link> list_siblings(const std::filesystem::path& dir, const PageFile& own) {
+  std::vector<page::Link> siblings;
+  for (const PageFile& other : list_pages()) {
+    if (other.command == own.command) continue;
+    if (const auto path = find_sibling(dir, own, other))
+      siblings.push_back({path->generic_string(), std::string(other.title)});
+  }
+  return siblings;
+}
+
+/// A page that was written earlier does not know yet what lies beside it now.
+void link_back(const std::filesystem::path& path) {
+  const auto own = std::ranges::find(list_pages(), path.filename().string(), &PageFile::html);
+  std::ifstream stream(path, std::ios::binary);
+  const std::string html{std::istreambuf_iterator<char>(stream), {}};
+  const std::string linked = page::replace_siblings(html, list_siblings(path.parent_path(), *own));
+  if (stream && linked != html) write_text_file(path, linked);
+}
+
 }  // namespace
 
 const std::vector<PageFile>& list_pages() {
@@ -42,13 +63,10 @@ const std::vector<PageFile>& list_pages() {
 void write_page(const std::filesystem::path& dir, std::string_view command, page::Page page) {
   const auto own = std::ranges::find(list_pages(), command, &PageFile::command);
   assert(own != list_pages().end());
-  for (const PageFile& other : list_pages()) {
-    if (other.command == command) continue;
-    if (const auto path = find_sibling(dir, *own, other))
-      page.siblings.push_back({path->generic_string(), std::string(other.title)});
-  }
+  page.siblings = list_siblings(dir, *own);
   write_text_file(dir / own->markdown, page::write_markdown(page));
   write_text_file(dir / own->html, page::write_html(page));
+  for (const page::Link& sibling : page.siblings) link_back((dir / sibling.path).lexically_normal());
 }
 
 page::Links link_data(const std::vector<std::string>& files) {

@@ -21,7 +21,7 @@ struct PageFile {
 const std::vector<PageFile>& list_pages();
 
 /// Writes a command's page into a folder as HTML and as Markdown, linked with the program's other pages that are there
-/// already. Throws Error(kOutput).
+/// already, and these with it. Throws Error(kOutput).
 void write_page(const std::filesystem::path& dir, std::string_view command, page::Page page);
 
 /// Links to data files that lie beside the page.

@@ -193,7 +193,6 @@ class FaultTest : public ProgramTest {
     } catch (const std::exception& error) {
       return error.what();
     }
-    if (kind == ".svg") return ends_in("</svg>");
     if (kind == ".html") return ends_in("</html>");
     return text.empty() ? "empty" : kind == ".csv" || kind == ".md" ? ends_in("\n") : "";
   }

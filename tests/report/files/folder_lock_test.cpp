@@ -61,11 +61,10 @@ TEST(FolderLock, FolderThatIsGoneOrAnother_IsNoticed) {
 /// Only names of ours are removed, however alike others are.
 TEST(TemporaryFiles, AreRemoved_AndNothingElseIs) {
   const TemporaryFolder folder("lock_clean");
-  const char* others[] = {
-      "a.json",     "a.tmp-12.png", "a.shadowbench-tmp-.png", "a.shadowbench-tmp-12x.png",       ".worker-x/a",
-      ".worker-/a", ".plots-1x/a",  "cells/b.json",           "deep/er/a.shadowbench-tmp-12.png"};
-  const char* ours[] = {"a.shadowbench-tmp-12.png",        "b.grid.shadowbench-tmp-12.json", "c.shadowbench-tmp-12",
-                        "cells/d.shadowbench-tmp-12.json", ".worker-12/cells/e.json",        ".plots-12/plots/f.svg"};
+  const char* others[] = {"a.json",      "a.tmp-12.png", "a.shadowbench-tmp-.png", "a.shadowbench-tmp-12x.png",
+                          ".worker-x/a", ".worker-/a",   "cells/b.json",           "deep/er/a.shadowbench-tmp-12.png"};
+  const char* ours[] = {"a.shadowbench-tmp-12.png", "b.grid.shadowbench-tmp-12.json", "c.shadowbench-tmp-12",
+                        "cells/d.shadowbench-tmp-12.json", ".worker-12/cells/e.json"};
   for (const char* name : others) write_text_file(folder.path() / name, "x");
   for (const char* name : ours) write_text_file(folder.path() / name, "x");
   remove_temporary_files(folder.path(), [](pid_t process) { return process == 13; });
@@ -82,7 +81,6 @@ TEST(TemporaryFiles, NamesOfThisProcess_AreRecognised) {
   { PendingFile(folder.path() / "x.png"); }
   for (const char* name : {"x.png", "x", "x.y.exr"}) write_text_file(make_temporary_path(folder.path() / name), "x");
   std::filesystem::create_directories(make_temporary_folder_path(folder.path(), "worker"));
-  std::filesystem::create_directories(make_temporary_folder_path(folder.path(), "plots"));
   remove_temporary_files(folder.path(), [](pid_t process) { return process == getpid(); });
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }

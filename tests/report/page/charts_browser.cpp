@@ -133,6 +133,7 @@ TEST_P(Charts, AreSaved_AsSvgAndAsPng) {
   write_text_file(png, decode_hex(found["saved-example.d.png"]));
   const auto image = OIIO::ImageInput::open(png.string());
   ASSERT_TRUE(image);
+  EXPECT_STREQ(image->format_name(), "png");
   EXPECT_EQ(image->spec().width, 2240);
   std::vector<unsigned char> pixels(static_cast<std::size_t>(image->spec().image_pixels()) *
                                     static_cast<std::size_t>(image->spec().nchannels));

@@ -22,6 +22,10 @@ class WritePage : public ::testing::Test {
   /// Writes a page into a folder of the report, and reads its HTML back.
   std::string write(const std::string& folder, const std::string& command) const {
     write_page(report_ / folder, command, {"A page", {}, {}});
+    return read(folder, command);
+  }
+
+  std::string read(const std::string& folder, const std::string& command) const {
     std::ifstream stream(report_ / folder / (command + ".html"));
     std::ostringstream text;
     text << stream.rdbuf();
@@ -43,6 +47,13 @@ TEST_F(WritePage, LinksThePagesThatLieInTheSameReport) {
   EXPECT_THAT(write("stress", "stress"),
               AllOf(HasSubstr("href=\"../index.html\""), HasSubstr("href=\"../flicker/flicker.html\""),
                     Not(HasSubstr("href=\"../bias/bias.html\""))));
+}
+
+TEST_F(WritePage, LinksPagesThatWereWrittenEarlier_WithTheNewOne) {
+  write("flicker", "flicker");
+  EXPECT_THAT(read("flicker", "flicker"), Not(HasSubstr("stress.html")));
+  write("stress", "stress");
+  EXPECT_THAT(read("flicker", "flicker"), HasSubstr("href=\"../stress/stress.html\""));
 }
 
 TEST_F(WritePage, LinksPagesOfOneFolder) {
