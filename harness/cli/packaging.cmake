@@ -20,7 +20,8 @@ file(GLOB _named CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/filters/*.glsl ${PROJEC
 add_custom_command(
   OUTPUT ${_manual}/written
   COMMAND ${CMAKE_COMMAND} -E rm -rf ${_manual}
-  COMMAND ${CMAKE_COMMAND} -E env --unset=SHADOWBENCH_ROOT ASAN_OPTIONS=detect_leaks=0 $<TARGET_FILE:shadowbench> manual ${_manual}/pages
+  COMMAND ${CMAKE_COMMAND} -E env --unset=SHADOWBENCH_ROOT ASAN_OPTIONS=detect_leaks=0:intercept_tls_get_addr=0
+          $<TARGET_FILE:shadowbench> manual ${_manual}/pages
   COMMAND gzip -9n -r ${_manual}/pages
   COMMAND gzip -d ${_manual}/pages/shadowbench.bash.gz ${_manual}/pages/_shadowbench.gz
   COMMAND gzip -9nc ${PROJECT_BINARY_DIR}/changelog > ${_manual}/changelog.gz
