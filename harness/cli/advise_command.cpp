@@ -89,16 +89,17 @@ int advise(const AdviseArguments& arguments) {
 Command make_advise_command() {
   Command command{"advise", "Find a run's cheapest filter and map that keep your limits"};
   command.about =
-      "A configuration is all that makes a cell but scene and view: filter, parameters, map, picture size, bias. It "
-      "keeps a limit where its worst scene does. Its cost is the mean over all views of all scenes; --max-ms holds for "
+      "A configuration is all that defines a cell except scene and view: filter, parameters, map, picture size and "
+      "bias. It keeps a limit where its worst scene does. Its cost is the mean over all views of all scenes; --max-ms "
+      "holds for "
       "each of them. A frame with a moving light pays for map, prefilter and lookup, one with a static light for the "
       "lookup alone.\n"
-      "Costs are apart where their intervals are: the 95 % interval of the ratio to 'none' where both share map, bias "
-      "and picture size, else the quartiles of the times. Without any limit the cheapest of all is advised, which does "
-      "least.\n"
-      "What was not measured on all the scenes, did not finish, or lacks a value that is asked for keeps no limit. A "
-      "limit on a fault that has too few receivers to occur on in a scene is judged on the others; the answer names "
-      "that scene.\n"
+      "Two costs differ where their intervals do not overlap: the 95 % intervals of the ratio to 'none' where both "
+      "share map, bias and picture size, else the quartiles of the times. Without any limit the answer is the cheapest "
+      "configuration of all.\n"
+      "A configuration that was not measured on all scenes, did not finish, or lacks a value that is asked for keeps "
+      "no limit. Where a scene has too few receivers on which a fault can occur, a limit on that fault is judged on "
+      "the other scenes, and the answer names the scene.\n"
       "Exit code 1: nothing keeps the limits; the message names the ones in the way.";
   auto a = std::make_shared<AdviseArguments>();
   command.add("RUN", &a->run, "a run's folder, or its results.json").names(ValueKind::kFile).require();
@@ -109,8 +110,9 @@ Command make_advise_command() {
   command.add("--requires", &a->claims, "what the filter must claim, such as contact-hardening; may be repeated");
   command.add("--scene", &a->scenes, "judge on this scene; may be repeated [all of the run]").names(ValueKind::kScene);
   command.add("--size", &a->size, "judge pictures of WxH pixels [all of the run]");
-  command.add("--light", &a->light, "moving or static: what a frame pays for").one_of({"moving", "static"});
-  command.add("--cheapest", &a->cheapest, "time, bytes or fetches: what is to be cheap")
+  command.add("--light", &a->light, "moving or static: whether every frame pays for map and prefilter")
+      .one_of({"moving", "static"});
+  command.add("--cheapest", &a->cheapest, "the cost that is to be small: time, bytes or fetches")
       .one_of({"time", "bytes", "fetches"});
   add_json_option(command, a->json);
   command.action = [a](const CommandLine&) { return advise(*a); };

@@ -58,7 +58,7 @@ void add_picture_options(Command& command, PictureArguments& arguments) {
   command.add("--size", &arguments.size, "picture size in pixels, WIDTHxHEIGHT");
 }
 
-void add_json_option(Command& command, bool& json) { command.add("--json", &json, "as JSON"); }
+void add_json_option(Command& command, bool& json) { command.add("--json", &json, "print JSON"); }
 
 std::filesystem::path choose_cache(const DrawingArguments& arguments) {
   if (arguments.no_cache) return {};

@@ -17,7 +17,7 @@ namespace shadowbench::cli {
 namespace {
 
 constexpr const char* kAllMetrics = "all";
-constexpr double kLeastPixelsPerDegree = 0.1;    // below, no feature is left
+constexpr double kLeastPixelsPerDegree = 0.1;    // FLIP sees no feature of a picture with fewer
 constexpr double kMostPixelsPerDegree = 1000.0;  // FLIP's time grows with it
 
 struct DiffArguments {
@@ -121,15 +121,17 @@ Command make_diff_command() {
   Command command{"diff", "Compare two pictures as a run compares its own, or the times of two runs"};
   command.about =
       "A and B are pictures in any format that OpenImageIO reads; FILE#PART is one part of a multi-part EXR file, such "
-      "as report/out/cubes.exr#vsm.visibility. All numbers are of A less B, over all channels but alpha, of the values "
-      "as stored (8-bit codes as code/255). FLIP alone sees linear RGB clamped to [0,1], and the whole picture: sRGB "
-      "codes are decoded, one channel is grey. Pixels that are NaN or infinite are counted and left out.\n"
-      "Where A and B are report folders of runs (or their results.json), it is counted how many of their cells' ratios "
-      "to 'none' repeat: 95 % intervals that overlap. Exit code 1: some do not.";
+      "as report/out/cubes.exr#vsm.visibility. Errors are A minus B, over all channels but alpha, of the values as "
+      "stored (8-bit codes as code/255). FLIP alone takes linear RGB clamped to [0,1], and the whole picture: sRGB "
+      "codes are decoded, and one channel is grey. Pixels that are NaN or infinite are counted and left out.\n"
+      "Where A and B are report folders of runs (or their results.json), the command counts how many of their cells' "
+      "ratios to 'none' repeat, that is, have 95 % intervals that overlap. Exit code 1: some do not.";
   auto a = std::make_shared<DiffArguments>();
   command.add("A", &a->image, "the picture, or a run's folder").names(ValueKind::kFile).require();
   command.add("B", &a->truth, "what it should look like, or another run's folder").names(ValueKind::kFile).require();
-  command.add("--metric", &a->metric, fmt::format("{} (see 'list metrics')", fmt::join(metric_names(), ", ")))
+  command
+      .add("--metric", &a->metric,
+           fmt::format("the error to print: {} (see 'list metrics')", fmt::join(metric_names(), ", ")))
       .such_as(metric_names());
   command.add("--mask", &a->mask, "a picture of one channel: pixels count where it is not 0").names(ValueKind::kFile);
   command.add("--pixels-per-degree", &a->pixels_per_degree, "how large FLIP's observer sees the pixels");

@@ -20,7 +20,7 @@ namespace {
 using analysis::RatioApart;
 using records::CellRecord;
 
-constexpr std::size_t kNamed = 10;
+constexpr std::size_t kMostNamed = 10;
 
 const std::optional<records::Ratio>& ratio_of(const CellRecord& cell, const std::string& name) {
   const records::RatioRecord& ratios = cell.ratio_to_none;
@@ -39,8 +39,9 @@ void print_text(const analysis::RepeatComparison& found) {
   fmt::print("cells        {} in both\n", *found.record.cells);
   fmt::print("overlapping  {} of {} 95 % intervals of ratios to none\n", *found.record.overlapping, *found.record.of);
   if (!found.apart.empty()) fmt::print("apart, the widest gap first:\n");
-  for (std::size_t i = 0; i < std::min(found.apart.size(), kNamed); ++i) fmt::print("  {}\n", describe(found.apart[i]));
-  if (found.apart.size() > kNamed) fmt::print("  and {} more\n", found.apart.size() - kNamed);
+  for (std::size_t i = 0; i < std::min(found.apart.size(), kMostNamed); ++i)
+    fmt::print("  {}\n", describe(found.apart[i]));
+  if (found.apart.size() > kMostNamed) fmt::print("  and {} more\n", found.apart.size() - kMostNamed);
 }
 
 void print_json(const analysis::RepeatComparison& found) {
@@ -60,7 +61,7 @@ void print_json(const analysis::RepeatComparison& found) {
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-/// Says what else than chance may have moved the times.
+/// Warns where more than chance may have changed the times.
 void warn_of_differences(const records::RunRecord& a, const records::RunRecord& b) {
   const auto warn = [](const char* what, const std::string& x, const std::string& y) {
     if (x != y) fmt::print(stderr, "warning: the runs differ in {}: {}, and {}\n", what, x, y);

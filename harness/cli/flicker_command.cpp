@@ -41,16 +41,16 @@ Command make_flicker_command() {
   Command command{"flicker",
                   "Move light and camera by less than a texel a frame, and hold what flickers against the truth"};
   command.about =
-      "Looks the first frame's receivers up in every frame's map, without snapping the map's texel grid and with it, "
-      "and holds what changes from frame to frame against what changes in ray-traced truth. Writes flicker.html, .md, "
-      ".json, .csv and pictures by pixel.";
+      "Looks the first frame's receivers up in the map of every frame, once with the map's texel grid snapped to the "
+      "world and once without, and compares what changes from frame to frame with what changes in ray-traced truth. "
+      "Writes flicker.html, .md, .json, .csv and pictures by pixel.";
   auto a = std::make_shared<FlickerArguments>();
   a->map_size = "512";
   a->size = "320x180";
   a->out = "report/out/flicker";
   add_scene_option(command, a->scene);
   add_builtin_filters_option(command, a->filters);
-  command.add("--frames", &a->frames, "2 or more");
+  command.add("--frames", &a->frames, "frames of each motion, 2 or more");
   add_picture_options(command, *a);
   command.add("--motion", &a->motions, "what moves: light, camera, or both, separated by a comma")
       .such_as({"light", "camera"});

@@ -18,7 +18,7 @@ namespace {
 constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
 constexpr unsigned char kNone = 0;
 
-int g_pipe[2] = {-1, -1};  // all that a signal handler can reach
+int g_pipe[2] = {-1, -1};  // a signal handler can reach nothing that is not global
 
 extern "C" void send_signal(int signal) {
   const int before = errno;
@@ -44,7 +44,7 @@ const char* name_of(int signal) { return signal == SIGINT ? "SIGINT" : signal ==
 
 Interruption::Interruption(std::filesystem::path out, std::string advice)
     : out_(std::move(out)), advice_(std::move(advice)) {
-  if (pipe2(g_pipe, O_CLOEXEC) != 0) return;  // without, a signal ends the program as it ends others
+  if (pipe2(g_pipe, O_CLOEXEC) != 0) return;  // without a pipe, a signal ends the program at once, as it ends others
   try {
     thread_ = std::thread([this] { wait(); });
   } catch (const std::system_error&) {

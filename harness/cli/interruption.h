@@ -6,7 +6,7 @@
 
 namespace shadowbench::cli {
 
-/// The advice of commands that keep nothing of what they were at.
+/// The advice of commands that keep nothing of work that was interrupted.
 constexpr const char* kStoppedAdvice = "nothing half-written is left; run the same command again";
 
 /// While it lives, SIGINT, SIGTERM and SIGHUP remove what this process has half-written, say one last line and end the

@@ -20,7 +20,8 @@ file(GLOB _named CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/filters/*.glsl ${PROJEC
 add_custom_command(
   OUTPUT ${_manual}/written
   COMMAND ${CMAKE_COMMAND} -E rm -rf ${_manual}
-  COMMAND ${CMAKE_COMMAND} -E env --unset=SHADOWBENCH_ROOT ASAN_OPTIONS=detect_leaks=0 $<TARGET_FILE:shadowbench> manual ${_manual}/pages
+  COMMAND ${CMAKE_COMMAND} -E env --unset=SHADOWBENCH_ROOT ASAN_OPTIONS=detect_leaks=0:intercept_tls_get_addr=0
+          $<TARGET_FILE:shadowbench> manual ${_manual}/pages
   COMMAND gzip -9n -r ${_manual}/pages
   COMMAND gzip -d ${_manual}/pages/shadowbench.bash.gz ${_manual}/pages/_shadowbench.gz
   COMMAND gzip -9nc ${PROJECT_BINARY_DIR}/changelog > ${_manual}/changelog.gz
@@ -43,11 +44,7 @@ install(FILES ${_manual}/pages/shadowbench.bash DESTINATION ${CMAKE_INSTALL_DATA
         COMPONENT program)
 install(FILES ${_manual}/pages/_shadowbench DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${_manual}/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-file(READ ${PROJECT_SOURCE_DIR}/LICENSE _licence)
-file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/copyright CONTENT "${_licence}
-The program holds Chart.js, which its pages show charts with: Copyright (c) 2014-2022 Chart.js Contributors, under the same licence.
-" @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_COMPONENTS_ALL program)

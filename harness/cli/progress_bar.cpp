@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kBarCells = 24;
 
-/// Knows how long the cells took so far, and so how long the others will.
+/// Estimates from the time of the finished cells how long the others will take.
 class TimeLeft {
  public:
   void begin(int cells, int finished) {
@@ -77,7 +77,7 @@ class TerminalBar final : public options::Progress {
   }
 };
 
-/// Prints a line per step, for logs.
+/// Prints one line for each step, for logs.
 class PlainLines final : public options::Progress {
  public:
   void begin(int cells, int finished) override {

@@ -65,17 +65,18 @@ Command make_regress_command() {
   Command command{"regress",
                   "Compare a run with a baseline: which outputs moved, and whether they are still as accurate"};
   command.about =
-      "Exit code 1: a cell is less accurate, has changed, is slower, extra, missing or unreadable. Compared are "
-      "visibility, errors, artefacts, attribution and costs, and times as their ratio to 'none' where machine and "
-      "OpenGL are the baseline's. BASELINE/baseline.toml holds the tolerances with their reasons. Make runs for a "
-      "baseline with --uncertainty: then pixels that rounding or another seed may move are known one by one.";
+      "Exit code 1: a cell is less accurate, has changed, is slower, extra, missing or unreadable. It compares "
+      "visibility, errors, artefacts, attribution and costs, and, where machine and OpenGL are the baseline's, times "
+      "as their ratio to 'none'. BASELINE/baseline.toml holds the tolerances with their reasons. Make runs for a "
+      "baseline with --uncertainty, so that each pixel that rounding or another seed may move is known.";
   auto a = std::make_shared<RegressArguments>();
   command.add("RUN", &a->run, "the report folder of a run").names(ValueKind::kFolder).require();
   command.add("--baseline", &a->baseline, "folder of the expected results").names(ValueKind::kFolder).require();
   command.add("--filters", &a->filters, "compare these filters only, ids with commas").names(ValueKind::kFilters);
   command.add("--scene", &a->scenes, "compare this scene only; may be repeated").names(ValueKind::kScene);
-  command.add("--accept", &a->accept, "make what differs the baseline, and log it in BASELINE/accepted.md");
-  command.add("--remove-missing", &a->remove_missing, "with --accept: cells that the run lacks leave the baseline");
+  command.add("--accept", &a->accept, "take over what differs into the baseline, and log it in BASELINE/accepted.md");
+  command.add("--remove-missing", &a->remove_missing,
+              "with --accept: also remove cells from the baseline that the run lacks");
   command.add("--junit", &a->junit, "also write JUnit XML for a build server").names(ValueKind::kFile);
   command.add("--json", &a->json, "print JSON; it also goes to OUT/regress.json");
   command.add("--out", &a->out, "folder for regress.html, .md, .json and the pictures (default: 'regress' in RUN)")

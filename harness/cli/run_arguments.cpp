@@ -10,7 +10,7 @@
 namespace shadowbench::cli {
 namespace {
 
-/// The options that an experiment may hold: all that say what is measured, none that say where.
+/// The options that an experiment may set: those that say what is measured, not those that say where.
 const std::vector<std::string>& experiment_keys() {
   static const std::vector<std::string> keys = {
       "scene",  "ground",      "view",       "filter_file",    "map_size",
@@ -35,16 +35,18 @@ void add_map_options(Command& command, RunArguments& a) {
   command.add("--size", &a.sizes, "picture size in pixels, WIDTHxHEIGHT; several with commas");
   command.add("--map-format", &a.map_format, "how the map stores depth: d16, d24 or d32f")
       .such_as({"d16", "d24", "d32f"});
-  command.add("--reversed-depth", &a.reversed_depth, "store 1 - depth; filters see depth as ever");
+  command.add("--reversed-depth", &a.reversed_depth, "store 1 - depth; filters read the same depth as without it");
   command.add("--perspective-depth", &a.perspective_depth,
-              "store depth as a perspective projection does whose far plane is so many times as far as its near plane; "
-              "filters see linear depth as ever");
+              "store depth as a perspective projection would whose far plane is this many times as far away as its "
+              "near plane; filters read linear depth all the same");
   command
       .add("--fit", &a.fit,
-           "light frustum: 'tight' around casters and receivers, 'sphere', stable under rotation, or 'view', what the "
-           "camera sees and the casters before it")
+           "light frustum: 'tight' around casters and receivers; 'sphere', which is stable under rotation; or 'view', "
+           "around what the camera sees and the casters before it")
       .such_as({"tight", "sphere", "view"});
-  command.add("--snap", &a.snap, "keep the map's texels fixed in the world while a 'view' moves: on or off")
+  command
+      .add("--snap", &a.snap,
+           "keep the map's texels fixed in the world while the frustum of --fit view moves: on or off")
       .one_of(kSwitch);
   command
       .add("--light", &a.light,
@@ -89,7 +91,7 @@ void add_filter_options(Command& command, RunArguments& a) {
       .names(ValueKind::kFile);
   command.add(
       "--bias", &a.bias,
-      "bias, MODE:KEY=X,...; repeat to add up: " + render::list_bias_modes() +
+      "depth bias, MODE:KEY=X,...; several add up: " + render::list_bias_modes() +
           ". Units: depth (0..1 over the light's range), texels (their width), world (metres), kernels (half-width of "
           "the filter's kernel plus one texel). plane: what the receiver's plane gains over so many texels; slope: "
           "times "
@@ -104,15 +106,16 @@ void add_timing_options(Command& command, RunArguments& a) {
       "--rounds", &a.rounds,
       "how often each filter is timed: a number, or 'auto', until its ratio to the unfiltered lookup is precise "
       "enough or the budget is spent");
-  command.add("--precision", &a.precision, "of 'auto' rounds: width of the ratio's 95 % interval, over the ratio");
-  command.add("--budget", &a.budget_s, "of 'auto' rounds: seconds of timed work for each filter on each map");
+  command.add("--precision", &a.precision,
+              "for --rounds auto: how wide the ratio's 95 % interval may be, relative to the ratio");
+  command.add("--budget", &a.budget_s, "for --rounds auto: seconds of timed work for each filter on each map");
   command
       .add("--lights", &a.lights,
            fmt::format("also time frames lit by so many suns, each with a map of its own, casters still and moving: "
                        "counts of 1 .. {} with commas (default: none)",
                        options::kMostLights))
       .never_empty("counts of lights, such as 1,2,4,8");
-  command.add("--seed", &a.seed, "of random rotations and of the order of timing");
+  command.add("--seed", &a.seed, "seed of random rotations and of the order in which filters are timed");
   command.add("--cell-timeout", &a.cell_timeout_s, "seconds that a filter of your own may take on one scene");
 }
 
@@ -152,8 +155,8 @@ void add_run_options(Command& command, RunArguments& a) {
   command.add("--shard", &a.shard, "I/N: every N-th cell only, from the I-th on; 'merge' joins the N report folders")
       .never_empty("I/N");
   command.add("--fresh", &a.fresh,
-              "measure every cell, also those that an earlier run of the same left finished in the report folder");
-  command.add("--yes", &a.yes, "run however many cells there are");
+              "measure every cell again, even those that an earlier run finished in the report folder");
+  command.add("--yes", &a.yes, "start even where there are very many cells");
   add_drawing_options(command, a, "shadowbench in $XDG_CACHE_HOME or ~/.cache");
   command.add("--worker", &a.worker, "").hide();
 }

@@ -12,7 +12,7 @@ namespace shadowbench::cli {
 /// A run of more filters draws grids only where it is told to, because nobody could read them.
 inline constexpr int kFiltersOfAGrid = 16;
 
-/// The command line as text; parsed and checked before anything is made.
+/// The options of `shadowbench run` as text; all of them are checked before anything is made.
 struct RunArguments : DrawingArguments {
   std::string experiment = "default";
   std::vector<std::string> scenes;

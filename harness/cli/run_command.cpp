@@ -19,11 +19,11 @@ namespace shadowbench::cli {
 namespace {
 
 constexpr double kLargestDepthRatio = 1e7;
-constexpr double kMostPadding = 1000.0;  // more than any kernel is wide
+constexpr double kMostPadding = 1000.0;  // in texels; no kernel is wider
 constexpr int kMostRounds = 10000;
-constexpr const char* kReferenceFilter = "none";  // what the others' times are ratios to
+constexpr const char* kReferenceFilter = "none";  // the times of the others are given as ratios to its times
 
-/// Whole numbers, 1 or more, each once.
+/// Parses whole numbers, 1 or more, with commas between them. Refuses one that is named twice.
 std::vector<int> parse_counts(const std::string& text, const char* option) {
   std::vector<int> counts;
   for (const std::string& each : split_list(text)) {

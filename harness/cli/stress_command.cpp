@@ -61,9 +61,9 @@ Command make_stress_command() {
   add_builtin_filters_option(command, a->filters);
   command.add("--filter-file", &a->filter_files, "").hide();
   command.add("--axes", &a->axes, "axes, separated by commas (default: all; see --list)");
-  command.add("--range", &a->ranges, "AXIS=LO,HI in place of an axis' own range; may be repeated");
+  command.add("--range", &a->ranges, "AXIS=LOW,HIGH in place of an axis' own range; may be repeated");
   command.add("--list", &a->list, "list the axes and end");
-  command.add("--seed", &a->seed, "of random rotations and of the truth's rays");
+  command.add("--seed", &a->seed, "seed of random rotations and of the truth's rays");
   add_drawing_options(command, *a);
   command.action = [a](const CommandLine& line) { return stress_filters(*a, line.words()); };
   return command;

@@ -77,15 +77,14 @@ std::string describe_tuning() {
   return fmt::format(
       "Searches every numeric parameter with a range (but those that --filter sets, and const ones) for the least mean "
       "of the metric over the training views of all scenes, then scores default and found parameters on views that the "
-      "search has not seen. Views, of each scene's first camera, turned about the vertical axis through the point it "
-      "looks at (of its central ray, the one nearest to the middle of the scene's bounds), and of its light, turned in "
-      "azimuth; degrees:\n"
+      "search has not seen. The views are made of each scene's first camera, turned about the vertical axis through "
+      "the point it looks at (the point of its central ray that is nearest to the middle of the scene's bounds), and "
+      "of its light, turned in azimuth; in degrees:\n"
       "  training: {}\n  unseen:   {}\n"
-      "Kept are the found parameters only where the gain on unseen views is more than the truth's standard error (for "
-      "flip, leak and acne: more than nothing), else the default. Writes tuned.json, for 'run --tuned', tune.html and "
-      ".md, and "
-      "every setting drawn to evaluations.csv. The budget is of the search; the good ranges (error within 10 % of the "
-      "best, the other parameters at theirs) take some 25 settings more per parameter.",
+      "The found parameters are kept only where they gain more on unseen views than the truth's standard error (for "
+      "flip, leak and acne: more than nothing); else the default stays. Writes tuned.json, for 'run --tuned', tune.html and "
+      ".md, and every setting that was tried to evaluations.csv. The budget limits the search alone; to find the range of "
+      "each parameter in which the error stays within 10 % of the best takes some 25 settings more.",
       tune::describe_tune_views(true), tune::describe_tune_views(false));
 }
 
@@ -103,15 +102,16 @@ Command make_tune_command() {
   command.add("--filter-file", &a->filter_files, "").hide();
   const std::vector<std::string> metrics = tune::list_tune_metrics();
   command
-      .add("--metric", &a->metric, fmt::format("what to make small: {} (see 'list metrics')", fmt::join(metrics, ", ")))
+      .add("--metric", &a->metric,
+           fmt::format("the error to make small: {} (see 'list metrics')", fmt::join(metrics, ", ")))
       .such_as(metrics);
   add_scenes_options(command, a->scenes, a->ground);
   add_picture_options(command, *a);
-  command.add("--budget", &a->budget, "settings that the search draws of each filter");
+  command.add("--budget", &a->budget, "settings that the search tries for each filter");
   command.add("--light", &a->light,
               "AZIMUTH,ELEVATION in degrees, where the light stands in every scene before it is turned");
-  command.add("--bias", &a->bias, "bias, as of 'run'; may be repeated");
-  command.add("--seed", &a->seed, "of random rotations and of the truth's rays");
+  command.add("--bias", &a->bias, "depth bias as for 'run'; may be repeated");
+  command.add("--seed", &a->seed, "seed of random rotations and of the truth's rays");
   add_drawing_options(command, *a);
   command.action = [a](const CommandLine&) { return tune(*a); };
   return command;

@@ -54,8 +54,8 @@ class ExperimentReader {
     fail(*node, "'filter' must be tables, each headed [[filter]]");
   }
 
-  /// One value as the command line would have it.
-  std::string text_of(const toml::node& node, const std::string& key) const {
+  /// Writes one value as it stands on a command line.
+  std::string read_value(const toml::node& node, const std::string& key) const {
     if (const auto* text = node.as_string()) return text->get();
     if (const auto* whole = node.as_integer()) return fmt::format("{}", whole->get());
     if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
@@ -63,14 +63,14 @@ class ExperimentReader {
     fail(node, fmt::format("'{}' must be a text, a number, true or false, or a list of such", key));
   }
 
-  std::vector<std::string> texts_of(const toml::node& node, const std::string& key) const {
+  std::vector<std::string> read_values(const toml::node& node, const std::string& key) const {
     const toml::array* list = node.as_array();
-    if (!list) return {text_of(node, key)};
-    std::vector<std::string> texts;
-    for (const toml::node& each : *list) texts.push_back(text_of(each, key));
-    if (texts.empty())
+    if (!list) return {read_value(node, key)};
+    std::vector<std::string> values;
+    for (const toml::node& each : *list) values.push_back(read_value(each, key));
+    if (values.empty())
       fail(node, fmt::format("'{}' is an empty list: nothing would be run; name a value, or leave the key out", key));
-    return texts;
+    return values;
   }
 
   /// A file named in an experiment lies beside it.
@@ -81,7 +81,7 @@ class ExperimentReader {
 
   ExperimentSetting read_setting(const std::string& key) const {
     const toml::node& node = *root_.get(key);
-    ExperimentSetting setting{"--" + key, texts_of(node, key), where(node)};
+    ExperimentSetting setting{"--" + key, read_values(node, key), where(node)};
     std::replace(setting.option.begin(), setting.option.end(), '_', '-');
     if (key != "scene" && key != "filter_file") return setting;
     for (std::string& value : setting.values) value = resolve(value);
@@ -99,7 +99,7 @@ class ExperimentReader {
 
   SweptParam read_param(const std::string& name, const toml::node& node) const {
     const toml::table* range = node.as_table();
-    if (!range) return {name, {}, false, 0, texts_of(node, name)};
+    if (!range) return {name, {}, false, 0, read_values(node, name)};
     const scene::TomlTable table(*range, name, file_.string());
     table.require_known_keys({"linear", "log", "count"});
     SweptParam param;
@@ -128,20 +128,20 @@ std::vector<double> spread(const SweptParam& param) {
   return values;
 }
 
-/// The texts of a parameter's values, each once.
+/// Writes the values of a parameter, each once.
 std::vector<std::string> list_values(const SweptParam& param, const filters::ParamSpec* spec) {
-  std::vector<std::string> texts = param.values;
+  std::vector<std::string> all = param.values;
   if (!param.range.empty())
     for (const double value : spread(param))
-      texts.push_back(fmt::format("{}", spec && spec->integer ? std::round(value) : value));
+      all.push_back(fmt::format("{}", spec && spec->integer ? std::round(value) : value));
   std::vector<std::string> distinct;
   std::set<std::string> seen;
-  for (const std::string& text : texts)
-    if (seen.insert(text).second) distinct.push_back(text);
+  for (const std::string& value : all)
+    if (seen.insert(value).second) distinct.push_back(value);
   return distinct;
 }
 
-/// How many combinations a filter's parameters have; where there are too many, not all are counted.
+/// Counts the combinations of a filter's values; stops where there are too many.
 double count_combinations(const SweptFilter& filter, const filters::FilterSpec& spec) {
   double combinations = 1.0;
   for (const SweptParam& param : filter.params) {
@@ -151,7 +151,7 @@ double count_combinations(const SweptFilter& filter, const filters::FilterSpec& 
   return combinations;
 }
 
-/// Throws unless a run takes as many combinations as the filters up to this one have.
+/// Throws where the filters up to this one have more combinations than a run takes.
 void require_few(double combinations, const SweptFilter& filter) {
   if (combinations <= kMostCombinations) return;
   throw Error(ErrorKind::kUsage, fmt::format("with the parameters of '{}' there are more than {:.0f} combinations, and "
@@ -159,8 +159,7 @@ void require_few(double combinations, const SweptFilter& filter) {
                                              filter.id, kMostCombinations, kMostCombinations));
 }
 
-/// Says what is wrong with a filter's values while it is known where they stand; each is tried once, not in every
-/// combination.
+/// Refuses a wrong value here, where its line in the file is still known.
 void check_values(const SweptFilter& filter, const filters::Catalogue& catalogue) {
   const filters::FilterSpec& spec = catalogue.find(filter.id);
   for (const SweptParam& param : filter.params)
@@ -168,7 +167,7 @@ void check_values(const SweptFilter& filter, const filters::Catalogue& catalogue
       filters::parse_value(spec, param.name, value);
 }
 
-/// Every combination of one filter's values, as `--filters` has it.
+/// Lists every combination of one filter's values, as `--filters` takes it.
 std::vector<std::string> combine(const SweptFilter& filter, const filters::Catalogue& catalogue) {
   const filters::FilterSpec& spec = catalogue.find(filter.id);
   std::vector<std::string> requests{filter.id};

@@ -8,20 +8,20 @@
 
 namespace shadowbench::options {
 
-/// One key of an experiment file; says what the option of `shadowbench run` that bears its name would say.
+/// One key of an experiment file. It stands for the option of `shadowbench run` that has the same name.
 struct ExperimentSetting {
   std::string option;               ///< "--map-size" for the key `map_size`
-  std::vector<std::string> values;  ///< as the command line would have them; flags: "true" or "false"
+  std::vector<std::string> values;  ///< as on the command line; "true" or "false" for flags
   std::string where;                ///< "file:line"
 };
 
-/// One parameter of a filter with the values it is to take.
+/// One parameter of a filter, with the values that it takes in turn.
 struct SweptParam {
   std::string name;
-  std::vector<double> range;  ///< from, to; empty where `values` says all
+  std::vector<double> range;  ///< its two ends; empty where `values` holds all values
   bool logarithmic = false;
-  int count = 0;                    ///< values over the range, its ends included
-  std::vector<std::string> values;  ///< as the command line would have them
+  int count = 0;                    ///< of values over the range, its ends included
+  std::vector<std::string> values;  ///< as on the command line
 };
 
 /// One [[filter]]: every combination of its parameters' values is run.
@@ -35,14 +35,14 @@ struct SweptFilter {
 struct Experiment {
   std::string title;
   std::vector<ExperimentSetting> settings;
-  std::vector<SweptFilter> filters;  ///< none: as the options say
+  std::vector<SweptFilter> filters;  ///< empty: the options name the filters
 };
 
 /// Names the experiments of a folder.
 std::vector<std::string> list_experiments(const std::filesystem::path& folder);
 
 /// Finds an experiment: a path that ends in .toml, or the name of one that comes with the program.
-/// Throws Error(kUsage) for another name, with the nearest or all there are.
+/// Throws Error(kUsage) for an unknown name; the message holds the nearest name, or all of them.
 std::filesystem::path find_experiment(const std::filesystem::path& folder, const std::string& name);
 
 /// Reads an experiment file. Keys are the long options of `shadowbench run` with '_' for '-', of which `keys` are
@@ -51,9 +51,9 @@ std::filesystem::path find_experiment(const std::filesystem::path& folder, const
 Experiment read_experiment(const std::filesystem::path& file, const std::vector<std::string>& keys);
 
 /// Writes the filters of an experiment as `--filters` takes them: every combination of the values of each one's
-/// parameters. Values over a range are rounded for whole-numbered parameters; what is then there twice is left out
-/// once. Throws Error(kInput), with file and line, for an unknown filter or parameter, a value out of range, a range
-/// without an end, or more than 100 000 combinations.
+/// parameters. Values over a range are rounded for whole-numbered parameters, and of equal values one is kept. Throws
+/// Error(kInput), with file and line, for an unknown filter or parameter, a value out of range, a range without an end,
+/// or more than 100 000 combinations.
 std::string expand_filters(const Experiment& experiment, const filters::Catalogue& catalogue);
 
 }  // namespace shadowbench::options

@@ -8,15 +8,15 @@
 
 namespace shadowbench::options {
 
-/// Most lights of a frame that is timed.
+/// The most lights that a timed frame may have.
 inline constexpr int kMostLights = 16;
 
-/// Most bytes that the maps of a frame's lights may take together.
+/// The most bytes that the maps of a frame's lights may take together.
 inline constexpr std::int64_t kMostLightMapBytes = std::int64_t{1} << 30;
 
-/// Gives the bytes of all maps that are there while frames of so many lights are timed: a depth map for each light
-/// (three for a midpoint map) and, for each format that one of the filters stores, an encoded map for each light.
-/// Filters take turns in the encoded maps, so that their number does not count.
+/// Counts the bytes of all maps that exist while frames with `lights` lights are timed: for each light a depth map
+/// (three for a midpoint map) and one encoded map for each format that any of the filters stores. Filters share these
+/// encoded maps, so that the number of filters does not count.
 std::int64_t count_light_map_bytes(const RunOptions& options, int lights, int map_size);
 
 /// Throws Error(kUsage) where the maps of `options.lights` would take more than kMostLightMapBytes.

@@ -65,32 +65,32 @@ struct RunOptions {
   render::MapSettings map;
   scene::FitMode fit = scene::FitMode::kTight;
   bool snap = false;                 ///< keep the map's texel grid fixed in the world
-  std::optional<LightAngles> light;  ///< in place of every scene's own; empty: as the scenes say
+  std::optional<LightAngles> light;  ///< in place of the light of every scene
   render::BiasRule bias;
   filters::RangeRule range;          ///< outside the map, beyond its far plane, behind the light
   bool border_page = false;          ///< also draw every rule for what lies outside the map, side by side
-  std::optional<double> pad_texels;  ///< around the scene in the map; empty: what the widest kernel needs
+  std::optional<double> pad_texels;  ///< around the scene in the map; empty: as many as the widest kernel needs
   RoundLimits rounds;
-  std::vector<int> lights;           ///< frames lit by so many lights are timed too; none: they are not
-  filters::FilterRequest reference;  ///< what the others are timed against
+  std::vector<int> lights;           ///< also time frames with these numbers of lights
+  filters::FilterRequest reference;  ///< the filter that the others' times are ratios to
   std::uint32_t seed = 1;
   gl::Backend backend = gl::Backend::kAuto;
-  bool truth = true;         ///< trace visibility and score every filter against it
-  bool attribution = true;   ///< take the errors apart; needs truth
-  bool stability = false;    ///< say where numbers break, per texel and per pixel
-  bool uncertainty = false;  ///< say how far rounding and other seeds can move each pixel
+  bool truth = true;         ///< trace rays, and score every filter against them
+  bool attribution = true;   ///< split the errors into their four parts; needs truth
+  bool stability = false;    ///< find where numbers break, per texel and per pixel
+  bool uncertainty = false;  ///< keep how far rounding and other seeds can move each pixel
   bool grids = true;  ///< compare all filters of a view in one picture and keep their float images; else each cell's
                       ///< pictures alone
   Shard shard;
   std::string title;             ///< of the experiment
-  bool fresh = false;            ///< measure cells again that the report folder has
-  bool large_is_fine = false;    ///< run however many cells there are
+  bool fresh = false;            ///< measure again the cells that the report folder has
+  bool large_is_fine = false;    ///< start even where there are very many cells
   std::filesystem::path cache;   ///< keeps traced images between runs; empty: nothing is kept
-  double cell_timeout_s = 60.0;  ///< for one user's filter on one scene
+  double cell_timeout_s = 60.0;  ///< how long one filter of the user may take on one scene
   std::filesystem::path out;
   std::vector<std::string> command;     ///< the command line, for the record
   std::vector<std::string> bias_texts;  ///< as given, for worker processes
-  std::vector<std::string> notes;       ///< what reading the options found that the user should know
+  std::vector<std::string> notes;       ///< what the user should know about the options
   bool worker = false;                  ///< runs user's filters itself and writes cells and float images only
 };
 

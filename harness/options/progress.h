@@ -4,7 +4,7 @@
 
 namespace shadowbench::options {
 
-/// Hears how far a run is; the command line shows it.
+/// Receives how far a run is; the command line shows it.
 class Progress {
  public:
   virtual ~Progress() = default;
@@ -12,7 +12,7 @@ class Progress {
   virtual void begin(int cells, int finished) = 0;
   /// The cell named is under way, `done` cells are finished.
   virtual void show(int done, const std::string& what) = 0;
-  /// Something the user should know, once.
+  /// The user should know this; it is shown once.
   virtual void note(const std::string& message) = 0;
 };
 

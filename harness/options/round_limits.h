@@ -6,11 +6,12 @@ namespace shadowbench::options {
 struct RoundLimits {
   int fewest = 9;
   int most = 200;
-  /// Wanted width of the 95 % interval of a filter's ratio to the reference, over the ratio; 0: always `most` rounds.
+  /// How wide the 95 % interval of a filter's ratio to the reference may be, relative to the ratio; 0: always `most`
+  /// rounds.
   double precision = 0.05;
-  double budget_ms = 400.0;  ///< of timed work for each filter; those that need less leave the rest to the others
+  double budget_ms = 400.0;  ///< of timed work for each filter; what a filter does not need is left to the others
 
-  /// As many rounds as that, whatever they say.
+  /// Exactly this many rounds, however precise they are.
   static RoundLimits exactly(int rounds) { return {rounds, rounds, 0.0, 0.0}; }
   bool is_fixed() const { return precision <= 0.0; }
 };

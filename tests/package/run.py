@@ -79,7 +79,8 @@ def check_package(build, folder):
     expect(call("dpkg-deb", "--field", packages[0], "Section").strip() == "graphics", "another section than graphics")
     files = call("dpkg-deb", "--contents", packages[0])
     expect("./usr/bin/shadowbench\n" in files, f"no ./usr/bin/shadowbench in the package:\n{files}")
-    others = [line for line in files.splitlines() if re.search(r" \./usr/(?!bin/|share/|$)| \./(?!usr/)\w|_test|_bench", line)]
+    foreign = re.compile(r" \./usr/(?!bin/|share/|$)| \./(?!usr/)\w|_test|_bench")
+    others = [line for line in files.splitlines() if foreign.search(line)]
     expect(not others, f"what is no part of the program is in the package: {others}")
 
 
