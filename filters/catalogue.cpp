@@ -11,6 +11,7 @@
 
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
+#include "filters/base/split_list.h"
 #include "filters/front_matter.h"
 
 namespace shadowbench::filters {
@@ -23,16 +24,6 @@ constexpr std::string_view kReservedIds[] = {"truth"};
 
 std::string suggest(const std::string& name, const std::vector<std::string>& known) {
   return known.empty() ? "; it has none" : did_you_mean_or_known(name, known);
-}
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::size_t begin = 0;
-  for (std::size_t end = 0; end != std::string::npos; begin = end + 1) {
-    end = text.find(separator, begin);
-    parts.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
-  }
-  return parts;
 }
 
 std::string list_choices(const ParamSpec& param) {
@@ -154,7 +145,7 @@ std::vector<FilterRequest> Catalogue::parse_requests(const std::string& text) co
     for (const FilterSpec& spec : filters_) requests.push_back(make_request(spec.id));
     return requests;
   }
-  for (const std::string& item : split(text, ',')) {
+  for (const std::string& item : split_list(text)) {
     const std::size_t colon = item.find(':');
     const bool continues = colon == std::string::npos && item.find('=') != std::string::npos;
     if (continues) {

@@ -13,9 +13,9 @@ struct FilterRequest {
   FilterSpec spec;
   ParamValues values;                    ///< complete: every parameter has a value
   std::vector<std::string> set_by_user;  ///< names of the parameters that were asked for
-  bool user_file = false;                ///< came by path: runs in a process of its own
+  bool user_file = false;                ///< given by its path; it runs in a process of its own
 
-  /// Gives the id, with the asked-for parameters in parentheses; what tables and grids print.
+  /// The id, with the asked-for parameters in parentheses; what tables and grids print.
   std::string label() const;
 };
 

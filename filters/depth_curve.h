@@ -2,16 +2,16 @@
 
 namespace shadowbench::filters {
 
-/// How a map stores depth. Filters see linear depth z in [0,1], 0 near; the map may hold what a perspective projection
-/// whose far plane is `far_over_near` = R times as far as its near plane makes of the same distances,
-/// R z / (1 + (R - 1) z), and may hold one less that. The same in shaders/lib/depth_curve.glsl.
+/// How a map stores depth. Filters see linear depth z in [0,1], 0 near; a map may instead hold the depth of a
+/// perspective projection, R z / (1 + (R - 1) z), where R = `far_over_near` is the distance of its far plane divided by
+/// that of its near plane. A reversed map holds 1 minus that. shaders/lib/depth_curve.glsl does the same.
 struct DepthCurve {
   bool reversed = false;
   double far_over_near = 1.0;  ///< 1: linear
 
   bool is_linear() const { return far_over_near == 1.0; }
 
-  /// Gives what a map stores for a depth. Depth before the near plane counts as on it where the curve is not linear.
+  /// What a map stores for a depth. Depth before the near plane counts as on it where the curve is not linear.
   template <class T>
   T store(T z) const {
     if (is_linear()) return reversed ? T(1) - z : z;
@@ -20,7 +20,7 @@ struct DepthCurve {
     return (reversed ? T(1) - z : ratio * z) / (T(1) + (ratio - T(1)) * z);
   }
 
-  /// Gives the depth that a stored value stands for; the inverse of store().
+  /// The depth that a stored value stands for; the inverse of store().
   template <class T>
   T linear(T stored) const {
     if (is_linear()) return reversed ? T(1) - stored : stored;
@@ -29,10 +29,10 @@ struct DepthCurve {
     return (T(1) - away) / (T(1) + (ratio - T(1)) * away);
   }
 
-  /// Gives what a cleared map holds: the far plane.
+  /// What a cleared map holds: the far plane.
   float far_plane() const { return reversed ? 0.0f : 1.0f; }
 
-  /// Says whether a stored reference is lit by a stored depth; ties are.
+  /// Whether a stored reference is lit by a stored depth; ties are.
   bool is_lit(float reference, float stored) const { return reversed ? reference >= stored : reference <= stored; }
 };
 
@@ -42,29 +42,29 @@ struct DepthPlanes {
   double far_m = 100.0;
 };
 
-/// Gives the depth in [0,1] that a perspective projection stores for a distance along its axis:
-/// f / (f - n) (1 - n / d); reversed: one less that, n (f - d) / ((f - n) d).
-/// Source: OpenGL 4.5 core specification, section 13.6, with a zero-to-one depth range.
+/// The depth in [0,1] that a perspective projection stores for a distance along its axis: f / (f - n) (1 - n / d);
+/// reversed: 1 minus that, n (f - d) / ((f - n) d). Source: OpenGL 4.5 core specification, section 13.6, with a
+/// zero-to-one depth range.
 double depth_of_distance(double distance_m, const DepthPlanes& planes, bool reversed);
 
-/// Gives the distance that a stored depth stands for; the inverse of depth_of_distance().
+/// The distance that a stored depth stands for; the inverse of depth_of_distance().
 double distance_of_depth(double depth, const DepthPlanes& planes, bool reversed);
 
-/// Says how a format stores depth.
+/// How a format stores depth.
 struct DepthFormat {
   int bits = 32;
   bool is_float = true;
 };
 
-/// Gives the distance between neighbouring values of a format at a depth: 1 / (2^bits - 1), or the ULP of a float with
-/// 24 significant bits.
+/// The distance between neighbouring values of a format at a depth: 1 / (2^bits - 1), or the ULP of a float with 24
+/// significant bits.
 double depth_quantum(double depth, const DepthFormat& format);
 
-/// Gives by how much two depths must differ at a depth for a format to tell them apart: (1 + (R - 1) z)^2 / R times the
+/// By how much two depths must differ at a depth for a format to tell them apart: (1 + (R - 1) z)^2 / R times the
 /// format's quantum at what is stored.
 double depth_step(double depth, const DepthCurve& curve, const DepthFormat& format);
 
-/// Gives the same in metres at a distance: d^2 (f - n) / (n f) times the quantum.
+/// The same in metres at a distance: d^2 (f - n) / (n f) times the quantum.
 double distance_step(double distance_m, const DepthPlanes& planes, const DepthFormat& format, bool reversed);
 
 }  // namespace shadowbench::filters

@@ -20,19 +20,19 @@ struct DepthMap {
   bool clamps_reference = false;
   Border border = Border::kBorder;  ///< what lookups read outside
 
-  /// Gives what a comparison with depth `z` compares with.
+  /// What a comparison with depth `z` compares with.
   float reference(float z) const {
     const float reference = curve.store(z);
     return clamps_reference ? std::clamp(reference, 0.0f, 1.0f) : reference;
   }
 
-  /// Gives what a lookup finds in a texel, or outside the map where there is none.
+  /// What a lookup finds in a texel, or outside the map where there is none.
   float at(const std::optional<std::size_t>& texel) const { return texel ? stored[*texel] : curve.far_plane(); }
 
-  /// Says whether depth `z` is lit by a stored depth; ties are.
+  /// Whether depth `z` is lit by a stored depth; ties are.
   bool is_lit(float z, float by) const { return curve.is_lit(reference(z), by); }
 
-  /// Says whether rounding may decide that: `z` may be one ULP off, and a curve that divides some more.
+  /// Whether rounding may decide that comparison: `z` may be off by one ULP, and by some more if the curve divides.
   bool is_tie(float z, float by) const {
     const float ulp = std::nextafter(std::abs(z), 2.0f * std::abs(z) + 1.0f) - std::abs(z);
     const auto [least, most] = std::minmax({reference(z - ulp), reference(z + ulp)});

@@ -11,10 +11,10 @@
 
 namespace shadowbench::filters {
 
-/// A map that a filter's encode() wrote, prefiltered: what the `encode` and `blur` passes make, as a model.
+/// The scalar model of the `encode` and `blur` passes: a map that a filter's encode() wrote, then prefiltered.
 ///
-/// `N` channels of type T; outside the map it holds what the map's border says, where that
-/// is depth 1 the encoding of it.
+/// It has `N` channels of type T. Outside the map it holds what the map's border says: if that is depth 1, then depth 1
+/// encoded.
 template <class T, std::size_t N>
 class EncodedMap {
  public:
@@ -63,8 +63,8 @@ class EncodedMap {
   }
 
  private:
-  /// How far off single precision may be that linearises a depth: a stored value that is read one ULP off, and the
-  /// division.
+  /// The error of a depth that was linearised in single precision: the stored value may be read one ULP off, and the
+  /// division rounds.
   static double linear_rounding(float depth, const DepthCurve& curve) {
     if (std::is_same_v<T, float> || curve.is_linear()) return 0.0;
     const auto z = static_cast<double>(depth);

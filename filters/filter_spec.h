@@ -17,10 +17,10 @@ using ParamValues = std::map<std::string, ParamValue>;
 /// The largest radius in texels of the shared Gaussian prefilter.
 inline constexpr int kMaxPrefilterRadius = 64;
 
-/// Says which contract a filter keeps, and so which tests apply to it.
+/// Which contract a filter keeps, and so which tests apply to it.
 enum class FilterKind { kComparison, kStochastic, kBound, kOther };
 
-/// Describes one parameter, as the front matter declares it.
+/// One parameter, as the front matter declares it.
 struct ParamSpec {
   std::string name;
   ParamValue default_value;
@@ -64,30 +64,29 @@ struct FilterSpec {
   const ParamSpec* find_param(const std::string& name) const;
 };
 
-/// Gives the names `comparison`, `bound`, `stochastic`, `other`.
+/// The names `comparison`, `bound`, `stochastic`, `other`.
 std::string to_string(FilterKind kind);
 
 /// Writes a value as the command line would take it.
 std::string to_string(const ParamValue& value);
 
-/// Gives a numeric parameter's value.
-/// Requires that the parameter exists and is a number.
+/// A numeric parameter's value. Requires that the parameter exists and is a number.
 double number(const ParamValues& values, const std::string& name);
 
-/// Gives a text parameter's value, `fallback` where the filter has no such parameter.
+/// A text parameter's value, `fallback` where the filter has no such parameter.
 std::string text_or(const ParamValues& values, const std::string& name, const std::string& fallback);
 
-/// Gives the kernel's half-width in texels for these parameter values.
+/// The kernel's half-width in texels for these parameter values.
 double radius_texels(const FilterSpec& spec, const ParamValues& values);
 
-/// Gives how many texels of receiver slope a depth bias has to cover for these parameter values, without the texel
-/// that the sampling grid itself needs.
+/// How many texels of receiver slope a depth bias has to cover for these parameter values, without the texel that the
+/// sampling grid itself needs.
 double bias_texels(const FilterSpec& spec, const ParamValues& values);
 
-/// Says whether the encoded map holds logarithms, which the prefilter adds as log-sum-exp.
+/// Whether the encoded map holds logarithms, which the prefilter adds as log-sum-exp.
 bool combines_logs(const ParamValues& values);
 
-/// Gives the radius in texels of the Gaussian prefilter, 0 where the filter has none.
+/// The radius in texels of the Gaussian prefilter, 0 where the filter has none.
 int prefilter_radius_texels(const FilterSpec& spec, const ParamValues& values);
 
 }  // namespace shadowbench::filters

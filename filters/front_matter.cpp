@@ -123,8 +123,8 @@ std::string strip_comments(const std::string& glsl) {
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_word_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; }
 
-/// Where the word next stands on its own, from `start` on. The standard library's expressions recurse, and long texts
-/// end the program: none are used on what a user wrote.
+/// The next place, from `start` on, where the word stands by itself. Regular expressions of the standard library are
+/// not used: they recurse, and a long file of a user would end the program.
 std::size_t find_word(std::string_view code, std::string_view word, std::size_t start) {
   for (std::size_t at = code.find(word, start); at != std::string_view::npos; at = code.find(word, at + 1)) {
     const std::size_t end = at + word.size();
@@ -163,8 +163,7 @@ FilterKind read_kind(const Reader& reader, const toml::table& root) {
   reader.fail(root.get("kind"), fmt::format("kind '{}' is unknown; known: comparison, bound, stochastic, other", name));
 }
 
-/// The values that a numeric parameter may take lie between these, ends included; its range, or its choices, were
-/// checked.
+/// The least and the greatest value that a numeric parameter may take, by its range or by its choices.
 struct Ends {
   double smallest;
   double largest;

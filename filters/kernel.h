@@ -35,21 +35,20 @@ class Kernel {
   /// A uniform disk, read bilinearly.
   static Kernel make_disk(double radius_texels);
 
-  /// Gives a point of the continuous kernel, in texels; `shape` and `between` in [0,1)^2, equal areas for equal
-  /// weights.
+  /// A point of the continuous kernel, in texels; `shape` and `between` in [0,1)^2, equal areas for equal weights.
   glm::dvec2 sample(const glm::dvec2& shape, const glm::dvec2& between) const;
 
-  /// Gives the half-width of the square outside which the continuous kernel is 0, in texels.
+  /// The half-width of the square outside which the continuous kernel is 0, in texels.
   double half_width() const;
 
-  /// Says whether the continuous kernel is a single point.
+  /// Whether the continuous kernel is a single point.
   bool is_point() const;
 
   Reconstruction reconstruction() const { return reconstruction_; }
   const std::vector<Atom>& atoms() const { return atoms_; }  ///< per axis; empty for a disk
   double disk_radius() const { return disk_radius_; }        ///< texels; 0 for a grid
 
-  /// Names the kernel so that different kernels have different names.
+  /// A name that no other kernel has.
   std::string name() const;
 
  private:

@@ -12,8 +12,8 @@ enum class Border {
   kRepeat,  ///< the map over and over: its shadows are tiled
 };
 
-/// What a lookup does with receivers that the map knows nothing of. The defaults are right; everything else shows its
-/// artefact.
+/// What a lookup does with receivers that the map says nothing about. The defaults are right; each other choice shows
+/// an artefact.
 struct RangeRule {
   Border border = Border::kBorder;
   bool far_test = true;  ///< beyond the far plane is lit; without, it is compared with depths that cannot reach it
@@ -24,11 +24,10 @@ struct RangeRule {
 /// Lists the names of the borders, in the order of the enumerators: border, edge, repeat.
 const std::vector<std::string>& border_names();
 
-/// Gives a border's name.
+/// A border's name.
 const std::string& to_string(Border border);
 
-/// Gives the border of that name.
-/// Throws Error(kUsage) for any other, with the names that there are.
+/// The border of that name. Throws Error(kUsage) for any other, with the names that there are.
 Border parse_border(const std::string& name);
 
 }  // namespace shadowbench::filters

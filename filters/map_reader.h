@@ -14,7 +14,7 @@
 
 namespace shadowbench::filters {
 
-/// Notes what happened while one receiver was looked up.
+/// What happened while one receiver was looked up.
 struct Tally {
   bool excused = false;  ///< rounding decided which texel was read, or on which side of a tie a comparison fell
 };
@@ -35,7 +35,7 @@ class TexelGrid {
 
   int size() const { return size_; }
 
-  /// Gives the index of the texel that a lookup at (x, y) reads; nothing where it reads the border's value.
+  /// The index of the texel that a lookup at (x, y) reads; nothing where it reads the border's value.
   std::optional<std::size_t> find(int x, int y) const {
     if (inside(x, y)) return index(x, y);
     switch (border_) {

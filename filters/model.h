@@ -19,7 +19,7 @@ enum class Precision {
   kTracked,   ///< double, with a bound on what single precision can make of it
 };
 
-/// What a model says of one receiver.
+/// A model's result for one receiver.
 struct ModelResult {
   double visibility = 1.0;
   double bound = 0.0;    ///< Precision::kTracked: |GL - visibility| cannot exceed this
@@ -51,7 +51,7 @@ struct ModelEntry {
 };
 const std::vector<ModelEntry>& model_table();
 
-/// Gives a filter's model, null where it has none (a user's file).
+/// A filter's model, null where it has none (a user's file).
 std::unique_ptr<Model> make_model(const std::string& id);
 
 /// Wraps `Filter<T>`, a class made from a ModelInput with `T visibility(const Receiver&, Tally&) const` and

@@ -34,8 +34,8 @@ class PercentageCloser {
   /// there; see ModelInput.
   PercentageCloser(const Kernel& kernel, const DepthMap& map, double plane_max_tangent = 0.0);
 
-  /// Gives the weight of the texels that do not block the receiver's biased depth, in [0,1].
-  /// Cost: one comparison per texel of the kernel. Safe to call from many threads.
+  /// The weight of the texels that do not block the receiver's biased depth, in [0,1]. Cost: one comparison per texel
+  /// of the kernel. Safe to call from many threads.
   double at(const Receiver& receiver) const;
 
  private:

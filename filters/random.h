@@ -9,12 +9,12 @@ namespace shadowbench::filters {
 /// Source: Wellons 2018, hash-prospector, "lowbias32". The same in shaders/lib/random.glsl.
 std::uint32_t hash_bits(std::uint32_t x);
 
-/// Gives a turn in [0,1) from a pixel and the run's seed: white noise.
+/// A turn in [0,1) from a pixel and the run's seed: white noise.
 float random_turn(glm::ivec2 pixel, std::uint32_t seed);
 
-/// Gives a turn in [0,1) that differs strongly between neighbouring pixels: interleaved gradient noise.
-/// Source: Jimenez 2014, Next Generation Post Processing in Call of Duty: Advanced Warfare, SIGGRAPH; here in 32-bit
-/// fixed point, because its floating-point form differs between machines.
+/// A turn in [0,1) that differs strongly between neighbouring pixels: interleaved gradient noise. Source: Jimenez 2014,
+/// Next Generation Post Processing in Call of Duty: Advanced Warfare, SIGGRAPH; here in 32-bit fixed point, because its
+/// floating-point form differs between machines.
 float interleaved_gradient_turn(glm::ivec2 pixel);
 
 }  // namespace shadowbench::filters

@@ -4,11 +4,11 @@
 
 namespace shadowbench::filters {
 
-/// A surface faces the light where n.l is greater: below, the sign of a sum of rounded products decides nothing. The
-/// same in shaders/lib/receiver.glsl.
+/// A surface faces the light where n.l is greater than this; the sign of smaller values is a matter of rounding.
+/// shaders/lib/receiver.glsl has the same number.
 inline constexpr float kFacesLight = 1e-5f;
 
-/// Describes a receiver point to a filter; the same fields, in the same order, as `Receiver` in
+/// A receiver point, as a filter sees it; the same fields, in the same order, as `Receiver` in
 /// shaders/lib/receiver.glsl.
 struct Receiver {
   glm::vec3 position_ws{0.0f};

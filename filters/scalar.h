@@ -7,7 +7,7 @@
 
 namespace shadowbench::filters {
 
-/// The type that texel positions are computed in: rounding of positions is excused at texel borders, not tracked.
+/// The type that texel positions are computed in. Their rounding is not tracked; it is excused at texel borders.
 template <class T>
 using Position = std::conditional_t<std::is_same_v<T, float>, float, double>;
 
@@ -27,7 +27,7 @@ T minimum(T a, T b) {
     return a < b ? a : b;
 }
 
-/// Gives e^x with the accuracy of the GL at hand.
+/// e^x with the accuracy of the GL at hand.
 template <class T>
 T exponential(T x, [[maybe_unused]] const GlAccuracy& accuracy) {
   if constexpr (std::is_same_v<T, Tracked>) {
@@ -39,7 +39,7 @@ T exponential(T x, [[maybe_unused]] const GlAccuracy& accuracy) {
   }
 }
 
-/// Gives ln x. GLSL grants 3 ULP, or an absolute error of 2^-21 within [0.5, 2] (Khronos 2023, GLSL 4.60, 4.7.1).
+/// ln x. GLSL grants 3 ULP, or an absolute error of 2^-21 within [0.5, 2] (Khronos 2023, GLSL 4.60, 4.7.1).
 template <class T>
 T logarithm(T x) {
   if constexpr (std::is_same_v<T, Tracked>) {
@@ -52,7 +52,8 @@ T logarithm(T x) {
   }
 }
 
-/// Gives a value, and lets single precision be off by `bound`: errors of what is not tracked itself, such as positions.
+/// Returns the value and, when rounding is tracked, adds `bound` for errors that are not tracked themselves, such as
+/// those of positions.
 template <class T>
 T make_uncertain(Position<T> value, [[maybe_unused]] double bound) {
   if constexpr (std::is_same_v<T, Tracked>)
@@ -61,7 +62,7 @@ T make_uncertain(Position<T> value, [[maybe_unused]] double bound) {
     return value;
 }
 
-/// Gives the fraction of a texel position as the filtering weight that the sampler would use.
+/// The fraction of a texel position as the filtering weight that the sampler would use.
 template <class T>
 T sampler_weight(Position<T> position, Position<T> base, [[maybe_unused]] const GlAccuracy& accuracy,
                  [[maybe_unused]] double map_size) {

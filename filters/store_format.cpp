@@ -45,7 +45,7 @@ float round_to_store(float value, StorePrecision precision) {
 Tracked round_to_store(Tracked value, StorePrecision precision) {
   switch (precision) {
     case StorePrecision::kSingle: return value;
-    // A GL may truncate instead of rounding to nearest: a whole spacing, not half of one.
+    // A GL may truncate instead of rounding to nearest, so the error is up to a whole step instead of half of one.
     case StorePrecision::kHalf:
       if (std::abs(value.value) + value.bound > kLargestHalf) return {value.value, HUGE_VAL};
       return {value.value, value.bound + 0x1p-10 * (std::abs(value.value) + value.bound) + 0x1p-24};

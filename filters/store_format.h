@@ -12,16 +12,16 @@ enum class StorePrecision { kSingle, kHalf, kUnorm16 };
 /// Reads the precision from a format's name, such as "rg16f".
 StorePrecision store_precision(const std::string& format);
 
-/// Gives the channels of a format's name, 1, 2 or 4.
+/// The channels of a format's name, 1, 2 or 4.
 int store_channels(const std::string& format);
 
-/// Gives the bytes of one texel of a format.
+/// The bytes of one texel of a format.
 int store_bytes(const std::string& format);
 
-/// Gives the largest number that a precision holds: 65504 for half floats.
+/// The largest number that a precision holds: 65504 for half floats.
 double largest_number(StorePrecision precision);
 
-/// Rounds a value to what the store keeps; double and wider types stay as they are: they are references.
+/// Rounds a value as the store does. Values of type double and wider are references and stay as they are.
 float round_to_store(float value, StorePrecision precision);
 inline double round_to_store(double value, StorePrecision) { return value; }
 inline long double round_to_store(long double value, StorePrecision) { return value; }

@@ -6,7 +6,7 @@
 
 namespace shadowbench {
 
-/// Says what kind of thing failed; the values are the program's exit codes.
+/// What kind of thing failed; the values are the program's exit codes.
 enum class ErrorKind {
   kLimit = 1,    ///< a limit or baseline was not met
   kUsage = 2,    ///< unknown names, values out of range, a size the GL cannot give
@@ -36,5 +36,10 @@ class Error : public std::exception {
   std::string where_;
   std::string what_;
 };
+
+/// Throws an Error of kind kInput.
+[[noreturn]] inline void fail_input(std::string message, std::string where = {}) {
+  throw Error(ErrorKind::kInput, std::move(message), std::move(where));
+}
 
 }  // namespace shadowbench

@@ -12,7 +12,7 @@ namespace shadowbench {
 /// Source: optimal string alignment distance (insert, delete, replace, swap neighbours; each costs 1).
 std::optional<std::string> nearest_name(std::string_view name, const std::vector<std::string>& known);
 
-/// Gives the end of a message about an unknown name: "; did you mean 'x'?", empty where no known name is near.
+/// The end of a message about an unknown name: "; did you mean 'x'?", empty where no known name is near.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& known);
 
 /// The same, but where no known name is near it lists them all: "; known: x, y".

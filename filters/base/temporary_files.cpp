@@ -28,7 +28,7 @@ std::optional<pid_t> parse_process(std::string_view text, std::string_view end) 
   return process;
 }
 
-/// Gives whose temporary file this is; nothing where it is none.
+/// The process that a temporary file belongs to; nothing for other files.
 std::optional<pid_t> owner_of_file(const fs::path& path) {
   const std::string name = path.filename().string();
   const std::size_t mark = name.rfind(kFileMark);

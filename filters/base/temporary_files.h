@@ -8,21 +8,20 @@
 
 namespace shadowbench {
 
-/// Gives the path at which this process writes what will be `path`: beside it, with the same extension.
+/// The path at which this process writes what will be `path`: beside it, with the same extension.
 std::filesystem::path make_temporary_path(const std::filesystem::path& path);
 
-/// Gives the path of a hidden folder of this process, for work that is renamed out of it. `what` is "worker" or
-/// "plots".
+/// The path of a hidden folder of this process, for work that is renamed out of it. `what` is "worker" or "plots".
 std::filesystem::path make_temporary_folder_path(const std::filesystem::path& folder, std::string_view what);
 
-/// Says whether a path is one of the two.
+/// Whether a path is one of the two.
 bool is_temporary(const std::filesystem::path& path);
 
 /// Removes from a folder and the folders right in it what was written under those two names by processes that
 /// `is_stale` picks. What cannot be listed or removed stays.
 void remove_temporary_files(const std::filesystem::path& folder, const std::function<bool(pid_t)>& is_stale);
 
-/// Says whether no process of this machine has the number.
+/// Whether no process of this machine has the number.
 bool is_gone(pid_t process);
 
 }  // namespace shadowbench

@@ -23,15 +23,6 @@ double parse_angle(const std::string& text, const char* name, double limit_deg) 
 
 void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
 
-std::vector<std::string> split_list(const std::string& text) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
-    end = text.find(',', begin);
-    parts.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
-  }
-  return parts;
-}
-
 int parse_count(const std::string& text, const char* option) {
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "filters/base/split_list.h"
 #include "filters/catalogue.h"
 #include "harness/options/options.h"
 
@@ -14,9 +15,6 @@ namespace shadowbench::cli {
 
 /// Refuses what the command line says.
 [[noreturn]] void fail(const std::string& message);
-
-/// Splits a text at its commas; an empty text is one empty part.
-std::vector<std::string> split_list(const std::string& text);
 
 /// Parses a whole number, 1 or more.
 int parse_count(const std::string& text, const char* option);

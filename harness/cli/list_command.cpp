@@ -7,7 +7,7 @@
 #include "filters/catalogue.h"
 #include "filters/model.h"
 #include "harness/cli/commands.h"
-#include "harness/gl/survey/measure.h"
+#include "harness/gl/survey/survey.h"
 #include "harness/gl/timer.h"
 #include "harness/options/options.h"
 #include "harness/scene/load.h"
@@ -152,7 +152,7 @@ int list_gl(const ListArguments& arguments) {
   for (const std::string& reason : choice.refused) fmt::print("not used: {}\n", reason);
   const gl::GlInfo& info = choice.context->info();
   if (arguments.measure) {
-    fmt::print("{}", gl::format_measurement(info, gl::measure_gl(*choice.context)));
+    fmt::print("{}", gl::describe_survey(info, gl::survey_gl(*choice.context)));
     return 0;
   }
   fmt::print("{}: {}, OpenGL {}, maps up to {} x {}\n", info.backend, info.renderer, info.version,

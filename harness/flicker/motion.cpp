@@ -9,6 +9,7 @@
 #include <glm/gtx/rotate_vector.hpp>
 
 #include "filters/base/error.h"
+#include "filters/base/split_list.h"
 #include "filters/receiver.h"
 
 namespace shadowbench::flicker {
@@ -44,13 +45,11 @@ std::string_view name_of(Motion motion) { return kNames[static_cast<std::size_t>
 
 std::vector<Motion> parse_motions(const std::string& text) {
   std::vector<Motion> motions;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const Motion motion = parse_motion(text.substr(begin, end - begin));
+  for (const std::string& name : split_list(text)) {
+    const Motion motion = parse_motion(name);
     if (std::ranges::find(motions, motion) != motions.end())
       throw Error(ErrorKind::kUsage, fmt::format("--motion names '{}' twice", name_of(motion)));
     motions.push_back(motion);
-    begin = end + 1;
   }
   return motions;
 }

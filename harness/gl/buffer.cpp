@@ -7,28 +7,21 @@
 #include "harness/gl/gl_error.h"
 
 namespace shadowbench::gl {
-namespace {
 
-GLuint create_buffer(std::string_view label, std::size_t size, const void* data) {
-  GLuint id = 0;
-  glCreateBuffers(1, &id);
-  set_label(GL_BUFFER, id, label);
-  // GL has no empty buffers: an empty one holds one byte that nobody reads.
-  glNamedBufferStorage(id, static_cast<GLsizeiptr>(size == 0 ? 1 : size), size == 0 ? nullptr : data,
-                       GL_DYNAMIC_STORAGE_BIT);
-  return id;
+Buffer::Buffer(std::string_view label, std::span<const std::byte> bytes) : handle_(label), size_(bytes.size()) {
+  allocate(label, bytes.data());
 }
 
-}  // namespace
-
-Buffer::Buffer(std::string_view label, std::span<const std::byte> bytes)
-    : handle_(create_buffer(label, bytes.size(), bytes.data())), size_(bytes.size()) {
-  require_allocated(fmt::format("buffer '{}' of {} bytes", label, size_));
-}
-
-Buffer::Buffer(std::string_view label, std::size_t size) : handle_(create_buffer(label, size, nullptr)), size_(size) {
-  require_allocated(fmt::format("buffer '{}' of {} bytes", label, size_));
+Buffer::Buffer(std::string_view label, std::size_t size) : handle_(label), size_(size) {
+  allocate(label, nullptr);
   glClearNamedBufferData(id(), GL_R8, GL_RED, GL_UNSIGNED_BYTE, nullptr);
+}
+
+void Buffer::allocate(std::string_view label, const void* data) {
+  // GL has no empty buffers: an empty one holds one byte that nobody reads.
+  const auto bytes = static_cast<GLsizeiptr>(size_ == 0 ? 1 : size_);
+  glNamedBufferStorage(id(), bytes, size_ == 0 ? nullptr : data, GL_DYNAMIC_STORAGE_BIT);
+  require_allocated(fmt::format("buffer '{}' of {} bytes", label, size_));
 }
 
 void Buffer::upload(std::span<const std::byte> bytes, std::size_t offset) {

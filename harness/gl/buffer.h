@@ -32,10 +32,9 @@ class Buffer {
   GLuint id() const { return handle_.id(); }
 
  private:
-  struct Delete {
-    void operator()(GLuint id) const { glDeleteBuffers(1, &id); }
-  };
-  Handle<Delete> handle_;
+  void allocate(std::string_view label, const void* data);
+
+  Handle<GL_BUFFER> handle_;
   std::size_t size_ = 0;
 };
 

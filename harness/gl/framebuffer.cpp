@@ -8,18 +8,8 @@
 #include "filters/base/error.h"
 
 namespace shadowbench::gl {
-namespace {
 
-GLuint create_framebuffer(std::string_view label) {
-  GLuint id = 0;
-  glCreateFramebuffers(1, &id);
-  set_label(GL_FRAMEBUFFER, id, label);
-  return id;
-}
-
-}  // namespace
-
-Framebuffer::Framebuffer(std::string_view label) : handle_(create_framebuffer(label)), label_(label) {
+Framebuffer::Framebuffer(std::string_view label) : handle_(label), label_(label) {
   draw_buffers_.fill(GL_NONE);
   glNamedFramebufferDrawBuffers(id(), kMaxColors, draw_buffers_.data());
   glNamedFramebufferReadBuffer(id(), GL_NONE);

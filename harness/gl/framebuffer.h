@@ -37,10 +37,7 @@ class Framebuffer {
   void adopt_size(int width, int height);
   void require_complete();
 
-  struct Delete {
-    void operator()(GLuint id) const { glDeleteFramebuffers(1, &id); }
-  };
-  Handle<Delete> handle_;
+  Handle<GL_FRAMEBUFFER> handle_;
   std::string label_;
   std::array<GLenum, kMaxColors> draw_buffers_{};
   int width_ = 0;

@@ -14,8 +14,8 @@ std::string gl_error_name(GLenum error);
 /// Returns and clears every pending glGetError code.
 std::vector<GLenum> drain_gl_errors();
 
-/// Looks at what an allocation just made left behind, `what` naming it ("texture 'depth map'").
-/// Throws Error(kContext) for GL_OUT_OF_MEMORY, std::logic_error for any other pending error.
+/// Checks for errors of the allocation that was just made; `what` names it ("texture 'depth map'"). Throws
+/// Error(kContext) for GL_OUT_OF_MEMORY, std::logic_error for any other pending error.
 void require_allocated(std::string_view what);
 
 }  // namespace shadowbench::gl

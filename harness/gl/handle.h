@@ -7,36 +7,35 @@
 
 namespace shadowbench::gl {
 
-/// Owns one GL object name and deletes it with `Deleter`; 0 owns nothing.
-template <typename Deleter>
+/// Makes a GL object of a kind: GL_BUFFER, GL_FRAMEBUFFER, GL_PROGRAM, GL_SAMPLER, GL_VERTEX_ARRAY; or GL_QUERY,
+/// GL_SHADER, GL_TEXTURE with a `target` such as GL_TIME_ELAPSED. Debuggers and error messages show it by its label, of
+/// which the GL may keep only the beginning.
+GLuint create_object(GLenum kind, std::string_view label, GLenum target);
+
+void delete_object(GLenum kind, GLuint id);
+
+/// Owns one GL object, or none (id 0).
+template <GLenum kKind>
 class Handle {
  public:
   Handle() = default;
-  explicit Handle(GLuint id) : id_(id) {}
+  explicit Handle(std::string_view label, GLenum target = 0) : id_(create_object(kKind, label, target)) {}
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
   Handle& operator=(Handle&& other) noexcept {
-    if (this != &other) {
-      reset();
-      id_ = std::exchange(other.id_, 0);
-    }
+    Handle taken(std::move(other));
+    std::swap(id_, taken.id_);
     return *this;
   }
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
-  ~Handle() { reset(); }
+  ~Handle() {
+    if (id_ != 0) delete_object(kKind, id_);
+  }
 
   GLuint id() const { return id_; }
 
  private:
-  void reset() {
-    if (id_ != 0) Deleter{}(id_);
-    id_ = 0;
-  }
-
   GLuint id_ = 0;
 };
-
-/// Gives a GL object the name under which debuggers and error messages show it; longer ones than GL allows are cut.
-void set_label(GLenum identifier, GLuint id, std::string_view label);
 
 }  // namespace shadowbench::gl

@@ -1,11 +1,12 @@
 #include "harness/gl/pixel_format.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <stdexcept>
-#include <string>
+#include <vector>
 
 #include "filters/base/error.h"
 
@@ -31,6 +32,18 @@ constexpr std::array kFormats = {
     PixelFormat{GL_DEPTH_COMPONENT32F, "d32f", 1, 4, true},
 };
 
+template <class Filter>
+const PixelFormat& find_by_name(std::string_view name, const char* kind, Filter is_wanted) {
+  std::vector<std::string_view> known;
+  for (const PixelFormat& format : kFormats) {
+    if (!is_wanted(format)) continue;
+    if (format.name == name) return format;
+    known.push_back(format.name);
+  }
+  throw Error(ErrorKind::kUsage,
+              fmt::format("unknown {} format '{}'; there are {}", kind, name, fmt::join(known, ", ")));
+}
+
 }  // namespace
 
 GLenum PixelFormat::transfer_format(int count) const {
@@ -48,21 +61,13 @@ const PixelFormat& pixel_format(GLenum internal_format) {
 }
 
 const PixelFormat& parse_pixel_format(std::string_view name) {
-  const auto found = std::ranges::find(kFormats, name, &PixelFormat::name);
-  if (found != kFormats.end()) return *found;
-  std::string known;
-  for (const auto& format : kFormats) known += fmt::format("{}{}", known.empty() ? "" : ", ", format.name);
-  throw Error(ErrorKind::kUsage, fmt::format("unknown texture format '{}'; there are {}", name, known));
+  return find_by_name(
+      name, "texture", [](const PixelFormat&) { return true; });
 }
 
 const PixelFormat& parse_depth_format(std::string_view name) {
-  const auto found =
-      std::ranges::find_if(kFormats, [&](const PixelFormat& format) { return format.depth && format.name == name; });
-  if (found != kFormats.end()) return *found;
-  std::string known;
-  for (const auto& format : kFormats)
-    if (format.depth) known += fmt::format("{}{}", known.empty() ? "" : ", ", format.name);
-  throw Error(ErrorKind::kUsage, fmt::format("unknown depth format '{}'; there are {}", name, known));
+  return find_by_name(
+      name, "depth", [](const PixelFormat& format) { return format.depth; });
 }
 
 }  // namespace shadowbench::gl

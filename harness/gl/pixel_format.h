@@ -6,7 +6,7 @@
 
 namespace shadowbench::gl {
 
-/// Describes a sized internal format.
+/// A sized internal format.
 struct PixelFormat {
   GLenum internal_format = 0;
   std::string_view name;  ///< as scenes and results write it: "r32f", "rg16f", "d24"

@@ -11,10 +11,7 @@
 namespace shadowbench::gl {
 namespace {
 
-struct DeleteShader {
-  void operator()(GLuint id) const { glDeleteShader(id); }
-};
-using Shader = Handle<DeleteShader>;
+using Shader = Handle<GL_SHADER>;
 
 std::string read_log(GLuint id, decltype(glGetShaderInfoLog) read, GLint length) {
   std::string log(static_cast<std::size_t>(length), '\0');
@@ -34,8 +31,7 @@ std::string read_log(GLuint id, decltype(glGetShaderInfoLog) read, GLint length)
 }
 
 Shader compile(std::string_view label, GLenum type, const ShaderSource& source, std::optional<ErrorKind> blame) {
-  Shader shader(glCreateShader(type));
-  set_label(GL_SHADER, shader.id(), label);
+  Shader shader(label, type);
   const char* text = source.text.data();
   const auto length = static_cast<GLint>(source.text.size());
   glShaderSource(shader.id(), 1, &text, &length);
@@ -67,19 +63,18 @@ std::string_view get_base_name(std::string_view name) { return name.substr(0, na
 
 Program::Program(std::string_view label, const ShaderSource& vertex, const ShaderSource& fragment,
                  std::optional<ErrorKind> blame)
-    : label_(label), handle_(glCreateProgram()) {
+    : label_(label), handle_(label) {
   const std::array stages = {Stage{GL_VERTEX_SHADER, &vertex}, Stage{GL_FRAGMENT_SHADER, &fragment}};
   link(stages, blame);
 }
 
 Program::Program(std::string_view label, const ShaderSource& compute, std::optional<ErrorKind> blame)
-    : label_(label), handle_(glCreateProgram()) {
+    : label_(label), handle_(label) {
   const std::array stages = {Stage{GL_COMPUTE_SHADER, &compute}};
   link(stages, blame);
 }
 
 void Program::link(std::span<const Stage> stages, std::optional<ErrorKind> blame) {
-  set_label(GL_PROGRAM, id(), label_);
   std::vector<Shader> shaders;
   for (const Stage& stage : stages) {
     shaders.push_back(compile(label_, stage.type, *stage.source, blame));
@@ -93,7 +88,7 @@ void Program::link(std::span<const Stage> stages, std::optional<ErrorKind> blame
   if (ok == GL_TRUE) return;
   GLint log_length = 0;
   glGetProgramiv(id(), GL_INFO_LOG_LENGTH, &log_length);
-  // A link error belongs to no one stage; the last one is where a filter's code is.
+  // A link error belongs to no single stage; the last stage is where a filter's code is.
   fail(fmt::format("the GLSL of '{}' does not link", label_), read_log(id(), glGetProgramInfoLog, log_length),
        stages.back().source->files, blame);
 }

@@ -45,7 +45,7 @@ class Program {
   void set(std::string_view name, std::span<const glm::vec2> values);
   void set(std::string_view name, std::span<const glm::vec4> values);
 
-  /// Says whether the compiler kept a uniform of this name.
+  /// Whether the compiler kept a uniform of this name.
   bool has(std::string_view name) const;
 
   const std::string& label() const { return label_; }
@@ -56,15 +56,12 @@ class Program {
     GLenum type;
     const ShaderSource* source;
   };
-  struct Delete {
-    void operator()(GLuint id) const { glDeleteProgram(id); }
-  };
 
   void link(std::span<const Stage> stages, std::optional<ErrorKind> blame);
   GLint location(std::string_view name);
 
   std::string label_;
-  Handle<Delete> handle_;
+  Handle<GL_PROGRAM> handle_;
   std::vector<std::string> texts_;
   std::map<std::string, GLint, std::less<>> locations_;
 };

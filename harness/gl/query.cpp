@@ -1,18 +1,8 @@
 #include "harness/gl/query.h"
 
 namespace shadowbench::gl {
-namespace {
 
-GLuint create_query(std::string_view label, GLenum target) {
-  GLuint id = 0;
-  glCreateQueries(target, 1, &id);
-  set_label(GL_QUERY, id, label);
-  return id;
-}
-
-}  // namespace
-
-Query::Query(std::string_view label, GLenum target) : handle_(create_query(label, target)), target_(target) {}
+Query::Query(std::string_view label, GLenum target) : handle_(label, target), target_(target) {}
 
 void Query::begin() { glBeginQuery(target_, handle_.id()); }
 

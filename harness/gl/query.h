@@ -19,10 +19,7 @@ class Query {
   std::uint64_t result() const;
 
  private:
-  struct Delete {
-    void operator()(GLuint id) const { glDeleteQueries(1, &id); }
-  };
-  Handle<Delete> handle_;
+  Handle<GL_QUERY> handle_;
   GLenum target_;
 };
 

@@ -1,18 +1,8 @@
 #include "harness/gl/sampler.h"
 
 namespace shadowbench::gl {
-namespace {
 
-GLuint create_sampler(std::string_view label) {
-  GLuint id = 0;
-  glCreateSamplers(1, &id);
-  set_label(GL_SAMPLER, id, label);
-  return id;
-}
-
-}  // namespace
-
-Sampler::Sampler(std::string_view label) : handle_(create_sampler(label)) {
+Sampler::Sampler(std::string_view label) : handle_(label) {
   set_filter(GL_NEAREST, GL_NEAREST);
   set_wrap(GL_CLAMP_TO_EDGE);
 }

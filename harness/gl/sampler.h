@@ -22,16 +22,13 @@ class Sampler {
 
   /// Binds to texture unit `unit`, overriding the state of whatever texture is bound there.
   void bind(GLuint unit) const;
-  /// Gives texture unit `unit` back to the state of its texture.
+  /// Unbinds from a texture unit, where the texture's own state then holds again.
   static void unbind(GLuint unit);
 
   GLuint id() const { return handle_.id(); }
 
  private:
-  struct Delete {
-    void operator()(GLuint id) const { glDeleteSamplers(1, &id); }
-  };
-  Handle<Delete> handle_;
+  Handle<GL_SAMPLER> handle_;
 };
 
 }  // namespace shadowbench::gl

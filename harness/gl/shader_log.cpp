@@ -18,7 +18,7 @@ struct Complaint {
   bool error = false;
 };
 
-/// Holds what a line says by itself.
+/// What a line says by itself.
 struct Place {
   int index = 0;
   int line = 0;

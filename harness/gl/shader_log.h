@@ -6,7 +6,7 @@
 
 namespace shadowbench::gl {
 
-/// Holds a compiler's complaints in terms of the user's own files.
+/// A compiler's complaints in terms of the user's own files.
 struct ShaderLog {
   std::string where;    ///< "file:line" of the first error, or empty where the driver named none
   std::string message;  ///< the first error without its place, then the other lines as "file:line: error: ..."

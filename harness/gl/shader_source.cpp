@@ -15,7 +15,7 @@
 namespace shadowbench::gl {
 namespace {
 
-/// Holds one text to insert, found among the pieces or the files.
+/// One text to insert, found among the pieces or the files.
 struct Found {
   std::string key;  ///< one per text, whichever name reached it
   std::string text;

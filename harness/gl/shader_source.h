@@ -7,17 +7,17 @@
 
 namespace shadowbench::gl {
 
-/// Separates the files in line numbers: line 14 of file 2 is `#line 200014 2`. The index alone is not enough, for Mesa
-/// reports file 0 for everything but syntax errors.
+/// Line numbers tell the files apart: line 14 of file 2 is `#line 200014 2`. The index alone is not enough, since Mesa
+/// reports file 0 for all errors but those of syntax.
 inline constexpr int kLinesPerFile = 100'000;
 
-/// Holds one shader stage, ready to compile.
+/// One shader stage, ready to compile.
 struct ShaderSource {
   std::string text;                ///< GLSL from `#version` on; `#line` directives say file and line, see kLinesPerFile
   std::vector<std::string> files;  ///< names for messages; 0 is what the program itself puts on top
 };
 
-/// Holds text that stands in for a file, such as a filter's GLSL without its front matter.
+/// Text that stands in for a file, such as a filter's GLSL without its front matter.
 struct Piece {
   std::string include_name;  ///< what `#include "..."` calls it
   std::string text;
@@ -25,7 +25,7 @@ struct Piece {
   int first_line = 1;        ///< the number of `text`'s first line in that file
 };
 
-/// Says what `build_source` is to build.
+/// What `build_source` is to build.
 struct SourceOptions {
   std::vector<std::filesystem::path> roots;                  ///< folders that includes are looked up in, in order
   std::string main_file;                                     ///< relative to a root, or a piece's include name

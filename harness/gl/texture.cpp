@@ -24,14 +24,7 @@ void require_size(std::string_view label, int width, int height) {
   }
 }
 
-GLuint create_texture(std::string_view label) {
-  GLuint id = 0;
-  glCreateTextures(GL_TEXTURE_2D, 1, &id);
-  set_label(GL_TEXTURE, id, label);
-  return id;
-}
-
-// Transfers obey global state that somebody else may have changed.
+// Transfers depend on global state that other code may have changed.
 void reset_transfer_state() {
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
@@ -46,7 +39,7 @@ void reset_transfer_state() {
 Texture::Texture(std::string_view label, GLenum internal_format, int width, int height, int levels)
     : format_(&pixel_format(internal_format)), width_(width), height_(height), levels_(levels) {
   require_size(label, width, height);
-  handle_ = Handle<Delete>(create_texture(label));
+  handle_ = Handle<GL_TEXTURE>(label, GL_TEXTURE_2D);
   glTextureStorage2D(id(), levels, internal_format, width, height);
   require_allocated(fmt::format("texture '{}' of {}x{} {}", label, width, height, format_->name));
   set_filter(GL_NEAREST, GL_NEAREST);

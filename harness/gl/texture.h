@@ -44,7 +44,7 @@ class Texture {
   int height() const { return height_; }
   GLenum internal_format() const { return format_->internal_format; }
   const PixelFormat& format() const { return *format_; }
-  /// Gives the bits of depth that the GL really stores; 0 for a colour format.
+  /// The bits of depth that the GL really stores; 0 for a colour format.
   int depth_bits() const;
   /// Returns the memory of all levels in bytes, as the format stores them.
   std::size_t bytes() const;
@@ -53,10 +53,7 @@ class Texture {
  private:
   void require_count(std::size_t count, int channels) const;
 
-  struct Delete {
-    void operator()(GLuint id) const { glDeleteTextures(1, &id); }
-  };
-  Handle<Delete> handle_;
+  Handle<GL_TEXTURE> handle_;
   const PixelFormat* format_;
   int width_;
   int height_;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "harness/gl/query.h"
-#include "harness/gl/survey/probe.h"
+#include "harness/gl/survey/survey_shader.h"
 
 namespace shadowbench::gl {
 namespace {
@@ -18,7 +18,7 @@ constexpr double kLongestMs = 8.0;
 constexpr int kMostIterations = 1 << 20;
 constexpr int kRepeats = 5;
 
-/// Holds one run of some work, by both clocks.
+/// One run of some work, by both clocks.
 struct Run {
   double wall_ms = 0.0;
   double query_ms = 0.0;
@@ -87,10 +87,10 @@ TimerKind TimerCheck::choice() const {
 
 TimerCheck check_timer(Context&) {
   constexpr int kSide = 1024;  // many tiles, see TimerCheck::choice
-  Probe probe("probe_load.frag", {kSide, kSide});
+  SurveyShader shader("survey_load.frag", {kSide, kSide});
   const auto runs = collect_runs([&](int iterations) {
-    probe.program().set("u_iterations", iterations);
-    probe.draw();
+    shader.program().set("u_iterations", iterations);
+    shader.draw();
   });
   if (runs.empty()) return {};  // too fast for the wall clock: nothing is known
   const auto longest = std::span(runs).last(kRepeats);

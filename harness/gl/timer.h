@@ -15,7 +15,7 @@ enum class TimerKind {
 /// Returns "wall clock" or "query", as results record it.
 const char* timer_name(TimerKind kind);
 
-/// Holds what timing the same work by both clocks showed.
+/// What timing the same work by both clocks showed.
 struct TimerCheck {
   double wall_ms = 0.0;    ///< median for the longest work timed
   double query_ms = 0.0;   ///< likewise

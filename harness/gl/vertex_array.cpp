@@ -1,18 +1,8 @@
 #include "harness/gl/vertex_array.h"
 
 namespace shadowbench::gl {
-namespace {
 
-GLuint create_vertex_array(std::string_view label) {
-  GLuint id = 0;
-  glCreateVertexArrays(1, &id);
-  set_label(GL_VERTEX_ARRAY, id, label);
-  return id;
-}
-
-}  // namespace
-
-VertexArray::VertexArray(std::string_view label) : handle_(create_vertex_array(label)) {}
+VertexArray::VertexArray(std::string_view label) : handle_(label) {}
 
 void VertexArray::set_vertices(const Buffer& buffer, int stride) {
   glVertexArrayVertexBuffer(id(), 0, buffer.id(), 0, stride);

@@ -28,10 +28,7 @@ class VertexArray {
   GLuint id() const { return handle_.id(); }
 
  private:
-  struct Delete {
-    void operator()(GLuint id) const { glDeleteVertexArrays(1, &id); }
-  };
-  Handle<Delete> handle_;
+  Handle<GL_VERTEX_ARRAY> handle_;
 };
 
 }  // namespace shadowbench::gl

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "harness/gl/survey/measure.h"
+#include "harness/gl/survey/survey.h"
 
 namespace shadowbench::measure {
 
@@ -14,7 +14,7 @@ Renderer make_renderer(gl::Backend backend, const options::Resources& resources)
 
 filters::GlAccuracy measure_accuracy(Renderer& renderer) {
   if (!renderer.accuracy) {
-    const gl::GlMeasurement measured = gl::measure_gl(*renderer.context);
+    const gl::GlSurvey measured = gl::survey_gl(*renderer.context);
     renderer.accuracy = {measured.exp_ulp, static_cast<double>(std::min(measured.rg32f.bits, measured.r32f.bits))};
   }
   return *renderer.accuracy;

@@ -38,7 +38,7 @@ SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, V
 void score(records::CellRecord& record, const images::Image& visibility, const images::Image& picture,
            const SceneTruth& truth);
 
-/// Gives visibility less area truth where pixels count, 0 elsewhere; empty where there is no truth or no visibility.
+/// Visibility less area truth where pixels count, 0 elsewhere; empty where there is no truth or no visibility.
 images::Image make_error_image(const images::Image& visibility, const SceneTruth& truth);
 
 }  // namespace shadowbench::measure

@@ -10,15 +10,14 @@
 
 namespace shadowbench::measure {
 
-/// The pixels of a view as the truth sees them, rows top to bottom like every report image.
+/// The receivers of a view, for the truth; rows run top to bottom as in every image of a report.
 struct ViewReceivers {
   truth::ReceiverImage image;
   std::vector<std::uint8_t> is_surface;  ///< 0: background
 
   bool any_counts() const;
 
-  /// Gives visibility as the lookup pass writes it: a surface turned away from the light is dark, the background is
-  /// lit.
+  /// Visibility as the lookup pass writes it: surfaces turned away from the light are dark, the background is lit.
   images::Image to_image(const std::vector<float>& visibility) const;
 
   /// 1 where a pixel counts: a surface that faces the light.

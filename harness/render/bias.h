@@ -2,8 +2,8 @@
 
 namespace shadowbench::render {
 
-/// Says how far a receiver is moved towards the light before it is compared. The parts add up, but for the first two,
-/// of which the larger holds.
+/// How far a receiver is moved towards the light before it is compared. Of the first two parts the larger one counts;
+/// the others are added to it.
 struct Bias {
   double constant_depth = 0.0;        ///< in depth, [0,1] over the light's range
   double slope_depth = 0.0;           ///< times 1 - n.l, in depth
@@ -15,7 +15,7 @@ struct Bias {
   bool operator==(const Bias&) const = default;
 };
 
-/// Says what is drawn into the depth map instead of the surfaces that light meets first.
+/// What is drawn into the depth map instead of the surfaces that light meets first.
 struct MapBias {
   bool cull_front = false;      ///< leave out faces that face the light, of meshes that allow it
   bool midpoint = false;        ///< half-way between the first and the second surface

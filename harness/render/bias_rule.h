@@ -35,19 +35,20 @@ struct BiasRule {
   /// The rule that does nothing.
   static BiasRule none();
 
-  /// What the scalar models' receiver-plane bias treats steeper planes as; 0: the rule has none.
+  /// The steepest plane, as a tangent, that the receiver-plane bias of the scalar models follows; 0: there is no such
+  /// bias.
   double plane_max_tangent() const { return receiver_plane ? max_tangent : 0.0; }
 };
 
 /// Parses `none`, or MODE:key=value,... with the modes constant, slope, plane, normal-offset, receiver-plane,
-/// polygon-offset, front-cull and midpoint; several texts add up. Gives the default rule for an empty list.
-/// Throws Error(kUsage) for an unknown mode or key and for an amount that is negative or not finite.
+/// polygon-offset, front-cull and midpoint; several texts add up. An empty list means the default rule. Throws
+/// Error(kUsage) for an unknown mode or key and for an amount that is negative or not finite.
 BiasRule parse_bias(const std::vector<std::string>& texts);
 
 /// Lists the modes with their keys, for help texts.
 std::string list_bias_modes();
 
-/// Says why a filter cannot do what a rule asks for; empty where it can.
+/// Why a filter cannot do what a rule asks for; empty where it can.
 std::string explain_unusable(const BiasRule& rule, const filters::FilterSpec& spec);
 
 /// Throws Error(kUsage), naming the filter, where a rule asks for something that a filter cannot do.
@@ -56,13 +57,13 @@ void require_usable(const BiasRule& rule, const filters::FilterSpec& spec);
 /// Throws Error(kUsage) where a rule asks for something that cannot be drawn into a map of those settings.
 void require_drawable(const BiasRule& rule, const render::MapSettings& map);
 
-/// Gives the bias of one filter under a rule.
+/// The bias of one filter under a rule.
 render::Bias resolve_bias(const BiasRule& rule, const scene::LightFrustum& frustum, const filters::FilterSpec& spec,
                           const filters::ParamValues& values);
 
-/// Gives the bias that a percentage-closer filter of the same kernel gets under a rule. Filters that compare get it
-/// anyway; a bound that takes the slope in by itself (`bias_texels` less than `radius_texels`) would show acne as a
-/// comparison.
+/// The bias that a percentage-closer filter with the same kernel gets under a rule. It is the own bias of filters that
+/// compare. A bound that accounts for the slope itself (`bias_texels` less than `radius_texels`) has less, and a
+/// comparison with so little bias would show acne.
 render::Bias resolve_comparison_bias(const BiasRule& rule, const scene::LightFrustum& frustum,
                                      const filters::FilterSpec& spec, const filters::ParamValues& values);
 

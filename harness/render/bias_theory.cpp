@@ -68,7 +68,7 @@ BiasTheory find_theory(const SweptMode& mode, double reach_texels, const std::ve
   std::vector<Need> needs;
   for (const filters::Receiver& receiver : receivers) {
     const BiasTheory theory = make_theory(reach_texels, receiver);
-    // A plane that faces the light squarely needs nothing, and 0 / 0 of some modes.
+    // A plane that faces the light squarely needs no bias; some modes would compute 0 / 0.
     const bool is_flat = theory.larger_slope == 0.0 || theory.n_dot_l >= 1.0;
     needs.push_back({is_flat ? 0.0 : mode.amount(theory), theory});
   }

@@ -21,11 +21,11 @@ struct BiasTheory {
   double depth() const { return reach_texels * slope_per_texel; }
 };
 
-/// Gives how far a filter's kernel reaches on each axis, to the centre of the farthest texel that counts.
-/// Requires that the filter has a scalar model, which names its kernel.
+/// How far a filter's kernel reaches on each axis, to the centre of the farthest texel that counts. Requires that the
+/// filter has a scalar model, which names its kernel.
 double reach_texels(const filters::FilterRequest& request);
 
-/// Gives the theory of a kernel with this reach on a receiver's plane.
+/// The theory of a kernel with this reach on a receiver's plane.
 BiasTheory make_theory(double reach_texels, const filters::Receiver& receiver);
 
 /// One mode of bias as it is swept.
@@ -36,12 +36,12 @@ struct SweptMode {
   std::function<double(const BiasTheory&)> amount;      ///< theoretical, in the key's unit
   std::function<double(const BiasTheory&)> lift_depth;  ///< how far that moves a receiver with these slopes, in depth
 
-  /// Gives the rule that `--bias NAME:KEY=amount` stands for; `amount` is not used where the mode takes none.
+  /// The rule that `--bias NAME:KEY=amount` stands for; `amount` is not used where the mode takes none.
   BiasRule make_rule(double amount) const;
 };
 
-/// Gives the theory of the receiver that needs more of a mode than `share` of the receivers do; of those that need the
-/// same, steeper planes count as needing more. Requires a mode with an amount, and receivers.
+/// The theory of the receiver that needs more of a mode than a `share` of all receivers do. Of two that need the same,
+/// the one on the steeper plane counts as needing more. Requires a mode with an amount, and receivers.
 BiasTheory find_theory(const SweptMode& mode, double reach_texels, const std::vector<filters::Receiver>& receivers,
                        double share);
 

@@ -8,7 +8,7 @@
 
 namespace shadowbench::render {
 
-/// Gives the pieces "filter_parameters" and "filter" that lookup.frag and encode.frag include: constants for `const`
+/// The pieces "filter_parameters" and "filter" that lookup.frag and encode.frag include: constants for `const`
 /// parameters (a choice becomes its index, with one name per choice, ROTATION_PER_PIXEL), uniforms for the others,
 /// tables of points, and the filter's own GLSL with the line numbers of its file.
 std::vector<gl::Piece> filter_pieces(const filters::FilterRequest& request);

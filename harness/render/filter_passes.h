@@ -19,7 +19,7 @@ struct FilterCost {
   std::int64_t prefilter_texels = 0;  ///< texels that encode and blur write
 };
 
-/// A light that passes can be turned to at no other cost than its uniforms.
+/// A prepared light: passes can change to it by setting uniforms alone.
 struct PreparedLight {
   LightSetup light;
   glm::vec4 border{0.0f};                ///< of the encoded map
@@ -36,20 +36,19 @@ class FilterPasses {
   FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, const ShadowMap& map,
                const LightSetup& light);
 
-  /// Takes other parameter values and another light, without compiling anything: what is drawn then equals what new
-  /// passes draw. Requires that only values change that are neither `const` nor texts, and a light with the same range
-  /// rule and map size.
+  /// Changes the light and parameter values without compiling anything; the result equals that of new passes. Requires
+  /// that only values change that are neither `const` nor texts, and a light with the same range rule and map size.
   void retune(ShaderLibrary& shaders, const filters::ParamValues& values, const LightSetup& light);
 
-  /// Prepares another light, with the same range rule and map size. `encoded` is of encoded_format() and the map's
-  /// size, or null for filters that read depth; passes that take turns may share it. Passes draw with another light
-  /// afterwards: turn them to one.
+  /// Prepares another light with the same range rule and map size. `encoded` has encoded_format() and the map's size,
+  /// or is null for filters that read depth; passes that take turns may share it. The light of these passes is
+  /// undefined afterwards until turn_to() sets one.
   PreparedLight prepare(const LightSetup& light, std::shared_ptr<ImageTarget> encoded);
 
-  /// Draws with another light from now on: what is drawn equals what new passes draw. Parameters stay.
+  /// Draws with another light from now on, as new passes would. Parameters stay.
   void turn_to(const PreparedLight& light);
 
-  /// Gives the format of the encoded map; nothing for filters that read depth.
+  /// The format of the encoded map; nothing for filters that read depth.
   std::optional<GLenum> encoded_format() const {
     return prefilter_ ? std::optional(prefilter_->format()) : std::nullopt;
   }

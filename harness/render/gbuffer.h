@@ -16,8 +16,8 @@ class GBuffer {
   /// Draws the scene; near and far follow its bounds.
   void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::Scene& scene, const scene::Camera& camera);
 
-  /// Overwrites positions and geometric normals with receivers that nobody drew, four floats a pixel as in position()
-  /// and normal(), row 0 below; what shading alone reads stays undefined.
+  /// Replaces positions and geometric normals by those given, four floats a pixel as in position() and normal(), row 0
+  /// at the bottom. Shading normals and colours stay undefined.
   void upload(std::span<const float> positions, std::span<const float> normals) {
     position_.upload_floats(positions, 4);
     normal_.upload_floats(normals, 4);
@@ -41,7 +41,7 @@ class GBuffer {
   gl::Framebuffer framebuffer_{"g-buffer"};
 };
 
-/// Gives the matrix from world to clip space, depth zero-to-one, of a camera that looks at these bounds.
+/// The matrix from world to clip space, depth zero-to-one, of a camera that looks at these bounds.
 glm::mat4 clip_from_world(const scene::Camera& camera, const scene::Bounds& bounds, double aspect);
 
 /// Sets the state that drawing opaque geometry needs; both faces are drawn.

@@ -9,7 +9,7 @@
 
 namespace shadowbench::render {
 
-/// Says which of a scene's meshes a pass draws.
+/// Which of a scene's meshes a pass draws.
 enum class DrawSet {
   kAll,
   kCasters,

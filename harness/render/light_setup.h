@@ -20,15 +20,15 @@ struct LightSetup {
   filters::RangeRule range = {};  ///< what becomes of receivers that the map does not hold
 };
 
-/// Describes a light whose map has this frustum.
+/// The setup of a light whose map has this frustum.
 LightSetup make_light_setup(const scene::LightFrustum& frustum, const scene::Light& light, const Bias& bias,
                             std::uint32_t seed, const filters::RangeRule& range = {});
 
 /// Sets the uniforms of lib/light.glsl.
 void set_light(gl::Program& program, const LightSetup& light);
 
-/// Gives what programs that include lib/receiver.glsl need for this light; nothing for an orthographic map with the
-/// right range rule.
+/// What programs that include lib/receiver.glsl need for this light; nothing for an orthographic map with the right
+/// range rule.
 Defines range_defines(const LightSetup& light);
 
 }  // namespace shadowbench::render

@@ -17,7 +17,7 @@ GLenum store_format(const filters::ParamValues& values) {
   return formats.at(filters::text_or(values, "store", ""));
 }
 
-/// What the blur reads outside the map, it reads as the lookup does.
+/// The blur reads outside the map as the lookup does.
 Defines blur_defines(const filters::FilterRequest& request, filters::Border border) {
   Defines defines;
   if (filters::combines_logs(request.values)) defines.emplace_back("COMBINE_LOGS", "1");
@@ -68,7 +68,7 @@ void Prefilter::turn_to(const LightSetup& light, const glm::vec4& border, std::s
   stored_ = std::move(stored);
 }
 
-/// What lies outside the map is the encoding of depth 1, stored in the map's own format.
+/// Outside the map lies the encoding of depth 1, stored in the map's own format.
 glm::vec4 Prefilter::encode_border(GLenum format) {
   ImageTarget texel("encoded border", format, 1, 1);
   encode_.set("encode_border", 1);

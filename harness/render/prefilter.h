@@ -29,15 +29,14 @@ class Prefilter {
   Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size, const LightSetup& light,
             const Defines& map_defines = {});
 
-  /// Takes other values of the parameters that are neither `const` nor texts, and another light with the same range
-  /// rule.
+  /// Changes the light, and parameters that are neither `const` nor texts. The light must have the same range rule.
   void retune(ShaderLibrary& shaders, const filters::FilterRequest& request, const LightSetup& light);
 
-  /// Gives what the encoded map of a light holds outside the map. Reads one texel back.
+  /// What the encoded map of a light holds outside the map. Reads one texel back.
   glm::vec4 find_border(const LightSetup& light);
 
-  /// Takes another light with the same range rule, whose border find_border() gave: what run() writes and bind() binds
-  /// is `stored`, of format() and the map's size, from now on. Reads nothing back.
+  /// Changes to another light with the same range rule, whose border find_border() gave. From now on run() writes to
+  /// `stored` and bind() binds it; it has format() and the map's size. Reads nothing back.
   void turn_to(const LightSetup& light, const glm::vec4& border, std::shared_ptr<ImageTarget> stored);
 
   /// Encodes and blurs the depth map.
@@ -54,7 +53,7 @@ class Prefilter {
 
   int blur_radius_texels() const { return radius_; }
 
-  /// Gives what the blur reads outside the map, where that is not the map itself.
+  /// What the blur reads outside the map, where that is not the map itself.
   std::optional<glm::vec4> blurred_border() const {
     return reads_border_ && radius_ > 0 ? std::optional(border_) : std::nullopt;
   }

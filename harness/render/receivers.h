@@ -9,12 +9,12 @@
 
 namespace shadowbench::render {
 
-/// Counts the pixels that count: those that face the light. Where the map does not reach they are lit, and are scored
-/// like all others.
+/// The number of receivers: pixels that face the light. Those beyond the map's reach are lit, and are scored like all
+/// others.
 std::int64_t count_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light);
 
-/// Reads the receivers that the lookup pass asks the filter about, bit for bit, for the models: of those that
-/// count_receivers counts, the ones that the map reaches under the light's range rule.
+/// Reads back, for the models, the receivers that the lookup pass asks the filter about, bit for bit: those that
+/// count_receivers() counts and that the map reaches under the light's range rule.
 std::vector<filters::Receiver> read_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light);
 
 }  // namespace shadowbench::render

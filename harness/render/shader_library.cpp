@@ -35,7 +35,8 @@ Error blame_recursion(const std::string& message, const gl::Piece& filter) {
                fmt::format("{}:{}", filter.display_name, find_line(filter, name)));
 }
 
-/// A missing brace shows only in the code that follows the filter's: the place that helps is the end of the filter.
+/// The compiler notices a missing brace only in the code after the filter's; the message names the end of the filter
+/// instead.
 Error blame_filter(const Error& error, const gl::Piece& filter) {
   if (error.kind() != ErrorKind::kFilter || error.where().rfind(filter.display_name, 0) == 0) return error;
   if (error.message().find("recursion") != std::string::npos) return blame_recursion(error.message(), filter);

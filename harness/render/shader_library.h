@@ -17,10 +17,10 @@ class ShaderLibrary {
  public:
   explicit ShaderLibrary(std::filesystem::path shader_folder) : folder_(std::move(shader_folder)) {}
 
-  /// Gives a fragment program over the full-screen triangle.
+  /// A fragment program over the full-screen triangle.
   gl::Program& fullscreen(const std::string& fragment_file, const Defines& defines = {});
 
-  /// Gives a program that draws geometry: `<name>.vert` and `<name>.frag`.
+  /// A program that draws geometry: `<name>.vert` and `<name>.frag`.
   gl::Program& geometry(const std::string& name, const Defines& defines = {});
 
   /// Compiles a full-screen program that contains a filter's GLSL as the include "filter".

@@ -14,7 +14,8 @@
 namespace shadowbench::render {
 namespace {
 
-/// Turns clip z around: w - z. In double: a float projection has already lost what a reversed depth would keep.
+/// Turns clip z around: w - z. It is computed in double, since a float projection has already lost the precision that a
+/// reversed depth would keep.
 glm::dmat4 reverse_depth(glm::dmat4 clip) {
   for (int column = 0; column < 4; ++column) clip[column][2] = clip[column][3] - clip[column][2];
   return clip;
@@ -123,7 +124,7 @@ void ShadowMap::draw(ShaderLibrary& shaders, const Geometry& geometry, const sce
 }
 
 /// Woo 1992, The Shadow Depth Map Revisited, Graphics Gems III: the map lies between the first and the second surface,
-/// so that neither shadows itself. Where there is no second one it counts as the far plane.
+/// so that neither shadows itself. Where there is no second surface, the far plane takes its place.
 void ShadowMap::draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
                               const MapBias& bias) {
   if (surfaces_.empty()) {

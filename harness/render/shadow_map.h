@@ -15,20 +15,21 @@
 
 namespace shadowbench::render {
 
-/// Gives the wrap mode of samplers that reads outside a map as `border` says, e.g. GL_CLAMP_TO_BORDER.
+/// The wrap mode of samplers that reads outside a map as `border` says, e.g. GL_CLAMP_TO_BORDER.
 GLenum wrap_mode(filters::Border border);
 
 /// Names map settings as records do: "d32f", "d16 reversed", "d24 perspective 1000".
 std::string describe_map(const MapSettings& settings);
 
-/// Gives the coarsest of the steps in which a map holds depths of 0 .. `farthest`: closer ones may be stored as one.
+/// The largest step between depths of 0 .. `farthest` that a map can store. Depths that differ by less may be stored as
+/// one.
 double find_coarsest_step(const MapSettings& settings, double farthest = 1.0);
 
-/// Gives what lib/depth_curve.glsl has to be told; nothing for a map that holds linear depth, 0 near.
+/// The defines that lib/depth_curve.glsl needs; none for a map that holds linear depth, 0 near.
 Defines curve_defines(const filters::DepthCurve& curve);
 
-/// Requires that a GL stores a format as it was asked to; `bits` is GL_TEXTURE_DEPTH_SIZE of the texture.
-/// Throws Error(kUsage): the precision that is to be studied would be another one.
+/// Checks that the GL stores the depth format that it was asked for; `bits` is GL_TEXTURE_DEPTH_SIZE of the texture.
+/// Throws Error(kUsage) if not: another precision than the one asked for would be studied.
 void require_depth_bits(GLenum format, int bits);
 
 /// The depth map of one light; depth in [0,1], 0 near, whatever the format and the curve it is stored by.
@@ -46,8 +47,8 @@ class ShadowMap {
   void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
             const MapBias& bias = {});
 
-  /// Overwrites the map with stored depths that nobody drew, row 0 at v = 0; what a fixed-point format cannot hold is
-  /// clamped. Requires size() * size() values.
+  /// Replaces the map's contents by stored depths, row 0 at v = 0. Fixed-point formats clamp them. Requires size() *
+  /// size() values.
   void upload(std::span<const float> stored) { map_.depth.upload_floats(stored, 1); }
 
   /// Binds the map to the three units of lib/map_access.glsl that read depth.

@@ -21,7 +21,8 @@ constexpr double kMargin = 1.04;
 constexpr double kSunFromCameraDeg = 80.0;
 constexpr double kSunElevationDeg = 50.0;
 
-/// Three quarters; a scene much longer than wide is seen from one of its ends, since it would be a thin line otherwise.
+/// The camera looks from three quarters; a scene much longer than wide is seen from near one of its ends, since it
+/// would be a thin line otherwise.
 double camera_azimuth_deg(const Bounds& bounds) {
   constexpr float kElongated = 3.0f;
   const glm::vec3 size = bounds.max - bounds.min;
@@ -49,8 +50,8 @@ std::vector<glm::dvec3> points_to_show(const Scene& scene, std::optional<float> 
   return points;
 }
 
-/// The two planes of a frustum that bound one axis of the picture, and where the eye must be for them to touch the
-/// points: at `centre` along the axis, `distance` behind the origin.
+/// The two planes of a frustum that bound one axis of the picture. They touch the points when the eye is at `centre`
+/// along the axis and `distance` behind the origin.
 struct Slab {
   double low = std::numeric_limits<double>::lowest();
   double high = std::numeric_limits<double>::lowest();

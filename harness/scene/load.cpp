@@ -10,7 +10,7 @@
 
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
-#include "harness/scene/files/model.h"
+#include "harness/scene/files/mesh_file.h"
 #include "harness/scene/framing.h"
 #include "harness/scene/scene_file.h"
 #include "harness/scene/validate.h"
@@ -24,10 +24,7 @@ namespace fs = std::filesystem;
 std::vector<fs::path> scene_files(const fs::path& folder) {
   std::error_code failure;
   fs::directory_iterator entries(folder, failure);
-  if (failure) {
-    throw Error(ErrorKind::kInput, "the folder of built-in scenes cannot be read: " + failure.message(),
-                folder.string());
-  }
+  if (failure) fail_input("the folder of built-in scenes cannot be read: " + failure.message(), folder.string());
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : entries)
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
@@ -79,19 +76,19 @@ Scene completed(Scene scene, const LoadOptions& options) {
 }
 
 Scene load_model(const fs::path& file, const LoadOptions& options) {
-  ImportedModel model = import_model(file);
+  MeshFile model = import_mesh_file(file);
   Scene scene;
   scene.name = file.stem().string();
   scene.title = scene.name;
   scene.cameras = std::move(model.cameras);
   const std::optional<Light> light = model.light;
-  scene = validate_geometry(add_model(std::move(scene), std::move(model)), file.string());
+  scene = validate_geometry(add_mesh_file(std::move(scene), std::move(model)), file.string());
   scene.light = light ? *light : make_default_sun(scene.bounds());
   return validate(completed(std::move(scene), options), file.string());
 }
 
 Scene load_kind(const fs::path& file, const LoadOptions& options) {
-  if (is_model_file(file)) return load_model(file, options);
+  if (is_mesh_file(file)) return load_model(file, options);
   if (file.extension() != ".toml")
     throw Error(ErrorKind::kUsage, "this kind of file is no scene: use .toml, .gltf, .glb or .obj", file.string());
   Scene scene = load_scene(file);
@@ -104,10 +101,10 @@ Scene load_file(const fs::path& file, const LoadOptions& options) {
   try {
     return load_kind(file, options);
   } catch (const std::bad_alloc&) {
-    throw Error(ErrorKind::kInput,
-                "memory ran out while this scene was loaded; raise the limit (ulimit -v), or use a model with fewer "
-                "vertices and smaller textures",
-                file.string());
+    fail_input(
+        "memory ran out while this scene was loaded; raise the limit (ulimit -v), or use a model with fewer "
+        "vertices and smaller textures",
+        file.string());
   }
 }
 

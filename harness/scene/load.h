@@ -8,7 +8,7 @@
 
 namespace shadowbench::scene {
 
-/// Says how a scene is found and completed.
+/// How a scene is found and completed.
 struct LoadOptions {
   std::filesystem::path scenes_folder;  ///< where the built-in scenes are
   bool ground = false;                  ///< put a floor under a bare model
@@ -25,8 +25,8 @@ struct SceneInfo {
 /// Lists the built-in scenes by name. Throws kInput where the folder or a title cannot be read.
 std::vector<SceneInfo> list_scenes(const std::filesystem::path& folder);
 
-/// Lists the scenes of the folder `teaching` below: each is made for one mistake, and is run only where it is named.
-/// Throws kInput where the folder or a title cannot be read; a folder that is not there has no scenes.
+/// Lists the scenes of the folder `teaching` below: each shows one mistake, and runs only if it is named. Throws kInput
+/// where the folder or a title cannot be read; a folder that is not there has no scenes.
 std::vector<SceneInfo> list_teaching_scenes(const std::filesystem::path& folder);
 
 /// Loads a built-in scene, or a teaching scene, by its name, or a .toml, .gltf, .glb or .obj file by its path, and

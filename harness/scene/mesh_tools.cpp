@@ -120,4 +120,10 @@ Mesh without_unused_vertices(Mesh mesh) {
   return mesh;
 }
 
+glm::dvec3 axis_least_parallel(const glm::dvec3& direction) {
+  const glm::dvec3 size = glm::abs(direction);
+  if (size.z <= size.x && size.z <= size.y) return {0.0, 0.0, 1.0};
+  return size.x <= size.y ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+}
+
 }  // namespace shadowbench::scene

@@ -26,4 +26,7 @@ Mesh without_unused_vertices(Mesh mesh);
 /// Returns twice the area of a triangle times its unit normal, computed in double precision.
 glm::dvec3 area_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 
+/// The coordinate axis that is least parallel to a direction.
+glm::dvec3 axis_least_parallel(const glm::dvec3& direction);
+
 }  // namespace shadowbench::scene

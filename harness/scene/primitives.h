@@ -16,7 +16,7 @@ Mesh make_box(glm::vec3 size_m, int cells);
 /// `segments` (at least 3) is the number of meridians; there are half as many parallels.
 Mesh make_sphere(float radius_m, int segments);
 
-/// Says how a cylinder is cut into triangles.
+/// How a cylinder is cut into triangles.
 struct CylinderCells {
   int segments = 48;  ///< around the axis, at least 3
   int cells = 8;      ///< along the axis
@@ -28,7 +28,7 @@ Mesh make_cylinder(float radius_m, float height_m, CylinderCells cut);
 /// The ways bars may run.
 enum class BarDirection { kVertical, kHorizontal, kBoth };
 
-/// Describes a grid of thin bars in the plane z = 0, centred on the origin.
+/// A grid of thin bars in the plane z = 0, centred on the origin.
 struct Bars {
   int count = 10;             ///< bars in each direction
   float bar_width_m = 0.04f;  ///< width and depth of a bar

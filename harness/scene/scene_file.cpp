@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "filters/base/nearest_name.h"
-#include "harness/scene/files/model.h"
+#include "harness/scene/files/mesh_file.h"
 #include "harness/scene/framing.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/scene_object.h"
@@ -30,7 +30,7 @@ class SceneBuilder {
     scene_.light = read_light(*light);
     for (const TomlTable& table : root_.tables("material")) add_material(table);
     for (const TomlTable& table : root_.tables("object")) add_object(table);
-    if (root_.has("model")) scene_ = add_model(std::move(scene_), read_model(root_, "model"));
+    if (root_.has("model")) scene_ = add_mesh_file(std::move(scene_), read_model(root_, "model"));
     for (const TomlTable& table : root_.tables("camera")) add_camera(table);
     scene_ = validate_geometry(std::move(scene_), file_.string());
     if (scene_.cameras.empty()) scene_.cameras.push_back(frame_camera(scene_, kPictureAspect, std::nullopt));
@@ -72,7 +72,7 @@ class SceneBuilder {
 
   void add_object(const TomlTable& table) {
     const bool is_model = table.choice("shape", object_shapes()) == "model";
-    ImportedModel model = is_model ? read_model_object(table) : ImportedModel{};
+    MeshFile model = is_model ? read_model_object(table) : MeshFile{};
     if (!is_model) model.meshes.push_back(make_counted_shape(table));
     const glm::dmat4 world = world_from_object(table);
     for (Mesh& mesh : model.meshes) {
@@ -82,7 +82,7 @@ class SceneBuilder {
       if (!is_model || table.has("name")) mesh.name = table.string("name", table.title());
     }
     if (is_model && !table.has("material")) {
-      scene_ = add_model(std::move(scene_), std::move(model));
+      scene_ = add_mesh_file(std::move(scene_), std::move(model));
       return;
     }
     const int material = material_of(table);
@@ -102,7 +102,7 @@ class SceneBuilder {
                                   table.title(), kMostShapeCorners / 3));
   }
 
-  ImportedModel read_model_object(const TomlTable& table) const {
+  MeshFile read_model_object(const TomlTable& table) const {
     std::vector<std::string> known = common_object_keys();
     known.emplace_back("file");
     table.require_known_keys(known);
@@ -110,12 +110,12 @@ class SceneBuilder {
   }
 
   /// Reads the model that `key` names; a missing file is the fault of that line.
-  ImportedModel read_model(const TomlTable& table, const std::string& key) const {
+  MeshFile read_model(const TomlTable& table, const std::string& key) const {
     const std::filesystem::path file = file_.parent_path() / table.string(key);
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored))
       throw table.error(key, fmt::format("'{}' in {}: there is no file {}", key, table.title(), file.string()));
-    return import_model(file);
+    return import_mesh_file(file);
   }
 
   /// The index of the object's material; objects without one share a grey default.

@@ -29,9 +29,8 @@ namespace shadowbench::scene {
 ///     or "both", `cells`
 ///   - `model`: `file`, relative to the scene file; keeps its own materials unless `material` is given
 ///
-/// A model or its folder may be anywhere ("../models/tree.gltf"): who writes a scene file chooses. What that model
-/// itself refers to must lie in its own folder. Throws kInput with "file:line" for anything missing, unknown, out of
-/// range or malformed.
+/// A model may be anywhere ("../models/tree.gltf"), but all that it refers to must lie in its own folder. Throws kInput
+/// with "file:line" for anything missing, unknown, out of range or malformed.
 Scene load_scene(const std::filesystem::path& file);
 
 /// Reads a scene file's title alone. Throws as load_scene does.

@@ -50,16 +50,13 @@ std::string text_of(const toml::node& node) {
 toml::table parse_toml_file(const std::filesystem::path& file) {
   const std::vector<unsigned char> bytes = read_file_bytes(file);
   const std::string text(bytes.begin(), bytes.end());
-  if (const int line = find_too_deep_key(text); line > 0) {
-    throw Error(ErrorKind::kInput, fmt::format("a key has more than {} dots", kMostDots),
-                fmt::format("{}:{}", file.string(), line));
-  }
+  if (const int line = find_too_deep_key(text); line > 0)
+    fail_input(fmt::format("a key has more than {} dots", kMostDots), fmt::format("{}:{}", file.string(), line));
   try {
     return toml::parse(text, file.string());
   } catch (const toml::parse_error& e) {
     const auto line = e.source().begin.line;
-    throw Error(ErrorKind::kInput, fmt::format("not valid TOML: {}", e.description()),
-                fmt::format("{}:{}", file.string(), line));
+    fail_input(fmt::format("not valid TOML: {}", e.description()), fmt::format("{}:{}", file.string(), line));
   }
 }
 
@@ -70,9 +67,8 @@ void TomlTable::require_known_keys(const std::vector<std::string>& known) const 
   for (const auto& [key, node] : *table_) {
     const std::string name(key.str());
     if (std::ranges::find(known, name) != known.end()) continue;
-    throw Error(ErrorKind::kInput,
-                fmt::format("unknown key '{}' in {}{}", name, title_, did_you_mean_or_known(name, known)),
-                fmt::format("{}:{}", file_, key.source().begin.line));
+    fail_input(fmt::format("unknown key '{}' in {}{}", name, title_, did_you_mean_or_known(name, known)),
+               fmt::format("{}:{}", file_, key.source().begin.line));
   }
 }
 

@@ -17,10 +17,6 @@ namespace {
 
 constexpr float kFarthest_m = 1e12f;
 
-[[noreturn]] void fail(const std::string& message, const std::string& where) {
-  throw Error(ErrorKind::kInput, message, where);
-}
-
 bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 std::string text_of(const glm::vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
@@ -29,7 +25,7 @@ void check_vertices(const Mesh& mesh, const std::string& where) {
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Vertex& vertex = mesh.vertices[i];
     const auto complain = [&](const char* what, const glm::vec3& value) {
-      fail(fmt::format("vertex {} of mesh '{}' has the {} {}", i, mesh.name, what, text_of(value)), where);
+      fail_input(fmt::format("vertex {} of mesh '{}' has the {} {}", i, mesh.name, what, text_of(value)), where);
     };
     if (!is_finite(vertex.position_ws)) complain("not finite position", vertex.position_ws);
     if (!is_finite(vertex.normal_ws)) complain("not finite normal", vertex.normal_ws);
@@ -42,18 +38,19 @@ void check_vertices(const Mesh& mesh, const std::string& where) {
 
 void check_indices(const Mesh& mesh, const Scene& scene, const std::string& where) {
   if (mesh.indices.size() % 3 != 0)
-    fail(fmt::format("mesh '{}' has {} indices, which is no multiple of 3", mesh.name, mesh.indices.size()), where);
+    fail_input(fmt::format("mesh '{}' has {} indices, which is no multiple of 3", mesh.name, mesh.indices.size()),
+               where);
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
     if (mesh.indices[i] < mesh.vertices.size()) continue;
-    fail(fmt::format("index {} of mesh '{}' is {}, but there are {} vertices", i, mesh.name, mesh.indices[i],
-                     mesh.vertices.size()),
-         where);
+    fail_input(fmt::format("index {} of mesh '{}' is {}, but there are {} vertices", i, mesh.name, mesh.indices[i],
+                           mesh.vertices.size()),
+               where);
   }
   if (mesh.material < 0 || static_cast<std::size_t>(mesh.material) >= scene.materials.size())
-    fail(fmt::format("mesh '{}' has material {} of {}", mesh.name, mesh.material, scene.materials.size()), where);
+    fail_input(fmt::format("mesh '{}' has material {} of {}", mesh.name, mesh.material, scene.materials.size()), where);
 }
 
-/// Zero but for the rounding of a cross product of its edges.
+/// Whether a triangle's area is zero but for the rounding of the cross product.
 bool has_no_area(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   constexpr double kRounding = 1e-12;
   const double edge = std::max({glm::length(glm::dvec3(b) - glm::dvec3(a)), glm::length(glm::dvec3(c) - glm::dvec3(b)),
@@ -92,35 +89,29 @@ Mesh with_unit_normals(Mesh mesh) {
   return mesh;
 }
 
-/// The given up, or, where it is parallel to the view, the axis least parallel to it; at right angles to the view.
+/// A direction across the view: the given one made perpendicular or, if that is parallel to the view, the axis least
+/// parallel to it.
 glm::vec3 usable_up(const glm::vec3& up, const glm::vec3& forward) {
   constexpr double kLeastSine = 1e-4;
   const glm::dvec3 ahead(forward);
   const auto across = [&](const glm::dvec3& v) { return v - glm::dot(v, ahead) * ahead; };
-  glm::dvec3 sideways(0.0);
   const glm::dvec3 given(up);
   const bool usable = is_finite(up) && glm::length(across(given)) > kLeastSine * glm::length(given);
-  if (usable) {
-    sideways = across(given);
-  } else {
-    const glm::dvec3 size = glm::abs(ahead);
-    const bool z_is_least = size.z <= size.x && size.z <= size.y;
-    sideways = across(z_is_least ? glm::dvec3(0, 0, 1) : size.x <= size.y ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0));
-  }
-  return glm::vec3(glm::normalize(sideways));
+  return glm::vec3(glm::normalize(across(usable ? given : axis_least_parallel(ahead))));
 }
 
 Camera checked_camera(Camera camera, const std::string& where) {
   const std::string owner = fmt::format("camera '{}'", camera.name);
-  if (!is_finite(camera.position_ws)) fail(owner + " stands at " + text_of(camera.position_ws), where);
+  if (!is_finite(camera.position_ws)) fail_input(owner + " stands at " + text_of(camera.position_ws), where);
   camera.forward_ws = unit_direction(camera.forward_ws, owner, where);
   camera.up_ws = usable_up(camera.up_ws, camera.forward_ws);
   const bool orthographic = camera.orthographic_height_m != 0.0f;
   const float fov = camera.vertical_fov_rad;
   if (orthographic && !(std::isfinite(camera.orthographic_height_m) && camera.orthographic_height_m > 0.0f))
-    fail(fmt::format("{} sees a height of {} m", owner, camera.orthographic_height_m), where);
+    fail_input(fmt::format("{} sees a height of {} m", owner, camera.orthographic_height_m), where);
   if (!orthographic && !(fov > 0.0f && fov < std::numbers::pi_v<float>))
-    fail(fmt::format("{} has a vertical field of view of {} rad; it must lie between 0 and pi", owner, fov), where);
+    fail_input(fmt::format("{} has a vertical field of view of {} rad; it must lie between 0 and pi", owner, fov),
+               where);
   return camera;
 }
 
@@ -138,13 +129,13 @@ std::vector<Camera> with_unique_names(std::vector<Camera> cameras) {
 
 void check_material(const Material& material, const Scene& scene, const std::string& where) {
   if (material.base_color_texture >= static_cast<int>(scene.textures.size())) {
-    fail(fmt::format("material '{}' has texture {} of {}", material.name, material.base_color_texture,
-                     scene.textures.size()),
-         where);
+    fail_input(fmt::format("material '{}' has texture {} of {}", material.name, material.base_color_texture,
+                           scene.textures.size()),
+               where);
   }
   const bool finite = is_finite(glm::vec3(material.base_color)) && std::isfinite(material.base_color.a) &&
                       std::isfinite(material.alpha_cutoff);
-  if (!finite) fail(fmt::format("material '{}' has a colour that is not finite", material.name), where);
+  if (!finite) fail_input(fmt::format("material '{}' has a colour that is not finite", material.name), where);
 }
 
 }  // namespace
@@ -152,7 +143,8 @@ void check_material(const Material& material, const Scene& scene, const std::str
 glm::vec3 unit_direction(const glm::vec3& v, const std::string& owner, const std::string& where) {
   const glm::dvec3 direction(v);
   const double length = glm::length(direction);
-  if (!std::isfinite(length) || !(length > 0.0)) fail(fmt::format("{} has no direction: {}", owner, text_of(v)), where);
+  if (!std::isfinite(length) || !(length > 0.0))
+    fail_input(fmt::format("{} has no direction: {}", owner, text_of(v)), where);
   return glm::vec3(direction / length);
 }
 
@@ -166,8 +158,8 @@ Scene validate_geometry(Scene scene, const std::string& where) {
   }
   std::erase_if(scene.meshes, [](const Mesh& mesh) { return mesh.indices.empty(); });
   const std::size_t dropped = given - scene.triangle_count();
-  if (given == 0) fail("the scene is empty: it has no triangles", where);
-  if (dropped == given) fail(fmt::format("none of its {} triangles has an area", given), where);
+  if (given == 0) fail_input("the scene is empty: it has no triangles", where);
+  if (dropped == given) fail_input(fmt::format("none of its {} triangles has an area", given), where);
   if (dropped > 0)
     scene.warnings.push_back(fmt::format("{} of {} triangles without area were dropped", dropped, given));
   return scene;
@@ -176,7 +168,7 @@ Scene validate_geometry(Scene scene, const std::string& where) {
 Scene validate(Scene scene, const std::string& where) {
   scene.light = checked_light(scene.light, where);
   scene = validate_geometry(std::move(scene), where);
-  if (scene.cameras.empty()) fail("the scene has no camera", where);
+  if (scene.cameras.empty()) fail_input("the scene has no camera", where);
   for (Camera& camera : scene.cameras) camera = checked_camera(camera, where);
   scene.cameras = with_unique_names(std::move(scene.cameras));
   return scene;

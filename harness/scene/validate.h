@@ -9,12 +9,12 @@ namespace shadowbench::scene {
 /// Checks that a scene can be rendered and measured, and repairs what has one sensible repair.
 ///
 /// Throws kInput, at `where`, for: no triangles, an index out of range, a coordinate or normal that is not finite or
-/// lies beyond 1e12 m, a light without direction, a camera without direction or with an impossible view.
-/// Drops triangles without area and vertices that no triangle uses, gives zero normals the face's, and normalises
-/// directions; what changes the picture is told in `warnings`.
+/// lies beyond 1e12 m, a light without direction, a camera without direction or with an impossible view. Drops
+/// triangles without area and vertices that no triangle uses, replaces zero normals by the face's, and normalises
+/// directions. Changes that are seen in the picture are noted in `warnings`.
 Scene validate(Scene scene, const std::string& where);
 
-/// Does the part of `validate` that concerns meshes and materials; what frames or measures a scene can rely on it.
+/// The part of `validate` that concerns meshes and materials; code that frames or measures a scene relies on it.
 Scene validate_geometry(Scene scene, const std::string& where);
 
 /// Returns `v` with unit length. Throws kInput, naming `owner`, where it has no direction.

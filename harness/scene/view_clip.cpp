@@ -5,7 +5,7 @@
 namespace shadowbench::scene {
 namespace {
 
-/// Points with dot(normal, p) + offset >= 0 are inside.
+/// A plane; points with dot(normal, p) + offset >= 0 are inside.
 struct HalfSpace {
   glm::dvec3 normal;
   double offset;

@@ -7,8 +7,8 @@
 
 namespace shadowbench::scene {
 
-/// Gives the corners of the scene's triangles after cutting them at the sides of what a camera sees, in world space;
-/// empty where it sees nothing. Surfaces behind others are kept. `aspect` is width / height of the picture.
+/// The corners of the scene's triangles after cutting them at the sides of what a camera sees, in world space; empty
+/// where it sees nothing. Surfaces behind others are kept. `aspect` is width / height of the picture.
 ///
 /// A perspective camera sees nothing behind itself; an orthographic one is not cut along its direction.
 /// Cost: one pass over the triangles, in double.

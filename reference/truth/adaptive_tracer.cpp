@@ -100,7 +100,7 @@ class AdaptiveTracer {
   const std::function<RayFan(const ReceiverPoint&)>& make_fan_;
   TracedVisibility truth_;
 
-  /// In tiles: rays of neighbouring pixels visit the same parts of the scene.
+  /// Pixels are traced in tiles, because rays of neighbouring pixels visit the same parts of the scene.
   template <class Work>
   void for_each_receiver(Work work) {
     const tbb::blocked_range2d<int> all(0, receivers_.height, 16, 0, receivers_.width, 16);
@@ -115,7 +115,7 @@ class AdaptiveTracer {
     });
   }
 
-  /// A pixel and its neighbours that count see all of the light, or all see none of it.
+  /// Whether a pixel and those of its neighbours that count all see the whole light, or all see nothing of it.
   bool is_settled(const std::vector<float>& first, int i) const {
     const int x = i % receivers_.width, y = i / receivers_.width;
     const float own = first[static_cast<std::size_t>(i)];
@@ -142,7 +142,7 @@ class AdaptiveTracer {
     }
   }
 
-  /// Notes mean and standard error over the scrambles; gives the latter.
+  /// Stores mean and standard error over the scrambles, and returns the standard error.
   double conclude(std::size_t pixel, const Counts& lit, int points) {
     const int total = std::accumulate(lit.begin(), lit.end(), 0);
     const double mean = static_cast<double>(total) / points / kScrambles;
@@ -151,7 +151,7 @@ class AdaptiveTracer {
       const double deviation = static_cast<double>(count) / points - mean;
       squares += deviation * deviation;
     }
-    // Stratified scrambles often agree to the point although none is exact: one point of deviation is presumed on top.
+    // Stratified scrambles often have the same sum although none is exact: a deviation of one point is assumed on top.
     const double presumed = 1.0 / points;
     const double error = std::sqrt((squares + presumed * presumed) / (kScrambles - 1) / kScrambles);
     const bool unanimous = total == 0 || total == kScrambles * points;

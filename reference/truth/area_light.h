@@ -16,16 +16,16 @@ class AreaLight {
   /// A rectangle around `centre_ws`, spanned by two half edges.
   static AreaLight make_rectangle(const glm::dvec3& centre_ws, const glm::dvec3& half_u, const glm::dvec3& half_v);
 
-  /// Gives a point of the light in units of half_u() and half_v(); `sample` in [0,1)^2, equal areas for equal areas.
+  /// A point of the light in units of half_u() and half_v(); `sample` in [0,1)^2, equal areas for equal areas.
   glm::dvec2 map_sample(const glm::dvec2& sample) const;
 
-  /// Gives the way from a point to the light's centre.
+  /// The way from a point to the light's centre.
   glm::dvec3 centre_direction(const glm::dvec3& from) const;
 
   const glm::dvec3& half_u() const { return u_; }  ///< from the centre to the edge
   const glm::dvec3& half_v() const { return v_; }
 
-  /// Gives where the light ends, in units of centre_direction(): 1, or infinity.
+  /// Where the light ends, in units of centre_direction(): 1, or infinity.
   float reach() const;
 
  private:

@@ -14,7 +14,7 @@ struct HoleTest {
   CutOut cut_out;
   std::vector<std::uint32_t> indices;  ///< three per triangle that is traced
 
-  /// Says whether a point of a triangle, given by the weights of its second and third corner, is a hole.
+  /// Whether a point of a triangle, given by the weights of its second and third corner, is a hole.
   bool is_hole(std::uint32_t triangle, float u, float v) const;
 };
 

@@ -61,8 +61,8 @@ struct Occluders::Impl {
     rtcReleaseDevice(device);
   }
 
-  /// Embree reports what fails by a null pointer and a code of the device; without a look at them, rays would miss
-  /// everything. Throws std::bad_alloc, or std::runtime_error for what else may fail.
+  /// Embree reports a failure by a null pointer and an error code of the device; if they went unchecked, rays would
+  /// miss everything. Throws std::bad_alloc, or std::runtime_error for any other failure.
   void require(bool is_done) const {
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_OUT_OF_MEMORY || (!is_done && error == RTC_ERROR_NONE)) throw std::bad_alloc();
@@ -101,7 +101,7 @@ struct Occluders::Impl {
 
 Occluders::Occluders(std::span<const OccluderMesh> meshes) : impl_(std::make_unique<Impl>()) {
   impl_->require(impl_->device != nullptr && impl_->scene != nullptr);
-  // Robust: no ray slips through a shared edge. High quality: many more rays are traced than triangles are built in.
+  // Robust: no ray slips through a shared edge. High quality: far more time goes into tracing than into building.
   rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
   for (const OccluderMesh& mesh : meshes) impl_->add(mesh);

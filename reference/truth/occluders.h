@@ -36,8 +36,8 @@ struct Box {
   glm::vec3 max{-1.0f};
 };
 
-/// Gives how far rays start off a surface whose coordinates, and whose scene's, are as large as these: a bound on the
-/// error that single precision may have left in an interpolated point. All in metres.
+/// How far off a surface rays start: a bound on the rounding error of an interpolated point, from the largest
+/// coordinates of the point and of its scene. All in metres.
 float origin_offset(float largest_coordinate, float largest_of_scene);
 
 /// A scene to trace shadow rays in.
@@ -54,20 +54,20 @@ class Occluders {
   /// Sets `reach` of each active ray that anything blocks to minus infinity. Safe to call from many threads.
   void find_blocked(RayPacket& packet) const;
 
-  /// Gives for each active ray how far it gets, in units of its direction's length; infinity where nothing is hit.
+  /// For each active ray how far it gets, in units of its direction's length; infinity where nothing is hit.
   RayPacket::Lanes find_nearest(const RayPacket& packet) const;
 
-  /// Moves a point off its surface, along the geometric normal towards the viewer, by a bound on the error that single
-  /// precision may have left in it: of its own coordinates and of the scene's largest ones, which interpolation mixed,
-  /// and of steps of up to `extent` metres that are taken from it along the surface.
-  /// Source: Pharr, Jakob and Humphreys 2016, Physically Based Rendering, 3rd ed., section 3.9.
+  /// Moves a point off its surface, along the geometric normal towards the viewer, by a bound on its rounding error.
+  /// The bound grows with the point's coordinates, with the largest ones of the scene, and with `extent`: the length in
+  /// metres of steps that are then taken from the point along the surface. Source: Pharr, Jakob and Humphreys 2016,
+  /// Physically Based Rendering, 3rd ed., section 3.9.
   glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& normal, float extent = 0.0f) const;
 
   std::int64_t triangle_count() const;    ///< without the degenerate ones
   std::int64_t degenerate_count() const;  ///< triangles that were dropped
   Box bounds() const;                     ///< of what is traced
 
-  /// Gives the distance from the origin within which everything lies, metres.
+  /// The distance from the origin within which everything lies, metres.
   float farthest() const;
 
  private:

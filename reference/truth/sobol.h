@@ -5,7 +5,7 @@
 
 namespace shadowbench::truth {
 
-/// Gives point `index` of the Sobol sequence's first two dimensions, Owen-scrambled by `seed`, as 32-bit fractions.
+/// Point `index` of the Sobol sequence's first two dimensions, Owen-scrambled by `seed`, as 32-bit fractions.
 ///
 /// Different seeds give independent randomisations, each of them uniform: the mean over a scramble is unbiased, and
 /// several scrambles give an honest standard error. XOR with random bits (a digital shift) keeps both properties and
@@ -14,8 +14,8 @@ namespace shadowbench::truth {
 /// 9(4).
 glm::uvec2 sobol_bits(std::uint32_t index, std::uint32_t seed);
 
-/// Gives the place of `index` in a shuffle that keeps every aligned run of 2^k indices together, so that a second pair
-/// of dimensions, taken in this order, is as evenly spread as the first and independent of it. Source: Burley 2020,
+/// The place of `index` in a shuffle that keeps every aligned run of 2^k indices together, so that a second pair of
+/// dimensions, taken in this order, is as evenly spread as the first and independent of it. Source: Burley 2020,
 /// section 5.
 std::uint32_t shuffle_index(std::uint32_t index, std::uint32_t seed);
 

@@ -12,7 +12,7 @@
 namespace shadowbench::truth {
 namespace {
 
-/// A kernel's fan: rays start on the receiver's tangent plane, below the texels they stand for, and are parallel.
+/// A kernel's fan: parallel rays that start on the receiver's tangent plane, below the texels that they stand for.
 RayFan make_kernel_fan(const Occluders& occluders, const ReceiverPoint& point, const MapGrid& grid, double half_width) {
   const glm::dvec3 normal(point.normal_ws);
   const double n_dot_l = glm::dot(normal, grid.to_light);
@@ -119,7 +119,7 @@ std::vector<float> trace_first_blockers(const Occluders& occluders, const Receiv
     for (std::size_t lane = 0; lane < group.size(); ++lane) {
       const ReceiverPoint& point = receivers.points[group[lane]];
       const glm::vec3 origin = occluders.offset_origin(point.position_ws, point.normal_ws);
-      // From beyond everything, back to the receiver.
+      // The ray starts beyond everything and runs back to the receiver.
       lengths[lane] = 1.01f * (glm::length(origin) + occluders.farthest());
       const glm::vec3 way = glm::vec3(light.centre_direction(glm::dvec3(0.0))) * lengths[lane];
       packet.set(lane, origin + way, -way, 1.0f);

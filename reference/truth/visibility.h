@@ -12,7 +12,7 @@
 
 namespace shadowbench::truth {
 
-/// Says how sure a traced fraction is to be.
+/// How sure a traced fraction is to be.
 struct TraceSettings {
   double standard_error = 0.005;  ///< wanted for every pixel that is not unanimous
   int max_points = 1024;          ///< per scramble; a power of two, at least 16
@@ -41,7 +41,7 @@ inline constexpr std::uint32_t kRaysOfSettledPixel = 64;
 TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
                             const TraceSettings& settings);
 
-/// Where a kernel lies in the world: the texel grid of a directional light's map.
+/// The texel grid of a directional light's map, which says where a kernel lies in the world.
 struct MapGrid {
   glm::dvec3 to_light{0.0, 1.0, 0.0};  ///< unit length
   glm::dvec3 right{1.0, 0.0, 0.0};     ///< one texel in u is `texel_size_ws` metres along it; unit length

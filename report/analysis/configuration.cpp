@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "filters/base/split_list.h"
 #include "report/analysis/summary.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
@@ -17,21 +18,10 @@ namespace {
 
 constexpr std::string_view kSeparator = " · ";  // of records::describe_settings()
 
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts;
-  std::size_t begin = 0;
-  for (std::size_t end = text.find(kSeparator); end != std::string::npos; end = text.find(kSeparator, begin)) {
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + kSeparator.size();
-  }
-  parts.push_back(text.substr(begin));
-  return parts;
-}
-
 // What is true of every scene: without the view, and without lengths in the units of one scene's map.
 std::vector<std::string> describe_parts(records::CellRecord cell) {
   cell.map_scale = {};
-  std::vector<std::string> parts = split(records::describe_settings(cell));
+  std::vector<std::string> parts = split_list(records::describe_settings(cell), kSeparator);
   parts.erase(parts.begin());
   return parts;
 }

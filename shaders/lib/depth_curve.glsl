@@ -1,6 +1,6 @@
-// How the map stores depth; the same in filters/depth_curve.h. Filters see linear depth, 0 near: only here is it known
-// that a map may hold the depth of a perspective projection (PERSPECTIVE_DEPTH: how many times as far its far plane is as
-// its near plane), or one less its depth (REVERSED_DEPTH).
+// How the map stores depth; filters/depth_curve.h does the same. Filters see linear depth, 0 near. With
+// PERSPECTIVE_DEPTH, the distance of the far plane divided by that of the near plane, the map holds the depth of a
+// perspective projection; with REVERSED_DEPTH it holds 1 minus the depth.
 #ifdef PERSPECTIVE_DEPTH
 float store_depth(float z) {
   z = max(z, 0.0);

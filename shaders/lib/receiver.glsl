@@ -8,10 +8,10 @@ struct Receiver {
   vec2 depth_per_texel;
   float texel_size_ws; float depth_range_ws; float light_size; float view_depth; ivec2 pixel; };
 
-// A surface faces the light where n.l is greater; the same in filters/receiver.h.
+// A surface faces the light where n.l is greater than this; filters/receiver.h has the same number.
 const float faces_light = 1e-5;
 
-// The map may be steep, but not vertical: it would have to bias without bound.
+// A plane may be steep, but not parallel to the light: its bias would have no bound.
 vec2 plane_depth_per_texel(vec3 normal_ws, float n_dot_l) {
   vec2 along_map = vec2(dot(normal_ws, light_right_ws), dot(normal_ws, light_up_ws));
   vec2 tangent = along_map / max(n_dot_l, 1e-4);
@@ -49,8 +49,8 @@ Receiver make_receiver(vec3 position_ws, vec3 normal_ws, float view_depth, ivec2
   return r;
 }
 
-// Whether the map can know anything of a receiver; where it cannot, the receiver is lit. The NO_ variants are there to
-// show what goes wrong without: see filters/map_range.h.
+// Whether the map says anything about a receiver; if not, the receiver is lit. The NO_ variants show what goes wrong
+// without these tests: see filters/map_range.h.
 bool map_reaches(Receiver r) {
 #ifndef NO_FAR_TEST
   if (!(r.depth_unbiased <= 1.0)) return false;

@@ -23,7 +23,7 @@ std::string get_gl_string(GLenum name) {
   return text == nullptr ? std::string() : reinterpret_cast<const char*>(text);
 }
 
-// For display, and for what `auto` tries first; nothing that can be measured may follow from it.
+// This is for display and for the order in which `auto` tries back ends. Nothing that can be measured may depend on it.
 bool looks_like_software(const std::string& renderer) {
   for (const std::string_view name :
        {"llvmpipe", "softpipe", "swrast", "Software Rasterizer", "SwiftShader", "lavapipe"})

@@ -20,7 +20,7 @@ Backend parse_backend(std::string_view text);
 /// Returns the word that `parse_backend` reads.
 std::string_view backend_name(Backend backend);
 
-/// Describes what a context runs on.
+/// What a context runs on.
 struct GlInfo {
   std::string backend;       ///< "osmesa", "egl" or "glfw"
   std::string device;        ///< what the back end says it opened, e.g. "device 0 (/dev/dri/card0)"; may be empty
@@ -72,7 +72,7 @@ class Context {
   std::vector<std::string> errors_;
 };
 
-/// Holds the context that was made, and why those tried before it were not taken.
+/// The context that was made, and the reasons why those tried before it were not taken.
 struct ContextChoice {
   std::unique_ptr<Context> context;  ///< never null; current on the calling thread
   std::vector<std::string> refused;  ///< "egl: why", in the order tried; empty where the first one served

@@ -6,8 +6,8 @@
 
 namespace shadowbench::gl {
 
-// One function per way to get a context; each throws Error(kContext) with the reason where it does not work, which for
-// a back end that this build leaves out is just that. The context comes back current.
+// One function for each way to get a context. Each returns a context that is current, or throws Error(kContext) with
+// the reason, also for a back end that this build leaves out.
 std::unique_ptr<Context> create_osmesa_context();
 std::unique_ptr<Context> create_egl_context();
 /// Like create_egl_context, but refuses software rasterisers.

@@ -25,13 +25,13 @@ bool is_below(const fs::path& folder, const fs::path& path) {
 std::vector<unsigned char> read_file_bytes(const fs::path& file) {
   std::error_code failure;
   const fs::file_status status = fs::status(file, failure);
-  if (!fs::exists(status)) throw Error(ErrorKind::kInput, "there is no such file", file.string());
-  if (!fs::is_regular_file(status)) throw Error(ErrorKind::kInput, "this is not a file", file.string());
+  if (!fs::exists(status)) fail_input("there is no such file", file.string());
+  if (!fs::is_regular_file(status)) fail_input("this is not a file", file.string());
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error(ErrorKind::kInput, std::string("cannot be opened: ") + std::strerror(errno), file.string());
+  if (!stream) fail_input(std::string("cannot be opened: ") + std::strerror(errno), file.string());
   std::vector<unsigned char> bytes(static_cast<std::size_t>(fs::file_size(file)));
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!stream) throw Error(ErrorKind::kInput, "cannot be read to its end", file.string());
+  if (!stream) fail_input("cannot be read to its end", file.string());
   return bytes;
 }
 

@@ -8,12 +8,13 @@
 #include <limits>
 
 #include "filters/base/error.h"
+#include "harness/scene/files/gltf_parse.h"
 
 namespace shadowbench::scene {
 namespace {
 
 constexpr std::size_t kMostElements = std::size_t{1} << 27;
-/// Of an accessor without a buffer view: nothing in the file stands for its elements, which are all zero.
+/// The most elements of an accessor without a buffer view; they are all zero, and take no room in the file.
 constexpr std::size_t kMostZeros = std::size_t{1} << 16;
 
 /// Bytes that were found to lie inside their buffer.
@@ -23,23 +24,18 @@ struct Span {
 };
 
 Span checked_view(const tinygltf::Model& model, int index, const std::string& owner, const std::string& where) {
-  const auto fail = [&](const std::string& why) -> Span {
-    throw Error(ErrorKind::kInput, fmt::format("{}: {}", owner, why), where);
-  };
-  if (index < 0 || static_cast<std::size_t>(index) >= model.bufferViews.size())
-    return fail(fmt::format("there is no buffer view {} (of {})", index, model.bufferViews.size()));
-  const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(index)];
-  if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model.buffers.size())
-    return fail(fmt::format("buffer view {} names buffer {} (of {})", index, view.buffer, model.buffers.size()));
-  const std::vector<unsigned char>& bytes = model.buffers[static_cast<std::size_t>(view.buffer)].data;
-  if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset) {
-    return fail(fmt::format("buffer view {} runs past its buffer: offset {} + {} bytes of {}", index, view.byteOffset,
-                            view.byteLength, bytes.size()));
-  }
-  return {bytes.data() + view.byteOffset, view.byteLength};
+  const tinygltf::BufferView& view = find_element(model.bufferViews, index, owner + ": there is no buffer view", where);
+  const std::vector<unsigned char>& bytes =
+      find_element(model.buffers, view.buffer, fmt::format("{}: buffer view {} names buffer", owner, index), where)
+          .data;
+  if (view.byteOffset <= bytes.size() && view.byteLength <= bytes.size() - view.byteOffset)
+    return {bytes.data() + view.byteOffset, view.byteLength};
+  fail_input(fmt::format("{}: buffer view {} runs past its buffer: offset {} + {} bytes of {}", owner, index,
+                         view.byteOffset, view.byteLength, bytes.size()),
+             where);
 }
 
-/// How elements lie in a checked span; every element was found to be inside it.
+/// How elements lie in a checked span; all of them lie inside it.
 struct Elements {
   const unsigned char* data = nullptr;  ///< null: all zero
   std::size_t count = 0;
@@ -57,8 +53,7 @@ std::size_t component_size(int component_type, const std::string& owner, const s
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
     case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
     default:
-      throw Error(ErrorKind::kInput,
-                  fmt::format("{} has component type {}, which glTF 2.0 does not know", owner, component_type), where);
+      fail_input(fmt::format("{} has component type {}, which glTF 2.0 does not know", owner, component_type), where);
   }
 }
 
@@ -67,18 +62,16 @@ Elements place(Elements layout, Span span, std::size_t offset, const std::string
   const std::size_t element_size = component_size(layout.component_type, owner, where) * layout.components;
   if (layout.stride == 0) layout.stride = element_size;
   if (layout.stride < element_size) {
-    throw Error(ErrorKind::kInput,
-                fmt::format("{} has a stride of {} bytes for elements of {}", owner, layout.stride, element_size),
-                where);
+    fail_input(fmt::format("{} has a stride of {} bytes for elements of {}", owner, layout.stride, element_size),
+               where);
   }
   const bool fits = layout.count > 0 && offset <= span.size && element_size <= span.size - offset &&
                     layout.count - 1 <= (span.size - offset - element_size) / layout.stride;
   if (layout.count > 0 && !fits) {
-    throw Error(ErrorKind::kInput,
-                fmt::format("{} is out of range: {} elements of {} bytes, stride {}, from byte {} of "
-                            "a buffer view of {} bytes",
-                            owner, layout.count, element_size, layout.stride, offset, span.size),
-                where);
+    fail_input(fmt::format("{} is out of range: {} elements of {} bytes, stride {}, from byte {} of "
+                           "a buffer view of {} bytes",
+                           owner, layout.count, element_size, layout.stride, offset, span.size),
+               where);
   }
   layout.data = span.data + offset;
   return layout;
@@ -86,22 +79,17 @@ Elements place(Elements layout, Span span, std::size_t offset, const std::string
 
 Elements checked_elements(const tinygltf::Model& model, int index, int components, const std::string& where) {
   const std::string owner = fmt::format("accessor {}", index);
-  if (index < 0 || static_cast<std::size_t>(index) >= model.accessors.size())
-    throw Error(ErrorKind::kInput, fmt::format("there is no {} (of {})", owner, model.accessors.size()), where);
-  const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+  const tinygltf::Accessor& accessor = find_element(model.accessors, index, "there is no accessor", where);
   if (tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)) != components)
-    throw Error(ErrorKind::kInput, fmt::format("{} must have {} component(s) per element", owner, components), where);
-  if (accessor.count > kMostElements) {
-    throw Error(ErrorKind::kInput,
-                fmt::format("{} has {} elements; at most {} are read", owner, accessor.count, kMostElements), where);
-  }
+    fail_input(fmt::format("{} must have {} component(s) per element", owner, components), where);
+  if (accessor.count > kMostElements)
+    fail_input(fmt::format("{} has {} elements; at most {} are read", owner, accessor.count, kMostElements), where);
   Elements elements{nullptr, accessor.count, 0, accessor.componentType, static_cast<std::size_t>(components)};
   component_size(accessor.componentType, owner, where);
   if (accessor.bufferView < 0 && accessor.count > kMostZeros) {
-    throw Error(ErrorKind::kInput,
-                fmt::format("{} has {} elements and no buffer view; at most {} such zeros are read", owner,
-                            accessor.count, kMostZeros),
-                where);
+    fail_input(fmt::format("{} has {} elements and no buffer view; at most {} such zeros are read", owner,
+                           accessor.count, kMostZeros),
+               where);
   }
   if (accessor.bufferView < 0) return elements;
   const Span span = checked_view(model, accessor.bufferView, owner, where);
@@ -158,7 +146,7 @@ std::vector<double> with_sparse_values(std::vector<double> values, const tinyglt
   const std::string owner = fmt::format("sparse accessor '{}'", accessor.name);
   if (sparse.count < 0 || static_cast<std::size_t>(sparse.count) > base.count || sparse.indices.byteOffset < 0 ||
       sparse.values.byteOffset < 0)
-    throw Error(ErrorKind::kInput, fmt::format("{} has a count or offset out of range", owner), where);
+    fail_input(fmt::format("{} has a count or offset out of range", owner), where);
   const auto count = static_cast<std::size_t>(sparse.count);
   const Elements slots = place({nullptr, count, 0, sparse.indices.componentType, 1},
                                checked_view(model, sparse.indices.bufferView, owner, where),
@@ -169,10 +157,8 @@ std::vector<double> with_sparse_values(std::vector<double> values, const tinyglt
   const std::vector<double> slot_values = load_all(slots);
   const std::vector<double> new_values = load_all(news);
   for (std::size_t i = 0; i < count; ++i) {
-    if (!(slot_values[i] >= 0.0 && slot_values[i] < static_cast<double>(base.count))) {
-      throw Error(ErrorKind::kInput, fmt::format("{} replaces element {} of {}", owner, slot_values[i], base.count),
-                  where);
-    }
+    if (!(slot_values[i] >= 0.0 && slot_values[i] < static_cast<double>(base.count)))
+      fail_input(fmt::format("{} replaces element {} of {}", owner, slot_values[i], base.count), where);
     std::copy_n(
         new_values.begin() + static_cast<std::ptrdiff_t>(i * base.components), base.components,
         values.begin() + static_cast<std::ptrdiff_t>(slot_values[i]) * static_cast<std::ptrdiff_t>(base.components));
@@ -182,7 +168,7 @@ std::vector<double> with_sparse_values(std::vector<double> values, const tinyglt
 
 std::vector<double> read_values(const tinygltf::Model& model, int index, int components, const std::string& where) {
   const Elements elements = checked_elements(model, index, components, where);
-  const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+  const tinygltf::Accessor& accessor = find_element(model.accessors, index, "there is no accessor", where);
   std::vector<double> values = load_all(elements);
   if (accessor.sparse.isSparse) values = with_sparse_values(std::move(values), model, accessor, elements, where);
   return values;
@@ -192,7 +178,7 @@ std::vector<double> read_values(const tinygltf::Model& model, int index, int com
 
 std::vector<float> read_floats(const tinygltf::Model& model, int accessor, int components, const std::string& where) {
   const std::vector<double> values = read_values(model, accessor, components, where);
-  const tinygltf::Accessor& source = model.accessors[static_cast<std::size_t>(accessor)];
+  const tinygltf::Accessor& source = find_element(model.accessors, accessor, "there is no accessor", where);
   const double scale = source.normalized ? 1.0 / largest_value(source.componentType) : 1.0;
   std::vector<float> floats;
   floats.reserve(values.size());
@@ -203,16 +189,15 @@ std::vector<float> read_floats(const tinygltf::Model& model, int accessor, int c
 
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor, const std::string& where) {
   const std::vector<double> values = read_values(model, accessor, 1, where);
-  const int type = model.accessors[static_cast<std::size_t>(accessor)].componentType;
+  const int type = find_element(model.accessors, accessor, "there is no accessor", where).componentType;
   const bool is_unsigned = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
                            type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
                            type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
   if (!is_unsigned) {
-    throw Error(ErrorKind::kInput,
-                fmt::format("accessor {} holds indices, but its component type {} is not an "
-                            "unsigned integer",
-                            accessor, type),
-                where);
+    fail_input(fmt::format("accessor {} holds indices, but its component type {} is not an "
+                           "unsigned integer",
+                           accessor, type),
+               where);
   }
   std::vector<std::uint32_t> indices;
   indices.reserve(values.size());

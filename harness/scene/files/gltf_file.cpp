@@ -37,11 +37,11 @@ class GltfImporter {
  public:
   GltfImporter(const tinygltf::Model& source, std::string where) : source_(source), where_(std::move(where)) {}
 
-  ImportedModel import() {
+  MeshFile import() {
     warn_of_extensions();
     for (const tinygltf::Material& material : source_.materials) add_material(material);
     for (const PlacedNode& placed : place_nodes(source_, where_)) {
-      const tinygltf::Node& node = source_.nodes[static_cast<std::size_t>(placed.node)];
+      const tinygltf::Node& node = find_element(source_.nodes, placed.node, "there is no node", where_);
       if (node.mesh >= 0) add_mesh(node, placed.world_from_node);
       if (node.camera >= 0) add_camera(node, placed.world_from_node);
       add_light(node, placed.world_from_node);
@@ -51,7 +51,7 @@ class GltfImporter {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { throw Error(ErrorKind::kInput, message, where_); }
+  [[noreturn]] void fail(const std::string& message) const { fail_input(message, where_); }
 
   void warn(const std::string& message) {
     if (warned_.insert(message).second) result_.warnings.push_back(message);
@@ -87,8 +87,7 @@ class GltfImporter {
   }
 
   int add_texture(int index) {
-    if (static_cast<std::size_t>(index) >= source_.textures.size()) fail(fmt::format("there is no texture {}", index));
-    const int image = source_.textures[static_cast<std::size_t>(index)].source;
+    const int image = find_element(source_.textures, index, "there is no texture", where_).source;
     if (image < 0 || static_cast<std::size_t>(image) >= source_.images.size())
       fail(fmt::format("texture {} has no image that can be read", index));
     if (const auto known = texture_of_image_.find(image); known != texture_of_image_.end()) return known->second;
@@ -97,7 +96,7 @@ class GltfImporter {
   }
 
   Texture read_image(int index) const {
-    const tinygltf::Image& image = source_.images[static_cast<std::size_t>(index)];
+    const tinygltf::Image& image = find_element(source_.images, index, "there is no image", where_);
     const std::string fallback_name = image.uri.empty() ? fmt::format("image {}", index) : image.uri;
     const std::string name = image.name.empty() ? fallback_name : image.name;
     if (image.bufferView >= 0)
@@ -107,8 +106,6 @@ class GltfImporter {
   }
 
   void add_mesh(const tinygltf::Node& node, const glm::dmat4& world_from_node) {
-    if (static_cast<std::size_t>(node.mesh) >= source_.meshes.size())
-      fail(fmt::format("there is no mesh {}", node.mesh));
     for (const Mesh& local : local_meshes(node.mesh)) {
       count_corners(local.indices.size());
       Mesh mesh = transform_mesh(local, world_from_node);
@@ -127,7 +124,7 @@ class GltfImporter {
   /// The primitives of a mesh, read once however often the mesh is placed.
   const std::vector<Mesh>& local_meshes(int index) {
     if (const auto known = local_meshes_.find(index); known != local_meshes_.end()) return known->second;
-    const tinygltf::Mesh& source = source_.meshes[static_cast<std::size_t>(index)];
+    const tinygltf::Mesh& source = find_element(source_.meshes, index, "there is no mesh", where_);
     const std::string name = source.name.empty() ? fmt::format("mesh {}", index) : source.name;
     std::vector<Mesh> meshes;
     for (const tinygltf::Primitive& primitive : source.primitives)
@@ -212,9 +209,7 @@ class GltfImporter {
   }
 
   void add_camera(const tinygltf::Node& node, const glm::dmat4& world_from_node) {
-    if (static_cast<std::size_t>(node.camera) >= source_.cameras.size())
-      fail(fmt::format("there is no camera {}", node.camera));
-    const tinygltf::Camera& source = source_.cameras[static_cast<std::size_t>(node.camera)];
+    const tinygltf::Camera& source = find_element(source_.cameras, node.camera, "there is no camera", where_);
     Camera camera;
     const std::string fallback_name = node.name.empty() ? fmt::format("camera {}", node.camera) : node.name;
     camera.name = source.name.empty() ? fallback_name : source.name;
@@ -232,9 +227,7 @@ class GltfImporter {
     const auto extension = node.extensions.find("KHR_lights_punctual");
     if (extension == node.extensions.end() || !extension->second.Has("light")) return;
     const int index = extension->second.Get("light").GetNumberAsInt();
-    if (index < 0 || static_cast<std::size_t>(index) >= source_.lights.size())
-      fail(fmt::format("there is no light {}", index));
-    const tinygltf::Light& source = source_.lights[static_cast<std::size_t>(index)];
+    const tinygltf::Light& source = find_element(source_.lights, index, "there is no light", where_);
     const std::optional<LightKind> kind = make_gltf_light(source.type, world_from_node);
     if (!kind) {
       warn(fmt::format("{} lights are not modelled yet; they are left out", source.type));
@@ -253,7 +246,7 @@ class GltfImporter {
 
   const tinygltf::Model& source_;
   std::string where_;
-  ImportedModel result_;
+  MeshFile result_;
   std::set<std::string> warned_;
   std::map<int, int> texture_of_image_;
   std::map<int, std::vector<Mesh>> local_meshes_;
@@ -263,7 +256,7 @@ class GltfImporter {
 
 }  // namespace
 
-ImportedModel import_gltf(const std::filesystem::path& file) {
+MeshFile import_gltf(const std::filesystem::path& file) {
   const tinygltf::Model source = parse_gltf(file);
   return GltfImporter(source, file.string()).import();
 }

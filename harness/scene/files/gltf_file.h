@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "harness/scene/files/model.h"
+#include "harness/scene/files/mesh_file.h"
 
 namespace shadowbench::scene {
 
@@ -13,6 +13,6 @@ namespace shadowbench::scene {
 /// set to intensity 1, because every picture has the same exposure). Missing normals become flat ones.
 /// Warns about what it leaves out: blending, spot and point lights, skins, morph targets, lines and points.
 /// Throws kInput for a file that is malformed, refers outside its folder, or requires an extension that is not read.
-ImportedModel import_gltf(const std::filesystem::path& file);
+MeshFile import_gltf(const std::filesystem::path& file);
 
 }  // namespace shadowbench::scene

@@ -20,19 +20,17 @@ std::string describe(const tinygltf::Model& model, int node) {
 void check_values(const std::vector<double>& values, std::size_t count, const std::string& what,
                   const std::string& where) {
   if (values.empty()) return;
-  if (values.size() != count) {
-    throw Error(ErrorKind::kInput, fmt::format("{} must have {} numbers, but has {}", what, count, values.size()),
-                where);
-  }
+  if (values.size() != count)
+    fail_input(fmt::format("{} must have {} numbers, but has {}", what, count, values.size()), where);
   for (const double value : values)
-    if (!std::isfinite(value)) throw Error(ErrorKind::kInput, what + " is not finite", where);
+    if (!std::isfinite(value)) fail_input(what + " is not finite", where);
 }
 
 glm::dmat4 rotation_of(const tinygltf::Node& node, const std::string& owner, const std::string& where) {
   if (node.rotation.empty()) return glm::dmat4(1.0);
   const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
   const double length = glm::length(rotation);
-  if (!(length > 0.0)) throw Error(ErrorKind::kInput, fmt::format("the rotation of {} is zero", owner), where);
+  if (!(length > 0.0)) fail_input(fmt::format("the rotation of {} is zero", owner), where);
   return glm::mat4_cast(rotation / length);
 }
 
@@ -72,24 +70,22 @@ std::vector<int> root_nodes(const tinygltf::Model& model) {
 
 std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, const std::string& where) {
   std::vector<PlacedNode> waiting;
-  // The last one waiting is placed first, so they wait in reverse; the same holds for children.
+  // The last node of the list is placed first, so roots and children are put there in reverse.
   const std::vector<int> roots = root_nodes(model);
   for (auto root = roots.rbegin(); root != roots.rend(); ++root) waiting.push_back({*root, glm::dmat4(1.0)});
   if (waiting.empty() && !model.nodes.empty())
-    throw Error(ErrorKind::kInput, "no node is a root: the scene lists none, or the nodes form a cycle", where);
+    fail_input("no node is a root: the scene lists none, or the nodes form a cycle", where);
   std::vector<bool> seen(model.nodes.size(), false);
   std::vector<PlacedNode> placed;
   while (!waiting.empty()) {
     const PlacedNode parent = waiting.back();
     waiting.pop_back();
     const auto index = static_cast<std::size_t>(parent.node);
-    if (parent.node < 0 || index >= seen.size())
-      throw Error(ErrorKind::kInput, fmt::format("there is no node {} (of {})", parent.node, seen.size()), where);
+    find_element(model.nodes, parent.node, "there is no node", where);
     if (seen[index]) {
-      throw Error(ErrorKind::kInput,
-                  fmt::format("{} is reached twice: the nodes form a cycle, or it has two parents",
-                              describe(model, parent.node)),
-                  where);
+      fail_input(fmt::format("{} is reached twice: the nodes form a cycle, or it has two parents",
+                             describe(model, parent.node)),
+                 where);
     }
     seen[index] = true;
     placed.push_back({parent.node, parent.world_from_node * local_transform(model, parent.node, where)});

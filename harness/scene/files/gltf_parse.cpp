@@ -100,18 +100,17 @@ void require_readable_extensions(const tinygltf::Model& model, const std::string
   for (const std::string& extension : model.extensionsRequired) {
     const bool only_looks = extension.starts_with("KHR_materials_");
     if (only_looks || std::ranges::find(kRead, extension) != kRead.end()) continue;
-    throw Error(ErrorKind::kInput,
-                fmt::format("the file requires the extension {}, which is not supported; save it "
-                            "without",
-                            extension),
-                where);
+    fail_input(fmt::format("the file requires the extension {}, which is not supported; save it "
+                           "without",
+                           extension),
+               where);
   }
 }
 
 void require_version_2(const tinygltf::Model& model, const std::string& where) {
   const std::string& version = model.asset.version;
   if (version.starts_with("2.") || version == "2") return;
-  throw Error(ErrorKind::kInput, fmt::format("this is glTF version '{}'; only 2.0 is read", version), where);
+  fail_input(fmt::format("this is glTF version '{}'; only 2.0 is read", version), where);
 }
 
 /// Parses from memory, so that every byte comes through the guard.
@@ -137,10 +136,9 @@ tinygltf::Model parse_gltf(const fs::path& file) {
   constexpr int kDeepestJson = 200;
   const std::string where = file.string();
   const std::vector<unsigned char> bytes = read_file_bytes(file);
-  if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
-    throw Error(ErrorKind::kInput, "the file is larger than 4 GiB", where);
+  if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) fail_input("the file is larger than 4 GiB", where);
   if (nesting_depth(json_of(bytes)) > kDeepestJson)
-    throw Error(ErrorKind::kInput, fmt::format("its JSON is nested more than {} deep", kDeepestJson), where);
+    fail_input(fmt::format("its JSON is nested more than {} deep", kDeepestJson), where);
   FolderGuard guard{fs::absolute(file).lexically_normal().parent_path().string(), {}};
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(&keep_encoded, nullptr);
@@ -149,12 +147,11 @@ tinygltf::Model parse_gltf(const fs::path& file) {
   std::string failure;
   const bool parsed = parse_bytes(parser, &model, &failure, bytes, guard.folder);
   if (!guard.refused.empty()) {
-    throw Error(ErrorKind::kInput,
-                fmt::format("it refers to '{}', outside its folder; such files are not read", guard.refused.front()),
-                where);
+    fail_input(fmt::format("it refers to '{}', outside its folder; such files are not read", guard.refused.front()),
+               where);
   }
   require_readable_extensions(model, where);
-  if (!parsed || !failure.empty()) throw Error(ErrorKind::kInput, "not valid glTF: " + one_line(failure), where);
+  if (!parsed || !failure.empty()) fail_input("not valid glTF: " + one_line(failure), where);
   require_version_2(model, where);
   return model;
 }

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <fmt/format.h>
 #include <tiny_gltf.h>
 
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <string>
 #include <vector>
+
+#include "filters/base/error.h"
 
 namespace shadowbench::scene {
 
@@ -12,6 +16,14 @@ namespace shadowbench::scene {
 /// Reads nothing outside the file's folder. Throws kInput where the file is malformed, refers outside its folder or
 /// requires an extension that is not read.
 tinygltf::Model parse_gltf(const std::filesystem::path& file);
+
+/// The element of one of a file's lists that an index names. Throws kInput, at `where`, if there is none; the message
+/// is `complaint`, such as "there is no mesh", and the index.
+template <class T>
+const T& find_element(const std::vector<T>& list, int index, const std::string& complaint, const std::string& where) {
+  if (index >= 0 && static_cast<std::size_t>(index) < list.size()) return list[static_cast<std::size_t>(index)];
+  fail_input(fmt::format("{} {} (of {})", complaint, index, list.size()), where);
+}
 
 /// A node and the product of the transforms on its way from the root.
 struct PlacedNode {

@@ -27,10 +27,7 @@ class LibraryReader : public tinyobj::MaterialReader {
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
                   std::map<std::string, int>* index_of, std::string* warning, std::string* failure) override {
     const std::optional<std::filesystem::path> file = resolve_inside(folder_, name);
-    if (!file) {
-      throw Error(ErrorKind::kInput, fmt::format("mtllib '{}' lies outside its folder; such files are not read", name),
-                  where_);
-    }
+    if (!file) fail_input(fmt::format("mtllib '{}' lies outside its folder; such files are not read", name), where_);
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(*file, ignored)) {
       *warning += fmt::format("the material library '{}' is missing\n", name);
@@ -54,7 +51,7 @@ void require_number(const std::string& word, std::size_t line, const std::string
   const char* end = word.data() + word.size();
   const auto [stop, problem] = std::from_chars(start, end, value);
   if (problem == std::errc() && stop == end && std::isfinite(value)) return;
-  throw Error(ErrorKind::kInput, fmt::format("'{}' is not a finite number", word), fmt::format("{}:{}", where, line));
+  fail_input(fmt::format("'{}' is not a finite number", word), fmt::format("{}:{}", where, line));
 }
 
 /// Checks the coordinates of all v, vn and vt lines.
@@ -70,8 +67,8 @@ void require_numbers(const std::string& text, const std::string& where) {
     std::size_t count = 0;
     for (; words >> word; ++count) require_number(word, number, where);
     if (count >= least) continue;
-    throw Error(ErrorKind::kInput, fmt::format("expected at least {} numbers, found {}", least, count),
-                fmt::format("{}:{}", where, number));
+    fail_input(fmt::format("expected at least {} numbers, found {}", least, count),
+               fmt::format("{}:{}", where, number));
   }
 }
 
@@ -95,7 +92,7 @@ ObjData parse_obj(const std::filesystem::path& file) {
   const bool parsed = tinyobj::LoadObj(&data.attributes, &data.shapes, &data.materials, &data.warning, &failure,
                                        &stream, &libraries, true);
   if (parsed && failure.empty()) return data;
-  throw Error(ErrorKind::kInput, "not a valid .obj file: " + failure.substr(0, failure.find('\n')), where);
+  fail_input("not a valid .obj file: " + failure.substr(0, failure.find('\n')), where);
 }
 
 /// Builds a model from a parsed file, part by part.
@@ -104,7 +101,7 @@ class ObjImporter {
   ObjImporter(ObjData source, std::filesystem::path file)
       : source_(std::move(source)), file_(std::move(file)), where_(file_.string()) {}
 
-  ImportedModel import() {
+  MeshFile import() {
     for (const tinyobj::material_t& material : source_.materials) add_material(material);
     result_.materials.push_back({.name = "default"});
     for (const tinyobj::shape_t& shape : source_.shapes) add_shape(shape);
@@ -115,7 +112,7 @@ class ObjImporter {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { throw Error(ErrorKind::kInput, message, where_); }
+  [[noreturn]] void fail(const std::string& message) const { fail_input(message, where_); }
 
   void add_material(const tinyobj::material_t& source) {
     Material material;
@@ -181,12 +178,12 @@ class ObjImporter {
   ObjData source_;
   std::filesystem::path file_;
   std::string where_;
-  ImportedModel result_;
+  MeshFile result_;
   std::map<std::string, int> texture_of_name_;
 };
 
 }  // namespace
 
-ImportedModel import_obj(const std::filesystem::path& file) { return ObjImporter(parse_obj(file), file).import(); }
+MeshFile import_obj(const std::filesystem::path& file) { return ObjImporter(parse_obj(file), file).import(); }
 
 }  // namespace shadowbench::scene

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "harness/scene/files/model.h"
+#include "harness/scene/files/mesh_file.h"
 
 namespace shadowbench::scene {
 
@@ -11,6 +11,6 @@ namespace shadowbench::scene {
 /// Polygons become triangles. Corners without a normal get the mean of the faces around them that turn by less than
 /// 45 degrees. A missing material library is a warning; a reference outside the file's folder an error.
 /// Throws kInput, with the line, for a coordinate that is not a finite number or an index out of range.
-ImportedModel import_obj(const std::filesystem::path& file);
+MeshFile import_obj(const std::filesystem::path& file);
 
 }  // namespace shadowbench::scene

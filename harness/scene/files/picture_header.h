@@ -13,7 +13,7 @@ struct PictureSize {
 };
 
 /// Reads the size from the header of a PNG, JPEG, BMP, GIF or TGA picture, without decoding it; nothing where the bytes
-/// are no such picture. The decoder sees the same header: what is told apart here in another way would not be checked.
+/// are no such picture. The formats must be told apart as the decoder does it, or a picture would be decoded unchecked.
 std::optional<PictureSize> read_picture_size(std::span<const unsigned char> bytes);
 
 }  // namespace shadowbench::scene

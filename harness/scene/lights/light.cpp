@@ -92,10 +92,9 @@ Light checked_light(Light light, const std::string& where) {
                       glm::all(glm::greaterThanEqual(light.color, glm::vec3(0.0f))) && std::isfinite(light.intensity) &&
                       light.intensity >= 0.0f;
   if (shines) return light;
-  throw Error(ErrorKind::kInput,
-              fmt::format("the light has colour ({}, {}, {}), intensity {}", light.color.r, light.color.g,
-                          light.color.b, light.intensity),
-              where);
+  fail_input(fmt::format("the light has colour ({}, {}, {}), intensity {}", light.color.r, light.color.g, light.color.b,
+                         light.intensity),
+             where);
 }
 
 std::string describe_light(const Light& light) {

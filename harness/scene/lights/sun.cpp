@@ -9,6 +9,7 @@
 
 #include "filters/base/error.h"
 #include "harness/scene/lights/light_fit.h"
+#include "harness/scene/mesh_tools.h"
 #include "harness/scene/toml_reader.h"
 #include "harness/scene/validate.h"
 #include "harness/scene/view_clip.h"
@@ -22,10 +23,9 @@ struct Box {
   glm::dvec3 max{std::numeric_limits<double>::lowest()};
 };
 
-glm::dvec3 axis_least_parallel(const glm::dvec3& direction) {
-  const glm::dvec3 size = glm::abs(direction);
-  if (size.z <= size.x && size.z <= size.y) return {0.0, 0.0, 1.0};
-  return size.x <= size.y ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+void add(Box& box, const glm::dvec3& seen) {
+  box.min = glm::min(box.min, seen);
+  box.max = glm::max(box.max, seen);
 }
 
 /// World axes seen by the light, which looks along -z; rows are the light's x, y and z.
@@ -46,11 +46,7 @@ void for_each_position(const Scene& scene, const Visit& visit) {
 /// The scene's extent around `center`, along the light's axes.
 Box tight_box(const Scene& scene, const glm::dmat3& rotation, const glm::dvec3& center) {
   Box box;
-  for_each_position(scene, [&](const glm::dvec3& p) {
-    const glm::dvec3 seen = rotation * (p - center);
-    box.min = glm::min(box.min, seen);
-    box.max = glm::max(box.max, seen);
-  });
+  for_each_position(scene, [&](const glm::dvec3& p) { add(box, rotation * (p - center)); });
   return box;
 }
 
@@ -73,11 +69,6 @@ glm::dmat4 scale_then_move(const glm::dvec3& scale, const glm::dvec3& offset) {
   for (int i = 0; i < 3; ++i) m[i][i] = scale[i];
   m[3] = glm::dvec4(offset, 1.0);
   return m;
-}
-
-void add(Box& box, const glm::dvec3& seen) {
-  box.min = glm::min(box.min, seen);
-  box.max = glm::max(box.max, seen);
 }
 
 bool overlap(const Box& a, const Box& b) {
@@ -210,8 +201,7 @@ Sun read_sun(const TomlTable& table) {
 Sun checked_sun(Sun sun, const std::string& where) {
   sun.direction_ws = unit_direction(sun.direction_ws, "the light", where);
   if (sun.angular_diameter_deg >= 0.0f && sun.angular_diameter_deg < 180.0f) return sun;
-  throw Error(ErrorKind::kInput, fmt::format("the light's angular diameter is {} degrees", sun.angular_diameter_deg),
-              where);
+  fail_input(fmt::format("the light's angular diameter is {} degrees", sun.angular_diameter_deg), where);
 }
 
 truth::AreaLight make_area_light(const Sun& sun) {

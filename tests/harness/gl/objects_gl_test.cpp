@@ -8,7 +8,7 @@
 
 #include "harness/gl/fullscreen.h"
 #include "harness/gl/objects.h"
-#include "harness/gl/survey/probe.h"
+#include "harness/gl/survey/survey_shader.h"
 #include "tests/harness/gl/expect_error.h"
 #include "tests/harness/gl/gl_fixture.h"
 
@@ -223,7 +223,7 @@ TEST_F(GlTest, FullscreenTriangle_CoversEveryPixelOnce_WhateverStateIsSet) {
   glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   glCullFace(GL_FRONT_AND_BACK);
   Query samples("samples", GL_SAMPLES_PASSED);
-  Probe probe("probe_load.frag", {37, 23});
+  SurveyShader probe("survey_load.frag", {37, 23});
   probe.program().set("u_iterations", 0);
   samples.begin();
   probe.draw();
@@ -234,7 +234,7 @@ TEST_F(GlTest, FullscreenTriangle_CoversEveryPixelOnce_WhateverStateIsSet) {
 
 // Samples two texels, 0 and 1, half way between them.
 float sample_halfway(const Texture& map) {
-  Probe probe("probe_filter.frag", {1, 1});
+  SurveyShader probe("survey_filter.frag", {1, 1});
   map.bind(0);
   probe.program().set("u_map", 0);
   probe.program().set("u_first", 0.5f);
@@ -262,12 +262,12 @@ TEST_F(GlTest, Sampler_OverridesTheTexturesFilter_UntilUnbound) {
 
 // Samples beyond the right edge of a 2x1 map.
 float sample_outside(const Texture& map, const std::string& shader) {
-  Probe probe(shader, {1, 1});
+  SurveyShader probe(shader, {1, 1});
   map.bind(0);
   probe.program().set("u_map", 0);
   probe.program().set("u_first", 4.0f);
   probe.program().set("u_step", 0.0f);
-  if (shader == "probe_compare.frag") probe.program().set("u_reference", 0.5f);
+  if (shader == "survey_compare.frag") probe.program().set("u_reference", 0.5f);
   return probe.run().front();
 }
 
@@ -275,14 +275,14 @@ TEST_F(GlTest, Outside_IsTheEdge_OfNewTexturesAndSamplers) {
   Texture map("edge", GL_R32F, 2, 1);
   map.upload_floats(std::array{0.25f, 1.0f}, 1);
   Sampler::unbind(0);
-  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 1.0f);
+  EXPECT_EQ(sample_outside(map, "survey_filter.frag"), 1.0f);
   map.set_wrap(GL_REPEAT);
-  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 0.25f);
+  EXPECT_EQ(sample_outside(map, "survey_filter.frag"), 0.25f);
   Sampler sampler("edge");
   sampler.bind(0);
-  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 1.0f);
+  EXPECT_EQ(sample_outside(map, "survey_filter.frag"), 1.0f);
   sampler.set_wrap(GL_REPEAT);
-  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 0.25f);
+  EXPECT_EQ(sample_outside(map, "survey_filter.frag"), 0.25f);
 }
 
 TEST_F(GlTest, Border_IsWhatLiesOutside_OfTextureAndSampler) {
@@ -291,12 +291,12 @@ TEST_F(GlTest, Border_IsWhatLiesOutside_OfTextureAndSampler) {
   Sampler::unbind(0);
   map.set_wrap(GL_CLAMP_TO_BORDER);
   map.set_border({0.25f, 0.0f, 0.0f, 0.0f});
-  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 0.25f);
+  EXPECT_EQ(sample_outside(map, "survey_filter.frag"), 0.25f);
   Sampler sampler("border");
   sampler.set_wrap(GL_CLAMP_TO_BORDER);
   sampler.set_border({0.75f, 0.0f, 0.0f, 0.0f});
   sampler.bind(0);
-  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 0.75f);
+  EXPECT_EQ(sample_outside(map, "survey_filter.frag"), 0.75f);
 }
 
 TEST_F(GlTest, Compare_ObeysItsFunction_OfTextureAndSampler) {
@@ -304,18 +304,18 @@ TEST_F(GlTest, Compare_ObeysItsFunction_OfTextureAndSampler) {
   map.upload_floats(std::array{0.5f, 0.5f}, 1);
   Sampler::unbind(0);
   map.set_compare(GL_LEQUAL);
-  EXPECT_EQ(sample_outside(map, "probe_compare.frag"), 1.0f);
+  EXPECT_EQ(sample_outside(map, "survey_compare.frag"), 1.0f);
   map.set_compare(GL_LESS);
-  EXPECT_EQ(sample_outside(map, "probe_compare.frag"), 0.0f);
+  EXPECT_EQ(sample_outside(map, "survey_compare.frag"), 0.0f);
   Sampler sampler("lequal");
   sampler.set_compare(GL_LEQUAL);
   sampler.bind(0);
-  EXPECT_EQ(sample_outside(map, "probe_compare.frag"), 1.0f);
+  EXPECT_EQ(sample_outside(map, "survey_compare.frag"), 1.0f);
   sampler.set_compare(GL_GREATER);
-  EXPECT_EQ(sample_outside(map, "probe_compare.frag"), 0.0f);
+  EXPECT_EQ(sample_outside(map, "survey_compare.frag"), 0.0f);
   map.set_compare(GL_NONE);
   Sampler::unbind(0);
-  EXPECT_EQ(sample_outside(map, "probe_filter.frag"), 0.5f);
+  EXPECT_EQ(sample_outside(map, "survey_filter.frag"), 0.5f);
 }
 
 TEST_F(GlTest, Mipmaps_AverageTheLevelAbove) {

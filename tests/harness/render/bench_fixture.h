@@ -8,7 +8,7 @@
 
 #include "filters/catalogue.h"
 #include "harness/gl/context/context.h"
-#include "harness/gl/survey/measure.h"
+#include "harness/gl/survey/survey.h"
 #include "harness/options/options.h"
 #include "harness/render/bias_rule.h"
 #include "harness/render/filter_passes.h"

@@ -23,7 +23,7 @@ struct Agreement {
 };
 
 filters::GlAccuracy measured_accuracy() {
-  static const gl::GlMeasurement measured = gl::measure_gl(shared_context());
+  static const gl::GlSurvey measured = gl::survey_gl(shared_context());
   return {measured.exp_ulp, static_cast<double>(std::min(measured.rg32f.bits, measured.r32f.bits))};
 }
 

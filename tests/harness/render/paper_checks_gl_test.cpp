@@ -42,7 +42,7 @@ TEST_P(Bound, IsNeverDarkerThanPercentageCloserFiltering) {
   const filters::FilterRequest request = catalogue().parse_requests(filter).front();
   const std::vector<float> image = bench.draw(request);
   const filters::DepthMap map = bench.map().read();
-  static const gl::GlMeasurement measured = gl::measure_gl(shared_context());
+  static const gl::GlSurvey measured = gl::survey_gl(shared_context());
   const filters::GlAccuracy accuracy{measured.exp_ulp,
                                      static_cast<double>(std::min(measured.rg32f.bits, measured.r32f.bits))};
   const filters::ModelInput input{request.spec, request.values, map, accuracy, 7};

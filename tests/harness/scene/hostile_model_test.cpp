@@ -33,7 +33,7 @@ std::string json_of(const Parts& p) {
       p.nodes, p.primitives, p.accessor, p.view, p.uri);
 }
 
-ImportedModel import_parts(const TestFolder& folder, const Parts& parts) {
+MeshFile import_parts(const TestFolder& folder, const Parts& parts) {
   folder.write("model/data.bin", kPositions);
   return import_gltf(folder.write("model/test.gltf", json_of(parts)));
 }

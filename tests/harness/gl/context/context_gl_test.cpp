@@ -6,7 +6,7 @@
 
 #include "harness/gl/context/context.h"
 #include "harness/gl/objects.h"
-#include "harness/gl/survey/probe.h"
+#include "harness/gl/survey/survey_shader.h"
 #include "tests/harness/gl/expect_error.h"
 #include "tests/harness/gl/gl_fixture.h"
 
@@ -31,7 +31,7 @@ void expect_it_draws(Context& context) {
   framebuffer.bind();
   framebuffer.clear_color(0, {0.25f, 0.0f, 0.0f, 0.0f});
   EXPECT_THAT(texture.read_floats(1), ::testing::Each(0.25f));
-  Probe probe("probe_load.frag", {4, 4});
+  SurveyShader probe("survey_load.frag", {4, 4});
   probe.program().set("u_iterations", 0);
   EXPECT_FLOAT_EQ(probe.run()[1], 1.5f * 0.001f + 0.5f * 0.0001f);
   EXPECT_NO_THROW(context.require_no_gl_errors());

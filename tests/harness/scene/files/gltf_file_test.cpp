@@ -40,7 +40,7 @@ std::string gltf_of(const GltfParts& p) {
                      p.scenes, p.nodes, p.primitive, p.accessors, p.views, p.buffer.size(), uri, p.more);
 }
 
-ImportedModel import_parts(const GltfParts& parts) {
+MeshFile import_parts(const GltfParts& parts) {
   const TestFolder folder;
   folder.write("data.bin", parts.buffer);
   return import_gltf(folder.write("test.gltf", gltf_of(parts)));
@@ -54,7 +54,7 @@ std::string complaint_about_gltf(const GltfParts& parts) {
   return error.message();
 }
 
-Bounds bounds_of(const ImportedModel& model) {
+Bounds bounds_of(const MeshFile& model) {
   Bounds box;
   for (const Mesh& mesh : model.meshes)
     for (const Vertex& vertex : mesh.vertices) box.add(vertex.position_ws);
@@ -82,7 +82,7 @@ std::string glb_of(GltfParts parts) {
 }
 
 TEST(GltfFileTest, Quad_HasTwoTrianglesWithFlatNormals) {
-  const ImportedModel model = import_parts({});
+  const MeshFile model = import_parts({});
   ASSERT_EQ(model.meshes.size(), 1U);
   EXPECT_EQ(model.meshes[0].indices.size(), 6U);
   EXPECT_EQ(model.meshes[0].name, "quad");
@@ -95,7 +95,7 @@ TEST(GltfFileTest, Quad_HasTwoTrianglesWithFlatNormals) {
 
 TEST(GltfFileTest, Glb_HoldsTheSame) {
   const TestFolder folder;
-  const ImportedModel model = import_gltf(folder.write("test.glb", glb_of({})));
+  const MeshFile model = import_gltf(folder.write("test.glb", glb_of({})));
   ASSERT_EQ(model.meshes.size(), 1U);
   EXPECT_EQ(bounds_of(model).max, glm::vec3(1, 1, 0));
 }
@@ -106,7 +106,7 @@ TEST(GltfFileTest, NestedTransforms_ApplyParentLast) {
   parts.nodes = R"([{"children": [1], "matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,7,1]},
                     {"children": [2], "scale": [2, 2, 2]},
                     {"mesh": 0, "name": "leaf", "translation": [10, 0, 0], "rotation": [0, 0, 0.70710678118654752, 0.70710678118654752]}])";
-  const ImportedModel model = import_parts(parts);
+  const MeshFile model = import_parts(parts);
   const Bounds box = bounds_of(model);
   EXPECT_NEAR(glm::distance(box.min, glm::vec3(18, 0, 7)), 0.0f, 1e-5f);
   EXPECT_NEAR(glm::distance(box.max, glm::vec3(20, 2, 7)), 0.0f, 1e-5f);
@@ -129,7 +129,7 @@ TEST(GltfFileTest, MeshPlacedTwice_IsThereTwice) {
   GltfParts parts;
   parts.nodes = R"([{"mesh": 0}, {"mesh": 0, "translation": [0, 0, 5]}])";
   parts.scenes = R"([{"nodes": [0, 1]}])";
-  const ImportedModel model = import_parts(parts);
+  const MeshFile model = import_parts(parts);
   ASSERT_EQ(model.meshes.size(), 2U);
   EXPECT_EQ(bounds_of(model).max.z, 5.0f);
 }
@@ -287,8 +287,8 @@ TEST(GltfFileTest, NotFiniteVertex_IsNamedByTheMesh) {
   std::memcpy(parts.buffer.data() + 16, &bad, sizeof bad);
   const TestFolder folder;
   folder.write("data.bin", parts.buffer);
-  ImportedModel model = import_gltf(folder.write("test.gltf", gltf_of(parts)));
-  Scene scene = add_model({}, std::move(model));
+  MeshFile model = import_gltf(folder.write("test.gltf", gltf_of(parts)));
+  Scene scene = add_mesh_file({}, std::move(model));
   const Error error = error_of([&] { validate_geometry(scene, "test.gltf"); });
   EXPECT_THAT(error.message(), AllOf(HasSubstr("'quad'"), HasSubstr("not finite")));
 }
@@ -366,7 +366,7 @@ TEST(GltfFileTest, DirectionalLight_ShinesAlongItsNodesMinusZ) {
   parts.nodes = R"([{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}},
       {"extensions": {"KHR_lights_punctual": {"light": 1}}, "rotation": [-0.70710678118654752, 0, 0, 0.70710678118654752]}])";
   parts.scenes = R"([{"nodes": [0, 1, 2]}])";
-  const ImportedModel model = import_parts(parts);
+  const MeshFile model = import_parts(parts);
   ASSERT_TRUE(model.light.has_value());
   EXPECT_NEAR(glm::distance(to_light(*model.light, {}), glm::vec3(0, 1, 0)), 0.0f, 1e-6f);
   EXPECT_EQ(model.light->color, glm::vec3(1.0f, 0.5f, 0.25f));
@@ -379,7 +379,7 @@ TEST(GltfFileTest, Materials_KeepColourAndAlphaMode) {
   parts.more = R"(, "materials": [{"name": "leaf", "alphaMode": "MASK", "alphaCutoff": 0.25,
       "pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 0.4]}}, {"name": "glass", "alphaMode": "BLEND"}])";
   parts.primitive = R"({"attributes": {"POSITION": 0}, "indices": 1, "material": 0})";
-  const ImportedModel model = import_parts(parts);
+  const MeshFile model = import_parts(parts);
   ASSERT_EQ(model.materials.size(), 2U);
   EXPECT_EQ(model.materials[0].base_color, glm::vec4(0.1f, 0.2f, 0.3f, 0.4f));
   EXPECT_EQ(model.materials[0].alpha_mode, AlphaMode::kMask);
@@ -409,7 +409,7 @@ GltfParts textured_parts(const std::string& image) {
   return parts;
 }
 
-void expect_textured(const ImportedModel& model) {
+void expect_textured(const MeshFile& model) {
   ASSERT_EQ(model.textures.size(), 1U);
   EXPECT_EQ(model.textures[0].width, 2);
   EXPECT_EQ(model.textures[0].rgba, (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 0, 255, 128}));
@@ -449,7 +449,7 @@ TEST(GltfFileTest, FilesWithDamagedBytes_LoadOrAreRefused) {
     if (round % 10 == 0) damaged.resize(random() % damaged.size());
     const auto file = folder.write("test.glb", damaged);
     try {
-      Scene scene = add_model({}, import_gltf(file));
+      Scene scene = add_mesh_file({}, import_gltf(file));
       validate_geometry(std::move(scene), file.string());
     } catch (const Error& e) {
       ASSERT_EQ(e.kind(), ErrorKind::kInput) << e.what();

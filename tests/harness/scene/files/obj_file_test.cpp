@@ -12,13 +12,13 @@ using testing::HasSubstr;
 
 constexpr const char* kObjQuad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-ImportedModel import_text(const std::string& text) {
+MeshFile import_text(const std::string& text) {
   const TestFolder folder;
   return import_obj(folder.write("test.obj", text));
 }
 
 TEST(ObjFileTest, Polygon_BecomesTrianglesWithNormals) {
-  const ImportedModel model = import_text(std::string(kObjQuad) + "f 1 2 3 4\n");
+  const MeshFile model = import_text(std::string(kObjQuad) + "f 1 2 3 4\n");
   ASSERT_EQ(model.meshes.size(), 1U);
   EXPECT_EQ(model.meshes[0].indices.size(), 6U);
   EXPECT_EQ(model.meshes[0].name, "test");
@@ -30,7 +30,7 @@ TEST(ObjFileTest, RelativeIndices_CountFromTheEnd) {
 }
 
 TEST(ObjFileTest, TextureCoordinates_RunFromTheTop) {
-  const ImportedModel model = import_text(std::string(kObjQuad) + "vt 0 0\nvt 0.25 1\nvt 1 1\nf 1/1 2/2 3/3\n");
+  const MeshFile model = import_text(std::string(kObjQuad) + "vt 0 0\nvt 0.25 1\nvt 1 1\nf 1/1 2/2 3/3\n");
   EXPECT_EQ(model.meshes[0].vertices[0].uv, glm::vec2(0, 1));
   EXPECT_EQ(model.meshes[0].vertices[1].uv, glm::vec2(0.25f, 0));
 }
@@ -40,7 +40,7 @@ TEST(ObjFileTest, Materials_GiveTheirColours) {
   folder.write("m.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
   const auto file = folder.write("test.obj", std::string("mtllib m.mtl\n") + kObjQuad +
                                                  "usemtl red\nf 1 2 3\nusemtl blue\nf 1 3 4\nusemtl none\nf 1 2 4\n");
-  const ImportedModel model = import_obj(file);
+  const MeshFile model = import_obj(file);
   std::vector<glm::vec4> colours;
   for (const Mesh& mesh : model.meshes)
     colours.push_back(model.materials[static_cast<std::size_t>(mesh.material)].base_color);
@@ -50,7 +50,7 @@ TEST(ObjFileTest, Materials_GiveTheirColours) {
 }
 
 TEST(ObjFileTest, MissingMaterialLibrary_IsAWarning) {
-  const ImportedModel model = import_text(std::string("mtllib absent.mtl\n") + kObjQuad + "f 1 2 3\n");
+  const MeshFile model = import_text(std::string("mtllib absent.mtl\n") + kObjQuad + "f 1 2 3\n");
   EXPECT_THAT(model.warnings, testing::Contains(HasSubstr("absent.mtl")));
 }
 
@@ -74,7 +74,7 @@ TEST(ObjFileTest, CoordinateThatIsNoFiniteNumber_NamesItsLine) {
 }
 
 TEST(ObjFileTest, NumbersInEverySpelling_Read) {
-  const ImportedModel model = import_text("v +1 -.5 1e-1 # corner\r\nv 1 0 0\r\nv 1 1 0 1.0\r\nf 1 2 3\r\n");
+  const MeshFile model = import_text("v +1 -.5 1e-1 # corner\r\nv 1 0 0\r\nv 1 1 0 1.0\r\nf 1 2 3\r\n");
   EXPECT_EQ(model.meshes[0].vertices[0].position_ws, glm::vec3(1.0f, -0.5f, 0.1f));
 }
 

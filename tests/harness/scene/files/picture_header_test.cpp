@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "harness/scene/files/model.h"
+#include "harness/scene/files/mesh_file.h"
 #include "tests/harness/scene/test_files.h"
 
 namespace shadowbench::scene {

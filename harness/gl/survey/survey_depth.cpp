@@ -3,7 +3,7 @@
 #include "harness/gl/embedded_shaders.h"
 #include "harness/gl/objects.h"
 #include "harness/gl/program.h"
-#include "harness/gl/survey/measure_parts.h"
+#include "harness/gl/survey/survey_parts.h"
 
 namespace shadowbench::gl {
 namespace {
@@ -24,10 +24,10 @@ struct Offset {
 class PlaneDrawer {
  public:
   explicit PlaneDrawer(GLenum depth_format)
-      : program_("probe plane", embedded_source("probe_plane.vert"), embedded_source("probe_plane.frag")),
-        depth_("probe plane", depth_format, kSide, kSide),
-        framebuffer_("probe plane"),
-        empty_("probe plane") {
+      : program_("survey plane", embedded_source("survey_plane.vert"), embedded_source("survey_plane.frag")),
+        depth_("survey plane", depth_format, kSide, kSide),
+        framebuffer_("survey plane"),
+        empty_("survey plane") {
     framebuffer_.attach_depth(depth_);
   }
 

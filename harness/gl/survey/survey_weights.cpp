@@ -4,8 +4,8 @@
 #include <span>
 
 #include "harness/gl/sampler.h"
-#include "harness/gl/survey/measure_parts.h"
-#include "harness/gl/survey/probe.h"
+#include "harness/gl/survey/survey_parts.h"
+#include "harness/gl/survey/survey_shader.h"
 
 namespace shadowbench::gl {
 namespace {
@@ -24,7 +24,7 @@ constexpr Window kCoarse = {0.0f, 1.0f / static_cast<float>(kSamples)};
 constexpr Window kFine = {0.5f, 1.0f / static_cast<float>(1 << WeightPrecision::kMaxBits)};
 
 Texture make_step_map(GLenum format) {
-  Texture map("probe step", format, 2, 1);
+  Texture map("survey step", format, 2, 1);
   map.set_filter(GL_LINEAR, GL_LINEAR);
   if (map.format().channels == 1)
     map.upload_floats(std::array{0.0f, 1.0f}, 1);
@@ -34,13 +34,13 @@ Texture make_step_map(GLenum format) {
   return map;
 }
 
-std::vector<float> sample(Probe& probe, const Texture& map, const Window& window) {
+std::vector<float> sample(SurveyShader& shader, const Texture& map, const Window& window) {
   Sampler::unbind(0);
   map.bind(0);
-  probe.program().set("u_map", 0);
-  probe.program().set("u_first", window.first);
-  probe.program().set("u_step", window.step);
-  return probe.run();
+  shader.program().set("u_map", 0);
+  shader.program().set("u_first", window.first);
+  shader.program().set("u_step", window.step);
+  return shader.run();
 }
 
 int count_distinct(std::vector<float> values) {
@@ -66,13 +66,13 @@ int count_bits(const std::vector<float>& weights) {
   return static_cast<int>(std::lround(-std::log2(step)));
 }
 
-WeightPrecision measure_weights(Probe& probe, const Texture& map) {
-  const auto coarse = sample(probe, map, kCoarse);
+WeightPrecision measure_weights(SurveyShader& shader, const Texture& map) {
+  const auto coarse = sample(shader, map, kCoarse);
   WeightPrecision precision;
   precision.bits = count_bits(coarse);
   precision.max_error = find_max_error(coarse, kCoarse);
   if (precision.bits < kCoarseBits) return precision;
-  const auto fine = sample(probe, map, kFine);
+  const auto fine = sample(shader, map, kFine);
   precision.bits = std::clamp(count_bits(fine), kCoarseBits, WeightPrecision::kMaxBits);
   precision.max_error = std::max(precision.max_error, find_max_error(fine, kFine));
   return precision;
@@ -82,29 +82,29 @@ WeightPrecision measure_weights(Probe& probe, const Texture& map) {
 
 WeightPrecision measure_pcf_weights(GLenum depth_format) {
   const Texture map = make_step_map(depth_format);
-  Probe probe("probe_compare.frag", {kSamples, 1});
-  probe.program().set("u_reference", 0.5f);
-  return measure_weights(probe, map);
+  SurveyShader shader("survey_compare.frag", {kSamples, 1});
+  shader.program().set("u_reference", 0.5f);
+  return measure_weights(shader, map);
 }
 
 WeightPrecision measure_color_weights(GLenum format) {
   const Texture map = make_step_map(format);
-  Probe probe("probe_filter.frag", {kSamples, 1});
-  return measure_weights(probe, map);
+  SurveyShader shader("survey_filter.frag", {kSamples, 1});
+  return measure_weights(shader, map);
 }
 
 int count_r8_levels() {
   const Texture map = make_step_map(GL_R8);
-  Probe probe("probe_filter.frag", {kSamples, 1});
-  return count_distinct(sample(probe, map, kCoarse));
+  SurveyShader shader("survey_filter.frag", {kSamples, 1});
+  return count_distinct(sample(shader, map, kCoarse));
 }
 
 bool detect_clamped_reference(GLenum depth_format) {
   Texture map = make_step_map(depth_format);
   map.upload_floats(std::array{1.0f, 1.0f}, 1);
-  Probe probe("probe_compare.frag", {1, 1});
-  probe.program().set("u_reference", 1.5f);
-  return sample(probe, map, kCoarse).front() > 0.5f;
+  SurveyShader shader("survey_compare.frag", {1, 1});
+  shader.program().set("u_reference", 1.5f);
+  return sample(shader, map, kCoarse).front() > 0.5f;
 }
 
 }  // namespace shadowbench::gl

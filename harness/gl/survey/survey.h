@@ -7,7 +7,7 @@
 
 namespace shadowbench::gl {
 
-/// Holds how finely the GL interpolates between two texels.
+/// How finely the GL interpolates between two texels.
 struct WeightPrecision {
   /// As many bits as fp32 coordinates can tell apart; from 22 on weights count as exact.
   static constexpr int kMaxBits = 23;
@@ -18,19 +18,19 @@ struct WeightPrecision {
   bool exact() const { return bits >= 22; }
 };
 
-/// Holds what the GL does with one depth format.
-struct DepthFormatMeasurement {
+/// What the GL does with one depth format.
+struct DepthFormatSurvey {
   WeightPrecision pcf;            ///< weights of depth compare with linear filter (hardware PCF)
   double offset_unit_near = 0.0;  ///< glPolygonOffset(0, 1) at depth 0.25, in depth
   double offset_unit_far = 0.0;   ///< the same at depth 0.75; float depth scales with the depth's exponent
   bool clamps_reference = false;  ///< a reference above 1 is compared as 1
 };
 
-/// Holds what a GL really does, as found by experiment. Every value is a plain number.
-struct GlMeasurement {
-  DepthFormatMeasurement d16;
-  DepthFormatMeasurement d24;
-  DepthFormatMeasurement d32f;
+/// What a GL really does, as found by experiment. Every value is a plain number.
+struct GlSurvey {
+  DepthFormatSurvey d16;
+  DepthFormatSurvey d24;
+  DepthFormatSurvey d32f;
   WeightPrecision r32f;  ///< linear filtering of colour
   WeightPrecision rg32f;
   int r8_levels = 0;         ///< distinct values between 0 and 255 with linear filtering of R8
@@ -44,13 +44,13 @@ struct GlMeasurement {
 };
 
 /// Finds out what this GL does. Requires: `context` is current. Cost: under 2 s on a software rasteriser.
-GlMeasurement measure_gl(Context& context);
+GlSurvey survey_gl(Context& context);
 
-/// Returns the weight bits of hardware PCF for one depth format: the cheap part of `measure_gl`.
+/// Returns the weight bits of hardware PCF for one depth format: the cheap part of `survey_gl`.
 /// Shape: GL_DEPTH_COMPONENT16, 24 or 32F. Returns at most WeightPrecision::kMaxBits.
 int measure_pcf_weight_bits(Context& context, GLenum depth_format);
 
 /// Writes the context and its measurement as lines of text for people; ends with a newline.
-std::string format_measurement(const GlInfo& info, const GlMeasurement& measured);
+std::string describe_survey(const GlInfo& info, const GlSurvey& measured);
 
 }  // namespace shadowbench::gl

@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "harness/gl/sampler.h"
-#include "harness/gl/survey/measure_parts.h"
-#include "harness/gl/survey/probe.h"
+#include "harness/gl/survey/survey_parts.h"
+#include "harness/gl/survey/survey_shader.h"
 
 namespace shadowbench::gl {
 namespace {
@@ -44,22 +44,22 @@ std::vector<float> list_coordinates() {
 Texture make_index_map() {
   std::vector<float> indices(kMapSize);
   for (int i = 0; i < kMapSize; ++i) indices[static_cast<std::size_t>(i)] = static_cast<float>(i);
-  Texture map("probe index", GL_R32F, kMapSize, 1);
+  Texture map("survey index", GL_R32F, kMapSize, 1);
   map.upload_floats(indices, 1);
   return map;
 }
 
 }  // namespace
 
-void measure_functions(GlMeasurement& measured) {
+void measure_functions(GlSurvey& measured) {
   const auto arguments = list_arguments();
-  Texture texture("probe arguments", GL_RG32F, kArguments, kArguments);
+  Texture texture("survey arguments", GL_RG32F, kArguments, kArguments);
   texture.upload_floats(arguments, 2);
-  Probe probe("probe_math.frag", {kArguments, kArguments}, GL_RGBA32F);
+  SurveyShader shader("survey_math.frag", {kArguments, kArguments}, GL_RGBA32F);
   Sampler::unbind(0);
   texture.bind(0);
-  probe.program().set("u_arguments", 0);
-  const auto values = probe.run();
+  shader.program().set("u_arguments", 0);
+  const auto values = shader.run();
   for (std::size_t i = 0; i < arguments.size() / 2; ++i) {
     const auto value = [&](std::size_t channel) { return static_cast<double>(values[4 * i + channel]); };
     const double exact = std::exp(static_cast<double>(arguments[2 * i]));
@@ -72,16 +72,16 @@ void measure_functions(GlMeasurement& measured) {
 
 double measure_texel_border_error() {
   const auto coordinates = list_coordinates();
-  Texture texture("probe coordinates", GL_R32F, kMapSize, kDistances);
+  Texture texture("survey coordinates", GL_R32F, kMapSize, kDistances);
   texture.upload_floats(coordinates, 1);
   const Texture map = make_index_map();
-  Probe probe("probe_nearest.frag", {kMapSize, kDistances});
+  SurveyShader shader("survey_nearest.frag", {kMapSize, kDistances});
   for (const GLuint unit : {0u, 1u}) Sampler::unbind(unit);
   map.bind(0);
   texture.bind(1);
-  probe.program().set("u_map", 0);
-  probe.program().set("u_coordinates", 1);
-  const auto taken = probe.run();
+  shader.program().set("u_map", 0);
+  shader.program().set("u_coordinates", 1);
+  const auto taken = shader.run();
   double worst = 0.0;
   for (std::size_t i = 0; i < taken.size(); ++i) {
     const double position = std::max(0.0, static_cast<double>(coordinates[i]) * kMapSize);

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/gl/survey/measure.h"
-#include "harness/gl/survey/probe.h"
+#include "harness/gl/survey/survey.h"
+#include "harness/gl/survey/survey_shader.h"
 #include "tests/harness/gl/gl_fixture.h"
 
 namespace shadowbench::gl {
@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 
 // What NUMBERS.md says of llvmpipe, found again.
 TEST_F(GlTest, Measurement_OfLlvmpipe_IsWhatIsKnownOfIt) {
-  const GlMeasurement measured = measure_gl(context());
+  const GlSurvey measured = survey_gl(context());
   for (const auto* format : {&measured.d16, &measured.d24, &measured.d32f}) {
     EXPECT_TRUE(format->pcf.exact());
     EXPECT_EQ(format->pcf.max_error, 0.0);
@@ -27,7 +27,7 @@ TEST_F(GlTest, Measurement_OfLlvmpipe_IsWhatIsKnownOfIt) {
 }
 
 TEST_F(GlTest, OffsetUnit_OfLlvmpipe_FollowsTheFormat) {
-  const GlMeasurement measured = measure_gl(context());
+  const GlSurvey measured = survey_gl(context());
   EXPECT_NEAR(std::log2(measured.d16.offset_unit_near), -15.0, 1e-3);
   EXPECT_NEAR(std::log2(measured.d16.offset_unit_far), -15.0, 1e-3);
   EXPECT_NEAR(std::log2(measured.d24.offset_unit_near), -23.0, 1e-3);
@@ -37,14 +37,14 @@ TEST_F(GlTest, OffsetUnit_OfLlvmpipe_FollowsTheFormat) {
 }
 
 TEST_F(GlTest, Reference_IsClampedForFixedPointDepthAlone) {
-  const GlMeasurement measured = measure_gl(context());
+  const GlSurvey measured = survey_gl(context());
   EXPECT_TRUE(measured.d16.clamps_reference);
   EXPECT_TRUE(measured.d24.clamps_reference);
   EXPECT_FALSE(measured.d32f.clamps_reference);
 }
 
 TEST_F(GlTest, Functions_OfLlvmpipe_AreAsGoodAsMeasuredBefore) {
-  const GlMeasurement measured = measure_gl(context());
+  const GlSurvey measured = survey_gl(context());
   EXPECT_GT(measured.exp_ulp, 1.0);
   EXPECT_LT(measured.exp_ulp, 100.0);
   EXPECT_GT(measured.sin_error, 0.0);
@@ -59,7 +59,7 @@ TEST_F(GlTest, PcfWeightBits_AreThoseOfTheWholeMeasurement) {
 }
 
 TEST_F(GlTest, Text_SaysWhatWasMeasured) {
-  GlMeasurement measured;
+  GlSurvey measured;
   measured.d24.pcf = {8, 0.00195};
   measured.d24.offset_unit_near = 0x1p-24;
   measured.d32f.pcf = {23, 0.0};
@@ -68,7 +68,7 @@ TEST_F(GlTest, Text_SaysWhatWasMeasured) {
   measured.r8_levels = 257;
   measured.slope_ratio = 1.25;
   measured.timer = {10.0, 9.5, 0.95};
-  const std::string text = format_measurement(context().info(), measured);
+  const std::string text = describe_survey(context().info(), measured);
   for (const char* part : {"8 bits (worst error 0.0019)", "exact fp32", "2^-24", "0.3 at 0.75", "clamped to 1", "257",
                            "length(dz/dx, dz/dy)", "9.500", "10.000", "95 %", "the query is used"})
     EXPECT_THAT(text, HasSubstr(part));
@@ -82,7 +82,7 @@ TEST_F(GlTest, TimerQuery_OfLlvmpipe_IsNotBelieved) {
 }
 
 TEST_F(GlTest, WallTime_GrowsWithTheWork) {
-  Probe probe("probe_load.frag", {256, 256});
+  SurveyShader probe("survey_load.frag", {256, 256});
   const auto time = [&](int iterations) {
     probe.program().set("u_iterations", iterations);
     double best = time_ms(TimerKind::kWallClock, [&] { probe.draw(); });
@@ -93,7 +93,7 @@ TEST_F(GlTest, WallTime_GrowsWithTheWork) {
 }
 
 TEST_F(GlTest, WallTime_LeavesOutWhatWasQueuedBefore) {
-  Probe probe("probe_load.frag", {512, 512});
+  SurveyShader probe("survey_load.frag", {512, 512});
   probe.program().set("u_iterations", 400);
   const auto time_nothing = [&] {
     probe.draw();
@@ -105,7 +105,7 @@ TEST_F(GlTest, WallTime_LeavesOutWhatWasQueuedBefore) {
 }
 
 TEST_F(GlTest, QueryTime_IsPositive) {
-  Probe probe("probe_load.frag", {256, 256});
+  SurveyShader probe("survey_load.frag", {256, 256});
   probe.program().set("u_iterations", 100);
   EXPECT_GT(time_ms(TimerKind::kQuery, [&] { probe.draw(); }), 0.0);
 }

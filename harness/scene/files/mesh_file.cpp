@@ -1,4 +1,4 @@
-#include "harness/scene/files/model.h"
+#include "harness/scene/files/mesh_file.h"
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>
@@ -42,59 +42,56 @@ void require_usable_size(const std::vector<unsigned char>& bytes, const std::str
   constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 26;
   constexpr std::uint64_t kMostPixelsOfAll = std::uint64_t{1} << 28;
   const std::optional<PictureSize> size = read_picture_size(bytes);
-  if (!size) throw Error(ErrorKind::kInput, fmt::format("image '{}' cannot be decoded: use PNG or JPEG", name), where);
+  if (!size) fail_input(fmt::format("image '{}' cannot be decoded: use PNG or JPEG", name), where);
   const bool short_enough = std::max(size->width, size->height) <= kLongestSide;
   if (!short_enough || size->width * size->height > kMostPixels) {
-    throw Error(ErrorKind::kInput,
-                fmt::format("image '{}' says that it has {} x {} pixels; at most {} a side and {} in all are read",
-                            name, size->width, size->height, kLongestSide, kMostPixels),
-                where);
+    fail_input(fmt::format("image '{}' says that it has {} x {} pixels; at most {} a side and {} in all are read", name,
+                           size->width, size->height, kLongestSide, kMostPixels),
+               where);
   }
   std::uint64_t pixels = size->width * size->height;
   for (const Texture& other : others)
     pixels += static_cast<std::uint64_t>(other.width) * static_cast<std::uint64_t>(other.height);
   if (pixels <= kMostPixelsOfAll) return;
-  throw Error(ErrorKind::kInput,
-              fmt::format("with image '{}' its textures have {} pixels; at most {} are read: use smaller ones", name,
-                          pixels, kMostPixelsOfAll),
-              where);
+  fail_input(fmt::format("with image '{}' its textures have {} pixels; at most {} are read: use smaller ones", name,
+                         pixels, kMostPixelsOfAll),
+             where);
 }
 
 }  // namespace
 
-bool is_model_file(const std::filesystem::path& file) {
+bool is_mesh_file(const std::filesystem::path& file) {
   const std::string extension = extension_of(file);
   return is_gltf(extension) || extension == ".obj";
 }
 
-ImportedModel import_model(const std::filesystem::path& file) {
+MeshFile import_mesh_file(const std::filesystem::path& file) {
   const std::string extension = extension_of(file);
   if (is_gltf(extension)) return import_gltf(file);
   if (extension == ".obj") return import_obj(file);
-  throw Error(ErrorKind::kInput, fmt::format("'{}' is no kind of model: use .gltf, .glb or .obj", extension),
-              file.string());
+  fail_input(fmt::format("'{}' is no kind of model: use .gltf, .glb or .obj", extension), file.string());
 }
 
-Scene add_model(Scene scene, ImportedModel model) {
+Scene add_mesh_file(Scene scene, MeshFile file) {
   const auto first_material = static_cast<int>(scene.materials.size());
   const auto first_texture = static_cast<int>(scene.textures.size());
-  for (Material& material : model.materials) {
+  for (Material& material : file.materials) {
     if (material.base_color_texture >= 0) material.base_color_texture += first_texture;
     scene.materials.push_back(std::move(material));
   }
-  for (Mesh& mesh : model.meshes) {
+  for (Mesh& mesh : file.meshes) {
     mesh.material += first_material;
     scene.meshes.push_back(std::move(mesh));
   }
-  std::ranges::move(model.textures, std::back_inserter(scene.textures));
-  std::ranges::move(model.warnings, std::back_inserter(scene.warnings));
+  std::ranges::move(file.textures, std::back_inserter(scene.textures));
+  std::ranges::move(file.warnings, std::back_inserter(scene.warnings));
   return scene;
 }
 
 Texture decode_texture(const std::vector<unsigned char>& bytes, const std::string& name, const std::string& where,
                        const std::vector<Texture>& others) {
   if (bytes.empty() || bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw Error(ErrorKind::kInput, fmt::format("image '{}' has no usable size: {} bytes", name, bytes.size()), where);
+    fail_input(fmt::format("image '{}' has no usable size: {} bytes", name, bytes.size()), where);
   require_usable_size(bytes, name, where, others);
   tinygltf::Image image;
   std::string failure;
@@ -102,7 +99,7 @@ Texture decode_texture(const std::vector<unsigned char>& bytes, const std::strin
   const bool decoded = tinygltf::LoadImageData(&image, 0, &failure, &warning, 0, 0, bytes.data(),
                                                static_cast<int>(bytes.size()), nullptr);
   if (!decoded || image.component != 4)
-    throw Error(ErrorKind::kInput, fmt::format("image '{}' cannot be decoded: use PNG or JPEG", name), where);
+    fail_input(fmt::format("image '{}' cannot be decoded: use PNG or JPEG", name), where);
   return {name, image.width, image.height, to_8_bits(image)};
 }
 

@@ -11,10 +11,10 @@
 namespace shadowbench::gl {
 
 /// Runs one of this folder's own fragment shaders over a grid and hands back what it wrote.
-class Probe {
+class SurveyShader {
  public:
   /// Takes an embedded shader's name, the grid's size and the format to write, R32F or wider.
-  Probe(const std::string& fragment, glm::ivec2 size, GLenum format = GL_R32F);
+  SurveyShader(const std::string& fragment, glm::ivec2 size, GLenum format = GL_R32F);
 
   Program& program() { return program_; }
 

@@ -1,18 +1,18 @@
-#include "harness/gl/survey/measure.h"
+#include "harness/gl/survey/survey.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "harness/gl/survey/measure_parts.h"
+#include "harness/gl/survey/survey_parts.h"
 
 namespace shadowbench::gl {
 namespace {
 
-DepthFormatMeasurement measure_depth_format(GLenum format) {
+DepthFormatSurvey measure_depth_format(GLenum format) {
   constexpr float kNear = 0.25f;
   constexpr float kFar = 0.75f;
-  DepthFormatMeasurement measured;
+  DepthFormatSurvey measured;
   measured.pcf = measure_pcf_weights(format);
   measured.offset_unit_near = measure_offset_unit(format, kNear);
   measured.offset_unit_far = measure_offset_unit(format, kFar);
@@ -32,7 +32,7 @@ std::string format_unit(double unit) {
   return fmt::format("{:.4g}", unit);
 }
 
-std::string format_depth(std::string_view name, const DepthFormatMeasurement& measured) {
+std::string format_depth(std::string_view name, const DepthFormatSurvey& measured) {
   std::string text = fmt::format("  {:<5} PCF weights     {}\n", name, format_weights(measured.pcf));
   text += fmt::format("        polygon offset  {} at depth 0.25, {} at 0.75\n", format_unit(measured.offset_unit_near),
                       format_unit(measured.offset_unit_far));
@@ -51,8 +51,8 @@ std::string format_slope(double ratio) {
 
 }  // namespace
 
-GlMeasurement measure_gl(Context& context) {
-  GlMeasurement measured;
+GlSurvey survey_gl(Context& context) {
+  GlSurvey measured;
   measured.d16 = measure_depth_format(GL_DEPTH_COMPONENT16);
   measured.d24 = measure_depth_format(GL_DEPTH_COMPONENT24);
   measured.d32f = measure_depth_format(GL_DEPTH_COMPONENT32F);
@@ -68,7 +68,7 @@ GlMeasurement measure_gl(Context& context) {
 
 int measure_pcf_weight_bits(Context&, GLenum depth_format) { return measure_pcf_weights(depth_format).bits; }
 
-std::string format_measurement(const GlInfo& info, const GlMeasurement& measured) {
+std::string describe_survey(const GlInfo& info, const GlSurvey& measured) {
   std::string text = fmt::format("{}: {}, {}\n", info.backend, info.renderer, info.version);
   text += format_depth("d16", measured.d16) + format_depth("d24", measured.d24) + format_depth("d32f", measured.d32f);
   text += fmt::format("  r32f  linear weights  {}\n", format_weights(measured.r32f));

@@ -1,23 +1,23 @@
-#include "harness/gl/survey/probe.h"
+#include "harness/gl/survey/survey_shader.h"
 
 #include "harness/gl/embedded_shaders.h"
 
 namespace shadowbench::gl {
 
-Probe::Probe(const std::string& fragment, glm::ivec2 size, GLenum format)
+SurveyShader::SurveyShader(const std::string& fragment, glm::ivec2 size, GLenum format)
     : program_(fragment, FullscreenTriangle::vertex_source(), embedded_source(fragment)),
       target_(fragment, format, size.x, size.y),
       framebuffer_(fragment) {
   framebuffer_.attach_color(0, target_);
 }
 
-void Probe::draw() {
+void SurveyShader::draw() {
   framebuffer_.bind();
   program_.use();
   triangle_.draw();
 }
 
-std::vector<float> Probe::run() {
+std::vector<float> SurveyShader::run() {
   draw();
   return target_.read_floats(target_.format().channels);
 }
