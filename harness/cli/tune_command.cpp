@@ -82,8 +82,10 @@ std::string describe_tuning() {
       "of its light, turned in azimuth; in degrees:\n"
       "  training: {}\n  unseen:   {}\n"
       "The found parameters are kept only where they gain more on unseen views than the truth's standard error (for "
-      "flip, leak and acne: more than nothing); else the default stays. Writes tuned.json, for 'run --tuned', tune.html and "
-      ".md, and every setting that was tried to evaluations.csv. The budget limits the search alone; to find the range of "
+      "flip, leak and acne: more than nothing); else the default stays. Writes tuned.json, for 'run --tuned', "
+      "tune.html and "
+      ".md, and every setting that was tried to evaluations.csv. The budget limits the search alone; to find the range "
+      "of "
       "each parameter in which the error stays within 10 % of the best takes some 25 settings more.",
       tune::describe_tune_views(true), tune::describe_tune_views(false));
 }

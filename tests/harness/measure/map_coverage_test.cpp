@@ -30,7 +30,7 @@ ViewReceivers look_at_floor(const scene::Camera& camera) {
   const bool flat = camera.orthographic_height_m > 0.0f;
   const double half = flat ? 0.5 * static_cast<double>(camera.orthographic_height_m)
                            : std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad));
-  ViewReceivers view{{kWidth, kHeight, {}}, {}, {}};
+  ViewReceivers view{{kWidth, kHeight, {}}, {}};
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       const glm::dvec3 across =

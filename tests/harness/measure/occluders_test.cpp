@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "harness/scene/lights/light_fit.h"
 #include "reference/truth/visibility.h"
 
@@ -52,7 +54,9 @@ TEST(Occluders, HolesOfAMaterial_LetRaysThrough) {
   scene.materials[0].alpha_cutoff = 0.1f;
   EXPECT_EQ(trace_hard(scene).front(), 0.0f);
   // u runs from -1 to 0 under the roof, and from -0.5 above the receivers: the texture's second texel, then its first.
-  scene.materials[0] = {.base_color_texture = 0, .alpha_mode = scene::AlphaMode::kMask};
+  scene.materials[0].alpha_cutoff = 0.5f;
+  scene.materials[0].base_color.a = 1.0f;
+  scene.materials[0].base_color_texture = 0;
   scene.textures.push_back(
       {"striped", 4, 1, {255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 0, 255, 255, 255, 255}});
   const std::vector<float> hard = trace_hard(scene);
