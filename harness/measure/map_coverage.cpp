@@ -109,7 +109,7 @@ double share_of_casters(const images::Image& depth_map) {
   return static_cast<double>(filled) / static_cast<double>(depth_map.texels.size());
 }
 
-records::CoverageRecord summarise(std::vector<float> densities, const CoverageCells& cells) {
+records::CoverageRecord summarise_coverage(std::vector<float> densities, const CoverageCells& cells) {
   records::CoverageRecord record;
   if (densities.empty()) return record;
   record.fewest_texels_per_pixel = static_cast<double>(*std::min_element(densities.begin(), densities.end()));
@@ -143,7 +143,7 @@ MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera
     coverage.texel.texels[2 * i + 1] = static_cast<float>(footprint.centre.y);
     densities.push_back(coverage.density.texels[i]);
   }
-  coverage.record = summarise(std::move(densities), cells);
+  coverage.record = summarise_coverage(std::move(densities), cells);
   coverage.record.map_filled = share_of_casters(depth_map);
   return coverage;
 }

@@ -48,26 +48,26 @@ ordered_json to_json(const PixelChange& change) {
 }
 
 ordered_json to_json(const Comparison& comparison) {
-  ordered_json json = {{"outcome", name_of(comparison.outcome)},
-                       {"key", comparison.key},
-                       {"scene", comparison.scene},
-                       {"view", comparison.view},
-                       {"filter", comparison.filter},
-                       {"label", comparison.label},
-                       {"settings", comparison.settings}};
-  json["accepted"] = comparison.accepted;
-  json["findings"] = ordered_json::array();
+  ordered_json document = {{"outcome", name_of(comparison.outcome)},
+                           {"key", comparison.key},
+                           {"scene", comparison.scene},
+                           {"view", comparison.view},
+                           {"filter", comparison.filter},
+                           {"label", comparison.label},
+                           {"settings", comparison.settings}};
+  document["accepted"] = comparison.accepted;
+  document["findings"] = ordered_json::array();
   for (const Finding& finding : comparison.findings) {
-    json["findings"].push_back({{"metric", finding.metric},
-                                {"expected", optional_json(finding.expected)},
-                                {"actual", optional_json(finding.actual)},
-                                {"limit", optional_json(finding.limit)},
-                                {"text", finding.text}});
+    document["findings"].push_back({{"metric", finding.metric},
+                                    {"expected", optional_json(finding.expected)},
+                                    {"actual", optional_json(finding.actual)},
+                                    {"limit", optional_json(finding.limit)},
+                                    {"text", finding.text}});
   }
-  json["notes"] = comparison.notes;
-  json["pixels"] = comparison.pixels ? to_json(*comparison.pixels) : ordered_json(nullptr);
-  json["picture"] = comparison.picture ? ordered_json(*comparison.picture) : ordered_json(nullptr);
-  return json;
+  document["notes"] = comparison.notes;
+  document["pixels"] = comparison.pixels ? to_json(*comparison.pixels) : ordered_json(nullptr);
+  document["picture"] = comparison.picture ? ordered_json(*comparison.picture) : ordered_json(nullptr);
+  return document;
 }
 
 }  // namespace
@@ -131,13 +131,13 @@ std::string make_regress_text(const RegressReport& report) {
 }
 
 std::string make_regress_json(const RegressReport& report) {
-  ordered_json json = {{"run", report.options.run.string()},    {"baseline", report.options.baseline.string()},
-                       {"compared", report.comparisons.size()}, {"failed", report.failed()},
-                       {"summary", describe_counts(report)},    {"accept_command", report.accept_command}};
-  json["accepted"] = report.accepted;
-  json["cells"] = ordered_json::array();
-  for (const Comparison& comparison : report.comparisons) json["cells"].push_back(to_json(comparison));
-  return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  ordered_json document = {{"run", report.options.run.string()},    {"baseline", report.options.baseline.string()},
+                           {"compared", report.comparisons.size()}, {"failed", report.failed()},
+                           {"summary", describe_counts(report)},    {"accept_command", report.accept_command}};
+  document["accepted"] = report.accepted;
+  document["cells"] = ordered_json::array();
+  for (const Comparison& comparison : report.comparisons) document["cells"].push_back(to_json(comparison));
+  return document.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace shadowbench::regress

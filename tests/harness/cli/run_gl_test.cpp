@@ -17,9 +17,9 @@ nlohmann::json results(const std::filesystem::path& folder) {
 TEST_F(Command, AllScenesAndFilters_WriteAValidReport) {
   const Outcome outcome = run("run --out out --size 128x72 --map-size 128 --rounds 2");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const nlohmann::json json = results(folder());
-  EXPECT_EQ(json["cells"].size(), 45u);
-  for (const auto& cell : json["cells"]) EXPECT_EQ(cell["nan"], 0);
+  const nlohmann::json document = results(folder());
+  EXPECT_EQ(document["cells"].size(), 45u);
+  for (const auto& cell : document["cells"]) EXPECT_EQ(cell["nan"], 0);
   for (const char* scene : {"cubes", "stack", "fence", "ball", "steps"}) {
     EXPECT_TRUE(std::filesystem::exists(folder() / "out" / (std::string(scene) + ".grid.png")));
     EXPECT_TRUE(std::filesystem::exists(folder() / "out" / (std::string(scene) + ".exr")));
@@ -37,9 +37,9 @@ TEST_F(Command, UserFilter_GetsCellAndPictures) {
           "--filter-file " +
           user_filter("nine_compares.glsl"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const nlohmann::json json = results(folder());
-  ASSERT_EQ(json["cells"].size(), 2u);
-  const nlohmann::json& cell = json["cells"][1];
+  const nlohmann::json document = results(folder());
+  ASSERT_EQ(document["cells"].size(), 2u);
+  const nlohmann::json& cell = document["cells"][1];
   EXPECT_EQ(cell["filter"], "nine_compares");
   EXPECT_EQ(cell["status"], "ok");
   EXPECT_EQ(cell["params"]["weight"], 0.5);
@@ -90,8 +90,8 @@ TEST_F(Command, MapAndLightSettings_AreRecordedAndReachUserFilters) {
       run(common +
           "--out out --map-format d16 --perspective-depth 30.5 --reversed-depth --fit view --snap on --light 60,30.5");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const nlohmann::json json = results(folder());
-  for (const auto& cell : json["cells"]) {
+  const nlohmann::json document = results(folder());
+  for (const auto& cell : document["cells"]) {
     EXPECT_EQ(cell["map_format"], "d16 perspective 30.5 reversed");
     EXPECT_EQ(cell["fit"], "view snapped");
     EXPECT_EQ(cell["light"], "60,30.5");
@@ -123,11 +123,11 @@ TEST_F(Command, EndlessUserFilter_TimesOutAndTheRunGoesOn) {
           "--filter-file " +
           user_filter("endless.glsl"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const nlohmann::json json = results(folder());
-  ASSERT_EQ(json["cells"].size(), 2u);
-  EXPECT_EQ(json["cells"][0]["status"], "ok");
-  EXPECT_EQ(json["cells"][1]["filter"], "endless");
-  EXPECT_EQ(json["cells"][1]["status"], "timeout");
+  const nlohmann::json document = results(folder());
+  ASSERT_EQ(document["cells"].size(), 2u);
+  EXPECT_EQ(document["cells"][0]["status"], "ok");
+  EXPECT_EQ(document["cells"][1]["filter"], "endless");
+  EXPECT_EQ(document["cells"][1]["status"], "timeout");
   EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "cubes.grid.png"));
 }
 
@@ -157,12 +157,12 @@ TEST_F(Command, SeveralMapSizes_DoNotShareFiles) {
 TEST_F(Command, EveryCell_IsScoredAgainstTheTruth) {
   const Outcome outcome = run("run --out out --size 128x72 --rounds 1 --scene cubes --filters none,vsm:radius=20");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const nlohmann::json json = results(folder());
-  const nlohmann::json &none = json["cells"][0]["error"], &wide = json["cells"][1]["error"];
+  const nlohmann::json document = results(folder());
+  const nlohmann::json &none = document["cells"][0]["error"], &wide = document["cells"][1]["error"];
   EXPECT_GT(none["rmse"], 0.0);
   EXPECT_LT(none["rmse"], 0.1);
   EXPECT_GT(wide["rmse"], none["rmse"]) << "a blur of 41 texels is wider than the sun's penumbra";
-  EXPECT_LE(json["cells"][0]["truth"]["se"], 0.005);
+  EXPECT_LE(document["cells"][0]["truth"]["se"], 0.005);
   EXPECT_LE(none["mae"], none["rmse"]);
   EXPECT_LE(none["rmse"], none["max"]);
   EXPECT_GT(none["flip"], 0.0);
@@ -249,9 +249,9 @@ TEST_F(Command, AUsersFilter_HasArtefactsButNoAttribution) {
 TEST_F(Command, WithoutTruth_SaysSo) {
   ASSERT_EQ(
       run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --no-truth").exit_code, 0);
-  const nlohmann::json json = results(folder());
-  EXPECT_TRUE(json["cells"][0]["error"]["rmse"].is_null());
-  EXPECT_EQ(json["cells"][0]["absent"]["error"], "the run was made with --no-truth");
+  const nlohmann::json document = results(folder());
+  EXPECT_TRUE(document["cells"][0]["error"]["rmse"].is_null());
+  EXPECT_EQ(document["cells"][0]["absent"]["error"], "the run was made with --no-truth");
 }
 
 TEST_F(Command, OverflowInTheMap_IsWarnedOf) {
@@ -350,8 +350,8 @@ TEST_F(Command, ListFilters_ShowsWhatTheFrontMatterSays) {
   EXPECT_EQ(outcome.exit_code, 0);
   for (const char* word : {"min_variance", "1e-05", "depth^2", "Donnelly", "per-pixel"})
     EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
-  const nlohmann::json json = nlohmann::json::parse(run("list filters --json").out);
-  EXPECT_EQ(json.size(), 9u);
+  const nlohmann::json document = nlohmann::json::parse(run("list filters --json").out);
+  EXPECT_EQ(document.size(), 9u);
 }
 
 TEST_F(Command, BorderSettings_ReachCellsPicturesAndUsersFilters) {
@@ -366,9 +366,9 @@ TEST_F(Command, BorderSettings_ReachCellsPicturesAndUsersFilters) {
     const Outcome outcome = run(arguments + setting);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     const auto out = folder() / setting.substr(6, setting.find(' ', 6) - 6);
-    const nlohmann::json json = nlohmann::json::parse(read_text(out / "results.json"));
-    for (const auto& cell : json["cells"]) keys.insert(cell["key"].get<std::string>());
-    EXPECT_EQ(json["cells"][0]["receivers"], json["cells"][1]["receivers"]);
+    const nlohmann::json document = nlohmann::json::parse(read_text(out / "results.json"));
+    for (const auto& cell : document["cells"]) keys.insert(cell["key"].get<std::string>());
+    EXPECT_EQ(document["cells"][0]["receivers"], document["cells"][1]["receivers"]);
     const std::string picture = read_text(out / "images" / "edge.pcf2x2.visibility.png");
     EXPECT_EQ(picture, read_text(out / "images" / "edge.copied.visibility.png")) << setting;
     pictures.insert(picture);
