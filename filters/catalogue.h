@@ -46,7 +46,7 @@ class Catalogue {
   FilterRequest make_request(const std::string& id) const;
 };
 
-/// Gives every parameter its default.
+/// Every parameter its default.
 ParamValues default_values(const FilterSpec& spec);
 
 /// Parses and checks one value for one parameter.

@@ -28,7 +28,7 @@ std::optional<pid_t> parse_process(std::string_view text, std::string_view end) 
   return process;
 }
 
-/// Gives the number of the process that a temporary file belongs to; nothing where it is no temporary file.
+/// The number of the process that a temporary file belongs to; nothing where it is no temporary file.
 std::optional<pid_t> owner_of_file(const fs::path& path) {
   const std::string name = path.filename().string();
   const std::size_t mark = name.rfind(kFileMark);

@@ -151,7 +151,7 @@ class BiasSweep {
     assets_.redraw(light_, drawn_);
   }
 
-  /// Says why a filter is left out of a mode; empty where it is not.
+  /// Why a filter is left out of a mode; empty where it is not.
   std::string explain_left_out(const render::BiasRule& rule, const filters::FilterSpec& spec) {
     draw_map(rule.map);
     if (rule.map.cull_front && !measure::SceneAssets::has_casters(light_))
@@ -191,7 +191,7 @@ class BiasSweep {
     return shots;
   }
 
-  /// Gives the filter whose images are shown.
+  /// The filter whose images are shown.
   const filters::FilterRequest* choose_shown(const std::vector<const filters::FilterRequest*>& usable) const {
     const auto tent = std::find_if(usable.begin(), usable.end(),
                                    [](const auto* request) { return request->spec.id == kPictureFilter; });

@@ -51,7 +51,7 @@ void add_picture_options(Command& command, PictureArguments& arguments);
 /// Adds --json.
 void add_json_option(Command& command, bool& json);
 
-/// Gives the folder for traced images; empty: nothing is kept.
+/// The folder for traced images; empty: nothing is kept.
 std::filesystem::path choose_cache(const DrawingArguments& arguments);
 
 /// Takes over what --gl, --cache, --no-cache and --out say, and finds the program's folders.
@@ -87,7 +87,7 @@ void require_distinct(const std::vector<filters::FilterRequest>& requests);
 /// Parses the built-in filters that --filters names, and refuses one that is named twice.
 std::vector<filters::FilterRequest> parse_builtin_filters(const std::string& text, const options::Resources& resources);
 
-/// Gives the results.json of a run, which is named by its folder or by that file. Throws Error(kInput) where there is
+/// The results.json of a run, which is named by its folder or by that file. Throws Error(kInput) where there is
 /// neither.
 std::filesystem::path find_results(const std::filesystem::path& run);
 

@@ -59,7 +59,7 @@ class CommandLine {
 
   /// All words, the program's name first.
   const std::vector<std::string>& words() const { return words_; }
-  /// Says whether the option, or argument, was given.
+  /// Whether the option, or argument, was given.
   bool has(const std::string& option) const;
   /// Sets an option to what else than the command line says, read and checked in the same way. Throws Error(kInput),
   /// with `where`, for a value that the option refuses.

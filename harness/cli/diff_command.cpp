@@ -83,7 +83,7 @@ void print_json(const run::ComparisonOptions& options, const run::Comparison& re
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-/// Says whether the command line names two runs, and not two pictures.
+/// Whether the command line names two runs, and not two pictures.
 bool name_runs(const CommandLine& line, const DiffArguments& arguments) {
   const bool a = is_run(arguments.image), b = is_run(arguments.truth);
   if (!a && !b) return false;

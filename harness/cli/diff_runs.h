@@ -4,7 +4,7 @@
 
 namespace shadowbench::cli {
 
-/// Says whether an argument of `diff` names a run, which is a folder or a .json file.
+/// Whether an argument of `diff` names a run, which is a folder or a .json file.
 bool is_run(const std::filesystem::path& argument);
 
 /// Compares the ratios to `none` of the cells that two runs have in common; prints how many repeat, and the ones that

@@ -34,7 +34,7 @@ std::string describe_range(const ParamSpec& param) {
   return fmt::format("{} .. {}{}", *param.min, *param.max, param.integer ? ", whole" : "");
 }
 
-/// Says what the encoded map holds; empty where the front matter does not tell.
+/// What the encoded map holds; empty where the front matter does not tell.
 std::string describe_stored(const FilterSpec& spec) {
   std::vector<std::string> parts;
   if (spec.holds_moments) parts.push_back("moments");

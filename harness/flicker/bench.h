@@ -28,7 +28,7 @@ class FlickerBench {
   FlickerBench(measure::Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
                truth::TruthCache& cache);
 
-  /// Says how the map follows the frames; it has the padding of the widest kernel, as in a run.
+  /// How the map follows the frames; it has the padding of the widest kernel, as in a run.
   MapFollowing following(bool snap) const;
 
   const measure::ViewReceivers& receivers() const { return receivers_; }

@@ -25,7 +25,7 @@ std::string_view name_of(Motion motion);
 /// Throws Error(kUsage) with the names there are.
 std::vector<Motion> parse_motions(const std::string& text);
 
-/// Gives the fit of the light's map that a motion is measured with.
+/// The fit of the light's map that a motion is measured with.
 scene::FitMode fit_of(Motion motion);
 
 /// What stands where in one frame.
@@ -50,7 +50,7 @@ struct MapFollowing {
 std::vector<scene::LightFrustum> fit_frames(Motion motion, const scene::Scene& scene, const std::vector<Frame>& frames,
                                             const MapFollowing& following);
 
-/// Gives a point's place in a map of `map_size` texels: texels from its first row and column, and depth in [0,1].
+/// A point's place in a map of `map_size` texels: texels from its first row and column, and depth in [0,1].
 glm::dvec3 find_place(const scene::LightFrustum& frustum, int map_size, const glm::vec3& point_ws);
 
 /// Marks, with 1, the receivers that face the light and lie in the map, `pad_texels` from its edge, in every frame.
@@ -58,7 +58,7 @@ std::vector<std::uint8_t> mark_receivers(const truth::ReceiverImage& receivers,
                                          const std::vector<scene::LightFrustum>& frusta, int map_size,
                                          double pad_texels);
 
-/// Gives the median, over marked receivers and steps, of how far a receiver moves against the map's grid, in texels;
+/// The median, over marked receivers and steps, of how far a receiver moves against the map's grid, in texels;
 /// whole texels, which change no filter's weights, are left out along each axis. Nothing where no receiver is marked.
 std::optional<double> measure_grid_move(const truth::ReceiverImage& receivers, const std::vector<std::uint8_t>& marked,
                                         const std::vector<scene::LightFrustum>& frusta, int map_size);
@@ -69,7 +69,7 @@ int count_resizes(const std::vector<scene::LightFrustum>& frusta);
 /// Texels that a step moves the grid by: small enough for a shadow's edge to be seen at several places within a texel.
 inline constexpr double kStepTexels = 0.125;
 
-/// Gives the step at which the grid moves by kStepTexels: for the light, at the median receiver that faces it; for the
+/// The step at which the grid moves by kStepTexels: for the light, at the median receiver that faces it; for the
 /// camera, which moves by that share of a texel. `following.snap` is not used. Throws Error(kInput) where turning the
 /// light moves nothing: no receiver faces it, or it stands overhead.
 double choose_step(Motion motion, const scene::Scene& scene, const truth::ReceiverImage& receivers,

@@ -26,7 +26,7 @@ void note(records::CellRecord& record, const char* field, std::optional<double>&
   if (!rate) record.absent[field] = reason;
 }
 
-/// Says which receivers there are too few of for a rate.
+/// Which receivers there are too few of for a rate.
 std::string too_few(const char* which) {
   return records::explain_nothing_to_see(fmt::format("fewer than {} receivers {}", metrics::kFewestReceivers, which));
 }

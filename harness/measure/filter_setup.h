@@ -9,7 +9,7 @@
 
 namespace shadowbench::measure {
 
-/// Gives a light as one filter sees it: with the run's bias, resolved for the filter's kernel.
+/// A light as one filter sees it: with the run's bias, resolved for the filter's kernel.
 render::LightSetup make_filter_light(const options::RunOptions& options, const scene::Light& light,
                                      const scene::LightFrustum& frustum, const filters::FilterRequest& request);
 

@@ -45,7 +45,7 @@ std::int64_t count_broken_texels(render::FilterPasses& filter, const render::Sha
 /// Cost: about four trials.
 std::optional<double> find_safe_exponent(const filters::FilterRequest& request, const MapTrial& trial);
 
-/// Says which limits a filter's map exceeds, and which parameters, each tried, keep them: infinite or NaN texels, and
+/// Which limits a filter's map exceeds, and which parameters, each tried, keep them: infinite or NaN texels, and
 /// variances that rounding takes below 0 by more than the filter's `variance_floor` makes up for. `name` begins every
 /// line.
 std::vector<std::string> list_exceeded_limits(const std::string& name, const filters::FilterRequest& request,

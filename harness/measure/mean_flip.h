@@ -14,7 +14,7 @@ namespace shadowbench::measure {
 std::optional<metrics::FlipView> view_picture(const images::Image& picture,
                                               double pixels_per_degree = metrics::kDefaultPixelsPerDegree);
 
-/// Gives the mean LDR-FLIP of two pictures over the pixels where `mask` is not 0, or over all where it is empty; FLIP
+/// The mean LDR-FLIP of two pictures over the pixels where `mask` is not 0, or over all where it is empty; FLIP
 /// itself has seen the whole pictures. Gives nothing where one of them is missing, or where no pixel counts. Requires
 /// one size, and a mask of that size.
 std::optional<double> measure_mean_flip(const std::optional<metrics::FlipView>& a,

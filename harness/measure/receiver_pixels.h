@@ -9,7 +9,7 @@
 
 namespace shadowbench::measure {
 
-/// Gives the index of a receiver's pixel in a picture whose rows run from top to bottom; receivers count them from the
+/// The index of a receiver's pixel in a picture whose rows run from top to bottom; receivers count them from the
 /// bottom.
 inline std::size_t find_pixel(const filters::Receiver& receiver, int width, int height) {
   return static_cast<std::size_t>((height - 1 - receiver.pixel.y) * width + receiver.pixel.x);

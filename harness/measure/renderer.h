@@ -26,7 +26,7 @@ struct Renderer {
 /// Throws Error(kContext).
 Renderer make_renderer(gl::Backend backend, const options::Resources& resources);
 
-/// Gives how exact the GL's functions and filtering weights are, by experiment: what propagated rounding bounds start
+/// How exact the GL's functions and filtering weights are, by experiment: what propagated rounding bounds start
 /// from. Cost: under 2 s when first asked for, nothing then.
 filters::GlAccuracy measure_accuracy(Renderer& renderer);
 

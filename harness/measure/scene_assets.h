@@ -26,7 +26,7 @@ class SceneAssets {
   SceneAssets(Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
               truth::TruthCache& cache, double pad_texels);
 
-  /// Gives the light's map; one for all cameras, unless the light is fitted to what each sees.
+  /// The light's map; one for all cameras, unless the light is fitted to what each sees.
   /// Throws Error(kUsage) when the GL cannot give a map of this size.
   LightMap& light_map(const scene::Camera& camera, int map_size);
 
@@ -36,10 +36,10 @@ class SceneAssets {
 
   render::GBuffer& gbuffer(const scene::Camera& camera);
 
-  /// Gives the truth of a view, traced when it is first asked for.
+  /// The truth of a view, traced when it is first asked for.
   const SceneTruth& truth(const scene::Camera& camera);
 
-  /// Gives what traces this scene.
+  /// What traces this scene.
   truth::CachedTracer& tracer() { return tracer_; }
 
   /// Draws a map again, as a moving light would; for timing.
@@ -48,7 +48,7 @@ class SceneAssets {
   /// Draws a map again with another bias in it.
   void redraw(LightMap& light, const render::MapBias& bias);
 
-  /// Says whether anything stands in a map. Reads it back.
+  /// Whether anything stands in a map. Reads it back.
   static bool has_casters(const LightMap& light);
 
  private:
@@ -70,10 +70,10 @@ class SceneAssets {
 /// Reads a map back as a picture of linear depth, rows top to bottom.
 images::Image read_linear_depth(const render::ShadowMap& map);
 
-/// Gives the half-width in texels of the widest kernel of these filters.
+/// The half-width in texels of the widest kernel of these filters.
 double largest_radius_texels(const std::vector<filters::FilterRequest>& requests);
 
-/// Gives the padding that the widest kernel of these filters needs, in whole texels.
+/// The padding that the widest kernel of these filters needs, in whole texels.
 double largest_padding_texels(const std::vector<filters::FilterRequest>& requests);
 
 /// Limits padding so that a map that is smaller than it keeps half of its texels for the scene.

@@ -56,10 +56,10 @@ SceneMeasurement measure_scene(Renderer& renderer, const options::RunOptions& op
 /// Writes a light's place as the command line reads it.
 std::string describe_light(const options::LightAngles& light);
 
-/// Gives a filter's parameters as records hold them.
+/// A filter's parameters as records hold them.
 records::ParamMap record_params(const filters::ParamValues& values);
 
-/// Gives the record of a cell with its settings and key, nothing measured yet.
+/// The record of a cell with its settings and key, nothing measured yet.
 records::CellRecord make_record(const options::RunOptions& options, const SceneTask& task,
                                 const filters::FilterRequest& request);
 

@@ -46,7 +46,8 @@ class StabilityMeter {
                                           const std::vector<filters::Receiver>& receivers);
 };
 
-/// Names the store with as many channels and the other float precision; nothing where the filter does not offer it.
+/// Names the store with as many channels and the other float precision; nothing where the filter does not offer
+/// it.
 std::optional<std::string> find_other_store(const filters::FilterRequest& request);
 
 /// Draws where a cell's numbers break and notes the path in its record; nothing where it has no such images.

@@ -30,7 +30,7 @@ std::vector<double> divide(const std::vector<double>& numerator, const std::vect
   return ratios;
 }
 
-/// Gives how many of `count` values may lie on one side of the interval: the most that fewer than 2.5 % of the throws
+/// How many of `count` values may lie on one side of the interval: the most that fewer than 2.5 % of the throws
 /// of as many fair coins do not exceed.
 std::size_t count_outside(std::size_t count) {
   double term = std::exp2(-static_cast<double>(count)), sum = term;  // no coin shows heads

@@ -11,14 +11,14 @@
 
 namespace shadowbench::measure {
 
-/// Says why no more rounds were timed.
+/// Why no more rounds were timed.
 enum class StopReason {
   kRounds,   ///< as many as were asked for, or as there may be
   kPrecise,  ///< the ratio's interval is as narrow as was asked for
   kBudget,   ///< the time is spent
 };
 
-/// Gives the name of a reason in records: "rounds", "precise" or "budget".
+/// Names a reason in records: "rounds", "precise" or "budget".
 std::string name_of(StopReason reason);
 
 /// Times of one filter, one entry per round it took part in, from the first on; milliseconds.

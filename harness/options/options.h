@@ -28,7 +28,7 @@ struct Resources {
 /// program where that is, else in the sources that it was built from. Throws Error(kUsage) where one is missing.
 Resources find_resources();
 
-/// Gives the folder for traced images: $XDG_CACHE_HOME/shadowbench, else ~/.cache/shadowbench; empty where neither is
+/// The folder for traced images: $XDG_CACHE_HOME/shadowbench, else ~/.cache/shadowbench; empty where neither is
 /// set. Source: XDG Base Directory Specification 0.8.
 std::filesystem::path default_cache_folder();
 

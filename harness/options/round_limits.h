@@ -2,7 +2,7 @@
 
 namespace shadowbench::options {
 
-/// Says when enough rounds are timed.
+/// When enough rounds are timed.
 struct RoundLimits {
   int fewest = 9;
   int most = 200;

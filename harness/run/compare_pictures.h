@@ -10,7 +10,7 @@
 
 namespace shadowbench::run {
 
-/// Says which pictures to compare, and how. A picture's name is FILE or FILE#PART, in any format that OpenImageIO
+/// Which pictures to compare, and how. A picture's name is FILE or FILE#PART, in any format that OpenImageIO
 /// reads.
 struct ComparisonOptions {
   std::string image;
@@ -20,7 +20,7 @@ struct ComparisonOptions {
   double pixels_per_degree = 0.0;        ///< for FLIP; positive
 };
 
-/// Holds what a comparison gave.
+/// What a comparison gave.
 struct Comparison {
   int width = 0;
   int height = 0;

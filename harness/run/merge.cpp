@@ -73,7 +73,7 @@ void require_complete(const std::vector<ShardRun>& shards) {
   }
 }
 
-/// Says whether the folder holds a report, or a cell of something else than what is merged.
+/// Whether the folder holds a report, or a cell of something else than what is merged.
 bool is_taken(const std::filesystem::path& out, const std::set<std::string>& keys) {
   std::error_code error;
   if (std::filesystem::exists(out / "results.json", error)) return true;

@@ -7,16 +7,16 @@
 
 namespace shadowbench::run {
 
-/// Gives the commit that the program was built from, "+" appended where the tree had changes; "unknown" without git.
+/// The commit that the program was built from, "+" appended where the tree had changes; "unknown" without git.
 std::string build_commit();
 
 /// Describes processor, cores, load, compiler and operating system.
 records::MachineRecord describe_machine();
 
-/// Describes the GL and the clock that times come from.
+/// The GL and the clock that times come from.
 records::GlRecord describe_gl(const measure::Renderer& renderer);
 
-/// Says what makes a record: this program on this machine and this GL. Its time is not known yet.
+/// What makes a record: this program on this machine and this GL. Its time is not known yet.
 records::Provenance describe_provenance(const measure::Renderer& renderer, std::uint64_t seed,
                                         const std::vector<std::string>& command);
 

@@ -166,7 +166,7 @@ class Experiment {
     return known.settings == own.settings && known.shard == own.shard && known.shards == own.shards;
   }
 
-  /// Gives the cells of the finished report of this very run that is measured anew; none where there is none.
+  /// The cells of the finished report of this very run that is measured anew; none where there is none.
   std::vector<records::CellRecord> read_replaced() const {
     const std::filesystem::path file = options_.out / "results.json";
     if (!options_.fresh || options_.worker || !std::filesystem::exists(file)) return {};
@@ -187,7 +187,7 @@ class Experiment {
     progress_.note(analysis::describe_overlap(run_.repeat) + " those of the run that this one replaces");
   }
 
-  /// Says whether the folder has the whole report of this very run already, of the very cells that lie there.
+  /// Whether the folder has the whole report of this very run already, of the very cells that lie there.
   bool has_report(const RunPlan& plan) const {
     const std::filesystem::path file = options_.out / "results.json";
     if (options_.worker || !std::filesystem::exists(file)) return false;

@@ -9,10 +9,10 @@
 
 namespace shadowbench::run {
 
-/// Gives the stem of all files of a task: the scene, with view and map size where the run has several.
+/// The stem of all files of a task: the scene, with view and map size where the run has several.
 std::string task_stem(const options::RunOptions& options, const measure::SceneTask& task);
 
-/// Gives the name of a task's float images below the report folder.
+/// Names a task's float images below the report folder.
 std::string exr_name(const options::RunOptions& options, const measure::SceneTask& task);
 
 /// Give the names of a cell's parts in that file.

@@ -82,7 +82,7 @@ std::vector<std::string> worker_arguments(const options::RunOptions& options, co
   return arguments;
 }
 
-/// Gives the worker's message without the program's name in front.
+/// The worker's message without the program's name in front.
 std::string clean(const std::string& text) {
   const std::string prefix = "shadowbench: ";
   const std::size_t begin = text.find(prefix);

@@ -12,11 +12,11 @@ Mesh transform_mesh(Mesh mesh, const glm::dmat4& world_from_local);
 /// Adds the second mesh's triangles to the first, which keeps its name and material.
 Mesh join_meshes(Mesh first, const Mesh& second);
 
-/// Gives every triangle its own three vertices and its geometric normal.
+/// Every triangle its own three vertices and its geometric normal.
 /// Requires indices in range.
 Mesh with_flat_normals(const Mesh& mesh);
 
-/// Gives every corner the mean normal, weighted by area, of the faces around it that turn by less than `crease_deg`.
+/// Every corner the mean normal, weighted by area, of the faces around it that turn by less than `crease_deg`.
 /// Corners belong together where their positions are equal. Requires indices in range.
 Mesh with_smooth_normals(const Mesh& mesh, double crease_deg);
 

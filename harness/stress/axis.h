@@ -52,7 +52,7 @@ struct Case {
   std::vector<Theory> theories = {};  ///< none: no limit is known
   /// Explains from what was measured why a theory is not met; empty where no known reason applies. May be null.
   std::function<std::string(const Disagreement&)> explain = {};
-  /// Says what else a record shows, where its numbers bear that out; printed with the axis. May be null.
+  /// What else a record shows, where its numbers bear that out; printed with the axis. May be null.
   std::function<std::vector<std::string>(const records::StressCase&)> remark = {};
   /// Null where `not_available` gives a reason. A case whose first value throws Error is not available; a later value
   /// that throws is broken.
@@ -93,7 +93,7 @@ const char* name_of(Level level);
 /// Gives all axes, by id.
 const std::vector<Axis>& axis_table();
 
-/// Gives the axes of a comma-separated list, in that order; all for an empty text.
+/// The axes of a comma-separated list, in that order; all for an empty text.
 /// Throws Error(kUsage) for an unknown one, with the nearest id, and for one that is named twice.
 std::vector<Axis> choose_axes(const std::string& text);
 

@@ -9,7 +9,7 @@
 namespace shadowbench::stress {
 namespace {
 
-/// Says what a case lacks; empty where it has everything.
+/// What a case lacks; empty where it has everything.
 std::string explain_absence(const AxisInputs& inputs, const filters::FilterRequest& request, Level level,
                             Reference reference) {
   const bool has_model = filters::make_model(request.spec.id) != nullptr;

@@ -53,10 +53,10 @@ void append(std::vector<Case>& cases, std::vector<Case> more);
 Observation judge_by_bounds(double measured, double degraded_over, double broken_over,
                             const std::function<std::string(double bound)>& describe);
 
-/// Gives the largest value that a case measured; 0 where it measured none.
+/// The largest value that a case measured; 0 where it measured none.
 double find_largest_measured(const records::StressCase& record);
 
-/// Says whether a case was observed, and was ok at every value.
+/// Whether a case was observed, and was ok at every value.
 bool is_ok_throughout(const records::StressCase& record);
 
 /// Explains a theory that is not met because the case is broken over the whole range, whatever the axis' value: a map

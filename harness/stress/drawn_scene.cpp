@@ -32,7 +32,7 @@ Differences count_differences(const std::vector<float>& seen, const std::vector<
   return found;
 }
 
-/// Says whether all surfaces are lit, or dark. The background does not count, but a picture of background alone is lit.
+/// Whether all surfaces are lit, or dark. The background does not count, but a picture of background alone is lit.
 bool is_all(const Drawing& drawing, float of) {
   bool any = false;
   for (std::size_t i = 0; i < drawing.visibility.size(); ++i) {

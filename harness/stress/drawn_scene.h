@@ -34,7 +34,7 @@ class SceneDrawer {
   /// Draws a scene as its first camera sees it. Throws Error as render::FilterPasses and render::ShadowMap.
   Drawing draw(const scene::Scene& scene);
 
-  /// Gives the frustum that the scene's light gets here.
+  /// The frustum that the scene's light gets here.
   scene::LightFrustum fit(const scene::Scene& scene) const;
 
   const DrawingSize& size() const { return size_; }

@@ -15,7 +15,7 @@ bool is_all(const std::vector<double>& values, double of) {
       values, [of](double value) { return std::abs(value - of) < kNearlyLit; });
 }
 
-/// Gives the largest fall within a run from any receiver to a later one.
+/// The largest fall within a run from any receiver to a later one.
 double find_largest_fall(const std::vector<double>& values, std::size_t run) {
   double largest = 0.0;
   for (std::size_t begin = 0; run > 0 && begin + run <= values.size(); begin += run) {

@@ -27,12 +27,12 @@ struct LayerScene {
 /// radius 0 between them, so that a kernel holds four texels: of more occluders than it has texels it holds some.
 LayerScene make_layer_scene(int radius_texels, const LayerStack& stack);
 
-/// Gives the visibility of variance shadow maps by the Chebyshev bound: s2 / (s2 + (t - mu)^2), with the mean mu and
+/// The visibility of variance shadow maps by the Chebyshev bound: s2 / (s2 + (t - mu)^2), with the mean mu and
 /// the variance s2 of the depths in the kernel, and the receiver's depth t behind the mean. Source: Donnelly and
 /// Lauritzen 2006, Variance Shadow Maps, I3D, eq. 5.
 double find_chebyshev(const LayerStack& stack, const std::vector<double>& shares);
 
-/// Gives the visibility of exponential shadow maps: the kernel's mean of exp(-c (t - z)).
+/// The visibility of exponential shadow maps: the kernel's mean of exp(-c (t - z)).
 /// Source: Annen et al. 2008, Exponential Shadow Maps, Graphics Interface, eq. 5.
 double find_exponential(const LayerStack& stack, const std::vector<double>& shares, double c);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMostHalvings = 60;
 
-/// Gives the coarse samples, both ends among them, in the order of the search.
+/// The coarse samples, both ends among them, in the order of the search.
 std::vector<double> place_samples(const Axis& axis) {
   const int count = std::max(axis.coarse_samples, 2);
   const auto [low, high] = axis.range;
@@ -87,7 +87,7 @@ class Search {
     return records::StressOnset{with, before, observer_.at(with).why};
   }
 
-  /// Says where, on the coarse samples, a verdict got better again after `verdict` was met.
+  /// Where, on the coarse samples, a verdict got better again after `verdict` was met.
   std::optional<std::string> find_recovery(Verdict verdict, const char* name) {
     const auto first = std::ranges::find_if(
         coarse_, [&](double value) { return observer_.at(value).verdict >= verdict; });
@@ -115,7 +115,7 @@ class Search {
   }
 };
 
-/// Says whether a theory that was met nowhere in the range, or right where the range begins, can be true: its onset,
+/// Whether a theory that was met nowhere in the range, or right where the range begins, can be true: its onset,
 /// give or take the tolerance, lies beyond the range or before it.
 bool agrees_outside(double onset, double tolerance, bool met, const Axis& axis) {
   const bool lies_above = met ? onset > axis.range.low * tolerance : onset * tolerance > axis.range.high;

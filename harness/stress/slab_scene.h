@@ -18,7 +18,7 @@ struct SlabSetting {
 /// camera that sees both. Not validated.
 scene::Scene make_slab_scene(const SlabSetting& setting);
 
-/// Says what reaches a point of the floor or of the slab, by construction: 1 lit, 0 blocked. Empty for points whose ray
+/// What reaches a point of the floor or of the slab, by construction: 1 lit, 0 blocked. Empty for points whose ray
 /// passes the slab's edge within `margin_m`, and for points of neither, such as the wall's.
 std::optional<double> find_slab_visibility(const SlabSetting& setting, const glm::dvec3& position_ws, double margin_m);
 

@@ -14,14 +14,14 @@ struct DepthPlan {
   bool reversed = false;     ///< one less that
 };
 
-/// Gives the depth in [0,1] of a distance, in units of the near plane's, and the distance of a depth.
+/// The depth in [0,1] of a distance, in units of the near plane's, and the distance of a depth.
 double depth_of(const DepthPlan& plan, double distance);
 double distance_of(const DepthPlan& plan, double depth);
 
-/// Gives what a depth may be off by once it is stored: half the format's quantum just below that depth.
+/// What a depth may be off by once it is stored: half the format's quantum just below that depth.
 double largest_rounding(GLenum format, double depth);
 
-/// Gives what a distance may be off by: largest_rounding() times the slope of distance over depth,
+/// What a distance may be off by: largest_rounding() times the slope of distance over depth,
 /// d^2 (f - n) / (n f) in perspective and f - n else. In units of the near plane's distance.
 double find_distance_error(GLenum format, const DepthPlan& plan, double distance);
 
@@ -41,7 +41,7 @@ class StoredDepths {
   /// Looks at distances between the planes, and densely at both planes, where a quantum of depth counts most.
   DepthError find_largest_error(const DepthPlan& plan);
 
-  /// Gives the largest error, in units of the near plane's distance, at distances whose depths lie within some quanta
+  /// The largest error, in units of the near plane's distance, at distances whose depths lie within some quanta
   /// of one's.
   double find_error_around(const DepthPlan& plan, double distance);
 

@@ -14,7 +14,7 @@ inline constexpr int kWidestRadius = 64;
 /// Requires 0 <= radius_texels <= kWidestRadius.
 SyntheticScene make_straight_edge(double radius_texels);
 
-/// Gives what a kernel leaves lit of each receiver: every texel of it compared with the receiver's depth.
+/// What a kernel leaves lit of each receiver: every texel of it compared with the receiver's depth.
 std::vector<double> compare_whole_kernel(const SyntheticScene& scene, const filters::Kernel& kernel);
 
 /// Judges a filter on a straight edge against what it must be. Kinds other than stochastic must rise from dark to

@@ -22,11 +22,11 @@ struct SyntheticScene {
   /// projective or none is.
   std::optional<scene::LightFrustum> frustum = {};
 
-  /// Gives the uv of a texel's centre.
+  /// The uv of a texel's centre.
   float uv(int texel) const { return (static_cast<float>(texel) + 0.5f) / static_cast<float>(size); }
 };
 
-/// Gives the depths of a map whose left half, the middle column included, has one depth and whose right half another.
+/// The depths of a map whose left half, the middle column included, has one depth and whose right half another.
 std::vector<float> make_split_depths(int size, float left, float right);
 
 /// What a filter makes of a synthetic scene.
@@ -67,7 +67,7 @@ struct Expected {
 /// A fall of more than this along a run that must rise makes a case broken.
 inline constexpr double kLargestFall = 0.1;
 
-/// Gives the largest difference of two lists of one length.
+/// The largest difference of two lists of one length.
 double find_largest_error(const std::vector<double>& seen, const std::vector<double>& expected);
 
 /// Judges that a visibility is NaN or infinite; nothing where all are finite.

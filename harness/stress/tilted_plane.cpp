@@ -33,7 +33,7 @@ LightAxes make_axes(const PlaneTilt& tilt) {
   return {(falling + level) / std::numbers::sqrt2, (level - falling) / std::numbers::sqrt2, away};
 }
 
-/// Gives the point of the plane that a place on the map, metres from its middle, shows.
+/// The point of the plane that a place on the map, metres from its middle, shows.
 glm::dvec3 find_point(const PlaneTilt& tilt, const glm::dvec2& place) {
   const LightAxes axes = make_axes(tilt);
   const glm::dvec3 seen = place.x * axes.right + place.y * axes.up;

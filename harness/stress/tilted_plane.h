@@ -17,7 +17,7 @@ struct PlaneTilt {
 inline constexpr int kPlaneMapTexels = 64;
 inline constexpr double kPlaneTexel_m = 1.0 / kPlaneMapTexels;
 
-/// Gives the depth in metres that the plane gains over a kernel which reaches so many texels on each axis, and which a
+/// The depth in metres that the plane gains over a kernel which reaches so many texels on each axis, and which a
 /// bias has to cover: s r tan(angle), and sqrt 2 times that on the diagonal.
 double find_gain_m(const PlaneTilt& tilt, double reach_texels);
 
@@ -35,7 +35,7 @@ class TiltedPlane {
   virtual void tilt(const PlaneTilt& tilt) = 0;
   /// Looks the receivers up, moved towards the light by a bias in metres. Call after tilt().
   virtual Acne find_acne(double bias_m) = 0;
-  /// Gives the error in metres that single precision leaves in a depth.
+  /// The error in metres that single precision leaves in a depth.
   virtual double rounding_m() const = 0;
 };
 

@@ -68,7 +68,7 @@ class RangeScan {
     return {values.begin(), values.end()};
   }
 
-  /// Gives the last good value on the way from a good to a bad one.
+  /// The last good value on the way from a good to a bad one.
   double find_edge(double good, double bad) {
     for (;;) {
       const double unit_good = scale_.to_unit(good), unit_bad = scale_.to_unit(bad);

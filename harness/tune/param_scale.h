@@ -23,14 +23,14 @@ class ParamScale {
 
   const SearchedParam& param() const { return param_; }
 
-  /// Gives the value at a place in [0,1]: whole for integers, else rounded to four significant digits, within the
+  /// The value at a place in [0,1]: whole for integers, else rounded to four significant digits, within the
   /// range.
   double to_value(double unit) const;
 
-  /// Gives the place of a value within the range.
+  /// The place of a value within the range.
   double to_unit(double value) const;
 
-  /// Gives the part of [0,1] that values from `low` to `high` take; an integer reaches half a step to both sides.
+  /// The part of [0,1] that values from `low` to `high` take; an integer reaches half a step to both sides.
   double measure_share(double low, double high) const;
 
   /// Names the scale: "linear", "log", "log above 1e-09".

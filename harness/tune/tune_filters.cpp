@@ -187,7 +187,7 @@ class Tuner {
     return all;
   }
 
-  /// Gives the mean over all training views.
+  /// The mean over all training views.
   static double evaluate(const StageList& stages, render::FilterPasses& passes, const filters::ParamValues& values) {
     std::vector<double> all;
     for (const auto& stage : stages) {

@@ -22,10 +22,10 @@ struct TuneOptions {
 /// are not `const`, which would have to be compiled anew for every value.
 std::vector<SearchedParam> list_searched_params(const filters::FilterRequest& request);
 
-/// Gives the half-width in texels of the widest kernel that a search of these filters draws.
+/// The half-width in texels of the widest kernel that a search of these filters draws.
 double find_widest_kernel(const std::vector<filters::FilterRequest>& requests);
 
-/// Gives how many texels the maps of a search are padded by, the same for every setting: what the widest kernel needs,
+/// How many texels the maps of a search are padded by, the same for every setting: what the widest kernel needs,
 /// but at most a 64th of the map, at least 4. A kernel that reaches beyond reads depth 1, as it would in a larger map
 /// without casters.
 double choose_tune_padding(double widest_kernel_texels, int map_size);

@@ -8,7 +8,7 @@
 
 namespace shadowbench::tune {
 
-/// Says what a tuned number is made from.
+/// What a tuned number is made from.
 enum class TuneMetricKind { kStatistic, kFlip, kAcne, kLeak };
 
 /// A number that tuning can make small: of [0,1], 0 at best.

@@ -16,7 +16,7 @@ namespace shadowbench::tune {
 /// The worst value of every metric that is tuned.
 inline constexpr double kWorstError = 1.0;
 
-/// Says how tuning draws and scores, whatever the filter.
+/// How tuning draws and scores, whatever the filter.
 struct TuneSettings {
   const options::RunOptions* options = nullptr;  ///< one map size, no rounds
   const TuneMetric* metric = nullptr;
@@ -43,7 +43,7 @@ class TuneStage {
   };
   const std::vector<View>& views() const { return views_; }
 
-  /// Says which views cannot be scored, and why, a line for each.
+  /// Which views cannot be scored, and why, a line for each.
   const std::vector<std::string>& left_out() const { return left_out_; }
 
   const scene::Scene& scene() const { return scene_; }

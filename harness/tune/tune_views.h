@@ -17,20 +17,20 @@ struct TuneView {
   std::string name() const;
 };
 
-/// Gives the views that every scene is tuned on and scored on: the one list of them.
+/// The views that every scene is tuned on and scored on: the one list of them.
 const std::vector<TuneView>& tune_views();
 
 /// Says in words which views those are.
 std::string describe_tune_views(bool training);
 
-/// Gives the point of a camera's central ray that is nearest to the middle of the scene's bounds; where that lies
+/// The point of a camera's central ray that is nearest to the middle of the scene's bounds; where that lies
 /// behind the camera, the middle itself.
 glm::vec3 find_pivot(const scene::Scene& scene, const scene::Camera& camera);
 
-/// Gives a camera turned about the vertical axis through a point; positive turns it as an azimuth grows, from +z to +x.
+/// A camera turned about the vertical axis through a point; positive turns it as an azimuth grows, from +z to +x.
 scene::Camera turn_camera(const scene::Camera& camera, const glm::vec3& pivot_ws, double degrees);
 
-/// Gives the scene under its light turned, with one camera for each of the views, in their order, named for them.
+/// The scene under its light turned, with one camera for each of the views, in their order, named for them.
 /// Requires that all views turn the light alike.
 scene::Scene make_tune_scene(const scene::Scene& scene, const std::vector<TuneView>& views);
 

@@ -8,7 +8,7 @@
 
 namespace shadowbench::tune {
 
-/// Gives every request the parameters that a tuned.json holds for its filter, but for those that the request sets
+/// Every request the parameters that a tuned.json holds for its filter, but for those that the request sets
 /// itself. Returns what the user should know: filters that the file does not name, which keep their defaults. Throws
 /// Error(kInput), with file and field, where the file is malformed or names an unknown filter or parameter, or a value
 /// that is not allowed; also for filters that are not requested.

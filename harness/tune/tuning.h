@@ -9,7 +9,7 @@
 
 namespace shadowbench::tune {
 
-/// Gives the error of a setting: one value per parameter, in their order. Lower is better; must be finite.
+/// The error of a setting: one value per parameter, in their order. Lower is better; must be finite.
 using Objective = std::function<double(const std::vector<double>& values)>;
 
 /// One setting that was drawn.

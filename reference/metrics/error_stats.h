@@ -6,7 +6,7 @@
 
 namespace shadowbench::metrics {
 
-/// Says how far an image is from the truth, over the pixels of a mask.
+/// How far an image is from the truth, over the pixels of a mask.
 struct ErrorStats {
   std::int64_t count = 0;       ///< pixels that were compared
   std::int64_t not_finite = 0;  ///< pixels of the mask that were left out because the image is NaN or infinite there

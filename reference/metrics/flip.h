@@ -27,7 +27,7 @@ struct FlipView {
 /// Looks at a picture from a distance. Requires finite pixels. Cost: about 0.2 s per megapixel on one core.
 FlipView view_for_flip(const LinearPicture& picture, double pixels_per_degree = kDefaultPixelsPerDegree);
 
-/// Gives the LDR-FLIP difference of two pictures per pixel, in [0,1]: 0 where an observer who flips between them at
+/// The LDR-FLIP difference of two pictures per pixel, in [0,1]: 0 where an observer who flips between them at
 /// this viewing distance sees no change. Symmetric in its arguments.
 ///
 /// Source: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild 2020, FLIP: A Difference Evaluator for

@@ -49,7 +49,7 @@ enum class MetricBaseline {
   kScale,    ///< a length, the same but for rounding
 };
 
-/// Describes one number of a cell.
+/// One number of a cell.
 struct Metric {
   std::string_view path;  ///< in results.json: "error.rmse", "attribution.numeric.share"
   MetricMember member;

@@ -12,7 +12,7 @@ struct NoisyDifference {
   double degrees_of_freedom = 1.0;  ///< degrees of freedom of the variance's estimate
 };
 
-/// Gives the probability, two-sided, of such a difference or a larger one by chance; 0 for one that is not finite.
+/// The probability, two-sided, of such a difference or a larger one by chance; 0 for one that is not finite.
 /// Source: Student 1908, The Probable Error of a Mean.
 double find_p(const NoisyDifference& difference);
 
@@ -26,12 +26,12 @@ struct Share {
   double lookups = 0.0;
 };
 
-/// Gives the two-sided probability that two shares differ at least so much where both come from one probability,
+/// The two-sided probability that two shares differ at least so much where both come from one probability,
 /// whatever that is: it is right for few lookups, and where nearly all agree. Counts are rounded to whole numbers.
 /// Source: Fisher 1935, The Logic of Inductive Inference (the exact test), twice its one-sided value.
 double find_p(const Share& a, const Share& b);
 
-/// Says whether chance explains the differences of many pixels.
+/// Whether chance explains the differences of many pixels.
 struct PixelTest {
   std::int64_t tested = 0;
   std::int64_t beyond = 0;       ///< pixels that differ by more than chance explains at the corrected level

@@ -11,7 +11,7 @@
 
 namespace shadowbench::truth {
 
-/// Says where a mesh has holes: a ray passes where the alpha of its texture is under the cutoff. The texture repeats
+/// Where a mesh has holes: a ray passes where the alpha of its texture is under the cutoff. The texture repeats
 /// and is read bilinearly, its first row at v = 0. The depth pass discards by the same rule, but reads a smaller mip
 /// level where the map has fewer texels than the texture: fine holes can be lost there, which is the map's error.
 struct CutOut {

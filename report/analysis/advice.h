@@ -13,7 +13,7 @@
 
 namespace shadowbench::analysis {
 
-/// Says what is looked for.
+/// What is looked for.
 struct AdviceRequest {
   std::vector<Demand> demands;
   LightMotion light = LightMotion::kMoving;
@@ -24,7 +24,7 @@ struct AdviceRequest {
       claims;  ///< of known filters, by id: for cells that do not hold theirs
 };
 
-/// Says how a configuration stands to one demand.
+/// How a configuration stands to one demand.
 struct Verdict {
   bool kept = false;
   std::optional<double> worst;                 ///< over the places; empty for a claim
@@ -35,7 +35,7 @@ struct Verdict {
   const records::CellRecord* lost_in_truth = nullptr;
 };
 
-/// Holds a cost over all places, each counting the same.
+/// A cost over all places, each counting the same.
 struct Cost {
   double mean = 0.0;
   records::Interval quartiles;  ///< mean of the lower and of the upper quartiles; of bytes and fetches: the mean twice
@@ -43,28 +43,28 @@ struct Cost {
       ratio;  ///< the mean, times what the 95 % interval of the ratio to `none` says of each place
 };
 
-/// Is a configuration that was judged.
+/// A configuration that was judged.
 struct Candidate {
   Configuration configuration;
   Cost cost;
   std::vector<Verdict> verdicts;  ///< one per demand
 };
 
-/// Is a configuration that cannot be said to keep the limits.
+/// A configuration that cannot be said to keep the limits.
 struct Unjudged {
   Configuration configuration;
   std::string reason;
   std::optional<std::size_t> demand;  ///< the first one that has no value
 };
 
-/// Says which spread decided whether two costs differ.
+/// Which spread decided whether two costs differ.
 enum class Basis {
   kExact,      ///< bytes and fetches have none
   kRatio,      ///< 95 % intervals of the ratio to the same `none`
   kQuartiles,  ///< of the times, where there is no common `none`
 };
 
-/// Says how much more one configuration costs than another.
+/// How much more one configuration costs than another.
 struct CostGap {
   double difference = 0.0;  ///< of the means, 0 or more
   double share = 0.0;       ///< of the cheaper one's mean; 0 where that is 0
@@ -75,7 +75,7 @@ struct CostGap {
 /// Compares two costs. Requires that the mean of `cheaper` is not above that of `dearer`.
 CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, CostKind kind);
 
-/// Says how far one demand is in the way.
+/// How far one demand is in the way.
 struct Obstacle {
   std::size_t failing = 0;             ///< judged configurations that fail it
   std::size_t alone = 0;               ///< those of them that keep all the others
@@ -83,14 +83,14 @@ struct Obstacle {
   std::optional<std::size_t> nearest;  ///< index into `failing` of the one that fails it alone by the least
 };
 
-/// Is a configuration that one demand alone keeps from being the cheapest.
+/// A configuration that one demand alone keeps from being the cheapest.
 struct Relaxation {
   std::size_t demand = 0;
   std::size_t candidate = 0;  ///< index into `failing`
   CostGap saving;             ///< against the advised one
 };
 
-/// Holds what can be said about a choice.
+/// What can be said about a choice.
 struct Advice {
   AdviceRequest request;
   std::vector<Place> places;

@@ -19,10 +19,10 @@ std::string format_kept(double value, double most);
 /// Says behind a cost what it is paid for: " a frame, moving light"; empty where that is not time.
 std::string describe_frame(const AdviceRequest& request);
 
-/// Says why the runner-up lost, or that it ties and why it is named second. Requires two that keep the demands.
+/// Why the runner-up lost, or that it ties and why it is named second. Requires two that keep the demands.
 std::string describe_runner_up(const Advice& advice, const records::GlRecord& gl);
 
-/// Says which demands the closest of those that fail breaks, and by what. Requires that there is one.
+/// Which demands the closest of those that fail breaks, and by what. Requires that there is one.
 std::string describe_closest(const Advice& advice);
 
 /// Says on one line which demands are in the way. Requires that nothing keeps them all.

@@ -7,7 +7,7 @@
 
 namespace shadowbench::analysis {
 
-/// Are the cells of one scene, view, map, bias and picture size: what one table and one grid compare.
+/// The cells of one scene, view, map, bias and picture size: what one table and one grid compare.
 struct CellGroup {
   std::string scene;
   std::vector<records::CellRecord> cells;

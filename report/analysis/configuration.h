@@ -23,7 +23,7 @@ std::vector<Place> list_places(const std::vector<const records::CellRecord*>& ce
 /// Names a place for people: its scene, and its view where the scene has several.
 std::string describe_place(const Place& place, const std::vector<Place>& places);
 
-/// Holds the cells that differ in nothing but scene and view: what a renderer would choose as a whole.
+/// The cells that differ in nothing but scene and view: what a renderer would choose as a whole.
 struct Configuration {
   std::string label;                              ///< filter and map, and all else in which the configurations differ
   std::string surroundings;                       ///< canonical settings without filter and parameters

@@ -10,14 +10,14 @@
 
 namespace shadowbench::analysis {
 
-/// Is a time measured at one kernel radius.
+/// A time measured at one kernel radius.
 struct RadiusPoint {
   double radius_texels = 0.0;
   Estimate still;   ///< ms: the lookup alone
   Estimate moving;  ///< ms: map, prefilter and lookup
 };
 
-/// Is one filter over its kernel radius, all else being equal.
+/// One filter over its kernel radius, all else being equal.
 struct RadiusCurve {
   std::string filter;
   std::string label;                ///< with the parameters that tell it from the filter's other curves
@@ -26,7 +26,7 @@ struct RadiusCurve {
   std::vector<RadiusPoint> points;  ///< by ascending radius
 };
 
-/// Is what one scene, view, map and picture size say of time over radius.
+/// What one scene, view, map and picture size say of time over radius.
 struct RadiusChart {
   std::string scope_id;
   std::string title;  ///< "cubes · view main · 480 × 270 · map 512"
@@ -38,7 +38,7 @@ struct RadiusChart {
   std::vector<RadiusCurve> curves;
 };
 
-/// Says which passes are paid in a frame.
+/// Which passes are paid in a frame.
 enum class LightState { kStill, kMoving };
 
 /// Compares a prefiltered curve with one that reads many taps, at the radii that both cover.
@@ -61,13 +61,13 @@ struct CurveComparison {
 std::vector<RadiusChart> make_radius_charts(const std::vector<records::CellRecord>& cells,
                                             const std::vector<TradeScope>& scopes);
 
-/// Gives a curve's time at a radius: measured or interpolated; nothing outside the radii measured.
+/// A curve's time at a radius: measured or interpolated; nothing outside the radii measured.
 std::optional<Estimate> time_at(const RadiusCurve& curve, double radius_texels, LightState light);
 
 /// Compares all pairs of a chart that have a radius in common.
 std::vector<CurveComparison> compare_curves(const RadiusChart& chart, LightState light);
 
-/// Says where the prefiltered curve is cheaper, to follow "is cheaper": "from a kernel radius of 4 texels on, of 2, 4
+/// Where the prefiltered curve is cheaper, to follow "is cheaper": "from a kernel radius of 4 texels on, of 2, 4
 /// compared".
 std::string describe_comparison(const CurveComparison& comparison);
 

@@ -5,38 +5,38 @@
 
 namespace shadowbench::analysis {
 
-/// Is a value with the ends of its interval; both ends equal the value where it is exact.
+/// A value with the ends of its interval; both ends equal the value where it is exact.
 struct Estimate {
   double value = 0.0;
   double low = 0.0;
   double high = 0.0;
 };
 
-/// Is one cell in the plane of the trade; less is better in both.
+/// One cell in the plane of the trade; less is better in both.
 struct FrontPoint {
   Estimate error;
   Estimate cost;
 };
 
-/// Says how a cell stands to the front.
+/// How a cell stands to the front.
 enum class Standing {
   kFront,      ///< no cell of the front dominates it or is tied with it
   kTied,       ///< a cell of the front differs from it in neither error nor cost
   kDominated,  ///< a cell of the front beats it
 };
 
-/// Is a cell's place: `by` is the cell of the front that it is tied with or dominated by, itself where it is on it.
+/// A cell's place: `by` is the cell of the front that it is tied with or dominated by, itself where it is on it.
 struct Placement {
   Standing standing = Standing::kFront;
   std::size_t by = 0;
 };
 
-/// Is one error smaller than another by more than is uncertain? Errors of one scene are measured against one truth,
+/// One error smaller than another by more than is uncertain? Errors of one scene are measured against one truth,
 /// whose standard error is the half-width of their intervals: a difference counts where it exceeds the larger
 /// half-width, as in rank_errors(). Exact errors differ where they are not equal.
 bool is_clearly_less_error(const Estimate& a, const Estimate& b);
 
-/// Is one cost below another, their intervals not touching?
+/// One cost below another, their intervals not touching?
 bool is_clearly_less_cost(const Estimate& a, const Estimate& b);
 
 /// Does `a` beat `b`: its cost is no higher, its error is not clearly larger, and one of the two is clearly less?

@@ -12,7 +12,7 @@ namespace shadowbench::analysis {
 /// counted by filter. Times are those of `gl`.
 std::vector<std::string> describe_front(const TradeScope& scope, const TradeFront& front, const records::GlRecord& gl);
 
-/// Says how fronts are read: what dominated and tied mean, what the intervals are, how scenes are combined.
+/// How fronts are read: what dominated and tied mean, what the intervals are, how scenes are combined.
 std::vector<std::string> explain_fronts();
 
 }  // namespace shadowbench::analysis

@@ -8,14 +8,14 @@
 
 namespace shadowbench::analysis {
 
-/// Says what is compared as what grows.
+/// What is compared as what grows.
 enum class GrowthLaw {
   kLookupOverPixels,    ///< lookup over the picture's pixels
   kLookupOverTexels,    ///< lookup over the map's texels
   kPrefilterOverTexels  ///< prefilter over the map's texels
 };
 
-/// Is how one filter's time grows: the exponents p of time ~ size^p, one per series of cells that differ in the size
+/// How one filter's time grows: the exponents p of time ~ size^p, one per series of cells that differ in the size
 /// alone.
 struct Growth {
   std::string filter;

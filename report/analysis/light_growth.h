@@ -11,7 +11,7 @@
 
 namespace shadowbench::analysis {
 
-/// Is what a frame costs under one number of lights.
+/// What a frame costs under one number of lights.
 struct LightPoint {
   int count = 0;
   Estimate still;         ///< ms: a lookup per light
@@ -21,14 +21,14 @@ struct LightPoint {
   std::int64_t maps_bytes = 0;
 };
 
-/// Is one filter over the number of lights, all else being equal.
+/// One filter over the number of lights, all else being equal.
 struct LightCurve {
   std::string filter;
   std::string label;               ///< with the parameters that tell it from the filter's other curves
   std::vector<LightPoint> points;  ///< by ascending count
 };
 
-/// Is what one scene, view, map and picture size say of time over the number of lights.
+/// What one scene, view, map and picture size say of time over the number of lights.
 struct LightChart {
   std::string scope_id;
   std::string title;  ///< "cubes · view main · 480 × 270 · map 512"
@@ -41,7 +41,7 @@ struct LightChart {
   std::vector<LightCurve> curves;
 };
 
-/// Is how a curve grows, fitted to the filter's own medians. The intervals are what a time anywhere within its
+/// How a curve grows, fitted to the filter's own medians. The intervals are what a time anywhere within its
 /// quartiles would allow: they are wide where times are unsteady.
 struct LightGrowth {
   Estimate per_light_ms;  ///< slope of the time over the count, by least squares
@@ -57,9 +57,9 @@ struct LightComparison {
   std::vector<int> still;  ///< at each count
   std::vector<int> moving;
 
-  /// Is one of the two cheaper somewhere, and the other elsewhere?
+  /// One of the two cheaper somewhere, and the other elsewhere?
   bool changes() const;
-  /// Are the two apart anywhere?
+  /// The two apart anywhere?
   bool is_apart() const;
 };
 
@@ -69,7 +69,7 @@ struct LightComparison {
 std::vector<LightChart> make_light_charts(const std::vector<records::CellRecord>& cells,
                                           const std::vector<TradeScope>& scopes);
 
-/// Gives the time of a frame.
+/// The time of a frame.
 const Estimate& frame_time(const LightPoint& point, LightState light);
 
 /// Requires two points or more, all times positive.
@@ -85,11 +85,11 @@ std::string format_exponent(const Estimate& exponent);
 /// Makes the table of a chart, two rows per curve, for casters that stand still and that move.
 records::TextTable make_light_table(const LightChart& chart);
 
-/// Says how the times of each chart grow: per added light, and to which power of the count; nothing for charts of one
+/// How the times of each chart grow: per added light, and to which power of the count; nothing for charts of one
 /// count.
 std::vector<std::string> describe_light_growth(const std::vector<LightChart>& charts, const records::GlRecord& gl);
 
-/// Says which filters overtake another between numbers of lights, or between casters that stand still and that move,
+/// Which filters overtake another between numbers of lights, or between casters that stand still and that move,
 /// with the places where they do, and of each chart how many pairs keep their order.
 std::vector<std::string> describe_light_order(const std::vector<LightChart>& charts);
 

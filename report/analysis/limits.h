@@ -9,13 +9,13 @@
 
 namespace shadowbench::analysis {
 
-/// Says which passes a frame pays for: map, prefilter and lookup (moving), or the lookup alone (static).
+/// Which passes a frame pays for: map, prefilter and lookup (moving), or the lookup alone (static).
 enum class LightMotion { kMoving, kStatic };
 
-/// Says what is to be cheap.
+/// What is to be cheap.
 enum class CostKind { kTime, kBytes, kFetches };
 
-/// Describes one number of a cell that may be limited; less is better.
+/// One number of a cell that may be limited; less is better.
 struct LimitSpec {
   std::string option;             ///< "--max-rmse"
   std::string field;              ///< of the record: "error.rmse"; "time_ms" for a sum over passes
@@ -38,7 +38,7 @@ std::optional<records::Quartiles> frame_time(const records::CellRecord& cell, Li
 /// Returns the ratio to `none` of what one frame takes.
 const std::optional<records::Ratio>& frame_ratio(const records::CellRecord& cell, LightMotion light);
 
-/// Is one thing asked of a configuration: a limit, or, without `spec`, a claim of its filter.
+/// One thing asked of a configuration: a limit, or, without `spec`, a claim of its filter.
 struct Demand {
   const LimitSpec* spec = nullptr;
   double most = 0.0;  ///< a value of this size keeps the limit

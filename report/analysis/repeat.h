@@ -7,7 +7,7 @@
 
 namespace shadowbench::analysis {
 
-/// Is one ratio to `none` whose 95 % intervals in two runs of one cell do not overlap.
+/// One ratio to `none` whose 95 % intervals in two runs of one cell do not overlap.
 struct RatioApart {
   const records::CellRecord* a = nullptr;
   const records::CellRecord* b = nullptr;
@@ -15,7 +15,7 @@ struct RatioApart {
   double gap = 0.0;   ///< between the intervals' nearer ends, over the smaller of these
 };
 
-/// Says how far the times of two runs repeat.
+/// How far the times of two runs repeat.
 struct RepeatComparison {
   records::RepeatRecord record;
   std::vector<RatioApart> apart;  ///< the widest gap first

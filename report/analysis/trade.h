@@ -12,7 +12,7 @@
 
 namespace shadowbench::analysis {
 
-/// Is a filter with its parameters and a map size, and what it got and paid in one scope.
+/// A filter with its parameters and a map size, and what it got and paid in one scope.
 struct TradeConfiguration {
   std::string filter;
   records::ParamMap params;
@@ -23,7 +23,7 @@ struct TradeConfiguration {
   std::array<Measured, kCostMeasures> costs;
 };
 
-/// Is what may be compared on one front: all cells of one scene, view and picture size, or all scenes and views
+/// What may be compared on one front: all cells of one scene, view and picture size, or all scenes and views
 /// together. Map format, bias, fit, light and range rule are the same throughout.
 struct TradeScope {
   std::string id;     ///< fit for a file name, and unique
@@ -44,7 +44,7 @@ void label_configurations(std::vector<TradeConfiguration>& configurations);
 /// order in which it appears. Scenes together hold only configurations that every scene and view has.
 std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>& cells);
 
-/// Is the front of a scope for one error and one cost.
+/// The front of a scope for one error and one cost.
 struct TradeFront {
   std::size_t error = 0;                    ///< index into list_error_measures()
   std::size_t cost = 0;                     ///< index into list_cost_measures()

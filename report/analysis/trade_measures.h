@@ -15,7 +15,7 @@ namespace shadowbench::analysis {
 inline constexpr std::size_t kErrorMeasures = 4;
 inline constexpr std::size_t kCostMeasures = 4;
 
-/// Describes one axis of the trade.
+/// One axis of the trade.
 struct Measure {
   std::string id;                                     ///< in file names, CSV and JSON: "rmse"
   std::string name;                                   ///< for axes and sentences: "RMSE to the area truth"
@@ -42,7 +42,7 @@ std::string format_value(const Measure& measure, double value);
 /// Writes an estimate with its interval where it has one: "3.9 [3.8, 4.1]".
 std::string format_estimate(const Measure& measure, const Estimate& estimate);
 
-/// Is a value or the reason why there is none.
+/// A value or the reason why there is none.
 struct Measured {
   std::optional<Estimate> estimate;
   std::string absent;
@@ -60,7 +60,7 @@ Measured read_error(const records::CellRecord& cell, std::size_t measure);
 /// picture refer to, or null.
 Measured read_cost(const records::CellRecord& cell, const records::CellRecord* reference, std::size_t measure);
 
-/// Is a cell the one that ratios refer to? That is the one whose own ratio is exactly 1 [1, 1].
+/// A cell the one that ratios refer to? That is the one whose own ratio is exactly 1 [1, 1].
 bool is_reference(const records::CellRecord& cell);
 
 }  // namespace shadowbench::analysis

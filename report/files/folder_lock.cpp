@@ -42,7 +42,7 @@ std::string read_owner(int descriptor) {
   return "another process";
 }
 
-/// Says whether the file system has no such locks, like some network file systems.
+/// Whether the file system has no such locks, like some network file systems.
 bool has_no_locks(int code) { return code == ENOLCK || code == ENOSYS || code == EOPNOTSUPP; }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 namespace shadowbench::images {
 
-/// Is a filter's error as a stacked bar: for each part its share of the RMSE, signed, in visibility.
+/// A filter's error as a stacked bar: for each part its share of the RMSE, signed, in visibility.
 /// The lengths sum to the RMSE.
 struct AttributionBar {
   records::PartValues lengths{};
@@ -24,7 +24,7 @@ std::optional<AttributionBar> make_attribution_bar(const records::CellRecord& ce
 /// "estimator 71 %, model 20 %". Empty where the RMSE is 0.
 std::string label_bar(const AttributionBar& bar);
 
-/// Is one part's stretch of a bar, in visibility from the zero line; begin < end.
+/// One part's stretch of a bar, in visibility from the zero line; begin < end.
 struct BarSegment {
   std::size_t part = 0;
   double begin = 0.0;
@@ -34,7 +34,7 @@ struct BarSegment {
 /// Stacks a bar's parts in their order: positive ones from the zero line to the right, negative ones to the left.
 std::vector<BarSegment> stack_segments(const AttributionBar& bar);
 
-/// Says what bars are drawn on, in visibility: several bars share one, so that their lengths compare.
+/// What bars are drawn on, in visibility: several bars share one, so that their lengths compare.
 struct BarScale {
   double below = 0.0;   ///< from the left end to the zero line
   double length = 0.0;  ///< from the left end to the right end; positive
@@ -46,13 +46,13 @@ struct BarScale {
 /// Chooses the scale of several bars: all of them fit, and the length is a round number, at least 0.001.
 BarScale choose_bar_scale(const std::vector<AttributionBar>& bars);
 
-/// Is the place of one part of a bar, in pixels.
+/// The place of one part of a bar, in pixels.
 struct SegmentBox {
   Rect box;
   std::size_t part = 0;
 };
 
-/// Is the place of a bar in a picture, in pixels.
+/// The place of a bar in a picture, in pixels.
 struct BarPlace {
   Rect box;                          ///< of all of it
   Rect track;                        ///< what the scale spans

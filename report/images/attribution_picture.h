@@ -10,7 +10,7 @@
 
 namespace shadowbench::images {
 
-/// Is a cell's error and the four parts it is the sum of, for people.
+/// A cell's error and the four parts it is the sum of, for people.
 struct AttributionPicture {
   std::string title;     ///< "vsm on stack: where the error comes from"
   std::string subtitle;  ///< "view main · map 1024 x 1024 d32f"
@@ -21,10 +21,10 @@ struct AttributionPicture {
   std::optional<double> scale = std::nullopt;  ///< the error that gets the full colour; chosen where not given
 };
 
-/// Says how large a part is: "RMS 0.0123, share 71 %"; a value that does not exist is left out.
+/// How large a part is: "RMS 0.0123, share 71 %"; a value that does not exist is left out.
 std::string caption_part(const records::AttributionPart& part);
 
-/// Says how large an error is: "RMSE 0.0173, mean signed -0.0012"; a value that does not exist is left out.
+/// How large an error is: "RMSE 0.0173, mean signed -0.0012"; a value that does not exist is left out.
 std::string caption_total(const records::ErrorRecord& error);
 
 /// Draws the error and its parts as five heat maps on one scale, with one colour bar. Returns display-referred sRGB

@@ -9,21 +9,21 @@
 
 namespace shadowbench::images {
 
-/// Is one filter's flicker by pixel, 1 channel, 0 or more; of one size.
+/// One filter's flicker by pixel, 1 channel, 0 or more; of one size.
 struct FlickerTile {
   std::string filter;
   Image free;     ///< without snapping
   Image snapped;  ///< with it
 };
 
-/// Is one motion's picture.
+/// One motion's picture.
 struct FlickerPicture {
   std::string title;
   std::string note;
   std::vector<FlickerTile> tiles;
 };
 
-/// Gives the place of a flicker on the pictures' scale, logarithmic from 0.001 at 0 to 1 at 1; nothing below.
+/// The place of a flicker on the pictures' scale, logarithmic from 0.001 at 0 to 1 at 1; nothing below.
 std::optional<double> place_flicker(double flicker);
 
 /// Draws every filter's flicker without snapping and, to the right of it, with snapping, two filters in a row, all on

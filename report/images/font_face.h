@@ -8,7 +8,7 @@
 
 namespace shadowbench::images {
 
-/// Is one glyph's coverage, placed relative to the pen on the baseline, y down.
+/// One glyph's coverage, placed relative to the pen on the baseline, y down.
 struct GlyphBitmap {
   Rect box;
   const unsigned char* coverage = nullptr;  ///< rows of `stride` bytes, 255 covered

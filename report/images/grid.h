@@ -11,7 +11,7 @@
 
 namespace shadowbench::images {
 
-/// Is one filter's place in a grid.
+/// One filter's place in a grid.
 struct GridTile {
   std::string label;    ///< "vsm"
   std::string caption;  ///< "radius 4, rg32f · 12.3 ms (CPU)"; wrapped where it is long
@@ -23,7 +23,7 @@ struct GridTile {
   std::string no_attribution = {};  ///< why it has none; said where another tile has, and empty where none is due
 };
 
-/// Is a labelled picture of what filters make of one scene, for people.
+/// A labelled picture of what filters make of one scene, for people.
 struct Grid {
   std::string title;
   std::string subtitle;

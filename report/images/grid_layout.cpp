@@ -159,7 +159,7 @@ class Builder {
     return std::max(text_end, y + height) + kRowGap;
   }
 
-  /// Says what the bars' colours, lengths and lines mean.
+  /// What the bars' colours, lengths and lines mean.
   int add_bar_legend(int y) {
     if (!layout_.bar_scale) return y;
     y = add_swatches(y);

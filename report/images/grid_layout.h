@@ -9,33 +9,33 @@
 
 namespace shadowbench::images {
 
-/// Says what a text of a grid is.
+/// What a text of a grid is.
 enum class TextRole { kTitle, kSubtitle, kLabel, kCaption, kMessage, kLegend };
 
-/// Is one line of text and the box it keeps to.
+/// One line of text and the box it keeps to.
 struct TextLine {
   Rect box;
   std::string text;
   TextRole role = TextRole::kCaption;
 };
 
-/// Says which of a tile's images a panel shows.
+/// Which of a tile's images a panel shows.
 enum class PanelKind { kPicture, kVisibility, kError, kPictureCrop, kVisibilityCrop };
 
-/// Is the place of one image; `box` has the size it is shown at.
+/// The place of one image; `box` has the size it is shown at.
 struct Panel {
   Rect box;
   std::size_t tile = 0;
   PanelKind kind = PanelKind::kPicture;
 };
 
-/// Is the place of a patch in a part's colour, beside its name.
+/// The place of a patch in a part's colour, beside its name.
 struct Swatch {
   Rect box;
   std::size_t part = 0;
 };
 
-/// Holds the place of everything in a grid; no two boxes overlap, and all lie in the canvas.
+/// The place of everything in a grid; no two boxes overlap, and all lie in the canvas.
 struct GridLayout {
   Size canvas;
   std::vector<TextLine> texts;

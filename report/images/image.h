@@ -20,7 +20,7 @@ struct Size {
   int height = 0;
 };
 
-/// Holds a float picture: `channels` interleaved, rows top to bottom, no padding.
+/// A float picture: `channels` interleaved, rows top to bottom, no padding.
 struct Image {
   int width = 0;
   int height = 0;

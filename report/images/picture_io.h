@@ -27,7 +27,7 @@ void write_picture_png(const std::filesystem::path& path, const Image& picture);
 /// Requires 3 channels. Throws Error(kOutput).
 void write_display_png(const std::filesystem::path& path, const Image& picture);
 
-/// Says which value is black and which white in a grey picture.
+/// Which value is black and which white in a grey picture.
 struct GreyRange {
   float black = 0.0f;
   float white = 1.0f;
@@ -42,7 +42,7 @@ void write_grey_png(const std::filesystem::path& path, const Image& image, GreyR
 /// Throws Error(kInput).
 Image read_picture(const std::filesystem::path& path);
 
-/// Is one named image of a multi-part EXR file.
+/// One named image of a multi-part EXR file.
 struct Part {
   std::string name;                        ///< "vsm.visibility"; unique in its file
   std::vector<std::string> channel_names;  ///< one per channel of `image`, unique
@@ -50,7 +50,7 @@ struct Part {
   bool half = false;  ///< stored as 16-bit floats
 };
 
-/// Holds a file's attributes, by name.
+/// A file's attributes, by name.
 using Metadata = std::map<std::string, std::variant<double, std::string>>;
 
 /// Rounds a picture to 16-bit floats, as a half part keeps it. Values above 65504 become infinite.
@@ -60,7 +60,7 @@ Image round_to_half(const Image& image);
 /// Requires at least one part. Throws Error(kOutput), also where names are not unique.
 void write_exr(const std::filesystem::path& path, const std::vector<Part>& parts, const Metadata& metadata);
 
-/// Holds a multi-part EXR file.
+/// A multi-part EXR file.
 struct ExrFile {
   std::vector<Part> parts;
   Metadata metadata;  ///< of the first part: numbers and texts, the format's own attributes included

@@ -29,7 +29,7 @@ struct StabilityImage {
 /// Lists them in the order of their declaration.
 const std::array<StabilityImage, 5>& list_stability_images();
 
-/// Is a cell's stability, for people.
+/// A cell's stability, for people.
 struct StabilityPicture {
   std::string title;
   std::string note;

@@ -6,7 +6,7 @@
 
 namespace shadowbench::images {
 
-/// Holds one picture as its file stores it.
+/// One picture as its file stores it.
 struct StoredPicture {
   Image image;             ///< integer codes as code / largest code; colours are not multiplied by alpha on the way
   int alpha_channel = -1;  ///< -1: there is none

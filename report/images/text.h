@@ -9,7 +9,7 @@
 
 namespace shadowbench::images {
 
-/// Is DejaVu Sans in one size; pixels per em.
+/// DejaVu Sans in one size; pixels per em.
 struct Font {
   int size = 20;
   bool bold = false;

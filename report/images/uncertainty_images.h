@@ -18,7 +18,7 @@ struct UncertaintyImages {
   Image seed_deviation;  ///< the same: standard deviation over them
 };
 
-/// Is one of them, with its place in a run's float images: "<cell's parts>.<id>".
+/// One of them, with its place in a run's float images: "<cell's parts>.<id>".
 struct UncertaintyImage {
   const char* id;
   Image UncertaintyImages::*image;

@@ -6,7 +6,7 @@
 
 namespace shadowbench::page {
 
-/// Is an axis: its ends, its ticks, and whether steps are ratios.
+/// An axis: its ends, its ticks, and whether steps are ratios.
 struct PlotAxis {
   bool log = false;
   double low = 0.0;
@@ -14,7 +14,7 @@ struct PlotAxis {
   std::vector<std::pair<double, std::string>> ticks;  ///< ascending, within the ends
 };
 
-/// Says what the ticks stand for.
+/// What the ticks stand for.
 enum class TickKind { kNumber, kBytes };
 
 /// Chooses an axis that holds all values with a margin: logarithmic where all are positive and span a factor of 3 or

@@ -15,7 +15,7 @@ struct PlotStyle {
   Mark mark;
 };
 
-/// Gives the style of the filter at a place in list_filters(): colours that people of every colour vision tell apart,
+/// The style of the filter at a place in list_filters(): colours that people of every colour vision tell apart,
 /// and marks that change with them, so that 35 filters have styles of their own. Source of the colours: Okabe and Ito
 /// 2008, Color Universal Design; without their yellow, which is faint on white.
 PlotStyle style_of(std::size_t filter);

@@ -46,7 +46,7 @@ std::string describe_extremes(const records::FlickerVariant& variant, const reco
                             against_truth(least->flicker, motion.truth));
 }
 
-/// Says which filters change more than the truth, and which less. A shadow that is too soft changes less.
+/// Which filters change more than the truth, and which less. A shadow that is too soft changes less.
 std::string describe_changes(const records::FlickerVariant& variant, const records::FlickerTruth& truth) {
   const auto [least, most] = std::ranges::minmax_element(variant.filters, {}, &records::FlickerFilter::change);
   std::vector<std::string> less;

@@ -8,13 +8,13 @@
 
 namespace shadowbench::pages {
 
-/// Says what each number of the report is, a sentence each.
+/// What each number of the report is, a sentence each.
 std::vector<std::string> define_flicker(const records::FlickerRecord& record);
 
-/// Says how a motion was made, and what is uncertain.
+/// How a motion was made, and what is uncertain.
 std::vector<std::string> explain_motion(const records::FlickerMotion& motion, int frames);
 
-/// Says what a motion's numbers show: which filter flickers most and least, against the truth, and what snapping buys.
+/// What a motion's numbers show: which filter flickers most and least, against the truth, and what snapping buys.
 std::vector<std::string> describe_flicker(const records::FlickerMotion& motion);
 
 /// A motion's table: a row per filter, without snapping and with it.

@@ -34,7 +34,7 @@ std::string describe_axis(const records::StressAxis& axis);
 /// Writes the table of all limits, with what it leaves out, for a terminal.
 std::string make_limit_text(const records::StressRecord& record);
 
-/// Says whether an axis has anything to draw: one observation or more.
+/// Whether an axis has anything to draw: one observation or more.
 bool has_stress_chart(const records::StressAxis& axis);
 
 /// Draws what was measured over an axis' quantity: a line per case, the same colour for the levels of one variant, the

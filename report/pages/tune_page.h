@@ -7,7 +7,7 @@
 
 namespace shadowbench::pages {
 
-/// Says what unseen views make of a filter's found parameters, and what is kept therefore.
+/// What unseen views make of a filter's found parameters, and what is kept therefore.
 std::string describe_verdict(const records::TunedFilterRecord& filter, const std::string& metric);
 
 /// Makes the page of `shadowbench tune`: what was tuned on what, and for every filter its parameters, scores, verdict

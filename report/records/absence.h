@@ -14,10 +14,10 @@ inline constexpr std::string_view kNothingToSee = "nothing to see: ";
 /// Makes such a reason; `why` says what there is too little of.
 std::string explain_nothing_to_see(std::string_view why);
 
-/// Says whether a reason of `absent` begins like that.
+/// Whether a reason of `absent` begins like that.
 bool is_nothing_to_see(std::string_view reason);
 
-/// Says why a cell lacks a value: what `absent` holds for the field, for a group that it is in, or for a part of it;
+/// Why a cell lacks a value: what `absent` holds for the field, for a group that it is in, or for a part of it;
 /// "not measured" where it holds nothing.
 std::string explain_absence(const CellRecord& cell, const std::string& field);
 

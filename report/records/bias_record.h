@@ -24,7 +24,7 @@ struct BiasCurve {
   std::vector<BiasPoint> points;  ///< by ascending factor
 };
 
-/// Holds one mode of bias.
+/// One mode of bias.
 struct BiasModeRecord {
   std::string mode;     ///< "constant"
   std::string key;      ///< "depth"; empty where the mode takes no amount
@@ -35,7 +35,7 @@ struct BiasModeRecord {
   std::string picture_caption;
 };
 
-/// Holds everything that a page about bias says.
+/// Everything that a page about bias says.
 struct BiasSweepRecord {
   std::string scene;
   std::string title;

@@ -11,7 +11,7 @@
 
 namespace shadowbench::records {
 
-/// Describes one of the parts that an error is the sum of.
+/// One of the parts that an error is the sum of.
 struct ErrorPart {
   const char* id;       ///< its field in AttributionRecord: "discretisation"
   const char* name;     ///< for legends: "discretisation and bias"
@@ -24,7 +24,7 @@ struct ErrorPart {
 /// Lists the parts in the order of their sum: numeric, estimator, discretisation, model.
 const std::array<ErrorPart, metrics::kErrorParts>& list_error_parts();
 
-/// Holds one number per part, in the order of list_error_parts().
+/// One number per part, in the order of list_error_parts().
 using PartValues = std::array<double, metrics::kErrorParts>;
 
 /// Returns the shares of a cell's error, or nothing where one of them does not exist.
@@ -33,7 +33,7 @@ std::optional<PartValues> list_shares(const CellRecord& cell);
 /// Lists all parts with their shares: "numeric 0 %, estimator 71 %, discretisation 9 %, model 20 %".
 std::string describe_shares(const PartValues& shares);
 
-/// Says why a cell has no attribution: what its `absent` holds for the attribution, one of its parts, or the error.
+/// Why a cell has no attribution: what its `absent` holds for the attribution, one of its parts, or the error.
 std::string explain_no_attribution(const CellRecord& cell);
 
 }  // namespace shadowbench::records

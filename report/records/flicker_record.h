@@ -29,7 +29,7 @@ struct FlickerVariant {
   std::vector<FlickerFilter> filters;
 };
 
-/// Holds how the truth changes while the light or the camera moves.
+/// How the truth changes while the light or the camera moves.
 struct FlickerTruth {
   bool moves = false;  ///< false: the truth cannot change, and is not traced
   double change = 0.0;
@@ -53,7 +53,7 @@ struct FlickerMotion {
   std::string picture;                   ///< path of the picture of the flicker, pixel by pixel
 };
 
-/// Holds everything that `shadowbench flicker` found.
+/// Everything that `shadowbench flicker` found.
 struct FlickerRecord : Provenance {
   std::string scene, view;
   int width = 0, height = 0;  ///< of the pictures, pixels

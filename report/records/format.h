@@ -41,14 +41,14 @@ std::string time_unit(const records::GlRecord& gl);
 /// Lists parameters: "radius 4, store rg32f".
 std::string describe_params(const records::ParamMap& params);
 
-/// Says how well the map's texels are spent: "3.2 map texels per pixel (worst 0.4), 61 % of the map used"; empty where
+/// How well the map's texels are spent: "3.2 map texels per pixel (worst 0.4), 61 % of the map used"; empty where
 /// that was not measured.
 std::string describe_coverage(const records::CoverageRecord& coverage);
 
 /// Lists what all cells of one table share: view, map, picture size, bias.
 std::string describe_settings(const records::CellRecord& cell);
 
-/// Says how a cell ended: "ok", "timeout: no answer after 10 s".
+/// How a cell ended: "ok", "timeout: no answer after 10 s".
 std::string describe_status(const records::CellRecord& cell);
 
 }  // namespace shadowbench::records

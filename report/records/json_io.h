@@ -38,7 +38,7 @@ CellRecord read_cell(const std::filesystem::path& dir, const std::string& key);
 /// Throws Error(kInput) for a cell file, Error(kOutput) for the results. Cost: memory of one cell at a time.
 void write_results(const std::filesystem::path& dir, const RunRecord& run, const std::vector<std::string>& keys);
 
-/// Holds a whole results.json.
+/// A whole results.json.
 struct Results {
   RunRecord run;
   std::vector<CellRecord> cells;

@@ -26,33 +26,33 @@ struct Quartiles {
   int n = 0;
 };
 
-/// Holds a confidence interval.
+/// A confidence interval.
 struct Interval {
   double low = 0.0;
   double high = 0.0;
 };
 
-/// Holds the median of per-round ratios with its 95 % bootstrap interval.
+/// The median of per-round ratios with its 95 % bootstrap interval.
 struct Ratio {
   double median = 0.0;
   Interval ci95;
 };
 
-/// Says how a cell ended.
+/// How a cell ended.
 enum class CellStatus { kOk, kTimeout, kCrashed, kError };
 
-/// Holds one parameter's value.
+/// One parameter's value.
 using ParamValue = std::variant<double, std::string, bool>;
 using ParamMap = std::map<std::string, ParamValue>;
 
-/// Holds a length along the light in three units, whose parts add up.
+/// A length along the light in three units, whose parts add up.
 struct BiasAmountRecord {
   double depth = 0.0;   ///< [0,1] over the light's range
   double texels = 0.0;  ///< in widths of a shadow-map texel
   double world = 0.0;   ///< metres
 };
 
-/// Holds the depth bias that every filter of the run was given, as it was asked for.
+/// The depth bias that every filter of the run was given, as it was asked for.
 struct BiasRecord {
   BiasAmountRecord constant;
   BiasAmountRecord slope;          ///< times 1 - n.l; the larger of this and `constant` holds
@@ -66,14 +66,14 @@ struct BiasRecord {
   bool midpoint = false;    ///< the map lies half-way between the first and the second surface
 };
 
-/// Holds what lookups did outside the map; the defaults are right, everything else shows an artefact.
+/// What lookups did outside the map; the defaults are right, everything else shows an artefact.
 struct RangeRecord {
   std::string border = "border";  ///< outside the map: border (lit), edge or repeat
   bool far_test = true;           ///< beyond the far plane is lit
   bool behind_test = true;        ///< behind the light of a projective map is lit
 };
 
-/// Holds what a cell's passes cost in time, in milliseconds of the clock that the run names.
+/// What a cell's passes cost in time, in milliseconds of the clock that the run names.
 struct TimeRecord {
   std::optional<Quartiles> map;
   std::optional<Quartiles> prefilter;
@@ -82,14 +82,14 @@ struct TimeRecord {
       std::nullopt;  ///< why no more rounds were timed: "rounds", "precise" or "budget"
 };
 
-/// Holds per-round ratios to the filter `none`; `none` itself carries 1 [1, 1].
+/// Per-round ratios to the filter `none`; `none` itself carries 1 [1, 1].
 struct RatioRecord {
   std::optional<Ratio> lookup;
   std::optional<Ratio> static_map;  ///< map and prefilter cached: lookup alone is paid
   std::optional<Ratio> moving;      ///< map, prefilter and lookup are paid in every frame
 };
 
-/// Holds what a frame lit by several lights costs, each with a shadow map of its own; milliseconds of the clock that
+/// What a frame lit by several lights costs, each with a shadow map of its own; milliseconds of the clock that
 /// the run names.
 struct LightCountRecord {
   int count = 0;        ///< lights: the scene's, turned about the vertical by i * 360 / count degrees
@@ -100,7 +100,7 @@ struct LightCountRecord {
   std::int64_t maps_bytes = 0;  ///< bytes of the maps that the lookups read
 };
 
-/// Holds paths relative to the report folder, with '/' between folders.
+/// Paths relative to the report folder, with '/' between folders.
 struct ImagesRecord {
   std::optional<std::string> picture;
   std::optional<std::string> visibility;
@@ -114,7 +114,7 @@ struct ImagesRecord {
   std::optional<std::string> parts = std::nullopt;  ///< no path, but how the names of the cell's parts in `exr` begin
 };
 
-/// Holds everything measured of one scene x view x filter x parameters x map settings.
+/// Everything measured of one scene x view x filter x parameters x map settings.
 ///
 /// What does not exist stays empty, and `absent` says why: dotted field name, or the name of a whole group
 /// ("error"), to reason. A null that nobody explained is written as "not measured".
@@ -146,10 +146,10 @@ struct CellRecord : metrics::MetricValues {
   std::map<std::string, std::string> absent;
 };
 
-/// Says which clock the times come from.
+/// Which clock the times come from.
 enum class TimerKind { kWallClock, kTimerQuery };
 
-/// Describes the OpenGL that drew the pictures.
+/// The OpenGL that drew the pictures.
 struct GlRecord {
   std::string backend;   ///< "osmesa", "egl", "glfw"
   std::string renderer;  ///< GL_RENDERER
@@ -158,7 +158,7 @@ struct GlRecord {
   TimerKind timer = TimerKind::kWallClock;
 };
 
-/// Describes the machine and the build.
+/// The machine and the build.
 struct MachineRecord {
   std::string cpu;
   int cores = 0;
@@ -192,7 +192,7 @@ struct SceneRecord {
   std::string title;
 };
 
-/// Says which cells of which experiment a run holds.
+/// Which cells of which experiment a run holds.
 struct ExperimentRecord {
   std::string title;
   std::string settings;  ///< names all cells of the experiment and what they are made from
@@ -201,7 +201,7 @@ struct ExperimentRecord {
   int shards = 1;
 };
 
-/// Holds what is common to all cells of a run.
+/// What is common to all cells of a run.
 struct RunRecord {
   std::string commit;
   std::vector<std::string> command;  ///< the command line, one entry per argument

@@ -19,7 +19,7 @@ enum class StressVerdict {
   kBroken     ///< NaN, infinity, all lit, all dark, or falling where the filter must rise
 };
 
-/// Says what kind of law a theoretical limit follows, and so how near a measurement has to come.
+/// What kind of law a theoretical limit follows, and so how near a measurement has to come.
 enum class StressTheoryKind {
   kOverflow,  ///< a number leaves its format: within 10 %
   kQuantum,   ///< a step of a format: within 10 %
@@ -27,7 +27,7 @@ enum class StressTheoryKind {
   kRounding   ///< a bound on accumulated rounding: within a factor of 8
 };
 
-/// Says how a measured limit compares with its theory.
+/// How a measured limit compares with its theory.
 enum class StressAgreement {
   kAgrees,
   kExplained,  ///< it does not agree, and the axis says why
@@ -40,7 +40,7 @@ struct StressRange {
   double high = 0.0;
 };
 
-/// Holds one observation.
+/// One observation.
 struct StressSample {
   double value = 0.0;  ///< value of the axis' quantity
   StressVerdict verdict = StressVerdict::kOk;
@@ -68,7 +68,7 @@ struct StressLimit {
   std::string explanation;  ///< why the two do not agree, for kExplained
 };
 
-/// Holds one filter in one variant on one axis.
+/// One filter in one variant on one axis.
 struct StressCase {
   std::string filter;  ///< id; empty: the axis tests arithmetic that no filter has yet
   std::string variant;
@@ -95,7 +95,7 @@ struct StressExhibit {
   std::vector<Picture> pictures;
 };
 
-/// Holds one axis with all its cases.
+/// One axis with all its cases.
 struct StressAxis {
   std::string id;
   std::string title;
@@ -112,7 +112,7 @@ struct StressAxis {
   std::vector<StressExhibit> exhibits;
 };
 
-/// Holds everything that `shadowbench stress` found.
+/// Everything that `shadowbench stress` found.
 struct StressRecord : Provenance {
   std::vector<std::string> filters;  ///< labels of what was chosen
   std::vector<StressAxis> axes;
@@ -121,12 +121,12 @@ struct StressRecord : Provenance {
 /// Names a case: "esm: r16f, linear (GL)".
 std::string label_of(const StressCase& item);
 
-/// Gives the names that records hold: "ok", "overflow", "agrees".
+/// The names that records hold: "ok", "overflow", "agrees".
 const char* name_of(StressVerdict verdict);
 const char* name_of(StressTheoryKind kind);
 const char* name_of(StressAgreement agreement);
 
-/// Gives the factor by which measured and theory may differ for a kind: 1.1 or 8.
+/// The factor by which measured and theory may differ for a kind: 1.1 or 8.
 double tolerance_of(StressTheoryKind kind);
 
 /// Finds the first place where a case has `verdict` or a worse one; null: there is none in the range.

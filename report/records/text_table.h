@@ -5,7 +5,7 @@
 
 namespace shadowbench::records {
 
-/// Holds a table's texts.
+/// A table's texts.
 struct TextTable {
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;  ///< each as long as the header

@@ -14,7 +14,7 @@ inline constexpr int kTunedSchemaVersion = 1;
 /// Makes the text of a tuned.json: settings, and for every filter its parameters, their good ranges and all scores.
 std::string make_tuned_json(const TunedRecord& record);
 
-/// Holds what a run takes from a tuned.json.
+/// What a run takes from a tuned.json.
 struct TunedSettings {
   struct Filter {
     std::string id;

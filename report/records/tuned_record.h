@@ -8,14 +8,14 @@
 
 namespace shadowbench::records {
 
-/// Holds a metric with the parameters a filter has by default, and with those that were found.
+/// A metric with the parameters a filter has by default, and with those that were found.
 struct TunedScore {
   double at_default = 0.0;
   double tuned = 0.0;
   double gain() const { return at_default - tuned; }  ///< positive: the found ones are better
 };
 
-/// Holds the scores of one view.
+/// The scores of one view.
 struct TunedViewRecord {
   std::string scene;
   std::string view;
@@ -24,7 +24,7 @@ struct TunedViewRecord {
   double truth_se = 0.0;  ///< standard error of the truth, root mean square over the view's receivers
 };
 
-/// Holds one parameter that was searched, and how wide its good range is.
+/// One parameter that was searched, and how wide its good range is.
 struct TunedParamRecord {
   std::string name;
   std::string unit;
@@ -46,7 +46,7 @@ enum class TuneVerdict {
   kOverfitted,  ///< better in training, but not on unseen views
 };
 
-/// Holds what was found for one filter.
+/// What was found for one filter.
 struct TunedFilterRecord {
   std::string id;
   std::string label;  ///< with the parameters that the request fixed
@@ -63,7 +63,7 @@ struct TunedFilterRecord {
   int evaluations = 0;         ///< settings drawn in all, with those for the good ranges
 };
 
-/// Holds a whole tuning.
+/// A whole tuning.
 struct TunedRecord {
   std::string commit;
   std::string renderer;

@@ -12,7 +12,7 @@ namespace shadowbench::regress {
 /// Lists the metrics that a baseline keeps, in the order of their table.
 const std::vector<metrics::Metric>& list_compared_metrics();
 
-/// Says whether a metric is an error or a rate of faults: farther from 0 is less accurate.
+/// Whether a metric is an error or a rate of faults: farther from 0 is less accurate.
 bool is_error(const metrics::Metric& metric);
 
 /// Lists the ratios to `none` that a baseline keeps: "ratio_to_none.lookup", ...
@@ -31,7 +31,7 @@ struct ComparedValues {
 /// Reads these values from a record.
 ComparedValues read_values(const records::CellRecord& cell);
 
-/// Says why a record lacks a number that a baseline keeps.
+/// Why a record lacks a number that a baseline keeps.
 std::string find_absence(const records::CellRecord& cell, const std::string& path);
 
 }  // namespace shadowbench::regress

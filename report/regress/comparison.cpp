@@ -212,7 +212,7 @@ std::string describe_cell(const std::string& view, int map_size, int width, int 
 
 bool same_size(const images::Image& a, const images::Image& b) { return a.width == b.width && a.height == b.height; }
 
-/// Says why two images cannot be compared pixel by pixel; empty where they can.
+/// Why two images cannot be compared pixel by pixel; empty where they can.
 std::string find_mismatch(const images::Image& actual, const images::Image& expected) {
   if (expected.empty()) return "the baseline has no image of it";
   if (actual.empty()) return "the run has no image of it";
@@ -221,7 +221,7 @@ std::string find_mismatch(const images::Image& actual, const images::Image& expe
                      expected.width, expected.height);
 }
 
-/// Says what is wrong with one cell's images; empty where nothing is.
+/// What is wrong with one cell's images; empty where nothing is.
 std::string find_damage(const CellImages& images, const char* whose) {
   const images::UncertaintyImages& uncertainty = images.uncertainty;
   for (const images::UncertaintyImage& each : images::list_uncertainty_images()) {
@@ -234,7 +234,7 @@ std::string find_damage(const CellImages& images, const char* whose) {
   return "";
 }
 
-/// Says why a cell cannot be compared; empty where it can.
+/// Why a cell cannot be compared; empty where it can.
 std::string find_obstacle(const ActualCell& actual, const CellImages& expected) {
   if (!actual.unreadable.empty()) return actual.unreadable;
   for (const std::string& found : {find_mismatch(actual.images.visibility, expected.visibility),

@@ -14,7 +14,7 @@ enum class Outcome { kSame, kSlower, kChanged, kLessAccurate, kExtra, kMissing, 
 /// Names an outcome: "same", "slower", "changed", "less accurate", "extra", "missing", "unreadable".
 std::string name_of(Outcome outcome);
 
-/// Is one thing that is not as the baseline has it.
+/// One thing that is not as the baseline has it.
 struct Finding {
   std::string metric;  ///< of list_limited_metrics(); empty where no limit is at stake
   std::optional<double> expected;
@@ -57,7 +57,7 @@ struct ActualCell {
 Comparison compare_cell(const ActualCell& actual, const BaselineCell& expected, const CellImages& expected_images,
                         const Tolerances& tolerances);
 
-/// Is one view's truth of the run at hand.
+/// One view's truth of the run at hand.
 struct ActualTruth {
   records::CellRecord record;  ///< of any cell of the view
   TruthImages images;

@@ -13,13 +13,13 @@ inline constexpr std::size_t kMostListed = 20;
 /// Names a cell: "cubes vsm (view main, map 512, 256 x 144)".
 std::string name_cell(const Comparison& comparison);
 
-/// Says what differs in a cell, and what was not compared.
+/// What differs in a cell, and what was not compared.
 std::vector<std::string> describe_differences(const Comparison& comparison);
 
-/// Says how to accept what differs, or what was accepted; empty where neither is to be said.
+/// How to accept what differs, or what was accepted; empty where neither is to be said.
 std::string describe_ending(const RegressReport& report);
 
-/// Gives the command that accepts what differs, as it would be typed.
+/// The command that accepts what differs, as it would be typed.
 std::string make_accept_command(const RegressOptions& options);
 
 /// Says in a line how many cells are as they were, and how many are not: "49 compared: 48 same, 1 less accurate".

@@ -52,7 +52,7 @@ void read_images(ActualCell& cell, const ImageFile& file) {
     cell.images.uncertainty.*each.image = find_part(file.parts, prefix + each.id);
 }
 
-/// Says why a cell has no image; empty where it has one.
+/// Why a cell has no image; empty where it has one.
 std::string explain_no_image(const records::CellRecord& cell) {
   if (cell.status != records::CellStatus::kOk) return "the run could not measure it: " + records::describe_status(cell);
   if (!cell.images.exr || !cell.images.parts) return "the run kept no float images: run it with --grids";

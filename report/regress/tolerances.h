@@ -31,7 +31,7 @@ class Tolerances {
   /// The tolerances of a new baseline: they follow from how goldens are stored, and from single precision.
   Tolerances();
 
-  /// Gives a filter's tolerance. Requires a metric of list_limited_metrics().
+  /// A filter's tolerance. Requires a metric of list_limited_metrics().
   const Tolerance& find(const std::string& filter, const std::string& metric) const;
 
   /// Sets the tolerance of a filter, or of all where `filter` is empty.
@@ -51,7 +51,7 @@ const std::vector<std::string>& list_limited_metrics();
 /// gives no reason.
 Tolerances read_tolerances(const std::filesystem::path& file);
 
-/// Gives the text of such a file.
+/// The text of such a file.
 std::string write_tolerances(const Tolerances& tolerances);
 
 }  // namespace shadowbench::regress

@@ -29,7 +29,7 @@ double unit_roundoff(const std::string& store) {
   return filters::store_precision(store) == filters::StorePrecision::kHalf ? 0x1p-11 : 0x1p-24;
 }
 
-/// Gives the deepest depth that is encoded. A blur on the GL also encodes the border, whose depth is 1 whatever the map
+/// The deepest depth that is encoded. A blur on the GL also encodes the border, whose depth is 1 whatever the map
 /// holds; a model looks up only what its receivers reach.
 double find_deepest(const Setting& setting, Level level) {
   return level == Level::kGl && setting.radius > 0 ? 1.0 : static_cast<double>(setting.largest_depth);

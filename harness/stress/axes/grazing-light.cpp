@@ -37,7 +37,7 @@ std::string describe_theory(const Reach& reach, bool diagonal) {
   return fmt::format("s ({:g} + {:g}){} tan(angle)", reach.shape, reach.between, diagonal ? " sqrt(2)" : "");
 }
 
-/// Gives the angle at which the bias reaches the bound, and the law that the bias follows at every angle.
+/// The angle at which the bias reaches the bound, and the law that the bias follows at every angle.
 std::vector<Theory> make_theories(const Reach& reach, bool diagonal) {
   const double gain = find_gain_m({45.0, diagonal}, reach.texels()) / kPlaneTexel_m;
   const std::string law = describe_theory(reach, diagonal);
@@ -64,7 +64,7 @@ Observation observe_plane(TiltedPlane& plane, const PlaneTilt& tilt, const Reach
   return {Verdict::kOk, texels, {}};
 }
 
-/// Says how near the bias came to theory, over all angles.
+/// How near the bias came to theory, over all angles.
 std::vector<std::string> remark_ratio(const records::StressCase& record, const Reach& reach, bool diagonal) {
   double least = std::numeric_limits<double>::infinity(), most = 0.0, steepest = 0.0;
   for (const records::StressSample& sample : record.samples) {

@@ -19,7 +19,7 @@ bool averages_comparisons(const filters::FilterSpec& spec) {
   return !spec.has_encode && spec.kind != filters::FilterKind::kOther;
 }
 
-/// Says what a filter is without a kernel.
+/// What a filter is without a kernel.
 std::string name_base(const filters::FilterSpec& spec, const filters::Kernel& kernel) {
   const bool nearest = kernel.reconstruction() == filters::Reconstruction::kNearest;
   if (!averages_comparisons(spec))
@@ -27,7 +27,7 @@ std::string name_base(const filters::FilterSpec& spec, const filters::Kernel& ke
   return nearest ? "one comparison with the nearest texel" : "one hardware 2x2 comparison";
 }
 
-/// Gives the filter's own arithmetic in extended precision; without a radius the base comparison, which needs none of
+/// The filter's own arithmetic in extended precision; without a radius the base comparison, which needs none of
 /// the filter's code.
 std::vector<double> expect_visibility(const filters::FilterRequest& request, double radius, const SyntheticScene& scene,
                                       SyntheticLookup& exact) {

@@ -41,7 +41,7 @@ ClosedForm find_closed_form(const filters::FilterRequest& request) {
 
 LayerStack make_stack(int occluders, double ratio) { return make_layer_stack(occluders, kFirstGap, ratio, kReceiver); }
 
-/// Gives the most that any receiver's kernel lets through.
+/// The most that any receiver's kernel lets through.
 double find_largest(const ClosedForm& form, const LayerScene& layers, const LayerStack& stack) {
   double largest = 0.0;
   for (const std::vector<double>& shares : layers.shares) largest = std::max(largest, form.visibility(stack, shares));

@@ -86,7 +86,7 @@ std::vector<glm::vec3> place(Place where, double outside) {
   return {};
 }
 
-/// Says whether receivers must be lit: where the map holds nothing that could shadow them, and on a floor, which does
+/// Whether receivers must be lit: where the map holds nothing that could shadow them, and on a floor, which does
 /// not shadow itself.
 bool must_be_lit(Place where, double outside, double reach) {
   switch (where) {
@@ -104,7 +104,7 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// Gives the largest difference along any side. Sides are not compared with each other: on the very border two of them
+/// The largest difference along any side. Sides are not compared with each other: on the very border two of them
 /// are inside the map and two outside.
 double find_unevenness(const std::vector<double>& beside) {
   double largest = 0.0;
@@ -143,7 +143,7 @@ class WiderMap {
       lookup_ = make_model_lookup(inputs, request, filters::Precision::kDouble);
   }
 
-  /// Gives the largest difference of what is seen of a map of occluders; 0 where there is nothing to hold it against.
+  /// The largest difference of what is seen of a map of occluders; 0 where there is nothing to hold it against.
   double find_difference(const std::vector<glm::vec3>& receivers, const std::vector<double>& seen) const {
     if (!lookup_) return 0.0;
     return find_largest_error(seen, lookup_->look(widen(receivers), values_).visibility);

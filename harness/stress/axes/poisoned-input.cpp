@@ -56,7 +56,7 @@ SyntheticScene make_scene() {
   return scene;
 }
 
-/// Gives the scene with so many texels poisoned, or made as deep as is harmless.
+/// The scene with so many texels poisoned, or made as deep as is harmless.
 SyntheticScene poison(SyntheticScene scene, int count, const Poison& poison, float Drop::*part) {
   for (int i = 0; i < count; ++i) {
     const glm::ivec2 texel = place_texel(i);
@@ -115,7 +115,7 @@ Observation judge_harm(const Harm& harm, int count, int reach) {
                       harm.inside, harm.reachable, reach, harm.not_finite)};
 }
 
-/// Gives how many texels the bilinear reads of a kernel reach from a texel's centre.
+/// How many texels the bilinear reads of a kernel reach from a texel's centre.
 int find_reach(const filters::FilterRequest& request) {
   return static_cast<int>(std::ceil(filters::radius_texels(request.spec, request.values))) + 1;
 }
@@ -135,7 +135,7 @@ struct MapSetting {
   bool border_is_poison = false;  ///< what lies outside the map is encoded as the poison is
 };
 
-/// Says what a GL stores of poison that is uploaded, if it clamps it.
+/// What a GL stores of poison that is uploaded, if it clamps it.
 std::string describe_stored(const Poison& poison) {
   render::ShadowMap map(1);
   std::vector<std::string> changed;

@@ -17,7 +17,7 @@ std::vector<filters::ParamSpec> list_count_params(const filters::FilterRequest& 
   return {*request.spec.find_param(request.spec.disks.front().count)};
 }
 
-/// Gives the largest count that a filter allows and that is not above `wanted`; its smallest where there is none.
+/// The largest count that a filter allows and that is not above `wanted`; its smallest where there is none.
 double choose_count(const filters::ParamSpec& param, double wanted) {
   if (param.choices.empty()) return std::clamp(wanted, param.min.value_or(wanted), param.max.value_or(wanted));
   std::vector<double> counts;
@@ -46,7 +46,7 @@ Observation observe_taps(const AxisInputs& inputs, const filters::FilterRequest&
                     request.spec.kind);
 }
 
-/// Gives how far the taps are from the kernel that they stand for, root mean square over an edge.
+/// How far the taps are from the kernel that they stand for, root mean square over an edge.
 double find_noise(const AxisInputs& inputs, const filters::FilterRequest& request) {
   const SyntheticScene scene = make_scene(request);
   const std::vector<double> seen =

@@ -27,7 +27,7 @@ double store_rounding(filters::StorePrecision store) {
   return 0.0;
 }
 
-/// Gives how far E[z^2] - E[z]^2 may be off, z in [0,1], where both moments are stored `stores` times and are sums of
+/// How far E[z^2] - E[z]^2 may be off, z in [0,1], where both moments are stored `stores` times and are sums of
 /// `taps` products. An error of the mean counts twice.
 double bound_variance_error(filters::StorePrecision store, int stores, int taps) {
   return 3.0 * (stores * store_rounding(store) + taps * kSingleRounding);
@@ -118,7 +118,7 @@ Case make_filter_case(const AxisInputs& inputs, filters::FilterRequest request, 
   return item;
 }
 
-/// Gives the textbook variance of one depth, 81 times, in single precision with stored moments; it should be 0.
+/// The textbook variance of one depth, 81 times, in single precision with stored moments; it should be 0.
 double find_variance(float depth, filters::StorePrecision store) {
   const float first = filters::round_to_store(depth, store), second = filters::round_to_store(depth * depth, store);
   float mean = 0.0f, mean_of_squares = 0.0f;
