@@ -108,7 +108,8 @@ TEST_F(TuneCommand, ScenesWithoutTheMetric_AreSkipped_WhereNoneIsNamed) {
   const nlohmann::json scenes = read_tuned()["scenes"];
   EXPECT_GE(scenes.size(), 1u);
   EXPECT_EQ(std::count(scenes.begin(), scenes.end(), "fence"), 0);
-  EXPECT_THAT(outcome.out, HasSubstr("Left out: fence, as it is"));
+  EXPECT_THAT(outcome.out, HasSubstr("Left out:\n\n- fence, "));
+  EXPECT_THAT(outcome.out, HasSubstr("- fence, as it is"));
 }
 
 TEST_F(TuneCommand, Run_TakesTheParameters_AndTheCommandLineGoesFirst) {
