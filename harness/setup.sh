@@ -7,9 +7,9 @@ packages="
   cmake dpkg-dev file g++ git ninja-build pkg-config python3-glad
   libcli11-dev libegl-dev libembree-dev libfmt-dev libfreetype-dev libgl-dev libglfw3-dev libglm-dev libgsl-dev
   libnlopt-cxx-dev libopenimageio-dev libosmesa6-dev libpugixml-dev libtbb-dev libtinygltf-dev libtinyobjloader-dev
-  libtomlplusplus-dev nlohmann-json3-dev zlib1g-dev fonts-dejavu-core libegl1 libegl-mesa0 libgl1-mesa-dri
+  libtomlplusplus-dev nlohmann-json3-dev openimageio-tools zlib1g-dev fonts-dejavu-core libegl1 libegl-mesa0 libgl1-mesa-dri
 "
-tests="chromium clang-format gcovr groff-base libbenchmark-dev libgmock-dev libgtest-dev openimageio-tools python3-jsonschema xauth xvfb"
+tests="chromium clang-format gcovr groff-base libbenchmark-dev libgmock-dev libgtest-dev python3-jsonschema xauth xvfb"
 case "${1-}" in
   "") ;;
   --tests) packages="$packages $tests" ;;
