@@ -11,7 +11,7 @@
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/receiver_pixels.h"
 #include "harness/measure/scene_assets.h"
-#include "harness/render/bias_theory.h"
+#include "harness/render/bias/bias_theory.h"
 #include "harness/render/filter_passes.h"
 #include "harness/render/receivers.h"
 #include "harness/render/shade_pass.h"

@@ -9,7 +9,7 @@
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/gl/survey/survey.h"
-#include "harness/gl/timer.h"
+#include "harness/gl/timer/timer.h"
 #include "harness/options/options.h"
 #include "harness/scene/load.h"
 #include "report/records/metric_list.h"

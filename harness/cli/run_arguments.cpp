@@ -5,7 +5,7 @@
 #include "harness/options/experiment_file.h"
 #include "harness/options/light_counts.h"
 #include "harness/options/options.h"
-#include "harness/render/bias_rule.h"
+#include "harness/render/bias/bias_rule.h"
 
 namespace shadowbench::cli {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "filters/tracked.h"
 #include "harness/gl/context/context.h"
-#include "harness/gl/timer.h"
+#include "harness/gl/timer/timer.h"
 #include "harness/options/options.h"
 #include "harness/render/shader_library.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/gl/timer.h"
+#include "harness/gl/timer/timer.h"
 #include "harness/options/round_limits.h"
 #include "harness/render/filter_passes.h"
 

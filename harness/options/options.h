@@ -10,7 +10,7 @@
 #include "filters/map_range.h"
 #include "harness/gl/context/context.h"
 #include "harness/options/round_limits.h"
-#include "harness/render/bias_rule.h"
+#include "harness/render/bias/bias_rule.h"
 #include "harness/render/map_settings.h"
 #include "harness/scene/lights/light_fit.h"
 

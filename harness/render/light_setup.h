@@ -4,7 +4,7 @@
 
 #include "filters/map_range.h"
 #include "harness/gl/program.h"
-#include "harness/render/bias.h"
+#include "harness/render/bias/bias.h"
 #include "harness/render/shader_library.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/scene.h"

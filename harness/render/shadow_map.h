@@ -7,7 +7,7 @@
 
 #include "filters/depth_map.h"
 #include "harness/gl/objects.h"
-#include "harness/render/bias.h"
+#include "harness/render/bias/bias.h"
 #include "harness/render/geometry.h"
 #include "harness/render/map_settings.h"
 #include "harness/scene/lights/light_fit.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "harness/measure/scene_assets.h"
-#include "harness/render/bias_rule.h"
+#include "harness/render/bias/bias_rule.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/load.h"
 

@@ -14,7 +14,7 @@
 
 namespace shadowbench::metrics {
 
-/// Where a metric's value stands: a real number or a count.
+/// Finds a metric's value, which is a real number or a count.
 using MetricMember =
     std::variant<std::optional<double>& (*)(MetricValues&), std::optional<std::int64_t>& (*)(MetricValues&)>;
 

@@ -13,8 +13,8 @@ struct StoredMap {
   int channels = 1;
   double largest_number = 0.0;  ///< the largest number that the map's format holds
   bool moments = false;         ///< channels in pairs, a mean and the mean of its square; requires an even number
-  /// Where a format may saturate instead of becoming infinite, which a GL is free to do: the same map before its blur,
-  /// in which the largest number of the format stands for overflow; a square. Empty: only infinity does.
+  /// The same map before its blur, a square, for formats in which a GL may store the largest number instead of
+  /// infinity: texels that hold that number have overflowed. Where this is empty, only infinity counts as overflow.
   std::span<const float> before_blur = {};
   int blur_radius_texels = 0;
   std::span<const float> border =

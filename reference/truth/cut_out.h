@@ -9,7 +9,7 @@ struct RTCFilterFunctionNArguments;
 
 namespace shadowbench::truth {
 
-/// What Embree calls for hits on a mesh with holes.
+/// What forgive_holes() has to know of a mesh with holes.
 struct HoleTest {
   CutOut cut_out;
   std::vector<std::uint32_t> indices;  ///< three per triangle that is traced
@@ -18,7 +18,7 @@ struct HoleTest {
   bool is_hole(std::uint32_t triangle, float u, float v) const;
 };
 
-/// Forgives hits in holes; the geometry's user data is a HoleTest.
+/// Rejects hits that lie in holes, as a filter function of Embree. The geometry's user data must be a HoleTest.
 void forgive_holes(const RTCFilterFunctionNArguments* arguments);
 
 }  // namespace shadowbench::truth

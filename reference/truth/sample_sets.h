@@ -12,8 +12,8 @@ namespace shadowbench::truth {
 /// The number of independent scrambles; a standard error over them has one degree of freedom less.
 inline constexpr int kScrambles = RayPacket::kSize;
 
-/// Low-discrepancy points, mapped once to where rays go: 16 randomisations, of which neighbouring pixels take different
-/// ones, each with 16 independent scrambles side by side as the lanes of a packet.
+/// Low-discrepancy points, mapped once to where rays go: 16 randomisations, of which each pixel takes one by a hash of
+/// its place, each with 16 independent scrambles side by side as the lanes of a packet.
 ///
 /// Each scramble is a Sobol sequence of its own Owen scrambling; the randomisations differ by digital shifts, which
 /// keep it uniform. The first 4^k points of a scramble are evenly spread.

@@ -23,7 +23,7 @@ struct TraceSettings {
 /// A traced fraction of rays at every receiver; 1 lit, 0 blocked, 1 where a point does not count.
 struct TracedVisibility {
   std::vector<float> visibility;
-  std::vector<float> standard_error;    ///< over the scrambles; where all rays agree there is none: 0, see `unanimous`
+  std::vector<float> standard_error;    ///< of the mean over the scrambles; 0 where all rays agree, see `unanimous`
   std::vector<std::uint8_t> unanimous;  ///< all rays of this pixel agree; the truth lies within 3 / rays of them (95 %)
   std::vector<std::uint32_t> rays;      ///< traced for this pixel; 64: its neighbours agree with it too
 };
@@ -33,11 +33,11 @@ inline constexpr std::uint32_t kRaysOfSettledPixel = 64;
 
 /// Traces the fraction of an area light that each receiver sees.
 ///
-/// Sixteen Owen-scrambled Sobol sets of 4 points each; a pixel stops there when it and its eight neighbours are
-/// unanimous, the others go on with 16 points and double them until the standard error over the scrambles is small
-/// enough or `max_points` is reached. The part of the light below a receiver's own plane is blocked by it. The result
-/// depends on neither the number of threads nor the order of pixels. Cost: 64 rays for a pixel away from edges, up to
-/// 16 * max_points at one.
+/// Every pixel starts with 4 points from each of 16 Owen-scrambled Sobol sequences, and stops there when all its rays
+/// and those of its eight neighbours agree. The others go on with 16 points per sequence and double them until the
+/// standard error over the scrambles is small enough or `max_points` is reached. The part of the light below a
+/// receiver's own plane is blocked by it. The result depends on neither the number of threads nor the order of pixels.
+/// Cost: 64 rays for a pixel away from edges, up to 16 * max_points at one.
 TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
                             const TraceSettings& settings);
 

@@ -19,7 +19,7 @@ std::vector<std::vector<std::size_t>> rank_errors(const std::vector<records::Cel
 /// Finds the part that alone is more than half of an error, as an index into list_error_parts().
 std::optional<std::size_t> find_dominating_part(const records::PartValues& shares);
 
-/// A cell's RMSE no larger than the standard error of the truth it is measured against? No where either is unknown.
+/// Whether a cell's RMSE is at most the standard error of its truth; false where either is unknown.
 bool is_lost_in_truth(const records::CellRecord& cell);
 
 /// Says in plain sentences how wrong a group's cells are, where that comes from, and which faults show.

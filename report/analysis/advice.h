@@ -18,10 +18,9 @@ struct AdviceRequest {
   std::vector<Demand> demands;
   LightMotion light = LightMotion::kMoving;
   CostKind cheapest = CostKind::kTime;
-  std::vector<std::string> scenes;          ///< empty: all of the run
-  std::optional<std::pair<int, int>> size;  ///< of the picture, pixels; empty: all of the run
-  std::map<std::string, std::vector<std::string>>
-      claims;  ///< of known filters, by id: for cells that do not hold theirs
+  std::vector<std::string> scenes;                         ///< empty: all of the run
+  std::optional<std::pair<int, int>> size;                 ///< of the picture, pixels; empty: all of the run
+  std::map<std::string, std::vector<std::string>> claims;  ///< by filter id, for cells whose records do not hold theirs
 };
 
 /// How a configuration stands to one demand.
@@ -31,7 +30,7 @@ struct Verdict {
   const records::CellRecord* where = nullptr;  ///< the cell with the worst value
   /// Cells that have nothing on which the limit could be broken; it counts as kept there.
   std::vector<const records::CellRecord*> nothing_to_see = {};
-  /// Keeps a limit on the RMSE by less than the standard error of the truth it is measured against; null: none does.
+  /// A cell that keeps a limit on the RMSE by less than the standard error of its truth; null: there is none.
   const records::CellRecord* lost_in_truth = nullptr;
 };
 
@@ -40,7 +39,7 @@ struct Cost {
   double mean = 0.0;
   records::Interval quartiles;  ///< mean of the lower and of the upper quartiles; of bytes and fetches: the mean twice
   std::optional<records::Interval>
-      ratio;  ///< the mean, times what the 95 % interval of the ratio to `none` says of each place
+      ratio;  ///< the mean of each place's cost, scaled by the ends of its ratio's 95 % interval
 };
 
 /// A configuration that was judged.
@@ -80,7 +79,7 @@ struct Obstacle {
   std::size_t failing = 0;             ///< judged configurations that fail it
   std::size_t alone = 0;               ///< those of them that keep all the others
   std::size_t unknown = 0;             ///< configurations that have no value for it
-  std::optional<std::size_t> nearest;  ///< index into `failing` of the one that fails it alone by the least
+  std::optional<std::size_t> nearest;  ///< index into Advice::failing: fails this demand only, and by the least
 };
 
 /// A configuration that one demand alone keeps from being the cheapest.
@@ -99,7 +98,7 @@ struct Advice {
   std::vector<Unjudged> unjudged;
   std::vector<Obstacle> obstacles;  ///< one per demand
   std::vector<Relaxation>
-      relaxations;                     ///< by demand; a demand's own with every step dearer to grant and cheaper to run
+      relaxations;  ///< grouped by demand; within one, each needs a looser limit than the one before it and costs less
   std::optional<std::size_t> closest;  ///< index into `failing`: fails the fewest demands, among those by the least
 };
 

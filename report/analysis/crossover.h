@@ -52,7 +52,7 @@ struct CurveComparison {
   LightState light = LightState::kStill;
   std::vector<double> radii;           ///< ascending; none where the curves have no radius in common
   std::vector<int> signs;              ///< at each: -1 prefiltered is cheaper, 0 not apart, 1 it is dearer
-  std::vector<RadiusPoint> crossings;  ///< where the medians meet, between two of the radii; the light's time is set
+  std::vector<RadiusPoint> crossings;  ///< interpolated, where both medians are the same time
 };
 
 /// Sorts cells into charts. Configurations of one filter that differ in parameters which the kernel's radius follows

@@ -8,7 +8,7 @@
 
 namespace shadowbench::analysis {
 
-/// What is compared as what grows.
+/// Which time is compared, and over which size.
 enum class GrowthLaw {
   kLookupOverPixels,    ///< lookup over the picture's pixels
   kLookupOverTexels,    ///< lookup over the map's texels

@@ -57,9 +57,9 @@ struct LightComparison {
   std::vector<int> still;  ///< at each count
   std::vector<int> moving;
 
-  /// One of the two cheaper somewhere, and the other elsewhere?
+  /// Whether each of the two is cheaper at some count.
   bool changes() const;
-  /// The two apart anywhere?
+  /// Whether their intervals are apart at some count.
   bool is_apart() const;
 };
 

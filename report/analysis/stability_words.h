@@ -13,7 +13,7 @@ namespace shadowbench::analysis {
 /// where the run was made without stability maps.
 std::vector<std::string> describe_stability(const CellGroup& group);
 
-/// Are captions of the parts of a cell's stability picture; empty where there is nothing to say.
+/// Write the captions of the parts of a cell's stability picture; empty where there is nothing to say.
 std::string caption_texels(const records::CellRecord& cell);
 std::string caption_variance(const records::CellRecord& cell);
 std::string caption_difference(const records::CellRecord& cell);

@@ -60,7 +60,7 @@ Measured read_error(const records::CellRecord& cell, std::size_t measure);
 /// picture refer to, or null.
 Measured read_cost(const records::CellRecord& cell, const records::CellRecord* reference, std::size_t measure);
 
-/// A cell the one that ratios refer to? That is the one whose own ratio is exactly 1 [1, 1].
+/// Whether a cell is the one that ratios refer to: its own ratio is exactly 1 [1, 1].
 bool is_reference(const records::CellRecord& cell);
 
 }  // namespace shadowbench::analysis

@@ -7,7 +7,7 @@
 
 namespace shadowbench::analysis {
 
-/// Where something was found: picture ("480 × 270") and map size to the scenes.
+/// Where something was found: the scenes, by picture size ("480 × 270") and map size.
 using VerdictPlaces = std::map<std::pair<std::string, int>, std::vector<std::string>>;
 
 /// Writes places, what they share said once: "cubes, stack, picture 480 × 270, map 512, 1024".

@@ -6,7 +6,7 @@
 
 namespace shadowbench::images {
 
-/// How bad a value is: the worst of those that share a pixel is shown.
+/// Rates how bad a value is. Of those that fall on one pixel, the worst is shown.
 using Badness = std::function<float(float)>;
 
 /// Scales a picture of one channel to a width, keeping its aspect: repeats the pixels of a small one, and shows the

@@ -23,7 +23,7 @@ struct FlickerPicture {
   std::vector<FlickerTile> tiles;
 };
 
-/// The place of a flicker on the pictures' scale, logarithmic from 0.001 at 0 to 1 at 1; nothing below.
+/// Maps a flicker to the pictures' logarithmic scale: 0.001 to 0, 1 to 1. Nothing for less.
 std::optional<double> place_flicker(double flicker);
 
 /// Draws every filter's flicker without snapping and, to the right of it, with snapping, two filters in a row, all on

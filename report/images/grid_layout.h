@@ -40,11 +40,11 @@ struct GridLayout {
   Size canvas;
   std::vector<TextLine> texts;
   std::vector<Panel> panels;
-  std::optional<Rect> color_bar;      ///< where errors are shown
+  std::optional<Rect> color_bar;      ///< there only if the grid shows errors
   double error_scale = 0.0;           ///< the error at the bar's right end
   std::vector<Rect> message_boxes;    ///< one per tile without images, around its message
   std::vector<BarPlace> bars;         ///< one per tile with an attribution
-  std::optional<BarScale> bar_scale;  ///< where bars are shown
+  std::optional<BarScale> bar_scale;  ///< there only if the grid shows bars
   std::vector<Swatch> swatches;       ///< the bars' legend
 };
 

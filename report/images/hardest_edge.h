@@ -15,7 +15,8 @@ Size choose_crop_size(Size picture);
 /// 4 m (1 - m), m the mean visibility of the reference in it: 1 where the reference is half lit and half blocked, 0
 /// where it has no edge. Where no filter disagrees, the rectangle that the edge divides most evenly is taken; where
 /// there is no edge, the one in which filters disagree most. Ties go
-/// to the topmost, then leftmost rectangle; a pixel that is not finite in any image counts as agreed upon and blocked.
+/// to the topmost, then leftmost rectangle; a pixel that is not finite in some image counts as one
+/// on which filters agree, and where the reference is not finite as blocked.
 ///
 /// `visibility`: 1 channel each, of one size; null or empty images are left out. `reference` is an index into it.
 /// Returns a rectangle of `size`, clipped to the images; an empty one where there are no images.

@@ -9,15 +9,15 @@
 
 namespace shadowbench::images {
 
-/// Where one cell's numbers break, or come near to it; rows top to bottom, a map's row 0 is v = 1. Empty where a filter
-/// has no such thing.
+/// Images of where one cell's numbers break, or come near to it; rows top to bottom, a map's row 0 is v = 1. One that a
+/// filter has no use for is empty.
 struct StabilityImages {
   Image headroom;  ///< per texel: natural logarithm that exponents could grow by; not finite where the texel is 0 or
                    ///< broken
   Image variance;  ///< per texel: variance before any clamp
   Image half_difference;  ///< per pixel: visibility, 16-bit store less 32-bit store
   Image shortfall;        ///< per pixel: by how much a bound is darker than what it bounds
-  Image violation;        ///< per pixel: what of that rounding does not explain
+  Image violation;        ///< per pixel: the part of the shortfall that rounding does not explain
 };
 
 /// Names one of them, for files: "headroom".
@@ -34,7 +34,7 @@ struct StabilityPicture {
   std::string title;
   std::string note;
   StabilityImages images;
-  std::string texels;  ///< captions: what of headroom, variance, difference and bound can be said in numbers
+  std::string texels;  ///< caption of the headroom; the next are those of the three images after it
   std::string variance;
   std::string difference;
   std::string bound;

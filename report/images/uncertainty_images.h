@@ -9,8 +9,8 @@ namespace shadowbench::images {
 /// In UncertaintyImages::rounding: a comparison may flip here, or another texel be read.
 inline constexpr float kMayFlip = 2.0f;
 
-/// Say how far a cell's pixels may be from what the same filter draws elsewhere; each of 1 channel and the view's size,
-/// or empty.
+/// Images of how far a cell's pixels may differ from the same filter's on another machine or with another seed; each of
+/// 1 channel and the view's size, or empty.
 struct UncertaintyImages {
   Image rounding;   ///< bound on what single precision and the GL's filtering weights do to visibility, at most 1; or
                     ///< kMayFlip
@@ -30,7 +30,7 @@ inline constexpr std::array<UncertaintyImage, 3> list_uncertainty_images() {
            {"seed_deviation", &UncertaintyImages::seed_deviation}}};
 }
 
-/// Seeds that the mean and the deviation are of.
+/// How many seeds the mean and the deviation are taken over.
 inline constexpr int kSpreadSeeds = 16;
 
 }  // namespace shadowbench::images

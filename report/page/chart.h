@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "report/analysis/front.h"
-#include "report/page/plot_axis.h"
+#include "report/page/chart_axis.h"
 
 namespace shadowbench::page {
 
@@ -51,8 +51,8 @@ struct Chart {
   std::string title;
   std::string x_name;
   std::string y_name;
-  PlotAxis x;
-  PlotAxis y;
+  ChartAxis x;
+  ChartAxis y;
   std::vector<ChartSeries> series;
   std::vector<std::string> notes;  ///< below the key
 };

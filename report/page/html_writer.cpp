@@ -123,7 +123,7 @@ class ChartPacker {
     return packed;
   }
 
-  static json pack(const std::string& name, const PlotAxis& axis) {
+  static json pack(const std::string& name, const ChartAxis& axis) {
     return {{"name", name}, {"log", axis.log}, {"low", axis.low}, {"high", axis.high}, {"ticks", axis.ticks}};
   }
 

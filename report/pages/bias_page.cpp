@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "report/page/plot_style.h"
+#include "report/page/chart_style.h"
 #include "report/pages/write_page.h"
 #include "report/records/csv.h"
 
@@ -89,10 +89,10 @@ std::vector<double> list_factors(const records::BiasModeRecord& mode) {
 
 /// A logarithmic axis with a tick for each factor. It has no place for no bias at all, which is drawn at half the
 /// smallest amount.
-page::PlotAxis make_factor_axis(const std::vector<double>& factors) {
+page::ChartAxis make_factor_axis(const std::vector<double>& factors) {
   const auto positive = std::ranges::upper_bound(factors, 0.0);
   const double least = positive == factors.end() ? 1.0 : *positive;
-  page::PlotAxis axis{true, least, least, {}};
+  page::ChartAxis axis{true, least, least, {}};
   for (const double factor : factors) {
     axis.ticks.emplace_back(factor > 0.0 ? factor : 0.5 * least, name_factor(factor));
     axis.low = std::min(axis.low, axis.ticks.back().first);
@@ -103,20 +103,20 @@ page::PlotAxis make_factor_axis(const std::vector<double>& factors) {
   return axis;
 }
 
-page::PlotAxis make_rate_axis(const records::BiasModeRecord& mode) {
+page::ChartAxis make_rate_axis(const records::BiasModeRecord& mode) {
   std::vector<double> rates = {0.0, 0.01};
   for (const records::BiasCurve& curve : mode.curves)
     for (const records::BiasPoint& point : curve.points)
       for (const auto& rate : {point.acne, point.contact_gap})
         if (rate) rates.push_back(*rate);
-  page::PlotAxis axis = page::choose_axis(rates, {}, page::TickKind::kNumber);
+  page::ChartAxis axis = page::choose_axis(rates, {}, page::TickKind::kNumber);
   for (auto& [rate, label] : axis.ticks) label = fmt::format("{:.6g} %", 100.0 * rate);
   return axis;
 }
 
 /// A filter's acne, solid with marks, or its contact gap, dashed with hollow ones.
-page::ChartSeries make_rate_series(const records::BiasCurve& curve, Rate rate, const page::PlotAxis& factors,
-                                   const page::PlotStyle& style) {
+page::ChartSeries make_rate_series(const records::BiasCurve& curve, Rate rate, const page::ChartAxis& factors,
+                                   const page::ChartStyle& style) {
   const bool gap = rate == &records::BiasPoint::contact_gap;
   page::ChartSeries series;
   series.title = curve.filter + (gap ? ": contact gap" : ": acne");

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/page/plot_style.h"
+#include "report/page/chart_style.h"
 #include "report/pages/write_page.h"
 #include "report/records/format.h"
 
@@ -16,8 +16,6 @@ namespace {
 constexpr double kSame = 0.05;  // a smaller relative difference is called none
 
 using Filters = std::vector<records::FlickerFilter>;
-
-std::string percent(double share) { return fmt::format("{:.3g} %", 100.0 * share); }
 
 /// What flickers less than this, which is one receiver that flips once, is called rounding.
 double find_least(const records::FlickerMotion& motion) {
@@ -104,7 +102,8 @@ std::string describe_returning(const records::FlickerVariant& variant, const rec
   const auto most = std::ranges::max_element(variant.filters, {}, &records::FlickerFilter::returning);
   if (most->returning == 0.0) return when(variant) + " no filter's visibility goes back and forth.";
   return fmt::format("{} the visibility of {} goes back and forth at the most receivers, {}; the truth's at {}.",
-                     when(variant), most->filter, percent(most->returning), percent(truth.returning));
+                     when(variant), most->filter, records::format_rate(most->returning),
+                     records::format_rate(truth.returning));
 }
 
 std::string describe_not_finite(const records::FlickerVariant& variant) {
@@ -132,7 +131,7 @@ page::ChartSeries make_change_line(const std::string& title, const std::vector<d
 
 /// Adds a filter's marks, which the key shows, and its line.
 void add_filter(page::Chart& chart, const records::FlickerFilter& filter, std::size_t place) {
-  const page::PlotStyle style = page::style_of(place);
+  const page::ChartStyle style = page::style_of(place);
   page::ChartSeries line = make_change_line(filter.filter, filter.mean_change);
   line.color = style.color;
   page::ChartSeries marks = line;
@@ -148,7 +147,7 @@ void add_filter(page::Chart& chart, const records::FlickerFilter& filter, std::s
 }
 
 /// A scale from 0 for everything that moves in this motion.
-page::PlotAxis choose_change_axis(const records::FlickerMotion& motion) {
+page::ChartAxis choose_change_axis(const records::FlickerMotion& motion) {
   std::vector<double> values = {0.0};
   values.insert(values.end(), motion.truth.mean_change.begin(), motion.truth.mean_change.end());
   for (const records::FlickerVariant& variant : motion.variants)
@@ -249,10 +248,11 @@ records::TextTable make_flicker_table(const records::FlickerMotion& motion) {
                              : off[i].flicker >= least ? "all gone"
                                                        : records::kNothing;
     table.rows.push_back({off[i].filter, fmt::format("{:.4f}", off[i].change), fmt::format("{:.4f}", off[i].flicker),
-                          percent(off[i].returning), fmt::format("{:.4f}", on[i].change),
-                          fmt::format("{:.4f}", on[i].flicker), percent(on[i].returning), gain});
+                          records::format_rate(off[i].returning), fmt::format("{:.4f}", on[i].change),
+                          fmt::format("{:.4f}", on[i].flicker), records::format_rate(on[i].returning), gain});
   }
-  const std::string change = fmt::format("{:.4f}", motion.truth.change), returning = percent(motion.truth.returning);
+  const std::string change = fmt::format("{:.4f}", motion.truth.change),
+                    returning = records::format_rate(motion.truth.returning);
   table.rows.push_back({"truth", change, fmt::format("{:.4f}", 0.0), returning, change, fmt::format("{:.4f}", 0.0),
                         returning, records::kNothing});
   return table;

@@ -19,9 +19,16 @@ namespace {
 using OptionalPath = std::optional<std::string>;
 using ImageMember = OptionalPath records::ImagesRecord::*;
 
-std::string head_group(const records::RunRecord& run, const std::string& scene) {
-  const auto found = std::ranges::find(run.scenes, scene, &records::SceneRecord::name);
-  return found == run.scenes.end() || found->title.empty() ? scene : scene + ": " + found->title;
+/// Names the scene, and the map where the run has the scene with several.
+std::string head_group(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+                       const records::CellRecord& cell) {
+  const auto found = std::ranges::find(run.scenes, cell.scene, &records::SceneRecord::name);
+  const std::string name =
+      found == run.scenes.end() || found->title.empty() ? cell.scene : cell.scene + ": " + found->title;
+  const bool one_map = std::ranges::all_of(cells, [&](const records::CellRecord& other) {
+    return other.scene != cell.scene || other.map_size == cell.map_size;
+  });
+  return one_map ? name : fmt::format("{}, map {}", name, cell.map_size);
 }
 
 /// The first path that a cell of the group names: cells of one group share it.
@@ -101,8 +108,9 @@ std::optional<page::Bars> make_bars(const analysis::CellGroup& group) {
   return bars;
 }
 
-page::Section make_group_section(const records::RunRecord& run, const analysis::CellGroup& group, std::size_t number) {
-  page::Section section{fmt::format("group-{}", number), head_group(run, group.scene), {}};
+page::Section make_group_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+                                 const analysis::CellGroup& group, std::size_t number) {
+  page::Section section{fmt::format("group-{}", number), head_group(run, cells, group.cells.front()), {}};
   auto& blocks = section.blocks;
   blocks = {page::Paragraph{records::describe_settings(group.cells.front()), true},
             page::Sentences{{}, analysis::describe_group(group, run.gl)},
@@ -153,7 +161,7 @@ page::Page make_run_page(const records::RunRecord& run, const std::vector<record
   if (!run.warnings.empty()) add({"warnings", "Warnings", {page::Sentences{{}, run.warnings}}, true});
   if (trade) add(make_trade_section(run, cells, *trade));
   const std::vector<analysis::CellGroup> groups = analysis::group_cells(cells);
-  for (std::size_t i = 0; i < groups.size(); ++i) add(make_group_section(run, groups[i], i));
+  for (std::size_t i = 0; i < groups.size(); ++i) add(make_group_section(run, cells, groups[i], i));
   if (!analysis::count_absences(cells).empty()) add(make_absence_section(cells));
   add({"columns",
        "What the columns mean",

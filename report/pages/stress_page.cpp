@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <map>
 
+#include "report/page/chart_style.h"
 #include "report/page/markdown.h"
-#include "report/page/plot_style.h"
 #include "report/pages/write_page.h"
 #include "report/records/format.h"
 
@@ -80,15 +80,15 @@ bool is_shown(const records::StressAxis& axis, const std::optional<double>& meas
   return measured && (!axis.measured_log || *measured >= kLeastShown);
 }
 
-page::PlotAxis choose_value_axis(const records::StressAxis& axis) {
+page::ChartAxis choose_value_axis(const records::StressAxis& axis) {
   if (axis.log) return page::choose_log_axis({axis.range.low, axis.range.high}, {});
-  page::PlotAxis chosen = page::choose_axis({axis.range.low, axis.range.high}, {}, page::TickKind::kNumber);
+  page::ChartAxis chosen = page::choose_axis({axis.range.low, axis.range.high}, {}, page::TickKind::kNumber);
   if (chosen.log)  // choose_axis() prefers a logarithm for what is positive
     chosen = page::choose_axis({0.0, axis.range.high}, {}, page::TickKind::kNumber);
   return chosen;
 }
 
-page::PlotAxis choose_measured_axis(const records::StressAxis& axis) {
+page::ChartAxis choose_measured_axis(const records::StressAxis& axis) {
   std::vector<double> values = {axis.bound};
   for (const records::StressCase& item : axis.cases) {
     for (const records::StressSample& sample : item.samples)
@@ -108,7 +108,7 @@ page::ChartSeries make_line(std::string title, page::ChartPoint from, page::Char
 }
 
 void add_case(page::Chart& chart, const records::StressAxis& axis, const records::StressCase& item,
-              const page::PlotStyle& style) {
+              const page::ChartStyle& style) {
   const bool model = item.level == "model";  // a dashed line beside the GL's, whose points would hide it
   page::ChartSeries line, broken;
   line.title = records::label_of(item);

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "report/analysis/front_words.h"
-#include "report/page/plot_style.h"
+#include "report/page/chart_style.h"
 #include "report/records/format.h"
 
 namespace shadowbench::pages {
@@ -15,7 +15,7 @@ using Configuration = analysis::TradeConfiguration;
 using page::ChartSeries;
 
 /// An axis over all configurations of a scope that have the measure.
-page::PlotAxis choose_measure_axis(const analysis::TradeScope& scope, const auto& values_of, bool bytes) {
+page::ChartAxis choose_measure_axis(const analysis::TradeScope& scope, const auto& values_of, bool bytes) {
   std::vector<double> values, ends;
   for (const Configuration& configuration : scope.configurations) {
     const analysis::Measured& measured = values_of(configuration);
@@ -26,13 +26,13 @@ page::PlotAxis choose_measure_axis(const analysis::TradeScope& scope, const auto
   return page::choose_axis(values, ends, bytes ? page::TickKind::kBytes : page::TickKind::kNumber);
 }
 
-page::PlotStyle style_among(const std::vector<std::string>& filters, const std::string& filter) {
+page::ChartStyle style_among(const std::vector<std::string>& filters, const std::string& filter) {
   return page::style_of(static_cast<std::size_t>(std::ranges::find(filters, filter) - filters.begin()));
 }
 
 analysis::Estimate exactly(double value) { return {value, value, value}; }
 
-ChartSeries start_series(std::string title, const page::PlotStyle& style) {
+ChartSeries start_series(std::string title, const page::ChartStyle& style) {
   ChartSeries series;
   series.title = std::move(title);
   series.color = style.color;
@@ -121,7 +121,7 @@ class FrontChart {
   }
 
   /// A filter's cells: on the front, tied, with dotted lines to what they are tied with, and beaten.
-  void add_filter(std::vector<ChartSeries>& series, const std::string& filter, const page::PlotStyle& style) const {
+  void add_filter(std::vector<ChartSeries>& series, const std::string& filter, const page::ChartStyle& style) const {
     ChartSeries members = start_series(filter, style), tied = start_series({}, style), beaten = start_series({}, style);
     ChartSeries ties = start_line({}, style.color, page::LineStyle::kTies);
     tied.filled = beaten.filled = false;
@@ -155,7 +155,7 @@ const analysis::Estimate& time_of(const analysis::RadiusPoint& point, analysis::
 }
 
 /// A logarithmic axis for the times that series have on the y axis.
-page::PlotAxis choose_time_axis(const std::vector<ChartSeries>& series) {
+page::ChartAxis choose_time_axis(const std::vector<ChartSeries>& series) {
   std::vector<double> times, ends;
   for (const ChartSeries& each : series) {
     for (const page::ChartPoint& point : each.points) {
@@ -167,7 +167,7 @@ page::PlotAxis choose_time_axis(const std::vector<ChartSeries>& series) {
 }
 
 ChartSeries make_radius_series(const analysis::RadiusCurve& curve, analysis::LightState light,
-                               const page::PlotStyle& style) {
+                               const page::ChartStyle& style) {
   ChartSeries series = start_series(curve.label, style);
   series.line = curve.prefiltered ? page::LineStyle::kSolid : page::LineStyle::kDashed;
   for (const analysis::RadiusPoint& p : curve.points)
@@ -219,7 +219,7 @@ page::Chart make_radius_chart(const analysis::RadiusChart& chart, analysis::Ligh
 }
 
 ChartSeries make_light_series(const analysis::LightCurve& curve, analysis::LightState light,
-                              const page::PlotStyle& style) {
+                              const page::ChartStyle& style) {
   const bool still = light == analysis::LightState::kStill;
   ChartSeries series = start_series(still ? curve.label : "", style);
   series.filled = still;
@@ -236,14 +236,14 @@ ChartSeries make_light_series(const analysis::LightCurve& curve, analysis::Light
   return series;
 }
 
-page::PlotAxis make_count_axis(const std::vector<int>& counts) {
-  page::PlotAxis axis{true, counts.front() / 1.12, counts.back() * 1.12, {}};
+page::ChartAxis make_count_axis(const std::vector<int>& counts) {
+  page::ChartAxis axis{true, counts.front() / 1.12, counts.back() * 1.12, {}};
   for (const int count : counts) axis.ticks.push_back({count, fmt::format("{}", count)});
   return axis;
 }
 
 /// What grows in proportion, from the corner of the chart on.
-ChartSeries make_proportion(const analysis::LightChart& chart, const page::PlotAxis& y) {
+ChartSeries make_proportion(const analysis::LightChart& chart, const page::ChartAxis& y) {
   const double from = chart.counts.front(), to = std::min<double>(chart.counts.back(), from * y.high / y.low);
   ChartSeries line = start_line("in proportion", "#9aa0a8", page::LineStyle::kSolid);
   line.points = {{exactly(from), exactly(y.low)}, {exactly(to), exactly(y.low * to / from)}};

@@ -12,8 +12,6 @@ namespace {
 /// Writes a parameter as the command line takes it.
 std::string format_value(double value) { return fmt::format("{:.5g}", value); }
 
-std::string format_percent(double share) { return fmt::format("{:.3g} %", 100.0 * share); }
-
 std::string format_gain(const records::TunedScore& score) {
   return score.at_default > 0.0 ? fmt::format("{:+.1f} %", 100.0 * score.gain() / score.at_default)
                                 : std::string(records::kNothing);
@@ -58,7 +56,7 @@ page::Table make_range_table(const records::TunedFilterRecord& filter, double to
                   "share of the scale"};
   for (const records::TunedParamRecord& param : filter.searched) {
     table.rows.push_back({param.name, fmt::format("{} .. {}", format_value(param.min), format_value(param.max)),
-                          param.scale, format_intervals(param), format_percent(param.good_share)});
+                          param.scale, format_intervals(param), records::format_rate(param.good_share)});
   }
   return block;
 }

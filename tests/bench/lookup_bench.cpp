@@ -7,7 +7,7 @@
 #include "harness/measure/statistics.h"
 #include "harness/measure/timing.h"
 #include "harness/options/options.h"
-#include "harness/render/bias_rule.h"
+#include "harness/render/bias/bias_rule.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::bench {

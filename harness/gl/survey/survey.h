@@ -3,7 +3,7 @@
 #include <string>
 
 #include "harness/gl/context/context.h"
-#include "harness/gl/timer.h"
+#include "harness/gl/timer/timer.h"
 
 namespace shadowbench::gl {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "harness/render/bias_theory.h"
+#include "harness/render/bias/bias_theory.h"
 #include "harness/stress/case_tools.h"
 #include "harness/stress/heat_map.h"
 #include "harness/stress/tilted_plane.h"

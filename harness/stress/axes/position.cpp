@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "harness/render/bias_rule.h"
+#include "harness/render/bias/bias_rule.h"
 #include "harness/scene/validate.h"
 #include "harness/stress/drawn_scene.h"
 #include "harness/stress/slab_scene.h"

@@ -10,7 +10,7 @@
 #include "harness/gl/context/context.h"
 #include "harness/gl/survey/survey.h"
 #include "harness/options/options.h"
-#include "harness/render/bias_rule.h"
+#include "harness/render/bias/bias_rule.h"
 #include "harness/render/filter_passes.h"
 #include "harness/render/receivers.h"
 #include "harness/scene/load.h"

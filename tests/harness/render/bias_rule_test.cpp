@@ -1,4 +1,4 @@
-#include "harness/render/bias_rule.h"
+#include "harness/render/bias/bias_rule.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

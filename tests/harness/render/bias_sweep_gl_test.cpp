@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "harness/render/bias_theory.h"
+#include "harness/render/bias/bias_theory.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {

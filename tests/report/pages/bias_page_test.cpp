@@ -83,7 +83,7 @@ TEST(BiasChart, EverythingLiesWithinTheAxes) {
   records::BiasSweepRecord sweep = make_sweep();
   sweep.modes[0].curves[0].points[0].acne = 1.0;
   const page::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
-  const auto within = [](const page::PlotAxis& axis) {
+  const auto within = [](const page::ChartAxis& axis) {
     return ::testing::AllOf(::testing::Ge(axis.low), ::testing::Le(axis.high));
   };
   for (const page::ChartSeries& series : chart.series) {

@@ -129,6 +129,16 @@ TEST(RunPage, HostileNamesInBarsAndPictures_AreEscaped) {
   expect_balanced(page);
 }
 
+TEST(RunPage, SceneWithSeveralMaps_IsNamedWithEach) {
+  std::vector<records::CellRecord> cells = {make_cell("cubes", "vsm", 4.0), make_cell("cubes", "vsm", 4.0),
+                                            make_cell("ball", "vsm", 4.0)};
+  cells[1].map_size = 512;
+  const std::string page = make_html(make_run(), cells);
+  for (const char* link :
+       {"cubes: Three cubes on a floor, map 1024</a>", "cubes: Three cubes on a floor, map 512</a>", ">ball</a>"})
+    EXPECT_THAT(page, HasSubstr(link));
+}
+
 TEST(RunPage, Page_LoadsNothingFromElsewhere) {
   const std::string page = make_html(make_run(), {make_illustrated_cell("cubes", "vsm")});
   for (const std::string& url : list_links(page))

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/gl/pixel_format.h"
-#include "harness/gl/timer.h"
+#include "harness/gl/timer/timer.h"
 #include "tests/harness/gl/expect_error.h"
 
 namespace shadowbench::gl {

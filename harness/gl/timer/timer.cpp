@@ -1,4 +1,4 @@
-#include "harness/gl/timer.h"
+#include "harness/gl/timer/timer.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "harness/render/bias_rule.h"
+#include "harness/render/bias/bias_rule.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,8 +1,8 @@
-#include "report/page/plot_axis.h"
+#include "report/page/chart_axis.h"
 
 #include <gmock/gmock.h>
 
-#include "report/page/plot_style.h"
+#include "report/page/chart_style.h"
 
 namespace shadowbench::page {
 namespace {
@@ -11,8 +11,8 @@ using ::testing::Contains;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-TEST(PlotAxis, IsLogarithmic_WhereValuesArePositiveAndFarApart) {
-  const PlotAxis log = choose_axis({0.02, 0.2}, {-0.1, 0.3}, TickKind::kNumber);
+TEST(ChartAxis, IsLogarithmic_WhereValuesArePositiveAndFarApart) {
+  const ChartAxis log = choose_axis({0.02, 0.2}, {-0.1, 0.3}, TickKind::kNumber);
   EXPECT_TRUE(log.log);
   EXPECT_GT(log.low, 0.0);
   EXPECT_GT(log.high, 0.3);
@@ -21,10 +21,10 @@ TEST(PlotAxis, IsLogarithmic_WhereValuesArePositiveAndFarApart) {
   EXPECT_FALSE(choose_axis({1.0, 1.1}, {}, TickKind::kNumber).log);
 }
 
-TEST(PlotAxis, HoldsItsTicks_WithZeroWrittenPlainly) {
+TEST(ChartAxis, HoldsItsTicks_WithZeroWrittenPlainly) {
   for (const auto& values : {std::vector{0.0, 1.0}, std::vector{0.03, 7.0}, std::vector{5.0, 5.0},
                              std::vector{0.0, 0.0}, std::vector{1e-5, 1e5}}) {
-    const PlotAxis axis = choose_axis(values, {}, TickKind::kNumber);
+    const ChartAxis axis = choose_axis(values, {}, TickKind::kNumber);
     EXPECT_THAT(axis.ticks, Not(IsEmpty()));
     EXPECT_LE(axis.ticks.size(), 12u);
     for (const auto& [value, label] : axis.ticks) {
@@ -37,20 +37,20 @@ TEST(PlotAxis, HoldsItsTicks_WithZeroWrittenPlainly) {
   }
 }
 
-TEST(PlotAxis, ForcedToRatios_HasTicksInANarrowRangeToo) {
-  const PlotAxis axis = choose_log_axis({5.0, 5.1}, {});
+TEST(ChartAxis, ForcedToRatios_HasTicksInANarrowRangeToo) {
+  const ChartAxis axis = choose_log_axis({5.0, 5.1}, {});
   EXPECT_TRUE(axis.log);
   EXPECT_GE(axis.ticks.size(), 2u);
   EXPECT_TRUE(choose_log_axis({5.0}, {}).log);
 }
 
-TEST(PlotAxis, BytesAreInPowersOfTwo) {
-  const PlotAxis axis = choose_axis({262144.0, 8388608.0}, {}, TickKind::kBytes);
+TEST(ChartAxis, BytesAreInPowersOfTwo) {
+  const ChartAxis axis = choose_axis({262144.0, 8388608.0}, {}, TickKind::kBytes);
   EXPECT_EQ(axis.ticks.front().second, "256 KiB");
   EXPECT_EQ(axis.ticks.back().second, "8 MiB");
 }
 
-TEST(PlotStyle, NeighboursDiffer_InColourAndShape) {
+TEST(ChartStyle, NeighboursDiffer_InColourAndShape) {
   for (std::size_t i = 0; i + 1 < 12; ++i) {
     EXPECT_STRNE(style_of(i).color, style_of(i + 1).color);
     EXPECT_NE(style_of(i).mark, style_of(i + 1).mark);

@@ -10,7 +10,7 @@ namespace shadowbench::page {
 inline constexpr const char* kInk = "#1c1f24";
 
 /// How a filter is drawn in charts.
-struct PlotStyle {
+struct ChartStyle {
   const char* color;  ///< "#rrggbb", on white
   Mark mark;
 };
@@ -18,6 +18,6 @@ struct PlotStyle {
 /// The style of the filter at a place in list_filters(): colours that people of every colour vision tell apart,
 /// and marks that change with them, so that 35 filters have styles of their own. Source of the colours: Okabe and Ito
 /// 2008, Color Universal Design; without their yellow, which is faint on white.
-PlotStyle style_of(std::size_t filter);
+ChartStyle style_of(std::size_t filter);
 
 }  // namespace shadowbench::page

@@ -6,7 +6,7 @@
 
 #include "filters/catalogue.h"
 #include "filters/receiver.h"
-#include "harness/render/bias_rule.h"
+#include "harness/render/bias/bias_rule.h"
 
 namespace shadowbench::render {
 

@@ -1,4 +1,4 @@
-#include "harness/render/bias_theory.h"
+#include "harness/render/bias/bias_theory.h"
 
 #include <fmt/format.h>
 

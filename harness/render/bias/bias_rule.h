@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "filters/filter_spec.h"
-#include "harness/render/bias.h"
+#include "harness/render/bias/bias.h"
 #include "harness/render/map_settings.h"
 #include "harness/scene/lights/light_fit.h"
 

@@ -7,7 +7,7 @@
 namespace shadowbench::page {
 
 /// An axis: its ends, its ticks, and whether steps are ratios.
-struct PlotAxis {
+struct ChartAxis {
   bool log = false;
   double low = 0.0;
   double high = 1.0;
@@ -20,9 +20,9 @@ enum class TickKind { kNumber, kBytes };
 /// Chooses an axis that holds all values with a margin: logarithmic where all are positive and span a factor of 3 or
 /// more, otherwise linear, from 0 where the values reach near it. Ends that are not positive do not keep an axis from
 /// being logarithmic where `ends` is what they are in: pass values as `values` and interval ends as `ends`.
-PlotAxis choose_axis(const std::vector<double>& values, const std::vector<double>& ends, TickKind kind);
+ChartAxis choose_axis(const std::vector<double>& values, const std::vector<double>& ends, TickKind kind);
 
 /// Does the same, but keeps to a logarithmic axis for positive values that lie close together too.
-PlotAxis choose_log_axis(const std::vector<double>& values, const std::vector<double>& ends);
+ChartAxis choose_log_axis(const std::vector<double>& values, const std::vector<double>& ends);
 
 }  // namespace shadowbench::page

@@ -1,4 +1,4 @@
-#include "report/page/plot_axis.h"
+#include "report/page/chart_axis.h"
 
 #include <fmt/format.h>
 
@@ -58,9 +58,9 @@ std::vector<double> choose_linear_ticks(double low, double high) {
   return ticks;
 }
 
-PlotAxis choose_axis_from(const std::vector<double>& values, const std::vector<double>& ends, TickKind kind,
-                          double log_span) {
-  PlotAxis axis;
+ChartAxis choose_axis_from(const std::vector<double>& values, const std::vector<double>& ends, TickKind kind,
+                           double log_span) {
+  ChartAxis axis;
   if (values.empty()) return axis;
   const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
   double low = *smallest, high = *largest;
@@ -88,11 +88,11 @@ PlotAxis choose_axis_from(const std::vector<double>& values, const std::vector<d
 
 }  // namespace
 
-PlotAxis choose_axis(const std::vector<double>& values, const std::vector<double>& ends, TickKind kind) {
+ChartAxis choose_axis(const std::vector<double>& values, const std::vector<double>& ends, TickKind kind) {
   return choose_axis_from(values, ends, kind, kLogSpan);
 }
 
-PlotAxis choose_log_axis(const std::vector<double>& values, const std::vector<double>& ends) {
+ChartAxis choose_log_axis(const std::vector<double>& values, const std::vector<double>& ends) {
   return choose_axis_from(values, ends, TickKind::kNumber, 1.0);
 }
 
