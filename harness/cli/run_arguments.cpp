@@ -17,7 +17,7 @@ const std::vector<std::string>& experiment_keys() {
       "size",   "bias",        "map_format", "reversed_depth", "perspective_depth",
       "fit",    "snap",        "light",      "lights",         "pad_texels",
       "tuned",  "border",      "far_test",   "behind_test",    "border_page",
-      "rounds", "precision",   "budget",     "cell_timeout",   "seed",
+      "phases", "rounds",    "precision",   "budget",     "cell_timeout",   "seed",
       "truth",  "attribution", "stability",  "uncertainty",    "grids"};
   return keys;
 }
@@ -106,6 +106,9 @@ void add_timing_options(Command& command, RunArguments& a) {
       "--rounds", &a.rounds,
       "how often each filter is timed: a number, or 'auto', until its ratio to the unfiltered lookup is precise "
       "enough or the budget is spent");
+  command.add("--phases", &a.phases,
+              "places of the map's grid, moved by parts of a texel, over which errors are averaged: 1 .. " +
+                  std::to_string(options::kMostPhases));
   command.add("--precision", &a.precision,
               "for --rounds auto: how wide the ratio's 95 % interval may be, relative to the ratio");
   command.add("--budget", &a.budget_s, "for --rounds auto: seconds of timed work for each filter on each map");

@@ -16,20 +16,17 @@ using SharedTarget = std::shared_ptr<render::ImageTarget>;
 /// The encoded maps of every light, for each format that some filter stores.
 class EncodedMaps {
  public:
-  EncodedMaps(int map_size, std::size_t lights) : map_size_(map_size), lights_(lights) {}
+  explicit EncodedMaps(std::size_t lights) : lights_(lights) {}
 
   /// Null for a filter that reads depth.
   SharedTarget find(const render::FilterPasses& filter, std::size_t light) {
     if (!filter.encoded_format()) return nullptr;
     std::vector<SharedTarget>& maps = maps_[*filter.encoded_format()];
-    while (maps.size() < lights_)
-      maps.push_back(
-          std::make_shared<render::ImageTarget>("a light's map", *filter.encoded_format(), map_size_, map_size_));
+    while (maps.size() < lights_) maps.push_back(filter.make_encoded_target());
     return maps[light];
   }
 
  private:
-  int map_size_;
   std::size_t lights_;
   std::map<GLenum, std::vector<SharedTarget>> maps_;
 };
@@ -61,7 +58,7 @@ LightFrameBench::LightFrameBench(Renderer& renderer, const options::RunOptions& 
 }
 
 void LightFrameBench::prepare_filters(const std::vector<scene::Light>& lights) {
-  EncodedMaps encoded(frame_.map_size, lights.size());
+  EncodedMaps encoded(lights.size());
   for (render::FilterPasses* filter : frame_.filters) {
     std::vector<render::PreparedLight>& prepared = prepared_.emplace_back();
     for (std::size_t i = 0; i < lights.size(); ++i) {

@@ -30,9 +30,10 @@ class SceneAssets {
   /// Throws Error(kUsage) when the GL cannot give a map of this size.
   LightMap& light_map(const scene::Camera& camera, int map_size);
 
-  /// Draws the map of another light than the scene's; it is not kept.
+  /// Draws the map of another light than the scene's, or a map moved by parts of a texel; it is not kept.
   /// Throws Error(kUsage) when the GL cannot give a map of this size.
-  LightMap make_light_map(const scene::Light& light, const scene::Camera& camera, int map_size);
+  LightMap make_light_map(const scene::Light& light, const scene::Camera& camera, int map_size,
+                          const glm::dvec2& shift_texels = glm::dvec2(0.0));
 
   render::GBuffer& gbuffer(const scene::Camera& camera);
 

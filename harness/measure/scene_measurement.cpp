@@ -8,6 +8,7 @@
 
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/light_timing.h"
+#include "harness/measure/phases.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/statistics.h"
 #include "harness/measure/timing.h"
@@ -55,6 +56,7 @@ class SceneBench {
         result.cells.back().uncertainty = measure_uncertainty({renderer_, options_, task_, assets_}, *filters.back());
     }
     time(result, filters);
+    draw_phases(result, filters);
     result.stored_map = light_.map.read_picture();
     result.depth_map = read_linear_depth(light_.map);
     warn_of_coarse_depth(result);
@@ -163,6 +165,21 @@ class SceneBench {
       record.lights = std::move(measured.filters[i]);
       for (records::LightCountRecord& each : *record.lights)
         each.maps_bytes = each.count * record.cost.map_bytes.value();
+    }
+  }
+
+  /// Draws every filter again with the map's grid moved by parts of a texel. The passes stay turned to the last of them.
+  void draw_phases(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
+    const std::vector<glm::dvec2> shifts = list_phase_shifts(options_.phases);
+    for (std::size_t phase = 1; phase < shifts.size(); ++phase) {
+      const LightMap moved = assets_.make_light_map(task_.scene->light, *task_.camera, task_.map_size, shifts[phase]);
+      for (std::size_t i = 0; i < filters.size(); ++i) {
+        render::FilterPasses& filter = *filters[i];
+        const auto encoded = filter.make_encoded_target();
+        filter.turn_to(filter.prepare(
+            make_filter_light(options_, task_.scene->light, moved.frustum, filter.request()), encoded));
+        result.cells[i].phases.push_back(draw_visibility(filter, moved.map, gbuffer_, target_));
+      }
     }
   }
 

@@ -22,6 +22,7 @@ struct MeasuredCell {
   std::string label;                  ///< filter and the parameters that were asked for
   images::Image picture;              ///< linear RGB
   images::Image visibility;           ///< 1 lit .. 0 blocked
+  std::vector<images::Image> phases;  ///< the same, with the map's grid moved to each of the other phases
   images::StabilityImages stability;  ///< where its numbers break; empty unless the run asks for it
   images::UncertaintyImages
       uncertainty;  ///< how far rounding and other seeds can move its pixels; empty unless the run asks for it

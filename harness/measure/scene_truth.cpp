@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "harness/measure/mean_flip.h"
 #include "reference/metrics/error_stats.h"
+#include "reference/metrics/mean_interval.h"
 #include "report/images/picture_io.h"
 #include "report/records/absence.h"
 
@@ -22,6 +24,27 @@ void summarise_errors(SceneTruth& truth, const truth::TracedVisibility& area) {
   }
   truth.standard_error = std::sqrt(squares / count);
   truth.unanimous = unanimous / count;
+}
+
+/// Notes the mean of every error over the phases; the largest error is the largest of all.
+void note_errors(records::CellRecord& record, const std::vector<metrics::ErrorStats>& phases) {
+  const auto list = [&](double metrics::ErrorStats::*member) {
+    std::vector<double> values;
+    for (const metrics::ErrorStats& stats : phases) values.push_back(stats.*member);
+    return values;
+  };
+  const auto mean = [&](double metrics::ErrorStats::*member) {
+    const std::vector<double> values = list(member);
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  using Stats = metrics::ErrorStats;
+  record.error = {mean(&Stats::rmse), mean(&Stats::mae), mean(&Stats::p95), std::ranges::max(list(&Stats::max)),
+                  mean(&Stats::mean), std::nullopt,      std::nullopt};
+  record.phases = static_cast<std::int64_t>(phases.size());
+  if (const auto interval = metrics::find_mean_interval(list(&Stats::rmse)))
+    record.rmse_ci95 = records::Interval{interval->low, interval->high};
+  else
+    record.absent["error.rmse_ci95"] = "one phase of the map's grid tells nothing of the others; see --phases";
 }
 
 }  // namespace
@@ -49,12 +72,16 @@ images::Image make_error_image(const images::Image& visibility, const SceneTruth
   return error;
 }
 
-void score(records::CellRecord& record, const images::Image& visibility, const images::Image& picture,
-           const SceneTruth& truth) {
-  const auto stats = truth.absent.empty() && !visibility.empty()
-                         ? metrics::measure_error(visibility.texels, truth.area.texels, truth.mask)
-                         : std::nullopt;
-  if (!stats) {
+void score(records::CellRecord& record, const images::Image& visibility, std::span<const images::Image> other_phases,
+           const images::Image& picture, const SceneTruth& truth) {
+  std::vector<metrics::ErrorStats> phases;
+  const auto measure_phase = [&](const images::Image& phase) {
+    if (!truth.absent.empty() || phase.empty()) return;
+    if (const auto stats = metrics::measure_error(phase.texels, truth.area.texels, truth.mask))
+      phases.push_back(*stats);
+  };
+  measure_phase(visibility);
+  if (phases.empty()) {
     const std::string reason = !truth.absent.empty() ? truth.absent
                                : visibility.empty()  ? record.message
                                                      : "no pixel of the image is finite";
@@ -62,9 +89,10 @@ void score(records::CellRecord& record, const images::Image& visibility, const i
     record.absent["truth"] = reason;
     return;
   }
+  std::ranges::for_each(other_phases, measure_phase);
+  note_errors(record, phases);
   // Of the pictures as they are saved, so that `diff` finds the same.
-  const auto flip = measure_mean_flip(view_picture(images::round_to_half(picture)), truth.area_seen);
-  record.error = {stats->rmse, stats->mae, stats->p95, stats->max, stats->mean, flip, std::nullopt};
+  record.error.flip = measure_mean_flip(view_picture(images::round_to_half(picture)), truth.area_seen);
   if (!record.error.flip) record.absent["error.flip"] = "the picture has pixels that are not finite";
   record.truth = {truth.standard_error, truth.unanimous};
 }

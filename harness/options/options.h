@@ -51,6 +51,9 @@ struct LightAngles {
   double elevation_deg = 0.0;
 };
 
+/// The most places of the map's grid that a run may average errors over.
+inline constexpr int kMostPhases = 64;
+
 /// All options of `shadowbench run`; the other commands that draw use some of them.
 struct RunOptions {
   Resources resources;
@@ -71,6 +74,7 @@ struct RunOptions {
   bool border_page = false;          ///< also draw every rule for what lies outside the map, side by side
   std::optional<double> pad_texels;  ///< around the scene in the map; empty: as many as the widest kernel needs
   RoundLimits rounds;
+  int phases = 4;                    ///< places of the map's grid over which errors are averaged
   std::vector<int> lights;           ///< also time frames with these numbers of lights
   filters::FilterRequest reference;  ///< the filter that the others' times are ratios to
   std::uint32_t seed = 1;

@@ -53,6 +53,11 @@ void FilterPasses::retune(ShaderLibrary& shaders, const filters::ParamValues& va
   if (prefilter_) prefilter_->retune(shaders, request_, light_);
 }
 
+std::shared_ptr<ImageTarget> FilterPasses::make_encoded_target() const {
+  if (!prefilter_) return nullptr;
+  return std::make_shared<ImageTarget>(request_.spec.id + " map", prefilter_->format(), map_size_, map_size_);
+}
+
 PreparedLight FilterPasses::prepare(const LightSetup& light, std::shared_ptr<ImageTarget> encoded) {
   return {light, prefilter_ ? prefilter_->find_border(light) : glm::vec4(0.0f), std::move(encoded)};
 }

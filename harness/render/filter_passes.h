@@ -53,6 +53,9 @@ class FilterPasses {
     return prefilter_ ? std::optional(prefilter_->format()) : std::nullopt;
   }
 
+  /// A target for prepare(); null for filters that read depth.
+  std::shared_ptr<ImageTarget> make_encoded_target() const;
+
   bool has_prefilter() const { return prefilter_.has_value(); }
   int prefilter_passes() const { return prefilter_ ? prefilter_->passes() : 0; }  ///< encode and blur
 

@@ -19,7 +19,7 @@ void add_options(ContentHash& hash, const options::RunOptions& options) {
   // The masks of artefacts reach as far as the widest kernel of the run.
   hash.add(fmt::format("radius {} reference {} border page {}", measure::widest_kernel_texels(options),
                        options.reference.label(), options.border_page));
-  hash.add(fmt::format("lights {}", fmt::join(options.lights, " ")));
+  hash.add(fmt::format("lights {} phases {}", fmt::join(options.lights, " "), options.phases));
 }
 
 void add_material(ContentHash& hash, const scene::Material& m) {

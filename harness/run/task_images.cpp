@@ -140,6 +140,12 @@ void add_uncertainty_parts(std::vector<images::Part>& parts, const measure::Meas
   }
 }
 
+/// A worker hands its phases to the run that scores them; nobody else needs them.
+void add_phase_parts(std::vector<images::Part>& parts, const measure::MeasuredCell& cell) {
+  for (std::size_t i = 0; i < cell.phases.size(); ++i)
+    parts.push_back({phase_part(cell.label, i), {"Y"}, cell.phases[i], false});
+}
+
 /// Writes a cell's own pictures; no two labels share a file.
 void write_cell_pictures(const options::RunOptions& options, const std::string& stem, measure::MeasuredCell& cell) {
   if (cell.picture.empty()) return;
@@ -193,6 +199,10 @@ std::string uncertainty_part(const std::string& label, const images::Uncertainty
   return fmt::format("{}.{}", label, image.id);
 }
 
+std::string phase_part(const std::string& label, std::size_t phase) {
+  return fmt::format("{}.phase.{}", label, phase);
+}
+
 void write_float_images(const options::RunOptions& options, const measure::SceneTask& task,
                         const measure::SceneMeasurement& measured, const measure::SceneTruth& truth,
                         const gl::GlInfo& info) {
@@ -211,6 +221,7 @@ void write_float_images(const options::RunOptions& options, const measure::Scene
   for (const measure::MeasuredCell& cell : measured.cells) {
     add_stability_parts(parts, cell);
     add_uncertainty_parts(parts, cell);
+    add_phase_parts(parts, cell);
   }
   if (truth.absent.empty()) add_truth_parts(parts, truth, measured.masks);
   parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});

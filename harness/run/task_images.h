@@ -20,6 +20,7 @@ std::string visibility_part(const std::string& label);
 std::string picture_part(const std::string& label);
 std::string stability_part(const std::string& label, const images::StabilityImage& image);
 std::string uncertainty_part(const std::string& label, const images::UncertaintyImage& image);
+std::string phase_part(const std::string& label, std::size_t phase);
 
 /// Writes `<stem>.exr`: depth map, truth, and visibility and picture of each filter, with metadata to repeat the run.
 /// Throws Error(kOutput).

@@ -83,7 +83,8 @@ void TaskRun::score(measure::SceneMeasurement& measured) {
   show("truth");
   const measure::SceneTruth& truth = assets_.truth(*task_.camera);
   tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
-    measure::score(cell.record, cell.visibility, cell.picture, truth);
+    measure::score(cell.record, cell.visibility, cell.phases, cell.picture, truth);
+    cell.phases.clear();
   });
   show("attribution");
   if (!analyser_) analyser_.emplace(renderer_, options_, task_, assets_, truth);

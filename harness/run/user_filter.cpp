@@ -60,6 +60,7 @@ std::vector<std::string> worker_arguments(const options::RunOptions& options, co
                                         "--map-size",    fmt::format("{}", task.map_size),
                                         "--size",        fmt::format("{}x{}", options.width, options.height),
                                         "--seed",        fmt::format("{}", options.seed),
+                                        "--phases",      fmt::format("{}", options.phases),
                                         "--fit",         std::string(scene::name_of(options.fit)),
                                         "--snap",        options.snap ? "on" : "off",
                                         "--map-format",  std::string(gl::pixel_format(options.map.format).name),
@@ -122,7 +123,10 @@ measure::MeasuredCell read_cell(const options::RunOptions& options, const measur
   of_worker.map_sizes = {task.map_size};
   of_worker.sizes = {{options.width, options.height}};
   const images::ExrFile file = images::read_exr(folder / exr_name(of_worker, task));
+  cell.phases.resize(static_cast<std::size_t>(options.phases) - 1);
   for (const images::Part& part : file.parts) {
+    for (std::size_t i = 0; i < cell.phases.size(); ++i)
+      if (part.name == phase_part(cell.label, i)) cell.phases[i] = part.image;
     if (part.name == visibility_part(cell.label)) cell.visibility = part.image;
     if (part.name == picture_part(cell.label)) cell.picture = part.image;
     for (const images::UncertaintyImage& each : images::list_uncertainty_images())

@@ -31,6 +31,11 @@ bool is_finite(const std::vector<std::string>&) { return true; }
 bool is_finite(const Quartiles& value) {
   return std::isfinite(value.median) && std::isfinite(value.q1) && std::isfinite(value.q3);
 }
+bool is_finite(const OwnTime& value) {
+  return is_finite(static_cast<const Quartiles&>(value)) && std::isfinite(value.ci95.low) &&
+         std::isfinite(value.ci95.high);
+}
+bool is_finite(const Interval& value) { return std::isfinite(value.low) && std::isfinite(value.high); }
 bool is_finite(const Ratio& value) {
   return std::isfinite(value.median) && std::isfinite(value.ci95.low) && std::isfinite(value.ci95.high);
 }

@@ -9,8 +9,8 @@
 namespace shadowbench::records {
 
 /// Names the fields that older files of this schema version lack; they are read as null there.
-inline constexpr std::array<std::string_view, 7> kLaterFields = {
-    "images.parts", "work.attribution_s", "claims", "lights", "repeat.cells", "repeat.overlapping", "repeat.of"};
+inline constexpr std::array<std::string_view, 11> kLaterFields = {
+    "error.rmse_ci95", "phases", "time_ms.filter", "time_ms.moving", "images.parts", "work.attribution_s", "claims", "lights", "repeat.cells", "repeat.overlapping", "repeat.of"};
 
 /// Calls `visit(name, value)` for every field of a bias.
 template <class Bias, class Visitor>
@@ -58,9 +58,13 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("size.width", cell.width);
   visit("size.height", cell.height);
   visit("excused", cell.excused);
+  visit("phases", cell.phases);
+  visit("error.rmse_ci95", cell.rmse_ci95);
   visit("time_ms.map", cell.time_ms.map);
   visit("time_ms.prefilter", cell.time_ms.prefilter);
   visit("time_ms.lookup", cell.time_ms.lookup);
+  visit("time_ms.filter", cell.time_ms.filter);
+  visit("time_ms.moving", cell.time_ms.moving);
   visit("time_ms.stopped", cell.time_ms.stopped);
   visit("ratio_to_none.lookup", cell.ratio_to_none.lookup);
   visit("ratio_to_none.static", cell.ratio_to_none.static_map);

@@ -29,6 +29,7 @@ struct FitRequest {
   const Camera* camera = nullptr;  ///< FitMode::kView only
   double aspect = 1.0;             ///< of its picture, width / height
   const Light* light = nullptr;    ///< in place of the scene's own
+  glm::dvec2 shift_texels{0.0};    ///< moves the fitted map along its axes; at most half a texel, or padding is used up
 };
 
 /// The orthographic frustum of a directional light: a square map over casters and receivers.

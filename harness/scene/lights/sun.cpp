@@ -232,6 +232,7 @@ LightFrustum fit_sun(const Sun& sun, const MapWindow* window, const Scene& scene
   fit.light_from_world = glm::dmat4(rotation);
   fit.light_from_world[3] = glm::dvec4(-(rotation * center) - eye, 1.0);
   if (window) set_window(fit, *window, request.map_size);
+  fit.light_from_world[3] -= glm::dvec4(fit.texel_size_ws * request.shift_texels, 0.0, 0.0);
   set_matrices(fit);
   return fit;
 }
