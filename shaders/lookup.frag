@@ -1,6 +1,5 @@
 // Asks the filter for the visibility of every receiver; timed.
 #include "lib/receiver.glsl"
-#include "lib/gbuffer.glsl"
 #include "lib/map_access.glsl"
 #include "lib/random.glsl"
 #include "lib/encode_input.glsl"
@@ -14,18 +13,15 @@ layout(location = 1) out float out_fetches;
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  vec4 position = texelFetch(gbuffer_position, pixel, 0);
-  out_visibility = 1.0;
+  vec4 place = texelFetch(receiver_places, pixel, 0);
+  if (place.w < 0.0) {
+    out_visibility = place.w == mark_away ? 0.0 : 1.0;
 #ifdef COUNT_FETCHES
-  out_fetches = -1.0;  // not a receiver
+    out_fetches = place.w == mark_beyond ? 0.0 : -1.0;  // below 0: not a receiver
 #endif
-  if (position.w == 0.0) return;
-  Receiver r = make_receiver(position.xyz, texelFetch(gbuffer_normal, pixel, 0).xyz, position.w, pixel);
-  if (r.n_dot_l <= faces_light) {
-    out_visibility = 0.0;  // the surface shadows itself: there is nothing to filter
     return;
   }
-  if (map_reaches(r)) out_visibility = visibility(r);
+  out_visibility = visibility(make_receiver(pixel, place));
 #ifdef COUNT_FETCHES
   out_fetches = float(fetch_count);
 #endif

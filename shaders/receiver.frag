@@ -1,17 +1,16 @@
 // Writes the receivers that the lookup pass sees, for the models; never timed.
 #include "lib/receiver.glsl"
-#include "lib/gbuffer.glsl"
 
 layout(location = 0) out vec4 out_map;    // uv, depth, depth_unbiased
 layout(location = 1) out vec4 out_plane;  // depth_per_texel, n_dot_l, view_depth (0: no receiver, negative: beyond the map's reach)
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  vec4 position = texelFetch(gbuffer_position, pixel, 0);
+  vec4 place = texelFetch(receiver_places, pixel, 0);
   out_map = vec4(0.0);
   out_plane = vec4(0.0);
-  if (position.w == 0.0) return;
-  Receiver r = make_receiver(position.xyz, texelFetch(gbuffer_normal, pixel, 0).xyz, position.w, pixel);
+  if (place.w == mark_background) return;
+  Receiver r = make_receiver(pixel, place);
   out_map = vec4(r.uv, r.depth, r.depth_unbiased);
-  out_plane = vec4(r.depth_per_texel, r.n_dot_l, map_reaches(r) ? r.view_depth : -r.view_depth);
+  out_plane = vec4(r.depth_per_texel, r.n_dot_l, place.w == mark_beyond ? -r.view_depth : r.view_depth);
 }

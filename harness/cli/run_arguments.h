@@ -32,7 +32,7 @@ struct RunArguments : DrawingArguments {
   std::string behind_test = "on";
   bool border_page = false;
   std::string rounds = "auto";
-  int phases = 4;
+  std::uint32_t phases = 4;
   std::string lights;
   double precision = 0.05;
   double budget_s = 0.4;

@@ -69,7 +69,7 @@ void check_ranges(const RunArguments& arguments) {
   const double padding = arguments.pad_texels.value_or(0.0);
   if (!(padding >= 0.0 && padding <= kMostPadding))
     fail(fmt::format("--pad-texels: {} is out of range: choose 0 .. {:g}", padding, kMostPadding));
-  if (arguments.phases < 1 || arguments.phases > options::kMostPhases)
+  if (arguments.phases < 1 || arguments.phases > std::uint32_t{options::kMostPhases})
     fail(fmt::format("--phases: {} is out of range: choose 1 .. {}", arguments.phases, options::kMostPhases));
   require_in_range("--cell-timeout", arguments.cell_timeout_s, 0.0, 86400.0, " seconds");
   // With a larger ratio, single precision cannot tell it from the ratio less 1, which linearises depth.
@@ -140,7 +140,7 @@ options::RunOptions make_run_options(const RunArguments& arguments, std::vector<
   options.range = {filters::parse_border(arguments.border), arguments.far_test == "on", arguments.behind_test == "on"};
   options.border_page = arguments.border_page;
   options.rounds = parse_rounds(arguments);
-  options.phases = arguments.phases;
+  options.phases = static_cast<int>(arguments.phases);
   options.lights = parse_lights(arguments.lights);
   options::require_light_maps_fit(options);
   options.reference = filters::Catalogue(options.resources.filters).parse_requests(kReferenceFilter).front();

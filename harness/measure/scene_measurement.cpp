@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "harness/measure/empty_lookup.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/light_timing.h"
 #include "harness/measure/phases.h"
@@ -143,12 +144,13 @@ class SceneBench {
       pointers.push_back((added = make_passes(options_.reference)).get());
       drawn_ms_ += time_once(*added, light_.map, gbuffer_, target_, renderer_.timer);
     }
+    const EmptyLookups empty = make_empty_lookups(renderer_, options_, *task_.scene, light_, pointers);
     const RoundTimes times = time_rounds(
-        pointers, reference, [&] { assets_.redraw(light_); }, light_.map, gbuffer_, renderer_.timer, options_.rounds,
-        options_.seed, drawn_ms_);
+        pointers, reference, empty.passes, [&] { assets_.redraw(light_); }, light_.map, gbuffer_, renderer_.timer,
+        options_.rounds, options_.seed, drawn_ms_);
     result.timed_ms = times.spent_ms;
     for (std::size_t i = 0; i < filters.size(); ++i)
-      set_times(result.cells[i].record, times.map, times.filters[i], times.filters[reference]);
+      set_times(result.cells[i].record, times, i, reference, times.empties[empty.of_filter[i]]);
     time_lights(result, pointers, reference);
   }
 
@@ -168,7 +170,8 @@ class SceneBench {
     }
   }
 
-  /// Draws every filter again with the map's grid moved by parts of a texel. The passes stay turned to the last of them.
+  /// Draws every filter again with the map's grid moved by parts of a texel. The passes stay turned to the last of
+  /// them.
   void draw_phases(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
     const std::vector<glm::dvec2> shifts = list_phase_shifts(options_.phases);
     for (std::size_t phase = 1; phase < shifts.size(); ++phase) {
@@ -176,25 +179,31 @@ class SceneBench {
       for (std::size_t i = 0; i < filters.size(); ++i) {
         render::FilterPasses& filter = *filters[i];
         const auto encoded = filter.make_encoded_target();
-        filter.turn_to(filter.prepare(
-            make_filter_light(options_, task_.scene->light, moved.frustum, filter.request()), encoded));
+        filter.turn_to(
+            filter.prepare(make_filter_light(options_, task_.scene->light, moved.frustum, filter.request()), encoded));
         result.cells[i].phases.push_back(draw_visibility(filter, moved.map, gbuffer_, target_));
       }
     }
   }
 
-  void set_times(records::CellRecord& record, const std::vector<double>& map, const FilterTimes& times,
-                 const FilterTimes& reference) const {
-    record.time_ms.map = summarise({map.begin(), map.begin() + static_cast<std::ptrdiff_t>(times.lookup.size())});
+  void set_times(records::CellRecord& record, const RoundTimes& rounds, std::size_t filter, std::size_t reference,
+                 const std::vector<double>& empty) const {
+    const FilterTimes &times = rounds.filters[filter], &unfiltered = rounds.filters[reference];
+    const std::vector<double> moving = add_moving(rounds.map, times);
+    const auto count = static_cast<std::ptrdiff_t>(times.lookup.size());
+    record.time_ms.map = summarise({rounds.map.begin(), rounds.map.begin() + count});
     record.time_ms.lookup = summarise(times.lookup);
+    record.time_ms.empty = summarise({empty.begin(), empty.begin() + count});
+    record.time_ms.filter = bootstrap_difference(times.lookup, empty, options_.seed);
+    record.time_ms.moving = bootstrap_difference(moving, empty, options_.seed);
     record.time_ms.stopped = name_of(times.stopped);
     if (times.prefilter.empty())
       record.absent["time_ms.prefilter"] = "the filter reads the depth map itself";
     else
       record.time_ms.prefilter = summarise(times.prefilter);
-    record.ratio_to_none.lookup = bootstrap_ratio(times.lookup, reference.lookup, options_.seed);
+    record.ratio_to_none.lookup = bootstrap_ratio(times.lookup, unfiltered.lookup, options_.seed);
     record.ratio_to_none.static_map = record.ratio_to_none.lookup;
-    record.ratio_to_none.moving = bootstrap_ratio(add_moving(map, times), add_moving(map, reference), options_.seed);
+    record.ratio_to_none.moving = bootstrap_ratio(moving, add_moving(rounds.map, unfiltered), options_.seed);
   }
 };
 

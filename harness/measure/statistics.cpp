@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <random>
 
 namespace shadowbench::measure {
@@ -43,6 +45,19 @@ std::size_t count_outside(std::size_t count) {
   return outside;
 }
 
+/// The 95 % percentile-bootstrap interval of the median.
+records::Interval bootstrap_median(const std::vector<double>& values, std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  std::vector<double> medians;
+  std::vector<double> sample(values.size());
+  for (int i = 0; i < kResamples; ++i) {
+    for (double& value : sample) value = values[generator() % values.size()];
+    medians.push_back(median_of(sample));
+  }
+  std::sort(medians.begin(), medians.end());
+  return {quantile(medians, 0.025), quantile(medians, 0.975)};
+}
+
 }  // namespace
 
 records::Quartiles summarise(std::vector<double> values) {
@@ -54,15 +69,15 @@ records::Quartiles summarise(std::vector<double> values) {
 records::Ratio bootstrap_ratio(const std::vector<double>& numerator, const std::vector<double>& denominator,
                                std::uint64_t seed) {
   const std::vector<double> ratios = divide(numerator, denominator);
-  std::mt19937_64 generator(seed);
-  std::vector<double> medians;
-  std::vector<double> sample(ratios.size());
-  for (int i = 0; i < kResamples; ++i) {
-    for (double& value : sample) value = ratios[generator() % ratios.size()];
-    medians.push_back(median_of(sample));
-  }
-  std::sort(medians.begin(), medians.end());
-  return {median_of(ratios), {quantile(medians, 0.025), quantile(medians, 0.975)}};
+  return {median_of(ratios), bootstrap_median(ratios, seed)};
+}
+
+records::OwnTime bootstrap_difference(const std::vector<double>& minuend, const std::vector<double>& subtrahend,
+                                      std::uint64_t seed) {
+  assert(minuend.size() <= subtrahend.size());
+  std::vector<double> differences;
+  std::ranges::transform(minuend, subtrahend, std::back_inserter(differences), std::minus());
+  return {summarise(differences), bootstrap_median(differences, seed)};
 }
 
 records::Ratio order_ratio(const std::vector<double>& numerator, const std::vector<double>& denominator) {

@@ -17,7 +17,12 @@ records::Quartiles summarise(std::vector<double> values);
 records::Ratio bootstrap_ratio(const std::vector<double>& numerator, const std::vector<double>& denominator,
                                std::uint64_t seed);
 
-/// The same median with the distribution-free interval between two order statistics that covers it at least 95
+/// The spread of the paired differences minuend[i] - subtrahend[i] with the same interval of their median. Requires at
+/// least one minuend; of more subtrahends the first are used.
+records::OwnTime bootstrap_difference(const std::vector<double>& minuend, const std::vector<double>& subtrahend,
+                                      std::uint64_t seed);
+
+/// The ratio's median with the distribution-free interval between two order statistics that covers it at least 95
 /// times in a hundred (David and Nagaraja 2003, Order Statistics, section 7.1); from the least to the most where there
 /// are fewer than six ratios, which cover it less often. Microseconds.
 records::Ratio order_ratio(const std::vector<double>& numerator, const std::vector<double>& denominator);

@@ -23,8 +23,10 @@ void shuffle(std::vector<std::size_t>& order, std::mt19937_64& generator) {
 class Rounds {
  public:
   Rounds(const std::vector<TimedFilter>& filters, std::size_t reference, const std::function<double()>& draw_map,
-         const options::RoundLimits& limits, std::uint64_t seed, double drawn_ms)
+         const options::RoundLimits& limits, std::uint64_t seed, double drawn_ms,
+         const std::vector<std::function<double()>>& empties)
       : filters_(filters),
+        empties_(empties),
         reference_(reference),
         draw_map_(draw_map),
         limits_(limits),
@@ -34,6 +36,7 @@ class Rounds {
     assert(!filters.empty() && reference < filters.size());
     std::iota(active_.begin(), active_.end(), std::size_t{0});
     times_.filters.resize(filters.size());
+    times_.empties.resize(empties.size());
     times_.spent_ms = drawn_ms;
   }
 
@@ -48,6 +51,7 @@ class Rounds {
 
  private:
   const std::vector<TimedFilter>& filters_;
+  const std::vector<std::function<double()>>& empties_;
   std::size_t reference_;
   const std::function<double()>& draw_map_;
   options::RoundLimits limits_;
@@ -61,8 +65,11 @@ class Rounds {
     const double map_ms = draw_map_();
     times_.spent_ms += map_ms;
     if (counted) times_.map.push_back(map_ms);
-    shuffle(active_, generator_);
-    for (const std::size_t i : active_) {
+    for (const std::size_t i : shuffle_turns()) {
+      if (i >= filters_.size()) {
+        run_empty(i - filters_.size(), counted);
+        continue;
+      }
       const double prefilter_ms = filters_[i].prefilter ? filters_[i].prefilter() : 0.0;
       for (int settle = 0; filters_[i].prefilter && settle < kSettlingLookups; ++settle)
         times_.spent_ms += filters_[i].lookup();
@@ -72,6 +79,20 @@ class Rounds {
       if (filters_[i].prefilter) times_.filters[i].prefilter.push_back(prefilter_ms);
       times_.filters[i].lookup.push_back(lookup_ms);
     }
+  }
+
+  /// The filters that still take part, and behind them the empty lookups, in an order of this round's own.
+  std::vector<std::size_t> shuffle_turns() {
+    std::vector<std::size_t> turns = active_;
+    for (std::size_t k = 0; k < empties_.size(); ++k) turns.push_back(filters_.size() + k);
+    shuffle(turns, generator_);
+    return turns;
+  }
+
+  void run_empty(std::size_t which, bool counted) {
+    const double ms = empties_[which]();
+    times_.spent_ms += ms;
+    if (counted) times_.empties[which].push_back(ms);
   }
 
   bool is_spent() const {
@@ -142,8 +163,8 @@ TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std
 
 RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference,
                       const std::function<double()>& draw_map, const options::RoundLimits& limits, std::uint64_t seed,
-                      double drawn_ms) {
-  return Rounds(filters, reference, draw_map, limits, seed, drawn_ms).run();
+                      double drawn_ms, const std::vector<std::function<double()>>& empties) {
+  return Rounds(filters, reference, draw_map, limits, seed, drawn_ms, empties).run();
 }
 
 double time_once(render::FilterPasses& filter, const render::ShadowMap& map, const render::GBuffer& gbuffer,
@@ -157,6 +178,7 @@ double time_once(render::FilterPasses& filter, const render::ShadowMap& map, con
 }
 
 RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::size_t reference,
+                       const std::vector<std::unique_ptr<render::FilterPasses>>& empties,
                        const std::function<void()>& draw_map, const render::ShadowMap& map,
                        const render::GBuffer& gbuffer, gl::TimerKind timer, const options::RoundLimits& limits,
                        std::uint64_t seed, double drawn_ms) {
@@ -167,8 +189,13 @@ RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::s
     if (filter->has_prefilter()) prefilter = [&map, filter] { filter->prefilter(map); };
     timed.push_back(make_timed(timer, prefilter, [&, filter] { filter->lookup(gbuffer, map, target); }));
   }
+  std::vector<std::function<double()>> timed_empties;
+  for (const auto& empty : empties)
+    timed_empties.push_back(make_timed(
+                                timer, {}, [&, lookup = empty.get()] { lookup->lookup(gbuffer, map, target); })
+                                .lookup);
   return run_rounds(
-      timed, reference, [&] { return gl::time_ms(timer, draw_map); }, limits, seed, drawn_ms);
+      timed, reference, [&] { return gl::time_ms(timer, draw_map); }, limits, seed, drawn_ms, timed_empties);
 }
 
 }  // namespace shadowbench::measure

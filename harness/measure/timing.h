@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -30,9 +31,10 @@ struct FilterTimes {
 
 /// Times of a set of filters that took turns; entry i of every list comes from round i.
 struct RoundTimes {
-  std::vector<double> map;           ///< as many entries as there were rounds
-  std::vector<FilterTimes> filters;  ///< in the order given
-  double spent_ms = 0.0;             ///< of all passes, those that warm up included
+  std::vector<double> map;                   ///< as many entries as there were rounds
+  std::vector<FilterTimes> filters;          ///< in the order given
+  std::vector<std::vector<double>> empties;  ///< of lookups that read nothing of the map, in the order given
+  double spent_ms = 0.0;                     ///< of all passes, those that warm up included
 };
 
 /// Runs one filter's passes once and gives their times in milliseconds.
@@ -50,18 +52,20 @@ TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std
 /// round warms up and is not counted; none where `drawn_ms`, which is what running every filter once has cost before,
 /// spends the budget already. A filter drops out when its ratios to the filter `reference`, of the lookup and of map,
 /// prefilter and lookup, are precise enough; `reference` stays as long as any other. When the budget is spent, all
-/// stop, but not before three rounds, or one where no more may be. Requires at least one filter. Cost: (rounds + 1)
-/// times the sum of all passes, lookups of prefiltered maps four times.
+/// stop, but not before three rounds, or one where no more may be. Each of `empties` takes part in every round.
+/// Requires at least one filter. Cost: (rounds + 1) times the sum of all passes, lookups of prefiltered maps four
+/// times.
 RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference,
                       const std::function<double()>& draw_map, const options::RoundLimits& limits, std::uint64_t seed,
-                      double drawn_ms = 0.0);
+                      double drawn_ms = 0.0, const std::vector<std::function<double()>>& empties = {});
 
 /// Runs a filter's passes once, into `target`, and gives their time in milliseconds.
 double time_once(render::FilterPasses& filter, const render::ShadowMap& map, const render::GBuffer& gbuffer,
                  render::ImageTarget& target, gl::TimerKind timer);
 
-/// Times the shadow map, prefilters and lookups of filters that were drawn once, as run_rounds().
+/// Times the shadow map, prefilters and lookups of filters that were drawn once, and empty lookups, as run_rounds().
 RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::size_t reference,
+                       const std::vector<std::unique_ptr<render::FilterPasses>>& empties,
                        const std::function<void()>& draw_map, const render::ShadowMap& map,
                        const render::GBuffer& gbuffer, gl::TimerKind timer, const options::RoundLimits& limits,
                        std::uint64_t seed, double drawn_ms = 0.0);

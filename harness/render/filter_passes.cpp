@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <regex>
+
 #include "filters/base/error.h"
 #include "harness/render/filter_glsl.h"
 
@@ -21,7 +23,8 @@ Defines map_defines(const filters::FilterRequest& request, const MapSettings& ma
 
 FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, const ShadowMap& map,
                            const LightSetup& light)
-    : request_(request),
+    : shaders_(&shaders),
+      request_(request),
       light_(light),
       map_size_(map.size()),
       map_defines_(map_defines(request, map.settings())),
@@ -30,7 +33,7 @@ FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest&
 }
 
 gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, Defines defines) const {
-  for (const Defines& more : {map_defines_, range_defines(light_)})
+  for (const Defines& more : {map_defines_, receiver_defines(light_)})
     defines.insert(defines.end(), more.begin(), more.end());
   if (light_.bias.receiver_plane) defines.emplace_back("RECEIVER_PLANE", "1");
   gl::Program program =
@@ -72,8 +75,10 @@ void FilterPasses::prefilter(const ShadowMap& map) {
   if (prefilter_) prefilter_->run(map);
 }
 
-void FilterPasses::draw_lookup(gl::Program& program, const GBuffer& gbuffer, const ShadowMap& map) {
+void FilterPasses::draw_lookup(gl::Program& program, const GBuffer& gbuffer, const ReceiverBuffer& receivers,
+                               const ShadowMap& map) {
   gbuffer.bind();
+  receivers.bind();
   map.bind();
   if (prefilter_) prefilter_->bind();
   program.use();
@@ -81,8 +86,16 @@ void FilterPasses::draw_lookup(gl::Program& program, const GBuffer& gbuffer, con
 }
 
 void FilterPasses::lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& target) {
+  const ReceiverBuffer& receivers = gbuffer.receivers(*shaders_, light_);
   target.bind();
-  draw_lookup(lookup_, gbuffer, map);
+  draw_lookup(lookup_, gbuffer, receivers, map);
+}
+
+ReceiverReads FilterPasses::receiver_reads() const {
+  static const std::regex kUsesPlace(
+      "\\b(uv|depth|depth_unbiased|compare_nearest|compare_2x2|fetch_depth|fetch_map|texture)\\b");
+  return {std::regex_search(request_.spec.body, kUsesPlace), lookup_.has("receiver_planes"),
+          lookup_.has("gbuffer_position"), lookup_.has("gbuffer_normal")};
 }
 
 double FilterPasses::count_fetches(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map) {
@@ -92,8 +105,9 @@ double FilterPasses::count_fetches(ShaderLibrary& shaders, const GBuffer& gbuffe
   gl::Framebuffer framebuffer("fetch count");
   framebuffer.attach_color(0, visibility);
   framebuffer.attach_color(1, fetches);
+  const ReceiverBuffer& prepared = gbuffer.receivers(shaders, light_);
   framebuffer.bind();
-  draw_lookup(counting, gbuffer, map);
+  draw_lookup(counting, gbuffer, prepared, map);
   double sum = 0.0, receivers = 0.0;
   for (const float count : fetches.read_floats(1)) {
     if (count < 0.0f) continue;

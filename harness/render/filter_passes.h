@@ -19,6 +19,16 @@ struct FilterCost {
   std::int64_t prefilter_texels = 0;  ///< texels that encode and blur write
 };
 
+/// What a lookup reads of its receivers; the compiler drops what no filter uses.
+struct ReceiverReads {
+  bool place = false;     ///< its place in the map, and its depth
+  bool plane = false;     ///< its plane, n.l and view depth
+  bool position = false;  ///< its place in the world
+  bool normal = false;
+
+  auto operator<=>(const ReceiverReads&) const = default;
+};
+
 /// A prepared light: passes can change to it by setting uniforms alone.
 struct PreparedLight {
   LightSetup light;
@@ -37,7 +47,8 @@ class FilterPasses {
                const LightSetup& light);
 
   /// Changes the light and parameter values without compiling anything; the result equals that of new passes. Requires
-  /// that only values change that are neither `const` nor texts, and a light with the same range rule and map size.
+  /// that only values change that are neither `const` nor texts, and a light with the same range rule and map size, and
+  /// with a bias by slope only if the one before had it.
   void retune(ShaderLibrary& shaders, const filters::ParamValues& values, const LightSetup& light);
 
   /// Prepares another light with the same range rule and map size. `encoded` has encoded_format() and the map's size,
@@ -71,10 +82,15 @@ class FilterPasses {
   /// Compiles and runs the counting variant of the lookup. Call after prefilter().
   FilterCost measure_cost(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
 
+  /// What the lookup reads of its receivers: a pass that reads as much, and nothing of the map, costs what is not the
+  /// filter's own.
+  ReceiverReads receiver_reads() const;
+
   const filters::FilterRequest& request() const { return request_; }
   const LightSetup& light() const { return light_; }
 
  private:
+  ShaderLibrary* shaders_;
   filters::FilterRequest request_;
   LightSetup light_;
   int map_size_;
@@ -85,7 +101,7 @@ class FilterPasses {
 
   void set_uniforms(gl::Program& lookup) const;
   gl::Program compile_lookup(ShaderLibrary& shaders, Defines defines) const;
-  void draw_lookup(gl::Program& program, const GBuffer& gbuffer, const ShadowMap& map);
+  void draw_lookup(gl::Program& program, const GBuffer& gbuffer, const ReceiverBuffer& receivers, const ShadowMap& map);
   double count_fetches(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
 };
 

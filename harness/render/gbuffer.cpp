@@ -7,6 +7,8 @@
 namespace shadowbench::render {
 namespace {
 
+constexpr std::size_t kKeptLights = 16;
+
 struct DepthRange {
   double near;
   double far;
@@ -69,6 +71,7 @@ GBuffer::GBuffer(int width, int height)
 
 void GBuffer::draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::Scene& scene,
                    const scene::Camera& camera) {
+  receivers_.clear();
   framebuffer_.bind();
   set_geometry_state();
   for (int i = 0; i < 4; ++i) framebuffer_.clear_color(i, glm::vec4(0.0f));
@@ -81,6 +84,13 @@ void GBuffer::draw(ShaderLibrary& shaders, const Geometry& geometry, const scene
     program.set("camera_forward_ws", camera.forward_ws);
     program.set("orthographic", camera.orthographic_height_m > 0.0f ? 1 : 0);
   });
+}
+
+const ReceiverBuffer& GBuffer::receivers(ShaderLibrary& shaders, const LightSetup& light) const {
+  const auto found = std::ranges::find_if(receivers_, [&](const ReceiverBuffer& each) { return each.is_of(light); });
+  if (found != receivers_.end()) return *found;
+  if (receivers_.size() == kKeptLights) receivers_.pop_front();
+  return receivers_.emplace_back(shaders.fullscreen("prepare_receivers.frag", range_defines(light)), *this, light);
 }
 
 void GBuffer::bind() const {

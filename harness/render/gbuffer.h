@@ -1,9 +1,11 @@
 #pragma once
 
+#include <deque>
 #include <span>
 
 #include "harness/gl/objects.h"
 #include "harness/render/geometry.h"
+#include "harness/render/receiver_buffer.h"
 #include "harness/scene/scene.h"
 
 namespace shadowbench::render {
@@ -19,9 +21,13 @@ class GBuffer {
   /// Replaces positions and geometric normals by those given, four floats a pixel as in position() and normal(), row 0
   /// at the bottom. Shading normals and colours stay undefined.
   void upload(std::span<const float> positions, std::span<const float> normals) {
+    receivers_.clear();
     position_.upload_floats(positions, 4);
     normal_.upload_floats(normals, 4);
   }
+
+  /// Where the receivers lie in a light's map; drawn when it is first asked for, and kept for the last 16 lights.
+  const ReceiverBuffer& receivers(ShaderLibrary& shaders, const LightSetup& light) const;
 
   /// Binds the textures to the units that lib/gbuffer.glsl and shade.frag name.
   void bind() const;
@@ -39,6 +45,7 @@ class GBuffer {
   gl::Texture albedo_;
   gl::Texture depth_;
   gl::Framebuffer framebuffer_{"g-buffer"};
+  mutable std::deque<ReceiverBuffer> receivers_;
 };
 
 /// The matrix from world to clip space, depth zero-to-one, of a camera that looks at these bounds.

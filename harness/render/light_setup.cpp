@@ -36,4 +36,11 @@ Defines range_defines(const LightSetup& light) {
   return defines;
 }
 
+Defines receiver_defines(const LightSetup& light) {
+  Defines defines;
+  if (light.frustum.projective) defines.emplace_back("PROJECTIVE_MAP", "1");
+  if (light.bias.slope_depth > 0.0) defines.emplace_back("BIAS_BY_SLOPE", "1");
+  return defines;
+}
+
 }  // namespace shadowbench::render

@@ -27,8 +27,10 @@ LightSetup make_light_setup(const scene::LightFrustum& frustum, const scene::Lig
 /// Sets the uniforms of lib/light.glsl.
 void set_light(gl::Program& program, const LightSetup& light);
 
-/// What programs that include lib/receiver.glsl need for this light; nothing for an orthographic map with the right
-/// range rule.
+/// What prepare_receivers.frag needs for this light; nothing for an orthographic map with the right range rule.
 Defines range_defines(const LightSetup& light);
+
+/// What programs that look receivers up need for this light; nothing for an orthographic map and the default bias.
+Defines receiver_defines(const LightSetup& light);
 
 }  // namespace shadowbench::render

@@ -22,10 +22,12 @@ ReceiverTexels draw_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, co
   gl::Framebuffer framebuffer("receivers");
   framebuffer.attach_color(0, map);
   framebuffer.attach_color(1, plane);
-  gl::Program& program = shaders.fullscreen("receiver.frag", range_defines(light));
+  gl::Program& program = shaders.fullscreen("receiver.frag", receiver_defines(light));
+  const ReceiverBuffer& receivers = gbuffer.receivers(shaders, light);
   set_light(program, light);
   framebuffer.bind();
   gbuffer.bind();
+  receivers.bind();
   program.use();
   gl::FullscreenTriangle().draw();
   return {gbuffer.width(), map.read_floats(4), plane.read_floats(4)};

@@ -58,9 +58,15 @@ json value_json(const Quartiles& value) {
   return {{"median", value.median}, {"q1", value.q1}, {"q3", value.q3}, {"n", value.n}};
 }
 
-json value_json(const Ratio& value) {
-  return {{"median", value.median}, {"ci95", json::array({value.ci95.low, value.ci95.high})}};
+json value_json(const Interval& value) { return json::array({value.low, value.high}); }
+
+json value_json(const OwnTime& value) {
+  json result = value_json(static_cast<const Quartiles&>(value));
+  result["ci95"] = value_json(value.ci95);
+  return result;
 }
+
+json value_json(const Ratio& value) { return {{"median", value.median}, {"ci95", value_json(value.ci95)}}; }
 
 json value_json(const std::vector<LightCountRecord>& value) {
   json result = json::array();
@@ -152,10 +158,19 @@ Quartiles read_value(const json& json) {
 }
 
 template <>
+Interval read_value(const json& json) {
+  require(json.is_array() && json.size() == 2, "two numbers");
+  return {read_value<double>(json[0]), read_value<double>(json[1])};
+}
+
+template <>
+OwnTime read_value(const json& json) {
+  return {read_value<Quartiles>(json), read_value<Interval>(json.at("ci95"))};
+}
+
+template <>
 Ratio read_value(const json& json) {
-  const auto& ci95 = json.at("ci95");
-  require(ci95.is_array() && ci95.size() == 2, "two numbers");
-  return {read_value<double>(json.at("median")), {read_value<double>(ci95[0]), read_value<double>(ci95[1])}};
+  return {read_value<double>(json.at("median")), read_value<Interval>(json.at("ci95"))};
 }
 
 template <>

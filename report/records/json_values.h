@@ -37,6 +37,8 @@ nlohmann::json value_json(double value);
 nlohmann::json value_json(CellStatus value);
 nlohmann::json value_json(TimerKind value);
 nlohmann::json value_json(const Quartiles& value);
+nlohmann::json value_json(const Interval& value);
+nlohmann::json value_json(const OwnTime& value);
 nlohmann::json value_json(const Ratio& value);
 nlohmann::json value_json(const std::vector<LightCountRecord>& value);
 nlohmann::json value_json(const ParamMap& value);

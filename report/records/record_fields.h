@@ -9,8 +9,9 @@
 namespace shadowbench::records {
 
 /// Names the fields that older files of this schema version lack; they are read as null there.
-inline constexpr std::array<std::string_view, 11> kLaterFields = {
-    "error.rmse_ci95", "phases", "time_ms.filter", "time_ms.moving", "images.parts", "work.attribution_s", "claims", "lights", "repeat.cells", "repeat.overlapping", "repeat.of"};
+inline constexpr std::array<std::string_view, 12> kLaterFields = {
+    "time_ms.empty",      "error.rmse_ci95", "phases", "time_ms.filter", "time_ms.moving",     "images.parts",
+    "work.attribution_s", "claims",          "lights", "repeat.cells",   "repeat.overlapping", "repeat.of"};
 
 /// Calls `visit(name, value)` for every field of a bias.
 template <class Bias, class Visitor>
@@ -63,6 +64,7 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("time_ms.map", cell.time_ms.map);
   visit("time_ms.prefilter", cell.time_ms.prefilter);
   visit("time_ms.lookup", cell.time_ms.lookup);
+  visit("time_ms.empty", cell.time_ms.empty);
   visit("time_ms.filter", cell.time_ms.filter);
   visit("time_ms.moving", cell.time_ms.moving);
   visit("time_ms.stopped", cell.time_ms.stopped);

@@ -83,8 +83,9 @@ struct TimeRecord {
   std::optional<Quartiles> map;
   std::optional<Quartiles> prefilter;
   std::optional<Quartiles> lookup;
-  std::optional<OwnTime> filter = std::nullopt;  ///< the lookup less a lookup that reads nothing: the filter's own
-  std::optional<OwnTime> moving = std::nullopt;  ///< map, prefilter and the filter's own: what a moving light pays
+  std::optional<Quartiles> empty = std::nullopt;  ///< a lookup that reads what the filter does of its receivers, alone
+  std::optional<OwnTime> filter = std::nullopt;   ///< the lookup less a lookup that reads nothing: the filter's own
+  std::optional<OwnTime> moving = std::nullopt;   ///< map, prefilter and the filter's own: what a moving light pays
   std::optional<std::string> stopped =
       std::nullopt;  ///< why no more rounds were timed: "rounds", "precise" or "budget"
 };
@@ -145,7 +146,8 @@ struct CellRecord : metrics::MetricValues {
   int width = 0;  ///< pixels
   int height = 0;
   std::optional<std::int64_t> excused;  ///< pixels left out: on a tie or a texel's border
-  std::optional<std::int64_t> phases;  ///< places of the map's grid that the errors of visibility are means over; all else is of the first
+  std::optional<std::int64_t>
+      phases;  ///< places of the map's grid that the errors of visibility are means over; all else is of the first
   std::optional<Interval> rmse_ci95;  ///< of `error.rmse` over the phases
   TimeRecord time_ms;
   RatioRecord ratio_to_none;

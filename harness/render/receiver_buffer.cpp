@@ -1,0 +1,43 @@
+#include "harness/render/receiver_buffer.h"
+
+#include "harness/gl/fullscreen.h"
+#include "harness/render/gbuffer.h"
+
+namespace shadowbench::render {
+namespace {
+
+constexpr GLuint kPlacesUnit = 5, kPlanesUnit = 6;  // of lib/receiver.glsl
+
+}  // namespace
+
+ReceiverBuffer::ReceiverBuffer(gl::Program& prepare, const GBuffer& gbuffer, const LightSetup& light)
+    : light_(light),
+      places_("receivers in the map", GL_RGBA32F, gbuffer.width(), gbuffer.height()),
+      planes_("receiver planes", GL_RGBA32F, gbuffer.width(), gbuffer.height()) {
+  gl::Framebuffer framebuffer("receivers");
+  framebuffer.attach_color(0, places_);
+  framebuffer.attach_color(1, planes_);
+  set_light(prepare, light);
+  framebuffer.bind();
+  gbuffer.bind();
+  prepare.use();
+  gl::FullscreenTriangle().draw();
+}
+
+bool ReceiverBuffer::is_of(const LightSetup& light) const {
+  const scene::LightFrustum &own = light_.frustum, &other = light.frustum;
+  return own.uv_depth_from_world == other.uv_depth_from_world && own.light_from_world == other.light_from_world &&
+         own.direction_ws == other.direction_ws && own.texel_size_ws == other.texel_size_ws &&
+         own.depth_range_ws == other.depth_range_ws && own.projective == other.projective &&
+         light_.bias.normal_offset_texels == light.bias.normal_offset_texels &&
+         light_.bias.max_tangent == light.bias.max_tangent && light_.range.far_test == light.range.far_test &&
+         light_.range.behind_test == light.range.behind_test;
+}
+
+void ReceiverBuffer::bind() const {
+  for (const GLuint unit : {kPlacesUnit, kPlanesUnit}) gl::Sampler::unbind(unit);
+  places_.bind(kPlacesUnit);
+  planes_.bind(kPlanesUnit);
+}
+
+}  // namespace shadowbench::render

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "harness/gl/objects.h"
+#include "harness/render/light_setup.h"
+
+namespace shadowbench::render {
+
+class GBuffer;
+
+/// Where a view's receivers lie in one light's map, as lib/receiver.glsl reads it: all that lookups need and that does
+/// not depend on their filters, two RGBA32F texels per pixel.
+class ReceiverBuffer {
+ public:
+  /// Draws it. `prepare` is prepare_receivers.frag with the light's range_defines().
+  ReceiverBuffer(gl::Program& prepare, const GBuffer& gbuffer, const LightSetup& light);
+
+  /// Whether it holds what it would for this light. Bias that filters apply themselves does not count.
+  bool is_of(const LightSetup& light) const;
+
+  void bind() const;
+
+ private:
+  LightSetup light_;
+  gl::Texture places_;
+  gl::Texture planes_;
+};
+
+}  // namespace shadowbench::render

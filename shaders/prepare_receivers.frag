@@ -1,0 +1,52 @@
+// Finds out where every pixel's surface lies in one light's map: all that does not depend on the filter. Never timed.
+#include "lib/receiver.glsl"
+
+layout(location = 0) out vec4 out_place;
+layout(location = 1) out vec4 out_plane;
+
+// A surface faces the light where n.l is greater than this; filters/receiver.h has the same number.
+const float faces_light = 1e-5;
+
+// A plane may be steep, but not parallel to the light: its bias would have no bound.
+vec2 plane_depth_per_texel(vec3 normal_ws, float n_dot_l) {
+  vec2 along_map = vec2(dot(normal_ws, light_right_ws), dot(normal_ws, light_up_ws));
+  vec2 tangent = along_map / max(n_dot_l, 1e-4);
+  return tangent * (texel_size_ws / depth_range_ws);
+}
+
+// Whether the map says anything about a receiver. The NO_ variants show what goes wrong without these tests: see
+// filters/map_range.h.
+bool map_reaches(float depth_unbiased, float w) {
+#ifndef NO_FAR_TEST
+  if (!(depth_unbiased <= 1.0)) return false;
+#endif
+#if defined(PROJECTIVE_MAP) && !defined(NO_BEHIND_TEST)
+  if (w <= 0.0) return false;
+#endif
+  return true;
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec4 position = texelFetch(gbuffer_position, pixel, 0);
+  out_place = vec4(0.0, 0.0, 0.0, mark_background);
+  out_plane = vec4(0.0);
+  if (position.w == 0.0) return;
+  vec3 normal = texelFetch(gbuffer_normal, pixel, 0).xyz;
+  float n_dot_l = dot(normal, direction_to_light(position.xyz));
+  float sin_theta = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0));
+  precise vec3 offset_ws = position.xyz + normal * (bias_normal_texels * texel_size_ws * sin_theta);
+  precise vec4 lookup_point = uv_depth_from_world * vec4(offset_ws, 1.0);
+  precise vec4 own_point = uv_depth_from_world * vec4(position.xyz, 1.0);
+#ifdef PROJECTIVE_MAP
+  // Behind the light, where w < 0, this mirrors the map: see map_reaches().
+  lookup_point.xyz /= lookup_point.w;
+  own_point.xyz /= own_point.w;
+#endif
+  vec2 depth_per_texel = plane_depth_per_texel(normal, n_dot_l);
+  vec2 steepness = min(abs(depth_per_texel), vec2(bias_max_tangent * texel_size_ws / depth_range_ws));
+  out_plane = vec4(depth_per_texel, n_dot_l, position.w);
+  out_place = vec4(lookup_point.xyz, steepness.x + steepness.y);
+  if (!map_reaches(own_point.z, own_point.w)) out_place.w = mark_beyond;
+  if (n_dot_l <= faces_light) out_place.w = mark_away;
+}
