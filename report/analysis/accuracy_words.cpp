@@ -30,7 +30,7 @@ std::string join_words(const std::vector<std::string>& words) {
 double truth_se(const records::CellRecord& cell) { return cell.truth.se.value_or(0.0); }
 
 bool are_tied(const records::CellRecord& a, const records::CellRecord& b) {
-  return std::abs(*a.error.rmse - *b.error.rmse) <= std::max(truth_se(a), truth_se(b));
+  return std::abs(*a.error.rmse - *b.error.rmse) <= std::max(find_rmse_reach(a), find_rmse_reach(b));
 }
 
 std::string name_with_rmse(const CellGroup& group, std::size_t index) {
@@ -160,6 +160,10 @@ std::vector<std::string> describe_artefacts(const CellGroup& group) {
 }
 
 }  // namespace
+
+double find_rmse_reach(const records::CellRecord& cell) {
+  return cell.rmse_ci95 ? 0.5 * (cell.rmse_ci95->high - cell.rmse_ci95->low) : truth_se(cell);
+}
 
 std::vector<std::vector<std::size_t>> rank_errors(const std::vector<records::CellRecord>& cells) {
   std::vector<std::size_t> order;

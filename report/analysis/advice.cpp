@@ -125,7 +125,7 @@ Verdict judge_limit(const std::vector<const records::CellRecord*>& cells, const 
       verdict.worst = value;
       verdict.where = cell;
     }
-    if (is_rmse && demand.most - value < cell->truth.se.value_or(0.0)) verdict.lost_in_truth = cell;
+    if (is_rmse && demand.most - value < find_rmse_reach(*cell)) verdict.lost_in_truth = cell;
   }
   verdict.kept = *verdict.worst <= demand.most;
   if (!verdict.kept) verdict.lost_in_truth = nullptr;
@@ -143,11 +143,11 @@ Cost measure_cost(const std::vector<const records::CellRecord*>& cells, const Ad
     cost.mean += weight * value;
     cost.quartiles.low += weight * spread.q1;
     cost.quartiles.high += weight * spread.q3;
-    const auto& ratio = frame_ratio(*cell, request.light);
-    if (!timed || !ratio || !(ratio->median > 0.0)) cost.ratio.reset();
-    if (!cost.ratio) continue;
-    cost.ratio->low += weight * value * ratio->ci95.low / ratio->median;
-    cost.ratio->high += weight * value * ratio->ci95.high / ratio->median;
+    const auto interval = frame_interval(*cell, request.light);
+    if (!timed || !interval) cost.ci95.reset();
+    if (!cost.ci95) continue;
+    cost.ci95->low += weight * interval->low;
+    cost.ci95->high += weight * interval->high;
   }
   return cost;
 }
@@ -267,9 +267,9 @@ CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, CostKin
   const Cost &a = cheaper.cost, &b = dearer.cost;
   CostGap gap{b.mean - a.mean, a.mean > 0.0 ? (b.mean - a.mean) / a.mean : 0.0, b.mean <= a.mean, Basis::kExact};
   if (kind != CostKind::kTime) return gap;
-  const bool common = a.ratio && b.ratio && cheaper.configuration.surroundings == dearer.configuration.surroundings;
-  gap.basis = common ? Basis::kRatio : Basis::kQuartiles;
-  gap.tied = common ? a.ratio->high >= b.ratio->low : a.quartiles.high >= b.quartiles.low;
+  const bool common = a.ci95 && b.ci95 && cheaper.configuration.surroundings == dearer.configuration.surroundings;
+  gap.basis = common ? Basis::kInterval : Basis::kQuartiles;
+  gap.tied = common ? a.ci95->high >= b.ci95->low : a.quartiles.high >= b.quartiles.low;
   return gap;
 }
 

@@ -30,7 +30,7 @@ struct Verdict {
   const records::CellRecord* where = nullptr;  ///< the cell with the worst value
   /// Cells that have nothing on which the limit could be broken; it counts as kept there.
   std::vector<const records::CellRecord*> nothing_to_see = {};
-  /// A cell that keeps a limit on the RMSE by less than the standard error of its truth; null: there is none.
+  /// A cell that keeps a limit on the RMSE by less than the RMSE is uncertain; null: there is none.
   const records::CellRecord* lost_in_truth = nullptr;
 };
 
@@ -38,8 +38,7 @@ struct Verdict {
 struct Cost {
   double mean = 0.0;
   records::Interval quartiles;  ///< mean of the lower and of the upper quartiles; of bytes and fetches: the mean twice
-  std::optional<records::Interval>
-      ratio;  ///< the mean of each place's cost, scaled by the ends of its ratio's 95 % interval
+  std::optional<records::Interval> ci95;  ///< the mean of each place's interval; see frame_interval()
 };
 
 /// A configuration that was judged.
@@ -59,8 +58,8 @@ struct Unjudged {
 /// Which spread decided whether two costs differ.
 enum class Basis {
   kExact,      ///< bytes and fetches have none
-  kRatio,      ///< 95 % intervals of the ratio to the same `none`
-  kQuartiles,  ///< of the times, where there is no common `none`
+  kInterval,   ///< 95 % intervals, measured under the same circumstances
+  kQuartiles,  ///< of the times, where circumstances differ or there is no interval
 };
 
 /// How much more one configuration costs than another.

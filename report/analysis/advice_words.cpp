@@ -58,7 +58,8 @@ std::string describe_tie(const Advice& advice, const CostGap& gap) {
                        explain_order(first, second, advice.request.light));
   }
   return fmt::format("a tie, for their {} overlap: {} is named first for its lower mean{}",
-                     gap.basis == Basis::kRatio ? "95 % intervals" : "quartiles", name, compare_errors(first, second));
+                     gap.basis == Basis::kInterval ? "95 % intervals" : "quartiles", name,
+                     compare_errors(first, second));
 }
 
 std::string count_ties(const Advice& advice) {
@@ -179,9 +180,9 @@ std::string describe_runner_up(const Advice& advice, const records::GlRecord& gl
   const CostKind kind = advice.request.cheapest;
   const CostGap gap = compare_costs(advice.keeping[0], advice.keeping[1], kind);
   if (gap.tied) return describe_tie(advice, gap) + count_ties(advice);
-  const char* apart = gap.basis == Basis::kExact   ? ""
-                      : gap.basis == Basis::kRatio ? "; the 95 % intervals are apart"
-                                                   : "; the quartiles are apart";
+  const char* apart = gap.basis == Basis::kExact      ? ""
+                      : gap.basis == Basis::kInterval ? "; the 95 % intervals are apart"
+                                                      : "; the quartiles are apart";
   return fmt::format("dearer by {} ({:.0f} %){}", format_cost(gap.difference, kind, gl), 100.0 * gap.share, apart);
 }
 

@@ -24,8 +24,8 @@ struct TimedConfiguration {
 };
 
 std::optional<TimedConfiguration> read_timed(const TradeConfiguration& configuration, const records::CellRecord& cell) {
-  const auto& still = configuration.costs[0].estimate;
-  const auto& moving = configuration.costs[1].estimate;
+  const auto& still = configuration.costs[1].estimate;
+  const auto& moving = configuration.costs[0].estimate;
   if (!cell.kernel_radius_texels || !still || !moving) return std::nullopt;
   const bool prefiltered = cell.cost.prefilter_texels.value_or(0) > 0;
   const bool many_taps = !prefiltered && cell.cost.fetches.value_or(0.0) > 1.0 && *cell.kernel_radius_texels > 0.0;

@@ -31,9 +31,9 @@ struct Placement {
   std::size_t by = 0;
 };
 
-/// Whether one error is smaller than another by more than is uncertain. Errors of one scene are measured against one
-/// truth, whose standard error is the half-width of their intervals: a difference counts where it exceeds the larger
-/// half-width, as in rank_errors(). Exact errors differ where they are not equal.
+/// Whether one error is smaller than another by more than is uncertain. A difference
+/// counts where it exceeds the larger half-width of their intervals, as in rank_errors(). Exact errors differ where
+/// they are not equal.
 bool is_clearly_less_error(const Estimate& a, const Estimate& b);
 
 /// One cost below another, their intervals not touching?

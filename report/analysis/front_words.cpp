@@ -196,7 +196,8 @@ std::vector<std::string> explain_fronts() {
       "larger, and "
       "one of the two is clearly less. A cell is tied with one of the front where neither is clearly less. Clearly: "
       "errors "
-      "that differ by more than the truth's standard error, times whose 95 % intervals do not overlap, everything else "
+      "that differ by more than half the wider 95 % interval over the phases of the map's grid, times whose 95 % "
+      "intervals do not overlap, everything else "
       "where "
       "the numbers differ. Of several that beat a cell, the cheapest is named."};
   for (const Measure& measure : list_error_measures()) {

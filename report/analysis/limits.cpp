@@ -19,6 +19,10 @@ void add(records::Quartiles& sum, const records::Quartiles& pass) {
   sum.n = std::min(sum.n, pass.n);
 }
 
+const std::optional<records::OwnTime>& own_time(const records::CellRecord& cell, LightMotion light) {
+  return light == LightMotion::kStatic ? cell.time_ms.filter : cell.time_ms.moving;
+}
+
 }  // namespace
 
 std::optional<double> LimitSpec::read(const records::CellRecord& cell, LightMotion light) const {
@@ -52,6 +56,7 @@ const LimitSpec& cost_spec(CostKind kind) {
 }
 
 std::optional<records::Quartiles> frame_time(const records::CellRecord& cell, LightMotion light) {
+  if (const auto& own = own_time(cell, light)) return *own;
   const records::TimeRecord& time = cell.time_ms;
   if (!time.lookup) return std::nullopt;
   records::Quartiles sum = *time.lookup;
@@ -62,6 +67,15 @@ std::optional<records::Quartiles> frame_time(const records::CellRecord& cell, Li
   add(sum, *time.map);
   if (prefilters) add(sum, *time.prefilter);
   return sum;
+}
+
+std::optional<records::Interval> frame_interval(const records::CellRecord& cell, LightMotion light) {
+  if (const auto& own = own_time(cell, light)) return own->ci95;
+  const auto time = frame_time(cell, light);
+  const auto& ratio = frame_ratio(cell, light);
+  if (!time || !ratio || !(ratio->median > 0.0)) return std::nullopt;
+  const double scale = time->median / ratio->median;
+  return records::Interval{scale * ratio->ci95.low, scale * ratio->ci95.high};
 }
 
 const std::optional<records::Ratio>& frame_ratio(const records::CellRecord& cell, LightMotion light) {

@@ -9,7 +9,7 @@
 
 namespace shadowbench::analysis {
 
-/// Which passes a frame pays for: map, prefilter and lookup (moving), or the lookup alone (static).
+/// Which passes a frame pays for: map, prefilter and the filter's own lookup (moving), or that lookup alone (static).
 enum class LightMotion { kMoving, kStatic };
 
 /// What is to be cheap.
@@ -31,11 +31,16 @@ std::span<const LimitSpec> limit_table();
 /// Returns the entry of the table that a cost is read by.
 const LimitSpec& cost_spec(CostKind kind);
 
-/// Returns what one frame takes: the sums of the passes' medians and quartiles, which makes the quartiles of several
-/// passes wider than those of their sum. Nothing where a pass that is paid was not timed.
+/// Returns what a filter costs in one frame, without what every lookup pays. For cells of runs that did not time empty
+/// lookups, the sums of the passes' medians and quartiles, which makes the quartiles of several passes wider than those
+/// of their sum. Nothing where a pass that is paid was not timed.
 std::optional<records::Quartiles> frame_time(const records::CellRecord& cell, LightMotion light);
 
-/// Returns the ratio to `none` of what one frame takes.
+/// Returns the 95 % interval of that time's median; for cells of runs that did not time empty lookups, the time scaled
+/// by the interval of its ratio to `none`. Nothing where there is none.
+std::optional<records::Interval> frame_interval(const records::CellRecord& cell, LightMotion light);
+
+/// Returns the ratio to `none` of what one frame takes, what every lookup pays included.
 const std::optional<records::Ratio>& frame_ratio(const records::CellRecord& cell, LightMotion light);
 
 /// One thing asked of a configuration: a limit, or, without `spec`, a claim of its filter.

@@ -9,6 +9,7 @@
 
 #include "report/analysis/accuracy_words.h"
 #include "report/analysis/cell_group.h"
+#include "report/analysis/limits.h"
 #include "report/analysis/ranking.h"
 #include "report/analysis/repeat.h"
 #include "report/analysis/stability_words.h"
@@ -26,23 +27,20 @@ std::string join_tied(const CellGroup& group, const std::vector<std::size_t>& in
 }
 
 std::string describe_ranking(const CellGroup& group, const std::vector<std::vector<std::size_t>>& ranks) {
-  std::string text = "Lookup, fastest first: ";
+  std::string text = "With a moving light, cheapest first: ";
   for (std::size_t i = 0; i < ranks.size(); ++i) text += (i > 0 ? "; then " : "") + join_tied(group, ranks[i]);
   return text + ".";
 }
 
-std::string describe_extremes(const CellGroup& group, const records::CellRecord& fastest,
-                              const records::CellRecord& slowest, const records::GlRecord& gl) {
-  std::string text = fmt::format("In {}, the lookup of {} takes {} ms", records::describe_clock(gl),
-                                 label_cell(group, fastest), records::format_number(fastest.time_ms.lookup->median));
-  if (&fastest != &slowest) {
-    text += fmt::format(", that of {} {} ms", label_cell(group, slowest),
-                        records::format_number(slowest.time_ms.lookup->median));
-    if (slowest.ratio_to_none.lookup)
-      text += fmt::format(", which is {} times that of the filter none",
-                          records::format_ratio(slowest.ratio_to_none.lookup));
-  }
-  return text + ".";
+std::string describe_extremes(const CellGroup& group, const records::CellRecord& cheapest,
+                              const records::CellRecord& dearest, const records::GlRecord& gl) {
+  const auto ms = [](const records::CellRecord& cell) {
+    return records::format_number(frame_time(cell, LightMotion::kMoving)->median);
+  };
+  std::string text = fmt::format("In {}, {} costs {} ms a frame", records::describe_clock(gl),
+                                 label_cell(group, cheapest), ms(cheapest));
+  if (&cheapest != &dearest) text += fmt::format(", {} {} ms", label_cell(group, dearest), ms(dearest));
+  return text + ": map, prefilter and lookup, less a lookup that reads nothing.";
 }
 
 std::vector<std::string> describe_prefilters(const CellGroup& group, const records::GlRecord& gl) {
@@ -54,7 +52,7 @@ std::vector<std::string> describe_prefilters(const CellGroup& group, const recor
     }
   }
   if (parts.empty()) return {};
-  return {fmt::format("A prefilter comes on top, paid again whenever the map changes: {}.", fmt::join(parts, ", "))};
+  return {fmt::format("Of that the prefilter, paid again whenever the map changes: {}.", fmt::join(parts, ", "))};
 }
 
 std::vector<std::string> describe_troubles(const CellGroup& group) {
@@ -91,7 +89,7 @@ std::string describe_work(const records::WorkRecord& work) {
 
 std::vector<std::string> describe_group(const CellGroup& group, const records::GlRecord& gl) {
   std::vector<std::string> sentences;
-  const auto ranks = rank_lookups(group.cells);
+  const auto ranks = rank_costs(group.cells);
   if (!ranks.empty()) {
     sentences.push_back(describe_ranking(group, ranks));
     sentences.push_back(

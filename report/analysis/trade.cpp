@@ -24,7 +24,6 @@ std::string settings_without(const records::CellRecord& cell, std::initializer_l
 }
 
 // What shares a reference for ratios: everything but the filter is the same.
-std::string reference_key(const records::CellRecord& cell) { return settings_without(cell, {"filter", "params"}); }
 
 std::string place_key(const records::CellRecord& cell) {
   return settings_without(cell, {"filter", "params", "map_size"});
@@ -52,40 +51,33 @@ std::vector<std::vector<std::size_t>> group_indices(const std::vector<records::C
   return groups;
 }
 
-// Reads cells' errors and costs, each cost with the reference of its map and picture.
+// Reads cells' errors and costs; those of several scenes are combined.
 class CellReader {
  public:
-  explicit CellReader(const std::vector<records::CellRecord>& cells) : cells_(cells) {
-    for (const records::CellRecord& cell : cells)
-      if (is_reference(cell)) references_.emplace(reference_key(cell), &cell);
-  }
+  explicit CellReader(const std::vector<records::CellRecord>& cells) : cells_(cells) {}
 
   TradeConfiguration read(const std::vector<std::size_t>& indices) const {
     const records::CellRecord& first = cells_[indices.front()];
     TradeConfiguration result{first.filter, first.params, first.map_size, {}, indices, {}, {}};
-    for (std::size_t i = 0; i < kErrorMeasures; ++i) result.errors[i] = combine(indices, i, true);
-    for (std::size_t i = 0; i < kCostMeasures; ++i) result.costs[i] = combine(indices, i, false);
+    for (std::size_t i = 0; i < kErrorMeasures; ++i)
+      result.errors[i] = combine(indices, i, read_error, list_error_measures()[i]);
+    for (std::size_t i = 0; i < kCostMeasures; ++i)
+      result.costs[i] = combine(indices, i, read_cost, list_cost_measures()[i]);
     return result;
   }
 
  private:
   const std::vector<records::CellRecord>& cells_;
-  std::map<std::string, const records::CellRecord*> references_;
 
-  Measured read_one(const records::CellRecord& cell, std::size_t measure, bool is_error) const {
-    if (is_error) return read_error(cell, measure);
-    const auto reference = references_.find(reference_key(cell));
-    return read_cost(cell, reference == references_.end() ? nullptr : reference->second, measure);
-  }
-
-  Measured combine(const std::vector<std::size_t>& indices, std::size_t measure, bool is_error) const {
+  Measured combine(const std::vector<std::size_t>& indices, std::size_t index,
+                   Measured (*read_one)(const records::CellRecord&, std::size_t), const Measure& measure) const {
     std::vector<Estimate> estimates;
     for (const std::size_t i : indices) {
-      Measured one = read_one(cells_[i], measure, is_error);
+      Measured one = read_one(cells_[i], index);
       if (!one.estimate || indices.size() == 1) return one;
       estimates.push_back(*one.estimate);
     }
-    return {(is_error ? list_error_measures()[measure] : list_cost_measures()[measure]).combine(estimates), {}};
+    return {measure.combine(estimates), {}};
   }
 };
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/analysis/accuracy_words.h"
+#include "report/analysis/limits.h"
 #include "report/analysis/summary.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
@@ -24,23 +26,11 @@ Measured read_metric(const records::CellRecord& cell, const metrics::Metric& met
   return value && std::isfinite(*value) ? Measured{exact(*value), {}} : miss(cell, metric.path);
 }
 
-std::optional<double> total_ms(const records::CellRecord& cell, double records::Quartiles::*which, bool moving) {
-  const records::TimeRecord& time = cell.time_ms;
-  if (!time.lookup || (moving && !time.map)) return std::nullopt;
-  double sum = *time.lookup.*which;
-  if (moving) sum += *time.map.*which + (time.prefilter ? *time.prefilter.*which : 0.0);
-  return sum;
-}
-
-Measured read_time(const records::CellRecord& cell, const records::CellRecord* reference, bool moving) {
-  const std::optional<records::Ratio>& ratio = moving ? cell.ratio_to_none.moving : cell.ratio_to_none.lookup;
-  const auto unit_ms = reference ? total_ms(*reference, &records::Quartiles::median, moving) : std::nullopt;
-  if (ratio && unit_ms)
-    return {Estimate{ratio->median * *unit_ms, ratio->ci95.low * *unit_ms, ratio->ci95.high * *unit_ms}, {}};
-  const auto median = total_ms(cell, &records::Quartiles::median, moving);
-  if (!median) return miss(cell, moving ? "time_ms.map" : "time_ms.lookup");
-  return {Estimate{*median, *total_ms(cell, &records::Quartiles::q1, moving),
-                   *total_ms(cell, &records::Quartiles::q3, moving)},
+Measured read_time(const records::CellRecord& cell, LightMotion light) {
+  const auto time = frame_time(cell, light);
+  if (!time) return miss(cell, light == LightMotion::kMoving ? "time_ms.moving" : "time_ms.filter");
+  const auto interval = frame_interval(cell, light);
+  return {interval ? Estimate{time->median, interval->low, interval->high} : Estimate{time->median, time->q1, time->q3},
           {}};
 }
 
@@ -108,7 +98,7 @@ Measure make_time_measure(const char* id, const char* name, const char* meaning)
 const std::array<Measure, kErrorMeasures>& list_error_measures() {
   static const char* const kRootMeanSquare = "root mean square over the scenes";
   static const std::array<Measure, kErrorMeasures> kMeasures = {
-      make_measure(kRmse, "interval: the truth's standard error", kRootMeanSquare, root_mean_square),
+      make_measure(kRmse, "interval: 95 %, over the phases of the map's grid", kRootMeanSquare, root_mean_square),
       make_measure("error.kernel_rmse", "no interval", kRootMeanSquare, root_mean_square),
       make_measure("artefact.leak", "no interval", "the worst scene", worst_of),
       make_measure("error.flip", "no interval", "mean over the scenes", mean_of)};
@@ -121,12 +111,12 @@ const std::array<Measure, kCostMeasures>& list_cost_measures() {
     bytes.id = "bytes";
     bytes.is_bytes = true;
     return std::array{
-        make_time_measure("lookup", "time of the lookup",
-                          "what is paid while light and casters stand still: the ratio to the lookup without filter, "
-                          "per round, times that lookup's median; interval: 95 % of the ratio"),
-        make_time_measure("moving", "time of map, prefilter and lookup",
-                          "what is paid while they move: the ratio to the same without filter, per round, times its "
-                          "median; interval: 95 % of the ratio"),
+        make_time_measure("moving", "time of map, prefilter and filter, moving light",
+                          "what the filter costs while light or casters move: map, prefilter and lookup, less a lookup "
+                          "that reads nothing, per round; interval: 95 % of the median"),
+        make_time_measure("filter", "time of the filter alone, still light",
+                          "what the filter costs while they stand still: its lookup, less a lookup that reads nothing, "
+                          "per round; interval: 95 % of the median"),
         make_measure("cost.fetches", "no interval", "mean over the scenes", mean_of), bytes};
   }();
   return kMeasures;
@@ -150,15 +140,16 @@ Measured read_error(const records::CellRecord& cell, std::size_t measure) {
   const metrics::Metric& metric = *list_error_measures()[measure].metric;
   Measured error = read_metric(cell, metric);
   if (error.estimate && metric.path == kRmse) {
-    const double value = error.estimate->value, se = cell.truth.se.value_or(0.0);
-    error.estimate = Estimate{value, std::max(0.0, value - se), value + se};
+    const double value = error.estimate->value, reach = find_rmse_reach(cell);
+    error.estimate = Estimate{value, std::max(0.0, value - reach), value + reach};
   }
   return error;
 }
 
-Measured read_cost(const records::CellRecord& cell, const records::CellRecord* reference, std::size_t measure) {
+Measured read_cost(const records::CellRecord& cell, std::size_t measure) {
   const Measure& cost = list_cost_measures()[measure];
-  return cost.metric ? read_metric(cell, *cost.metric) : read_time(cell, reference, cost.id == "moving");
+  if (cost.metric) return read_metric(cell, *cost.metric);
+  return read_time(cell, cost.id == "moving" ? LightMotion::kMoving : LightMotion::kStatic);
 }
 
 bool is_reference(const records::CellRecord& cell) {

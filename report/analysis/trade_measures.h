@@ -30,7 +30,7 @@ struct Measure {
 /// Lists the errors: rmse, kernel_rmse, leak, flip.
 const std::array<Measure, kErrorMeasures>& list_error_measures();
 
-/// Lists the costs: lookup, moving, fetches, bytes.
+/// Lists the costs: moving, filter, fetches, bytes. The first is what is compared unless something else is asked for.
 const std::array<Measure, kCostMeasures>& list_cost_measures();
 
 /// Names a measure with its unit: "time of the lookup, ms: CPU time (software rasteriser)".
@@ -49,16 +49,12 @@ struct Measured {
 };
 
 /// Reads an error from a cell; `measure` is an index into list_error_measures().
-/// RMSE to the area truth: the truth's standard error to both sides. The others have no interval in the record.
+/// RMSE to the area truth: its 95 % interval; see find_rmse_reach(). The others have no interval in the record.
 Measured read_error(const records::CellRecord& cell, std::size_t measure);
 
-/// Reads a cost from a cell; `measure` is an index into list_cost_measures().
-/// Times: the per-round ratio to the reference filter and its 95 % interval, times the reference's own median, in ms;
-/// the ratio is robust against drift of the machine's speed between rounds, and the product can be compared between
-/// maps and picture sizes. The reference's median counts as exact. Where the ratio or `reference` is missing: median
-/// and quartiles (for a sum of passes the sums of theirs). `reference` is the cell that ratios of this cell's map and
-/// picture refer to, or null.
-Measured read_cost(const records::CellRecord& cell, const records::CellRecord* reference, std::size_t measure);
+/// Reads a cost from a cell; `measure` is an index into list_cost_measures(). Times: frame_time() with
+/// frame_interval(), or where that is missing with the quartiles.
+Measured read_cost(const records::CellRecord& cell, std::size_t measure);
 
 /// Whether a cell is the one that ratios refer to: its own ratio is exactly 1 [1, 1].
 bool is_reference(const records::CellRecord& cell);

@@ -26,7 +26,7 @@ const char* name_of(analysis::CostKind kind) {
 const char* name_of(analysis::Basis basis) {
   switch (basis) {
     case analysis::Basis::kExact: return "exact";
-    case analysis::Basis::kRatio: return "ratio_to_none";
+    case analysis::Basis::kInterval: return "ci95";
     case analysis::Basis::kQuartiles: break;
   }
   return "quartiles";
@@ -102,16 +102,16 @@ Json settings_json(const records::CellRecord& cell) {
 std::string explain_no_interval(const analysis::Candidate& candidate, const analysis::AdviceRequest& request) {
   if (request.cheapest != analysis::CostKind::kTime) return "only times have an interval";
   for (const records::CellRecord* cell : candidate.configuration.cells)
-    if (!analysis::frame_ratio(*cell, request.light)) return records::explain_absence(*cell, "ratio_to_none");
-  return "a ratio to none is 0";
+    if (!analysis::frame_interval(*cell, request.light)) return records::explain_absence(*cell, "ratio_to_none");
+  return "not measured";
 }
 
 Json cost_json(const analysis::Candidate& candidate, const analysis::AdviceRequest& request) {
   const analysis::Cost& cost = candidate.cost;
   Json json = {{"mean", cost.mean}, {"quartiles", interval_json(cost.quartiles)}, {"ci95", nullptr}};
   json["absent"] = Json::object();
-  if (cost.ratio)
-    json["ci95"] = interval_json(*cost.ratio);
+  if (cost.ci95)
+    json["ci95"] = interval_json(*cost.ci95);
   else
     json["absent"]["ci95"] = explain_no_interval(candidate, request);
   return json;

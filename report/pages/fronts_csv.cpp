@@ -75,7 +75,7 @@ std::vector<records::CsvColumn> list_front_columns() {
           {"width", "picture, pixels"},
           {"height", "picture, pixels"},
           {"error", "which error: rmse, kernel_rmse, leak, flip"},
-          {"cost", "which cost: lookup and moving in ms of the run's clock, fetches, bytes"},
+          {"cost", "which cost: moving and filter in ms of the run's clock, fetches, bytes"},
           {"cell", "the cell's key; of all scenes: the keys of its cells, joined by +"},
           {"filter", "the filter's id"},
           {"params", "the filter's parameters as JSON"},

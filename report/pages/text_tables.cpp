@@ -19,6 +19,10 @@ std::string format_quartiles(const std::optional<records::Quartiles>& time) {
               : records::kNothing;
 }
 
+std::string format_own(const std::optional<records::OwnTime>& time) {
+  return time ? records::format_interval(time->median, time->ci95) : records::kNothing;
+}
+
 using Metrics = std::vector<const metrics::Metric*>;
 
 /// The metrics of a group that have a column here.
@@ -29,21 +33,20 @@ Metrics list_tabled(std::string_view group) {
   return tabled;
 }
 
-// The area truth is the only one that has an error of its own.
-bool has_standard_error(const metrics::Metric& metric) { return metric.path == "error.rmse"; }
+// The only metric with an interval.
+bool is_rmse(const metrics::Metric& metric) { return metric.path == "error.rmse"; }
 
 void add_titles(std::vector<std::string>& header, const Metrics& tabled) {
   for (const metrics::Metric* metric : tabled)
-    header.push_back(std::string(metric->title) + (has_standard_error(*metric) ? " (its standard error)" : ""));
+    header.push_back(std::string(metric->title) + (is_rmse(*metric) ? " [95 % over phases]" : ""));
 }
 
 void add_values(std::vector<std::string>& row, const Metrics& tabled, const records::CellRecord& cell) {
   for (const metrics::Metric* metric : tabled) {
     const std::optional<double> value = metric->read(cell);
-    std::string text = metric->unit == "share" ? records::format_rate(value) : records::format_number(value);
-    if (value && has_standard_error(*metric) && cell.truth.se)
-      text += fmt::format(" ({})", records::format_number(*cell.truth.se));
-    row.push_back(text);
+    row.push_back(value && is_rmse(*metric) && cell.rmse_ci95 ? records::format_interval(*value, *cell.rmse_ci95)
+                  : metric->unit == "share"                   ? records::format_rate(value)
+                                                              : records::format_number(value));
   }
 }
 
@@ -79,8 +82,9 @@ records::TextTable make_cost_table(const analysis::CellGroup& group, const recor
   records::TextTable table;
   table.header = {"filter",
                   "parameters",
+                  fmt::format("moving light: map, prefilter, filter, {}, median [95 %]", unit),
+                  fmt::format("still light: filter alone, {}, median [95 %]", unit),
                   fmt::format("lookup, {}, median [quartiles]", unit),
-                  "lookup / none, median [95 %]",
                   fmt::format("prefilter, {}", unit),
                   fmt::format("map, {}", unit)};
   add_titles(table.header, costs);
@@ -88,7 +92,7 @@ records::TextTable make_cost_table(const analysis::CellGroup& group, const recor
   for (const records::CellRecord& cell : group.cells) {
     auto& row = table.rows.emplace_back(std::vector<std::string>{
         cell.filter, cell.params.empty() ? records::kNothing : records::describe_params(cell.params),
-        format_quartiles(cell.time_ms.lookup), records::format_ratio(cell.ratio_to_none.lookup),
+        format_own(cell.time_ms.moving), format_own(cell.time_ms.filter), format_quartiles(cell.time_ms.lookup),
         format_quartiles(cell.time_ms.prefilter), format_quartiles(cell.time_ms.map)});
     add_values(row, costs, cell);
     row.push_back(records::describe_status(cell));

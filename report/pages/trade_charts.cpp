@@ -196,7 +196,7 @@ ChartSeries make_crossings(const analysis::RadiusChart& chart, analysis::LightSt
 page::Chart make_radius_chart(const analysis::RadiusChart& chart, analysis::LightState light,
                               const std::vector<std::string>& filters, const records::GlRecord& gl) {
   const bool still = light == analysis::LightState::kStill;
-  const analysis::Measure& cost = analysis::list_cost_measures()[still ? 0 : 1];
+  const analysis::Measure& cost = analysis::list_cost_measures()[still ? 1 : 0];
   page::Chart made;
   made.id = fmt::format("{}.map{}.radius.{}", chart.scope_id, chart.map_size, still ? "still" : "moving");
   made.title = chart.title;

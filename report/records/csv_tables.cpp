@@ -69,7 +69,9 @@ std::vector<Column> setting_columns() {
       column<&C::bias, &B::slope, &Amount::texels>("bias_slope_texels", "bias times 1 - n.l, texels"),
       column<&C::bias, &B::slope, &Amount::world>("bias_slope_world", "bias times 1 - n.l, metres"),
       column<&C::bias, &B::plane_texels>("bias_plane_texels", "bias by the slope of the receiver's plane, texels"),
-      column<&C::bias, &B::plane_kernels>("bias_plane_kernels", "the same, in reaches of the filter: to the centre of the farthest texel that it compares"),
+      column<&C::bias, &B::plane_kernels>(
+          "bias_plane_kernels",
+          "the same, in reaches of the filter: to the centre of the farthest texel that it compares"),
       column<&C::bias, &B::normal_offset, &Amount::texels>("bias_normal_offset_texels", "normal offset, texels"),
       column<&C::bias, &B::normal_offset, &Amount::world>("bias_normal_offset_world", "normal offset, metres"),
       bit_column<&B::receiver_plane>("bias_receiver_plane", "1: the receiver plane's gradient is added for every tap"),
@@ -100,8 +102,9 @@ auto get_if(const std::optional<Spread>& spread, Get get) {
   return spread ? std::optional(get(*spread)) : std::nullopt;
 }
 
+template <class Time>
 void add_time_columns(std::vector<Column>& columns, const std::string& name, const std::string& meaning,
-                      std::optional<Quartiles> TimeRecord::*member) {
+                      std::optional<Time> TimeRecord::*member) {
   const auto add = [&](const std::string& suffix, const std::string& which, auto Quartiles::*part) {
     columns.push_back(spread_column(name + suffix, meaning + which, [member, part](const CellRecord& cell) {
       return get_if(cell.time_ms.*member, [part](const Quartiles& time) { return time.*part; });
@@ -111,6 +114,18 @@ void add_time_columns(std::vector<Column>& columns, const std::string& name, con
   add("_q1_ms", ", milliseconds, first quartile", &Quartiles::q1);
   add("_q3_ms", ", milliseconds, third quartile", &Quartiles::q3);
   add("_n", ", number of measurements", &Quartiles::n);
+}
+
+void add_own_time_columns(std::vector<Column>& columns, const std::string& name, const std::string& meaning,
+                          std::optional<OwnTime> TimeRecord::*member) {
+  add_time_columns(columns, name, meaning, member);
+  const auto add = [&](const std::string& suffix, const std::string& which, double Interval::*end) {
+    columns.push_back(spread_column(name + suffix, meaning + which, [member, end](const CellRecord& cell) {
+      return get_if(cell.time_ms.*member, [end](const OwnTime& time) { return time.ci95.*end; });
+    }));
+  };
+  add("_low_ms", ", milliseconds, lower end of the median's 95 % interval", &Interval::low);
+  add("_high_ms", ", milliseconds, upper end of the median's 95 % interval", &Interval::high);
 }
 
 void add_ratio_columns(std::vector<Column>& columns, const std::string& name, const std::string& meaning,
@@ -127,12 +142,27 @@ void add_ratio_columns(std::vector<Column>& columns, const std::string& name, co
   add("_high", ", upper end of the 95 % interval", [](const Ratio& ratio) { return ratio.ci95.high; });
 }
 
+void add_phase_columns(std::vector<Column>& columns) {
+  columns.push_back(column<&C::phases>("phases", "places of the map's grid that errors of visibility are means over"));
+  const auto add = [&](const std::string& name, const std::string& which, double Interval::*end) {
+    columns.push_back(spread_column(
+        name, "rmse, " + which + " end of its 95 % interval over the phases", [end](const CellRecord& cell) {
+          return get_if(cell.rmse_ci95, [end](const Interval& interval) { return interval.*end; });
+        }));
+  };
+  add("rmse_low", "lower", &Interval::low);
+  add("rmse_high", "upper", &Interval::high);
+}
+
 void add_timing_columns(std::vector<Column>& columns) {
   columns.push_back({{"clock", "what the times are times of"},
                      [](const RunRecord& run, const CellRecord&) { return describe_clock(run.gl); }});
   add_time_columns(columns, "lookup", "filtered lookup of all pixels", &TimeRecord::lookup);
   add_time_columns(columns, "prefilter", "encoding and blurring the map", &TimeRecord::prefilter);
   add_time_columns(columns, "map", "drawing the depth map", &TimeRecord::map);
+  add_time_columns(columns, "empty", "lookup that reads nothing of the map", &TimeRecord::empty);
+  add_own_time_columns(columns, "filter", "the filter's own: lookup less that", &TimeRecord::filter);
+  add_own_time_columns(columns, "moving", "map, prefilter and the filter's own", &TimeRecord::moving);
   columns.push_back(
       column<&C::time_ms, &TimeRecord::stopped>("stopped", "why no more rounds were timed: rounds, precise or budget"));
   add_ratio_columns(columns, "ratio_lookup", "lookup against none", &RatioRecord::lookup);
@@ -167,6 +197,7 @@ std::vector<Column> columns_of(CsvTable table) {
   if (table == CsvTable::kAccuracy) {
     for (const metrics::Metric& metric : metrics::metric_table())
       if (metric.group() != "cost" && metric.group() != "map_scale") columns.push_back(metric_column(metric));
+    add_phase_columns(columns);
   } else {
     add_timing_columns(columns);
     for (const std::string_view group : {"cost", "", "coverage"}) add_metric_columns(columns, group);

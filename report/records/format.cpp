@@ -106,10 +106,12 @@ std::string format_share(double share) {
 std::string format_rate(double rate) { return format_number(100.0 * rate) + " %"; }
 std::string format_rate(const std::optional<double>& rate) { return rate ? format_rate(*rate) : kNothing; }
 
+std::string format_interval(double value, const Interval& interval) {
+  return fmt::format("{} [{}, {}]", format_number(value), format_number(interval.low), format_number(interval.high));
+}
+
 std::string format_ratio(const std::optional<records::Ratio>& ratio) {
-  return ratio ? fmt::format("{} [{}, {}]", format_number(ratio->median), format_number(ratio->ci95.low),
-                             format_number(ratio->ci95.high))
-               : kNothing;
+  return ratio ? format_interval(ratio->median, ratio->ci95) : kNothing;
 }
 
 std::string describe_clock(const records::GlRecord& gl) {

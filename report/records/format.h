@@ -28,7 +28,10 @@ std::string format_share(double share);
 std::string format_rate(double rate);
 std::string format_rate(const std::optional<double>& rate);
 
-/// Writes a ratio for people: "1.09 [1.08, 1.1]".
+/// Writes a value with its interval for people: "1.09 [1.08, 1.1]".
+std::string format_interval(double value, const Interval& interval);
+
+/// Writes a ratio for people, likewise.
 std::string format_ratio(const std::optional<records::Ratio>& ratio);
 
 /// Names the clock that a run's times come from: "CPU time (software rasteriser)".

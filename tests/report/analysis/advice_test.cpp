@@ -107,7 +107,7 @@ TEST(Advice, Cost_IsTheMeanOverAllPlaces) {
   EXPECT_THAT(labels(advice.keeping), ElementsAre("uneven", "even"));
   EXPECT_DOUBLE_EQ(advice.keeping.at(0).cost.mean, 4.5);
   EXPECT_DOUBLE_EQ(advice.keeping.at(0).cost.quartiles.low, 0.99 * 4.5);
-  EXPECT_DOUBLE_EQ(advice.keeping.at(0).cost.ratio->high, 1.01 * 4.5);
+  EXPECT_DOUBLE_EQ(advice.keeping.at(0).cost.ci95->high, 1.01 * 4.5);
 }
 
 TEST(Advice, MovingLight_PaysForMapAndPrefilter) {
@@ -169,7 +169,7 @@ TEST(Advice, OfOneSurrounding_RatioIntervalsTellCostsApart) {
   std::vector<records::CellRecord> cells = {measure("cubes", "a", 4.0, 0.0), measure("cubes", "b", 4.2, 0.0)};
   Advice advice = advise_on(cells, {});
   CostGap gap = compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime);
-  EXPECT_EQ(gap.basis, Basis::kRatio);
+  EXPECT_EQ(gap.basis, Basis::kInterval);
   EXPECT_FALSE(gap.tied);
   EXPECT_NEAR(gap.difference, 0.2, 1e-12);
   EXPECT_NEAR(gap.share, 0.2 / 5.0, 1e-12);

@@ -34,7 +34,7 @@ TEST(Crossover, IsFoundWhereTapsGrowDearer) {
 
 TEST(Crossover, OverlappingTimes_AreNotApart) {
   std::vector<records::CellRecord> cells = make_crossing_cells("cubes");
-  cells[2].ratio_to_none.lookup->ci95 = {1.9, 2.6};
+  cells[2].time_ms.filter->ci95 = {7.6, 10.4};
   const auto comparison = compare_curves(make_charts(cells)[0], LightState::kStill)[0];
   EXPECT_THAT(comparison.signs, ElementsAre(1, 0, -1));
   EXPECT_EQ(describe_comparison(comparison),

@@ -19,7 +19,7 @@ using ::testing::SizeIs;
 
 records::CellRecord make_ranked(const std::string& filter, double low, double median, double high) {
   records::CellRecord cell = make_cell("cubes", filter, median);
-  cell.ratio_to_none.lookup = records::Ratio{median, {low, high}};
+  cell.time_ms.moving = records::OwnTime{{median, low, high, 9}, {low, high}};
   return cell;
 }
 
@@ -42,25 +42,24 @@ TEST(Summary, SoftwareTimes_AreCalledCpuTime) {
   EXPECT_EQ(records::time_unit(gl), "ms (GPU)");
 }
 
-TEST(Summary, Ranking_GoesByRatioAndTiesOverlappingIntervals) {
+TEST(Summary, Ranking_GoesByCostAndTiesOverlappingIntervals) {
   const std::vector<records::CellRecord> cells = {
       make_ranked("slow", 3.0, 3.1, 3.2), make_ranked("none", 1.0, 1.0, 1.0), make_ranked("near", 0.98, 1.01, 1.04),
       make_ranked("apart", 1.05, 1.1, 1.15)};
-  EXPECT_THAT(rank_lookups(cells), ElementsAre(ElementsAre(1, 2), ElementsAre(3), ElementsAre(0)));
+  EXPECT_THAT(rank_costs(cells), ElementsAre(ElementsAre(1, 2), ElementsAre(3), ElementsAre(0)));
 }
 
 TEST(Summary, Ties_AreWithTheFastestOfAGroup) {
   const std::vector<records::CellRecord> chain = {make_ranked("a", 1.0, 1.1, 1.2), make_ranked("b", 1.15, 1.25, 1.35),
                                                   make_ranked("c", 1.3, 1.4, 1.5)};
-  EXPECT_THAT(rank_lookups(chain), ElementsAre(ElementsAre(0, 1), ElementsAre(2)));
+  EXPECT_THAT(rank_costs(chain), ElementsAre(ElementsAre(0, 1), ElementsAre(2)));
 }
 
-TEST(Summary, WithoutRatios_QuartilesRankAndUntimedCellsAreLeftOut) {
+TEST(Summary, WithoutIntervals_QuartilesRankAndUntimedCellsAreLeftOut) {
   std::vector<records::CellRecord> cells = {make_cell("cubes", "a", 9.0), make_cell("cubes", "b", 4.0),
                                             make_cell("cubes", "c", 4.1), make_cell("cubes", "d", 1.0)};
-  cells[0].ratio_to_none.lookup.reset();
   cells[3].time_ms.lookup.reset();
-  EXPECT_THAT(rank_lookups(cells), ElementsAre(ElementsAre(1, 2), ElementsAre(0)));
+  EXPECT_THAT(rank_costs(cells), ElementsAre(ElementsAre(1, 2), ElementsAre(0)));
 }
 
 TEST(Summary, OverlappingFilters_AreCalledTied) {
@@ -68,7 +67,7 @@ TEST(Summary, OverlappingFilters_AreCalledTied) {
       "cubes",
       {make_ranked("none", 1.0, 1.0, 1.0), make_ranked("pcf2x2", 0.98, 1.01, 1.04), make_ranked("vsm", 2.0, 2.1, 2.2)}};
   const auto sentences = describe_group(group, make_run().gl);
-  EXPECT_THAT(sentences, Contains("Lookup, fastest first: none tied with pcf2x2; then vsm."));
+  EXPECT_THAT(sentences, Contains("With a moving light, cheapest first: none tied with pcf2x2; then vsm."));
   EXPECT_THAT(sentences, Contains(HasSubstr("CPU time (software rasteriser)")));
 }
 

@@ -7,7 +7,7 @@
 
 namespace shadowbench::analysis {
 
-/// Is a cell of a sweep: `ratio` to a reference of 4 ms lookup and 4 ms map, known to `slack` of itself.
+/// A cell of a sweep that costs 4 ms times `ratio`, the light moving or still, known to `slack` of itself.
 struct SweepCell {
   std::string scene = "cubes";
   std::string filter = "none";
@@ -26,6 +26,9 @@ inline records::CellRecord make_sweep_cell(const SweepCell& from) {
   cell.time_ms.map = records::Quartiles{4.0, 4.0, 4.0, 9};
   const records::Ratio ratio{from.ratio, {from.ratio * (1.0 - from.slack), from.ratio * (1.0 + from.slack)}};
   cell.ratio_to_none.lookup = cell.ratio_to_none.static_map = cell.ratio_to_none.moving = ratio;
+  const double ms = 4.0 * from.ratio, reach = ms * from.slack;
+  cell.time_ms.filter = cell.time_ms.moving =
+      records::OwnTime{{ms, ms - reach, ms + reach, 9}, {ms - reach, ms + reach}};
   cell.error.rmse = from.rmse;
   cell.truth.se = 0.001;
   cell.cost.prefilter_texels = 0;

@@ -65,26 +65,35 @@ TEST(TradeScopes, ScopesThatDifferOtherwise_HaveTheirOwnNames) {
   EXPECT_NE(scopes[0].id, scopes[1].id);
 }
 
-TEST(TradeMeasures, Time_IsTheRatioTimesTheReferencesMedian) {
-  std::vector<records::CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({"cubes", "vsm", 4.0, 2.0, 0.25})};
-  cells[1].time_ms.lookup->median = 77.0;  // drifted: the ratio counts
+TEST(TradeMeasures, Time_IsTheFiltersOwn_NotTheWholeLookup) {
+  std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes", "vsm", 4.0, 2.0, 0.25})};
+  cells[0].time_ms.lookup->median = 77.0;
+  cells[0].time_ms.moving->median = 9.0;
   const auto scopes = make_trade_scopes(cells);
-  const Estimate still = cost_of(scopes[0], 1, 0), moving = cost_of(scopes[0], 1, 1);
+  const Estimate moving = cost_of(scopes[0], 0, 0), still = cost_of(scopes[0], 0, 1);
   EXPECT_DOUBLE_EQ(still.value, 8.0);
   EXPECT_DOUBLE_EQ(still.low, 6.0);
   EXPECT_DOUBLE_EQ(still.high, 10.0);
-  EXPECT_DOUBLE_EQ(moving.value, 16.0);
+  EXPECT_DOUBLE_EQ(moving.value, 9.0);
 }
 
-TEST(TradeMeasures, WithoutAReference_TimesAreMedianAndQuartiles) {
+TEST(TradeMeasures, OfRunsWithoutEmptyLookups_TimesAreSumsOfPasses) {
   records::CellRecord cell = make_cell("cubes", "vsm", 8.0);
   const auto scopes = make_trade_scopes({cell});
-  EXPECT_DOUBLE_EQ(cost_of(scopes[0], 0, 0).value, 8.0);
-  EXPECT_DOUBLE_EQ(cost_of(scopes[0], 0, 0).low, 8.0 * 0.98);
-  EXPECT_DOUBLE_EQ(cost_of(scopes[0], 0, 1).value, 11.5);
+  EXPECT_DOUBLE_EQ(cost_of(scopes[0], 0, 1).value, 8.0);
+  EXPECT_DOUBLE_EQ(cost_of(scopes[0], 0, 1).low, 8.0 * 0.98);
+  EXPECT_DOUBLE_EQ(cost_of(scopes[0], 0, 0).value, 11.5);
 }
 
-TEST(TradeMeasures, Rmse_HasTheTruthsStandardError) {
+TEST(TradeMeasures, Rmse_HasItsIntervalOverPhases) {
+  records::CellRecord cell = make_sweep_cell({});
+  cell.rmse_ci95 = records::Interval{0.095, 0.105};
+  const auto scopes = make_trade_scopes({cell});
+  EXPECT_DOUBLE_EQ(error_of(scopes[0], 0, 0).low, 0.095);
+  EXPECT_DOUBLE_EQ(error_of(scopes[0], 0, 0).high, 0.105);
+}
+
+TEST(TradeMeasures, RmseOfOnePhase_HasTheTruthsStandardError) {
   const auto scopes = make_trade_scopes({make_sweep_cell({})});
   EXPECT_DOUBLE_EQ(error_of(scopes[0], 0, 0).low, 0.099);
   EXPECT_DOUBLE_EQ(error_of(scopes[0], 0, 0).high, 0.101);
@@ -99,7 +108,7 @@ TEST(TradeMeasures, AllScenes_AreCombinedAsTheMeasureSays) {
   cells[1].error.flip = 0.2;
   cells[0].cost.fetches = 1.0;
   cells[1].cost.fetches = 4.0;
-  cells[1].time_ms.lookup->median = 9.0;
+  cells[1].time_ms.moving = records::OwnTime{{9.0, 9.0, 9.0, 9}, {9.0, 9.0}};
   const TradeScope all = make_trade_scopes(cells)[0];
   EXPECT_NEAR(error_of(all, 0, 0).value, std::sqrt(0.125), 1e-12);
   // Both scenes' truths are uncertain by 0.001: sqrt((0.3 * 0.001)^2 + (0.4 * 0.001)^2) / (2 rms)
@@ -211,11 +220,11 @@ TEST(FrontsCsv, HasARowPerCellOfEveryFront) {
                                                   make_sweep_cell({"cubes", "a,\"b", 4.0, 1.0, 0.0, 0.1})};
   const std::string csv = pages::make_fronts_csv(cells, make_trade_scopes(cells));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 16 * 3);
-  EXPECT_THAT(csv, HasSubstr("rmse,lookup," + cells[1].key +
+  EXPECT_THAT(csv, HasSubstr("rmse,moving," + cells[1].key +
                              ",vsm,\"{\"\"radius\"\":4}\",1024,0.2,0.199,0.201,8,8,8,0," + cells[0].key + ",,\r\n"));
   EXPECT_THAT(csv, HasSubstr(",0,," + cells[0].key + ",\r\n"));
   EXPECT_THAT(csv, HasSubstr("\"a,\"\"b\""));
-  EXPECT_THAT(csv, HasSubstr("leak,lookup," + cells[0].key +
+  EXPECT_THAT(csv, HasSubstr("leak,moving," + cells[0].key +
                              ",none,\"{\"\"radius\"\":0}\",1024,,,,4,4,4,,,,artefact.leak: not measured\r\n"));
 }
 

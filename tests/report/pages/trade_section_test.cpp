@@ -63,7 +63,7 @@ TEST(TradeSection, Fronts_AreChartsOfEveryErrorAndCost) {
   ASSERT_THAT(choice.entries, SizeIs(16));
   EXPECT_THAT(choice.selectors[1].options, SizeIs(4));
   const page::Chart& chart = choice.entries[0].chart;
-  EXPECT_EQ(chart.id, "cubes.main.960x540.rmse.lookup");
+  EXPECT_EQ(chart.id, "cubes.main.960x540.rmse.moving");
   EXPECT_THAT(chart.x_name, HasSubstr("CPU time (software rasteriser)"));
   EXPECT_THAT(chart.notes, ElementsAre("1: none", "2: poisson (radius 2)", "3: vsm (radius 2)"));
   EXPECT_THAT(choice.entries[0].sentences[0], HasSubstr("vsm (radius 2)"));
@@ -81,7 +81,7 @@ TEST(TradeSection, Fronts_AreChartsOfEveryErrorAndCost) {
   const page::ChartPoint& member = chart.series[1].points[0];
   EXPECT_THAT(member.details, ElementsAre("none", "radius 0", "map 1024 × 1024",
                                           HasSubstr("RMSE to the area truth: 0.1 [0.099, 0.101]"),
-                                          HasSubstr("time of the lookup: 4 ms"), "on the front"));
+                                          HasSubstr("time of map, prefilter and filter, moving light: 4 ms"), "on the front"));
   EXPECT_EQ(member.pictures.at(0).first, "cubes.none.png");
 }
 

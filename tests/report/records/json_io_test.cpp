@@ -86,6 +86,11 @@ CellRecord make_full_cell() {
   cell.fit = "view snapped";
   cell.light = "120,-35.5";
   cell.time_ms.stopped = "budget";
+  cell.phases = 4;
+  cell.rmse_ci95 = Interval{0.09, 0.11};
+  cell.time_ms.empty = Quartiles{1.0, 0.5, 1.5, 3};
+  cell.time_ms.filter = OwnTime{{-0.25, -0.5, 0.5, 3}, {-0.5, 0.5}};
+  cell.time_ms.moving = OwnTime{{4.0, 3.5, 4.5, 3}, {3.5, 4.5}};
   cell.lights = {{1, {1.5, 1.25, 1.75, 9}, {2.5, 2.25, 2.75, 9}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 1024},
                  {16, {24.0, 20.0, 28.0, 5}, {40.0, 36.0, 44.0, 5}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 16384}};
   cell.content = "0123";
