@@ -18,7 +18,7 @@ TEST(Timing, TwiceTheTaps_TakeLonger) {
   }
   const gl::TimerKind timer = gl::choose_timer(shared_context());
   const measure::RoundTimes times = measure::time_rounds(
-      pointers, 0, [] {}, bench.map(), bench.gbuffer(), timer, options::RoundLimits::exactly(9), 1);
+      pointers, 0, {}, [] {}, bench.map(), bench.gbuffer(), timer, options::RoundLimits::exactly(9), 1);
   const records::Ratio ratio = measure::bootstrap_ratio(times.filters[2].lookup, times.filters[1].lookup, 1);
   std::printf("32 taps / 16 taps: %.2f [%.2f, %.2f] by %s\n", ratio.median, ratio.ci95.low, ratio.ci95.high,
               gl::timer_name(timer));

@@ -232,6 +232,7 @@ TEST(JsonIo, EveryNull_HasAReason) {
 TEST(JsonIo, WhatWasMeasuredAfterReadingAgain_IsNoLongerAbsent) {
   CellRecord cell = make_full_cell();
   cell.error = {};
+  cell.rmse_ci95.reset();
   cell.truth = {};
   CellRecord again = cell_from_json(to_json(cell), "test");
   ASSERT_EQ(again.absent.at("error"), "not measured");
