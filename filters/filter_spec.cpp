@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 
 namespace shadowbench::filters {
@@ -10,6 +11,13 @@ namespace {
 double number_or_param(const std::variant<double, std::string>& value, const ParamValues& values) {
   if (const auto* name = std::get_if<std::string>(&value)) return number(values, *name);
   return std::get<double>(value);
+}
+
+double find_reach(const std::variant<double, std::string>& half_width, const ParamValues& values) {
+  constexpr double kOwnTexel = 0.5, kReconstruction = 1.0;
+  const double taps = number_or_param(half_width, values);
+  const bool is_whole = std::holds_alternative<double>(half_width);
+  return std::max(is_whole ? taps : taps + kReconstruction, kOwnTexel);
 }
 
 }  // namespace
@@ -51,8 +59,12 @@ double radius_texels(const FilterSpec& spec, const ParamValues& values) {
   return number_or_param(spec.radius_texels, values);
 }
 
-double bias_texels(const FilterSpec& spec, const ParamValues& values) {
-  return number_or_param(spec.bias_texels, values);
+double reach_texels(const FilterSpec& spec, const ParamValues& values) {
+  return find_reach(spec.radius_texels, values);
+}
+
+double bias_reach_texels(const FilterSpec& spec, const ParamValues& values) {
+  return find_reach(spec.bias_texels, values);
 }
 
 bool combines_logs(const ParamValues& values) { return text_or(values, "combine", "linear") == "log"; }

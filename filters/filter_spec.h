@@ -79,9 +79,14 @@ std::string text_or(const ParamValues& values, const std::string& name, const st
 /// The kernel's half-width in texels for these parameter values.
 double radius_texels(const FilterSpec& spec, const ParamValues& values);
 
-/// How many texels of receiver slope a depth bias has to cover for these parameter values, without the texel that the
-/// sampling grid itself needs.
-double bias_texels(const FilterSpec& spec, const ParamValues& values);
+/// How far a filter's comparisons reach on each axis, in texels from the receiver to the centre of the farthest texel
+/// that counts: what a depth bias has to cover. A half-width that is a number in the front matter is the whole reach. One
+/// that is a parameter says where taps lie, and each of them reads a texel further. Never less than half a texel, the
+/// distance to the centre of the receiver's own.
+double reach_texels(const FilterSpec& spec, const ParamValues& values);
+
+/// The same, of the part for which one depth stands for the receiver: `bias_texels` in place of `radius_texels`.
+double bias_reach_texels(const FilterSpec& spec, const ParamValues& values);
 
 /// Whether the encoded map holds logarithms, which the prefilter adds as log-sum-exp.
 bool combines_logs(const ParamValues& values);

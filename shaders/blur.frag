@@ -1,35 +1,26 @@
-// One direction of the separable Gaussian prefilter; with COMBINE_LOGS the texels hold logarithms.
-// BORDER_EDGE and BORDER_REPEAT are there to show what they do wrong.
-layout(binding = 3) uniform sampler2D map_stored;
-uniform ivec2 direction;
-uniform int radius;
-uniform float weights[129];
-uniform vec4 border;
+// One direction of the separable Gaussian prefilter; with COMBINE_LOGS the texels hold logarithms. TAPS(tap) writes
+// tap(i, weight) for every texel i of the kernel, so that nothing is looped over. What lies outside the map is the
+// sampler's business.
+layout(binding = 3) uniform sampler2D map_stored;  // nearest
+uniform vec2 direction;
+uniform float map_texel_uv;
 
 layout(location = 0) out vec4 out_stored;
 
-vec4 tap(int i) {
-  ivec2 texel = ivec2(gl_FragCoord.xy) + i * direction;
-  ivec2 size = textureSize(map_stored, 0);
-#if defined(BORDER_EDGE)
-  return texelFetch(map_stored, clamp(texel, ivec2(0), size - 1), 0);
-#elif defined(BORDER_REPEAT)
-  return texelFetch(map_stored, (texel + radius * size) % size, 0);
-#else
-  bool inside = all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, size));
-  return inside ? texelFetch(map_stored, texel, 0) : border;
-#endif
-}
+vec4 stored_at(float i) { return texture(map_stored, (gl_FragCoord.xy + i * direction) * map_texel_uv); }
 
 void main() {
   vec4 sum = vec4(0.0);
 #ifdef COMBINE_LOGS
-  vec4 largest = tap(-radius);
-  for (int i = -radius; i <= radius; ++i) largest = max(largest, tap(i));
-  for (int i = -radius; i <= radius; ++i) sum += weights[i + radius] * exp(tap(i) - largest);
+  vec4 largest = stored_at(0.0);
+#define TAKE_LARGEST(i, weight) largest = max(largest, stored_at(i));
+  TAPS(TAKE_LARGEST)
+#define ADD(i, weight) sum += weight * exp(stored_at(i) - largest);
+  TAPS(ADD)
   out_stored = largest + log(sum);
 #else
-  for (int i = -radius; i <= radius; ++i) sum += weights[i + radius] * tap(i);
+#define ADD(i, weight) sum += weight * stored_at(i);
+  TAPS(ADD)
   out_stored = sum;
 #endif
 }

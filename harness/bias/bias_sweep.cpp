@@ -27,7 +27,7 @@ namespace shadowbench::bias {
 namespace {
 
 constexpr double kFactors[] = {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
-constexpr double kTooLittle = 0.25, kRight = 1.0, kTooMuch = 8.0;  // of the pictures
+constexpr double kTooLittle = 0.25, kTheory = 1.0, kTooMuch = 8.0;  // of the pictures
 constexpr double kPercentile = 0.95;
 constexpr const char* kPictureFilter = "tent3x3";  // where it is among the chosen
 
@@ -182,7 +182,7 @@ class BiasSweep {
       shots.push_back(shoot(mode, request, std::nullopt, 0.0));
       return shots;
     }
-    const render::BiasTheory theory = render::find_theory(mode, render::reach_texels(request), lit_, kPercentile);
+    const render::BiasTheory theory = render::find_theory(mode, filters::bias_reach_texels(request.spec, request.values), lit_, kPercentile);
     curve.theory_setting = mode.amount(theory);
     curve.lift_depth = mode.lift_depth(theory);
     curve.lift_m = curve.lift_depth * light_.frustum.depth_range_ws;
@@ -223,7 +223,7 @@ class BiasSweep {
 
   images::GridTile make_tile(const records::BiasModeRecord& mode, Shot& shot) {
     const records::BiasPoint& p = shot.point;
-    const std::string which = p.factor == kTooLittle ? "too little: " : p.factor == kTooMuch ? "too much: " : "right: ";
+    const std::string which = p.factor == kTooLittle ? "too little: " : p.factor == kTooMuch ? "too much: " : "theory: ";
     const auto rate = [](const std::optional<double>& value) {
       return value ? fmt::format("{:.3g} %", 100.0 * *value) : "absent";
     };
@@ -240,7 +240,7 @@ class BiasSweep {
   void write_pictures(records::BiasModeRecord& mode, const records::BiasCurve& curve, std::vector<Shot> shots) {
     std::erase_if(shots, [](const Shot& shot) {
       const auto factor = shot.point.factor;
-      return factor && factor != kTooLittle && factor != kRight && factor != kTooMuch;
+      return factor && factor != kTooLittle && factor != kTheory && factor != kTooMuch;
     });
     images::Grid grid;
     grid.title = fmt::format("{}: {}", mode.mode, curve.filter);
@@ -257,7 +257,7 @@ class BiasSweep {
     mode.picture = fmt::format("bias.{}.png", mode.mode);
     mode.picture_caption = fmt::format(
         "{} under {}: picture and visibility{}, and the crop where it differs most; full size behind the link",
-        curve.filter, mode.mode, mode.key.empty() ? "" : " at too little, right and too much");
+        curve.filter, mode.mode, mode.key.empty() ? "" : " at too little, as theory says, and too much");
     images::write_grid(options_.out / mode.picture, grid);
   }
 };

@@ -92,8 +92,8 @@ void add_filter_options(Command& command, RunArguments& a) {
   command.add(
       "--bias", &a.bias,
       "depth bias, MODE:KEY=X,...; several add up: " + render::list_bias_modes() +
-          ". Units: depth (0..1 over the light's range), texels (their width), world (metres), kernels (half-width of "
-          "the filter's kernel plus one texel). plane: what the receiver's plane gains over so many texels; slope: "
+          ". Units: depth (0..1 over the light's range), texels (their width), world (metres), kernels (how "
+          "far the filter's comparisons reach). plane: what the receiver's plane gains over so many texels; slope: "
           "times "
           "1 - n.l, or constant where that is more; receiver-plane: the plane's depth at every tap; front-cull, "
           "midpoint: what the map holds (default plane:kernels=1,depth=2e-5). Planes steeper than 10:1 towards the "

@@ -1,5 +1,7 @@
 #include "harness/render/prefilter.h"
 
+#include <fmt/format.h>
+
 #include <map>
 
 #include "filters/gaussian.h"
@@ -17,12 +19,14 @@ GLenum store_format(const filters::ParamValues& values) {
   return formats.at(filters::text_or(values, "store", ""));
 }
 
-/// The blur reads outside the map as the lookup does.
-Defines blur_defines(const filters::FilterRequest& request, filters::Border border) {
-  Defines defines;
+/// The kernel, one call of the macro `tap` per texel: "tap(-1.0, 0.25) tap(0.0, 0.5) tap(1.0, 0.25)".
+Defines blur_defines(const filters::FilterRequest& request, int radius) {
+  const std::vector<float> weights = filters::gaussian_weights(radius);
+  std::string taps;
+  for (int i = -radius; i <= radius; ++i)
+    taps += fmt::format("tap({}.0, {:#.9g}) ", i, weights[static_cast<std::size_t>(i + radius)]);
+  Defines defines = {{"TAPS(tap)", taps}};
   if (filters::combines_logs(request.values)) defines.emplace_back("COMBINE_LOGS", "1");
-  if (border == filters::Border::kEdge) defines.emplace_back("BORDER_EDGE", "1");
-  if (border == filters::Border::kRepeat) defines.emplace_back("BORDER_REPEAT", "1");
   return defines;
 }
 
@@ -38,6 +42,7 @@ Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& reque
       filters::combines_logs(request.values) || filters::text_or(request.values, "sample", "linear") == "nearest";
   sampler_.set_filter(nearest ? GL_NEAREST : GL_LINEAR, nearest ? GL_NEAREST : GL_LINEAR);
   sampler_.set_wrap(wrap_mode(light.range.border));
+  blur_sampler_.set_wrap(wrap_mode(light.range.border));
   reads_border_ = light.range.border == filters::Border::kBorder;
   retune(shaders, request, light);
 }
@@ -46,14 +51,13 @@ void Prefilter::retune(ShaderLibrary& shaders, const filters::FilterRequest& req
   set_light(encode_, light);
   encode_.set("run_seed", light.seed);
   set_parameters(encode_, request);
-  border_ = encode_border(store_format(request.values));
-  sampler_.set_border(border_);
+  set_border(encode_border(store_format(request.values)));
   radius_ = filters::prefilter_radius_texels(request.spec, request.values);
-  weights_ = filters::gaussian_weights(radius_);
-  if (radius_ == 0 || blur_) return;
+  if (radius_ == 0) return;
+  blur_ = &shaders.fullscreen("blur.frag", blur_defines(request, radius_));
+  if (scratch_) return;
   scratch_.emplace(request.spec.id + " blur", store_format(request.values), stored_->texture().width(),
                    stored_->texture().width());
-  blur_ = &shaders.fullscreen("blur.frag", blur_defines(request, light.range.border));
 }
 
 glm::vec4 Prefilter::find_border(const LightSetup& light) {
@@ -63,9 +67,15 @@ glm::vec4 Prefilter::find_border(const LightSetup& light) {
 
 void Prefilter::turn_to(const LightSetup& light, const glm::vec4& border, std::shared_ptr<ImageTarget> stored) {
   set_light(encode_, light);
-  border_ = border;
-  sampler_.set_border(border_);
+  set_border(border);
   stored_ = std::move(stored);
+}
+
+/// The blur reads outside the map as the lookup does.
+void Prefilter::set_border(const glm::vec4& border) {
+  border_ = border;
+  sampler_.set_border(border);
+  blur_sampler_.set_border(border);
 }
 
 /// Outside the map lies the encoding of depth 1, stored in the map's own format.
@@ -87,17 +97,15 @@ void Prefilter::run(const ShadowMap& map) {
   encode_.use();
   triangle_.draw();
   if (radius_ == 0) return;
-  blur(stored_->texture(), *scratch_, {1, 0});
-  blur(scratch_->texture(), *stored_, {0, 1});
+  blur(stored_->texture(), *scratch_, {1.0f, 0.0f});
+  blur(scratch_->texture(), *stored_, {0.0f, 1.0f});
 }
 
-void Prefilter::blur(const gl::Texture& from, ImageTarget& to, glm::ivec2 direction) {
+void Prefilter::blur(const gl::Texture& from, ImageTarget& to, glm::vec2 direction) {
   to.bind();
   blur_->set("direction", direction);
-  blur_->set("radius", radius_);
-  blur_->set("weights", weights_);
-  blur_->set("border", border_);
-  gl::Sampler::unbind(kStoredUnit);
+  blur_->set("map_texel_uv", 1.0f / static_cast<float>(from.width()));
+  blur_sampler_.bind(kStoredUnit);
   from.bind(kStoredUnit);
   blur_->use();
   triangle_.draw();

@@ -69,15 +69,16 @@ class Prefilter {
   std::optional<ImageTarget> scratch_;  ///< only with a blur
   gl::Program encode_;
   gl::Program* blur_ = nullptr;  ///< likewise
-  std::vector<float> weights_;
   glm::vec4 border_{0.0f};
   bool reads_border_ = true;  ///< what lies outside the map is border_
   gl::FullscreenTriangle triangle_;
   gl::Sampler sampler_{"encoded map"};
+  gl::Sampler blur_sampler_{"encoded map, to blur"};
 
   static EncodedTexels read(const ImageTarget& target);
   glm::vec4 encode_border(GLenum format);
-  void blur(const gl::Texture& from, ImageTarget& to, glm::ivec2 direction);
+  void blur(const gl::Texture& from, ImageTarget& to, glm::vec2 direction);
+  void set_border(const glm::vec4& border);
 };
 
 }  // namespace shadowbench::render

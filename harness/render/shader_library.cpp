@@ -10,10 +10,18 @@
 namespace shadowbench::render {
 namespace {
 
+/// Names a variant for people and drivers, who do not need the values.
 std::string variant_name(const std::string& file, const Defines& defines) {
   std::string name = file;
   for (const auto& [key, value] : defines) name += " " + key;
   return name;
+}
+
+/// Tells a variant from all others.
+std::string variant_key(const std::string& file, const Defines& defines) {
+  std::string text = file;
+  for (const auto& [key, value] : defines) text += fmt::format("\n{} {}", key, value);
+  return text;
 }
 
 /// The line of a filter that first has a word; its last one where none has.
@@ -62,21 +70,23 @@ gl::ShaderSource ShaderLibrary::source(const std::string& file, const Defines& d
 }
 
 gl::Program& ShaderLibrary::fullscreen(const std::string& fragment_file, const Defines& defines) {
-  const std::string name = variant_name(fragment_file, defines);
-  const auto found = programs_.find(name);
+  const std::string key = variant_key(fragment_file, defines);
+  const auto found = programs_.find(key);
   if (found != programs_.end()) return found->second;
   ++compiled_;
-  gl::Program program(name, gl::FullscreenTriangle::vertex_source(), source(fragment_file, defines, {}));
-  return programs_.emplace(name, std::move(program)).first->second;
+  gl::Program program(variant_name(fragment_file, defines), gl::FullscreenTriangle::vertex_source(),
+                      source(fragment_file, defines, {}));
+  return programs_.emplace(key, std::move(program)).first->second;
 }
 
 gl::Program& ShaderLibrary::geometry(const std::string& shader, const Defines& defines) {
-  const std::string name = variant_name(shader, defines);
-  const auto found = programs_.find(name);
+  const std::string key = variant_key(shader, defines);
+  const auto found = programs_.find(key);
   if (found != programs_.end()) return found->second;
   ++compiled_;
-  gl::Program program(name, source(shader + ".vert", defines, {}), source(shader + ".frag", defines, {}));
-  return programs_.emplace(name, std::move(program)).first->second;
+  gl::Program program(variant_name(shader, defines), source(shader + ".vert", defines, {}),
+                      source(shader + ".frag", defines, {}));
+  return programs_.emplace(key, std::move(program)).first->second;
 }
 
 gl::Program ShaderLibrary::compile_filter(const std::string& label, const std::string& fragment_file,

@@ -52,7 +52,7 @@ std::string describe_bias(const records::BiasRecord& bias, const records::MapSca
   if (any(bias.slope)) parts.push_back("(1 − n·l) × " + describe_amount(bias.slope, scale));
   if (bias.plane_texels > 0.0) parts.push_back(fmt::format("plane over {} texels", format_number(bias.plane_texels)));
   if (bias.plane_kernels > 0.0)
-    parts.push_back(fmt::format("plane over {} × (kernel half-width + 1) texels", format_number(bias.plane_kernels)));
+    parts.push_back(fmt::format("plane over {} × the filter's reach", format_number(bias.plane_kernels)));
   if (any(bias.normal_offset)) parts.push_back("normal offset of " + describe_amount(bias.normal_offset, scale));
   if (bias.receiver_plane) parts.push_back("receiver plane, per tap");
   if (bias.polygon_factor > 0.0 || bias.polygon_units > 0.0) {

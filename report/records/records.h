@@ -57,7 +57,7 @@ struct BiasRecord {
   BiasAmountRecord constant;
   BiasAmountRecord slope;          ///< times 1 - n.l; the larger of this and `constant` holds
   double plane_texels = 0.0;       ///< depth change of the receiver's plane over this many shadow-map texels
-  double plane_kernels = 0.0;      ///< the same change, in units of the filter's kernel half-width plus one texel
+  double plane_kernels = 0.0;      ///< the same change, in units of the filter's reach
   BiasAmountRecord normal_offset;  ///< receiver moved along its normal; `depth` is 0
   bool receiver_plane = false;     ///< the plane's gradient is added for every tap
   double polygon_factor = 0.0;     ///< glPolygonOffset in the depth pass

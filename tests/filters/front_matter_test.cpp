@@ -60,9 +60,9 @@ TEST(FrontMatter, BodyKeepsItsLineNumbers) {
   EXPECT_EQ(spec.body.substr(0, 7), "\nfloat ");
 }
 
-TEST(FrontMatter, BiasRadiusIsTheKernels_UnlessGiven) {
-  EXPECT_EQ(bias_texels(parse_filter(with(""), "a.glsl"), {}), 2.0);
-  EXPECT_EQ(bias_texels(parse_filter(with("bias_texels = 0\n"), "a.glsl"), {}), 0.0);
+TEST(FrontMatter, BiasReachIsTheKernels_UnlessGiven) {
+  EXPECT_EQ(bias_reach_texels(parse_filter(with(""), "a.glsl"), {}), 2.0);
+  EXPECT_EQ(bias_reach_texels(parse_filter(with("bias_texels = 0\n"), "a.glsl"), {}), 0.5);
 }
 
 TEST(FrontMatter, SamplersInCode_NotInComments_MakeFetchesUnknown) {

@@ -70,6 +70,16 @@ TEST(KernelWidths, AreTheShapeAndItsReconstruction) {
   EXPECT_EQ(kernel_of("poisson:radius=0").name(), kernel_of("pcf2x2").name());
 }
 
+// The front matter of every filter says as much as its kernel does: to the centre of the farthest texel that counts.
+TEST(KernelWidths, ReachIsThatOfTheFrontMatter) {
+  for (const FilterSpec& spec : catalogue().filters()) {
+    const FilterRequest request = catalogue().parse_requests(spec.id).front();
+    const Kernel kernel = make_model(spec.id)->kernel(request.values);
+    const double own_texel = kernel.reconstruction() == Reconstruction::kNearest ? 0.5 : 0.0;
+    EXPECT_EQ(reach_texels(spec, request.values), kernel.half_width() + own_texel) << spec.id;
+  }
+}
+
 /// Second moment of a kernel per axis, by a regular grid of samples.
 double second_moment(const Kernel& kernel) {
   constexpr int kSteps = 1024, kBetween = 64;

@@ -118,11 +118,11 @@ void add(BiasRule& rule, const std::string& text) {
   if (!any && has_slack) rule.constant.depth += kRoundingDepth;
 }
 
-render::Bias resolve(const BiasRule& rule, const scene::LightFrustum& frustum, double half_width_texels) {
+render::Bias resolve(const BiasRule& rule, const scene::LightFrustum& frustum, double reach_texels) {
   render::Bias bias;
   bias.constant_depth = rule.constant.in_depth(frustum);
   bias.slope_depth = rule.slope.in_depth(frustum);
-  bias.plane_texels = rule.plane_texels + rule.plane_kernels * (half_width_texels + 1.0);
+  bias.plane_texels = rule.plane_texels + rule.plane_kernels * reach_texels;
   bias.normal_offset_texels = rule.normal_offset.in_world(frustum) / frustum.texel_size_ws;
   bias.receiver_plane = rule.receiver_plane;
   bias.max_tangent = rule.max_tangent;
@@ -188,14 +188,14 @@ void require_drawable(const BiasRule& rule, const render::MapSettings& map) {
 
 render::Bias resolve_bias(const BiasRule& rule, const scene::LightFrustum& frustum, const filters::FilterSpec& spec,
                           const filters::ParamValues& values) {
-  return resolve(rule, frustum, filters::bias_texels(spec, values));
+  return resolve(rule, frustum, filters::bias_reach_texels(spec, values));
 }
 
 render::Bias resolve_comparison_bias(const BiasRule& rule, const scene::LightFrustum& frustum,
                                      const filters::FilterSpec& spec, const filters::ParamValues& values) {
-  const double own = filters::bias_texels(spec, values), radius = filters::radius_texels(spec, values);
-  if (own >= radius) return resolve(rule, frustum, own);
-  render::Bias bias = resolve(rule, frustum, radius);
+  const double own = filters::bias_reach_texels(spec, values), whole = filters::reach_texels(spec, values);
+  if (own >= whole) return resolve(rule, frustum, own);
+  render::Bias bias = resolve(rule, frustum, whole);
   bias.max_tangent = kAnySlope;  // the filter itself has no acne on steep planes either
   return bias;
 }

@@ -26,7 +26,7 @@ struct BiasRule {
   BiasAmount constant{2e-5, 0.0, 0.0};
   BiasAmount slope;             ///< times 1 - n.l; the larger of this and `constant` holds
   double plane_texels = 0.0;    ///< depth change of the receiver's plane over this many texels
-  double plane_kernels = 1.0;   ///< the same, in units of the filter's kernel half-width plus one texel
+  double plane_kernels = 1.0;   ///< the same, in units of filters::bias_reach_texels()
   BiasAmount normal_offset;     ///< moves the receiver along its normal; `depth` is not used
   bool receiver_plane = false;  ///< the plane's gradient is added for every tap
   double max_tangent = 10.0;    ///< steeper planes are biased as this one

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <tuple>
 
-#include "filters/model.h"
-
 namespace shadowbench::render {
 namespace {
 
@@ -48,11 +46,6 @@ std::vector<SweptMode> make_swept_modes() {
 }
 
 }  // namespace
-
-double reach_texels(const filters::FilterRequest& request) {
-  const filters::Kernel kernel = filters::make_model(request.spec.id)->kernel(request.values);
-  return kernel.half_width() + (kernel.reconstruction() == filters::Reconstruction::kNearest ? 0.5 : 0.0);
-}
 
 BiasTheory make_theory(double reach_texels, const filters::Receiver& receiver) {
   const glm::dvec2 slopes = glm::abs(glm::dvec2(receiver.depth_per_texel));

@@ -21,10 +21,6 @@ struct BiasTheory {
   double depth() const { return reach_texels * slope_per_texel; }
 };
 
-/// How far a filter's kernel reaches on each axis, to the centre of the farthest texel that counts. Requires that the
-/// filter has a scalar model, which names its kernel.
-double reach_texels(const filters::FilterRequest& request);
-
 /// The theory of a kernel with this reach on a receiver's plane.
 BiasTheory make_theory(double reach_texels, const filters::Receiver& receiver);
 

@@ -29,7 +29,7 @@ struct Reach {
 Reach find_reach(const filters::FilterRequest& request) {
   const filters::Kernel kernel = filters::make_model(request.spec.id)->kernel(request.values);
   const bool nearest = kernel.reconstruction() == filters::Reconstruction::kNearest;
-  const double texels = render::reach_texels(request), between = nearest ? 0.5 : 1.0;
+  const double texels = filters::bias_reach_texels(request.spec, request.values), between = nearest ? 0.5 : 1.0;
   return {texels - between, between};
 }
 

@@ -22,7 +22,7 @@ render::Bias resolve(const std::vector<std::string>& texts) {
   return resolve_bias(parse_bias(texts), make_frustum(), spec, {{"radius", 5.0}});
 }
 
-TEST(Bias, DefaultCoversTheKernelPlusOneTexel) {
+TEST(Bias, DefaultCoversTheReachOfTheTaps) {
   const render::Bias bias = resolve({});
   EXPECT_DOUBLE_EQ(bias.plane_texels, 6.0);
   EXPECT_GT(bias.constant_depth, 0.0);

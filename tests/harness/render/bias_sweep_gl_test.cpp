@@ -58,7 +58,7 @@ struct Sweep {
       : scene(make_plane(tilt, azimuth)), bench(shared_context(), scene, map_size, 96, 96), size(map_size) {}
 
   render::BiasTheory theory(const filters::FilterRequest& request) {
-    return render::make_theory(render::reach_texels(request),
+    return render::make_theory(filters::bias_reach_texels(request.spec, request.values),
                                bench.receivers(request, render::BiasRule::none()).front());
   }
 

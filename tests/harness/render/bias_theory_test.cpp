@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "harness/options/options.h"
-
 namespace shadowbench::render {
 namespace {
 
@@ -20,16 +18,6 @@ const SweptMode& find_mode(const std::string& name) {
   for (const SweptMode& mode : swept_modes())
     if (mode.name == name) return mode;
   throw std::runtime_error(name);
-}
-
-double reach_of(const std::string& filter) {
-  return reach_texels(filters::Catalogue(options::find_resources().filters).parse_requests(filter).front());
-}
-
-TEST(BiasTheory, Reach_IsTheKernelAndHalfATexelWhereNothingInterpolates) {
-  EXPECT_EQ(reach_of("none"), 0.5);
-  EXPECT_EQ(reach_of("pcf2x2"), 1.0);
-  EXPECT_EQ(reach_of("box3x3"), 1.5);
 }
 
 TEST(BiasTheory, Amounts_LiftThePlaneByItsGainUnderTheKernel) {
