@@ -9,7 +9,7 @@
 
 layout(location = 0) out float out_visibility;
 #ifdef COUNT_FETCHES
-layout(location = 1) out float out_fetches;
+layout(location = 1) out vec2 out_reads;  // number of fetches, and their reach in texels; -1: there was no lookup
 #endif
 
 void main() {
@@ -17,7 +17,7 @@ void main() {
   vec4 position = texelFetch(gbuffer_position, pixel, 0);
   out_visibility = 1.0;
 #ifdef COUNT_FETCHES
-  out_fetches = -1.0;  // not a receiver
+  out_reads = vec2(-1.0);
 #endif
   if (position.w == 0.0) return;
   Receiver r = make_receiver(position.xyz, texelFetch(gbuffer_normal, pixel, 0).xyz, position.w, pixel);
@@ -25,8 +25,13 @@ void main() {
     out_visibility = 0.0;  // the surface shadows itself: there is nothing to filter
     return;
   }
-  if (map_reaches(r)) out_visibility = visibility(r);
 #ifdef COUNT_FETCHES
-  out_fetches = float(fetch_count);
+  counted_uv = r.uv;
+  out_reads.x = 0.0;
+#endif
+  if (!map_reaches(r)) return;
+  out_visibility = visibility(r);
+#ifdef COUNT_FETCHES
+  out_reads = vec2(float(fetch_count), fetch_reach);
 #endif
 }

@@ -22,6 +22,7 @@ struct MeasuredCell {
   std::string label;                  ///< filter and the parameters that were asked for
   images::Image picture;              ///< linear RGB
   images::Image visibility;           ///< 1 lit .. 0 blocked
+  images::Image unbiased;             ///< visibility without any depth bias; empty where no truth is wanted
   images::StabilityImages stability;  ///< where its numbers break; empty unless the run asks for it
   images::UncertaintyImages
       uncertainty;  ///< how far rounding and other seeds can move its pixels; empty unless the run asks for it

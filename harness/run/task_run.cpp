@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "harness/measure/suspects.h"
 #include "harness/run/border_page.h"
 #include "harness/run/map_pictures.h"
 #include "harness/run/task_images.h"
@@ -84,6 +85,7 @@ void TaskRun::score(measure::SceneMeasurement& measured) {
   const measure::SceneTruth& truth = assets_.truth(*task_.camera);
   tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
     measure::score(cell.record, cell.visibility, cell.picture, truth);
+    measure::check_against_truth(cell, truth);
   });
   show("attribution");
   if (!analyser_) analyser_.emplace(renderer_, options_, task_, assets_, truth);
