@@ -54,11 +54,14 @@ std::string caption(const records::CellRecord& cell, const records::GlRecord& gl
 }
 
 images::Rect choose_crop(const options::RunOptions& options, const std::vector<measure::MeasuredCell>& cells) {
+  const auto is_suspect = [](const measure::MeasuredCell& cell) { return !cell.record.suspect_of.empty(); };
+  const bool all_are = std::ranges::all_of(cells, is_suspect);
   std::vector<const images::Image*> visibility;
   std::size_t reference = 0;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    visibility.push_back(&cells[i].visibility);
-    if (cells[i].record.filter == "none") reference = i;
+  for (const measure::MeasuredCell& cell : cells) {
+    if (is_suspect(cell) && !all_are) continue;
+    if (cell.record.filter == "none") reference = visibility.size();
+    visibility.push_back(&cell.visibility);
   }
   return images::find_hardest_edge(visibility, reference, images::choose_crop_size({options.width, options.height}));
 }

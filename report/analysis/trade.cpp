@@ -73,7 +73,7 @@ class CellReader {
   std::map<std::string, const records::CellRecord*> references_;
 
   Measured read_one(const records::CellRecord& cell, std::size_t measure, bool is_error) const {
-    if (cell.status == records::CellStatus::kSuspect) return {std::nullopt, records::describe_status(cell)};
+    if (cell.status == records::CellStatus::kSuspect) return {std::nullopt, "suspect: see the warnings"};
     if (is_error) return read_error(cell, measure);
     const auto reference = references_.find(reference_key(cell));
     return read_cost(cell, reference == references_.end() ? nullptr : reference->second, measure);

@@ -6,7 +6,6 @@
 #include <numeric>
 #include <random>
 
-#include "filters/disk_points.h"
 #include "filters/gaussian.h"
 #include "filters/random.h"
 #include "filters/scalar.h"
