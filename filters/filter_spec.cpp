@@ -69,6 +69,10 @@ double bias_reach_texels(const FilterSpec& spec, const ParamValues& values) {
 
 bool combines_logs(const ParamValues& values) { return text_or(values, "combine", "linear") == "log"; }
 
+bool reads_nearest(const ParamValues& values) {
+  return combines_logs(values) || text_or(values, "sample", "linear") == "nearest";
+}
+
 int prefilter_radius_texels(const FilterSpec& spec, const ParamValues& values) {
   return spec.has_prefilter ? static_cast<int>(radius_texels(spec, values)) : 0;
 }

@@ -52,14 +52,15 @@ struct FilterSpec {
   std::variant<double, std::string> bias_texels = 0.0;    ///< half-width over which one depth stands for the receiver
   std::vector<ParamSpec> params;                          ///< `store`, `combine` and `sample` lists included
   std::vector<DiskTable> disks;
-  std::string body;            ///< GLSL after the front matter
-  int body_first_line = 1;     ///< line of the file at which `body` begins
-  bool has_encode = false;     ///< stores something else than depth
-  bool uses_samplers = false;  ///< reads the map past the counted functions: its fetch count is unknown
-  bool has_prefilter = false;  ///< `combine` is given: the map is blurred with radius `radius_texels`
-  bool holds_moments = false;  ///< channels in pairs: a mean, and the mean of its square
-  std::string exponent;        ///< parameter that the exponents of what is stored grow with; empty: none
-  std::string variance_floor;  ///< parameter that variances are raised to; empty: none
+  std::string body;              ///< GLSL after the front matter
+  int body_first_line = 1;       ///< line of the file at which `body` begins
+  bool has_encode = false;       ///< stores something else than depth
+  bool uses_samplers = false;    ///< reads the map past the counted functions: its fetch count is unknown
+  bool reads_unwritten = false;  ///< reads the encoded map, and has no encode() that writes it
+  bool has_prefilter = false;    ///< `combine` is given: the map is blurred with radius `radius_texels`
+  bool holds_moments = false;    ///< channels in pairs: a mean, and the mean of its square
+  std::string exponent;          ///< parameter that the exponents of what is stored grow with; empty: none
+  std::string variance_floor;    ///< parameter that variances are raised to; empty: none
 
   const ParamSpec* find_param(const std::string& name) const;
 };
@@ -80,9 +81,9 @@ std::string text_or(const ParamValues& values, const std::string& name, const st
 double radius_texels(const FilterSpec& spec, const ParamValues& values);
 
 /// How far a filter's comparisons reach on each axis, in texels from the receiver to the centre of the farthest texel
-/// that counts: what a depth bias has to cover. A half-width that is a number in the front matter is the whole reach. One
-/// that is a parameter says where taps lie, and each of them reads a texel further. Never less than half a texel, the
-/// distance to the centre of the receiver's own.
+/// that counts: what a depth bias has to cover. A half-width that is a number in the front matter is the whole reach.
+/// One that is a parameter says where taps lie, and each of them reads a texel further. Never less than half a texel,
+/// the distance to the centre of the receiver's own.
 double reach_texels(const FilterSpec& spec, const ParamValues& values);
 
 /// The same, of the part for which one depth stands for the receiver: `bias_texels` in place of `radius_texels`.
@@ -90,6 +91,9 @@ double bias_reach_texels(const FilterSpec& spec, const ParamValues& values);
 
 /// Whether the encoded map holds logarithms, which the prefilter adds as log-sum-exp.
 bool combines_logs(const ParamValues& values);
+
+/// Whether fetches of the encoded map read its nearest texel, and not the four around a point.
+bool reads_nearest(const ParamValues& values);
 
 /// The radius in texels of the Gaussian prefilter, 0 where the filter has none.
 int prefilter_radius_texels(const FilterSpec& spec, const ParamValues& values);

@@ -134,6 +134,10 @@ std::size_t find_word(std::string_view code, std::string_view word, std::size_t 
   return std::string_view::npos;
 }
 
+bool has_word(std::string_view code, std::string_view word) {
+  return find_word(code, word, 0) != std::string_view::npos;
+}
+
 /// Whether the code declares `type name(`.
 bool has_function(std::string_view code, std::string_view type, std::string_view name) {
   constexpr std::string_view kBlank = " \t\r\n\v\f";
@@ -378,7 +382,8 @@ void inspect_body(const Reader& reader, const toml::table& root, FilterSpec& spe
   const std::string code = strip_comments(spec.body);
   spec.has_encode = has_function(code, "vec4", "encode");
   for (const char* sampler : {"map_depth", "map_compare", "map_compare_nearest", "map_stored"})
-    spec.uses_samplers = spec.uses_samplers || find_word(code, sampler, 0) != std::string_view::npos;
+    spec.uses_samplers = spec.uses_samplers || has_word(code, sampler);
+  spec.reads_unwritten = !spec.has_encode && (has_word(code, "fetch_map") || has_word(code, "map_stored"));
   if (!has_function(code, "float", "visibility")) reader.fail(nullptr, "the GLSL lacks 'float visibility(Receiver r)'");
   const bool stores = root.contains("store");
   if (stores && !spec.has_encode)

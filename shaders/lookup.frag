@@ -8,7 +8,7 @@
 
 layout(location = 0) out float out_visibility;
 #ifdef COUNT_FETCHES
-layout(location = 1) out float out_fetches;
+layout(location = 1) out vec2 out_reads;  // number of fetches, and their reach in texels; -1: there was no lookup
 #endif
 
 void main() {
@@ -17,12 +17,15 @@ void main() {
   if (place.w < 0.0) {
     out_visibility = place.w == mark_away ? 0.0 : 1.0;
 #ifdef COUNT_FETCHES
-    out_fetches = place.w == mark_beyond ? 0.0 : -1.0;  // below 0: not a receiver
+    out_reads = vec2(place.w == mark_beyond ? 0.0 : -1.0, -1.0);
 #endif
     return;
   }
+#ifdef COUNT_FETCHES
+  counted_uv = place.xy;
+#endif
   out_visibility = visibility(make_receiver(pixel, place));
 #ifdef COUNT_FETCHES
-  out_fetches = float(fetch_count);
+  out_reads = vec2(float(fetch_count), fetch_reach);
 #endif
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
@@ -75,7 +76,8 @@ class BiasSweep {
   render::ImageTarget target_;
   render::MapBias drawn_;  ///< what the map holds
   metrics::ArtefactMasks masks_;
-  std::vector<filters::Receiver> lit_;  ///< those of the acne mask
+  std::vector<filters::Receiver> lit_;             ///< those of the acne mask
+  std::map<std::string, images::Image> unbiased_;  ///< by label
   records::BiasSweepRecord record_;
   int done_ = 0;
 
@@ -166,12 +168,19 @@ class BiasSweep {
     return measure::draw_visibility(filter, light_.map, assets_.gbuffer(camera()), target_);
   }
 
+  /// A filter's visibility without any bias, drawn when it is first asked for.
+  const images::Image& find_unbiased(const filters::FilterRequest& request) {
+    const auto [place, is_new] = unbiased_.try_emplace(request.label());
+    if (is_new) place->second = draw(request, render::BiasRule::none());
+    return place->second;
+  }
+
   Shot shoot(const render::SweptMode& mode, const filters::FilterRequest& request, std::optional<double> factor,
              double setting) {
     Shot shot{{factor, setting, {}, {}}, draw(request, mode.make_rule(setting))};
     const std::vector<float>& image = shot.visibility.texels;
     shot.point.acne = metrics::rate_below(image, masks_.acne, metrics::kArtefactLimits.acne_below);
-    shot.point.contact_gap = metrics::rate_above(image, masks_.contact_gap, metrics::kArtefactLimits.contact_gap_above);
+    shot.point.contact_gap = metrics::rate_contact_gap(image, find_unbiased(request).texels, masks_.contact_gap);
     return shot;
   }
 
@@ -182,7 +191,8 @@ class BiasSweep {
       shots.push_back(shoot(mode, request, std::nullopt, 0.0));
       return shots;
     }
-    const render::BiasTheory theory = render::find_theory(mode, filters::bias_reach_texels(request.spec, request.values), lit_, kPercentile);
+    const render::BiasTheory theory =
+        render::find_theory(mode, filters::bias_reach_texels(request.spec, request.values), lit_, kPercentile);
     curve.theory_setting = mode.amount(theory);
     curve.lift_depth = mode.lift_depth(theory);
     curve.lift_m = curve.lift_depth * light_.frustum.depth_range_ws;
@@ -223,7 +233,9 @@ class BiasSweep {
 
   images::GridTile make_tile(const records::BiasModeRecord& mode, Shot& shot) {
     const records::BiasPoint& p = shot.point;
-    const std::string which = p.factor == kTooLittle ? "too little: " : p.factor == kTooMuch ? "too much: " : "theory: ";
+    const std::string which = p.factor == kTooLittle ? "too little: "
+                              : p.factor == kTooMuch ? "too much: "
+                                                     : "theory: ";
     const auto rate = [](const std::optional<double>& value) {
       return value ? fmt::format("{:.3g} %", 100.0 * *value) : "absent";
     };

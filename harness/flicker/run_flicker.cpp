@@ -47,7 +47,7 @@ records::FlickerMotion describe_motion(Motion motion, double step) {
 }
 
 records::FlickerFilter make_record(const std::string& label, const metrics::FlickerStats& stats) {
-  return {label, stats.change, stats.flicker, stats.returning, stats.not_finite, stats.mean_change};
+  return {label, stats.change, stats.flicker, stats.returning, stats.not_finite, stats.step_change};
 }
 
 images::Image to_image(const metrics::FlickerStats& stats, const options::RunOptions& options) {
@@ -145,7 +145,7 @@ class FlickerRun {
     }
     const metrics::FlickerStats& any = stats.front().front();
     record.receivers = any.receivers;
-    record.truth = {truth.traced, any.truth_change, any.truth_returning, truth.noise, any.truth_mean_change};
+    record.truth = {truth.traced, any.truth_change, any.truth_returning, truth.noise, any.truth_step_change};
     write_picture(record, stats);
     return record;
   }

@@ -96,9 +96,14 @@ void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
        too_few("are wholly lit, with their surroundings"));
   note(record, "artefact.leak", record.artefact.leak, metrics::rate_above(image, masks_->leak, limits.leak_above),
        too_few("are wholly blocked, with their surroundings, by something that does not touch them"));
+  const auto touching = std::count(masks_->contact_gap.begin(), masks_->contact_gap.end(), 1);
   note(record, "artefact.contact_gap", record.artefact.contact_gap,
-       metrics::rate_above(image, masks_->contact_gap, limits.contact_gap_above),
-       too_few("are wholly blocked by something that touches them"));
+       metrics::rate_contact_gap(image, cell.unbiased.texels, masks_->contact_gap),
+       touching < metrics::kFewestReceivers
+           ? too_few("are wholly blocked by something that touches them")
+           : fmt::format("of {} receivers that touch what blocks them fewer than {} are dark without bias: the filter "
+                         "lights the others itself, by its blur or by fading at contacts",
+                         touching, metrics::kFewestReceivers));
 }
 
 std::vector<filters::Receiver> CellAnalyser::read_receivers(const render::Bias& bias) const {

@@ -12,6 +12,7 @@
 #include "harness/measure/phases.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/statistics.h"
+#include "harness/measure/suspects.h"
 #include "harness/measure/timing.h"
 #include "harness/measure/uncertainty.h"
 #include "harness/render/filter_passes.h"
@@ -51,10 +52,10 @@ class SceneBench {
       result.cells.push_back(draw(*filters.back()));
       count_passes(result, *filters.back());
       stability.warn(result.cells.back(), *filters.back());
-      warn_of_broken_pixels(result.cells.back());
       if (options_.stability) stability.measure(result.cells.back(), *filters.back());
       if (options_.uncertainty)
         result.cells.back().uncertainty = measure_uncertainty({renderer_, options_, task_, assets_}, *filters.back());
+      if (options_.truth || options_.worker) result.cells.back().unbiased = draw_unbiased(*filters.back());
     }
     time(result, filters);
     draw_phases(result, filters);
@@ -92,8 +93,26 @@ class SceneBench {
     cell.record.nan = count_not_finite(cell.visibility);
     if (receivers_ < 0) receivers_ = render::count_receivers(renderer_.shaders, gbuffer_, filter.light());
     cell.record.receivers = receivers_;
-    set_cost(cell.record, filter.measure_cost(renderer_.shaders, gbuffer_, light_.map));
+    const render::FilterCost cost = filter.measure_cost(renderer_.shaders, gbuffer_, light_.map);
+    set_cost(cell.record, cost);
+    check_drawing(cell, cost);
     return cell;
+  }
+
+  /// Draws a filter without bias, in the receivers and in the map; its light and the map are as before afterwards.
+  images::Image draw_unbiased(render::FilterPasses& filter) {
+    const filters::ParamValues values = filter.request().values;
+    const render::LightSetup own = filter.light();
+    render::LightSetup unbiased = own;
+    unbiased.bias = {};
+    unbiased.bias.max_tangent = 0.0;  // the passes may follow the receiver's plane: let it be flat
+    const bool biased_map = options_.bias.map != render::MapBias();
+    if (biased_map) assets_.redraw(light_, {});
+    filter.retune(renderer_.shaders, values, unbiased);
+    images::Image image = draw_visibility(filter, light_.map, gbuffer_, target_);
+    filter.retune(renderer_.shaders, values, own);
+    if (biased_map) assets_.redraw(light_);
+    return image;
   }
 
   static void set_cost(records::CellRecord& record, const render::FilterCost& cost) {
@@ -116,13 +135,6 @@ class SceneBench {
         task_.scene->name, render::describe_map(options_.map), records::format_number(step_m),
         records::format_number(bias_m), records::format_number(0.5 * step_m)));
     for (MeasuredCell& cell : result.cells) cell.record.warnings.push_back(warning);
-  }
-
-  void warn_of_broken_pixels(MeasuredCell& cell) const {
-    const std::int64_t nan = cell.record.nan.value_or(0);
-    if (nan > 0)
-      cell.record.warnings.push_back(
-          fmt::format("{}: {}: {} pixels are not finite", task_.scene->name, cell.label, nan));
   }
 
   static void count_passes(SceneMeasurement& result, const render::FilterPasses& filter) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <regex>
 
 #include "filters/base/error.h"
@@ -17,6 +18,12 @@ Defines map_defines(const filters::FilterRequest& request, const MapSettings& ma
               fmt::format("{}: the filter '{}' reads the map's samplers itself, which do not hold "
                           "linear depth then; let it use compare_nearest, compare_2x2 or fetch_depth",
                           map.curve.reversed ? "--reversed-depth" : "--perspective-depth", request.spec.id));
+}
+
+/// How far the centre of a texel of the depth map that a fetch of the encoded map holds can be from where it reads.
+double stored_reach(const filters::FilterRequest& request) {
+  const double reconstruction = filters::reads_nearest(request.values) ? 0.5 : 1.0;
+  return filters::prefilter_radius_texels(request.spec, request.values) + reconstruction;
 }
 
 }  // namespace
@@ -98,28 +105,33 @@ ReceiverReads FilterPasses::receiver_reads() const {
           lookup_.has("gbuffer_position"), lookup_.has("gbuffer_normal")};
 }
 
-double FilterPasses::count_fetches(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map) {
-  gl::Program counting = compile_lookup(shaders, {{"COUNT_FETCHES", "1"}});
+void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const GBuffer& gbuffer,
+                                 const ShadowMap& map) {
+  gl::Program counting = compile_lookup(
+      shaders, {{"COUNT_FETCHES", "1"}, {"STORED_REACH_TEXELS", fmt::format("float({})", stored_reach(request_))}});
   const gl::Texture visibility("counted visibility", GL_R32F, gbuffer.width(), gbuffer.height());
-  const gl::Texture fetches("fetches", GL_R32F, gbuffer.width(), gbuffer.height());
+  const gl::Texture reads("reads", GL_RG32F, gbuffer.width(), gbuffer.height());
   gl::Framebuffer framebuffer("fetch count");
   framebuffer.attach_color(0, visibility);
-  framebuffer.attach_color(1, fetches);
+  framebuffer.attach_color(1, reads);
   const ReceiverBuffer& prepared = gbuffer.receivers(shaders, light_);
   framebuffer.bind();
   draw_lookup(counting, gbuffer, prepared, map);
-  double sum = 0.0, receivers = 0.0;
-  for (const float count : fetches.read_floats(1)) {
-    if (count < 0.0f) continue;
-    sum += static_cast<double>(count);
+  double sum = 0.0, receivers = 0.0, reach = -1.0;
+  const std::vector<float> counted = reads.read_floats(2);
+  for (std::size_t i = 0; i < counted.size(); i += 2) {
+    if (counted[i] < 0.0f) continue;
+    sum += static_cast<double>(counted[i]);
     receivers += 1.0;
+    reach = std::max(reach, static_cast<double>(counted[i + 1]));
   }
-  return receivers > 0.0 ? sum / receivers : 0.0;
+  cost.fetches = receivers > 0.0 ? sum / receivers : 0.0;
+  if (reach >= 0.0) cost.reach_texels = reach;
 }
 
 FilterCost FilterPasses::measure_cost(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map) {
   FilterCost cost;
-  if (!request_.spec.uses_samplers) cost.fetches = count_fetches(shaders, gbuffer, map);
+  if (!request_.spec.uses_samplers) count_fetches(cost, shaders, gbuffer, map);
   cost.map_bytes = prefilter_ ? prefilter_->bytes() : map.bytes();
   cost.bytes_per_texel = cost.map_bytes / (static_cast<std::int64_t>(map_size_) * map_size_);
   cost.passes = 2 + prefilter_passes();

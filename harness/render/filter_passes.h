@@ -10,9 +10,12 @@
 
 namespace shadowbench::render {
 
-/// What a filter costs on any machine.
+/// What a filter costs, and how far it reads, on any machine.
 struct FilterCost {
-  std::optional<double> fetches;      ///< mean texture fetches per receiver; empty: the filter reads samplers itself
+  std::optional<double> fetches;  ///< mean texture fetches per receiver; empty: the filter reads samplers itself
+  /// From a receiver to the centre of the farthest texel that counts, on either axis, the prefilter included; empty:
+  /// the filter reads samplers itself, or the map reaches no receiver.
+  std::optional<double> reach_texels;
   std::int64_t bytes_per_texel = 0;   ///< of the map that the lookup reads
   std::int64_t passes = 0;            ///< depth map, encode, blur, lookup
   std::int64_t map_bytes = 0;         ///< of the map that the lookup reads
@@ -102,7 +105,7 @@ class FilterPasses {
   void set_uniforms(gl::Program& lookup) const;
   gl::Program compile_lookup(ShaderLibrary& shaders, Defines defines) const;
   void draw_lookup(gl::Program& program, const GBuffer& gbuffer, const ReceiverBuffer& receivers, const ShadowMap& map);
-  double count_fetches(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
+  void count_fetches(FilterCost& cost, ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
 };
 
 }  // namespace shadowbench::render

@@ -38,8 +38,7 @@ Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& reque
           std::make_shared<ImageTarget>(request.spec.id + " map", store_format(request.values), map_size, map_size)),
       encode_(shaders.compile_filter(request.spec.id + " encode", "encode.frag", map_defines, filter_pieces(request))) {
   encode_.set("map_texel_uv", 1.0f / static_cast<float>(map_size));
-  const bool nearest =
-      filters::combines_logs(request.values) || filters::text_or(request.values, "sample", "linear") == "nearest";
+  const bool nearest = filters::reads_nearest(request.values);
   sampler_.set_filter(nearest ? GL_NEAREST : GL_LINEAR, nearest ? GL_NEAREST : GL_LINEAR);
   sampler_.set_wrap(wrap_mode(light.range.border));
   blur_sampler_.set_wrap(wrap_mode(light.range.border));

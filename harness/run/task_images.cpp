@@ -42,6 +42,7 @@ images::Metadata describe(const options::RunOptions& options, const measure::Sce
 
 std::string caption(const records::CellRecord& cell, const records::GlRecord& gl) {
   std::string text = records::describe_params(cell.params);
+  if (!cell.suspect_of.empty()) text += fmt::format("{}SUSPECT: see the report", text.empty() ? "" : " · ");
   if (!cell.time_ms.lookup) return text;
   if (!text.empty()) text += " · ";
   text += fmt::format("lookup {} ms", records::format_number(cell.time_ms.lookup->median));
@@ -53,11 +54,14 @@ std::string caption(const records::CellRecord& cell, const records::GlRecord& gl
 }
 
 images::Rect choose_crop(const options::RunOptions& options, const std::vector<measure::MeasuredCell>& cells) {
+  const auto is_suspect = [](const measure::MeasuredCell& cell) { return !cell.record.suspect_of.empty(); };
+  const bool all_are = std::ranges::all_of(cells, is_suspect);
   std::vector<const images::Image*> visibility;
   std::size_t reference = 0;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    visibility.push_back(&cells[i].visibility);
-    if (cells[i].record.filter == "none") reference = i;
+  for (const measure::MeasuredCell& cell : cells) {
+    if (is_suspect(cell) && !all_are) continue;
+    if (cell.record.filter == "none") reference = visibility.size();
+    visibility.push_back(&cell.visibility);
   }
   return images::find_hardest_edge(visibility, reference, images::choose_crop_size({options.width, options.height}));
 }
@@ -72,11 +76,16 @@ std::vector<images::GridTile> make_truth_tiles(const measure::SceneTask& task, c
           {"truth, area", sun, truth.area_picture, truth.area, measure::make_error_image(truth.area, truth), ""}};
 }
 
-/// One scale for the pictures of a task, so that they compare; nothing where there are no errors.
-std::optional<double> choose_error_scale(const std::vector<images::GridTile>& tiles) {
+/// One scale for the pictures of a task, so that they compare; what suspect cells make does not count. The last tiles
+/// are those of the cells. Nothing where there are no errors.
+std::optional<double> choose_error_scale(const std::vector<images::GridTile>& tiles,
+                                         const std::vector<measure::MeasuredCell>& cells) {
   std::vector<const images::Image*> errors;
-  for (const images::GridTile& tile : tiles)
-    if (!tile.error.empty()) errors.push_back(&tile.error);
+  const std::size_t others = tiles.size() - cells.size();
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const bool is_suspect = i >= others && cells[i - others].record.status == records::CellStatus::kSuspect;
+    if (!is_suspect && !tiles[i].error.empty()) errors.push_back(&tiles[i].error);
+  }
   if (errors.empty()) return std::nullopt;
   return images::choose_error_scale(errors);
 }
@@ -98,7 +107,7 @@ images::Grid make_grid(const options::RunOptions& options, const measure::SceneT
                           images::make_attribution_bar(cell.record)});
     if (!grid.tiles.back().attribution) grid.tiles.back().no_attribution = records::explain_no_attribution(cell.record);
   }
-  grid.error_scale = choose_error_scale(grid.tiles);
+  grid.error_scale = choose_error_scale(grid.tiles, measured.cells);
   grid.columns = truth.absent.empty() ? 4 : 3;
   grid.crop = choose_crop(options, measured.cells);
   return grid;
@@ -190,6 +199,7 @@ std::string exr_name(const options::RunOptions& options, const measure::SceneTas
 
 std::string visibility_part(const std::string& label) { return label + ".visibility"; }
 std::string picture_part(const std::string& label) { return label + ".picture"; }
+std::string unbiased_part(const std::string& label) { return label + ".unbiased"; }
 
 std::string stability_part(const std::string& label, const images::StabilityImage& image) {
   return fmt::format("{}.stability.{}", label, image.id);
@@ -199,9 +209,7 @@ std::string uncertainty_part(const std::string& label, const images::Uncertainty
   return fmt::format("{}.{}", label, image.id);
 }
 
-std::string phase_part(const std::string& label, std::size_t phase) {
-  return fmt::format("{}.phase.{}", label, phase);
-}
+std::string phase_part(const std::string& label, std::size_t phase) { return fmt::format("{}.phase.{}", label, phase); }
 
 void write_float_images(const options::RunOptions& options, const measure::SceneTask& task,
                         const measure::SceneMeasurement& measured, const measure::SceneTruth& truth,
@@ -211,6 +219,7 @@ void write_float_images(const options::RunOptions& options, const measure::Scene
     if (cell.visibility.empty()) continue;
     parts.push_back({visibility_part(cell.label), {"Y"}, cell.visibility, false});
     parts.push_back({picture_part(cell.label), {"R", "G", "B"}, cell.picture, true});
+    if (options.worker) parts.push_back({unbiased_part(cell.label), {"Y"}, cell.unbiased, false});
     for (std::size_t p = 0; p < cell.error_parts.size(); ++p) {
       parts.push_back({fmt::format("{}.error.{}", cell.label, records::list_error_parts()[p].id),
                        {"Y"},

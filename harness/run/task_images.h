@@ -18,6 +18,7 @@ std::string exr_name(const options::RunOptions& options, const measure::SceneTas
 /// Give the names of a cell's parts in that file.
 std::string visibility_part(const std::string& label);
 std::string picture_part(const std::string& label);
+std::string unbiased_part(const std::string& label);  ///< a worker's alone: visibility without bias
 std::string stability_part(const std::string& label, const images::StabilityImage& image);
 std::string uncertainty_part(const std::string& label, const images::UncertaintyImage& image);
 std::string phase_part(const std::string& label, std::size_t phase);

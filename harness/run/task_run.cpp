@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "harness/measure/suspects.h"
 #include "harness/run/border_page.h"
 #include "harness/run/map_pictures.h"
 #include "harness/run/task_images.h"
@@ -85,6 +86,7 @@ void TaskRun::score(measure::SceneMeasurement& measured) {
   tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
     measure::score(cell.record, cell.visibility, cell.phases, cell.picture, truth);
     cell.phases.clear();
+    measure::check_against_truth(cell, truth);
   });
   show("attribution");
   if (!analyser_) analyser_.emplace(renderer_, options_, task_, assets_, truth);

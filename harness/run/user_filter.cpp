@@ -129,6 +129,7 @@ measure::MeasuredCell read_cell(const options::RunOptions& options, const measur
       if (part.name == phase_part(cell.label, i)) cell.phases[i] = part.image;
     if (part.name == visibility_part(cell.label)) cell.visibility = part.image;
     if (part.name == picture_part(cell.label)) cell.picture = part.image;
+    if (part.name == unbiased_part(cell.label)) cell.unbiased = part.image;
     for (const images::UncertaintyImage& each : images::list_uncertainty_images())
       if (part.name == uncertainty_part(cell.label, each)) cell.uncertainty.*each.image = part.image;
     for (const images::StabilityImage& each : images::list_stability_images())

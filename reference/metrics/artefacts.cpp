@@ -67,6 +67,18 @@ std::optional<double> rate_above(std::span<const float> image, std::span<const s
       image, mask, [&](float value) { return static_cast<double>(value) > limit; });
 }
 
+std::optional<double> rate_contact_gap(std::span<const float> image, std::span<const float> unbiased,
+                                       std::span<const std::uint8_t> mask) {
+  constexpr double kLimit = kArtefactLimits.contact_gap_above;
+  std::vector<float> added(image.size());
+  std::vector<std::uint8_t> dark(mask.begin(), mask.end());
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    added[i] = image[i] - unbiased[i];
+    if (!(static_cast<double>(unbiased[i]) <= kLimit)) dark[i] = 0;
+  }
+  return rate_above(added, dark, kLimit);
+}
+
 std::optional<double> rate_noise(std::span<const float> image, std::span<const double> closer,
                                  std::span<const float> kernel, std::span<const std::uint8_t> counts, int width) {
   const Window window(width, image.size());

@@ -34,7 +34,7 @@ struct ArtefactLimits {
   double acne_below = 0.9;         ///< visibility of a wholly lit receiver
   double guard_texels = 1.0;       ///< the surroundings reach beyond the run's widest kernel by this much
   double leak_above = 0.1;         ///< visibility of a wholly blocked receiver
-  double contact_gap_above = 0.5;  ///< visibility of a receiver that is blocked by what touches it (peter-panning)
+  double contact_gap_above = 0.5;  ///< what bias adds to a receiver, no brighter without it, that touches its blocker
   double contact_texels =
       8.0;  ///< a blocker that is nearer along the light touches the receiver; leaks have farther ones
   double noise_above = 0.05;  ///< how far image less percentage-closer filter is from its own 3 x 3 mean
@@ -52,6 +52,13 @@ std::optional<double> rate_below(std::span<const float> image, std::span<const s
 
 /// The share of a mask's pixels whose value is greater than a limit, under the same rules.
 std::optional<double> rate_above(std::span<const float> image, std::span<const std::uint8_t> mask, double limit);
+
+/// The share of receivers, blocked by what touches them, that bias lights (peter-panning): of the mask's pixels that
+/// are not brighter than contact_gap_above in `unbiased`, the same filter without any bias, those that are brighter in
+/// `image` by more than that. Blur lights both images alike, and so does a filter that fades towards contacts: neither
+/// counts. Gives nothing where fewer than kFewestReceivers are dark without bias.
+std::optional<double> rate_contact_gap(std::span<const float> image, std::span<const float> unbiased,
+                                       std::span<const std::uint8_t> mask);
 
 /// The share of a filter's penumbra that is noisy: the image less the brute-force percentage-closer filter of its
 /// kernel deviates from its own mean over 3 x 3 pixels by more than noise_above. The penumbra is where the ray-traced

@@ -43,7 +43,7 @@ void FlickerMeter::begin(Track& track, std::span<const float> values) const {
 }
 
 void FlickerMeter::step(Track& track, std::span<const float> values) const {
-  double sum = 0.0;
+  double squares = 0.0;
   std::int64_t count = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!mask_[i] || !std::isfinite(values[i])) continue;
@@ -51,12 +51,12 @@ void FlickerMeter::step(Track& track, std::span<const float> values) const {
     if (!std::isfinite(turn.farthest)) turn.farthest = values[i];
     turn.follow(values[i]);
     if (!std::isfinite(track.last[i])) continue;
-    sum += std::abs(static_cast<double>(values[i]) - static_cast<double>(track.last[i]));
-    track.squares += square_change(values[i], track.last[i]);
+    squares += square_change(values[i], track.last[i]);
     ++count;
   }
+  track.squares += squares;
   track.steps += count;
-  track.mean_change.push_back(count > 0 ? sum / static_cast<double>(count) : 0.0);
+  track.step_change.push_back(root_mean(squares, count));
 }
 
 void FlickerMeter::compare(std::span<const float> image, std::span<const float> truth) {
@@ -106,8 +106,8 @@ std::optional<FlickerStats> FlickerMeter::finish() const {
   stats.truth_change = root_mean(truth_.squares, truth_.steps);
   stats.returning = share_returned(image_);
   stats.truth_returning = share_returned(truth_);
-  stats.mean_change = image_.mean_change;
-  stats.truth_mean_change = truth_.mean_change;
+  stats.step_change = image_.step_change;
+  stats.truth_step_change = truth_.step_change;
   double squares = 0.0;
   std::int64_t steps = 0;
   for (std::size_t i = 0; i < mask_.size(); ++i) {

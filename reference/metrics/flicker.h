@@ -21,8 +21,8 @@ struct FlickerStats {
   double flicker = 0.0;             ///< root mean square of d - e: change that the image has too much or too little
   double returning = 0.0;           ///< share of the receivers that went back and forth by more than kReturn
   double truth_returning = 0.0;     ///< the same share for the truth
-  std::vector<double> mean_change;  ///< of each step, the mean of |d| over receivers
-  std::vector<double> truth_mean_change;  ///< of each step, the mean of |e|
+  std::vector<double> step_change;  ///< of each step, the root mean square of d over receivers
+  std::vector<double> truth_step_change;  ///< of each step, that of e
   std::vector<float> by_pixel;            ///< root mean square of d - e over the steps; 0 outside the mask
 };
 
@@ -51,7 +51,7 @@ class FlickerMeter {
   struct Track {
     std::vector<float> last;
     std::vector<Turn> turns;
-    std::vector<double> mean_change;
+    std::vector<double> step_change;
     double squares = 0.0;
     std::int64_t steps = 0;  ///< counted receiver by receiver
   };

@@ -101,9 +101,11 @@ std::vector<Metric> list_artefacts() {
        kRate, kTabled, "--max-leak"},
       {"artefact.contact_gap", at<&V::artefact, &ArtefactRecord::contact_gap>, "share", kZeroToOne, kLess,
        "contact gap",
-       fmt::format("of the receivers whose area light is blocked by a surface within {} texels along the light: those "
-                   "that the image shows brighter than {}",
-                   limits.contact_texels, limits.contact_gap_above),
+       fmt::format(
+           "of the receivers whose area light is blocked by a surface within {} texels along the light, and which "
+           "the filter without any bias shows no brighter than {}: those that bias makes brighter by more than "
+           "{}. Blur, and a bound's own fade at contacts, light a receiver without bias too, and do not count",
+           limits.contact_texels, limits.contact_gap_above, limits.contact_gap_above),
        kRate, kTabled, "--max-contact-gap"},
       {"artefact.noise", at<&V::artefact, &ArtefactRecord::noise>, "share", kZeroToOne, kLess, "noise",
        fmt::format("of the receivers in the filter's own penumbra (where its ray-traced kernel is strictly between 0 "

@@ -106,8 +106,10 @@ std::optional<std::string> find_missing_cell(const Configuration& configuration,
   for (const Place& place : places) {
     const auto cell = std::ranges::find_if(configuration.cells, [&](const auto* c) { return place_of(*c) == place; });
     if (cell == configuration.cells.end()) return "not measured on " + describe_place(place, places);
-    if ((*cell)->status != records::CellStatus::kOk)
-      return fmt::format("did not finish on {} ({})", describe_place(place, places), records::describe_status(**cell));
+    if ((*cell)->status != records::CellStatus::kOk) {
+      return fmt::format("{} on {} ({})", records::is_drawn(**cell) ? "wrong" : "did not finish",
+                         describe_place(place, places), records::describe_status(**cell));
+    }
   }
   return std::nullopt;
 }

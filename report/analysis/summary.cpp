@@ -58,9 +58,12 @@ std::vector<std::string> describe_prefilters(const CellGroup& group, const recor
 std::vector<std::string> describe_troubles(const CellGroup& group) {
   std::vector<std::string> sentences;
   for (const records::CellRecord& cell : group.cells) {
-    if (cell.status != records::CellStatus::kOk)
+    if (!records::is_drawn(cell))
       sentences.push_back(
           fmt::format("{} did not finish ({}).", label_cell(group, cell), records::describe_status(cell)));
+    if (cell.status == records::CellStatus::kSuspect)
+      sentences.push_back(fmt::format("{} is left out of rankings, fronts, advice and common scales, for it is {}.",
+                                      label_cell(group, cell), records::describe_status(cell)));
     if (cell.nan.value_or(0) > 0)
       sentences.push_back(fmt::format("{} has {} pixels that are not finite.", label_cell(group, cell), *cell.nan));
   }
@@ -87,18 +90,21 @@ std::string describe_work(const records::WorkRecord& work) {
 
 }  // namespace
 
-std::vector<std::string> describe_group(const CellGroup& group, const records::GlRecord& gl) {
+std::vector<std::string> describe_group(const CellGroup& all, const records::GlRecord& gl) {
   std::vector<std::string> sentences;
+  CellGroup group = all;
+  std::erase_if(group.cells,
+                [](const records::CellRecord& cell) { return cell.status == records::CellStatus::kSuspect; });
   const auto ranks = rank_costs(group.cells);
   if (!ranks.empty()) {
     sentences.push_back(describe_ranking(group, ranks));
     sentences.push_back(
         describe_extremes(group, group.cells[ranks.front().front()], group.cells[ranks.back().back()], gl));
   }
-  const std::string coverage = records::describe_coverage(group.cells.front().coverage);
+  const std::string coverage = records::describe_coverage(all.cells.front().coverage);
   if (!coverage.empty()) sentences.push_back("Over the receivers in view: " + coverage + ".");
   for (const auto& more :
-       {describe_prefilters(group, gl), describe_accuracy(group), describe_stability(group), describe_troubles(group)})
+       {describe_prefilters(group, gl), describe_accuracy(group), describe_stability(group), describe_troubles(all)})
     sentences.insert(sentences.end(), more.begin(), more.end());
   return sentences;
 }

@@ -12,6 +12,7 @@
 namespace shadowbench::analysis {
 
 /// Says in plain sentences what a group's numbers show: times, which are those of `gl`, accuracy, and what went wrong.
+/// Suspect cells are named for what is wrong with them, and left out of all else.
 std::vector<std::string> describe_group(const CellGroup& group, const records::GlRecord& gl);
 
 /// Lists the machine, the GL and the build, as name and value.

@@ -73,7 +73,8 @@ class CellReader {
                    Measured (*read_one)(const records::CellRecord&, std::size_t), const Measure& measure) const {
     std::vector<Estimate> estimates;
     for (const std::size_t i : indices) {
-      Measured one = read_one(cells_[i], index);
+      const bool is_suspect = cells_[i].status == records::CellStatus::kSuspect;
+      Measured one = is_suspect ? Measured{std::nullopt, "suspect: see the warnings"} : read_one(cells_[i], index);
       if (!one.estimate || indices.size() == 1) return one;
       estimates.push_back(*one.estimate);
     }

@@ -17,7 +17,7 @@ namespace {
 Estimate exact(double value) { return {value, value, value}; }
 
 Measured miss(const records::CellRecord& cell, std::string_view path) {
-  if (cell.status != records::CellStatus::kOk) return {std::nullopt, "the cell did not finish"};
+  if (!records::is_drawn(cell)) return {std::nullopt, "the cell did not finish"};
   return {std::nullopt, fmt::format("{}: {}", path, records::explain_absence(cell, std::string(path)))};
 }
 

@@ -35,7 +35,8 @@ double AttributionBar::net() const { return std::accumulate(lengths.begin(), len
 
 std::optional<AttributionBar> make_attribution_bar(const records::CellRecord& cell) {
   const auto shares = records::list_shares(cell);
-  if (!shares || !cell.error.rmse || !std::isfinite(*cell.error.rmse)) return std::nullopt;
+  if (cell.status == records::CellStatus::kSuspect || !shares || !cell.error.rmse || !std::isfinite(*cell.error.rmse))
+    return std::nullopt;
   AttributionBar bar;
   for (std::size_t i = 0; i < metrics::kErrorParts; ++i) bar.lengths[i] = (*shares)[i] * *cell.error.rmse;
   return bar;

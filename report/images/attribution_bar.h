@@ -17,7 +17,8 @@ struct AttributionBar {
   double net() const;  ///< the RMSE
 };
 
-/// Makes a cell's bar, share times RMSE; nothing where the cell has no RMSE or no attribution.
+/// Makes a cell's bar, share times RMSE; nothing where the cell has no RMSE or no attribution, or is suspect: it must
+/// not set the scale of the others.
 std::optional<AttributionBar> make_attribution_bar(const records::CellRecord& cell);
 
 /// Names the parts that matter most to a bar, two at most, largest magnitude first, none below 1 %:

@@ -20,7 +20,7 @@ using Filters = std::vector<records::FlickerFilter>;
 /// What flickers less than this, which is one receiver that flips once, is called rounding.
 double find_least(const records::FlickerMotion& motion) {
   return 1.0 / std::sqrt(static_cast<double>(motion.receivers) *
-                         static_cast<double>(std::max<std::size_t>(1, motion.truth.mean_change.size())));
+                         static_cast<double>(std::max<std::size_t>(1, motion.truth.step_change.size())));
 }
 
 bool by_flicker(const records::FlickerFilter& a, const records::FlickerFilter& b) { return a.flicker < b.flicker; }
@@ -132,7 +132,7 @@ page::ChartSeries make_change_line(const std::string& title, const std::vector<d
 /// Adds a filter's marks, which the key shows, and its line.
 void add_filter(page::Chart& chart, const records::FlickerFilter& filter, std::size_t place) {
   const page::ChartStyle style = page::style_of(place);
-  page::ChartSeries line = make_change_line(filter.filter, filter.mean_change);
+  page::ChartSeries line = make_change_line(filter.filter, filter.step_change);
   line.color = style.color;
   page::ChartSeries marks = line;
   line.title.clear();
@@ -149,10 +149,10 @@ void add_filter(page::Chart& chart, const records::FlickerFilter& filter, std::s
 /// A scale from 0 for everything that moves in this motion.
 page::ChartAxis choose_change_axis(const records::FlickerMotion& motion) {
   std::vector<double> values = {0.0};
-  values.insert(values.end(), motion.truth.mean_change.begin(), motion.truth.mean_change.end());
+  values.insert(values.end(), motion.truth.step_change.begin(), motion.truth.step_change.end());
   for (const records::FlickerVariant& variant : motion.variants)
     for (const records::FlickerFilter& filter : variant.filters)
-      values.insert(values.end(), filter.mean_change.begin(), filter.mean_change.end());
+      values.insert(values.end(), filter.step_change.begin(), filter.step_change.end());
   return page::choose_axis(values, {}, page::TickKind::kNumber);
 }
 
@@ -186,7 +186,9 @@ std::vector<std::string> define_flicker(const records::FlickerRecord& record) {
       "Receivers: the points that the first frame's pixels show, the same in all frames; those count that face the "
       "light and lie in the map, with room "
       "for every kernel, in every frame, with snapping and without.",
-      "Change: root mean square, over receivers and steps, of how much visibility changes from one frame to the next.",
+      "Change: root mean square, over receivers and steps, of how much visibility changes from one frame to the next; "
+      "the "
+      "charts show it step by step, over receivers alone.",
       "Flicker: root mean square of the change less the truth's change at the same receiver and step: change that the "
       "truth does not have, or that is missing. A still image would score the truth's own change. What is less than "
       "one receiver flipping once is called rounding.",
@@ -263,11 +265,11 @@ page::Chart make_flicker_chart(const records::FlickerMotion& motion, const recor
   chart.id = fmt::format("flicker.{}{}", motion.id, variant.snap ? ".snapped" : "");
   chart.title = fmt::format("{}, {} snapping", motion.title, variant.snap ? "with" : "without");
   chart.x_name = "step";
-  chart.y_name = "mean |change| of visibility";
-  chart.x = page::choose_axis({0.0, static_cast<double>(motion.truth.mean_change.size())}, {}, page::TickKind::kNumber);
+  chart.y_name = "change of visibility, root mean square";
+  chart.x = page::choose_axis({0.0, static_cast<double>(motion.truth.step_change.size())}, {}, page::TickKind::kNumber);
   chart.y = choose_change_axis(motion);
   for (std::size_t i = 0; i < variant.filters.size(); ++i) add_filter(chart, variant.filters[i], i);
-  page::ChartSeries truth = make_change_line("truth", motion.truth.mean_change);
+  page::ChartSeries truth = make_change_line("truth", motion.truth.step_change);
   truth.color = page::kInk;
   truth.line = page::LineStyle::kDashed;
   chart.series.push_back(std::move(truth));

@@ -11,7 +11,7 @@ struct BiasPoint {
   std::optional<double> factor;       ///< multiple of the theoretical amount; empty: the mode takes no amount
   double setting = 0.0;               ///< value of the mode's key; 0 where it has none
   std::optional<double> acne;         ///< share of wholly lit receivers that are dark
-  std::optional<double> contact_gap;  ///< share of receivers blocked by what touches them that are lit
+  std::optional<double> contact_gap;  ///< share of receivers blocked by what touches them that bias lights
 };
 
 /// One filter under one mode of bias, over its amount.
@@ -50,7 +50,7 @@ struct BiasSweepRecord {
   double angle_deg = 0.0;    ///< between that receiver's normal and the light
   double texel_m = 0.0;
   double depth_range_m = 0.0;
-  double gap_above = 0.0;      ///< visibility above which a contact is lit
+  double gap_above = 0.0;      ///< what bias adds to the visibility of a lit contact, at least
   double acne_below = 0.0;     ///< visibility below which a lit receiver is dark
   long acne_receivers = 0;     ///< receivers of the mask
   long contact_receivers = 0;  ///< receivers of the mask

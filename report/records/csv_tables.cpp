@@ -85,7 +85,7 @@ std::vector<Column> setting_columns() {
                                                    "on: what is behind the light of a projective map is lit"),
       column<&C::width>("width", "picture, pixels"),
       column<&C::height>("height", "picture, pixels"),
-      column<&C::status>("status", "ok, timeout, crashed or error"),
+      column<&C::status>("status", "ok, suspect, timeout, crashed or error"),
       column<&C::message>("message", "why the status is not ok"),
   };
 }

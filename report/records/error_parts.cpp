@@ -49,6 +49,7 @@ std::string describe_shares(const PartValues& shares) {
 }
 
 std::string explain_no_attribution(const CellRecord& cell) {
+  if (cell.status == CellStatus::kSuspect) return "the filter is suspect";
   for (const auto& [field, reason] : cell.absent)
     if (field == "attribution" || field.rfind("attribution.", 0) == 0) return reason;
   const auto found = cell.absent.find("error");

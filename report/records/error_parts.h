@@ -33,7 +33,8 @@ std::optional<PartValues> list_shares(const CellRecord& cell);
 /// Lists all parts with their shares: "numeric 0 %, estimator 71 %, discretisation 9 %, model 20 %".
 std::string describe_shares(const PartValues& shares);
 
-/// Why a cell has no attribution: what its `absent` holds for the attribution, one of its parts, or the error.
+/// Why a cell shows no attribution: it is suspect, or what its `absent` holds for the attribution, one of its parts, or
+/// the error.
 std::string explain_no_attribution(const CellRecord& cell);
 
 }  // namespace shadowbench::records

@@ -15,7 +15,7 @@ using nlohmann::json;
 json to_json(const FlickerFilter& filter) {
   return {{"filter", filter.filter},         {"change", filter.change},
           {"flicker", filter.flicker},       {"back_and_forth", filter.returning},
-          {"not_finite", filter.not_finite}, {"mean_change", filter.mean_change}};
+          {"not_finite", filter.not_finite}, {"step_change", filter.step_change}};
 }
 
 json to_json(const FlickerTruth& truth) {
@@ -23,7 +23,7 @@ json to_json(const FlickerTruth& truth) {
           {"change", truth.change},
           {"back_and_forth", truth.returning},
           {"standard_error_of_change", truth.noise},
-          {"mean_change", truth.mean_change}};
+          {"step_change", truth.step_change}};
 }
 
 json to_json(const FlickerVariant& variant) {

@@ -8,7 +8,7 @@
 
 namespace shadowbench::records {
 
-inline constexpr int kFlickerSchemaVersion = 1;
+inline constexpr int kFlickerSchemaVersion = 2;
 
 /// How one filter's image changes while something moves; see metrics::FlickerStats.
 struct FlickerFilter {
@@ -17,7 +17,7 @@ struct FlickerFilter {
   double flicker = 0.0;
   double returning = 0.0;  ///< share
   std::int64_t not_finite = 0;
-  std::vector<double> mean_change;  ///< by step
+  std::vector<double> step_change;  ///< of each step, root mean square over receivers
 };
 
 /// One motion, with the map's texel grid free or fixed in the world.
@@ -36,7 +36,7 @@ struct FlickerTruth {
   double returning = 0.0;
   double noise =
       0.0;  ///< standard error of a change, root mean square, if frames were traced with random numbers of their own
-  std::vector<double> mean_change;  ///< by step
+  std::vector<double> step_change;  ///< of each step, root mean square over receivers
 };
 
 /// What was found while one thing moved.

@@ -21,6 +21,7 @@ std::string format_param(const records::ParamValue& value) {
 const char* name_of(records::CellStatus status) {
   switch (status) {
     case records::CellStatus::kOk: return "ok";
+    case records::CellStatus::kSuspect: return "suspect";
     case records::CellStatus::kTimeout: return "timeout";
     case records::CellStatus::kCrashed: return "crashed";
     case records::CellStatus::kError: break;

@@ -79,7 +79,7 @@ struct FieldReader {
 
   template <class T>
   void operator()(const std::string& path, T& value) {
-    value = read<T>(path, root);
+    if (!lacks_later_field(path)) value = read<T>(path, root);
   }
 
   template <class T>

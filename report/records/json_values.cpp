@@ -45,6 +45,7 @@ json value_json(bool value) { return value; }
 json value_json(double value) { return number_json(value); }
 
 NLOHMANN_JSON_SERIALIZE_ENUM(CellStatus, {{CellStatus::kOk, "ok"},
+                                          {CellStatus::kSuspect, "suspect"},
                                           {CellStatus::kTimeout, "timeout"},
                                           {CellStatus::kCrashed, "crashed"},
                                           {CellStatus::kError, "error"}})
@@ -140,7 +141,7 @@ int read_value(const json& json) {
 template <>
 CellStatus read_value(const json& value) {
   const auto status = value.get<CellStatus>();
-  require(value == json(status), "ok, timeout, crashed or error");
+  require(value == json(status), "ok, suspect, timeout, crashed or error");
   return status;
 }
 

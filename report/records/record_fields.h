@@ -8,10 +8,11 @@
 
 namespace shadowbench::records {
 
-/// Names the fields that older files of this schema version lack; they are read as null there.
-inline constexpr std::array<std::string_view, 12> kLaterFields = {
-    "time_ms.empty",      "error.rmse_ci95", "phases", "time_ms.filter", "time_ms.moving",     "images.parts",
-    "work.attribution_s", "claims",          "lights", "repeat.cells",   "repeat.overlapping", "repeat.of"};
+/// Names the fields that older files of this schema version lack; they are read as null or empty there.
+inline constexpr std::array<std::string_view, 13> kLaterFields = {
+    "time_ms.empty",      "error.rmse_ci95",    "phases",    "time_ms.filter", "time_ms.moving",
+    "images.parts",       "work.attribution_s", "claims",    "lights",         "repeat.cells",
+    "repeat.overlapping", "repeat.of",          "suspect_of"};
 
 /// Calls `visit(name, value)` for every field of a bias.
 template <class Bias, class Visitor>
@@ -42,6 +43,7 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("content", cell.content);
   visit("status", cell.status);
   visit("message", cell.message);
+  visit("suspect_of", cell.suspect_of);
   visit("scene", cell.scene);
   visit("view", cell.view);
   visit("filter", cell.filter);

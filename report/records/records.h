@@ -43,8 +43,8 @@ struct Ratio {
   Interval ci95;
 };
 
-/// How a cell ended.
-enum class CellStatus { kOk, kTimeout, kCrashed, kError };
+/// How a cell ended. Suspect: its filter was drawn, and what it drew or read shows that it is wrong.
+enum class CellStatus { kOk, kSuspect, kTimeout, kCrashed, kError };
 
 /// One parameter's value.
 using ParamValue = std::variant<double, std::string, bool>;
@@ -130,7 +130,8 @@ struct CellRecord : metrics::MetricValues {
   std::string key;      ///< cell_key() of the settings below
   std::string content;  ///< names what made the cell beside its settings: program, OpenGL, scene, filter, options
   CellStatus status = CellStatus::kOk;
-  std::string message;  ///< why `status` is not ok; empty otherwise
+  std::string message;                  ///< why `status` is not ok; empty otherwise
+  std::vector<std::string> suspect_of;  ///< what is wrong with the filter, and what to do; empty unless it is suspect
   std::string scene;
   std::string view;
   std::string filter;
@@ -156,6 +157,11 @@ struct CellRecord : metrics::MetricValues {
   std::vector<std::string> warnings;  ///< for people: what makes this cell's numbers doubtful
   std::map<std::string, std::string> absent;
 };
+
+/// Whether the cell's filter was drawn to the end, be it suspect or not.
+inline bool is_drawn(const CellRecord& cell) {
+  return cell.status == CellStatus::kOk || cell.status == CellStatus::kSuspect;
+}
 
 /// Which clock the times come from.
 enum class TimerKind { kWallClock, kTimerQuery };

@@ -54,7 +54,7 @@ void read_images(ActualCell& cell, const ImageFile& file) {
 
 /// Why a cell has no image; empty where it has one.
 std::string explain_no_image(const records::CellRecord& cell) {
-  if (cell.status != records::CellStatus::kOk) return "the run could not measure it: " + records::describe_status(cell);
+  if (!records::is_drawn(cell)) return "the run could not measure it: " + records::describe_status(cell);
   if (!cell.images.exr || !cell.images.parts) return "the run kept no float images: run it with --grids";
   return "";
 }

@@ -9,9 +9,17 @@ uniform float map_texel_uv;                                      // 1 / map size
 
 #ifdef COUNT_FETCHES
 int fetch_count = 0;
-#define COUNT_ONE_FETCH ++fetch_count
+float fetch_reach = 0.0;  // texels on either axis from the receiver to the centre of the farthest texel that was read
+vec2 counted_uv;          // the receiver's own: a filter may move the uv of its copy
+
+void count_fetch(vec2 uv, vec2 offset_texels, float to_centre_texels) {
+  ++fetch_count;
+  vec2 offset = abs((uv - counted_uv) / map_texel_uv + offset_texels);
+  fetch_reach = max(fetch_reach, max(offset.x, offset.y) + to_centre_texels);
+}
+#define COUNT_FETCH(r, offset_texels, to_centre_texels) count_fetch(r.uv, offset_texels, to_centre_texels)
 #else
-#define COUNT_ONE_FETCH
+#define COUNT_FETCH(r, offset_texels, to_centre_texels)
 #endif
 
 #ifdef RECEIVER_PLANE
@@ -42,23 +50,23 @@ float corner_depth(Receiver r, vec2 offset_texels, float z) {
 #endif
 
 float compare_nearest(Receiver r, vec2 offset_texels, float z) {
-  COUNT_ONE_FETCH;
+  COUNT_FETCH(r, offset_texels, 0.5);
   float reference = store_depth(nearest_depth(r, offset_texels, z));
   return texture(map_compare_nearest, vec3(r.uv + offset_texels * map_texel_uv, reference));
 }
 
 float compare_2x2(Receiver r, vec2 offset_texels, float z) {
-  COUNT_ONE_FETCH;
+  COUNT_FETCH(r, offset_texels, 1.0);
   float reference = store_depth(corner_depth(r, offset_texels, z));
   return texture(map_compare, vec3(r.uv + offset_texels * map_texel_uv, reference));
 }
 
 float fetch_depth(Receiver r, vec2 offset_texels) {
-  COUNT_ONE_FETCH;
+  COUNT_FETCH(r, offset_texels, 0.5);
   return linear_depth(texture(map_depth, r.uv + offset_texels * map_texel_uv).r);
 }
 
 vec4 fetch_map(Receiver r, vec2 offset_texels) {
-  COUNT_ONE_FETCH;
+  COUNT_FETCH(r, offset_texels, STORED_REACH_TEXELS);
   return texture(map_stored, r.uv + offset_texels * map_texel_uv);
 }

@@ -6,7 +6,6 @@
 #include <numeric>
 #include <random>
 
-#include "filters/disk_points.h"
 #include "filters/gaussian.h"
 #include "filters/random.h"
 #include "filters/scalar.h"
@@ -48,28 +47,6 @@ TEST(Gaussian, SumsToOne_IsSymmetric_AndFallsToItsEdge) {
     for (std::size_t i = 0; i < w.size(); ++i) EXPECT_EQ(w[i], w[w.size() - 1 - i]);
     if (radius > 0) EXPECT_NEAR(w.front() / w[static_cast<std::size_t>(radius)], std::exp(-2.0f), 1e-6f);
   }
-}
-
-TEST(DiskPoints, AreCentredInTheUnitDisk_AndWellSpread) {
-  for (const int count : {4, 8, 16, 32}) {
-    const auto points = generate_disk_points(count, 1);
-    ASSERT_EQ(points.size(), static_cast<std::size_t>(count));
-    glm::vec2 mean(0.0f);
-    float nearest = 2.0f;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      EXPECT_LE(glm::length(points[i]), 1.0f + 1e-6f);
-      mean += points[i] / static_cast<float>(count);
-      for (std::size_t j = 0; j < i; ++j) nearest = std::min(nearest, glm::length(points[i] - points[j]));
-    }
-    EXPECT_LT(glm::length(mean), 1e-6f);
-    // A square grid of as many points in the disk is sqrt(pi / count) apart.
-    EXPECT_GT(nearest, 0.6f * std::sqrt(3.14159f / static_cast<float>(count))) << count;
-  }
-}
-
-TEST(DiskPoints, DependOnTheSeedAlone) {
-  EXPECT_EQ(generate_disk_points(8, 1), generate_disk_points(8, 1));
-  EXPECT_NE(generate_disk_points(8, 1), generate_disk_points(8, 2));
 }
 
 TEST(Random, TurnsAreUniform) {

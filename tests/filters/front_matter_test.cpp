@@ -73,6 +73,17 @@ TEST(FrontMatter, SamplersInCode_NotInComments_MakeFetchesUnknown) {
           .uses_samplers);
 }
 
+TEST(FrontMatter, ReadsOfAnEncodedMap_WithoutEncode_AreFound) {
+  const auto reads_unwritten = [](const std::string& front_matter, const std::string& code) {
+    return parse_filter(with(front_matter, code), "a.glsl").reads_unwritten;
+  };
+  const std::string reads = "float visibility(Receiver r) { return fetch_map(r, vec2(0.0)).x; }";
+  EXPECT_TRUE(reads_unwritten("", reads));
+  EXPECT_TRUE(reads_unwritten("", "float visibility(Receiver r) { return texture(map_stored, r.uv).x; }"));
+  EXPECT_FALSE(reads_unwritten("", "float visibility(Receiver r) { return 1.0; /* fetch_map */ }"));
+  EXPECT_FALSE(reads_unwritten("store = \"r32f\"\n", "vec4 encode(EncodeInput e) { return vec4(1.0); }\n" + reads));
+}
+
 TEST(FrontMatter, MissingOrMalformed_NamesTheLine) {
   expect_error("float visibility(Receiver r) { return 1.0; }", "dir/mine.glsl:1", "no front matter");
   expect_error("/*+++\ntitle = \"t\"\n", "dir/mine.glsl:1", "no front matter");

@@ -28,7 +28,7 @@ TEST_F(FlickerCommand, WritesTheReport) {
   EXPECT_EQ(flicker["motions"][0]["id"], "light");
   EXPECT_EQ(flicker["motions"][1]["fit"], "view");
   EXPECT_EQ(flicker["motions"][1]["truth"]["traced"], false);
-  EXPECT_EQ(flicker["motions"][0]["variants"][0]["filters"][0]["mean_change"].size(), 2u)
+  EXPECT_EQ(flicker["motions"][0]["variants"][0]["filters"][0]["step_change"].size(), 2u)
       << "two steps between three frames";
 }
 

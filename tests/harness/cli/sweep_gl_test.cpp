@@ -143,7 +143,7 @@ TEST_F(Sweep, FreshOverAFinishedReport_SaysHowManyTimesRepeat) {
 TEST_F(Sweep, ClaimsOfAUsersFilter_AreInItsCellsAndCount) {
   write("mine.glsl",
         "/*+++\ntitle = \"M\"\nsource = \"s\"\nkind = \"other\"\nclaims = [\"own-claim\"]\nradius_texels = 0\n+++*/\n"
-        "float visibility(Receiver r) { return 1.0; }\n");
+        "float visibility(Receiver r) { return compare_nearest(r, vec2(0.0), r.depth); }\n");
   const Outcome outcome =
       run("run --scene cubes --map-size 32 --size 32x18 --rounds 1 --no-attribution --filters none,mine --filter-file "
           "mine.glsl --out out");

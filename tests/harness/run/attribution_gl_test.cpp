@@ -1,6 +1,6 @@
 // Whole runs: every cell's error taken apart, and the parts add up in every pixel of the float images.
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -134,6 +134,33 @@ TEST_F(Attributed, TooMuchBias_OpensContactGaps) {
   EXPECT_LT(run("fence", "none")[0]["artefact"]["contact_gap"], 0.5);
   options_.bias.constant.depth = 0.02;
   EXPECT_GT(run("fence", "none")[0]["artefact"]["contact_gap"], 0.95);
+}
+
+/// They blur thin bars, and VSM and ESM fade towards contacts: neither comes from bias.
+TEST_F(Attributed, AlmostNoBias_LeavesWideFiltersWithoutContactGaps) {
+  options_.sizes = {{480, 270}};
+  options_.bias = render::BiasRule::none();
+  options_.bias.constant.depth = 2e-5;
+  for (const auto& cell : run("fence", "none,poisson:radius=8,vsm:radius=1,vsm,esm")) {
+    const auto& gap = cell["artefact"]["contact_gap"];
+    if (gap.is_null())
+      EXPECT_THAT(cell["absent"]["artefact.contact_gap"].get<std::string>(), ::testing::HasSubstr("dark without bias"));
+    else
+      EXPECT_LT(gap, 0.01) << cell["filter"];
+  }
+  options_.bias.constant.depth = 0.02;
+  const nlohmann::json cells = run("fence", "none,poisson:radius=2");
+  EXPECT_GT(cells[0]["artefact"]["contact_gap"], 0.95);
+  EXPECT_GT(cells[1]["artefact"]["contact_gap"], 0.9);
+}
+
+/// A polygon offset is drawn into the map: the map without it is drawn for comparison, and then put back.
+TEST_F(Attributed, BiasInTheMap_OpensContactGapsToo) {
+  options_.sizes = {{480, 270}};
+  options_.bias = render::BiasRule::none();
+  options_.bias.map.polygon_units = 3e5;
+  const nlohmann::json cells = run("fence", "none,vsm:radius=1");
+  EXPECT_GT(cells[0]["artefact"]["contact_gap"], 0.9);
 }
 
 TEST_F(Attributed, InACoarseMap_FiltersThatCompareDoNotLeak_BesideAnEdge) {

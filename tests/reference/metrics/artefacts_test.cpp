@@ -61,6 +61,22 @@ TEST(ArtefactRates, OverTooFewReceivers_AreAbsent) {
   EXPECT_TRUE(rate_below(std::vector<float>(400), mask, kArtefactLimits.acne_below));
 }
 
+/// Of 400 receivers at a contact: 100 lit without bias, 100 lit by it, 100 dark either way, 100 a little brighter.
+TEST(ContactGap, IsWhatBiasLights_NotWhatIsLitWithoutIt) {
+  std::vector<float> unbiased(400, 0.0f), image(400, 0.0f);
+  for (std::size_t i = 0; i < 400; ++i) {
+    if (i < 100) unbiased[i] = image[i] = 0.8f;
+    if (i >= 100 && i < 200) image[i] = 1.0f;
+    if (i >= 300) image[i] = 0.3f;
+  }
+  const std::vector<std::uint8_t> all(400, 1);
+  EXPECT_EQ(rate_contact_gap(image, unbiased, all), 100.0 / 300.0);
+  EXPECT_EQ(rate_contact_gap(unbiased, unbiased, all), 0.0) << "a blur is no gap";
+  image[399] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(rate_contact_gap(image, unbiased, all), 101.0 / 300.0);
+  EXPECT_FALSE(rate_contact_gap(image, std::vector<float>(400, 0.6f), all)) << "nothing is dark without bias";
+}
+
 /// A penumbra of 40 x 40 pixels whose percentage-closer filter is a ramp, and an image that differs by `noise(x, y)`.
 template <class Noise>
 std::optional<double> measure_noise(Noise noise) {

@@ -25,7 +25,7 @@ TEST(Flicker, ImageThatChangesAsTheTruth_HasNone) {
   EXPECT_EQ(stats.flicker, 0.0);
   EXPECT_THAT(stats.change, DoubleEq(std::sqrt((0.0625 + 0.5625) / 2.0)));
   EXPECT_EQ(stats.change, stats.truth_change);
-  EXPECT_THAT(stats.mean_change, ElementsAre(0.25, 0.75));
+  EXPECT_THAT(stats.step_change, ElementsAre(0.25, 0.75));
 }
 
 TEST(Flicker, ConstantError_IsNone) { EXPECT_EQ(measure_one({0.25f, 0.5f, 0.75f}, {0.0f, 0.25f, 0.5f}).flicker, 0.0); }
@@ -35,7 +35,7 @@ TEST(Flicker, IsTheChangeThatTheTruthDoesNotHave) {
   EXPECT_EQ(stats.flicker, 1.0);
   EXPECT_EQ(stats.change, 1.0);
   EXPECT_EQ(stats.truth_change, 0.0);
-  EXPECT_THAT(stats.truth_mean_change, ElementsAre(0.0, 0.0));
+  EXPECT_THAT(stats.truth_step_change, ElementsAre(0.0, 0.0));
 }
 
 /// An image that stands still under a truth that moves is wrong in time too.
@@ -58,7 +58,7 @@ TEST(Flicker, OnlyTheMaskCounts) {
   meter.add(changed, still);
   const FlickerStats stats = *meter.finish();
   EXPECT_EQ(stats.receivers, 2);
-  EXPECT_THAT(stats.mean_change, ElementsAre(0.5));
+  EXPECT_THAT(stats.step_change, ElementsAre(DoubleEq(std::sqrt(0.5)))) << "root mean squares, as the change is";
   EXPECT_THAT(stats.flicker, DoubleEq(std::sqrt(0.5)));
   EXPECT_THAT(stats.by_pixel, ElementsAre(FloatEq(0.0f), FloatEq(0.0f), FloatEq(1.0f), FloatEq(0.0f)));
 }
@@ -69,7 +69,7 @@ TEST(Flicker, NotFinite_IsLeftOutAndCounted) {
   EXPECT_EQ(stats.not_finite, 2);
   EXPECT_THAT(stats.flicker, DoubleNear(0.5, 1e-12));
   EXPECT_THAT(stats.change, DoubleNear(0.5, 1e-12));
-  EXPECT_EQ(stats.mean_change.size(), 3u);
+  EXPECT_EQ(stats.step_change.size(), 3u);
 }
 
 TEST(Flicker, OneFrame_OrNoReceiver_HasNoAnswer) {

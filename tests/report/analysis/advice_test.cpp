@@ -140,6 +140,15 @@ TEST(Advice, WhatWasNotMeasuredEverywhere_IsNotJudged) {
               ElementsAre("not measured on stack", "did not finish on stack (timeout: no answer after 10 s)"));
 }
 
+TEST(Advice, SuspectFilter_IsNotJudged) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "none", 2.0, 0.1), measure("cubes", "mine", 1.0, 0.0)};
+  cells[1].status = records::CellStatus::kSuspect;
+  cells[1].message = "it reads nothing";
+  const Advice advice = advise_on(cells, {limit("--max-rmse", 1.0)});
+  EXPECT_THAT(labels(advice.keeping), ElementsAre("none"));
+  EXPECT_THAT(reasons(advice), ElementsAre("wrong on cubes (suspect: it reads nothing)"));
+}
+
 TEST(Advice, NeededValueThatIsNull_IsNotJudgedAndSaysWhy) {
   std::vector<records::CellRecord> cells = {measure("cubes", "none", 1.0, 0.0), measure("cubes", "blind", 1.0, 0.0),
                                             measure("cubes", "free", 1.0, 0.0)};

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "report/analysis/cell_group.h"
 #include "report/analysis/ranking.h"
 #include "report/records/format.h"
@@ -80,6 +82,18 @@ TEST(Summary, FailedCellsAndPixelsThatAreNotFinite_AreSaid) {
   const auto sentences = describe_group(group, make_run().gl);
   EXPECT_THAT(sentences, Contains("vsm has 12 pixels that are not finite."));
   EXPECT_THAT(sentences, Contains("mine did not finish (timeout: no answer after 10 s)."));
+}
+
+TEST(Summary, SuspectCells_AreNamed_AndRankedNowhere) {
+  CellGroup group{"cubes", {make_ranked("vsm", 1.0, 1.0, 1.0), make_ranked("mine", 0.1, 0.1, 0.1)}};
+  group.cells[1].status = records::CellStatus::kSuspect;
+  group.cells[1].message = "it reads nothing";
+  const auto sentences = describe_group(group, make_run().gl);
+  const auto named = std::ranges::count_if(
+      sentences, [](const std::string& sentence) { return sentence.find("mine") != std::string::npos; });
+  EXPECT_EQ(named, 1);
+  EXPECT_THAT(sentences, Contains("mine is left out of rankings, fronts, advice and common scales, for it is suspect: "
+                                  "it reads nothing."));
 }
 
 TEST(Summary, OneFilterTwice_IsToldApartByItsParameters) {

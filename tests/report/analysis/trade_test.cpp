@@ -11,6 +11,7 @@ namespace shadowbench::analysis {
 using namespace records;
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
@@ -141,6 +142,15 @@ TEST(TradeFronts, AbsentValues_AreLeftOutWithTheirReason) {
   EXPECT_THAT(describe_front(scope, front, make_run().gl),
               ::testing::IsSupersetOf({"Left out: 1 of 3 (cost.fetches: the filter reads the map's samplers itself).",
                                        "Left out: 1 of 3 (error.rmse: no truth)."}));
+}
+
+TEST(TradeFronts, SuspectCells_AreLeftOut) {
+  std::vector<records::CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({"cubes", "mine"})};
+  cells[1].status = records::CellStatus::kSuspect;
+  const TradeScope scope = make_trade_scopes(cells)[0];
+  const TradeFront front = make_trade_front(scope, 0, 0);
+  EXPECT_THAT(front.configurations, ElementsAre(0));
+  EXPECT_THAT(describe_front(scope, front, make_run().gl), Contains("Left out: 1 of 2 (suspect: see the warnings)."));
 }
 
 TEST(TradeFronts, ValuesThatAreNotFinite_AreLeftOut) {

@@ -54,6 +54,13 @@ TEST(ErrorParts, ReasonForNoAttribution_IsTheCells) {
   EXPECT_EQ(records::explain_no_attribution(cell), "not measured");
 }
 
+TEST(AttributionBar, OfASuspectCell_IsNone_SinceItWouldSetTheScale) {
+  records::CellRecord cell = make_attributed_cell("mine", 0.04, {0.0, 0.75, -0.25, 0.5});
+  cell.status = records::CellStatus::kSuspect;
+  EXPECT_FALSE(make_attribution_bar(cell));
+  EXPECT_EQ(records::explain_no_attribution(cell), "the filter is suspect");
+}
+
 TEST(AttributionBar, Lengths_AreSharesOfTheRmseAndSumToIt) {
   const auto bar = make_attribution_bar(make_attributed_cell("vsm", 0.04, {0.0, 0.75, -0.25, 0.5}));
   ASSERT_TRUE(bar);

@@ -59,7 +59,7 @@ TEST(FlickerPage, SaysWhatSnappingBuys) {
 TEST(FlickerPage, StillTruth_IsNoYardstick) {
   records::FlickerMotion motion = make_motion(0.03, 0.02);
   motion.truth = {};
-  motion.truth.mean_change = {0.0, 0.0};
+  motion.truth.step_change = {0.0, 0.0};
   for (const std::string& sentence : describe_flicker(motion))
     EXPECT_THAT(sentence, Not(HasSubstr("times"))) << sentence;
   EXPECT_THAT(explain_motion(motion, 3), Contains(HasSubstr("all change is flicker")));
@@ -94,7 +94,7 @@ TEST(FlickerFiles, HoldEveryNumber) {
 
 TEST(FlickerCharts, OfOneMotion_ShareTheirScales_AndHoldTheTruth) {
   records::FlickerMotion motion = make_motion(0.03, 0.02);
-  motion.variants[0].filters[0].mean_change = {0.5, 0.1};
+  motion.variants[0].filters[0].step_change = {0.5, 0.1};
   const page::Chart free = make_flicker_chart(motion, motion.variants[0]),
                     snapped = make_flicker_chart(motion, motion.variants[1]);
   EXPECT_NE(free.id, snapped.id);

@@ -159,6 +159,14 @@ TEST(JsonIo, LaterFields_MayLack) {
   written.erase("claims");
   EXPECT_FALSE(cell_from_json(written, "here").claims);
   EXPECT_EQ(cell_from_json(written, "here").fit, "view snapped");
+  CellRecord suspect = make_full_cell();
+  suspect.status = CellStatus::kSuspect;
+  suspect.suspect_of = {"it reads nothing", "it is constant"};
+  written = to_json(suspect);
+  EXPECT_EQ(cell_from_json(written, "here").status, CellStatus::kSuspect);
+  EXPECT_EQ(cell_from_json(written, "here").suspect_of, suspect.suspect_of);
+  written.erase("suspect_of");
+  EXPECT_TRUE(cell_from_json(written, "here").suspect_of.empty());
   RunRecord run = make_run();
   run.repeat = {40, 118, 120};
   written = to_json(run);
