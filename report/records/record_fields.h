@@ -9,8 +9,9 @@
 namespace shadowbench::records {
 
 /// Names the fields that older files of this schema version lack; they are read as null there.
-inline constexpr std::array<std::string_view, 7> kLaterFields = {
-    "images.parts", "work.attribution_s", "claims", "lights", "repeat.cells", "repeat.overlapping", "repeat.of"};
+inline constexpr std::array<std::string_view, 10> kLaterFields = {
+    "images.parts", "work.attribution_s",  "claims",       "lights",  "repeat.cells", "repeat.overlapping",
+    "repeat.of",    "kernel.sigma_texels", "kernel.class", "teaching"};
 
 /// Calls `visit(name, value)` for every field of a bias.
 template <class Bias, class Visitor>
@@ -46,6 +47,9 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("filter", cell.filter);
   visit("params", cell.params);
   visit("kernel_radius_texels", cell.kernel_radius_texels);
+  visit("kernel.sigma_texels", cell.kernel.sigma_texels);
+  visit("kernel.class", cell.kernel.width_class);
+  visit("teaching", cell.teaching);
   visit("claims", cell.claims);
   visit("map_size", cell.map_size);
   visit("map_format", cell.map_format);
