@@ -76,6 +76,13 @@ const WidthClass* find_width_class(double sigma_texels) {
   return nullptr;
 }
 
+std::string describe_classes() {
+  std::vector<std::string> texts;
+  for (const WidthClass& each : width_classes())
+    texts.push_back(fmt::format("{} {:.2f} texels, up to {:.2f}", each.name, each.sigma_texels, each.widest_texels));
+  return fmt::format("{}", fmt::join(texts, "; "));
+}
+
 std::optional<double> find_kernel_sigma(const FilterSpec& spec, const ParamValues& values) {
   const auto model = make_model(spec.id);
   return model ? std::optional(model->kernel(values).sigma_texels()) : std::nullopt;

@@ -28,6 +28,9 @@ const std::array<WidthClass, 3>& width_classes();
 /// The class of a kernel of this width; null where it is wider than the widest class reaches.
 const WidthClass* find_width_class(double sigma_texels);
 
+/// Lists the classes with their widths and limits: "sharp 0.41 texels, up to 0.51; ...".
+std::string describe_classes();
+
 /// The width of a filter's kernel; empty where the filter has no model, which alone knows it.
 std::optional<double> find_kernel_sigma(const FilterSpec& spec, const ParamValues& values);
 

@@ -119,13 +119,6 @@ nlohmann::json to_json(const FilterSpec& spec) {
           {"variance_floor", spec.variance_floor}};
 }
 
-std::string list_classes() {
-  std::vector<std::string> texts;
-  for (const filters::WidthClass& each : filters::width_classes())
-    texts.push_back(fmt::format("{} {:.2f} texels, up to {:.2f}", each.name, each.sigma_texels, each.widest_texels));
-  return fmt::format("{}", fmt::join(texts, "; "));
-}
-
 int list_filters(const ListArguments& arguments) {
   const filters::Catalogue catalogue(options::find_resources().filters);
   nlohmann::json json = nlohmann::json::array();
@@ -137,7 +130,8 @@ int list_filters(const ListArguments& arguments) {
   if (arguments.json)
     fmt::print("{}\n", json.dump(2));
   else
-    fmt::print("Kernels are as wide as their standard deviation, at the defaults. Classes: {}.\n", list_classes());
+    fmt::print("Kernels are as wide as their standard deviation, at the defaults. Classes: {}.\n",
+               filters::describe_classes());
   return 0;
 }
 

@@ -14,37 +14,10 @@ namespace {
 
 /// The options that an experiment may set: those that say what is measured, not those that say where.
 const std::vector<std::string>& experiment_keys() {
-  static const std::vector<std::string> keys = {"scene",
-                                                "ground",
-                                                "view",
-                                                "filters",
-                                                "filter_file",
-                                                "map_size",
-                                                "size",
-                                                "bias",
-                                                "map_format",
-                                                "reversed_depth",
-                                                "perspective_depth",
-                                                "fit",
-                                                "snap",
-                                                "light",
-                                                "lights",
-                                                "pad_texels",
-                                                "tuned",
-                                                "border",
-                                                "far_test",
-                                                "behind_test",
-                                                "border_page",
-                                                "rounds",
-                                                "precision",
-                                                "budget",
-                                                "cell_timeout",
-                                                "seed",
-                                                "truth",
-                                                "attribution",
-                                                "stability",
-                                                "uncertainty",
-                                                "grids"};
+  static const std::vector<std::string> keys = split_list(
+      "scene,ground,view,filters,filter_file,map_size,size,bias,map_format,reversed_depth,perspective_depth,fit,snap,"
+      "light,lights,pad_texels,tuned,border,far_test,behind_test,border_page,rounds,precision,budget,cell_timeout,seed,"
+      "truth,attribution,stability,uncertainty,grids");
   return keys;
 }
 

@@ -62,7 +62,8 @@ class CellReader {
 
   TradeConfiguration read(const std::vector<std::size_t>& indices) const {
     const records::CellRecord& first = cells_[indices.front()];
-    TradeConfiguration result{first.filter, first.params, first.map_size, {}, indices, {}, {}};
+    TradeConfiguration result{
+        first.filter, first.params, first.map_size, first.kernel.sigma_texels, find_class(first), {}, indices, {}, {}};
     for (std::size_t i = 0; i < kErrorMeasures; ++i) result.errors[i] = combine(indices, i, true);
     for (std::size_t i = 0; i < kCostMeasures; ++i) result.costs[i] = combine(indices, i, false);
     return result;
@@ -184,7 +185,7 @@ TradeFront make_trade_front(const TradeScope& scope, std::size_t error, std::siz
       continue;
     }
     front.configurations.push_back(i);
-    front.points.push_back({*e.estimate, *c.estimate});
+    front.points.push_back({*e.estimate, *c.estimate, scope.configurations[i].width_class});
   }
   front.placements = find_front(front.points);
   front.members = list_members(front.points, front.placements);

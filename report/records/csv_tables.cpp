@@ -73,7 +73,9 @@ std::vector<Column> setting_columns() {
       column<&C::bias, &B::slope, &Amount::texels>("bias_slope_texels", "bias times 1 - n.l, texels"),
       column<&C::bias, &B::slope, &Amount::world>("bias_slope_world", "bias times 1 - n.l, metres"),
       column<&C::bias, &B::plane_texels>("bias_plane_texels", "bias by the slope of the receiver's plane, texels"),
-      column<&C::bias, &B::plane_kernels>("bias_plane_kernels", "the same, in reaches of the filter: to the centre of the farthest texel that it compares"),
+      column<&C::bias, &B::plane_kernels>(
+          "bias_plane_kernels",
+          "the same, in reaches of the filter: to the centre of the farthest texel that it compares"),
       column<&C::bias, &B::normal_offset, &Amount::texels>("bias_normal_offset_texels", "normal offset, texels"),
       column<&C::bias, &B::normal_offset, &Amount::world>("bias_normal_offset_world", "normal offset, metres"),
       bit_column<&B::receiver_plane>("bias_receiver_plane", "1: the receiver plane's gradient is added for every tap"),

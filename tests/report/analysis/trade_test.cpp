@@ -211,12 +211,13 @@ TEST(FrontsCsv, HasARowPerCellOfEveryFront) {
                                                   make_sweep_cell({"cubes", "a,\"b", 4.0, 1.0, 0.0, 0.1})};
   const std::string csv = pages::make_fronts_csv(cells, make_trade_scopes(cells));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 16 * 3);
-  EXPECT_THAT(csv, HasSubstr("rmse,lookup," + cells[1].key +
-                             ",vsm,\"{\"\"radius\"\":4}\",1024,0.2,0.199,0.201,8,8,8,0," + cells[0].key + ",,\r\n"));
+  EXPECT_THAT(
+      csv, HasSubstr("rmse,lookup," + cells[1].key +
+                     ",vsm,\"{\"\"radius\"\":4}\",1024,4,medium,0.2,0.199,0.201,8,8,8,0," + cells[0].key + ",,\r\n"));
   EXPECT_THAT(csv, HasSubstr(",0,," + cells[0].key + ",\r\n"));
   EXPECT_THAT(csv, HasSubstr("\"a,\"\"b\""));
   EXPECT_THAT(csv, HasSubstr("leak,lookup," + cells[0].key +
-                             ",none,\"{\"\"radius\"\":0}\",1024,,,,4,4,4,,,,artefact.leak: not measured\r\n"));
+                             ",none,\"{\"\"radius\"\":0}\",1024,0,medium,,,,4,4,4,,,,artefact.leak: not measured\r\n"));
 }
 
 }  // namespace
