@@ -7,10 +7,13 @@
 #include <map>
 #include <set>
 
-#include "report/analysis/width_series.h"
-
 namespace shadowbench::analysis {
 namespace {
+
+// Widths that differ by less than this share are taken for the same.
+constexpr double kSameWidth = 0.01;
+
+bool are_same_width(double a, double b) { return std::abs(a - b) <= kSameWidth * std::max(a, b); }
 
 // Whether a filter reads the map at many places of its kernel.
 bool has_many_taps(const records::CellRecord& cell) {
@@ -57,7 +60,10 @@ std::vector<double> list_widths(const WidthCurve& a, const WidthCurve& b) {
   std::set<double> widths;
   for (const WidthCurve* curve : {&a, &b})
     for (const WidthPoint& point : curve->points) widths.insert(point.sigma_texels);
-  return {widths.begin(), widths.end()};
+  std::vector<double> distinct;
+  for (const double width : widths)
+    if (distinct.empty() || !are_same_width(distinct.back(), width)) distinct.push_back(width);
+  return distinct;
 }
 
 // Where the curves meet between two widths; nothing where they do not.
@@ -110,7 +116,7 @@ std::vector<WidthChart> make_width_charts(const std::vector<records::CellRecord>
 std::optional<Estimate> time_at(const WidthCurve& curve, double sigma_texels, LightState light) {
   const WidthPoint* before = nullptr;
   for (const WidthPoint& point : curve.points) {
-    if (point.sigma_texels == sigma_texels) return time_of(point, light);
+    if (are_same_width(point.sigma_texels, sigma_texels)) return time_of(point, light);
     if (point.sigma_texels > sigma_texels) {
       if (!before) return std::nullopt;
       const double t = (sigma_texels - before->sigma_texels) / (point.sigma_texels - before->sigma_texels);

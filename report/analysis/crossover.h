@@ -44,8 +44,8 @@ enum class LightState { kStill, kMoving };
 /// Compares a prefiltered curve with one that reads many taps, at the widths that both cover.
 ///
 /// A width counts where one of the curves was measured and the other was measured there, or on both sides of it, where
-/// its time is interpolated, its logarithm linearly over the width. Cheaper and dearer are said where the intervals do
-/// not overlap.
+/// its time is interpolated, its logarithm linearly over the width. Widths that differ by up to 1 % are taken for one.
+/// Cheaper and dearer are said where the intervals do not overlap.
 struct CurveComparison {
   std::size_t prefiltered = 0;  ///< index into the chart's curves
   std::size_t taps = 0;         ///< likewise

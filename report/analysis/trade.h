@@ -46,6 +46,19 @@ void label_configurations(std::vector<TradeConfiguration>& configurations);
 /// order in which it appears. Scenes together hold only configurations that every scene and view has.
 std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>& cells);
 
+/// The configurations of one filter that differ in nothing but the width of their kernel and the parameters that it
+/// follows from: those whose value changes exactly with the width.
+struct WidthSeries {
+  std::string filter;
+  std::string label;                        ///< with the parameters that tell it from the filter's other series
+  std::vector<std::size_t> configurations;  ///< indices, narrow before wide
+};
+
+/// Sorts those of `configurations` that `chosen` holds into series, in the order in which each first appears. Each map
+/// size has its own; configurations whose kernel's width is unknown are left out.
+std::vector<WidthSeries> list_width_series(const std::vector<TradeConfiguration>& configurations,
+                                           const std::vector<std::size_t>& chosen);
+
 /// The front of a scope for one error and one cost.
 struct TradeFront {
   std::size_t error = 0;                    ///< index into list_error_measures()

@@ -7,7 +7,6 @@
 #include "filters/kernel_width.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/front_words.h"
-#include "report/analysis/width_series.h"
 #include "report/page/chart_style.h"
 #include "report/records/format.h"
 

@@ -32,6 +32,14 @@ TEST(Crossover, IsFoundWhereTapsGrowDearer) {
   EXPECT_EQ(describe_comparison(comparisons[0]), "from a kernel width of 4 texels on, of 2, 4, 8 compared");
 }
 
+TEST(Crossover, WidthsThatNearlyAgree_AreOne) {
+  std::vector<records::CellRecord> cells = make_crossing_cells("cubes");
+  cells[2].kernel.sigma_texels = 4.03;  // of the taps; the blurred map's is 4
+  const auto comparison = compare_curves(make_charts(cells)[0], LightState::kStill)[0];
+  EXPECT_THAT(comparison.widths, ElementsAre(2.0, 4.0, 8.0));
+  EXPECT_THAT(comparison.signs, ElementsAre(1, -1, -1));
+}
+
 TEST(Crossover, OverlappingTimes_AreNotApart) {
   std::vector<records::CellRecord> cells = make_crossing_cells("cubes");
   cells[2].ratio_to_none.lookup->ci95 = {1.9, 2.6};

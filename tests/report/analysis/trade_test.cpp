@@ -134,6 +134,25 @@ TEST(TradeFronts, AbsentValues_AreLeftOutWithTheirReason) {
                                        "Left out: 1 of 3 (error.rmse: no truth)."}));
 }
 
+TEST(TradeFronts, CompareKernelsOfOneClass) {
+  std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}),
+                                            make_sweep_cell({"cubes", "slow", 0.0, 2.0, 0.0, 0.2}),
+                                            make_sweep_cell({"cubes", "narrow", 0.0, 3.0, 0.0, 0.3}),
+                                            make_sweep_cell({"cubes", "mine", 0.0, 4.0, 0.0, 0.4})};
+  cells[2].kernel = {0.41, "sharp"};
+  cells[3].kernel = {};
+  const TradeScope scope = make_trade_scopes(cells)[0];
+  const TradeFront front = make_trade_front(scope, 0, 0);
+  EXPECT_THAT(front.members, ElementsAre(2, 0)) << "narrow kernels first";
+  EXPECT_EQ(front.placements[1].by, 0u);
+  EXPECT_THAT(describe_front(scope, front, make_run().gl),
+              ElementsAre(HasSubstr("sharp kernels, the front from the cheapest cell on: narrow (0.3"),
+                          HasSubstr("medium kernels, the front from the cheapest cell on: none (0.1"),
+                          "Dominated are 1 of 4: none beats slow.",
+                          "Compared with nothing, for their kernels are of no class, too wide or unknown: mine."));
+  EXPECT_THAT(pages::make_fronts_csv(cells, {scope}), HasSubstr(",,,,its kernel is of no class of width\r\n"));
+}
+
 TEST(TradeFronts, ValuesThatAreNotFinite_AreLeftOut) {
   records::CellRecord cell = make_sweep_cell({});
   cell.error.rmse = std::nan("");
