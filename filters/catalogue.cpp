@@ -13,12 +13,15 @@
 #include "filters/base/nearest_name.h"
 #include "filters/base/split_list.h"
 #include "filters/front_matter.h"
+#include "filters/kernel_width.h"
 
 namespace shadowbench::filters {
 namespace {
 
-/// A report's pictures are named for filters, and these names are its own.
-constexpr std::string_view kReservedIds[] = {"truth"};
+constexpr std::string_view kAll = "all", kTeaching = "teaching", kWidth = "width";
+
+/// A report's pictures are named for filters, and the first of these names is its own; the others name many filters.
+constexpr std::string_view kReservedIds[] = {"truth", kAll, kTeaching};
 
 [[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
 
@@ -53,9 +56,24 @@ void assign_value(FilterRequest& request, const std::string& assignment) {
   if (equals == std::string::npos)
     fail(fmt::format("'{}' after '{}:' must be PARAM=VALUE", assignment, request.spec.id));
   const std::string name = assignment.substr(0, equals);
+  if (asks_for_width(request.spec, name)) {
+    request.width = assignment.substr(equals + 1);
+    return;
+  }
   request.values[name] = parse_value(request.spec, name, assignment.substr(equals + 1));
   if (std::find(request.set_by_user.begin(), request.set_by_user.end(), name) == request.set_by_user.end())
     request.set_by_user.push_back(name);
+}
+
+/// Puts the radius in place of the width that was asked for.
+void apply_width(FilterRequest& request) {
+  if (request.width.empty()) return;
+  const double radius = solve_radius(request.spec, request.values, request.width);
+  const auto& name = std::get<std::string>(request.spec.radius_texels);
+  if (std::ranges::count(request.set_by_user, name) > 0)
+    fail(fmt::format("{} sets '{}' and 'width', which says the same: leave one out", request.spec.id, name));
+  request.values[name] = radius;
+  request.set_by_user.push_back(name);
 }
 
 }  // namespace
@@ -70,6 +88,10 @@ ParamValues default_values(const FilterSpec& spec) {
   ParamValues values;
   for (const ParamSpec& param : spec.params) values[param.name] = param.default_value;
   return values;
+}
+
+bool asks_for_width(const FilterSpec& spec, const std::string& name) {
+  return name == kWidth && !spec.find_param(name);
 }
 
 ParamValue parse_value(const FilterSpec& spec, const std::string& name, const std::string& text) {
@@ -120,10 +142,8 @@ const FilterSpec& Catalogue::find(const std::string& id) const {
 
 void Catalogue::add_user_file(const std::filesystem::path& path) {
   FilterSpec spec = load_filter(path);
-  if (std::ranges::find(kReservedIds, spec.id) != std::end(kReservedIds)) {
-    fail(
-        fmt::format("filter id '{}' of {} is taken by the report's own pictures: rename the file", spec.id, spec.path));
-  }
+  if (std::ranges::find(kReservedIds, spec.id) != std::end(kReservedIds))
+    fail(fmt::format("filter id '{}' of {} has a meaning of its own: rename the file", spec.id, spec.path));
   for (const FilterSpec& known : filters_)
     if (known.id == spec.id)
       fail(fmt::format("filter id '{}' of {} is taken by {}: rename the file", spec.id, spec.path, known.path));
@@ -141,11 +161,12 @@ FilterRequest Catalogue::make_request(const std::string& id) const {
 
 std::vector<FilterRequest> Catalogue::parse_requests(const std::string& text) const {
   std::vector<FilterRequest> requests;
-  if (text.empty()) {
-    for (const FilterSpec& spec : filters_) requests.push_back(make_request(spec.id));
-    return requests;
-  }
-  for (const std::string& item : split_list(text)) {
+  for (const std::string& item : split_list(text.empty() ? std::string(kAll) : text)) {
+    if (item == kAll || item == kTeaching) {
+      for (const FilterSpec& spec : filters_)
+        if (spec.teaching == (item == kTeaching)) requests.push_back(make_request(spec.id));
+      continue;
+    }
     const std::size_t colon = item.find(':');
     const bool continues = colon == std::string::npos && item.find('=') != std::string::npos;
     if (continues) {
@@ -157,6 +178,7 @@ std::vector<FilterRequest> Catalogue::parse_requests(const std::string& text) co
     requests.push_back(make_request(item.substr(0, colon)));
     if (colon != std::string::npos) assign_value(requests.back(), item.substr(colon + 1));
   }
+  for (FilterRequest& request : requests) apply_width(request);
   return requests;
 }
 

@@ -13,6 +13,7 @@ struct FilterRequest {
   FilterSpec spec;
   ParamValues values;                    ///< complete: every parameter has a value
   std::vector<std::string> set_by_user;  ///< names of the parameters that were asked for
+  std::string width;                     ///< asked for in place of a radius, as in solve_radius(); empty: was not
   bool user_file = false;                ///< given by its path; it runs in a process of its own
 
   /// The id, with the asked-for parameters in parentheses; what tables and grids print.
@@ -35,8 +36,10 @@ class Catalogue {
   /// Throws as load_filter, and Error(kUsage) when its id is taken.
   void add_user_file(const std::filesystem::path& path);
 
-  /// Parses `a,b:param=value,param=value,c`; an empty text asks for every filter at its defaults.
-  /// Throws Error(kUsage) for an unknown filter or parameter (with the nearest name) and for a value out of range.
+  /// Parses `a,b:param=value,param=value,c`. In place of a radius a filter takes `width=`, as solve_radius() does.
+  /// `all` stands for every filter but those for teaching, at its defaults, and `teaching` for these; an empty text is
+  /// `all`. Throws Error(kUsage) for an unknown filter or parameter (with the nearest name) and for a value out of
+  /// range.
   std::vector<FilterRequest> parse_requests(const std::string& text) const;
 
  private:
@@ -48,6 +51,9 @@ class Catalogue {
 
 /// Every parameter its default.
 ParamValues default_values(const FilterSpec& spec);
+
+/// Whether a name asks for the kernel's width in place of a radius, and is no parameter of the filter's own.
+bool asks_for_width(const FilterSpec& spec, const std::string& name);
 
 /// Parses and checks one value for one parameter.
 /// Throws Error(kUsage) when the parameter is unknown (with the nearest name) or the value is not allowed.

@@ -48,6 +48,7 @@ struct FilterSpec {
   std::string source;  ///< citation
   FilterKind kind = FilterKind::kOther;
   std::vector<std::string> claims;
+  bool teaching = false;  ///< shows a mistake: drawn where it is named, and never advised
   std::variant<double, std::string> radius_texels = 0.0;  ///< kernel half-width: a number or a parameter's name
   std::variant<double, std::string> bias_texels = 0.0;    ///< half-width over which one depth stands for the receiver
   std::vector<ParamSpec> params;                          ///< `store`, `combine` and `sample` lists included

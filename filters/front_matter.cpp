@@ -358,12 +358,13 @@ void read_disks(const Reader& reader, const toml::table& root, FilterSpec& spec)
 void read_root(const Reader& reader, const toml::table& root, FilterSpec& spec) {
   reader.check_keys(root,
                     {"title", "source", "kind", "store", "combine", "sample", "claims", "radius_texels", "bias_texels",
-                     "moments", "exponent", "variance_floor", "param", "disk"},
+                     "teaching", "moments", "exponent", "variance_floor", "param", "disk"},
                     "the front matter");
   spec.title = reader.text(root, "title", true);
   spec.source = reader.text(root, "source", true);
   spec.kind = read_kind(reader, root);
   spec.claims = reader.texts(root, "claims");
+  spec.teaching = reader.flag(root, "teaching");
   read_params(reader, root, spec);
   add_list_param(reader, root, spec, "store",
                  {"r16f", "r32f", "rg16f", "rg32f", "rgba16f", "rgba32f", "r16", "rg16", "rgba16"},

@@ -66,6 +66,14 @@ double Kernel::half_width() const {
   return shape + (reconstruction_ == Reconstruction::kBilinear ? 1.0 : 0.0);
 }
 
+double Kernel::sigma_texels() const {
+  // Variances add under convolution; those of a disk along an axis, of the unit tent and of a texel:
+  double variance = atoms_.empty() ? 0.25 * disk_radius_ * disk_radius_ : 0.0;
+  variance += reconstruction_ == Reconstruction::kBilinear ? 1.0 / 6.0 : 1.0 / 12.0;
+  for (const Atom& atom : atoms_) variance += atom.weight * atom.offset * atom.offset;
+  return std::sqrt(variance);
+}
+
 bool Kernel::is_point() const { return half_width() == 0.0; }
 
 std::string Kernel::name() const {

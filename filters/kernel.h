@@ -41,6 +41,10 @@ class Kernel {
   /// The half-width of the square outside which the continuous kernel is 0, in texels.
   double half_width() const;
 
+  /// The standard deviation along an axis, in texels. A nearest read counts as the texel that it stands for: averaged
+  /// over the receiver's place between texels, it spreads an edge over one.
+  double sigma_texels() const;
+
   /// Whether the continuous kernel is a single point.
   bool is_point() const;
 

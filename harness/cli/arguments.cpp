@@ -37,7 +37,9 @@ void add_drawing_options(Command& command, DrawingArguments& arguments, const st
 }
 
 void add_builtin_filters_option(Command& command, std::string& filters) {
-  command.add("--filters", &filters, "built-in filters with parameters (default: all; see 'list filters')")
+  command
+      .add("--filters", &filters,
+           "built-in filters with parameters (default: all but those for teaching; see 'list filters')")
       .names(ValueKind::kFilters);
 }
 

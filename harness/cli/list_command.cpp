@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "filters/catalogue.h"
+#include "filters/kernel_width.h"
 #include "filters/model.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
@@ -43,9 +44,28 @@ std::string describe_stored(const FilterSpec& spec) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+std::optional<double> default_sigma(const FilterSpec& spec) {
+  return filters::find_kernel_sigma(spec, filters::default_values(spec));
+}
+
+/// The name of the class of a kernel; empty above the widest.
+std::string_view name_class(double sigma_texels) {
+  const filters::WidthClass* found = filters::find_width_class(sigma_texels);
+  return found ? found->name : std::string_view();
+}
+
+/// How wide the kernel is at the filter's defaults; empty without a model.
+std::string describe_kernel(const FilterSpec& spec) {
+  const auto sigma = default_sigma(spec);
+  if (!sigma) return {};
+  const std::string_view name = name_class(*sigma);
+  return fmt::format(", kernel {:.2f} texels{}", *sigma, name.empty() ? "" : fmt::format(" ({})", name));
+}
+
 void print_filter(const FilterSpec& spec) {
-  fmt::print("{}  {}\n  kind {}{}\n  source: {}\n", spec.id, spec.title, filters::to_string(spec.kind),
-             filters::make_model(spec.id) ? "" : ", without a model", spec.source);
+  fmt::print("{}  {}\n  kind {}{}{}{}\n  source: {}\n", spec.id, spec.title, filters::to_string(spec.kind),
+             spec.teaching ? ", for teaching" : "", filters::make_model(spec.id) ? "" : ", without a model",
+             describe_kernel(spec), spec.source);
   if (const std::string stored = describe_stored(spec); !stored.empty()) fmt::print("  its map holds: {}\n", stored);
   for (const ParamSpec& param : spec.params) {
     fmt::print("  {:<16} {} [{}]{}\n  {:<16} {}\n", param.name, describe_range(param),
@@ -74,6 +94,14 @@ nlohmann::json to_json(const ParamSpec& param) {
   return json;
 }
 
+nlohmann::json kernel_json(const FilterSpec& spec) {
+  const auto sigma = default_sigma(spec);
+  nlohmann::json json = {{"sigma_texels", nullptr}, {"class", nullptr}};
+  if (sigma) json["sigma_texels"] = *sigma;
+  if (sigma && !name_class(*sigma).empty()) json["class"] = name_class(*sigma);
+  return json;
+}
+
 nlohmann::json to_json(const FilterSpec& spec) {
   nlohmann::json params = nlohmann::json::array();
   for (const ParamSpec& param : spec.params) params.push_back(to_json(param));
@@ -82,6 +110,8 @@ nlohmann::json to_json(const FilterSpec& spec) {
           {"source", spec.source},
           {"kind", filters::to_string(spec.kind)},
           {"claims", spec.claims},
+          {"teaching", spec.teaching},
+          {"kernel", kernel_json(spec)},
           {"model", filters::make_model(spec.id) != nullptr},
           {"params", params},
           {"moments", spec.holds_moments},
@@ -97,7 +127,11 @@ int list_filters(const ListArguments& arguments) {
       json.push_back(to_json(spec));
     else
       print_filter(spec);
-  if (arguments.json) fmt::print("{}\n", json.dump(2));
+  if (arguments.json)
+    fmt::print("{}\n", json.dump(2));
+  else
+    fmt::print("Kernels are as wide as their standard deviation, at the defaults. Classes: {}.\n",
+               filters::describe_classes());
   return 0;
 }
 

@@ -19,6 +19,7 @@ KnownNames list_known_names() {
   for (const auto& scenes : {scene::list_scenes(resources.scenes), scene::list_teaching_scenes(resources.scenes)})
     for (const scene::SceneInfo& info : scenes) names[ValueKind::kScene].push_back(info.name);
   const filters::Catalogue catalogue(resources.filters);
+  names[ValueKind::kFilters] = {"all"};
   for (const filters::FilterSpec& spec : catalogue.filters()) names[ValueKind::kFilters].push_back(spec.id);
   names[ValueKind::kExperiment] = options::list_experiments(resources.experiments);
   return names;

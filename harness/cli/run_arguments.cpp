@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "harness/options/experiment_file.h"
 #include "harness/options/light_counts.h"
 #include "harness/options/options.h"
@@ -12,16 +14,14 @@ namespace {
 
 /// The options that an experiment may set: those that say what is measured, not those that say where.
 const std::vector<std::string>& experiment_keys() {
-  static const std::vector<std::string> keys = {
-      "scene",  "ground",      "view",       "filter_file",    "map_size",
-      "size",   "bias",        "map_format", "reversed_depth", "perspective_depth",
-      "fit",    "snap",        "light",      "lights",         "pad_texels",
-      "tuned",  "border",      "far_test",   "behind_test",    "border_page",
-      "phases", "rounds",    "precision",   "budget",     "cell_timeout",   "seed",
-      "truth",  "attribution", "stability",  "uncertainty",    "grids"};
+  static const std::vector<std::string> keys = split_list(
+      "scene,ground,view,filters,filter_file,map_size,size,bias,map_format,reversed_depth,perspective_depth,fit,snap,"
+      "light,lights,pad_texels,tuned,border,far_test,behind_test,border_page,phases,rounds,precision,budget,"
+      "cell_timeout,seed,truth,attribution,stability,uncertainty,grids");
   return keys;
 }
 
+constexpr const char* kFiltersOption = "--filters";
 const std::vector<std::string> kSwitch = {"on", "off"};
 
 void add_map_options(Command& command, RunArguments& a) {
@@ -78,9 +78,10 @@ void add_range_options(Command& command, RunArguments& a) {
 
 void add_filter_options(Command& command, RunArguments& a) {
   command
-      .add(
-          "--filters", &a.filters,
-          "filters with parameters, such as none,vsm:radius=6,min_variance=1e-4,esm (default: all; see 'list filters')")
+      .add(kFiltersOption, &a.filters,
+           "filters with parameters, such as none,vsm:radius=6,min_variance=1e-4,esm:width=medium; width, a class of "
+           "'list filters' or texels, sets the radius; 'all' is every filter but those for teaching (default: those of "
+           "the experiment 'default')")
       .names(ValueKind::kFilters);
   command.add("--filter-file", &a.filter_files, "a filter of your own, one GLSL file; may be repeated")
       .names(ValueKind::kFile);
@@ -166,11 +167,20 @@ void add_run_options(Command& command, RunArguments& a) {
 
 std::string apply_experiment(const CommandLine& line, RunArguments& arguments) {
   const options::Resources resources = options::find_resources();
-  const options::Experiment experiment = options::read_experiment(
-      options::find_experiment(resources.experiments, arguments.experiment), experiment_keys());
-  for (const options::ExperimentSetting& setting : experiment.settings)
+  const auto read = [&](const std::string& name) {
+    return options::read_experiment(options::find_experiment(resources.experiments, name), experiment_keys());
+  };
+  const auto take = [&](const options::ExperimentSetting& setting) {
     if (!line.has(setting.option)) line.set(setting.option, setting.values, setting.where);
-  if (experiment.filters.empty() || line.has("--filters")) return experiment.title;
+  };
+  const options::Experiment experiment = read(arguments.experiment);
+  std::ranges::for_each(experiment.settings, take);
+  if (line.has(kFiltersOption)) return experiment.title;
+  if (experiment.filters.empty()) {
+    for (const options::ExperimentSetting& setting : read(kDefaultExperiment).settings)
+      if (setting.option == kFiltersOption) take(setting);
+    return experiment.title;
+  }
   filters::Catalogue catalogue(resources.filters);
   for (const std::string& file : arguments.filter_files) catalogue.add_user_file(file);
   arguments.filters = options::expand_filters(experiment, catalogue);

@@ -12,9 +12,12 @@ namespace shadowbench::cli {
 /// A run of more filters draws grids only where it is told to, because nobody could read them.
 inline constexpr int kFiltersOfAGrid = 16;
 
+/// The experiment of a run that names none, whose filters are those of every run that names none.
+inline constexpr const char* kDefaultExperiment = "default";
+
 /// The options of `shadowbench run` as text; all of them are checked before anything is made.
 struct RunArguments : DrawingArguments {
-  std::string experiment = "default";
+  std::string experiment = kDefaultExperiment;
   std::vector<std::string> scenes;
   bool ground = false;
   std::vector<std::string> filter_files;
@@ -55,9 +58,9 @@ struct RunArguments : DrawingArguments {
 /// Adds the options of `shadowbench run`; parsing fills `arguments`, which must outlive the command.
 void add_run_options(Command& command, RunArguments& arguments);
 
-/// Takes what an experiment file says for every option that was not given on the command line. Returns the
-/// experiment's title. Throws Error as options::read_experiment and options::expand_filters, and Error(kInput) for a
-/// value that its option refuses.
+/// Takes what an experiment file says for every option that was not given on the command line. An experiment that names
+/// no filters takes those of the default one. Returns the experiment's title. Throws Error as options::read_experiment
+/// and options::expand_filters, and Error(kInput) for a value that its option refuses.
 std::string apply_experiment(const CommandLine& line, RunArguments& arguments);
 
 }  // namespace shadowbench::cli

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "filters/kernel_width.h"
 #include "harness/measure/empty_lookup.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/light_timing.h"
@@ -219,6 +220,20 @@ class SceneBench {
   }
 };
 
+void set_kernel(records::CellRecord& record, const filters::FilterRequest& request) {
+  record.kernel_radius_texels = filters::radius_texels(request.spec, request.values);
+  record.kernel.sigma_texels = filters::find_kernel_sigma(request.spec, request.values);
+  if (!record.kernel.sigma_texels) {
+    record.absent["kernel"] = "the filter has no model, which alone knows its kernel";
+    return;
+  }
+  if (const filters::WidthClass* width = filters::find_width_class(*record.kernel.sigma_texels))
+    record.kernel.width_class = width->name;
+  else
+    record.absent["kernel.class"] =
+        fmt::format("kernels of more than {:.2f} texels have none", filters::width_classes().back().widest_texels);
+}
+
 }  // namespace
 
 records::ParamMap record_params(const filters::ParamValues& values) {
@@ -239,7 +254,8 @@ records::CellRecord make_record(const options::RunOptions& options, const SceneT
   record.view = task.camera->name;
   record.filter = request.spec.id;
   record.params = record_params(request.values);
-  record.kernel_radius_texels = filters::radius_texels(request.spec, request.values);
+  set_kernel(record, request);
+  record.teaching = request.spec.teaching;
   record.claims = request.spec.claims;
   record.map_size = task.map_size;
   record.map_format = render::describe_map(options.map);

@@ -9,6 +9,7 @@
 
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
+#include "filters/kernel_width.h"
 #include "harness/scene/toml_reader.h"
 
 namespace shadowbench::options {
@@ -31,6 +32,8 @@ class ExperimentReader {
     for (const std::string& key : keys)
       if (table.has(key)) experiment.settings.push_back(read_setting(key));
     for (const toml::node& node : filter_nodes()) experiment.filters.push_back(read_filter(node));
+    if (root_.contains("filters") && !experiment.filters.empty())
+      fail(*root_.get("filters"), "'filters' and [[filter]] both name filters: keep one of them");
     return experiment;
   }
 
@@ -164,7 +167,10 @@ void check_values(const SweptFilter& filter, const filters::Catalogue& catalogue
   const filters::FilterSpec& spec = catalogue.find(filter.id);
   for (const SweptParam& param : filter.params)
     for (const std::string& value : list_values(param, spec.find_param(param.name)))
-      filters::parse_value(spec, param.name, value);
+      if (filters::asks_for_width(spec, param.name))
+        filters::solve_radius(spec, filters::default_values(spec), value);
+      else
+        filters::parse_value(spec, param.name, value);
 }
 
 /// Lists every combination of one filter's values, as `--filters` takes it.

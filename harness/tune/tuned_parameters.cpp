@@ -36,9 +36,13 @@ filters::ParamValues read_values(const filters::FilterSpec& spec, const records:
 void take_values(filters::FilterRequest& request, const filters::ParamValues& values) {
   const filters::ParamValues defaults = filters::default_values(request.spec);
   for (const auto& [name, value] : values) {
-    if (std::ranges::find(request.set_by_user, name) != request.set_by_user.end()) continue;
+    auto& shown = request.set_by_user;  // in labels
+    const bool is_set = std::ranges::find(shown, name) != shown.end();
+    // A radius that a width asked for is no wish for this very radius.
+    const bool by_width = !request.width.empty() && std::get<std::string>(request.spec.radius_texels) == name;
+    if (is_set && !by_width) continue;
     request.values[name] = value;
-    if (value != defaults.at(name)) request.set_by_user.push_back(name);  // labels show it
+    if (!is_set && value != defaults.at(name)) shown.push_back(name);
   }
 }
 

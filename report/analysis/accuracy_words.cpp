@@ -10,6 +10,7 @@
 #include <numeric>
 #include <utility>
 
+#include "filters/kernel_width.h"
 #include "reference/metrics/metric_table.h"
 #include "report/analysis/cell_group.h"
 #include "report/records/format.h"
@@ -38,17 +39,38 @@ std::string name_with_rmse(const CellGroup& group, std::size_t index) {
   return fmt::format("{} ({})", label_cell(group, cell), records::format_number(*cell.error.rmse));
 }
 
-std::string describe_error_ranking(const CellGroup& group, const std::vector<std::vector<std::size_t>>& ranks) {
+// The cells of one class of width, or of none, in the order of their errors.
+std::string describe_ranks(const CellGroup& group, const std::vector<std::vector<std::size_t>>& ranks,
+                           std::optional<std::size_t> width_class) {
   std::vector<std::string> places;
-  bool any_tie = false;
   for (const auto& rank : ranks) {
+    if (find_class(group.cells[rank.front()]) != width_class) continue;
     std::vector<std::string> names;
     for (const std::size_t i : rank) names.push_back(name_with_rmse(group, i));
     places.push_back(fmt::format("{}", fmt::join(names, " tied with ")));
-    any_tie = any_tie || rank.size() > 1;
   }
-  return fmt::format("Error to the area truth (RMSE), smallest first: {}.{}", fmt::join(places, "; then "),
-                     any_tie ? " Tied filters differ by no more than the truth's standard error." : "");
+  return fmt::format("{}", fmt::join(places, "; then "));
+}
+
+// Errors of kernels that are not equally wide are not ranked.
+std::vector<std::string> describe_error_ranking(const CellGroup& group) {
+  const auto ranks = rank_errors(group.cells);
+  std::vector<std::string> sentences;
+  const auto& classes = filters::width_classes();
+  for (std::size_t i = 0; i < classes.size(); ++i)
+    if (const std::string text = describe_ranks(group, ranks, i); !text.empty())
+      sentences.push_back(
+          fmt::format("Error to the area truth (RMSE) of {} kernels, smallest first: {}.", classes[i].name, text));
+  if (std::ranges::any_of(ranks, [](const auto& rank) { return rank.size() > 1; }))
+    sentences.emplace_back("Tied filters differ by no more than the truth's standard error.");
+  std::vector<std::string> apart;
+  for (const records::CellRecord& cell : group.cells)
+    if (cell.error.rmse && !find_class(cell))
+      apart.push_back(fmt::format("{} ({})", label_cell(group, cell), records::format_number(*cell.error.rmse)));
+  if (!apart.empty())
+    sentences.push_back(
+        fmt::format("Not ranked, for their kernels are of no class, too wide or unknown: {}.", fmt::join(apart, ", ")));
+  return sentences;
 }
 
 // Indices of the parts, largest share first.
@@ -173,8 +195,12 @@ std::vector<std::vector<std::size_t>> rank_errors(const std::vector<records::Cel
                    [&](std::size_t a, std::size_t b) { return *cells[a].error.rmse < *cells[b].error.rmse; });
   std::vector<std::vector<std::size_t>> groups;
   for (const std::size_t i : order) {
-    if (groups.empty() || !are_tied(cells[groups.back().front()], cells[i])) groups.emplace_back();
-    groups.back().push_back(i);
+    const auto of_class = [&](const auto& group) { return find_class(cells[group.front()]) == find_class(cells[i]); };
+    const auto last = std::find_if(groups.rbegin(), groups.rend(), of_class);
+    if (last != groups.rend() && find_class(cells[i]) && are_tied(cells[last->front()], cells[i]))
+      last->push_back(i);
+    else
+      groups.push_back({i});
   }
   return groups;
 }
@@ -191,11 +217,9 @@ bool is_lost_in_truth(const records::CellRecord& cell) {
 
 std::vector<std::string> describe_accuracy(const CellGroup& group) {
   std::vector<std::string> sentences;
-  const auto ranks = rank_errors(group.cells);
-  if (!ranks.empty()) sentences.push_back(describe_error_ranking(group, ranks));
   const std::vector<AttributedCell> cells = list_attributed(group);
-  for (const auto& more : {describe_lost(group), describe_dominated(cells), describe_divided(cells),
-                           explain_offsets(cells), describe_artefacts(group)})
+  for (const auto& more : {describe_error_ranking(group), describe_lost(group), describe_dominated(cells),
+                           describe_divided(cells), explain_offsets(cells), describe_artefacts(group)})
     sentences.insert(sentences.end(), more.begin(), more.end());
   return sentences;
 }

@@ -16,8 +16,8 @@ namespace shadowbench::analysis {
 double find_rmse_reach(const records::CellRecord& cell);
 
 /// Ranks cells by their RMSE to the area truth, smallest first, as groups of indices into `cells` that are not ranked
-/// apart. A cell joins the group of the best cell from which it differs by no more than find_rmse_reach(), the larger
-/// of the two. Cells without an RMSE are left out.
+/// apart. Of its class of width, a cell joins the group of the best cell from which it differs by no more than
+/// find_rmse_reach(), the larger of the two; a cell of no class joins none. Cells without an RMSE are left out.
 std::vector<std::vector<std::size_t>> rank_errors(const std::vector<records::CellRecord>& cells);
 
 /// Finds the part that alone is more than half of an error, as an index into list_error_parts().

@@ -54,8 +54,9 @@ void require_claim(const std::vector<records::CellRecord>& cells, const AdviceRe
                      did_you_mean(wanted, {known.begin(), known.end()}), fmt::join(known, ", ")));
 }
 
+// The cells that are asked about. Those of filters for teaching are named in `teaching` instead.
 std::vector<const records::CellRecord*> choose_cells(const std::vector<records::CellRecord>& cells,
-                                                     const AdviceRequest& request) {
+                                                     const AdviceRequest& request, std::set<std::string>& teaching) {
   if (cells.empty()) throw Error(ErrorKind::kInput, "the run holds no cell: nothing can be advised; run it again");
   require_scenes(cells, request.scenes);
   if (request.size) require_size(cells, *request.size);
@@ -63,8 +64,15 @@ std::vector<const records::CellRecord*> choose_cells(const std::vector<records::
   for (const records::CellRecord& cell : cells) {
     const bool scene_fits = request.scenes.empty() || std::ranges::count(request.scenes, cell.scene) > 0;
     const bool size_fits = !request.size || std::pair(cell.width, cell.height) == *request.size;
-    if (scene_fits && size_fits) chosen.push_back(&cell);
+    if (!scene_fits || !size_fits) continue;
+    if (cell.teaching.value_or(false))
+      teaching.insert(cell.filter);
+    else
+      chosen.push_back(&cell);
   }
+  if (chosen.empty() && !teaching.empty())
+    refuse(
+        fmt::format("the run has filters for teaching alone ({}), which are not advised", fmt::join(teaching, ", ")));
   return chosen;
 }
 
@@ -280,7 +288,7 @@ Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest
     if (!demand.spec) require_claim(cells, request, demand.claim);
   Advice advice;
   advice.request = request;
-  const std::vector<const records::CellRecord*> chosen = choose_cells(cells, request);
+  const std::vector<const records::CellRecord*> chosen = choose_cells(cells, request, advice.teaching);
   advice.places = list_places(chosen);
   for (const Configuration& configuration : list_configurations(chosen)) {
     auto verdict = judge(configuration, advice);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -92,6 +93,7 @@ struct Relaxation {
 struct Advice {
   AdviceRequest request;
   std::vector<Place> places;
+  std::set<std::string> teaching;  ///< filters of the run that show a mistake, and are left out
   std::vector<Candidate> keeping;  ///< all demands, cheapest first: the first is advised, the second the runner-up
   std::vector<Candidate> failing;  ///< cheapest first
   std::vector<Unjudged> unjudged;
@@ -103,10 +105,11 @@ struct Advice {
 
 /// Finds the cheapest configuration that keeps every demand in every place; the worst place decides. Configurations of
 /// the same cost are ordered by time, then RMSE.
-/// A configuration that was not measured in a place, did not finish there, or lacks a value there is not judged. A
-/// value that has nothing to be measured on in some places, as is_nothing_to_see() says, is judged on the others, if
-/// there are any. Requires that `cells` outlive what is returned. Throws Error(kUsage) for a scene or picture size that
-/// the run does not have, or a claim that no filter makes; Error(kInput) where there is no cell.
+/// Filters for teaching are left out. A configuration that was not measured in a place, did not finish there, or lacks
+/// a value there is not judged. A value that has nothing to be measured on in some places, as is_nothing_to_see() says,
+/// is judged on the others, if there are any. Requires that `cells` outlive what is returned. Throws Error(kUsage) for
+/// a scene or picture size that the run does not have, or a claim that no filter makes; Error(kInput) where there is no
+/// cell.
 Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest& request);
 
 }  // namespace shadowbench::analysis

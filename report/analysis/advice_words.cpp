@@ -217,6 +217,10 @@ std::vector<std::string> list_advice_notes(const Advice& advice, const records::
     notes.emplace_back(
         "No limit was given: what does least is then the cheapest; --max-rmse or another limit asks for more.");
   }
+  if (!advice.teaching.empty()) {
+    notes.push_back(
+        fmt::format("Left out, for they show a mistake and are for teaching: {}.", fmt::join(advice.teaching, ", ")));
+  }
   const std::vector<const records::CellRecord*> cells = list_judged_cells(advice);
   if (uses_time(advice.request)) add_time_notes(notes, cells, gl);
   add_notes_of_nothing_to_see(notes, advice);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "filters/kernel_width.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
 #include "report/records/json_values.h"
@@ -23,6 +24,18 @@ std::vector<CellGroup> group_cells(const std::vector<records::CellRecord>& cells
     groups[place->second].cells.push_back(cell);
   }
   return groups;
+}
+
+std::optional<std::size_t> find_class(const records::CellRecord& cell) {
+  const auto& classes = filters::width_classes();
+  const auto found = std::ranges::find_if(
+      classes, [&](const filters::WidthClass& each) { return cell.kernel.width_class == each.name; });
+  if (found == classes.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - classes.begin());
+}
+
+std::string_view name_class(std::optional<std::size_t> width_class) {
+  return width_class ? filters::width_classes()[*width_class].name : std::string_view();
 }
 
 std::string label_cell(const CellGroup& group, const records::CellRecord& cell) {

@@ -19,11 +19,11 @@ std::string list_numbers(const std::vector<double>& numbers) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-std::vector<double> list_radii_with(const CurveComparison& comparison, int sign) {
-  std::vector<double> radii;
-  for (std::size_t i = 0; i < comparison.radii.size(); ++i)
-    if (comparison.signs[i] == sign) radii.push_back(comparison.radii[i]);
-  return radii;
+std::vector<double> list_widths_with(const CurveComparison& comparison, int sign) {
+  std::vector<double> widths;
+  for (std::size_t i = 0; i < comparison.widths.size(); ++i)
+    if (comparison.signs[i] == sign) widths.push_back(comparison.widths[i]);
+  return widths;
 }
 
 // Who is compared, and whether the light moves.
@@ -51,29 +51,29 @@ std::string describe_pair(const Pair& pair, const Verdicts& verdicts) {
 }  // namespace
 
 std::string describe_comparison(const CurveComparison& comparison) {
-  const std::vector<double> cheaper = list_radii_with(comparison, -1), even = list_radii_with(comparison, 0);
-  const std::string all = list_numbers(comparison.radii);
+  const std::vector<double> cheaper = list_widths_with(comparison, -1), even = list_widths_with(comparison, 0);
+  const std::string all = list_numbers(comparison.widths);
   const std::string not_apart = even.empty() ? "" : fmt::format(", not to be told apart at {}", list_numbers(even));
-  if (cheaper.empty()) return fmt::format("at no radius compared ({} texels{})", all, not_apart);
-  if (cheaper.size() == comparison.radii.size())
-    return fmt::format("at {} compared ({} texels)", cheaper.size() > 1 ? "every radius" : "the one radius", all);
+  if (cheaper.empty()) return fmt::format("at no width compared ({} texels{})", all, not_apart);
+  if (cheaper.size() == comparison.widths.size())
+    return fmt::format("at {} compared ({} texels)", cheaper.size() > 1 ? "every width" : "the one width", all);
   const bool to_the_end = comparison.signs.back() == -1;
   const auto first = std::find(comparison.signs.begin(), comparison.signs.end(), -1);
   const bool in_one_piece =
       std::is_partitioned(comparison.signs.begin(), comparison.signs.end(), [](int s) { return s != -1; });
   if (to_the_end && in_one_piece) {
-    const double from = comparison.radii[static_cast<std::size_t>(first - comparison.signs.begin())];
-    return fmt::format("from a kernel radius of {} texels on, of {} compared{}", records::format_number(from), all,
+    const double from = comparison.widths[static_cast<std::size_t>(first - comparison.signs.begin())];
+    return fmt::format("from a kernel width of {} texels on, of {} compared{}", records::format_number(from), all,
                        not_apart);
   }
   return fmt::format("at {} texels of {} compared{}", list_numbers(cheaper), all, not_apart);
 }
 
-std::vector<std::string> describe_crossovers(const std::vector<RadiusChart>& charts) {
+std::vector<std::string> describe_crossovers(const std::vector<WidthChart>& charts) {
   std::map<Pair, Verdicts> pairs;
   std::map<std::string, std::set<std::string>> views;
-  for (const RadiusChart& chart : charts) views[chart.scene].insert(chart.view);
-  for (const RadiusChart& chart : charts) {
+  for (const WidthChart& chart : charts) views[chart.scene].insert(chart.view);
+  for (const WidthChart& chart : charts) {
     const std::string place = views[chart.scene].size() > 1 ? chart.scene + " (" + chart.view + ")" : chart.scene;
     const std::string picture = fmt::format("{} × {}", chart.width, chart.height);
     for (const LightState light : {LightState::kStill, LightState::kMoving}) {

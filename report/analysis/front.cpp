@@ -37,12 +37,12 @@ bool is_clearly_less_error(const Estimate& a, const Estimate& b) {
 bool is_clearly_less_cost(const Estimate& a, const Estimate& b) { return a.high < b.low; }
 
 bool dominates(const FrontPoint& a, const FrontPoint& b) {
-  if (a.cost.value > b.cost.value || is_clearly_less_error(b.error, a.error)) return false;
+  if (a.group != b.group || a.cost.value > b.cost.value || is_clearly_less_error(b.error, a.error)) return false;
   return is_clearly_less_error(a.error, b.error) || is_clearly_less_cost(a.cost, b.cost);
 }
 
 bool is_tied(const FrontPoint& a, const FrontPoint& b) {
-  return !is_clearly_less_error(a.error, b.error) && !is_clearly_less_error(b.error, a.error) &&
+  return a.group == b.group && !is_clearly_less_error(a.error, b.error) && !is_clearly_less_error(b.error, a.error) &&
          !is_clearly_less_cost(a.cost, b.cost) && !is_clearly_less_cost(b.cost, a.cost);
 }
 
@@ -50,6 +50,10 @@ std::vector<Placement> find_front(const std::vector<FrontPoint>& points) {
   std::vector<Placement> placements(points.size());
   std::vector<std::size_t> members;
   for (const std::size_t i : order_by_cost(points)) {
+    if (!points[i].group) {
+      placements[i] = {Standing::kApart, i};
+      continue;
+    }
     const auto place = place_point(points, members, points[i]);
     placements[i] = place ? *place : Placement{Standing::kFront, i};
     if (!place) members.push_back(i);
@@ -59,7 +63,9 @@ std::vector<Placement> find_front(const std::vector<FrontPoint>& points) {
 
 std::vector<std::size_t> list_members(const std::vector<FrontPoint>& points, const std::vector<Placement>& placements) {
   std::vector<std::size_t> members = order_by_cost(points);
-  std::erase_if(members, [&](std::size_t i) { return placements[i].standing != Standing::kFront; });
+  std::erase_if(
+      members, [&](std::size_t i) { return placements[i].standing != Standing::kFront; });
+  std::ranges::stable_sort(members, {}, [&](std::size_t i) { return points[i].group; });
   return members;
 }
 

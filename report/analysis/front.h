@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace shadowbench::analysis {
@@ -16,6 +17,7 @@ struct Estimate {
 struct FrontPoint {
   Estimate error;
   Estimate cost;
+  std::optional<std::size_t> group = 0;  ///< cells of one group are compared with each other alone; empty: with none
 };
 
 /// How a cell stands to the front.
@@ -23,9 +25,10 @@ enum class Standing {
   kFront,      ///< no cell of the front dominates it or is tied with it
   kTied,       ///< a cell of the front differs from it in neither error nor cost
   kDominated,  ///< a cell of the front beats it
+  kApart,      ///< it belongs to no group, and is compared with nothing
 };
 
-/// A cell's place: `by` is the cell of the front that it is tied with or dominated by, itself where it is on it.
+/// A cell's place: `by` is the cell of the front that it is tied with or dominated by, itself where there is none.
 struct Placement {
   Standing standing = Standing::kFront;
   std::size_t by = 0;
@@ -39,15 +42,16 @@ bool is_clearly_less_error(const Estimate& a, const Estimate& b);
 /// One cost below another, their intervals not touching?
 bool is_clearly_less_cost(const Estimate& a, const Estimate& b);
 
-/// Does `a` beat `b`: its cost is no higher, its error is not clearly larger, and one of the two is clearly less?
-/// Costs are compared by their values, because each has an interval of its own: a badly timed cell must not beat others
-/// by being uncertain. Errors of one scene share their uncertainty, so that a gain within it is no gain.
+/// Does `a` beat `b` of its group: its cost is no higher, its error is not clearly larger, and one of the two is
+/// clearly less? Costs are compared by their values, because each has an interval of its own: a badly timed cell must
+/// not beat others by being uncertain. Errors of one scene share their uncertainty, so that a gain within it is no
+/// gain.
 bool dominates(const FrontPoint& a, const FrontPoint& b);
 
-/// Does neither error nor cost tell the two apart?
+/// Does neither error nor cost tell two cells of a group apart?
 bool is_tied(const FrontPoint& a, const FrontPoint& b);
 
-/// Finds the Pareto front and every other cell's place; entry i is of point i.
+/// Finds each group's Pareto front and every other cell's place; entry i is of point i.
 ///
 /// Cells are taken cheapest first; each joins the front unless a member dominates it or is tied with it. Of members
 /// that dominate it the cheapest is named, and failing that of those that are tied with it. Ties are therefore always
@@ -55,7 +59,7 @@ bool is_tied(const FrontPoint& a, const FrontPoint& b);
 /// apart. Being tied is not transitive: two cells tied with one member may differ. Cost: cells times members.
 std::vector<Placement> find_front(const std::vector<FrontPoint>& points);
 
-/// Lists the front's members, cheapest first.
+/// Lists the fronts' members, group by group, within one the cheapest first.
 std::vector<std::size_t> list_members(const std::vector<FrontPoint>& points, const std::vector<Placement>& placements);
 
 }  // namespace shadowbench::analysis

@@ -7,6 +7,7 @@
 #include <functional>
 #include <utility>
 
+#include "filters/kernel_width.h"
 #include "report/analysis/summary.h"
 #include "report/records/format.h"
 
@@ -150,10 +151,35 @@ std::string describe_uncertain_steps(const TradeScope& scope, const TradeFront& 
   std::vector<std::string> parts;
   for (std::size_t i = 0; i + 1 < front.members.size(); ++i) {
     const std::size_t a = front.members[i], b = front.members[i + 1];
+    if (front.points[a].group != front.points[b].group) continue;
     if (is_clearly_less_cost(front.points[a].cost, front.points[b].cost)) continue;
     parts.push_back(fmt::format("{} and {}", label_of(scope, front, a), label_of(scope, front, b)));
   }
   return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+// One sentence for each class of width that has a front.
+void describe_members(std::vector<std::string>& sentences, const TradeScope& scope, const TradeFront& front,
+                      const records::GlRecord& gl) {
+  const auto& classes = filters::width_classes();
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    std::vector<std::string> members;
+    for (const std::size_t member : front.members)
+      if (front.points[member].group == i) members.push_back(describe_member(scope, front, member, gl));
+    if (members.empty()) continue;
+    sentences.push_back(fmt::format("{} against {}, {} kernels, the front from the cheapest cell on: {}.",
+                                    list_error_measures()[front.error].name, list_cost_measures()[front.cost].name,
+                                    classes[i].name, fmt::join(members, "; ")));
+  }
+}
+
+void describe_apart(std::vector<std::string>& sentences, const TradeScope& scope, const TradeFront& front) {
+  std::vector<std::string> labels;
+  for (std::size_t i = 0; i < front.placements.size(); ++i)
+    if (front.placements[i].standing == Standing::kApart) labels.push_back(label_of(scope, front, i));
+  if (labels.empty()) return;
+  sentences.push_back(fmt::format("Compared with nothing, for their kernels are of no class, too wide or unknown: {}.",
+                                  join_some(labels)));
 }
 
 std::vector<std::string> describe_left_out(const TradeScope& scope, const TradeFront& front) {
@@ -169,22 +195,18 @@ std::vector<std::string> describe_left_out(const TradeScope& scope, const TradeF
 
 std::vector<std::string> describe_front(const TradeScope& scope, const TradeFront& front, const records::GlRecord& gl) {
   std::vector<std::string> sentences;
-  if (!front.members.empty()) {
-    std::vector<std::string> members;
-    for (const std::size_t member : front.members) members.push_back(describe_member(scope, front, member, gl));
-    sentences.push_back(fmt::format("{} against {}, the front from the cheapest cell on: {}.",
-                                    list_error_measures()[front.error].name, list_cost_measures()[front.cost].name,
-                                    fmt::join(members, "; ")));
-  } else {
+  if (front.points.empty()) {
     sentences.push_back(fmt::format("No cell has both {} and {}.", list_error_measures()[front.error].name,
                                     list_cost_measures()[front.cost].name));
   }
+  describe_members(sentences, scope, front, gl);
   const std::string steps = describe_uncertain_steps(scope, front);
   if (!steps.empty())
     sentences.push_back("Neighbours whose costs cannot be told apart, so that the smaller error may be free: " + steps +
                         ".");
   describe_ties(sentences, scope, front);
   describe_dominated(sentences, scope, front);
+  describe_apart(sentences, scope, front);
   const auto left_out = describe_left_out(scope, front);
   sentences.insert(sentences.end(), left_out.begin(), left_out.end());
   return sentences;
@@ -192,14 +214,18 @@ std::vector<std::string> describe_front(const TradeScope& scope, const TradeFron
 
 std::vector<std::string> explain_fronts() {
   std::vector<std::string> sentences = {
-      "A cell of the front beats another, which is then dominated, where it costs no more, its error is not clearly "
-      "larger, and "
-      "one of the two is clearly less. A cell is tied with one of the front where neither is clearly less. Clearly: "
-      "errors "
-      "that differ by more than half the wider 95 % interval over the phases of the map's grid, times whose 95 % "
-      "intervals do not overlap, everything else "
-      "where "
-      "the numbers differ. Of several that beat a cell, the cheapest is named."};
+      fmt::format(
+          "Only filters whose kernels are about equally wide are compared: a wider kernel makes a softer shadow "
+          "and is no worse filter. A kernel's width is its standard deviation along an axis, in texels; each "
+          "class has a front of its own: {}.",
+          filters::describe_classes()),
+      "A cell of the front beats another of its class, which is then dominated, where it costs no more, its error is "
+      "not "
+      "clearly larger, and one of the two is clearly less. A cell is tied with one of the front where neither is "
+      "clearly "
+      "less. Clearly: errors that differ by more than half the wider 95 % interval over the phases of the map's grid, "
+      "times whose 95 % intervals do not overlap, everything else where the numbers differ. Of several that beat a "
+      "cell, the cheapest is named."};
   for (const Measure& measure : list_error_measures()) {
     sentences.push_back(
         fmt::format("{}: {}. All scenes together: {}.", measure.name, measure.meaning, measure.over_scenes));

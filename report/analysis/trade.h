@@ -17,8 +17,10 @@ struct TradeConfiguration {
   std::string filter;
   records::ParamMap params;
   int map_size = 0;
-  std::string label;               ///< tells it apart in its scope: "vsm (radius 4) · map 512"
-  std::vector<std::size_t> cells;  ///< indices into the run's cells: one, or one per scene and view
+  std::optional<double> sigma_texels;      ///< width of its kernel
+  std::optional<std::size_t> width_class;  ///< index into filters::width_classes()
+  std::string label;                       ///< tells it apart in its scope: "vsm (radius 4) · map 512"
+  std::vector<std::size_t> cells;          ///< indices into the run's cells: one, or one per scene and view
   std::array<Measured, kErrorMeasures> errors;
   std::array<Measured, kCostMeasures> costs;
 };
@@ -44,6 +46,19 @@ void label_configurations(std::vector<TradeConfiguration>& configurations);
 /// order in which it appears. Scenes together hold only configurations that every scene and view has.
 std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>& cells);
 
+/// The configurations of one filter that differ in nothing but the width of their kernel and the parameters that it
+/// follows from: those whose value changes exactly with the width.
+struct WidthSeries {
+  std::string filter;
+  std::string label;                        ///< with the parameters that tell it from the filter's other series
+  std::vector<std::size_t> configurations;  ///< indices, narrow before wide
+};
+
+/// Sorts those of `configurations` that `chosen` holds into series, in the order in which each first appears. Each map
+/// size has its own; configurations whose kernel's width is unknown are left out.
+std::vector<WidthSeries> list_width_series(const std::vector<TradeConfiguration>& configurations,
+                                           const std::vector<std::size_t>& chosen);
+
 /// The front of a scope for one error and one cost.
 struct TradeFront {
   std::size_t error = 0;                    ///< index into list_error_measures()
@@ -51,11 +66,11 @@ struct TradeFront {
   std::vector<std::size_t> configurations;  ///< those that have both, indices into the scope's
   std::vector<FrontPoint> points;           ///< entry i is of configurations[i]
   std::vector<Placement> placements;        ///< likewise; `by` is an index into `points`
-  std::vector<std::size_t> members;         ///< indices into `points`, cheapest first
+  std::vector<std::size_t> members;         ///< indices into `points`; by class of width, then cheapest first
   std::map<std::string, int> left_out;      ///< reason to number of configurations without one of the two
 };
 
-/// Finds the front of a scope.
+/// Finds the front of a scope: one of each class of width, for a wider kernel is a softer shadow, not a worse filter.
 TradeFront make_trade_front(const TradeScope& scope, std::size_t error, std::size_t cost);
 
 /// Is there a scope in which three cells or more have an error and a cost? Below that there is no trade to show.

@@ -14,6 +14,7 @@ namespace shadowbench::analysis {
 
 inline constexpr std::size_t kErrorMeasures = 4;
 inline constexpr std::size_t kCostMeasures = 4;
+inline constexpr std::size_t kMovingCost = 0, kStillCost = 1;  ///< of the costs: times, the light moving or still
 
 /// One axis of the trade.
 struct Measure {

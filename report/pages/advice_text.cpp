@@ -177,8 +177,12 @@ std::string list_remarks(const records::RunRecord& run, const analysis::Advice& 
 
 std::string describe_answer(const records::RunRecord& run, const analysis::Advice& advice) {
   const analysis::Candidate& best = advice.keeping.front();
-  const records::ParamMap& params = best.configuration.cells.front()->params;
-  const std::string with = params.empty() ? "" : wrap(fmt::format("with {}", records::describe_params(params)));
+  const records::CellRecord& cell = *best.configuration.cells.front();
+  std::vector<std::string> parts;
+  if (cell.kernel.sigma_texels)
+    parts.push_back(fmt::format("a kernel of {} texels", records::describe_kernel(cell.kernel)));
+  if (!cell.params.empty()) parts.push_back(records::describe_params(cell.params));
+  const std::string with = parts.empty() ? "" : wrap(fmt::format("with {}", fmt::join(parts, ", ")));
   return fmt::format("{}: {}{}; cheapest of {}{}\n{}", best.configuration.label,
                      analysis::format_cost(best.cost.mean, advice.request.cheapest, run.gl),
                      analysis::describe_frame(advice.request), advice.keeping.size(),

@@ -39,6 +39,7 @@ std::vector<std::string> describe_place(const std::vector<records::CellRecord>& 
     return {"", "", "", error.estimate ? each.costs[front.cost].absent : error.absent};
   }
   const analysis::Placement& place = front.placements[static_cast<std::size_t>(found - front.configurations.begin())];
+  if (place.standing == analysis::Standing::kApart) return {"", "", "", "its kernel is of no class of width"};
   const std::string by = join_keys(cells, scope.configurations[front.configurations[place.by]]);
   return {place.standing == analysis::Standing::kFront ? "1" : "0",
           place.standing == analysis::Standing::kDominated ? by : "",
@@ -58,7 +59,9 @@ std::string make_row(const std::vector<records::CellRecord>& cells, const analys
                                      join_keys(cells, each),
                                      each.filter,
                                      records::dump_line(records::value_json(each.params)),
-                                     fmt::format("{}", each.map_size)};
+                                     fmt::format("{}", each.map_size),
+                                     each.sigma_texels ? fmt::format("{}", *each.sigma_texels) : std::string(),
+                                     std::string(analysis::name_class(each.width_class))};
   append(fields, each.errors[front.error].estimate);
   append(fields, each.costs[front.cost].estimate);
   const auto place = describe_place(cells, scope, front, i);
@@ -80,6 +83,8 @@ std::vector<records::CsvColumn> list_front_columns() {
           {"filter", "the filter's id"},
           {"params", "the filter's parameters as JSON"},
           {"map_size", "shadow map, texels along a side"},
+          {"kernel_sigma_texels", "the kernel's standard deviation along an axis, texels"},
+          {"kernel_class", "the class of kernels that are about as wide; each has a front of its own"},
           {"error_value", "the error"},
           {"error_low", "lower end of its interval; the value where it has none"},
           {"error_high", "upper end likewise"},

@@ -23,6 +23,8 @@ std::string format_own(const std::optional<records::OwnTime>& time) {
   return time ? records::format_interval(time->median, time->ci95) : records::kNothing;
 }
 
+constexpr const char* kKernelColumn = "kernel's width, texels (class)";
+
 using Metrics = std::vector<const metrics::Metric*>;
 
 /// The metrics of a group that have a column here.
@@ -82,6 +84,7 @@ records::TextTable make_cost_table(const analysis::CellGroup& group, const recor
   records::TextTable table;
   table.header = {"filter",
                   "parameters",
+                  kKernelColumn,
                   fmt::format("moving light: map, prefilter, filter, {}, median [95 %]", unit),
                   fmt::format("still light: filter alone, {}, median [95 %]", unit),
                   fmt::format("lookup, {}, median [quartiles]", unit),
@@ -92,8 +95,9 @@ records::TextTable make_cost_table(const analysis::CellGroup& group, const recor
   for (const records::CellRecord& cell : group.cells) {
     auto& row = table.rows.emplace_back(std::vector<std::string>{
         cell.filter, cell.params.empty() ? records::kNothing : records::describe_params(cell.params),
-        format_own(cell.time_ms.moving), format_own(cell.time_ms.filter), format_quartiles(cell.time_ms.lookup),
-        format_quartiles(cell.time_ms.prefilter), format_quartiles(cell.time_ms.map)});
+        records::describe_kernel(cell.kernel), format_own(cell.time_ms.moving), format_own(cell.time_ms.filter),
+        format_quartiles(cell.time_ms.lookup), format_quartiles(cell.time_ms.prefilter),
+        format_quartiles(cell.time_ms.map)});
     add_values(row, costs, cell);
     row.push_back(records::describe_status(cell));
   }
@@ -103,13 +107,14 @@ records::TextTable make_cost_table(const analysis::CellGroup& group, const recor
 records::TextTable make_accuracy_table(const analysis::CellGroup& group) {
   const Metrics errors = list_tabled("error"), artefacts = list_tabled("artefact");
   records::TextTable table;
-  table.header = {"filter"};
+  table.header = {"filter", kKernelColumn};
   add_titles(table.header, errors);
   table.header.emplace_back("dominating part");
   add_titles(table.header, artefacts);
   table.header.push_back("share of " + join_part_names());
   for (const records::CellRecord& cell : group.cells) {
-    auto& row = table.rows.emplace_back(std::vector<std::string>{analysis::label_cell(group, cell)});
+    auto& row = table.rows.emplace_back(
+        std::vector<std::string>{analysis::label_cell(group, cell), records::describe_kernel(cell.kernel)});
     add_values(row, errors, cell);
     row.push_back(format_dominating_part(cell));
     add_values(row, artefacts, cell);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "filters/kernel_width.h"
+#include "report/analysis/cell_group.h"
 #include "report/analysis/front_words.h"
 #include "report/page/chart_style.h"
 #include "report/records/format.h"
@@ -71,11 +73,10 @@ class FrontChart {
                       analysis::name_axis(error_, gl_),
                       choose_measure_axis(scope_, cost_of, cost_.is_bytes),
                       choose_measure_axis(scope_, error_of, false),
-                      {make_line()},
+                      {},
                       {}};
+    for (std::size_t i = 0; i < filters::width_classes().size(); ++i) add_front(chart, i);
     for (const std::string& filter : filters) add_filter(chart.series, filter, style_among(filters, filter));
-    for (std::size_t i = 0; i < front_.members.size(); ++i)
-      chart.notes.push_back(fmt::format("{}: {}", i + 1, configuration_of(front_.members[i]).label));
     return chart;
   }
 
@@ -84,13 +85,17 @@ class FrontChart {
     return scope_.configurations[front_.configurations[point]];
   }
 
-  /// The line through the members, with their numbers beside it.
-  ChartSeries make_line() const {
-    ChartSeries line = start_line("front", page::kInk, page::LineStyle::kSteps);
-    for (const std::size_t member : front_.members)
-      line.points.push_back(
-          {front_.points[member].cost, front_.points[member].error, fmt::format("{}", line.points.size() + 1)});
-    return line;
+  /// The line through the front of one class of width, with the members' numbers beside it.
+  void add_front(page::Chart& chart, std::size_t width_class) const {
+    const std::string_view name = analysis::name_class(width_class);
+    ChartSeries line = start_line(fmt::format("front, {}", name), page::kInk, page::LineStyle::kSteps);
+    for (const std::size_t member : front_.members) {
+      const analysis::FrontPoint& values = front_.points[member];
+      if (values.group != width_class) continue;
+      chart.notes.push_back(fmt::format("{}: {}, {}", chart.notes.size() + 1, configuration_of(member).label, name));
+      line.points.push_back({values.cost, values.error, fmt::format("{}", chart.notes.size())});
+    }
+    if (!line.points.empty()) chart.series.push_back(std::move(line));
   }
 
   std::string describe_standing(std::size_t point) const {
@@ -98,7 +103,16 @@ class FrontChart {
     const std::string& leader = configuration_of(placement.by).label;
     return placement.standing == analysis::Standing::kFront  ? "on the front"
            : placement.standing == analysis::Standing::kTied ? "tied with " + leader
-                                                             : "beaten by " + leader;
+           : placement.standing == analysis::Standing::kApart
+               ? "compared with nothing: its kernel is of no class of width"
+               : "beaten by " + leader;
+  }
+
+  static std::string describe_kernel(const Configuration& configuration) {
+    if (!configuration.sigma_texels) return "kernel of unknown width";
+    const std::string_view name = analysis::name_class(configuration.width_class);
+    return fmt::format("kernel {} texels{}", records::format_number(*configuration.sigma_texels),
+                       name.empty() ? std::string() : fmt::format(", {}", name));
   }
 
   page::ChartPoint make_point(std::size_t point) const {
@@ -107,6 +121,7 @@ class FrontChart {
     page::ChartPoint made{values.cost, values.error};
     made.details = {configuration.label,
                     configuration.params.empty() ? "no parameters" : records::describe_params(configuration.params),
+                    describe_kernel(configuration),
                     fmt::format("map {0} × {0}", configuration.map_size),
                     say_value(error_, values.error, gl_),
                     say_value(cost_, values.cost, gl_),
@@ -120,7 +135,8 @@ class FrontChart {
     return made;
   }
 
-  /// A filter's cells: on the front, tied, with dotted lines to what they are tied with, and beaten.
+  /// A filter's cells: on a front; tied, with dotted lines to what they are tied with, or compared with nothing;
+  /// beaten.
   void add_filter(std::vector<ChartSeries>& series, const std::string& filter, const page::ChartStyle& style) const {
     ChartSeries members = start_series(filter, style), tied = start_series({}, style), beaten = start_series({}, style);
     ChartSeries ties = start_line({}, style.color, page::LineStyle::kTies);
@@ -129,9 +145,9 @@ class FrontChart {
     for (std::size_t i = 0; i < front_.points.size(); ++i) {
       if (configuration_of(i).filter != filter) continue;
       const auto [standing, by] = front_.placements[i];
-      ChartSeries& own = standing == analysis::Standing::kFront  ? members
-                         : standing == analysis::Standing::kTied ? tied
-                                                                 : beaten;
+      ChartSeries& own = standing == analysis::Standing::kFront       ? members
+                         : standing == analysis::Standing::kDominated ? beaten
+                                                                      : tied;
       own.points.push_back(make_point(i));
       if (standing != analysis::Standing::kTied) continue;
       for (const std::size_t end : {i, by}) ties.points.push_back({front_.points[end].cost, front_.points[end].error});
@@ -140,6 +156,20 @@ class FrontChart {
     series.push_back(std::move(members));
     for (ChartSeries* more : {&tied, &beaten, &ties})
       if (!more->points.empty()) series.push_back(std::move(*more));
+    for (const analysis::WidthSeries& each : widths_)
+      if (each.filter == filter && each.configurations.size() > 1) series.push_back(make_curve(each, style));
+  }
+
+  /// The line through a filter's cells from narrow to wide: its curve over the width.
+  ChartSeries make_curve(const analysis::WidthSeries& each, const page::ChartStyle& style) const {
+    ChartSeries curve = start_line({}, style.color, page::LineStyle::kSolid);
+    curve.faint = true;
+    for (const std::size_t i : each.configurations) {
+      const Configuration& configuration = scope_.configurations[i];
+      curve.points.push_back(
+          {*configuration.costs[front_.cost].estimate, *configuration.errors[front_.error].estimate});
+    }
+    return curve;
   }
 
   const analysis::TradeScope& scope_;
@@ -148,9 +178,11 @@ class FrontChart {
   const records::GlRecord& gl_;
   const analysis::Measure& error_ = analysis::list_error_measures()[front_.error];
   const analysis::Measure& cost_ = analysis::list_cost_measures()[front_.cost];
+  const std::vector<analysis::WidthSeries> widths_ =
+      analysis::list_width_series(scope_.configurations, front_.configurations);
 };
 
-const analysis::Estimate& time_of(const analysis::RadiusPoint& point, analysis::LightState light) {
+const analysis::Estimate& time_of(const analysis::WidthPoint& point, analysis::LightState light) {
   return light == analysis::LightState::kStill ? point.still : point.moving;
 }
 
@@ -166,52 +198,52 @@ page::ChartAxis choose_time_axis(const std::vector<ChartSeries>& series) {
   return page::choose_log_axis(times, ends);
 }
 
-ChartSeries make_radius_series(const analysis::RadiusCurve& curve, analysis::LightState light,
-                               const page::ChartStyle& style) {
+ChartSeries make_width_series(const analysis::WidthCurve& curve, analysis::LightState light,
+                              const page::ChartStyle& style) {
   ChartSeries series = start_series(curve.label, style);
   series.line = curve.prefiltered ? page::LineStyle::kSolid : page::LineStyle::kDashed;
-  for (const analysis::RadiusPoint& p : curve.points)
-    series.points.push_back({exactly(p.radius_texels), time_of(p, light)});
+  for (const analysis::WidthPoint& p : curve.points)
+    series.points.push_back({exactly(p.sigma_texels), time_of(p, light)});
   return series;
 }
 
-ChartSeries make_crossings(const analysis::RadiusChart& chart, analysis::LightState light) {
+ChartSeries make_crossings(const analysis::WidthChart& chart, analysis::LightState light) {
   ChartSeries series;
   series.color = page::kInk;
   series.mark = page::Mark::kCross;
   for (const analysis::CurveComparison& each : analysis::compare_curves(chart, light)) {
-    for (const analysis::RadiusPoint& p : each.crossings) {
-      const std::string radius = records::format_number(p.radius_texels);
-      series.points.push_back({exactly(p.radius_texels),
+    for (const analysis::WidthPoint& p : each.crossings) {
+      const std::string width = records::format_number(p.sigma_texels);
+      series.points.push_back({exactly(p.sigma_texels),
                                time_of(p, light),
-                               radius,
+                               width,
                                {chart.curves[each.prefiltered].label + " × " + chart.curves[each.taps].label,
-                                fmt::format("kernel half-width {} texels", radius)}});
+                                fmt::format("kernel {} texels", width)}});
     }
   }
   if (!series.points.empty()) series.title = "crossing";
   return series;
 }
 
-page::Chart make_radius_chart(const analysis::RadiusChart& chart, analysis::LightState light,
-                              const std::vector<std::string>& filters, const records::GlRecord& gl) {
+page::Chart make_width_chart(const analysis::WidthChart& chart, analysis::LightState light,
+                             const std::vector<std::string>& filters, const records::GlRecord& gl) {
   const bool still = light == analysis::LightState::kStill;
   const analysis::Measure& cost = analysis::list_cost_measures()[still ? 1 : 0];
   page::Chart made;
-  made.id = fmt::format("{}.map{}.radius.{}", chart.scope_id, chart.map_size, still ? "still" : "moving");
+  made.id = fmt::format("{}.map{}.width.{}", chart.scope_id, chart.map_size, still ? "still" : "moving");
   made.title = chart.title;
-  made.x_name = "kernel half-width, texels";
+  made.x_name = "kernel's width (standard deviation), texels";
   made.y_name = analysis::name_axis(cost, gl);
-  std::vector<double> radii;
-  for (const analysis::RadiusCurve& curve : chart.curves) {
-    made.series.push_back(make_radius_series(curve, light, style_among(filters, curve.filter)));
+  std::vector<double> widths;
+  for (const analysis::WidthCurve& curve : chart.curves) {
+    made.series.push_back(make_width_series(curve, light, style_among(filters, curve.filter)));
     for (page::ChartPoint& point : made.series.back().points) {
-      radii.push_back(point.x.value);
-      point.details = {curve.label, fmt::format("kernel half-width {} texels", records::format_number(point.x.value)),
+      widths.push_back(point.x.value);
+      point.details = {curve.label, fmt::format("kernel {} texels", records::format_number(point.x.value)),
                        say_value(cost, point.y, gl)};
     }
   }
-  made.x = page::choose_axis(radii, {}, page::TickKind::kNumber);
+  made.x = page::choose_axis(widths, {}, page::TickKind::kNumber);
   made.y = choose_time_axis(made.series);
   made.series.push_back(make_crossings(chart, light));
   made.notes = {"solid: prefiltered", "dashed: read at every lookup"};
@@ -272,14 +304,14 @@ page::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& sco
   return choice;
 }
 
-page::ChartChoice make_radius_choice(const std::vector<analysis::RadiusChart>& charts,
-                                     const std::vector<std::string>& filters, const records::GlRecord& gl) {
+page::ChartChoice make_width_choice(const std::vector<analysis::WidthChart>& charts,
+                                    const std::vector<std::string>& filters, const records::GlRecord& gl) {
   page::ChartChoice choice{
-      "radius", {{"where", {}}, {"light", {"still: lookup", "moving: map, prefilter, lookup"}}}, {}};
-  for (const analysis::RadiusChart& chart : charts) {
+      "width", {{"where", {}}, {"light", {"still: lookup", "moving: map, prefilter, lookup"}}}, {}};
+  for (const analysis::WidthChart& chart : charts) {
     choice.selectors[0].options.push_back(chart.title);
     for (const analysis::LightState light : {analysis::LightState::kStill, analysis::LightState::kMoving})
-      choice.entries.push_back({make_radius_chart(chart, light, filters, gl), {}});
+      choice.entries.push_back({make_width_chart(chart, light, filters, gl), {}});
   }
   return choice;
 }

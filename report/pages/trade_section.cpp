@@ -15,11 +15,14 @@ namespace {
 using Blocks = std::vector<page::Block>;
 
 constexpr const char* kFrontsNote =
-    "Lower left is better. Filled and joined: the front, the cells that no other beats, numbered from the cheapest on. "
-    "Hollow: cannot be told from a cell of the front, to which a dotted line leads. Faint: beaten. Whiskers are "
-    "intervals. Point at a cell for its numbers, click it for its pictures, click a name in the key to hide its cells.";
+    "Lower left is better, among kernels that are equally wide. Filled and joined: the front of each class of width, "
+    "the cells that no other of the class beats, numbered from the cheapest on. Hollow: cannot be told from a cell of "
+    "the front, to which a dotted line leads; or of no class, and compared with nothing. Faint: beaten. A thin line "
+    "joins a filter's cells from narrow to wide kernels. Whiskers are intervals. Point at a cell for its numbers, "
+    "click "
+    "it for its pictures, click a name in the key to hide its cells.";
 constexpr const char* kCrossoversNote =
-    "A radius counts where both were measured, or one was and the other is interpolated between its neighbours; "
+    "A width counts where both were measured, or one was and the other is interpolated between its neighbours; "
     "cheaper is said where the 95 % intervals do not overlap. Crosses mark where the medians meet.";
 constexpr const char* kLightsNote =
     "Light 0 is the scene's; the others are it, turned about the vertical in equal steps, each with a frustum, a depth "
@@ -55,13 +58,13 @@ void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector
   blocks.emplace_back(explain_columns("fronts.csv", list_front_columns()));
 }
 
-void add_radii(Blocks& blocks, const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-               const Trade& trade) {
-  if (!trade.radius_charts.empty()) {
-    blocks.emplace_back(page::Heading{"From which kernel on a prefiltered map pays"});
-    blocks.emplace_back(page::Sentences{{}, analysis::describe_crossovers(trade.radius_charts)});
+void add_widths(Blocks& blocks, const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+                const Trade& trade) {
+  if (!trade.width_charts.empty()) {
+    blocks.emplace_back(page::Heading{"From which width of the kernel on a prefiltered map pays"});
+    blocks.emplace_back(page::Sentences{{}, analysis::describe_crossovers(trade.width_charts)});
     blocks.emplace_back(page::Paragraph{kCrossoversNote, true});
-    blocks.emplace_back(make_radius_choice(trade.radius_charts, analysis::list_filters(cells), run.gl));
+    blocks.emplace_back(make_width_choice(trade.width_charts, analysis::list_filters(cells), run.gl));
   }
   const auto growth = analysis::describe_growth(cells);
   if (growth.empty()) return;
@@ -94,7 +97,7 @@ std::optional<Trade> make_trade(const std::vector<records::CellRecord>& cells) {
   trade.has_fronts = analysis::has_trade(trade.scopes);
   trade.light_charts = analysis::make_light_charts(cells, trade.scopes);
   if (!trade.has_fronts && trade.light_charts.empty()) return std::nullopt;
-  if (trade.has_fronts) trade.radius_charts = analysis::make_radius_charts(cells, trade.scopes);
+  if (trade.has_fronts) trade.width_charts = analysis::make_width_charts(cells, trade.scopes);
   return trade;
 }
 
@@ -103,7 +106,7 @@ page::Section make_trade_section(const records::RunRecord& run, const std::vecto
   page::Section section{"trade", "The trade: what less error costs", {}};
   if (trade.has_fronts) {
     add_fronts(section.blocks, run, cells, trade);
-    add_radii(section.blocks, run, cells, trade);
+    add_widths(section.blocks, run, cells, trade);
   }
   add_lights(section.blocks, run, cells, trade.light_charts);
   return section;

@@ -14,7 +14,7 @@ namespace shadowbench::pages {
 struct Trade {
   std::vector<analysis::TradeScope> scopes;
   bool has_fronts = false;  ///< has_trade(); without it there is only what several lights cost
-  std::vector<analysis::RadiusChart> radius_charts;
+  std::vector<analysis::WidthChart> width_charts;
   std::vector<analysis::LightChart> light_charts;
 };
 

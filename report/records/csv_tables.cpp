@@ -56,6 +56,10 @@ std::vector<Column> setting_columns() {
       column<&C::view>("view", "the camera's name"),
       column<&C::filter>("filter", "the filter's id"),
       column<&C::params>("params", "the filter's parameters as JSON"),
+      column<&C::kernel, &KernelRecord::sigma_texels>("kernel_sigma_texels",
+                                                      "the kernel's standard deviation along an axis, texels"),
+      column<&C::kernel, &KernelRecord::width_class>(
+          "kernel_class", "the class of kernels that are about as wide, with which alone it is compared"),
       column<&C::map_size>("map_size", "shadow map, texels along a side"),
       column<&C::map_format>("map_format", "the shadow map's format"),
       column<&C::fit>("fit", "how the light's frustum is fitted; snapped: to whole texels"),

@@ -132,6 +132,11 @@ std::string describe_params(const records::ParamMap& params) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+std::string describe_kernel(const KernelRecord& kernel) {
+  const std::string width_class = kernel.width_class ? fmt::format(" ({})", *kernel.width_class) : std::string();
+  return format_number(kernel.sigma_texels) + width_class;
+}
+
 std::string describe_coverage(const records::CoverageRecord& coverage) {
   if (!coverage.texels_per_pixel || !coverage.fewest_texels_per_pixel || !coverage.map_used) return {};
   return fmt::format("{} map texels per pixel (worst {}), {:.0f} % of the map used",

@@ -26,6 +26,7 @@ json::json_pointer make_pointer(std::string path) {
 
 bool is_finite(double value) { return std::isfinite(value); }
 bool is_finite(std::int64_t) { return true; }
+bool is_finite(bool) { return true; }
 bool is_finite(const std::string&) { return true; }
 bool is_finite(const std::vector<std::string>&) { return true; }
 bool is_finite(const Quartiles& value) {

@@ -9,10 +9,22 @@
 namespace shadowbench::records {
 
 /// Names the fields that older files of this schema version lack; they are read as null or empty there.
-inline constexpr std::array<std::string_view, 13> kLaterFields = {
-    "time_ms.empty",      "error.rmse_ci95",    "phases",    "time_ms.filter", "time_ms.moving",
-    "images.parts",       "work.attribution_s", "claims",    "lights",         "repeat.cells",
-    "repeat.overlapping", "repeat.of",          "suspect_of"};
+inline constexpr std::array<std::string_view, 16> kLaterFields = {"time_ms.empty",
+                                                                  "error.rmse_ci95",
+                                                                  "phases",
+                                                                  "time_ms.filter",
+                                                                  "time_ms.moving",
+                                                                  "images.parts",
+                                                                  "work.attribution_s",
+                                                                  "claims",
+                                                                  "lights",
+                                                                  "repeat.cells",
+                                                                  "repeat.overlapping",
+                                                                  "repeat.of",
+                                                                  "suspect_of",
+                                                                  "kernel.sigma_texels",
+                                                                  "kernel.class",
+                                                                  "teaching"};
 
 /// Calls `visit(name, value)` for every field of a bias.
 template <class Bias, class Visitor>
@@ -49,6 +61,9 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("filter", cell.filter);
   visit("params", cell.params);
   visit("kernel_radius_texels", cell.kernel_radius_texels);
+  visit("kernel.sigma_texels", cell.kernel.sigma_texels);
+  visit("kernel.class", cell.kernel.width_class);
+  visit("teaching", cell.teaching);
   visit("claims", cell.claims);
   visit("map_size", cell.map_size);
   visit("map_format", cell.map_format);

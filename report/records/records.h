@@ -122,6 +122,12 @@ struct ImagesRecord {
   std::optional<std::string> parts = std::nullopt;  ///< no path, but how the names of the cell's parts in `exr` begin
 };
 
+/// How wide the filter's kernel is.
+struct KernelRecord {
+  std::optional<double> sigma_texels;      ///< standard deviation along an axis, reconstruction included
+  std::optional<std::string> width_class;  ///< of filters::width_classes()
+};
+
 /// Everything measured of one scene x view x filter x parameters x map settings.
 ///
 /// What does not exist stays empty, and `absent` says why: dotted field name, or the name of a whole group
@@ -136,7 +142,9 @@ struct CellRecord : metrics::MetricValues {
   std::string view;
   std::string filter;
   ParamMap params;
-  std::optional<double> kernel_radius_texels;      ///< half-width of the kernel, which follows from `params`
+  std::optional<double> kernel_radius_texels;  ///< half-width of the kernel, which follows from `params`
+  KernelRecord kernel = {};
+  std::optional<bool> teaching;                    ///< the filter is for teaching: it is not advised
   std::optional<std::vector<std::string>> claims;  ///< what the filter says of itself, such as "contact-hardening"
   int map_size = 0;                                ///< texels along a side
   std::string map_format;                          ///< "d32f", "d16 reversed"

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "filters/base/error.h"
+#include "filters/kernel_width.h"
 #include "filters/model.h"
 
 namespace shadowbench::filters {
@@ -14,6 +15,8 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+using ::testing::UnorderedElementsAre;
 
 const Catalogue& built_in() {
   static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
@@ -42,7 +45,34 @@ TEST(Catalogue, EveryModel_HasItsFilter) {
   for (const ModelEntry& entry : model_table()) EXPECT_NO_THROW(built_in().find(entry.id)) << entry.id;
 }
 
-TEST(Requests, Empty_AsksForAll) { EXPECT_EQ(built_in().parse_requests("").size(), built_in().filters().size()); }
+std::vector<std::string> ids_of(const std::string& text) {
+  std::vector<std::string> ids;
+  for (const FilterRequest& request : built_in().parse_requests(text)) ids.push_back(request.spec.id);
+  return ids;
+}
+
+TEST(Requests, AllAreThoseThatAreNotForTeaching_Empty_AsksForThem) {
+  EXPECT_THAT(ids_of("teaching"), UnorderedElementsAre("box3x3", "teach4x4"));
+  EXPECT_EQ(ids_of(""), ids_of("all"));
+  EXPECT_THAT(ids_of("all"), IsSupersetOf({"none", "box4x4", "vsm"}));
+  EXPECT_EQ(ids_of("all,teaching").size(), built_in().filters().size());
+  EXPECT_THAT(ids_of("teach4x4"), ElementsAre("teach4x4")) << "named, it is drawn";
+}
+
+TEST(Requests, AWidth_IsItsRadius) {
+  const auto requests = built_in().parse_requests("vsm:width=medium,bleed_reduction=0.2,poisson:width=1.2");
+  ASSERT_EQ(requests.size(), 2u);
+  EXPECT_EQ(requests[0].label(), "vsm (bleed_reduction=0.2, radius=1)");
+  EXPECT_EQ(requests[0].width, "medium");
+  EXPECT_EQ(requests[1].label(), "poisson (radius=2.257)");
+}
+
+TEST(Requests, AWidth_CountsWithTheOtherParameters) {
+  // Read with the nearest texel, a kernel is narrower: 0.54 texels with a radius of 1, 1.00 with 2.
+  for (const char* text : {"esm:width=0.78,combine=log", "esm:combine=log,width=0.78"})
+    EXPECT_EQ(number(built_in().parse_requests(text).front().values, "radius"), 2.0) << text;
+  EXPECT_EQ(number(built_in().parse_requests("esm:width=0.78").front().values, "radius"), 1.0);
+}
 
 TEST(Requests, ParametersBelongToTheFilterBefore) {
   const auto requests = built_in().parse_requests("none,vsm:radius=8,min_variance=1e-4,esm:combine=log");
@@ -67,6 +97,13 @@ TEST(Requests, Mistakes_AreNamed) {
   expect_usage_error("none,,vsm", "empty filter name");
   expect_usage_error("none:radius=3", "no parameter 'radius'");
   expect_usage_error("esm:combine=logs", "linear, log");
+  expect_usage_error("vsm:width=40", "choose a class (sharp, medium, soft) or 0.408 .. 28.3 texels");
+  expect_usage_error("vsm:width=0.2", "0.408 .. 28.3 texels");
+  expect_usage_error("vsm:width=-1", "0.408 .. 28.3 texels");
+  expect_usage_error("vsm:width=nan", "no number of texels");
+  expect_usage_error("vsm:width=medum", "did you mean 'medium'");
+  expect_usage_error("tent3x3:width=medium", "no radius that a width could set; its kernel is 0.645 texels wide");
+  expect_usage_error("vsm:radius=2,width=soft", "sets 'radius' and 'width'");
 }
 
 TEST(UserFile, WithATakenId_IsRefused) {
@@ -74,13 +111,22 @@ TEST(UserFile, WithATakenId_IsRefused) {
   EXPECT_THROW(catalogue.add_user_file(SHADOWBENCH_SOURCE_DIR "/filters/vsm.glsl"), Error);
 }
 
-TEST(UserFile, NamedAsTheReportsOwnPictures_IsRefused) {
-  const auto copy = std::filesystem::path(::testing::TempDir()) / std::to_string(getpid()) / "truth.glsl";
-  std::filesystem::create_directories(copy.parent_path());
-  std::filesystem::copy_file(SHADOWBENCH_SOURCE_DIR "/filters/none.glsl", copy);
+TEST(UserFile, NamedAsAWordWithAMeaning_IsRefused) {
+  const auto folder = std::filesystem::path(::testing::TempDir()) / std::to_string(getpid());
+  std::filesystem::create_directories(folder);
+  for (const char* name : {"truth.glsl", "all.glsl", "teaching.glsl"}) {
+    std::filesystem::copy_file(SHADOWBENCH_SOURCE_DIR "/filters/none.glsl", folder / name);
+    Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
+    EXPECT_THROW(catalogue.add_user_file(folder / name), Error) << name;
+  }
+  std::filesystem::remove_all(folder);
+}
+
+TEST(UserFile, HasNoWidth) {
   Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  EXPECT_THROW(catalogue.add_user_file(copy), Error);
-  std::filesystem::remove_all(copy.parent_path());
+  catalogue.add_user_file(SHADOWBENCH_SOURCE_DIR "/tests/user_filters/nine_compares.glsl");
+  const FilterRequest request = catalogue.parse_requests("nine_compares").front();
+  EXPECT_EQ(find_kernel_sigma(request.spec, request.values), std::nullopt);
 }
 
 }  // namespace

@@ -29,7 +29,8 @@ void expect_error(const std::string& text, const std::string& where, const std::
 TEST(FrontMatter, GivesEveryField) {
   const FilterSpec spec = parse_filter(
       "/*+++\ntitle = \"Title\"\nsource = \"Source\"\nkind = \"bound\"\nstore = [\"rg32f\", \"rg16f\"]\n"
-      "combine = [\"linear\", \"log\"]\nsample = \"linear\"\nclaims = [\"contact-hardening\"]\nradius_texels = "
+      "combine = [\"linear\", \"log\"]\nsample = \"linear\"\nclaims = [\"contact-hardening\"]\nteaching = "
+      "true\nradius_texels = "
       "\"radius\"\n"
       "[param.radius]\ndefault = 3\nmin = 0\nmax = 9\nunit = \"texels\"\ntext = \"help\"\n"
       "[param.amount]\ndefault = 0.5\nmin = 0.0\nmax = 1.0\ntext = \"help\"\nconst = true\n+++*/\n"
@@ -40,6 +41,7 @@ TEST(FrontMatter, GivesEveryField) {
   EXPECT_EQ(spec.source, "Source");
   EXPECT_EQ(spec.kind, FilterKind::kBound);
   EXPECT_EQ(spec.claims, std::vector<std::string>{"contact-hardening"});
+  EXPECT_TRUE(spec.teaching);
   EXPECT_TRUE(spec.has_encode);
   EXPECT_TRUE(spec.has_prefilter);
   ASSERT_EQ(spec.params.size(), 5u);

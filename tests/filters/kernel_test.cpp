@@ -3,6 +3,7 @@
 
 #include "filters/kernel.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,6 +12,7 @@
 #include <set>
 
 #include "filters/catalogue.h"
+#include "filters/kernel_width.h"
 #include "filters/model.h"
 #include "filters/percentage_closer.h"
 
@@ -78,6 +80,48 @@ TEST(KernelWidths, ReachIsThatOfTheFrontMatter) {
     const double own_texel = kernel.reconstruction() == Reconstruction::kNearest ? 0.5 : 0.0;
     EXPECT_EQ(reach_texels(spec, request.values), kernel.half_width() + own_texel) << spec.id;
   }
+}
+
+TEST(KernelWidths, AreTheStandardDeviationToTwoDigits) {
+  const std::vector<std::pair<const char*, double>> known = {
+      {"none", 0.29},     {"pcf2x2", 0.41},  {"tent3x3", 0.65}, {"box3x3", 0.87}, {"box4x4", 0.91},
+      {"teach4x4", 1.08}, {"poisson", 1.55}, {"vsm", 1.90},     {"esm", 1.90},    {"esm:combine=log", 1.87}};
+  for (const auto& [text, sigma] : known) EXPECT_NEAR(kernel_of(text).sigma_texels(), sigma, 0.005) << text;
+}
+
+TEST(WidthClasses, StandForTheirFilters_AndReachHalfWayToTheNextInRatio) {
+  const auto& [sharp, medium, soft] = width_classes();
+  EXPECT_EQ(sharp.sigma_texels, kernel_of("pcf2x2").sigma_texels());
+  EXPECT_EQ(medium.sigma_texels, kernel_of("tent3x3").sigma_texels());
+  EXPECT_EQ(soft.sigma_texels, kernel_of("poisson").sigma_texels());
+  for (const auto& [text, name] : {std::pair("none", "sharp"),
+                                   {"pcf2x2", "sharp"},
+                                   {"tent3x3", "medium"},
+                                   {"box4x4", "medium"},
+                                   {"poisson:width=medium", "medium"},
+                                   {"vsm:width=medium", "medium"},
+                                   {"esm:width=medium", "medium"},
+                                   {"vsm", "soft"}})
+    EXPECT_EQ(find_width_class(kernel_of(text).sigma_texels())->name, name) << text;
+  for (const WidthClass* each : {&sharp, &medium}) {
+    const double next = each[1].sigma_texels;
+    EXPECT_NEAR(each->widest_texels / each->sigma_texels, next / each->widest_texels, 1e-12);
+    EXPECT_EQ(find_width_class(std::nextafter(each->widest_texels, 9.0)), each + 1);
+  }
+  EXPECT_EQ(find_width_class(soft.widest_texels), &soft);
+  EXPECT_EQ(find_width_class(2.42), nullptr);
+}
+
+TEST(WidthClasses, AreReachedByEveryFilterWithARadius) {
+  for (const char* filter : {"poisson", "vsm", "esm", "esm:combine=log"}) {
+    const char separator = std::string(filter).find(':') == std::string::npos ? ':' : ',';
+    for (const WidthClass& each : width_classes()) {
+      const Kernel kernel = kernel_of(fmt::format("{}{}width={}", filter, separator, each.name));
+      EXPECT_EQ(find_width_class(kernel.sigma_texels()), &each) << filter << " " << each.name;
+    }
+  }
+  EXPECT_EQ(kernel_of("poisson:width=medium").disk_radius(), 1.0) << "exactly the tent's width";
+  EXPECT_EQ(kernel_of("poisson:width=sharp").name(), kernel_of("pcf2x2").name());
 }
 
 /// Second moment of a kernel per axis, by a regular grid of samples.

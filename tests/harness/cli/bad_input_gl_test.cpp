@@ -94,6 +94,12 @@ TEST_F(BadInput, PolygonOffsetOnPerspectiveDepth) {
   expect_refusal(small("--perspective-depth 9 --bias polygon-offset:factor=1"), 2,
                  {"polygon-offset", "--perspective-depth"});
 }
+TEST_F(BadInput, WidthThatNoRadiusGives) {
+  expect_refusal(small("--filters none,vsm:width=40"), 2, {"vsm:width=40", "0.408 .. 28.3 texels"});
+  expect_refusal(small("--filters none,vsm:width=thin"), 2, {"'vsm:width=thin'", "sharp, medium, soft"});
+  expect_refusal(small("--filters none,nine_compares:width=soft --filter-file " + user_filter("nine_compares.glsl")), 2,
+                 {"nine_compares:width=soft", "no radius"});
+}
 TEST_F(BadInput, NegativeBias) { expect_refusal(small("--bias plane:kernels=-1"), 2, {"--bias", "'-1'"}); }
 TEST_F(BadInput, BiasThatAFilterCannotUse) {
   expect_refusal(small("--bias receiver-plane --filters none,vsm"), 2, {"receiver-plane", "'vsm'"});

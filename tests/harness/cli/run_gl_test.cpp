@@ -14,11 +14,11 @@ nlohmann::json results(const std::filesystem::path& folder) {
   return nlohmann::json::parse(read_text(folder / "out" / "results.json"));
 }
 
-TEST_F(Command, AllScenesAndFilters_WriteAValidReport) {
+TEST_F(Command, ByDefault_AllScenesAndSixFilters_WriteAValidReport) {
   const Outcome outcome = run("run --out out --size 128x72 --map-size 128 --rounds 2");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json document = results(folder());
-  EXPECT_EQ(document["cells"].size(), 45u);
+  EXPECT_EQ(document["cells"].size(), 30u);
   for (const auto& cell : document["cells"]) EXPECT_EQ(cell["nan"], 0);
   for (const char* scene : {"cubes", "stack", "fence", "ball", "steps"}) {
     EXPECT_TRUE(std::filesystem::exists(folder() / "out" / (std::string(scene) + ".grid.png")));
@@ -44,6 +44,8 @@ TEST_F(Command, UserFilter_GetsCellAndPictures) {
   EXPECT_EQ(cell["status"], "ok");
   EXPECT_EQ(cell["params"]["weight"], 0.5);
   EXPECT_EQ(cell["cost"]["fetches"], 9.0);
+  EXPECT_TRUE(cell["kernel"]["sigma_texels"].is_null());
+  EXPECT_EQ(cell["absent"]["kernel"], "the filter has no model, which alone knows its kernel");
   EXPECT_TRUE(std::filesystem::exists(folder() / "out" / cell["images"]["picture"].get<std::string>()));
   for (const auto& entry : std::filesystem::directory_iterator(folder() / "out"))
     EXPECT_NE(entry.path().filename().string().rfind(".worker", 0), 0u) << entry.path();
@@ -350,8 +352,14 @@ TEST_F(Command, ListFilters_ShowsWhatTheFrontMatterSays) {
   EXPECT_EQ(outcome.exit_code, 0);
   for (const char* word : {"min_variance", "1e-05", "depth^2", "Donnelly", "per-pixel"})
     EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
+  EXPECT_NE(outcome.out.find("medium 0.65 texels, up to 1.00"), std::string::npos);
   const nlohmann::json document = nlohmann::json::parse(run("list filters --json").out);
   EXPECT_EQ(document.size(), 9u);
+  for (const nlohmann::json& filter : document) {
+    EXPECT_GT(filter["kernel"]["sigma_texels"], 0.2);
+    EXPECT_TRUE(filter["kernel"]["class"].is_string());
+    EXPECT_EQ(filter["teaching"], filter["id"] == "box3x3" || filter["id"] == "teach4x4");
+  }
 }
 
 TEST_F(Command, BorderSettings_ReachCellsPicturesAndUsersFilters) {

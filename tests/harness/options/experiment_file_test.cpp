@@ -24,7 +24,7 @@ class ExperimentFile : public ::testing::Test {
     return folder_ / "e.toml";
   }
   Experiment read(const std::string& text) const {
-    return read_experiment(write(text), {"map_size", "scene", "size", "grids", "seed"});
+    return read_experiment(write(text), {"map_size", "scene", "size", "grids", "seed", "filters"});
   }
   std::string expand(const std::string& text) const {
     static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
@@ -81,6 +81,10 @@ TEST_F(ExperimentFile, RangesAreLinearOrLogarithmic_WholeNumbersAreRounded_AndSt
       "vsm:min_variance=1e-05,store=rg32f,vsm:min_variance=1e-05,store=rg16f");
 }
 
+TEST_F(ExperimentFile, AWidth_IsAParameterOfAFilterWithARadius) {
+  EXPECT_EQ(expand("[[filter]]\nid = 'vsm'\nwidth = ['medium', 1.5]\n"), "vsm:width=medium,vsm:width=1.5");
+}
+
 TEST_F(ExperimentFile, Mistakes_NameFileAndLine) {
   const std::vector<std::tuple<std::string, std::string, int>> cases = {
       {"map_sise = 3\n", "did you mean 'map_size'", 1},
@@ -103,6 +107,9 @@ TEST_F(ExperimentFile, Mistakes_NameFileAndLine) {
        "combinations, and a run takes 100000", 5},
       {"[[filter]]\nid = 'esm'\nc = {linear = [1, inf], count = 3}\n", "number", 3},
       {"map_size = = 3\n", "not valid TOML", 1},
+      {"[[filter]]\nid = 'vsm'\nwidth = 40\n", "0.408 .. 28.3 texels", 1},
+      {"[[filter]]\nid = 'none'\nwidth = 'soft'\n", "no radius that a width could set", 1},
+      {"\nfilters = ['none']\n[[filter]]\nid = 'none'\n", "both name filters", 2},
   };
   for (const auto& [text, message, line] : cases) {
     SCOPED_TRACE(text);
@@ -123,7 +130,7 @@ TEST_F(ExperimentFile, AreFoundByName_OrPath) {
   EXPECT_EQ(find_experiment(shipped, "my/own.toml"), "my/own.toml");
   EXPECT_THAT(error_of([&] { find_experiment(shipped, "quik"); }).what(), HasSubstr("did you mean 'quick'"));
   EXPECT_THAT(error_of([&] { find_experiment(shipped, "xyzzy12"); }).what(),
-              HasSubstr("default, golden, lights, quick, sweep"));
+              HasSubstr("default, golden, lights, quick, sweep, widths"));
 }
 
 }  // namespace

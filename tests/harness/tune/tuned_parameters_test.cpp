@@ -71,6 +71,13 @@ TEST_F(TunedParameters, YieldToTheCommandLine) {
   EXPECT_EQ(filters::number(request.values, "min_variance"), 1e-6);
 }
 
+TEST_F(TunedParameters, TakeThePlaceOfAWidthsRadius) {
+  const filters::FilterRequest request =
+      apply("vsm:width=medium", write_filters(R"({"id": "vsm", "params": {"radius": 2}})"));
+  EXPECT_EQ(filters::number(request.values, "radius"), 2.0);
+  EXPECT_EQ(request.label(), "vsm (radius=2)");
+}
+
 TEST_F(TunedParameters, OfOtherFilters_LeaveTheDefaults_WithANote) {
   const filters::FilterRequest request = apply("esm,none", write_filters(R"({"id": "vsm", "params": {"radius": 2}})"));
   EXPECT_EQ(request.values, filters::default_values(request.spec));

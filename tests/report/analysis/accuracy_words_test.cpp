@@ -60,9 +60,24 @@ TEST(AccuracyWords, Ranking_NamesTiesAndSaysWhatTheyAre) {
       "cubes",
       {make_attributed_cell("c", 0.0155, kMostlyEstimator), make_attributed_cell("a", 0.0125, kMostlyEstimator),
        make_attributed_cell("b", 0.015, kMostlyEstimator)}};
-  EXPECT_EQ(describe_accuracy(group).front(),
-            "Error to the area truth (RMSE), smallest first: a (0.0125); then b (0.015) tied with c (0.0155). Tied "
-            "filters differ by no more than the truth's standard error.");
+  const auto sentences = describe_accuracy(group);
+  EXPECT_EQ(sentences[0],
+            "Error to the area truth (RMSE) of medium kernels, smallest first: a (0.0125); then b (0.015) tied with c "
+            "(0.0155).");
+  EXPECT_EQ(sentences[1], "Tied filters differ by no more than the truth's standard error.");
+}
+
+TEST(AccuracyWords, Ranking_IsWithinAClassOfWidth) {
+  CellGroup group{"cubes", {}};
+  for (const char* name : {"a", "b", "c", "d", "e"})
+    group.cells.push_back(make_attributed_cell(name, 0.01 + 0.01 * (name[0] - 'a'), kMostlyEstimator));
+  group.cells[1].kernel = {0.41, "sharp"};
+  group.cells[2].kernel = {3.0, std::nullopt};
+  group.cells[3].kernel = {};
+  const auto sentences = describe_accuracy(group);
+  EXPECT_EQ(sentences[0], "Error to the area truth (RMSE) of sharp kernels, smallest first: b (0.02).");
+  EXPECT_EQ(sentences[1], "Error to the area truth (RMSE) of medium kernels, smallest first: a (0.01); then e (0.05).");
+  EXPECT_EQ(sentences[2], "Not ranked, for their kernels are of no class, too wide or unknown: c (0.03), d (0.04).");
 }
 
 TEST(AccuracyWords, DominatingPart_IsExplainedOnceForAllFilters) {

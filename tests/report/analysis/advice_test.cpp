@@ -87,6 +87,17 @@ TEST(Advice, WorstPlace_DecidesALimit) {
   EXPECT_EQ(advice.failing[0].verdicts[0].where, &cells[1]);
 }
 
+TEST(Advice, FiltersForTeaching_AreLeftOut_AndNamed) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "none", 3.0, 0.01), measure("cubes", "wrong", 1.0, 0.01)};
+  cells[1].teaching = true;
+  const Advice advice = advise_on(cells, {limit("--max-rmse", 0.03)});
+  EXPECT_THAT(labels(advice.keeping), ElementsAre("none"));
+  EXPECT_THAT(list_advice_notes(advice, make_run().gl),
+              ::testing::Contains("Left out, for they show a mistake and are for teaching: wrong."));
+  cells.erase(cells.begin());
+  expect_refusal(cells, {}, ErrorKind::kUsage, "filters for teaching alone (wrong)");
+}
+
 TEST(Advice, EveryLimit_IsKeptUpToItsValueAndNotBeyond) {
   std::vector<records::CellRecord> cells = {measure("cubes", "none", 2.0, 0.25)};
   cells[0].artefact = {0.25, 0.25, 0.25, 0.25};

@@ -15,8 +15,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-std::vector<RadiusChart> make_charts(const std::vector<records::CellRecord>& cells) {
-  return make_radius_charts(cells, make_trade_scopes(cells));
+std::vector<WidthChart> make_charts(const std::vector<records::CellRecord>& cells) {
+  return make_width_charts(cells, make_trade_scopes(cells));
 }
 
 TEST(Crossover, IsFoundWhereTapsGrowDearer) {
@@ -24,12 +24,20 @@ TEST(Crossover, IsFoundWhereTapsGrowDearer) {
   ASSERT_THAT(charts, SizeIs(1));
   const auto comparisons = compare_curves(charts[0], LightState::kStill);
   ASSERT_THAT(comparisons, SizeIs(1));
-  EXPECT_THAT(comparisons[0].radii, ElementsAre(2.0, 4.0, 8.0));
+  EXPECT_THAT(comparisons[0].widths, ElementsAre(2.0, 4.0, 8.0));
   EXPECT_THAT(comparisons[0].signs, ElementsAre(1, -1, -1));
   ASSERT_THAT(comparisons[0].crossings, SizeIs(1));
-  EXPECT_NEAR(comparisons[0].crossings[0].radius_texels, 3.0, 1e-9);  // 1.6 and 2.5 are as far below and above 2
+  EXPECT_NEAR(comparisons[0].crossings[0].sigma_texels, 3.0, 1e-9);  // 1.6 and 2.5 are as far below and above 2
   EXPECT_NEAR(comparisons[0].crossings[0].still.value, 8.0, 1e-9);
-  EXPECT_EQ(describe_comparison(comparisons[0]), "from a kernel radius of 4 texels on, of 2, 4, 8 compared");
+  EXPECT_EQ(describe_comparison(comparisons[0]), "from a kernel width of 4 texels on, of 2, 4, 8 compared");
+}
+
+TEST(Crossover, WidthsThatNearlyAgree_AreOne) {
+  std::vector<records::CellRecord> cells = make_crossing_cells("cubes");
+  cells[2].kernel.sigma_texels = 4.03;  // of the taps; the blurred map's is 4
+  const auto comparison = compare_curves(make_charts(cells)[0], LightState::kStill)[0];
+  EXPECT_THAT(comparison.widths, ElementsAre(2.0, 4.0, 8.0));
+  EXPECT_THAT(comparison.signs, ElementsAre(1, -1, -1));
 }
 
 TEST(Crossover, OverlappingTimes_AreNotApart) {
@@ -38,20 +46,20 @@ TEST(Crossover, OverlappingTimes_AreNotApart) {
   const auto comparison = compare_curves(make_charts(cells)[0], LightState::kStill)[0];
   EXPECT_THAT(comparison.signs, ElementsAre(1, 0, -1));
   EXPECT_EQ(describe_comparison(comparison),
-            "from a kernel radius of 8 texels on, of 2, 4, 8 compared, not to be told apart at 4");
+            "from a kernel width of 8 texels on, of 2, 4, 8 compared, not to be told apart at 4");
 }
 
 TEST(Crossover, RadiiOutsideWhatWasMeasured_AreNotCompared) {
   std::vector<records::CellRecord> cells = make_crossing_cells("cubes");
   cells.erase(cells.begin() + 3);  // poisson of radius 8
   const auto charts = make_charts(cells);
-  EXPECT_THAT(compare_curves(charts[0], LightState::kStill)[0].radii, ElementsAre(2.0, 4.0));
+  EXPECT_THAT(compare_curves(charts[0], LightState::kStill)[0].widths, ElementsAre(2.0, 4.0));
   EXPECT_FALSE(time_at(charts[0].curves[1], 8.0, LightState::kStill));
   EXPECT_FALSE(time_at(charts[0].curves[1], 1.0, LightState::kStill));
   EXPECT_NEAR(time_at(charts[0].curves[1], 3.0, LightState::kStill)->value, 8.0, 1e-9);
 }
 
-TEST(Crossover, WithoutACommonRadius_NothingIsSaid) {
+TEST(Crossover, WithoutACommonWidth_NothingIsSaid) {
   const std::vector<records::CellRecord> cells = {make_sweep_cell({}), make_taps_cell("cubes", 3.0, 2.0),
                                                   make_blurred_cell("cubes", 4.0, 2.0)};
   EXPECT_THAT(make_charts(cells), IsEmpty());
@@ -62,7 +70,7 @@ TEST(Crossover, MapsAreChartsOfTheirOwn_AndUnknownRadiiAreLeftOut) {
   std::vector<records::CellRecord> cells = make_crossing_cells("cubes");
   for (records::CellRecord cell : make_crossing_cells("cubes")) {
     cell.map_size = 2048;
-    cell.kernel_radius_texels.reset();
+    cell.kernel.sigma_texels.reset();
     cells.push_back(cell);
   }
   const auto charts = make_charts(cells);
@@ -91,7 +99,7 @@ TEST(Crossover, Words_NameThePlacesOnce) {
   ASSERT_THAT(words, SizeIs(2));
   EXPECT_EQ(
       words[0],
-      "Light still (lookup): vsm is cheaper than poisson from a kernel radius of 4 texels on, of 2, 4, 8 compared: "
+      "Light still (lookup): vsm is cheaper than poisson from a kernel width of 4 texels on, of 2, 4, 8 compared: "
       "cubes, stack, picture 960 × 540, map 1024.");
   EXPECT_THAT(words[1], HasSubstr("Light moving"));
 }

@@ -82,6 +82,18 @@ TEST(Front, WhoIsTiedWithATiedCellOnly_IsOnTheFront) {
   EXPECT_EQ(placements[2].standing, Standing::kFront);
 }
 
+TEST(Front, GroupsHaveFrontsOfTheirOwn_AndWhatHasNoneIsApart) {
+  std::vector<FrontPoint> points = {make_point(0.3, 1.0), make_point(0.2, 0.5), make_point(0.4, 2.0),
+                                    make_point(0.1, 0.1), make_point(0.1, 0.1)};
+  points[1].group = 1;
+  points[3].group = points[4].group = std::nullopt;
+  const auto placements = find_front(points);
+  EXPECT_THAT(list_standings(points), ElementsAre(Standing::kFront, Standing::kFront, Standing::kDominated,
+                                                  Standing::kApart, Standing::kApart));
+  EXPECT_EQ(placements[2].by, 0u) << "what is cheaper and better is of another group";
+  EXPECT_THAT(list_members(points, placements), ElementsAre(0, 1)) << "group by group";
+}
+
 TEST(Front, EveryCellOffTheFront_NamesAMember) {
   std::vector<FrontPoint> points;
   for (int i = 0; i < 60; ++i) {

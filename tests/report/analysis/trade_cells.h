@@ -22,7 +22,7 @@ inline records::CellRecord make_sweep_cell(const SweepCell& from) {
   records::CellRecord cell = records::make_cell(from.scene, from.filter, 4.0 * from.ratio);
   cell.params = {{"radius", from.radius}};
   cell.map_size = from.map_size;
-  cell.kernel_radius_texels = from.radius;
+  cell.kernel_radius_texels = cell.kernel.sigma_texels = from.radius;
   cell.time_ms.map = records::Quartiles{4.0, 4.0, 4.0, 9};
   const records::Ratio ratio{from.ratio, {from.ratio * (1.0 - from.slack), from.ratio * (1.0 + from.slack)}};
   cell.ratio_to_none.lookup = cell.ratio_to_none.static_map = cell.ratio_to_none.moving = ratio;

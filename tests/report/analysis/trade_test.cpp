@@ -153,6 +153,24 @@ TEST(TradeFronts, SuspectCells_AreLeftOut) {
   EXPECT_THAT(describe_front(scope, front, make_run().gl), Contains("Left out: 1 of 2 (suspect: see the warnings)."));
 }
 
+TEST(TradeFronts, CompareKernelsOfOneClass) {
+  std::vector<records::CellRecord> cells = {
+      make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}), make_sweep_cell({"cubes", "slow", 0.0, 2.0, 0.0, 0.2}),
+      make_sweep_cell({"cubes", "narrow", 0.0, 3.0, 0.0, 0.3}), make_sweep_cell({"cubes", "mine", 0.0, 4.0, 0.0, 0.4})};
+  cells[2].kernel = {0.41, "sharp"};
+  cells[3].kernel = {};
+  const TradeScope scope = make_trade_scopes(cells)[0];
+  const TradeFront front = make_trade_front(scope, 0, 0);
+  EXPECT_THAT(front.members, ElementsAre(2, 0)) << "narrow kernels first";
+  EXPECT_EQ(front.placements[1].by, 0u);
+  EXPECT_THAT(describe_front(scope, front, make_run().gl),
+              ElementsAre(HasSubstr("sharp kernels, the front from the cheapest cell on: narrow (0.3"),
+                          HasSubstr("medium kernels, the front from the cheapest cell on: none (0.1"),
+                          "Dominated are 1 of 4: none beats slow.",
+                          "Compared with nothing, for their kernels are of no class, too wide or unknown: mine."));
+  EXPECT_THAT(pages::make_fronts_csv(cells, {scope}), HasSubstr(",,,,its kernel is of no class of width\r\n"));
+}
+
 TEST(TradeFronts, ValuesThatAreNotFinite_AreLeftOut) {
   records::CellRecord cell = make_sweep_cell({});
   cell.error.rmse = std::nan("");
@@ -230,12 +248,13 @@ TEST(FrontsCsv, HasARowPerCellOfEveryFront) {
                                                   make_sweep_cell({"cubes", "a,\"b", 4.0, 1.0, 0.0, 0.1})};
   const std::string csv = pages::make_fronts_csv(cells, make_trade_scopes(cells));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 16 * 3);
-  EXPECT_THAT(csv, HasSubstr("rmse,moving," + cells[1].key +
-                             ",vsm,\"{\"\"radius\"\":4}\",1024,0.2,0.199,0.201,8,8,8,0," + cells[0].key + ",,\r\n"));
+  EXPECT_THAT(
+      csv, HasSubstr("rmse,moving," + cells[1].key +
+                     ",vsm,\"{\"\"radius\"\":4}\",1024,4,medium,0.2,0.199,0.201,8,8,8,0," + cells[0].key + ",,\r\n"));
   EXPECT_THAT(csv, HasSubstr(",0,," + cells[0].key + ",\r\n"));
   EXPECT_THAT(csv, HasSubstr("\"a,\"\"b\""));
   EXPECT_THAT(csv, HasSubstr("leak,moving," + cells[0].key +
-                             ",none,\"{\"\"radius\"\":0}\",1024,,,,4,4,4,,,,artefact.leak: not measured\r\n"));
+                             ",none,\"{\"\"radius\"\":0}\",1024,0,medium,,,,4,4,4,,,,artefact.leak: not measured\r\n"));
 }
 
 }  // namespace

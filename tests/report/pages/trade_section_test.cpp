@@ -65,37 +65,43 @@ TEST(TradeSection, Fronts_AreChartsOfEveryErrorAndCost) {
   const page::Chart& chart = choice.entries[0].chart;
   EXPECT_EQ(chart.id, "cubes.main.960x540.rmse.moving");
   EXPECT_THAT(chart.x_name, HasSubstr("CPU time (software rasteriser)"));
-  EXPECT_THAT(chart.notes, ElementsAre("1: none", "2: poisson (radius 2)", "3: vsm (radius 2)"));
+  EXPECT_THAT(chart.notes,
+              ElementsAre("1: none, medium", "2: poisson (radius 2), medium", "3: vsm (radius 2), medium"));
   EXPECT_THAT(choice.entries[0].sentences[0], HasSubstr("vsm (radius 2)"));
-  // Members of the front, tied, beaten, and the lines to what a cell is tied with.
-  EXPECT_THAT(list_titles(chart), ElementsAre("front", "none", "poisson", "", "vsm", "", ""));
-  const page::ChartSeries &line = chart.series[0], &beaten = chart.series[3], &tied = chart.series[5];
+  // Members of the front, tied, beaten, the lines to what a cell is tied with, and each filter's curve over its width.
+  EXPECT_THAT(list_titles(chart), ElementsAre("front, medium", "none", "poisson", "", "", "vsm", "", "", ""));
+  const page::ChartSeries &line = chart.series[0], &beaten = chart.series[3], &tied = chart.series[6];
   EXPECT_THAT(line.points, SizeIs(3));
   EXPECT_EQ(line.points[2].label, "3");
   EXPECT_TRUE(beaten.faint);
   EXPECT_FALSE(tied.faint);
   EXPECT_FALSE(tied.filled);
   EXPECT_THAT(tied.points, SizeIs(2));
-  EXPECT_EQ(chart.series[6].line, page::LineStyle::kTies);
-  EXPECT_THAT(chart.series[6].points, SizeIs(4));
+  EXPECT_EQ(chart.series[7].line, page::LineStyle::kTies);
+  EXPECT_THAT(chart.series[7].points, SizeIs(4));
+  const page::ChartSeries& curve = chart.series[4];
+  EXPECT_TRUE(curve.faint);
+  ASSERT_THAT(curve.points, SizeIs(3));
+  EXPECT_LT(curve.points[0].x.value, curve.points[2].x.value) << "from narrow to wide";
   const page::ChartPoint& member = chart.series[1].points[0];
-  EXPECT_THAT(member.details, ElementsAre("none", "radius 0", "map 1024 × 1024",
-                                          HasSubstr("RMSE to the area truth: 0.1 [0.099, 0.101]"),
-                                          HasSubstr("time of map, prefilter and filter, moving light: 4 ms"), "on the front"));
+  EXPECT_THAT(member.details,
+              ElementsAre("none", "radius 0", "kernel 0 texels, medium", "map 1024 × 1024",
+                          HasSubstr("RMSE to the area truth: 0.1 [0.099, 0.101]"),
+                          HasSubstr("time of map, prefilter and filter, moving light: 4 ms"), "on the front"));
   EXPECT_EQ(member.pictures.at(0).first, "cubes.none.png");
 }
 
-TEST(TradeSection, TimesOverRadius_AreChartsWithTheirCrossings) {
+TEST(TradeSection, TimesOverTheWidth_AreChartsWithTheirCrossings) {
   const auto cells = make_crossing_cells("cubes");
   const page::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
-  const page::ChartChoice& choice = find_choice(section, "radius");
+  const page::ChartChoice& choice = find_choice(section, "width");
   ASSERT_THAT(choice.entries, SizeIs(2));
   const page::ChartSeries& crossings = choice.entries[0].chart.series.back();
   ASSERT_THAT(crossings.points, SizeIs(1));
   EXPECT_EQ(crossings.title, "crossing");
   EXPECT_NEAR(crossings.points[0].x.value, 3.0, 1e-9);
   EXPECT_EQ(crossings.points[0].label, "3");
-  EXPECT_EQ(choice.entries[0].chart.x_name, "kernel half-width, texels");
+  EXPECT_EQ(choice.entries[0].chart.x_name, "kernel's width (standard deviation), texels");
 }
 
 TEST(TradeSection, ChartsOfThePage_AreJsonThatHoldsEveryPoint) {
@@ -149,8 +155,8 @@ TEST(TradeSection, OfAFewCells_IsNotThere) {
 TEST(TradeSection, Summary_SaysFrontsCrossoversAndColumns) {
   const TemporaryFolder folder("trade_summary");
   const std::string summary = write_and_read(folder, make_crossing_cells("cubes"), "summary.md");
-  for (const char* text : {"## The trade", "the front from the cheapest cell on: none",
-                           "from a kernel radius of 4 texels on", "**dominated_by**:"})
+  for (const char* text : {"## The trade", "medium kernels, the front from the cheapest cell on: none",
+                           "from a kernel width of 4 texels on", "**dominated_by**:"})
     EXPECT_THAT(summary, HasSubstr(text));
   EXPECT_LT(summary.find("## The trade"), summary.find("What it costs: "));
 }

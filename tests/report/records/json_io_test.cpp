@@ -68,6 +68,8 @@ CellRecord make_timed_out_cell() {
 CellRecord make_full_cell() {
   CellRecord cell = make_cell("cubes", "full", 4.0);
   cell.kernel_radius_texels = 4.0;
+  cell.kernel = {1.9, "soft"};
+  cell.teaching = false;
   cell.claims = {{"contact-hardening"}};
   cell.map_scale = {0.02, 10.0};
   cell.bias = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, 0.7, 0.8, {0.0, 0.9, 1.0}, true, 1.1, 1.2, true, true};
@@ -116,6 +118,9 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   }
   const CellRecord back = cell_from_json(to_json(make_full_cell()), "here");
   EXPECT_EQ(back.attribution.estimator.share, -0.1);
+  EXPECT_EQ(back.kernel.sigma_texels, 1.9);
+  EXPECT_EQ(back.kernel.width_class, "soft");
+  EXPECT_EQ(back.teaching, false);
   EXPECT_EQ(back.claims, std::vector<std::string>{"contact-hardening"});
   EXPECT_EQ(back.error.kernel_rmse, 0.04);
   EXPECT_EQ(back.ratio_to_none.moving->ci95.high, 2.75);

@@ -100,6 +100,7 @@ inline CellRecord make_cell(const std::string& scene, const std::string& filter,
   cell.view = "main";
   cell.filter = filter;
   cell.params = {{"radius", 4.0}, {"store", std::string("rg32f")}};
+  cell.kernel = {0.65, "medium"};
   cell.map_size = 1024;
   cell.map_format = "d32f";
   cell.width = 960;
