@@ -168,30 +168,31 @@ std::vector<std::string> define_bias_terms(const records::BiasSweepRecord& sweep
         "{}: of {} receivers that rays find {}.{}", name, receivers, which,
         receivers < sweep.fewest_receivers ? fmt::format(" Absent: a rate needs {}.", sweep.fewest_receivers) : "");
   };
-  return {
-      count("Acne",
-            fmt::format("wholly lit, with their surroundings, the share with visibility below {}", sweep.acne_below)
-                .c_str(),
-            sweep.acne_receivers),
-      count("Contact gap",
-            fmt::format("wholly blocked by something that touches them, and of those the ones that a filter without "
-                        "bias shows no brighter than {0}, the share that bias makes brighter by more than {0}",
-                        sweep.gap_above)
-                .c_str(),
-            sweep.contact_receivers),
-      "Theory: on a plane, the depth that a kernel's farthest texel differs from the receiver's, which is the "
-      "kernel's half-width "
-      "(and half a texel where the map is read unfiltered) times |dz/du| + |dz/dv|. A scene has many slopes: the "
-      "theoretical amount here is "
-      "what theory asks of the mode for the lit receiver at the " +
-          fmt::format("{:.3g}", 100.0 * sweep.percentile) + "th percentile, so the others may need more.",
-      "VSM and ESM take slopes into account themselves; the theoretical amount is that of a comparison with their "
-      "kernel.",
-      "Tables: what to give to --bias at theory; how far that moves the receiver that it is reckoned for, as depth "
-      "in [0,1], in widths of a "
-      "texel and in metres along the light; and the rates there.",
-      fmt::format("Enough: the smallest amount swept with acne below {} %, in theoretical amounts.",
-                  100.0 * kLittleAcne)};
+  return {count("Acne",
+                fmt::format("wholly lit, with their surroundings, the share with visibility below {}", sweep.acne_below)
+                    .c_str(),
+                sweep.acne_receivers),
+          count("Contact gap",
+                fmt::format(
+                    "wholly blocked by something that touches them, less those that a filter shows brighter than {0} "
+                    "without bias, the share that bias makes brighter by more than {0}; absent where fewer than "
+                    "{1} are left",
+                    sweep.gap_above, sweep.fewest_receivers)
+                    .c_str(),
+                sweep.contact_receivers),
+          "Theory: on a plane, the depth that a kernel's farthest texel differs from the receiver's, which is the "
+          "kernel's half-width "
+          "(and half a texel where the map is read unfiltered) times |dz/du| + |dz/dv|. A scene has many slopes: the "
+          "theoretical amount here is "
+          "what theory asks of the mode for the lit receiver at the " +
+              fmt::format("{:.3g}", 100.0 * sweep.percentile) + "th percentile, so the others may need more.",
+          "VSM and ESM take slopes into account themselves; the theoretical amount is that of a comparison with their "
+          "kernel.",
+          "Tables: what to give to --bias at theory; how far that moves the receiver that it is reckoned for, as depth "
+          "in [0,1], in widths of a "
+          "texel and in metres along the light; and the rates there.",
+          fmt::format("Enough: the smallest amount swept with acne below {} %, in theoretical amounts.",
+                      100.0 * kLittleAcne)};
 }
 
 }  // namespace

@@ -263,7 +263,9 @@ TEST_F(Command, OverflowInTheMap_IsWarnedOf) {
   for (const char* words :
        {"overflowed", "r32f holds numbers up to 3.40282e+38, which is e^88.72", "choose c <= 88.", "or combine=log"})
     EXPECT_NE(outcome.err.find(words), std::string::npos) << words << "\n" << outcome.err;
-  ASSERT_EQ(results(folder())["warnings"].size(), 1u);
+  // All of it is lit then, which makes the filter suspect too.
+  EXPECT_EQ(results(folder())["warnings"].size(), 2u);
+  EXPECT_EQ(results(folder())["cells"][1]["suspect_of"].size(), 1u);
 }
 
 /// What the warning recommends, works; and it is of this very map.
