@@ -42,17 +42,27 @@ void note_parts(records::CellRecord& record, const metrics::Attribution& attribu
       attribution.not_finite > 0 ? "no pixel of the image is finite" : "there is no error to take apart";
 }
 
+metrics::ArtefactMasks make_masks(const Surroundings& around, const scene::LightFrustum& frustum,
+                                  const SceneTruth& truth) {
+  return metrics::make_artefact_masks({truth.mask, truth.rays.area.visibility, find_settled(truth.rays.area),
+                                       around.visibility, around.settled, truth.rays.first_blockers_ws,
+                                       metrics::kArtefactLimits.contact_texels * frustum.texel_size_ws});
+}
+
 }  // namespace
+
+Surroundings trace_surroundings(truth::CachedTracer& tracer, const scene::LightFrustum& frustum,
+                                const SceneTruth& truth, double widest_kernel_texels) {
+  const double half_width = widest_kernel_texels + metrics::kArtefactLimits.guard_texels;
+  truth::TracedVisibility traced =
+      tracer.trace_surroundings(truth.receivers.image, half_width, scene::make_map_grid(frustum));
+  std::vector<std::uint8_t> settled = find_settled(traced);
+  return {half_width, std::move(traced.visibility), std::move(settled)};
+}
 
 metrics::ArtefactMasks find_artefact_masks(truth::CachedTracer& tracer, const scene::LightFrustum& frustum,
                                            const SceneTruth& truth, double widest_kernel_texels) {
-  const double half_width = widest_kernel_texels + metrics::kArtefactLimits.guard_texels;
-  const truth::TracedVisibility around =
-      tracer.trace_surroundings(truth.receivers.image, half_width, scene::make_map_grid(frustum));
-  const std::vector<std::uint8_t> area_settled = find_settled(truth.rays.area), around_settled = find_settled(around);
-  return metrics::make_artefact_masks({truth.mask, truth.rays.area.visibility, area_settled, around.visibility,
-                                       around_settled, truth.rays.first_blockers_ws,
-                                       metrics::kArtefactLimits.contact_texels * frustum.texel_size_ws});
+  return make_masks(trace_surroundings(tracer, frustum, truth, widest_kernel_texels), frustum, truth);
 }
 
 CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
@@ -64,15 +74,30 @@ CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& option
       truth_(truth),
       light_(assets.light_map(*task.camera, task.map_size)) {
   if (!truth_.absent.empty()) return;
-  masks_ = find_artefact_masks(assets_.tracer(), light_.frustum, truth_, widest_kernel_texels(options_));
+  around_ = trace_surroundings(assets_.tracer(), light_.frustum, truth_, widest_kernel_texels(options_));
+  masks_ = make_masks(around_, light_.frustum, truth_);
+}
+
+/// Where all rays of a receiver's surroundings agree, those of a kernel within them are taken to agree with them.
+std::vector<float> CellAnalyser::trace_kernel(const filters::Kernel& kernel) {
+  truth::ReceiverImage receivers = truth_.receivers.image;
+  const bool is_within = kernel.half_width() <= around_.half_width_texels;
+  const auto is_known = [&](std::size_t i) { return is_within && around_.settled[i] != 0; };
+  if (is_within && !receivers.content.empty())
+    receivers.content += fmt::format(" unsettled within {} texels", around_.half_width_texels);
+  for (std::size_t i = 0; i < receivers.points.size(); ++i)
+    if (is_known(i)) receivers.points[i].counts = false;
+  std::vector<float> visibility =
+      assets_.tracer().trace_kernel(receivers, kernel, scene::make_map_grid(light_.frustum)).visibility;
+  for (std::size_t i = 0; i < visibility.size(); ++i)
+    if (is_known(i)) visibility[i] = around_.visibility[i];
+  return visibility;
 }
 
 const std::vector<float>& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {
   if (kernel.is_point()) return truth_.rays.hard;
   const auto [place, is_new] = kernels_.try_emplace(kernel.name());
-  if (is_new)
-    place->second =
-        assets_.tracer().trace_kernel(truth_.receivers.image, kernel, scene::make_map_grid(light_.frustum)).visibility;
+  if (is_new) place->second = trace_kernel(kernel);
   return place->second;
 }
 

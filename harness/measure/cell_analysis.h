@@ -13,8 +13,20 @@
 
 namespace shadowbench::measure {
 
+/// What rays say of the squares around a view's receivers.
+struct Surroundings {
+  double half_width_texels = 0.0;
+  std::vector<float> visibility;
+  std::vector<std::uint8_t> settled;  ///< 1 where all rays of the square agree, and those of its neighbours' squares
+};
+
+/// Traces the surroundings of a view's receivers, `widest_kernel_texels` and a little more, or takes them from the
+/// cache. Requires a truth.
+Surroundings trace_surroundings(truth::CachedTracer& tracer, const scene::LightFrustum& frustum,
+                                const SceneTruth& truth, double widest_kernel_texels);
+
 /// Finds where artefacts can occur in a view: the guard around a receiver is `widest_kernel_texels` and a little more.
-/// Requires a truth. Cost: traces the receivers' surroundings, or takes them from the cache.
+/// Requires a truth. Cost: that of the surroundings.
 metrics::ArtefactMasks find_artefact_masks(truth::CachedTracer& tracer, const scene::LightFrustum& frustum,
                                            const SceneTruth& truth, double widest_kernel_texels);
 
@@ -41,9 +53,11 @@ class CellAnalyser {
   const SceneTruth& truth_;
   LightMap& light_;
   std::optional<filters::DepthMap> map_;
+  Surroundings around_;
   std::optional<metrics::ArtefactMasks> masks_;
   std::map<std::string, std::vector<float>> kernels_;  ///< by name
 
+  std::vector<float> trace_kernel(const filters::Kernel& kernel);
   const std::vector<float>& kernel_truth(const filters::Kernel& kernel);
   std::vector<filters::Receiver> read_receivers(const render::Bias& bias) const;
   void count_artefacts(MeasuredCell& cell) const;
