@@ -58,8 +58,8 @@ struct RunArguments : DrawingArguments {
 void add_run_options(Command& command, RunArguments& arguments);
 
 /// Takes what an experiment file says for every option that was not given on the command line. An experiment that names
-/// no filters takes those of the default one. Returns the experiment's title. Throws Error as options::read_experiment and options::expand_filters, and Error(kInput) for a
-/// value that its option refuses.
+/// no filters takes those of the default one. Returns the experiment's title. Throws Error as options::read_experiment
+/// and options::expand_filters, and Error(kInput) for a value that its option refuses.
 std::string apply_experiment(const CommandLine& line, RunArguments& arguments);
 
 }  // namespace shadowbench::cli

@@ -19,7 +19,7 @@ std::string format_quartiles(const std::optional<records::Quartiles>& time) {
               : records::kNothing;
 }
 
-constexpr const char* kKernelColumn = "kernel's width, texels (class)";
+constexpr const char* kKernelColumn = "kernel's width (class)";
 
 using Metrics = std::vector<const metrics::Metric*>;
 

@@ -17,7 +17,7 @@ page::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& sco
 
 /// Draws time over kernel width for every chart and state of the light, crossings marked.
 page::ChartChoice make_width_choice(const std::vector<analysis::WidthChart>& charts,
-                                     const std::vector<std::string>& filters, const records::GlRecord& gl);
+                                    const std::vector<std::string>& filters, const records::GlRecord& gl);
 
 /// Draws the time of a frame over its lights, still and moving. Both axes are logarithmic: in proportion is the slope
 /// of the grey line. Requires two counts or more.

@@ -135,10 +135,9 @@ TEST(TradeFronts, AbsentValues_AreLeftOutWithTheirReason) {
 }
 
 TEST(TradeFronts, CompareKernelsOfOneClass) {
-  std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}),
-                                            make_sweep_cell({"cubes", "slow", 0.0, 2.0, 0.0, 0.2}),
-                                            make_sweep_cell({"cubes", "narrow", 0.0, 3.0, 0.0, 0.3}),
-                                            make_sweep_cell({"cubes", "mine", 0.0, 4.0, 0.0, 0.4})};
+  std::vector<records::CellRecord> cells = {
+      make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}), make_sweep_cell({"cubes", "slow", 0.0, 2.0, 0.0, 0.2}),
+      make_sweep_cell({"cubes", "narrow", 0.0, 3.0, 0.0, 0.3}), make_sweep_cell({"cubes", "mine", 0.0, 4.0, 0.0, 0.4})};
   cells[2].kernel = {0.41, "sharp"};
   cells[3].kernel = {};
   const TradeScope scope = make_trade_scopes(cells)[0];

@@ -43,7 +43,7 @@ TEST(AccuracyTable, HoldsErrorsPartsAndArtefacts) {
   cell.artefact = {0.0, 0.0421, 0.00012, 0.5};
   const records::TextTable table = make_accuracy_table({"cubes", {cell}});
   EXPECT_EQ(field(table, 0, "RMSE to the area truth (its standard error)"), "0.04 (0.001)");
-  EXPECT_EQ(field(table, 0, "kernel's width, texels (class)"), "0.65 (medium)");
+  EXPECT_EQ(field(table, 0, "kernel's width (class)"), "0.65 texels (medium)");
   EXPECT_EQ(field(table, 0, "mean signed error"), "-0.005");
   EXPECT_EQ(field(table, 0, "RMSE to the kernel truth"), "0.02");
   EXPECT_EQ(field(table, 0, "dominating part"), "estimator 71 %");
