@@ -13,6 +13,7 @@
 #include "harness/gl/timer/timer.h"
 #include "harness/options/options.h"
 #include "harness/scene/load.h"
+#include "report/records/format.h"
 #include "report/records/metric_list.h"
 
 namespace shadowbench::cli {
@@ -44,28 +45,15 @@ std::string describe_stored(const FilterSpec& spec) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::optional<double> default_sigma(const FilterSpec& spec) {
-  return filters::find_kernel_sigma(spec, filters::default_values(spec));
-}
-
-/// The name of the class of a kernel; empty above the widest.
-std::string_view name_class(double sigma_texels) {
-  const filters::WidthClass* found = filters::find_width_class(sigma_texels);
-  return found ? found->name : std::string_view();
-}
-
-/// How wide the kernel is at the filter's defaults; empty without a model.
-std::string describe_kernel(const FilterSpec& spec) {
-  const auto sigma = default_sigma(spec);
-  if (!sigma) return {};
-  const std::string_view name = name_class(*sigma);
-  return fmt::format(", kernel {:.2f} texels{}", *sigma, name.empty() ? "" : fmt::format(" ({})", name));
+/// The kernel of a filter at its defaults.
+records::KernelRecord find_kernel(const FilterSpec& spec) {
+  return records::make_kernel_record(filters::find_kernel_sigma(spec, filters::default_values(spec)));
 }
 
 void print_filter(const FilterSpec& spec) {
-  fmt::print("{}  {}\n  kind {}{}{}{}\n  source: {}\n", spec.id, spec.title, filters::to_string(spec.kind),
+  fmt::print("{}  {}\n  kind {}{}{}\n  kernel: {}\n  source: {}\n", spec.id, spec.title, filters::to_string(spec.kind),
              spec.teaching ? ", for teaching" : "", filters::make_model(spec.id) ? "" : ", without a model",
-             describe_kernel(spec), spec.source);
+             records::describe_kernel(find_kernel(spec)), spec.source);
   if (const std::string stored = describe_stored(spec); !stored.empty()) fmt::print("  its map holds: {}\n", stored);
   for (const ParamSpec& param : spec.params) {
     fmt::print("  {:<16} {} [{}]{}\n  {:<16} {}\n", param.name, describe_range(param),
@@ -94,11 +82,10 @@ nlohmann::json to_json(const ParamSpec& param) {
   return json;
 }
 
-nlohmann::json kernel_json(const FilterSpec& spec) {
-  const auto sigma = default_sigma(spec);
+nlohmann::json to_json(const records::KernelRecord& kernel) {
   nlohmann::json json = {{"sigma_texels", nullptr}, {"class", nullptr}};
-  if (sigma) json["sigma_texels"] = *sigma;
-  if (sigma && !name_class(*sigma).empty()) json["class"] = name_class(*sigma);
+  if (kernel.sigma_texels) json["sigma_texels"] = *kernel.sigma_texels;
+  if (kernel.width_class) json["class"] = *kernel.width_class;
   return json;
 }
 
@@ -111,7 +98,7 @@ nlohmann::json to_json(const FilterSpec& spec) {
           {"kind", filters::to_string(spec.kind)},
           {"claims", spec.claims},
           {"teaching", spec.teaching},
-          {"kernel", kernel_json(spec)},
+          {"kernel", to_json(find_kernel(spec))},
           {"model", filters::make_model(spec.id) != nullptr},
           {"params", params},
           {"moments", spec.holds_moments},
@@ -130,7 +117,7 @@ int list_filters(const ListArguments& arguments) {
   if (arguments.json)
     fmt::print("{}\n", json.dump(2));
   else
-    fmt::print("Kernels are as wide as their standard deviation, at the defaults. Classes: {}.\n",
+    fmt::print("A kernel is as wide as its standard deviation along an axis, here at the defaults. Classes: {}.\n",
                filters::describe_classes());
   return 0;
 }

@@ -222,14 +222,10 @@ class SceneBench {
 
 void set_kernel(records::CellRecord& record, const filters::FilterRequest& request) {
   record.kernel_radius_texels = filters::radius_texels(request.spec, request.values);
-  record.kernel.sigma_texels = filters::find_kernel_sigma(request.spec, request.values);
-  if (!record.kernel.sigma_texels) {
+  record.kernel = records::make_kernel_record(filters::find_kernel_sigma(request.spec, request.values));
+  if (!record.kernel.sigma_texels)
     record.absent["kernel"] = "the filter has no model, which alone knows its kernel";
-    return;
-  }
-  if (const filters::WidthClass* width = filters::find_width_class(*record.kernel.sigma_texels))
-    record.kernel.width_class = width->name;
-  else
+  else if (!record.kernel.width_class)
     record.absent["kernel.class"] =
         fmt::format("kernels of more than {:.2f} texels have none", filters::width_classes().back().widest_texels);
 }

@@ -179,8 +179,7 @@ std::string describe_answer(const records::RunRecord& run, const analysis::Advic
   const analysis::Candidate& best = advice.keeping.front();
   const records::CellRecord& cell = *best.configuration.cells.front();
   std::vector<std::string> parts;
-  if (cell.kernel.sigma_texels)
-    parts.push_back(fmt::format("a kernel of {} texels", records::describe_kernel(cell.kernel)));
+  if (cell.kernel.sigma_texels) parts.push_back(fmt::format("a kernel of {}", records::describe_kernel(cell.kernel)));
   if (!cell.params.empty()) parts.push_back(records::describe_params(cell.params));
   const std::string with = parts.empty() ? "" : wrap(fmt::format("with {}", fmt::join(parts, ", ")));
   return fmt::format("{}: {}{}; cheapest of {}{}\n{}", best.configuration.label,

@@ -23,7 +23,7 @@ std::string format_own(const std::optional<records::OwnTime>& time) {
   return time ? records::format_interval(time->median, time->ci95) : records::kNothing;
 }
 
-constexpr const char* kKernelColumn = "kernel's width, texels (class)";
+constexpr const char* kKernelColumn = "kernel's width (class)";
 
 using Metrics = std::vector<const metrics::Metric*>;
 

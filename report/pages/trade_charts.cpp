@@ -108,20 +108,13 @@ class FrontChart {
                : "beaten by " + leader;
   }
 
-  static std::string describe_kernel(const Configuration& configuration) {
-    if (!configuration.sigma_texels) return "kernel of unknown width";
-    const std::string_view name = analysis::name_class(configuration.width_class);
-    return fmt::format("kernel {} texels{}", records::format_number(*configuration.sigma_texels),
-                       name.empty() ? std::string() : fmt::format(", {}", name));
-  }
-
   page::ChartPoint make_point(std::size_t point) const {
     const Configuration& configuration = configuration_of(point);
     const analysis::FrontPoint& values = front_.points[point];
     page::ChartPoint made{values.cost, values.error};
     made.details = {configuration.label,
                     configuration.params.empty() ? "no parameters" : records::describe_params(configuration.params),
-                    describe_kernel(configuration),
+                    "kernel: " + records::describe_kernel(cells_[configuration.cells.front()].kernel),
                     fmt::format("map {0} × {0}", configuration.map_size),
                     say_value(error_, values.error, gl_),
                     say_value(cost_, values.cost, gl_),

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <vector>
 
+#include "filters/kernel_width.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::records {
@@ -132,9 +133,17 @@ std::string describe_params(const records::ParamMap& params) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+KernelRecord make_kernel_record(std::optional<double> sigma_texels) {
+  KernelRecord kernel{sigma_texels, std::nullopt};
+  const filters::WidthClass* found = sigma_texels ? filters::find_width_class(*sigma_texels) : nullptr;
+  if (found) kernel.width_class = found->name;
+  return kernel;
+}
+
 std::string describe_kernel(const KernelRecord& kernel) {
-  const std::string width_class = kernel.width_class ? fmt::format(" ({})", *kernel.width_class) : std::string();
-  return format_number(kernel.sigma_texels) + width_class;
+  if (!kernel.sigma_texels) return kNothing;
+  return fmt::format("{} texels{}", format_number(*kernel.sigma_texels),
+                     kernel.width_class ? fmt::format(" ({})", *kernel.width_class) : std::string());
 }
 
 std::string describe_coverage(const records::CoverageRecord& coverage) {

@@ -44,7 +44,10 @@ std::string time_unit(const records::GlRecord& gl);
 /// Lists parameters: "radius 4, store rg32f".
 std::string describe_params(const records::ParamMap& params);
 
-/// A kernel's width in texels with its class: "0.65 (medium)".
+/// The record of a kernel of this width, with its class.
+records::KernelRecord make_kernel_record(std::optional<double> sigma_texels);
+
+/// A kernel's width with its class: "0.645 texels (medium)".
 std::string describe_kernel(const records::KernelRecord& kernel);
 
 /// How well the map's texels are spent: "3.2 map texels per pixel (worst 0.4), 61 % of the map used"; empty where

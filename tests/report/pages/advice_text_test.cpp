@@ -109,7 +109,7 @@ TEST(AdviceText, FirstLine_IsTheAnswer) {
   const auto cells = make_cells();
   EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {max_rmse(0.03)})),
               StartsWith("wide, map 1024 × 1024 d32f: 8.5 ms (CPU) a frame, moving light; cheapest of 2 that keep the "
-                         "limits\nwith a kernel of 0.65 (medium) texels, radius 4, store rg32f\n"));
+                         "limits\nwith a kernel of 0.65 texels (medium), radius 4, store rg32f\n"));
   EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {})),
               StartsWith("none, map 1024 × 1024 d32f: 4.5 ms (CPU) a frame, moving light; cheapest of 3\n"));
   EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {max_rmse(0.001)})), StartsWith("Nothing fits.\n"));

@@ -85,7 +85,7 @@ TEST(TradeSection, Fronts_AreChartsOfEveryErrorAndCost) {
   EXPECT_LT(curve.points[0].x.value, curve.points[2].x.value) << "from narrow to wide";
   const page::ChartPoint& member = chart.series[1].points[0];
   EXPECT_THAT(member.details,
-              ElementsAre("none", "radius 0", "kernel 0 texels, medium", "map 1024 × 1024",
+              ElementsAre("none", "radius 0", "kernel: 0 texels (medium)", "map 1024 × 1024",
                           HasSubstr("RMSE to the area truth: 0.1 [0.099, 0.101]"),
                           HasSubstr("time of map, prefilter and filter, moving light: 4 ms"), "on the front"));
   EXPECT_EQ(member.pictures.at(0).first, "cubes.none.png");
