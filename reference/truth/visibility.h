@@ -14,7 +14,7 @@ namespace shadowbench::truth {
 
 /// How sure a traced fraction is to be.
 struct TraceSettings {
-  double standard_error = 0.005;  ///< wanted for every pixel that is not unanimous
+  double standard_error = 0.005;  ///< wanted for every pixel that is not unanimous; some get a little more or less
   int max_points = 1024;          ///< per scramble; a power of two, at least 16
   std::uint32_t seed = 1;
   std::function<void(const RayPacket&)> on_packet = {};  ///< hears of every packet, from many threads; for measurement
@@ -35,9 +35,9 @@ inline constexpr std::uint32_t kRaysOfSettledPixel = 64;
 ///
 /// Every pixel starts with 4 points from each of 16 Owen-scrambled Sobol sequences, and stops there when all its rays
 /// and those of its eight neighbours agree. The others go on with 16 points per sequence and double them until the
-/// standard error over the scrambles is small enough or `max_points` is reached. The part of the light below a
-/// receiver's own plane is blocked by it. The result depends on neither the number of threads nor the order of pixels.
-/// Cost: 64 rays for a pixel away from edges, up to 16 * max_points at one.
+/// spread of the scrambles at half the points foretells a standard error that is small enough, or `max_points` is
+/// reached. The part of the light below a receiver's own plane is blocked by it. The result depends on neither the
+/// number of threads nor the order of pixels. Cost: 64 rays for a pixel away from edges, up to 16 * max_points at one.
 TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
                             const TraceSettings& settings);
 

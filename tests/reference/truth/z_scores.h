@@ -26,7 +26,12 @@ struct ZScores {
   int at_risk = 0;       ///< pixels that would be beyond it, were they unanimous
   double worst = 0.0;
   double rms = 0.0;
+  double squared_errors = 0.0;
+  double squared_standard_errors = 0.0;
   int count = 0;
+
+  /// The root mean square of the errors in units of that of the stated standard errors: 1 where these are right.
+  double understatement() const { return std::sqrt(squared_errors / squared_standard_errors); }
 };
 
 inline ZScores score(const TracedVisibility& truth, const ReceiverImage& image,
@@ -41,7 +46,9 @@ inline ZScores score(const TracedVisibility& truth, const ReceiverImage& image,
       if (std::abs(got - expected) > 3.0 / truth.rays[i]) ++scores.beyond_limit;
       continue;
     }
-    const double z = (got - expected) / static_cast<double>(truth.standard_error[i]);
+    const double error = got - expected, stated = static_cast<double>(truth.standard_error[i]), z = error / stated;
+    scores.squared_errors += error * error;
+    scores.squared_standard_errors += stated * stated;
     scores.worst = std::max(scores.worst, std::abs(z));
     scores.rms += z * z;
     ++scores.count;
@@ -62,6 +69,8 @@ inline ZScores score_seeds(const std::function<TracedVisibility(std::uint32_t)>&
     all.at_risk += one.at_risk;
     all.worst = std::max(all.worst, one.worst);
     all.rms += one.count * one.rms * one.rms;
+    all.squared_errors += one.squared_errors;
+    all.squared_standard_errors += one.squared_standard_errors;
     all.count += one.count;
   }
   all.rms = std::sqrt(all.rms / all.count);
