@@ -96,7 +96,7 @@ TEST_F(BadInput, PolygonOffsetOnPerspectiveDepth) {
 }
 TEST_F(BadInput, WidthThatNoRadiusGives) {
   expect_refusal(small("--filters none,vsm:width=40"), 2, {"vsm:width=40", "0.408 .. 28.3 texels"});
-  expect_refusal(small("--filters none,vsm:width=thin"), 2, {"'vsm:width=thin'", "sharp, medium, soft"});
+  expect_refusal(small("--filters none,vsm:width=thin"), 2, {"vsm:width=thin", "sharp, medium, soft"});
   expect_refusal(small("--filters none,nine_compares:width=soft --filter-file " + user_filter("nine_compares.glsl")), 2,
                  {"nine_compares:width=soft", "no radius"});
 }
