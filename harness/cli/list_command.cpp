@@ -44,7 +44,8 @@ std::string describe_stored(const FilterSpec& spec) {
 }
 
 void print_filter(const FilterSpec& spec) {
-  fmt::print("{}  {}\n  kind {}{}\n  source: {}\n", spec.id, spec.title, filters::to_string(spec.kind),
+  fmt::print("{}  {}\n  kind {}{}{}\n  source: {}\n", spec.id, spec.title, filters::to_string(spec.kind),
+             spec.bound_at_zero.empty() ? "" : ", with " + spec.bound_at_zero + "=0",
              filters::make_model(spec.id) ? "" : ", without a model", spec.source);
   if (const std::string stored = describe_stored(spec); !stored.empty()) fmt::print("  its map holds: {}\n", stored);
   for (const ParamSpec& param : spec.params) {
@@ -86,7 +87,8 @@ nlohmann::json to_json(const FilterSpec& spec) {
           {"params", params},
           {"moments", spec.holds_moments},
           {"exponent", spec.exponent},
-          {"variance_floor", spec.variance_floor}};
+          {"variance_floor", spec.variance_floor},
+          {"bound_at_zero", spec.bound_at_zero}};
 }
 
 int list_filters(const ListArguments& arguments) {
