@@ -204,8 +204,12 @@ TEST(LightBleeding, ParametersThatChangeTheFormula_AreNamed) {
   const auto limits = compare(item, find_onsets(item, axis), axis);
   ASSERT_EQ(limits.at(0).agreement, records::StressAgreement::kExplained);
   EXPECT_THAT(limits[0].explanation, HasSubstr("bleed_reduction"));
-  const Case defaults = find_model_case("light-bleeding", make_inputs("vsm"), "2 occluders");
-  EXPECT_EQ(compare(defaults, find_onsets(defaults, axis), axis).at(0).agreement, records::StressAgreement::kExplained);
+  for (const char* variant : {"2 occluders", "16 occluders"}) {
+    const Case defaults = find_model_case("light-bleeding", make_inputs("vsm"), variant);
+    EXPECT_EQ(compare(defaults, find_onsets(defaults, axis), axis).at(0).agreement,
+              records::StressAgreement::kExplained)
+        << variant;
+  }
 }
 
 /// An explanation must not cover for numbers that the exact model does not have.
