@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -11,6 +12,13 @@
 
 namespace shadowbench::filters {
 
+/// What encode() is told of a texel; the same in shaders/lib/encode_input.glsl, but for the sign of the slopes.
+template <class T>
+struct EncodeInput {
+  T depth{};
+  std::array<T, 2> slope{};  ///< |depth per texel| along u and v: of both sides of the texel the smaller
+};
+
 /// The scalar model of the `encode` and `blur` passes: a map that a filter's encode() wrote, then prefiltered.
 ///
 /// It has `N` channels of type T. Outside the map it holds what the map's border says: if that is depth 1, then depth 1
@@ -20,7 +28,7 @@ class EncodedMap {
  public:
   using Texel = std::array<T, N>;
 
-  /// `encode` maps a depth of type T to a Texel. Reads `store`, `combine` and `sample` from the parameter values.
+  /// `encode` maps an EncodeInput<T> to a Texel. Reads `store`, `combine` and `sample` from the parameter values.
   template <class Encode>
   EncodedMap(const ModelInput& input, int radius_texels, Encode encode)
       : grid_(input.map.size, input.map.border),
@@ -28,13 +36,11 @@ class EncodedMap {
         store_(store_precision(text_or(input.values, "store", "r32f"))),
         log_(combines_logs(input.values)),
         nearest_(is_nearest(input.values)) {
-    border_ = stored(encode(T(Position<T>(1))));
-    texels_.reserve(input.map.stored.size());
-    for (const float in_map : input.map.stored) {
-      const float depth = input.map.curve.linear(in_map);
-      texels_.push_back(
-          stored(encode(make_uncertain<T>(static_cast<Position<T>>(depth), linear_rounding(depth, input.map.curve)))));
-    }
+    border_ = stored(encode(EncodeInput<T>{T(Position<T>(1)), {}}));
+    const std::vector<T> depths = linear_depths(input.map);
+    texels_.reserve(depths.size());
+    for (int y = 0; y < grid_.size(); ++y)
+      for (int x = 0; x < grid_.size(); ++x) texels_.push_back(stored(encode(describe(depths, x, y))));
     if (radius_texels == 0) return;
     texels_ = blurred(gaussian_weights(radius_texels), 1, 0);
     texels_ = blurred(gaussian_weights(radius_texels), 0, 1);
@@ -69,6 +75,30 @@ class EncodedMap {
     if (std::is_same_v<T, float> || curve.is_linear()) return 0.0;
     const auto z = static_cast<double>(depth);
     return depth_step(z, curve, {}) + 4.0 * kUnitRoundoff * z;
+  }
+
+  static std::vector<T> linear_depths(const DepthMap& map) {
+    std::vector<T> depths;
+    depths.reserve(map.stored.size());
+    for (const float in_map : map.stored) {
+      const float depth = map.curve.linear(in_map);
+      depths.push_back(make_uncertain<T>(static_cast<Position<T>>(depth), linear_rounding(depth, map.curve)));
+    }
+    return depths;
+  }
+
+  /// At the map's edge a texel has its own depth for a neighbour, as in shaders/encode.frag.
+  EncodeInput<T> describe(const std::vector<T>& depths, int x, int y) const {
+    const auto at = [&](int column, int row) {
+      const int last = grid_.size() - 1;
+      return depths[static_cast<std::size_t>(std::clamp(row, 0, last)) * static_cast<std::size_t>(last + 1) +
+                    static_cast<std::size_t>(std::clamp(column, 0, last))];
+    };
+    const T own = at(x, y);
+    const auto slope = [&](const T& before, const T& after) {
+      return minimum(absolute(after - own), absolute(own - before));
+    };
+    return {own, {slope(at(x - 1, y), at(x + 1, y)), slope(at(x, y - 1), at(x, y + 1))}};
   }
 
   TexelGrid<T> grid_;

@@ -13,7 +13,8 @@ class Esm {
       : accuracy_(input.accuracy),
         c_(static_cast<P>(static_cast<float>(number(input.values, "c")))),
         log_(text_or(input.values, "combine", "linear") == "log"),
-        map_(input, static_cast<int>(number(input.values, "radius")), [this](T depth) { return encode(depth); }) {}
+        map_(input, static_cast<int>(number(input.values, "radius")),
+             [this](const EncodeInput<T>& e) { return encode(e.depth); }) {}
 
   static Kernel kernel(const ParamValues& values) { return EncodedMap<T, 1>::kernel(values); }
 

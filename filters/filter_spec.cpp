@@ -59,6 +59,10 @@ double radius_texels(const FilterSpec& spec, const ParamValues& values) {
   return number_or_param(spec.radius_texels, values);
 }
 
+bool promises_bound(const FilterSpec& spec, const ParamValues& values) {
+  return spec.kind == FilterKind::kBound && (spec.bound_at_zero.empty() || number(values, spec.bound_at_zero) == 0.0);
+}
+
 double reach_texels(const FilterSpec& spec, const ParamValues& values) {
   return find_reach(spec.radius_texels, values);
 }

@@ -62,6 +62,7 @@ struct FilterSpec {
   bool holds_moments = false;    ///< channels in pairs: a mean, and the mean of its square
   std::string exponent;          ///< parameter that the exponents of what is stored grow with; empty: none
   std::string variance_floor;    ///< parameter that variances are raised to; empty: none
+  std::string bound_at_zero;     ///< parameter that a bound holds without, at 0 only; empty: it always holds
 
   const ParamSpec* find_param(const std::string& name) const;
 };
@@ -77,6 +78,9 @@ double number(const ParamValues& values, const std::string& name);
 
 /// A text parameter's value, `fallback` where the filter has no such parameter.
 std::string text_or(const ParamValues& values, const std::string& name, const std::string& fallback);
+
+/// Whether the filter promises never to be darker than the percentage-closer filter of its kernel.
+bool promises_bound(const FilterSpec& spec, const ParamValues& values);
 
 /// The kernel's half-width in texels for these parameter values.
 double radius_texels(const FilterSpec& spec, const ParamValues& values);

@@ -358,7 +358,7 @@ void read_disks(const Reader& reader, const toml::table& root, FilterSpec& spec)
 void read_root(const Reader& reader, const toml::table& root, FilterSpec& spec) {
   reader.check_keys(root,
                     {"title", "source", "kind", "store", "combine", "sample", "claims", "radius_texels", "bias_texels",
-                     "teaching", "moments", "exponent", "variance_floor", "param", "disk"},
+                      "teaching", "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk"},
                     "the front matter");
   spec.title = reader.text(root, "title", true);
   spec.source = reader.text(root, "source", true);
@@ -376,6 +376,9 @@ void read_root(const Reader& reader, const toml::table& root, FilterSpec& spec) 
   spec.bias_texels = read_number_or_param(reader, root, spec, "bias_texels", spec.radius_texels);
   read_prefilter(reader, root, spec);
   read_stored(reader, root, spec);
+  spec.bound_at_zero = read_param_name(reader, root, spec, "bound_at_zero");
+  if (!spec.bound_at_zero.empty() && spec.kind != FilterKind::kBound)
+    reader.fail(root.get("bound_at_zero"), "'bound_at_zero' needs 'kind = \"bound\"'");
   read_disks(reader, root, spec);
 }
 

@@ -27,6 +27,11 @@ T minimum(T a, T b) {
     return a < b ? a : b;
 }
 
+template <class T>
+T absolute(T a) {
+  return maximum(a, -a);
+}
+
 /// e^x with the accuracy of the GL at hand.
 template <class T>
 T exponential(T x, [[maybe_unused]] const GlAccuracy& accuracy) {

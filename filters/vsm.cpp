@@ -10,7 +10,9 @@ class Vsm {
 
  public:
   explicit Vsm(const ModelInput& input)
-      : map_(input, static_cast<int>(number(input.values, "radius")), &Vsm::encode),
+      : slope_variance_(static_cast<P>(static_cast<float>(number(input.values, "slope_variance")))),
+        map_(input, static_cast<int>(number(input.values, "radius")),
+             [this](const EncodeInput<T>& e) { return encode(e); }),
         min_variance_(static_cast<P>(static_cast<float>(number(input.values, "min_variance")))),
         reduction_(static_cast<P>(static_cast<float>(number(input.values, "bleed_reduction")))) {}
 
@@ -26,6 +28,7 @@ class Vsm {
   }
 
  private:
+  P slope_variance_;
   EncodedMap<T, 2> map_;
   P min_variance_;
   P reduction_;
@@ -36,7 +39,10 @@ class Vsm {
     return one / (one + distance * distance / variance);
   }
 
-  static std::array<T, 2> encode(T depth) { return {depth, depth * depth}; }
+  std::array<T, 2> encode(const EncodeInput<T>& e) const {
+    const T squared = e.slope[0] * e.slope[0] + e.slope[1] * e.slope[1];
+    return {e.depth, e.depth * e.depth + T(slope_variance_) * squared};
+  }
 };
 
 }  // namespace

@@ -1,14 +1,15 @@
 /*+++
 title = "Variance shadow map"
-source = "Donnelly and Lauritzen 2006, Variance Shadow Maps, I3D, eq. 5; light-bleeding reduction: Lauritzen 2007, GPU Gems 3, ch. 8"
+source = "Donnelly and Lauritzen 2006, Variance Shadow Maps, I3D, eq. 5; slope variance and light-bleeding reduction: Lauritzen 2007, GPU Gems 3, ch. 8"
 kind = "bound"
 store = ["rg32f", "rg16f"]
 combine = "linear"
 sample = "linear"
 radius_texels = "radius"
-bias_texels = 0
+bias_texels = 1
 moments = true
 variance_floor = "min_variance"
+bound_at_zero = "bleed_reduction"
 [param.radius]
 default = 4
 min = 0
@@ -21,13 +22,22 @@ min = 0.0
 max = 1e-1
 unit = "depth^2"
 text = "lower bound on the variance; too small gives acne, too large fades contact shadows"
+[param.slope_variance]
+default = 0.25
+min = 0.0
+max = 1.0
+unit = "texels^2"
+text = "variance of the places within a texel, as which the stored surface's slope counts; too small gives acne, 0 is the textbook form"
 [param.bleed_reduction]
-default = 0.0
+default = 0.3
 min = 0.0
 max = 0.99
-text = "share of the dark end that is cut to black; hides light bleeding and hardens penumbrae"
+text = "share of the dark end that is cut to black; hides light bleeding, and hardens penumbrae; 0 is the textbook form, and alone an upper bound"
 +++*/
-vec4 encode(EncodeInput e) { return vec4(e.depth, e.depth * e.depth, 0.0, 0.0); }
+vec4 encode(EncodeInput e) {
+  float within_texel = slope_variance * dot(e.depth_per_texel, e.depth_per_texel);
+  return vec4(e.depth, e.depth * e.depth + within_texel, 0.0, 0.0);
+}
 
 float visibility(Receiver r) {
   vec2 moments = fetch_map(r, vec2(0.0)).xy;

@@ -51,7 +51,8 @@ records::KernelRecord find_kernel(const FilterSpec& spec) {
 }
 
 void print_filter(const FilterSpec& spec) {
-  fmt::print("{}  {}\n  kind {}{}{}\n  kernel: {}\n  source: {}\n", spec.id, spec.title, filters::to_string(spec.kind),
+  fmt::print("{}  {}\n  kind {}{}{}{}\n  kernel: {}\n  source: {}\n", spec.id, spec.title,
+             filters::to_string(spec.kind), spec.bound_at_zero.empty() ? "" : ", with " + spec.bound_at_zero + "=0",
              spec.teaching ? ", for teaching" : "", filters::make_model(spec.id) ? "" : ", without a model",
              records::describe_kernel(find_kernel(spec)), spec.source);
   if (const std::string stored = describe_stored(spec); !stored.empty()) fmt::print("  its map holds: {}\n", stored);
@@ -103,7 +104,8 @@ nlohmann::json to_json(const FilterSpec& spec) {
           {"params", params},
           {"moments", spec.holds_moments},
           {"exponent", spec.exponent},
-          {"variance_floor", spec.variance_floor}};
+          {"variance_floor", spec.variance_floor},
+          {"bound_at_zero", spec.bound_at_zero}};
 }
 
 int list_filters(const ListArguments& arguments) {

@@ -169,6 +169,11 @@ void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filte
                 "only a filter of the kind 'bound' promises never to be darker than its percentage-closer filter");
     return;
   }
+  if (!filters::promises_bound(cell.request.spec, cell.request.values)) {
+    note_absent(cell.record, fields,
+                fmt::format("the filter is a bound with {}=0 only", cell.request.spec.bound_at_zero));
+    return;
+  }
   const auto model = filters::make_model(cell.request.spec.id);
   if (!model || cell.request.user_file) {
     note_absent(cell.record, fields, "the filter has no scalar model");

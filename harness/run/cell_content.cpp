@@ -66,8 +66,8 @@ std::string name_cell_content(const std::string& scene_content, const filters::F
   hash.add(scene_content);
   hash.add(request.spec.body);
   hash.add(fmt::format("{} claims {}", request.user_file, fmt::join(request.spec.claims, " ")));
-  hash.add(fmt::format("moments {} exponent {} floor {}", request.spec.holds_moments, request.spec.exponent,
-                       request.spec.variance_floor));
+  hash.add(fmt::format("moments {} exponent {} floor {} bound at zero {}", request.spec.holds_moments,
+                       request.spec.exponent, request.spec.variance_floor, request.spec.bound_at_zero));
   return hash.name();
 }
 

@@ -138,6 +138,12 @@ TEST(FrontMatter, WhatTheMapHolds_IsDeclared) {
   expect_error(with("store = \"rg32f\"\nvariance_floor = \"c\"\n" + param, glsl), "dir/mine.glsl:7",
                "needs 'moments = true'");
   expect_error(with("exponent = \"c\"\n" + param), "dir/mine.glsl:6", "needs 'store'");
+  std::string bound = with("bound_at_zero = \"c\"\n" + param);
+  expect_error(bound, "dir/mine.glsl:6", "needs 'kind = \"bound\"'");
+  bound.replace(bound.find("other"), 5, "bound");
+  EXPECT_FALSE(promises_bound(parse_filter(bound, "a.glsl"), {{"c", 1.0}}));
+  EXPECT_TRUE(promises_bound(parse_filter(bound, "a.glsl"), {{"c", 0.0}}));
+  expect_error(with("bound_at_zero = \"d\"\n" + param), "dir/mine.glsl:6", "'d', which is not a numeric parameter");
 }
 
 TEST(FrontMatter, NoVisibility_IsRefused) {

@@ -220,7 +220,7 @@ TEST(PoissonModel, RadiusZero_IsItsBaseComparison) {
 TEST(VsmModel, TwoDepths_OneOfThemTheReceivers_IsExact) {
   // Donnelly and Lauritzen 2006, section 3: for a kernel of two depths whose far one is the receiver's, V = w.
   const DepthMap map = make_edge(64, 32, 0.25f, 0.75f);
-  const double v = look_up("vsm:radius=0,min_variance=0", map, 31.5 + 0.3, 20.5, 0.75f);
+  const double v = look_up("vsm:radius=0,min_variance=0,bleed_reduction=0", map, 31.5 + 0.3, 20.5, 0.75f);
   EXPECT_NEAR(v, 0.3, 1e-6);
 }
 
@@ -229,9 +229,10 @@ TEST(VsmModel, DepthsThatAreNearlyEqual_NeedMoreThanDouble) {
   // hundred.
   const float near = 0.75f - 0x1p-23f, far = 0.75f;
   const DepthMap map = make_edge(64, 32, near, far);
-  const double exact = look_up("vsm:radius=0,min_variance=0", make_edge(64, 32, 0.25f, 0.75f), 31.8, 20.5, 0.75f);
+  const double exact =
+      look_up("vsm:radius=0,min_variance=0,bleed_reduction=0", make_edge(64, 32, 0.25f, 0.75f), 31.8, 20.5, 0.75f);
   const auto error = [&](Precision precision) {
-    return std::abs(look_up("vsm:radius=0,min_variance=0", map, 31.8, 20.5, far, precision) - exact);
+    return std::abs(look_up("vsm:radius=0,min_variance=0,bleed_reduction=0", map, 31.8, 20.5, far, precision) - exact);
   };
   EXPECT_LT(error(Precision::kExtended), 1e-4);
   EXPECT_GT(error(Precision::kDouble), 1e-4);
@@ -240,7 +241,24 @@ TEST(VsmModel, DepthsThatAreNearlyEqual_NeedMoreThanDouble) {
 TEST(VsmModel, TwoOccluders_BleedAsTheClosedFormSays) {
   // shared algebra: V = s2 / (s2 + (t - mu)^2) with a = .1, b = .6, half each, t = .7 gives .3378; the truth is 0.
   const DepthMap map = make_edge(64, 32, 0.1f, 0.6f);
-  EXPECT_NEAR(look_up("vsm:radius=0,min_variance=0", map, 32.0, 20.5, 0.7f), 0.3378, 1e-4);
+  EXPECT_NEAR(look_up("vsm:radius=0,min_variance=0,bleed_reduction=0", map, 32.0, 20.5, 0.7f), 0.3378, 1e-4);
+}
+
+TEST(VsmModel, SlopeWithinTexels_IsVariance) {
+  // A plane that falls by 1/64 a texel, and a receiver 1/32 below it: the variance is k (1/64)^2 and nothing else.
+  DepthMap map{16, {}};
+  for (int i = 0; i < 16 * 16; ++i) map.stored.push_back(0.25f + static_cast<float>(i % 16) / 64.0f);
+  const float depth = map.stored[8] + 1.0f / 32.0f;
+  for (const double k : {0.0, 0.25, 1.0}) {
+    const std::string request = "vsm:radius=0,min_variance=0,bleed_reduction=0,slope_variance=" + std::to_string(k);
+    EXPECT_NEAR(look_up(request, map, 8.5, 8.5, depth), k / (k + 4.0), 1e-6);
+  }
+}
+
+TEST(VsmModel, Silhouettes_AreNoSlope) {
+  const DepthMap map = make_edge(64, 32, 0.25f, 0.75f);
+  EXPECT_EQ(look_up("vsm:radius=0,min_variance=0", map, 31.5, 20.5, 0.5f), 0.0);
+  EXPECT_EQ(look_up("vsm:radius=0,min_variance=0", map, 0.5, 0.5, 0.5f), 0.0) << "the map's edge is none either";
 }
 
 TEST(VsmModel, BleedReduction_CutsTheDarkEnd) {

@@ -83,15 +83,18 @@ Observation judge_bleeding(const LookupResult& seen) {
 /// wrong by rounding.
 std::string explain_by_model(const Disagreement& missed, SyntheticLookup& exact, const filters::FilterRequest& request,
                              int occluders) {
-  if (std::string words = explain_broken_throughout(missed); !words.empty() || !missed.measured) return words;
-  const LayerScene layers = make_layer_scene(filters::prefilter_radius_texels(request.spec, request.values),
-                                             make_stack(occluders, *missed.measured));
+  if (std::string words = explain_broken_throughout(missed); !words.empty()) return words;
+  if (!missed.measured && !missed.theory.onset) return {};
+  const double ratio = missed.measured ? *missed.measured : *missed.theory.onset;
+  const LayerScene layers =
+      make_layer_scene(filters::prefilter_radius_texels(request.spec, request.values), make_stack(occluders, ratio));
   const std::vector<double> visibility = exact.look(layers.scene, request.values).visibility;
   const double largest = *std::ranges::max_element(visibility);
-  if (std::abs(largest / kBound - 1.0) > 0.1) return {};
+  if (missed.measured ? std::abs(largest / kBound - 1.0) > 0.1 : largest > kBound) return {};
   return fmt::format(
-      "the filter's model in extended precision lets {:.3f} through there as well: with {} it is not the plain formula",
-      largest,
+      "the filter's model in extended precision lets {:.3f} through at {:.4g} as well: with {} it is not the plain "
+      "formula",
+      largest, ratio,
       request.set_by_user.empty() ? "its defaults"
                                   : fmt::format("the chosen {}", fmt::join(request.set_by_user, ", ")));
 }

@@ -101,6 +101,7 @@ Case make_filter_case(const AxisInputs& inputs, filters::FilterRequest request, 
   const std::string param = driven_param(request.spec);
   request.values["store"] = store;
   request.values[param] = minimum;
+  if (!request.spec.bound_at_zero.empty()) request.values[request.spec.bound_at_zero] = 0.0;  // the formula's own error
   Case item = start_case(inputs, request, fmt::format("{}, {} {:g}", store, param, minimum), level);
   if (!item.is_available()) return item;
   const int radius = filters::prefilter_radius_texels(request.spec, request.values);

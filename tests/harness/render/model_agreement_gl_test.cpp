@@ -82,8 +82,9 @@ class ModelAgreement : public ::testing::TestWithParam<std::tuple<std::string, s
     EXPECT_GT(a.compared, 20000u);
     EXPECT_GT(a.shadowed, 0.01);
     EXPECT_LT(static_cast<double>(a.excused), 0.005 * static_cast<double>(a.compared));
-    // Across a silhouette the position's rounding alone can exceed the minimum variance.
-    EXPECT_LT(static_cast<double>(a.unbounded), 0.05 * static_cast<double>(a.compared));
+    // Across a silhouette the position's rounding alone can exceed the minimum variance, and light-bleeding reduction
+    // widens every bound.
+    EXPECT_LT(static_cast<double>(a.unbounded), 0.06 * static_cast<double>(a.compared));
     return a;
   }
 
@@ -184,9 +185,10 @@ TEST_P(ModelVariants, GlImageEqualsModel) {
 INSTANTIATE_TEST_SUITE_P(Parameters, ModelVariants,
                          ::testing::Values("poisson:rotation=none", "poisson:rotation=interleaved-gradient,taps=8",
                                            "poisson:radius=0,taps=4", "poisson:taps=32,radius=6", "vsm:radius=0",
-                                           "vsm:radius=12", "vsm:bleed_reduction=0.3",
-                                           "vsm:min_variance=0.001,store=rg16f", "esm:radius=0", "esm:c=20",
-                                           "esm:combine=log,c=500", "esm:combine=log,radius=0", "esm:c=8,store=r16f"),
+                                           "vsm:radius=12", "vsm:bleed_reduction=0,slope_variance=0",
+                                           "vsm:slope_variance=1", "vsm:min_variance=0.001,store=rg16f", "esm:radius=0",
+                                           "esm:c=20", "esm:combine=log,c=500", "esm:combine=log,radius=0",
+                                           "esm:c=8,store=r16f"),
                          [](const auto& each) {
                            std::string name = each.param;
                            for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';

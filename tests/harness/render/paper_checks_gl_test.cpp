@@ -71,8 +71,10 @@ TEST_P(Bound, IsNeverDarkerThanPercentageCloserFiltering) {
 
 INSTANTIATE_TEST_SUITE_P(BuiltIn, Bound,
                          ::testing::Combine(::testing::ValuesIn(builtin_scenes()),
-                                            ::testing::Values("vsm", "vsm:min_variance=0", "vsm:radius=9", "esm",
-                                                              "esm:c=20")),
+                                            ::testing::Values("vsm:bleed_reduction=0",
+                                                              "vsm:bleed_reduction=0,slope_variance=0",
+                                                              "vsm:bleed_reduction=0,min_variance=0",
+                                                              "vsm:bleed_reduction=0,radius=9", "esm", "esm:c=20")),
                          [](const auto& each) {
                            std::string name = std::get<0>(each.param) + "_" + std::get<1>(each.param);
                            for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';

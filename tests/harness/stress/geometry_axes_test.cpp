@@ -80,7 +80,8 @@ TEST(LayerStack, Exponential_OfTwoLayers) {
 
 TEST(LayerScene, SharesAreThoseOfTheFiltersKernel) {
   for (const int radius : {0, 1, 4, 9}) {
-    const AxisInputs inputs = make_inputs(fmt::format("vsm:radius={},min_variance=0", radius));
+    const AxisInputs inputs =
+        make_inputs(fmt::format("vsm:radius={},min_variance=0,bleed_reduction=0,slope_variance=0", radius));
     for (const int count : {2, 4, 16}) {
       const LayerStack stack = make_layer_stack(count, 0.2, 0.5, 0.9);
       const LayerScene layers = make_layer_scene(radius, stack);
@@ -161,7 +162,7 @@ TEST(HeatMap, HighValuesLieAbove_AndTheCurveWhereItSays) {
 
 /// Every case that runs without a GL keeps to its theory.
 TEST(GeometryAxes, Models_MeetTheirTheories) {
-  const AxisInputs inputs = make_inputs("none,tent3x3,teach4x4,poisson,vsm,esm");
+  const AxisInputs inputs = make_inputs("none,tent3x3,teach4x4,poisson,vsm:bleed_reduction=0,slope_variance=0,esm");
   for (const char* id : {"grazing-light", "light-bleeding", "kernel-radius", "taps"}) {
     const Axis axis = choose_axes(id)[0];
     int limits = 0;
@@ -188,7 +189,8 @@ Case find_model_case(const std::string& axis, const AxisInputs& inputs, const st
 
 /// Half each, first gap 1, second g: 1 / (1 + (1 + 2 g)^2), which is 0.1 at g = 1.
 TEST(LightBleeding, TwoOccluders_FollowTheClosedForm) {
-  const Case item = find_model_case("light-bleeding", make_inputs("vsm"), "2 occluders");
+  const Case item =
+      find_model_case("light-bleeding", make_inputs("vsm:bleed_reduction=0,slope_variance=0"), "2 occluders");
   EXPECT_NEAR(item.theories.at(0).onset.value(), 1.0, 0.01);
   for (const double ratio : {1e-4, 0.01, 0.2, 1.0, 4.0})
     EXPECT_NEAR(item.observe(ratio).measured.value(), 1.0 / (1.0 + std::pow(1.0 + 2.0 * ratio, 2.0)), 2e-3) << ratio;
@@ -202,11 +204,18 @@ TEST(LightBleeding, ParametersThatChangeTheFormula_AreNamed) {
   const auto limits = compare(item, find_onsets(item, axis), axis);
   ASSERT_EQ(limits.at(0).agreement, records::StressAgreement::kExplained);
   EXPECT_THAT(limits[0].explanation, HasSubstr("bleed_reduction"));
+  for (const char* variant : {"2 occluders", "16 occluders"}) {
+    const Case defaults = find_model_case("light-bleeding", make_inputs("vsm"), variant);
+    EXPECT_EQ(compare(defaults, find_onsets(defaults, axis), axis).at(0).agreement,
+              records::StressAgreement::kExplained)
+        << variant;
+  }
 }
 
 /// An explanation must not cover for numbers that the exact model does not have.
 TEST(LightBleeding, WhatTheExactModelDoesNotDo_IsNotExplained) {
-  const Case item = find_model_case("light-bleeding", make_inputs("vsm"), "2 occluders");
+  const Case item =
+      find_model_case("light-bleeding", make_inputs("vsm:bleed_reduction=0,slope_variance=0"), "2 occluders");
   records::StressCase record;
   record.samples = {{3.0, Verdict::kDegraded, 0.2, ""}};
   EXPECT_EQ(item.explain({item.theories.at(0), 3.0, record}), "");

@@ -59,7 +59,7 @@ TEST_F(TunedParameters, AreTaken_AndShownByTheLabel) {
   const filters::FilterRequest request = apply("vsm", file);
   EXPECT_EQ(filters::number(request.values, "radius"), 2.0);
   EXPECT_EQ(filters::number(request.values, "min_variance"), 1e-6);
-  EXPECT_EQ(filters::number(request.values, "bleed_reduction"), 0.0);  // not in the file
+  EXPECT_EQ(filters::number(request.values, "bleed_reduction"), 0.3);  // not in the file
   EXPECT_EQ(request.label(), "vsm (min_variance=1e-06, radius=2)");
   EXPECT_TRUE(notes_.empty());
 }
