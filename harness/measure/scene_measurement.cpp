@@ -7,14 +7,14 @@
 #include <memory>
 
 #include "filters/kernel_width.h"
-#include "harness/measure/empty_lookup.h"
 #include "harness/measure/filter_setup.h"
-#include "harness/measure/light_timing.h"
 #include "harness/measure/phases.h"
 #include "harness/measure/stability_meter.h"
-#include "harness/measure/statistics.h"
 #include "harness/measure/suspects.h"
-#include "harness/measure/timing.h"
+#include "harness/measure/timing/empty_lookup.h"
+#include "harness/measure/timing/light_timing.h"
+#include "harness/measure/timing/statistics.h"
+#include "harness/measure/timing/timing.h"
 #include "harness/measure/uncertainty.h"
 #include "harness/render/filter_passes.h"
 #include "harness/render/receivers.h"

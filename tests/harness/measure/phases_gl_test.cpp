@@ -1,11 +1,11 @@
 // Whether the interval over phases covers what another place of the map's grid would have given.
 
 #include "filters/front_matter.h"
-#include "harness/measure/empty_lookup.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/phases.h"
-#include "harness/measure/statistics.h"
-#include "harness/measure/timing.h"
+#include "harness/measure/timing/empty_lookup.h"
+#include "harness/measure/timing/statistics.h"
+#include "harness/measure/timing/timing.h"
 #include "reference/metrics/error_stats.h"
 #include "reference/metrics/mean_interval.h"
 #include "reference/truth/truth_cache.h"

@@ -1,5 +1,5 @@
-#include "harness/measure/statistics.h"
-#include "harness/measure/timing.h"
+#include "harness/measure/timing/statistics.h"
+#include "harness/measure/timing/timing.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {

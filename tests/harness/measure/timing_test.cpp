@@ -1,12 +1,12 @@
 // When enough rounds are timed, with clocks that say what the test wants.
 
-#include "harness/measure/timing.h"
+#include "harness/measure/timing/timing.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "harness/measure/statistics.h"
+#include "harness/measure/timing/statistics.h"
 
 namespace shadowbench::measure {
 namespace {

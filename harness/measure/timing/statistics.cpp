@@ -1,4 +1,4 @@
-#include "harness/measure/statistics.h"
+#include "harness/measure/timing/statistics.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,11 +1,11 @@
-#include "harness/measure/timing.h"
+#include "harness/measure/timing/timing.h"
 
 #include <algorithm>
 #include <cassert>
 #include <numeric>
 #include <random>
 
-#include "harness/measure/statistics.h"
+#include "harness/measure/timing/statistics.h"
 
 namespace shadowbench::measure {
 namespace {

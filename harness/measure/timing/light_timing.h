@@ -5,7 +5,7 @@
 
 #include "harness/measure/renderer.h"
 #include "harness/measure/scene_assets.h"
-#include "harness/measure/timing.h"
+#include "harness/measure/timing/timing.h"
 #include "harness/options/options.h"
 #include "harness/render/filter_passes.h"
 #include "harness/scene/scene.h"

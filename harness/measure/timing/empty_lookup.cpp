@@ -1,4 +1,4 @@
-#include "harness/measure/empty_lookup.h"
+#include "harness/measure/timing/empty_lookup.h"
 
 #include <map>
 

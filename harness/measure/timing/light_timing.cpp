@@ -1,11 +1,11 @@
-#include "harness/measure/light_timing.h"
+#include "harness/measure/timing/light_timing.h"
 
 #include <cassert>
 #include <map>
 #include <memory>
 
 #include "harness/measure/filter_setup.h"
-#include "harness/measure/statistics.h"
+#include "harness/measure/timing/statistics.h"
 #include "harness/scene/lights/light.h"
 
 namespace shadowbench::measure {
