@@ -358,7 +358,7 @@ void read_disks(const Reader& reader, const toml::table& root, FilterSpec& spec)
 void read_root(const Reader& reader, const toml::table& root, FilterSpec& spec) {
   reader.check_keys(root,
                     {"title", "source", "kind", "store", "combine", "sample", "claims", "radius_texels", "bias_texels",
-                      "teaching", "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk"},
+                     "teaching", "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk"},
                     "the front matter");
   spec.title = reader.text(root, "title", true);
   spec.source = reader.text(root, "source", true);

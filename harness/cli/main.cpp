@@ -47,12 +47,15 @@ int run(int argc, char** argv) {
   return run_command_line(program, argc, argv);
 }
 
+int fail_output(int error) {
+  print_error(
+      fmt::format("standard output cannot be written ({}); check the free space where it goes", std::strerror(error)));
+  return kOutputError;
+}
+
 /// Reports where what was printed could not be written, because a disk is full or a pipe is closed.
 int finish_output(int exit_code) {
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
-  print_error(
-      fmt::format("standard output cannot be written ({}); check the free space where it goes", std::strerror(errno)));
-  return kOutputError;
+  return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 ? exit_code : fail_output(errno);
 }
 
 }  // namespace
@@ -72,6 +75,7 @@ int main(int argc, char** argv) {
         "filters at once");
     return kInputError;
   } catch (const std::system_error& error) {
+    if (std::ferror(stdout) != 0) return fail_output(error.code().value());
     print_error(fmt::format("{}; check that the folder is there, its rights and its free space", error.what()));
     return kOutputError;
   } catch (const std::exception& error) {

@@ -11,7 +11,8 @@ using Recheck = ProgramTest;
 
 TEST_F(Recheck, DiffOfTheSavedPictures_GivesTheErrorsOfTheRun) {
   ASSERT_EQ(
-      run("run --out out --size 96x54 --map-size 64 --rounds 1 --scene cubes --filters none,vsm:radius=6").exit_code,
+      run("run --out out --size 96x54 --map-size 64 --rounds 1 --phases 1 --scene cubes --filters none,vsm:radius=6")
+          .exit_code,
       0);
   const nlohmann::json results = nlohmann::json::parse(read_text(folder() / "out" / "results.json"));
   const char* labels[] = {"none", "vsm (radius=6)"};

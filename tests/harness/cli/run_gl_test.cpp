@@ -299,7 +299,7 @@ TEST_F(Command, Stability_IsCountedDrawnAndLinked) {
   write("copied.glsl", copied);
   const Outcome outcome =
       run("run --stability --out out --size 96x54 --map-size 64 --rounds 1 --scene cubes --no-truth --filters "
-          "none,vsm,esm:c=20,store=r16f,copied --filter-file copied.glsl");
+          "none,vsm:bleed_reduction=0,esm:c=20,store=r16f,copied:bleed_reduction=0 --filter-file copied.glsl");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json cells = results(folder())["cells"];
   ASSERT_EQ(cells.size(), 4u);

