@@ -247,7 +247,11 @@ TEST_F(Sweep, TooManyCells_AskForYes) {
         "c = {linear = [1, 2000], count = 2001}\n");
   expect_refusal("run huge.toml --out out", 2, {"2001 cells", "--yes"});
   expect_refusal("run e.toml --rounds auto --budget 100 --out out", 2, {"48 cells", "1 h 20 min", "--yes"});
+  // So large a picture takes more than an hour on any machine that draws with its processor.
+  expect_refusal("run e.toml --rounds 10000 --size 3840x2160 --out out", 2,
+                 {"48 cells", "of timed work", "--rounds 10000", "--yes", "fewer --rounds"});
   EXPECT_FALSE(std::filesystem::exists(folder() / "out"));
+  EXPECT_EQ(run("run e.toml --rounds auto --budget 100 --precision 1 --yes --out out").exit_code, 0);
 }
 
 }  // namespace
