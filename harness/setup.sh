@@ -10,6 +10,9 @@ packages="
   libtomlplusplus-dev nlohmann-json3-dev openimageio-tools zlib1g-dev fonts-dejavu-core libegl1 libegl-mesa0 libgl1-mesa-dri
 "
 tests="chromium clang-format gcovr groff-base libbenchmark-dev libgmock-dev libgtest-dev python3-jsonschema xauth xvfb"
+# What runs the tests of the pages may have come from elsewhere, and Debian's packages would then be in its way.
+command -v node >/dev/null || tests="$tests nodejs"
+command -v npm >/dev/null || tests="$tests npm"
 case "${1-}" in
   "") ;;
   --tests) packages="$packages $tests" ;;

@@ -9,6 +9,7 @@
 
 #include "filters/base/error.h"
 #include "filters/catalogue.h"
+#include "filters/kernel_width.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/options/options.h"
@@ -29,6 +30,7 @@ struct AdviseArguments {
   std::vector<std::string> claims;
   std::vector<std::string> scenes;
   std::string size;
+  std::string width_class;
   std::string light = "moving";
   std::string cheapest = "time";
   bool json = false;
@@ -65,6 +67,7 @@ AdviceRequest make_request(const AdviseArguments& arguments) {
   request.light = kLights.at(arguments.light);
   request.cheapest = kCosts.at(arguments.cheapest);
   request.scenes = arguments.scenes;
+  request.width_class = arguments.width_class;
   if (!arguments.size.empty()) request.size = parse_picture_size(arguments.size);
   if (!arguments.claims.empty()) request.claims = list_claims();
   return request;
@@ -110,6 +113,9 @@ Command make_advise_command() {
   command.add("--requires", &a->claims, "what the filter must claim, such as contact-hardening; may be repeated");
   command.add("--scene", &a->scenes, "judge on this scene; may be repeated [all of the run]").names(ValueKind::kScene);
   command.add("--size", &a->size, "judge pictures of WxH pixels [all of the run]");
+  std::vector<std::string> classes;
+  for (const auto& each : filters::width_classes()) classes.emplace_back(each.name);
+  command.add("--class", &a->width_class, "judge kernels of this class of width [any]").one_of(classes);
   command.add("--light", &a->light, "moving or static: whether every frame pays for map and prefilter")
       .one_of({"moving", "static"});
   command.add("--cheapest", &a->cheapest, "the cost that is to be small: time, bytes or fetches")

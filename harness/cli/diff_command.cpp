@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,9 @@
 #include "harness/cli/diff_runs.h"
 #include "harness/run/compare_pictures.h"
 #include "reference/metrics/flip.h"
+#include "report/images/figures/difference_picture.h"
+#include "report/pages/comparison_page.h"
+#include "report/records/format.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -26,6 +30,8 @@ struct DiffArguments {
   std::optional<std::string> mask;
   double pixels_per_degree = metrics::kDefaultPixelsPerDegree;
   std::string metric = kAllMetrics;
+  std::optional<std::string> out;   ///< a PNG file
+  std::optional<std::string> html;  ///< a folder
   bool json = false;
 };
 
@@ -48,17 +54,6 @@ void check_pixels_per_degree(double value) {
   if (value >= kLeastPixelsPerDegree && value <= kMostPixelsPerDegree) return;
   throw Error(ErrorKind::kUsage, fmt::format("--pixels-per-degree: {} is out of range: choose {} .. {}", value,
                                              kLeastPixelsPerDegree, kMostPixelsPerDegree));
-}
-
-void print_text(const run::ComparisonOptions& options, const run::Comparison& result) {
-  const auto print = [](std::string_view name, const std::string& value) { fmt::print("{:<11} {}\n", name, value); };
-  for (const metrics::Metric& metric : options.metrics) {
-    const std::string name(metric.name());
-    const auto value = result.values.find(name);
-    print(name, value != result.values.end() ? fmt::format("{}", value->second) : "absent: " + result.absent.at(name));
-  }
-  print("compared", fmt::format("{}", result.compared));
-  print("not_finite", fmt::format("{}", result.not_finite));
 }
 
 void print_json(const run::ComparisonOptions& options, const run::Comparison& result) {
@@ -94,16 +89,60 @@ bool name_runs(const CommandLine& line, const DiffArguments& arguments) {
             "'{}' is a run's folder or results, and '{}' is not: name two pictures, or the report folders of two runs",
             a ? arguments.image : arguments.truth, a ? arguments.truth : arguments.image));
   }
-  for (const char* option : {"--metric", "--mask", "--pixels-per-degree"})
+  for (const char* option : {"--metric", "--mask", "--pixels-per-degree", "--out", "--html"})
     if (line.has(option)) fail(fmt::format("{} is of pictures, and these are runs: leave it out", option));
   return true;
+}
+
+/// The numbers in one line each, as they are printed.
+std::vector<std::pair<std::string, std::string>> list_numbers(const run::ComparisonOptions& options,
+                                                              const run::Comparison& result) {
+  std::vector<std::pair<std::string, std::string>> numbers;
+  for (const metrics::Metric& metric : options.metrics) {
+    const std::string name(metric.name());
+    const auto value = result.values.find(name);
+    numbers.emplace_back(
+        name, value != result.values.end() ? fmt::format("{}", value->second) : "absent: " + result.absent.at(name));
+  }
+  numbers.emplace_back("compared", fmt::format("{}", result.compared));
+  numbers.emplace_back("not_finite", fmt::format("{}", result.not_finite));
+  return numbers;
+}
+
+void write_images(const DiffArguments& arguments, const run::ComparisonOptions& options,
+                  const run::Comparison& result) {
+  const auto numbers = list_numbers(options, result);
+  const run::ComparedImages& made = *result.images;
+  if (arguments.out) {
+    std::vector<std::string> facts;
+    for (const auto& [name, value] : result.values)
+      facts.push_back(fmt::format("{} {}", name, records::format_number(value)));
+    const auto no_flip = result.absent.find("flip");
+    images::write_difference_picture(
+        *arguments.out,
+        {fmt::format("{} less {}", options.image, options.truth), fmt::format("{}", fmt::join(facts, " · ")),
+         made.difference, made.flip, no_flip == result.absent.end() ? "" : no_flip->second});
+  }
+  if (arguments.html)
+    pages::write_comparison_page(*arguments.html, {options.image, options.truth, made.image, made.truth,
+                                                   made.image_grey, made.truth_grey, made.flip, numbers});
+}
+
+void check_out(const std::optional<std::string>& out) {
+  if (out && std::filesystem::path(*out).extension() != ".png")
+    fail(fmt::format("--out: '{}' must end in .png; --html writes a page", *out));
 }
 
 int diff(const CommandLine& line, const DiffArguments& arguments) {
   if (name_runs(line, arguments)) return diff_runs(arguments.image, arguments.truth, arguments.json);
   check_pixels_per_degree(arguments.pixels_per_degree);
-  const run::ComparisonOptions options{arguments.image, arguments.truth, arguments.mask,
-                                       choose_metrics(arguments.metric), arguments.pixels_per_degree};
+  check_out(arguments.out);
+  const run::ComparisonOptions options{arguments.image,
+                                       arguments.truth,
+                                       arguments.mask,
+                                       choose_metrics(arguments.metric),
+                                       arguments.pixels_per_degree,
+                                       arguments.out || arguments.html};
   const run::Comparison result = run::compare_pictures(options);
   for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
   if (arguments.json) print_json(options, result);
@@ -111,7 +150,9 @@ int diff(const CommandLine& line, const DiffArguments& arguments) {
     throw Error(ErrorKind::kInput, fmt::format("nothing can be compared: {}", result.absent.begin()->second),
                 options.image + " and " + options.truth);
   }
-  if (!arguments.json) print_text(options, result);
+  if (result.images) write_images(arguments, options, result);
+  if (arguments.json) return 0;
+  for (const auto& [name, value] : list_numbers(options, result)) fmt::print("{:<11} {}\n", name, value);
   return 0;
 }
 
@@ -135,6 +176,10 @@ Command make_diff_command() {
       .such_as(metric_names());
   command.add("--mask", &a->mask, "a picture of one channel: pixels count where it is not 0").names(ValueKind::kFile);
   command.add("--pixels-per-degree", &a->pixels_per_degree, "how large FLIP's observer sees the pixels");
+  command.add("--out", &a->out, "write a PNG of the signed difference and of FLIP, with their scales")
+      .names(ValueKind::kFile);
+  command.add("--html", &a->html, "write a page into this folder on which the two can be looked at")
+      .names(ValueKind::kFolder);
   add_json_option(command, a->json);
   command.action = [a](const CommandLine& line) { return diff(line, *a); };
   return command;

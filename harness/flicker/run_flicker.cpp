@@ -11,7 +11,7 @@
 #include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
 #include "report/files/folder_lock.h"
-#include "report/images/flicker_picture.h"
+#include "report/images/figures/flicker_picture.h"
 #include "report/pages/flicker_page.h"
 #include "report/pages/write_page.h"
 #include "report/records/flicker_json.h"

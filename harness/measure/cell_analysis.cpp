@@ -105,8 +105,7 @@ void CellAnalyser::analyse(MeasuredCell& cell) {
   records::CellRecord& record = cell.record;
   if (!masks_ || cell.visibility.empty()) {
     const std::string reason = truth_.absent.empty() ? record.message : truth_.absent;
-    for (const char* group : {"artefact", "attribution", "error.kernel_rmse", "excused", "images.attribution"})
-      record.absent[group] = reason;
+    for (const char* group : {"artefact", "attribution", "error.kernel_rmse", "excused"}) record.absent[group] = reason;
     return;
   }
   count_artefacts(cell);
@@ -154,7 +153,7 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   const bool wanted = options_.attribution;
   if (!model || request.user_file || !wanted) {
     const char* reason = wanted ? "the filter has no scalar model" : "the run was made with --no-attribution";
-    for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused", "images.attribution"})
+    for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused"})
       record.absent[field] = reason;
     return;
   }

@@ -29,19 +29,22 @@ std::optional<metrics::FlipView> view_picture(const images::Image& picture, doub
   return metrics::view_for_flip(to_picture(picture), pixels_per_degree);
 }
 
-std::optional<double> measure_mean_flip(const std::optional<metrics::FlipView>& a,
-                                        const std::optional<metrics::FlipView>& b, std::span<const std::uint8_t> mask) {
-  if (!a || !b) return std::nullopt;
-  const std::vector<float> flip = metrics::measure_flip(*a, *b);
-  assert(mask.empty() || mask.size() == flip.size());
+std::optional<double> find_mean(std::span<const float> values, std::span<const std::uint8_t> mask) {
+  assert(mask.empty() || mask.size() == values.size());
   double sum = 0.0, count = 0.0;
-  for (std::size_t i = 0; i < flip.size(); ++i) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
     if (!mask.empty() && !mask[i]) continue;
-    sum += static_cast<double>(flip[i]);
+    sum += static_cast<double>(values[i]);
     count += 1.0;
   }
   if (count == 0.0) return std::nullopt;
   return sum / count;
+}
+
+std::optional<double> measure_mean_flip(const std::optional<metrics::FlipView>& a,
+                                        const std::optional<metrics::FlipView>& b, std::span<const std::uint8_t> mask) {
+  if (!a || !b) return std::nullopt;
+  return find_mean(metrics::measure_flip(*a, *b), mask);
 }
 
 std::optional<double> measure_mean_flip(const images::Image& a, const images::Image& b,

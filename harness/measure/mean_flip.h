@@ -14,6 +14,9 @@ namespace shadowbench::measure {
 std::optional<metrics::FlipView> view_picture(const images::Image& picture,
                                               double pixels_per_degree = metrics::kDefaultPixelsPerDegree);
 
+/// The mean of values over the pixels where `mask` is not 0, or over all where it is empty; nothing where none counts.
+std::optional<double> find_mean(std::span<const float> values, std::span<const std::uint8_t> mask);
+
 /// The mean LDR-FLIP of two pictures over the pixels where `mask` is not 0, or over all where it is empty; FLIP
 /// itself has seen the whole pictures. Gives nothing where one of them is missing, or where no pixel counts. Requires
 /// one size, and a mask of that size.

@@ -8,8 +8,8 @@
 #include "harness/measure/scene_assets.h"
 #include "harness/scene/scene.h"
 #include "reference/metrics/artefacts.h"
+#include "report/images/figures/stability_picture.h"
 #include "report/images/image.h"
-#include "report/images/stability_picture.h"
 #include "report/images/uncertainty_images.h"
 #include "report/records/records.h"
 
@@ -26,7 +26,8 @@ struct MeasuredCell {
   images::Image unbiased;             ///< visibility without any depth bias; empty where no truth is wanted
   images::StabilityImages stability;  ///< where its numbers break; empty unless the run asks for it
   images::UncertaintyImages
-      uncertainty;  ///< how far rounding and other seeds can move its pixels; empty unless the run asks for it
+      uncertainty;     ///< how far rounding and other seeds can move its pixels; empty unless the run asks for it
+  images::Image flip;  ///< of the picture to the truth's; empty where there is no truth
   std::vector<images::Image> error_parts;  ///< in the order of metrics::ErrorPart; empty where there is no attribution
 };
 

@@ -72,8 +72,9 @@ images::Image make_error_image(const images::Image& visibility, const SceneTruth
   return error;
 }
 
-void score(records::CellRecord& record, const images::Image& visibility, std::span<const images::Image> other_phases,
-           const images::Image& picture, const SceneTruth& truth) {
+images::Image score(records::CellRecord& record, const images::Image& visibility,
+                    std::span<const images::Image> other_phases, const images::Image& picture,
+                    const SceneTruth& truth) {
   std::vector<metrics::ErrorStats> phases;
   const auto measure_phase = [&](const images::Image& phase) {
     if (!truth.absent.empty() || phase.empty()) return;
@@ -87,14 +88,20 @@ void score(records::CellRecord& record, const images::Image& visibility, std::sp
                                                      : "no pixel of the image is finite";
     record.absent["error"] = reason;
     record.absent["truth"] = reason;
-    return;
+    return {};
   }
   std::ranges::for_each(other_phases, measure_phase);
   note_errors(record, phases);
   // Of the pictures as they are saved, so that `diff` finds the same.
-  record.error.flip = measure_mean_flip(view_picture(images::round_to_half(picture)), truth.area_seen);
+  images::Image flip;
+  if (const auto seen = view_picture(images::round_to_half(picture)); seen && truth.area_seen) {
+    flip = images::Image(picture.width, picture.height, 1);
+    flip.texels = metrics::measure_flip(*seen, *truth.area_seen);
+  }
+  record.error.flip = find_mean(flip.texels, {});
   if (!record.error.flip) record.absent["error.flip"] = "the picture has pixels that are not finite";
   record.truth = {truth.standard_error, truth.unanimous};
+  return flip;
 }
 
 }  // namespace shadowbench::measure

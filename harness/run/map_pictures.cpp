@@ -4,8 +4,8 @@
 
 #include "harness/run/task_images.h"
 #include "report/analysis/summary.h"
-#include "report/images/depth_picture.h"
-#include "report/images/texel_pictures.h"
+#include "report/images/figures/depth_picture.h"
+#include "report/images/figures/texel_pictures.h"
 #include "report/records/format.h"
 
 namespace shadowbench::run {

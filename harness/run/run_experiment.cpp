@@ -190,7 +190,8 @@ class Experiment {
   /// Whether the folder has the whole report of this very run already, of the very cells that lie there.
   bool has_report(const RunPlan& plan) const {
     const std::filesystem::path file = options_.out / "results.json";
-    if (options_.worker || !std::filesystem::exists(file)) return false;
+    if (options_.worker || !std::filesystem::exists(file) || !std::filesystem::exists(options_.out / "index.html"))
+      return false;
     const auto written = std::filesystem::last_write_time(file);
     for (const std::string& key : list_keys(plan))
       if (std::filesystem::last_write_time(records::cell_path(options_.out, key)) > written) return false;

@@ -10,10 +10,10 @@
 #include "harness/run/provenance.h"
 #include "report/analysis/summary.h"
 #include "report/files/file_name.h"
-#include "report/images/attribution_picture.h"
 #include "report/images/color_values.h"
 #include "report/images/grid.h"
 #include "report/images/picture_io.h"
+#include "report/images/value_file.h"
 #include "report/records/format.h"
 
 namespace shadowbench::run {
@@ -113,12 +113,17 @@ images::Grid make_grid(const options::RunOptions& options, const measure::SceneT
   return grid;
 }
 
-/// Turns values of the view's pixels into a part of one channel.
+/// Turns values of the view's pixels into an image of one channel.
 template <class T>
-images::Part make_part(const std::string& name, const measure::SceneTruth& truth, const std::vector<T>& values) {
+images::Image make_image(const measure::SceneTruth& truth, const std::vector<T>& values) {
   images::Image image(truth.area.width, truth.area.height, 1);
   std::copy(values.begin(), values.end(), image.texels.begin());
-  return {name, {"Y"}, std::move(image), false};
+  return image;
+}
+
+template <class T>
+images::Part make_part(const std::string& name, const measure::SceneTruth& truth, const std::vector<T>& values) {
+  return {name, {"Y"}, make_image(truth, values), false};
 }
 
 /// The truth, how sure it is, and which pixels count for what.
@@ -155,32 +160,55 @@ void add_phase_parts(std::vector<images::Part>& parts, const measure::MeasuredCe
     parts.push_back({phase_part(cell.label, i), {"Y"}, cell.phases[i], false});
 }
 
+/// What the page's viewer shows of a cell beside its picture.
+images::ValuePlanes list_planes(const measure::MeasuredCell& cell) {
+  images::ValuePlanes planes = {{"visibility", cell.visibility}};
+  for (std::size_t p = 0; p < cell.error_parts.size(); ++p)
+    planes.emplace_back(records::list_error_parts()[p].id, cell.error_parts[p]);
+  if (!cell.flip.empty()) planes.emplace_back("flip", cell.flip);
+  for (const images::StabilityImage& each : images::list_stability_images())
+    if (const images::Image& image = cell.stability.*each.image; image.texels.size() == cell.visibility.texels.size())
+      planes.emplace_back(fmt::format("stability.{}", each.id), image);
+  if (!cell.uncertainty.rounding.empty()) planes.emplace_back("rounding", cell.uncertainty.rounding);
+  return planes;
+}
+
 /// Writes a cell's own pictures; no two labels share a file.
 void write_cell_pictures(const options::RunOptions& options, const std::string& stem, measure::MeasuredCell& cell) {
   if (cell.picture.empty()) return;
   const std::string base = "images/" + stem + "." + files::make_file_stem(cell.label);
   cell.record.images.picture = base + ".picture.png";
   cell.record.images.visibility = base + ".visibility.png";
+  cell.record.images.values = base + ".values.js";
   images::write_picture_png(options.out / *cell.record.images.picture, cell.picture);
   images::write_grey_png(options.out / *cell.record.images.visibility, cell.visibility);
+  images::write_value_file(options.out / *cell.record.images.values, *cell.record.images.values, list_planes(cell));
 }
 
-/// Draws a cell's error and its parts, on the scale of its grid.
-void write_attribution(const options::RunOptions& options, const std::string& stem, measure::MeasuredCell& cell,
-                       const measure::SceneTruth& truth, const images::Grid& grid) {
-  if (cell.error_parts.empty()) return;
-  images::AttributionPicture picture;
-  picture.title = fmt::format("{} on {}: where its error comes from", cell.label, cell.record.scene);
-  picture.subtitle = records::describe_settings(cell.record);
-  picture.total = measure::make_error_image(cell.visibility, truth);
-  picture.total_caption = images::caption_total(cell.record.error);
-  for (std::size_t p = 0; p < metrics::kErrorParts; ++p) {
-    picture.parts[p] = cell.error_parts[p];
-    picture.captions[p] = images::caption_part(cell.record.attribution.*records::list_error_parts()[p].record);
+/// Writes what the page's viewer shows of the truth.
+void write_truth_pictures(const options::RunOptions& options, const std::string& stem,
+                          measure::SceneMeasurement& measured, const measure::SceneTruth& truth) {
+  if (!truth.absent.empty()) return;
+  const std::string picture = "images/" + stem + ".truth.area.png", values = "images/" + stem + ".truth.area.values.js";
+  images::write_picture_png(options.out / picture, truth.area_picture);
+  images::write_value_file(options.out / values, values,
+                           {{"area", truth.area},
+                            {"hard", truth.hard},
+                            {"standard_error", make_image(truth, truth.rays.area.standard_error)},
+                            {"mask", make_image(truth, truth.mask)}});
+  for (measure::MeasuredCell& cell : measured.cells) {
+    cell.record.images.truth_picture = picture;
+    cell.record.images.truth_values = values;
   }
-  picture.scale = grid.error_scale;
-  cell.record.images.attribution = fmt::format("images/{}.{}.attribution.png", stem, files::make_file_stem(cell.label));
-  images::write_attribution_picture(options.out / *cell.record.images.attribution, picture);
+}
+
+/// Writes what is shown of each cell by itself, and of the truth.
+void write_shown(const options::RunOptions& options, const std::string& stem, measure::SceneMeasurement& measured,
+                 const measure::SceneTruth& truth) {
+  write_truth_pictures(options, stem, measured, truth);
+  tbb::parallel_for_each(measured.cells,
+                         [&](measure::MeasuredCell& cell) { write_cell_pictures(options, stem, cell); });
+  for (measure::MeasuredCell& cell : measured.cells) measure::write_stability(options, stem, cell);
 }
 
 }  // namespace
@@ -238,14 +266,9 @@ void write_float_images(const options::RunOptions& options, const measure::Scene
 }
 
 void write_single_pictures(const options::RunOptions& options, const measure::SceneTask& task,
-                           measure::SceneMeasurement& measured) {
-  const std::string stem = task_stem(options, task);
-  tbb::parallel_for_each(measured.cells,
-                         [&](measure::MeasuredCell& cell) { write_cell_pictures(options, stem, cell); });
-  for (measure::MeasuredCell& cell : measured.cells) {
-    measure::write_stability(options, stem, cell);
-    cell.record.absent["images"] = "the run was made with --no-grids";
-  }
+                           measure::SceneMeasurement& measured, const measure::SceneTruth& truth) {
+  write_shown(options, task_stem(options, task), measured, truth);
+  for (measure::MeasuredCell& cell : measured.cells) cell.record.absent["images"] = "the run was made with --no-grids";
 }
 
 void write_pictures(const options::RunOptions& options, const measure::SceneTask& task,
@@ -253,13 +276,9 @@ void write_pictures(const options::RunOptions& options, const measure::SceneTask
                     const records::GlRecord& gl) {
   const std::string stem = task_stem(options, task);
   const std::string grid_name = stem + ".grid.png";
-  const images::Grid grid = make_grid(options, task, measured, truth, gl);
-  images::write_grid(options.out / grid_name, grid);
-  tbb::parallel_for_each(measured.cells,
-                         [&](measure::MeasuredCell& cell) { write_cell_pictures(options, stem, cell); });
+  images::write_grid(options.out / grid_name, make_grid(options, task, measured, truth, gl));
+  write_shown(options, stem, measured, truth);
   for (measure::MeasuredCell& cell : measured.cells) {
-    write_attribution(options, stem, cell, truth, grid);
-    measure::write_stability(options, stem, cell);
     cell.record.images.grid = grid_name;
     cell.record.images.exr = exr_name(options, task);
     cell.record.images.parts = cell.label;

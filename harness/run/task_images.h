@@ -29,10 +29,10 @@ void write_float_images(const options::RunOptions& options, const measure::Scene
                         const measure::SceneMeasurement& measured, const measure::SceneTruth& truth,
                         const gl::GlInfo& info);
 
-/// Writes each cell's picture and visibility and notes their paths in the records; in place of write_pictures() where
-/// the run has no grids. Safe for any part of a task's cells. Throws Error(kOutput).
+/// Writes each cell's picture, visibility and values, and the truth's, and notes their paths in the records; in place
+/// of write_pictures() where the run has no grids. Safe for any part of a task's cells. Throws Error(kOutput).
 void write_single_pictures(const options::RunOptions& options, const measure::SceneTask& task,
-                           measure::SceneMeasurement& measured);
+                           measure::SceneMeasurement& measured, const measure::SceneTruth& truth);
 
 /// Writes what people look at: grid and single pictures; notes their paths in the records.
 /// Throws Error(kOutput).

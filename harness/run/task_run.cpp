@@ -84,7 +84,7 @@ void TaskRun::score(measure::SceneMeasurement& measured) {
   show("truth");
   const measure::SceneTruth& truth = assets_.truth(*task_.camera);
   tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
-    measure::score(cell.record, cell.visibility, cell.phases, cell.picture, truth);
+    cell.flip = measure::score(cell.record, cell.visibility, cell.phases, cell.picture, truth);
     cell.phases.clear();
     measure::check_against_truth(cell, truth);
   });
@@ -114,11 +114,11 @@ void TaskRun::measure_coverage(measure::SceneMeasurement& measured) {
 }
 
 void TaskRun::write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured) {
+  const measure::SceneTruth& truth = assets_.truth(*task.camera);
   if (!options_.grids && !options_.worker) {
-    write_single_pictures(options_, task, measured);
+    write_single_pictures(options_, task, measured, truth);
     return;
   }
-  const measure::SceneTruth& truth = assets_.truth(*task.camera);
   if (!options_.worker) {
     write_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size).frustum);
     write_pictures(options_, task, measured, truth, gl_);

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "report/images/color_values.h"
-#include "report/images/figure.h"
+#include "report/images/figures/figure.h"
 #include "report/images/picture_io.h"
 
 namespace shadowbench::stress {

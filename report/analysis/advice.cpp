@@ -64,12 +64,16 @@ std::vector<const records::CellRecord*> choose_cells(const std::vector<records::
   for (const records::CellRecord& cell : cells) {
     const bool scene_fits = request.scenes.empty() || std::ranges::count(request.scenes, cell.scene) > 0;
     const bool size_fits = !request.size || std::pair(cell.width, cell.height) == *request.size;
-    if (!scene_fits || !size_fits) continue;
+    const bool class_fits = request.width_class.empty() || cell.kernel.width_class == request.width_class;
+    if (!scene_fits || !size_fits || !class_fits) continue;
     if (cell.teaching.value_or(false))
       teaching.insert(cell.filter);
     else
       chosen.push_back(&cell);
   }
+  if (chosen.empty() && !request.width_class.empty())
+    refuse(fmt::format("--class: the run has no {} kernel; its tables say of each filter which it has",
+                       request.width_class));
   if (chosen.empty() && !teaching.empty())
     refuse(
         fmt::format("the run has filters for teaching alone ({}), which are not advised", fmt::join(teaching, ", ")));

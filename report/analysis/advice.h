@@ -20,6 +20,7 @@ struct AdviceRequest {
   LightMotion light = LightMotion::kMoving;
   CostKind cheapest = CostKind::kTime;
   std::vector<std::string> scenes;                         ///< empty: all of the run
+  std::string width_class;                                 ///< of the kernel; empty: any
   std::optional<std::pair<int, int>> size;                 ///< of the picture, pixels; empty: all of the run
   std::map<std::string, std::vector<std::string>> claims;  ///< by filter id, for cells whose records do not hold theirs
 };
@@ -105,11 +106,11 @@ struct Advice {
 
 /// Finds the cheapest configuration that keeps every demand in every place; the worst place decides. Configurations of
 /// the same cost are ordered by time, then RMSE.
-/// Filters for teaching are left out. A configuration that was not measured in a place, did not finish there, or lacks
-/// a value there is not judged. A value that has nothing to be measured on in some places, as is_nothing_to_see() says,
-/// is judged on the others, if there are any. Requires that `cells` outlive what is returned. Throws Error(kUsage) for
-/// a scene or picture size that the run does not have, or a claim that no filter makes; Error(kInput) where there is no
-/// cell.
+/// Filters for teaching are left out, and with a class of width those of others. A configuration that was not measured
+/// in a place, did not finish there, or lacks a value there is not judged. A value that has nothing to be measured on
+/// in some places, as is_nothing_to_see() says, is judged on the others, if there are any. Requires that `cells`
+/// outlive what is returned. Throws Error(kUsage) for a scene, class or picture size that the run does not have, or a
+/// claim that no filter makes; Error(kInput) where there is no cell.
 Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest& request);
 
 }  // namespace shadowbench::analysis

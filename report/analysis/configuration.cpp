@@ -48,8 +48,9 @@ Census take_census(const std::vector<Configuration>& all) {
   return census;
 }
 
-// The map is always named; all else only where not every configuration has it.
-std::string make_label(const records::CellRecord& cell, const Census& census, std::size_t configurations) {
+// Settings are named only where not every configuration has them; with `always_map` the map always is.
+std::string make_label(const records::CellRecord& cell, const Census& census, std::size_t configurations,
+                       bool always_map) {
   records::ParamMap varying;
   for (const auto& [name, value] : cell.params)
     if (census.params.at(param_key(cell, name)) < census.filters.at(cell.filter)) varying[name] = value;
@@ -57,7 +58,7 @@ std::string make_label(const records::CellRecord& cell, const Census& census, st
   if (!varying.empty()) label += fmt::format(" ({})", records::describe_params(varying));
   const std::vector<std::string> parts = describe_parts(cell);
   for (const std::string& part : parts)
-    if (part == parts.front() || census.settings.at(part) < configurations) label += ", " + part;
+    if ((always_map && part == parts.front()) || census.settings.at(part) < configurations) label += ", " + part;
   return label;
 }
 
@@ -65,11 +66,14 @@ void set_labels(std::vector<Configuration>& all) {
   const Census census = take_census(all);
   std::map<std::string, int> uses;
   for (Configuration& configuration : all) {
-    configuration.label = make_label(*configuration.cells.front(), census, all.size());
+    configuration.label = make_label(*configuration.cells.front(), census, all.size(), true);
+    configuration.name = make_label(*configuration.cells.front(), census, all.size(), false);
     ++uses[configuration.label];
   }
   for (Configuration& configuration : all)
-    if (uses[configuration.label] > 1) configuration.label += ", as cell " + configuration.cells.front()->key;
+    if (uses[configuration.label] > 1)
+      for (std::string* text : {&configuration.label, &configuration.name})
+        *text += ", as cell " + configuration.cells.front()->key;
 }
 
 }  // namespace
@@ -100,7 +104,7 @@ std::vector<Configuration> list_configurations(const std::vector<const records::
     if (is_new) {
       settings.erase("filter");
       settings.erase("params");
-      configurations.push_back({"", records::dump_line(settings), {}});
+      configurations.push_back({"", "", records::dump_line(settings), {}});
     }
     configurations[index->second].cells.push_back(cell);
   }

@@ -26,6 +26,7 @@ std::string describe_place(const Place& place, const std::vector<Place>& places)
 /// The cells that differ in nothing but scene and view: what a renderer would choose as a whole.
 struct Configuration {
   std::string label;                              ///< filter and map, and all else in which the configurations differ
+  std::string name;                               ///< the same without what all configurations have in common
   std::string surroundings;                       ///< canonical settings without filter and parameters
   std::vector<const records::CellRecord*> cells;  ///< in the order of the run; never empty
 };

@@ -35,8 +35,8 @@ struct Placement {
 };
 
 /// Whether one error is smaller than another by more than is uncertain. A difference
-/// counts where it exceeds the larger half-width of their intervals, as in rank_errors(). Exact errors differ where
-/// they are not equal.
+/// counts where it exceeds the larger half-width of their intervals. Exact errors differ where they are not
+/// equal.
 bool is_clearly_less_error(const Estimate& a, const Estimate& b);
 
 /// One cost below another, their intervals not touching?

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/analysis/accuracy_words.h"
+#include "report/analysis/accuracy.h"
 #include "report/analysis/limits.h"
 #include "report/analysis/summary.h"
 #include "report/records/absence.h"

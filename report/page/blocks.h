@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <variant>
@@ -48,10 +49,23 @@ struct Links {
   std::vector<Link> items;
 };
 
-/// A table with its caption. Numbers are aligned by the writers.
+/// What the text of a cell means: far from a limit, near to it, or beyond it.
+enum class Grade { kNone, kGood, kNear, kBad };
+
+/// A table with its caption. Numbers are aligned by the writers, and cells coloured by their grade.
 struct Table {
   std::string caption;
   records::TextTable table;
+  std::vector<std::vector<Grade>> grades = {};  ///< of rows and columns; what it lacks is kNone
+
+  /// Says something of the thing that a row is named for, under a filter; either is added where it is new. What was
+  /// said first stays.
+  void judge(const std::string& thing, const std::string& filter, std::string text, Grade grade);
+
+  Grade grade_at(std::size_t row, std::size_t column) const;
+
+  /// What a cell shows: its text, after a mark where it is beyond a limit.
+  std::string text_at(std::size_t row, std::size_t column) const;
 };
 
 /// A picture file with its caption, which is its description for those who cannot see it.
@@ -87,14 +101,22 @@ struct Bars {
 };
 
 struct Details;
+struct Mount;
 
 /// Everything that a page is made of.
 using Block =
-    std::variant<Facts, Sentences, Paragraph, Heading, Links, Table, Gallery, Bars, Chart, ChartChoice, Details>;
+    std::variant<Facts, Sentences, Paragraph, Heading, Links, Table, Gallery, Bars, Chart, ChartChoice, Details, Mount>;
 
 /// Blocks that the reader unfolds.
 struct Details {
   std::string summary;
+  std::vector<Block> blocks;
+};
+
+/// A place that a script of the page fills from its data. The blocks stand there until then, without scripts, and in
+/// Markdown.
+struct Mount {
+  std::string name;  ///< "answer", "table", "viewer"
   std::vector<Block> blocks;
 };
 
@@ -110,7 +132,8 @@ struct Section {
 struct Page {
   std::string title;
   std::vector<Section> sections;
-  std::vector<Link> siblings;  ///< the program's other pages that lie beside this one
+  std::vector<Link> siblings = {};  ///< the program's other pages that lie beside this one
+  nlohmann::json data = {};         ///< what the scripts that fill mounts read; null: there are none
 };
 
 /// Writes a page as HTML that opens from disk and loads nothing but what lies beside it.

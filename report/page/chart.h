@@ -25,9 +25,9 @@ enum class Mark { kNone, kCircle, kSquare, kTriangle, kDiamond, kTriangleDown, k
 struct ChartPoint {
   analysis::Estimate x;
   analysis::Estimate y;
-  std::string label = {};                                          ///< beside the point; empty: none
-  std::vector<std::string> details = {};                           ///< lines shown when one points at it
-  std::vector<std::pair<std::string, std::string>> pictures = {};  ///< paths and captions, shown when one clicks it
+  std::string label = {};                 ///< beside the point; empty: none
+  std::vector<std::string> details = {};  ///< lines shown when one points at it
+  std::string opens = {};                 ///< key of the cell that the viewer shows when one clicks it; empty: none
 };
 
 /// A point without intervals.
@@ -43,6 +43,7 @@ struct ChartSeries {
   LineStyle line = LineStyle::kNone;
   bool whiskers = false;
   std::vector<ChartPoint> points;
+  bool hidden = false;  ///< until one clicks its name in the key
 };
 
 /// One chart, drawn in the browser, where it can be saved as SVG and as PNG.
@@ -56,6 +57,13 @@ struct Chart {
   std::vector<ChartSeries> series;
   std::vector<std::string> notes;  ///< below the key
 };
+
+/// So many curves are shown at first.
+inline constexpr std::size_t kMostShown = 6;
+
+/// Hides all but kMostShown of the curves that titles name, the ones that say most; a curve without title is hidden
+/// with the titled one before it. Curves that no title names stay.
+void show_most_telling(Chart& chart, std::vector<std::pair<double, std::string>> weights_and_titles);
 
 /// Charts of which the reader chooses one, with the sentences that belong to it.
 struct ChartChoice {

@@ -232,20 +232,13 @@
     image.src = "data:image/svg+xml;charset=utf-8," + encodeURIComponent(serialize(chart, hidden));
   };
 
-  const showPictures = (panel, pictures) => {
-    panel.replaceChildren();
-    for (const [path, caption] of pictures) {
-      const figure = element(panel, "figure", {});
-      element(element(figure, "a", { href: path }), "img", { src: path, alt: caption });
-      element(figure, "figcaption", {}, caption);
-    }
-  };
-
   const listLines = (chart, { point, series }) => point.details.length > 0 ? point.details :
     [series.title, `${chart.x.name}: ${number(point.x[0])}`, `${chart.y.name}: ${number(point.y[0])}`].filter(Boolean);
 
+  const canOpen = ({ point }) => Boolean(point.opens && window.shadowbench && window.shadowbench.openCell);
+
   // Shows what is said of the point nearest to the pointer.
-  const followPointer = (holder, tip, pictures, chart, { svg, hits }) => {
+  const followPointer = (holder, tip, chart, { svg, hits }) => {
     const find = (event) => {
       const box = svg.getBoundingClientRect(), scale = box.width / Number(svg.getAttribute("width"));
       const away = ({ at }) => Math.hypot(at[0] * scale - (event.clientX - box.left), at[1] * scale - (event.clientY - box.top));
@@ -254,7 +247,7 @@
     const show = (event) => {
       const hit = find(event);
       tip.hidden = !hit;
-      svg.style.cursor = hit && hit.point.pictures.length > 0 ? "pointer" : "default";
+      svg.style.cursor = hit && canOpen(hit) ? "pointer" : "default";
       if (!hit) return;
       tip.replaceChildren();
       for (const line of listLines(chart, hit)) element(tip, "div", {}, line);
@@ -267,24 +260,24 @@
     svg.addEventListener("pointerleave", () => { tip.hidden = true; });
     svg.addEventListener("click", (event) => {
       const hit = find(event);
-      if (hit && hit.point.pictures.length > 0) showPictures(pictures, hit.point.pictures);
+      if (hit && canOpen(hit)) window.shadowbench.openCell(hit.point.opens);
     });
   };
 
   // Texts and points are packed: see the writer.
   const unpack = (packed) => ({
     ...packed, series: packed.series.map((series) => ({
-      ...series, points: series.points.map(([x, y, label, details, pictures]) => ({
+      ...series, points: series.points.map(([x, y, label, details, opens]) => ({
         x: typeof x === "number" ? [x, x, x] : x || [null], y: typeof y === "number" ? [y, y, y] : y || [null], label: label || "",
-        details: (details || []).map((i) => page.texts[i]), pictures: (pictures || []).map((pair) => pair.map((i) => page.texts[i])),
+        details: (details || []).map((i) => page.texts[i]), opens: opens || "",
       })),
     })),
   });
 
   const start = (choice) => {
     const figure = document.getElementById(choice.id);
-    const [controls, holder, pictures, said] = ["controls", "holder", "gallery", "said"].map((name) => figure.querySelector("." + name));
-    const hidden = new Set();
+    const [controls, holder, said] = ["controls", "holder", "said"].map((name) => figure.querySelector("." + name));
+    const hidden = new Set(choice.entries.flatMap(({ chart: { series } }) => series.filter((each) => each.hidden).map((each) => each.title)));
     let chart = null, sentences = [], drawn = 0;
     const draw = () => {
       drawn = holder.clientWidth;
@@ -296,7 +289,7 @@
       const result = drawChart(chart, drawn, hidden, toggle);
       holder.replaceChildren(result.svg);
       const tip = element(holder, "div", { className: "tip", hidden: true });
-      followPointer(holder, tip, pictures, chart, result);
+      followPointer(holder, tip, chart, result);
     };
     const selects = choice.selectors.map(({ label, options }) => {
       const select = element(element(controls, "label", {}, label + " "), "select", {});
@@ -306,7 +299,6 @@
     const choose = () => {
       const entry = choice.entries[selects.reduce((index, select, i) => index * choice.selectors[i].options.length + Number(select.value), 0)];
       [chart, sentences] = [unpack(entry.chart), entry.sentences];
-      pictures.replaceChildren();
       said.replaceChildren();
       if (sentences.length > 0) {
         const list = element(said, "ul", {});

@@ -68,6 +68,19 @@ std::string html_list(const std::vector<std::string>& items) {
   return text + "</ul>\n";
 }
 
+/// Writes data for a page's scripts. No text in it can end the element that it stands in, or begin a comment.
+std::string html_data(std::string_view id, const json& data) {
+  std::string safe;
+  for (const char c : records::dump_line(data))
+    if (c == '<' || c == '>' || c == '&')
+      safe += fmt::format("\\u{:04x}", static_cast<int>(c));
+    else
+      safe += c;
+  return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id, safe);
+}
+
+std::string html_script(std::string_view script) { return fmt::format("<script>\n{}</script>\n", script); }
+
 /// Packs the charts of a page for charts.js. Texts that many points share are kept once, and named by their place.
 class ChartPacker {
  public:
@@ -82,16 +95,7 @@ class ChartPacker {
 
   bool is_empty() const { return charts_.empty(); }
 
-  /// No text in it can end the element that it stands in, or begin a comment.
-  std::string dump() const {
-    std::string safe;
-    for (const char c : records::dump_line(json{{"texts", texts_}, {"charts", charts_}}))
-      if (c == '<' || c == '>' || c == '&')
-        safe += fmt::format("\\u{:04x}", static_cast<int>(c));
-      else
-        safe += c;
-    return safe;
-  }
+  json pack() const { return {{"texts", texts_}, {"charts", charts_}}; }
 
  private:
   std::size_t pack(const std::string& text) {
@@ -115,10 +119,7 @@ class ChartPacker {
   }
 
   json pack(const ChartPoint& point) {
-    json pictures = json::array();
-    for (const auto& [path, caption] : point.pictures)
-      pictures.push_back(json::array({pack(files::encode_url_path(path)), pack(caption)}));
-    json packed{pack(point.x), pack(point.y), point.label, pack(point.details), pictures};
+    json packed{pack(point.x), pack(point.y), point.label, pack(point.details), point.opens};
     for (int last = 4; last > 1 && packed.back().empty(); --last) packed.erase(packed.end() - 1);
     return packed;
   }
@@ -141,6 +142,7 @@ class ChartPacker {
                         {"faint", each.faint},
                         {"line", kLines[static_cast<std::size_t>(each.line)]},
                         {"whiskers", each.whiskers},
+                        {"hidden", each.hidden},
                         {"points", points}});
     }
     return {{"id", chart.id},
@@ -166,7 +168,7 @@ std::string classify_column(const records::TextTable& table, std::size_t column)
     texts = texts || !(number || field.size() < 4);  // such as "-"
     long_texts = long_texts || field.size() > kShortField;
   }
-  return long_texts ? "" : numbers && !texts ? " class=\"n\"" : " class=\"s\"";
+  return long_texts ? "" : numbers && !texts ? "n" : "s";
 }
 
 /// Writes blocks as HTML, and collects the charts.
@@ -203,18 +205,26 @@ class HtmlWriter {
   std::string write(const Table& table) {
     std::vector<std::string> classes;
     for (std::size_t i = 0; i < table.table.header.size(); ++i) classes.push_back(classify_column(table.table, i));
-    const auto write_row = [&](const std::vector<std::string>& fields, std::string_view element) {
-      std::string html = "<tr>";
-      for (std::size_t i = 0; i < fields.size(); ++i)
-        html += fmt::format("<{0}{1}>{2}</{0}>", element, classes[i], escape_html(fields[i]));
-      return html + "</tr>\n";
+    const auto write_cell = [&](const char* element, std::size_t column, const std::string& text, Grade grade) {
+      static constexpr const char* kGrades[] = {"", "good", "near", "bad"};
+      const char* name = kGrades[static_cast<std::size_t>(grade)];
+      const std::string both = classes[column] + (classes[column].empty() || !*name ? "" : " ") + name;
+      return fmt::format("<{0}{1}>{2}</{0}>", element, both.empty() ? "" : " class=\"" + both + "\"",
+                         escape_html(text));
     };
-    std::string html = fmt::format(
-        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table>\n<caption>{0}</caption>\n"
-        "<thead>{1}</thead>\n<tbody>\n",
-        escape_html(table.caption), write_row(table.table.header, "th"));
-    for (const auto& row : table.table.rows) html += write_row(row, "td");
-    return html + "</tbody></table></div>\n";
+    std::string head, body;
+    for (std::size_t i = 0; i < table.table.header.size(); ++i)
+      head += write_cell("th", i, table.table.header[i], Grade::kNone);
+    for (std::size_t r = 0; r < table.table.rows.size(); ++r) {
+      body += "<tr>";
+      for (std::size_t i = 0; i < table.table.header.size(); ++i)
+        body += write_cell("td", i, table.text_at(r, i), table.grade_at(r, i));
+      body += "</tr>\n";
+    }
+    return fmt::format(
+        "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"{0}\"><table>\n<caption>{0}</caption>\n"
+        "<thead><tr>{1}</tr>\n</thead>\n<tbody>\n{2}</tbody></table></div>\n",
+        escape_html(table.caption), head, body);
   }
 
   std::string write(const Gallery& gallery) {
@@ -263,13 +273,17 @@ class HtmlWriter {
     return fmt::format(
         "<figure class=\"chart\" id=\"{}\">\n<div class=\"controls\"></div>\n<div class=\"holder\">"
         "<noscript>A script draws the chart \"{}\" here.</noscript></div>\n"
-        "<div class=\"gallery\" aria-live=\"polite\"></div>\n<div class=\"said\">{}</div>\n</figure>\n",
+        "<div class=\"said\">{}</div>\n</figure>\n",
         escape_html(choice.id), escape_html(choice.entries.front().chart.title), said.empty() ? "" : html_list(said));
   }
 
   std::string write(const Details& details) {
     return fmt::format("<details><summary>{}</summary>\n{}</details>\n", escape_html(details.summary),
                        write(details.blocks));
+  }
+
+  std::string write(const Mount& mount) {
+    return fmt::format("<div class=\"{}\">{}</div>\n", escape_html(mount.name), write(mount.blocks));
   }
 
   static std::string write_lead(const std::string& lead) {
@@ -287,12 +301,12 @@ std::string write_siblings(const std::vector<Link>& siblings) {
   return html.append(kSiblingsEnd);
 }
 
-std::string write_navigation(const Page& page) {
+std::string write_contents(const Page& page) {
   std::string sections;
   for (const Section& section : page.sections)
     if (!section.heading.empty() && !section.id.empty())
       sections += fmt::format("<a href=\"#{}\">{}</a> ", escape_html(section.id), escape_html(section.heading));
-  return write_siblings(page.siblings) + (sections.empty() ? "" : "<nav>" + sections + "</nav>\n");
+  return sections.empty() ? sections : "<nav aria-label=\"On this page\">" + sections + "</nav>\n";
 }
 
 std::string write_section(const Section& section, HtmlWriter& writer) {
@@ -315,12 +329,14 @@ std::string replace_siblings(std::string html, const std::vector<Link>& siblings
 std::string write_html(const Page& page) {
   HtmlWriter writer;
   std::string html = html_head(page.title) + fmt::format("<body>\n<main>\n<h1>{}</h1>\n", escape_html(page.title)) +
-                     write_navigation(page);
-  for (const Section& section : page.sections) html += write_section(section, writer);
+                     write_siblings(page.siblings);
+  const bool begins = !page.sections.empty() && page.sections.front().heading.empty();  // with what it is about
+  if (begins) html += write_section(page.sections.front(), writer);
+  html += write_contents(page);
+  for (std::size_t i = begins ? 1 : 0; i < page.sections.size(); ++i) html += write_section(page.sections[i], writer);
   html += "</main>\n";
-  if (!writer.charts().is_empty())
-    html += fmt::format("<script type=\"application/json\" id=\"charts\">{}</script>\n<script>\n{}</script>\n",
-                        writer.charts().dump(), chart_script());
+  if (!page.data.is_null()) html += html_data("run", page.data) + html_script(run_script());
+  if (!writer.charts().is_empty()) html += html_data("charts", writer.charts().pack()) + html_script(chart_script());
   return html + "</body>\n</html>\n";
 }
 

@@ -52,7 +52,10 @@ std::string write_block(const Links& links) {
 }
 
 std::string write_block(const Table& table) {
-  return (table.caption.empty() ? "" : escape_markdown(table.caption) + ":\n\n") + write_markdown_table(table.table);
+  records::TextTable shown = table.table;
+  for (std::size_t r = 0; r < shown.rows.size(); ++r)
+    for (std::size_t i = 0; i < shown.rows[r].size(); ++i) shown.rows[r][i] = table.text_at(r, i);
+  return (table.caption.empty() ? "" : escape_markdown(table.caption) + ":\n\n") + write_markdown_table(shown);
 }
 
 std::string write_block(const Gallery& gallery) {
@@ -82,6 +85,8 @@ std::string write_block(const ChartChoice& choice) {
 std::string write_block(const Details& details) {
   return fmt::format("### {}\n\n{}", escape_markdown(details.summary), write_blocks(details.blocks));
 }
+
+std::string write_block(const Mount& mount) { return write_blocks(mount.blocks); }
 
 std::string write_blocks(const std::vector<Block>& blocks) {
   std::string text;

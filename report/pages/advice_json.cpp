@@ -213,7 +213,7 @@ Json make_advice_json(const records::RunRecord& run, const analysis::Advice& adv
   Json json = {{"fits", !advice.keeping.empty()},
                {"commit", run.commit},
                {"clock", records::describe_clock(run.gl)},
-               {"records::time_unit", records::time_unit(run.gl)},
+               {"time_unit", records::time_unit(run.gl)},
                {"software", run.gl.software},
                {"renderer", run.gl.renderer},
                {"asked", request_json(advice)}};

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 
 #include "report/page/chart_style.h"
 #include "report/pages/write_page.h"
@@ -12,6 +13,9 @@
 
 namespace shadowbench::pages {
 namespace {
+
+constexpr double kNarrowGap = 0.01, kWideGap = 0.1;
+constexpr double kNeverEnough = 1e6;  // weighs more than any amount swept
 
 using Rate = std::optional<double> records::BiasPoint::*;
 
@@ -25,32 +29,66 @@ const records::BiasPoint* find_point(const records::BiasCurve& curve, double fac
   return found == curve.points.end() ? nullptr : &*found;
 }
 
-bool has_any(const records::BiasCurve& curve, Rate rate) {
-  return std::any_of(
-      curve.points.begin(), curve.points.end(), [&](const records::BiasPoint& p) { return (p.*rate).has_value(); });
+std::string describe_limits() {
+  return fmt::format(
+      "The smallest amount swept, in theoretical ones, that leaves less than {:g} % acne, and the contact "
+      "gap there. \u2717: none does, or the gap is {:g} % or more.",
+      100.0 * kLittleAcne, 100.0 * kWideGap);
 }
 
-std::string describe_need(const records::BiasCurve& curve) {
-  const std::optional<double> enough = find_enough(curve);
-  if (!enough) return curve.filter + " has more at every amount swept";
-  if (*enough == 0.0) return curve.filter + " needs none";
-  return fmt::format("{} needs {}", curve.filter, name_factor(*enough));
+/// What a mode comes to for a filter, at the smallest amount swept that is enough where it takes an amount.
+struct BiasVerdict {
+  std::string text;
+  page::Grade grade = page::Grade::kBad;
+  bool free = false;  ///< of acne
+  double gap = 0.0;
+};
+
+BiasVerdict judge_curve(const records::BiasCurve& curve) {
+  if (curve.points.empty()) return {"absent", page::Grade::kNone};
+  const auto enough = find_enough(curve);
+  const records::BiasPoint& point = enough ? *find_point(curve, *enough) : curve.points.back();
+  if (!point.acne || *point.acne >= kLittleAcne)
+    return {"acne " + format_rate(point.acne), point.acne ? page::Grade::kBad : page::Grade::kNone};
+  BiasVerdict verdict{(enough ? name_factor(*enough) + ", " : "") + "gap " + format_rate(point.contact_gap)};
+  verdict.free = true;
+  verdict.gap = point.contact_gap.value_or(0.0);
+  if (verdict.gap < kWideGap) verdict.grade = verdict.gap < kNarrowGap ? page::Grade::kGood : page::Grade::kNear;
+  if (!point.contact_gap) verdict.grade = page::Grade::kNone;
+  return verdict;
 }
 
-/// Says between which values a rate lies over all filters at the theoretical amount.
-std::string describe_range(const records::BiasModeRecord& mode, Rate rate, const std::string& name) {
-  const records::BiasCurve *least = nullptr, *most = nullptr;
-  const auto value = [&](const records::BiasCurve* curve) { return *(find_point(*curve, 1.0)->*rate); };
-  for (const records::BiasCurve& curve : mode.curves) {
-    const records::BiasPoint* point = find_point(curve, 1.0);
-    if (!point || !(point->*rate)) continue;
-    if (!least || value(&curve) < value(least)) least = &curve;
-    if (!most || value(&curve) > value(most)) most = &curve;
+/// What a mode comes to for all filters that can use it.
+struct ModeVerdict {
+  std::string mode;
+  int free = 0, filters = 0;  ///< filters that it frees of acne, and all of them
+  double gap = 0.0;           ///< the widest of theirs
+
+  std::string describe() const {
+    const std::string cost = free > 0 ? fmt::format(", and lights {} of the contacts at most", format_rate(gap)) : "";
+    return fmt::format("{} takes acne from {} of {} filters{}", mode, free, filters, cost);
   }
-  if (!least) return name + " is absent";
-  if (value(least) == value(most)) return fmt::format("{} is {}", name, format_rate(value(least)));
-  return fmt::format("{} lies between {} ({}) and {} ({})", name, format_rate(value(least)), least->filter,
-                     format_rate(value(most)), most->filter);
+};
+
+page::Section make_bias_answer(const records::BiasSweepRecord& sweep) {
+  page::Table table{"Enough bias, and the contact gap it opens", {{"mode"}, {}}};
+  std::vector<ModeVerdict> modes;
+  for (const records::BiasModeRecord& mode : sweep.modes) {
+    ModeVerdict all{mode.mode, 0, static_cast<int>(mode.curves.size())};
+    for (const records::BiasCurve& curve : mode.curves) {
+      const BiasVerdict verdict = judge_curve(curve);
+      table.judge(mode.mode, curve.filter, verdict.text, verdict.grade);
+      all.free += verdict.free ? 1 : 0;
+      all.gap = std::max(all.gap, verdict.gap);
+    }
+    if (all.filters > 0) modes.push_back(all);
+  }
+  std::string text = "No filter of this run can use any bias.";
+  const auto [worst, best] = std::ranges::minmax_element(
+      modes, {}, [](const ModeVerdict& mode) { return std::tuple(mode.free, -mode.gap, -mode.filters); });
+  if (best != modes.end()) text = fmt::format("Best: {}.", best->describe());
+  if (best != worst) text += fmt::format(" Worst: {}.", worst->describe());
+  return {"answer", "", {page::Paragraph{std::move(text)}, std::move(table), page::Paragraph{describe_limits(), true}}};
 }
 
 records::TextTable make_amount_table(const records::BiasModeRecord& mode) {
@@ -59,22 +97,12 @@ records::TextTable make_amount_table(const records::BiasModeRecord& mode) {
   for (const records::BiasCurve& curve : mode.curves) {
     const records::BiasPoint* theory = find_point(curve, 1.0);
     const auto enough = find_enough(curve);
-    const std::string need = !has_any(curve, &records::BiasPoint::acne) ? "absent"
-                             : enough                                   ? name_factor(*enough)
-                                                                        : "more than swept";
+    const std::string need = enough ? name_factor(*enough) : !theory || !theory->acne ? "absent" : "more than swept";
     table.rows.push_back({curve.filter, fmt::format("{:.4g}", curve.theory_setting),
                           fmt::format("{:.3g}", curve.lift_depth), fmt::format("{:.3g}", curve.lift_texels),
                           fmt::format("{:.3g}", curve.lift_m), need, format_rate(theory ? theory->acne : std::nullopt),
                           format_rate(theory ? theory->contact_gap : std::nullopt)});
   }
-  return table;
-}
-
-records::TextTable make_fixed_table(const records::BiasModeRecord& mode) {
-  records::TextTable table{{"filter", "acne", "contact gap"}, {}};
-  for (const records::BiasCurve& curve : mode.curves)
-    for (const records::BiasPoint& point : curve.points)
-      table.rows.push_back({curve.filter, format_rate(point.acne), format_rate(point.contact_gap)});
   return table;
 }
 
@@ -134,17 +162,23 @@ page::ChartSeries make_rate_series(const records::BiasCurve& curve, Rate rate, c
   return series;
 }
 
+/// Filters that need most bias, or whose contacts that opens widest, say most, beside none.
+double weigh_curve(const records::BiasCurve& curve) {
+  if (curve.filter == "none") return 2.0 * kNeverEnough;
+  const auto enough = find_enough(curve);
+  return enough ? *enough + find_point(curve, *enough)->contact_gap.value_or(0.0) : kNeverEnough;
+}
+
 page::Section make_mode_section(const records::BiasModeRecord& mode, const records::BiasSweepRecord& sweep) {
-  const bool swept = !mode.key.empty();
   page::Section section{mode.mode, mode.mode, {page::Paragraph{mode.meaning, true}}};
-  std::vector<std::string> sentences = describe_bias_mode(mode);
-  sentences.insert(sentences.end(), mode.left_out.begin(), mode.left_out.end());
-  if (!sentences.empty()) section.blocks.emplace_back(page::Sentences{{}, std::move(sentences)});
-  if (swept && !mode.curves.empty()) section.blocks.emplace_back(make_bias_chart(mode, sweep.filters));
-  if (!mode.curves.empty())
+  if (mode.curves.empty()) section.blocks.emplace_back(page::Paragraph{"No filter of this run can use it."});
+  if (!mode.key.empty() && !mode.curves.empty()) {
+    section.blocks.emplace_back(make_bias_chart(mode, sweep.filters));
     section.blocks.emplace_back(
-        swept ? page::Table{"At theory: amount, move towards the light, rates", make_amount_table(mode)}
-              : page::Table{"Takes no amount", make_fixed_table(mode)});
+        page::Table{"At theory: amount, move towards the light, rates", make_amount_table(mode)});
+  }
+  if (!mode.left_out.empty())
+    section.blocks.emplace_back(page::Details{"Left out", {page::Sentences{{}, mode.left_out}}});
   if (!mode.picture.empty()) section.blocks.emplace_back(page::Gallery{{}, {{mode.picture, mode.picture_caption}}});
   return section;
 }
@@ -203,23 +237,6 @@ std::optional<double> find_enough(const records::BiasCurve& curve) {
   return std::nullopt;
 }
 
-std::vector<std::string> describe_bias_mode(const records::BiasModeRecord& mode) {
-  if (mode.key.empty()) return {};
-  std::vector<std::string> needs;
-  for (const records::BiasCurve& curve : mode.curves)
-    if (has_any(curve, &records::BiasPoint::acne)) needs.push_back(describe_need(curve));
-  std::vector<std::string> sentences;
-  if (!needs.empty()) {
-    sentences.push_back(
-        fmt::format("For acne below {} %, in theoretical amounts: {}.", 100.0 * kLittleAcne, fmt::join(needs, "; ")));
-  }
-  if (mode.curves.empty()) return {"No filter of this run can use it."};
-  sentences.push_back(fmt::format("At the theoretical amount, {}; {}.",
-                                  describe_range(mode, &records::BiasPoint::acne, "acne"),
-                                  describe_range(mode, &records::BiasPoint::contact_gap, "contact gap")));
-  return sentences;
-}
-
 std::string name_factor(double factor) {
   return factor > 0.0 && factor < 1.0 ? fmt::format("1/{:.4g}", 1.0 / factor) : fmt::format("{:.4g}", factor);
 }
@@ -235,15 +252,20 @@ page::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vect
   chart.y = make_rate_axis(mode);
   const std::pair<Rate, const char*> kinds[] = {{&records::BiasPoint::acne, "acne"},
                                                 {&records::BiasPoint::contact_gap, "contact gap"}};
-  for (const auto& [rate, name] : kinds) {
-    const std::size_t before = chart.series.size();
-    for (const records::BiasCurve& curve : mode.curves) {
-      const auto place = static_cast<std::size_t>(std::ranges::find(filters, curve.filter) - filters.begin());
+  std::vector<std::pair<double, std::string>> weights;
+  for (const records::BiasCurve& curve : mode.curves) {
+    const auto place = static_cast<std::size_t>(std::ranges::find(filters, curve.filter) - filters.begin());
+    for (const auto& [rate, name] : kinds) {
       page::ChartSeries series = make_rate_series(curve, rate, chart.x, page::style_of(place));
-      if (!series.points.empty()) chart.series.push_back(std::move(series));
+      if (series.points.empty()) continue;
+      weights.emplace_back(weigh_curve(curve), series.title);
+      chart.series.push_back(std::move(series));
     }
-    if (chart.series.size() == before) chart.notes.push_back(fmt::format("{}: absent", name));
   }
+  for (const auto& [rate, name] : kinds)
+    if (std::ranges::none_of(weights, [&](const auto& each) { return each.second.ends_with(name); }))
+      chart.notes.push_back(fmt::format("{}: absent", name));
+  page::show_most_telling(chart, std::move(weights));
   if (std::ranges::find(factors, 1.0) == factors.end()) return chart;
   page::ChartSeries theory;
   theory.title = "theory";
@@ -255,12 +277,13 @@ page::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vect
 }
 
 page::Page make_bias_page(const records::BiasSweepRecord& sweep) {
-  page::Page page{"Depth bias: acne against contact", {}, {}};
-  page.sections.push_back(
-      {{},
-       {},
-       {page::Facts{list_bias_facts(sweep)}, page::Sentences{{}, define_bias_terms(sweep)}, link_data({"bias.csv"})}});
+  page::Page page{"Depth bias: acne against contact", {make_bias_answer(sweep)}, {}};
   for (const records::BiasModeRecord& mode : sweep.modes) page.sections.push_back(make_mode_section(mode, sweep));
+  page.sections.push_back({"data",
+                           "",
+                           {page::Details{"Settings, terms and data",
+                                          {page::Facts{list_bias_facts(sweep)},
+                                           page::Sentences{{}, define_bias_terms(sweep)}, link_data({"bias.csv"})}}}});
   return page;
 }
 

@@ -18,10 +18,6 @@ std::optional<double> find_enough(const records::BiasCurve& curve);
 /// Names a factor: "0", "1/8", "4".
 std::string name_factor(double factor);
 
-/// Says of a mode, from its numbers: how much of the theoretical amount each filter needs, and what theory costs in
-/// contact.
-std::vector<std::string> describe_bias_mode(const records::BiasModeRecord& mode);
-
 /// Draws a mode's rates over the amount: acne solid, contact gap dashed, theory as a vertical line. What is absent is
 /// left out, and said where a whole kind is. A filter's place in `filters` gives it its colour and its mark.
 page::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vector<std::string>& filters);

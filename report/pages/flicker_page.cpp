@@ -13,7 +13,12 @@
 namespace shadowbench::pages {
 namespace {
 
-constexpr double kSame = 0.05;  // a smaller relative difference is called none
+constexpr double kFar = 0.5;     // flicker below this share of its limit is far from it
+constexpr double kAlways = 2.0;  // shown at first: no filter flickers as much
+constexpr double kPictureStep = 1.0 / 255.0;
+constexpr const char* kFlickerNote =
+    "x: times the truth's own change, which a still image would score. \u2717: no less than that, or, where the truth "
+    "stands still, no less than 1/255, a step of a picture.";
 
 using Filters = std::vector<records::FlickerFilter>;
 
@@ -23,96 +28,21 @@ double find_least(const records::FlickerMotion& motion) {
                          static_cast<double>(std::max<std::size_t>(1, motion.truth.step_change.size())));
 }
 
-bool by_flicker(const records::FlickerFilter& a, const records::FlickerFilter& b) { return a.flicker < b.flicker; }
-
-std::string against_truth(double value, const records::FlickerTruth& truth) {
-  return truth.change > 0.0 ? fmt::format(", {:.2f} times the truth's own change", value / truth.change)
-                            : std::string();
+/// Flicker in what it is judged by: the truth's own change, or, where the truth stands still, itself.
+std::string measure_flicker(double flicker, const records::FlickerMotion& motion) {
+  if (motion.truth.change > 0.0) return fmt::format("{:.2f} x", flicker / motion.truth.change);
+  return flicker < find_least(motion) ? "rounding" : fmt::format("{:.3g}", flicker);
 }
 
-std::string when(const records::FlickerVariant& variant) { return variant.snap ? "With snapping" : "Without snapping"; }
-
-std::string describe_extremes(const records::FlickerVariant& variant, const records::FlickerMotion& motion) {
-  const auto [least, most] = std::ranges::minmax_element(variant.filters, by_flicker);
-  if (most->flicker < find_least(motion))
-    return fmt::format("{} nothing flickers as much as one receiver that flips once: {:.2g} at most ({}).",
-                       when(variant), most->flicker, most->filter);
-  std::string text = fmt::format("{} {} flickers most, {:.3g}{}", when(variant), most->filter, most->flicker,
-                                 against_truth(most->flicker, motion.truth));
-  if (most->filter == least->filter) return text + ".";
-  return text + fmt::format("; {} least, {:.3g}{}.", least->filter, least->flicker,
-                            against_truth(least->flicker, motion.truth));
+/// The yardstick: as much as a still image would flicker, or, where the truth stands still, a step of a picture.
+double find_limit(const records::FlickerMotion& motion) {
+  return motion.truth.change > 0.0 ? motion.truth.change : kPictureStep;
 }
 
-/// Which filters change more than the truth, and which less. A shadow that is too soft changes less.
-std::string describe_changes(const records::FlickerVariant& variant, const records::FlickerTruth& truth) {
-  const auto [least, most] = std::ranges::minmax_element(variant.filters, {}, &records::FlickerFilter::change);
-  std::vector<std::string> less;
-  for (const records::FlickerFilter& filter : variant.filters)
-    if (filter.change < truth.change) less.push_back(filter.filter);
-  return fmt::format("{} visibility changes {:.2f} ({}) to {:.2f} times ({}) as much as the truth's{}.", when(variant),
-                     least->change / truth.change, least->filter, most->change / truth.change, most->filter,
-                     less.empty() ? std::string() : fmt::format("; less than the truth's: {}", fmt::join(less, ", ")));
-}
-
-/// The ratio of a filter's flicker without snapping to its flicker with it.
-struct Gain {
-  std::string filter;
-  double ratio = 1.0;
-};
-
-std::string describe_range(std::vector<Gain> gains, const char* does) {
-  std::ranges::sort(gains, {}, &Gain::ratio);
-  const auto name = [](const Gain& gain) { return fmt::format("{:.2f} ({})", gain.ratio, gain.filter); };
-  if (gains.size() == 1) return fmt::format("{} {}", does, name(gains.front()));
-  return fmt::format("{} {} to {}", does, name(gains.front()), name(gains.back()));
-}
-
-std::string describe_snapping(const Filters& off, const Filters& on, double least) {
-  std::vector<std::string> gone, same;
-  std::vector<Gain> better, worse;
-  for (std::size_t i = 0; i < off.size(); ++i) {
-    const double a = off[i].flicker, b = on[i].flicker;
-    if (a < least && b < least) continue;
-    if (a >= least && b < least)
-      gone.push_back(off[i].filter);
-    else if (std::abs(a - b) <= kSame * std::max(a, b))
-      same.push_back(off[i].filter);
-    else if (a > b)
-      better.push_back({off[i].filter, a / b});
-    else
-      worse.push_back({off[i].filter, b / std::max(a, least)});
-  }
-  std::vector<std::string> parts;
-  if (!gone.empty())
-    parts.push_back(gone.size() == off.size()
-                        ? "takes away all flicker but rounding of every filter"
-                        : fmt::format("takes away all flicker but rounding of {}", fmt::join(gone, ", ")));
-  if (!better.empty()) parts.push_back(describe_range(better, "divides flicker by"));
-  if (!worse.empty()) parts.push_back(describe_range(worse, "multiplies flicker by"));
-  if (!same.empty())
-    parts.push_back(
-        fmt::format("leaves it as it is, within {:g} %, {}", 100.0 * kSame,
-                    same.size() == off.size() ? "of every filter" : fmt::format("of {}", fmt::join(same, ", "))));
-  return parts.empty() ? "Snapping changes nothing: nothing flickers."
-                       : fmt::format("Snapping {}.", fmt::join(parts, "; "));
-}
-
-std::string describe_returning(const records::FlickerVariant& variant, const records::FlickerTruth& truth) {
-  const auto most = std::ranges::max_element(variant.filters, {}, &records::FlickerFilter::returning);
-  if (most->returning == 0.0) return when(variant) + " no filter's visibility goes back and forth.";
-  return fmt::format("{} the visibility of {} goes back and forth at the most receivers, {}; the truth's at {}.",
-                     when(variant), most->filter, records::format_rate(most->returning),
-                     records::format_rate(truth.returning));
-}
-
-std::string describe_not_finite(const records::FlickerVariant& variant) {
-  std::vector<std::string> named;
-  for (const records::FlickerFilter& filter : variant.filters)
-    if (filter.not_finite > 0) named.push_back(fmt::format("{} ({})", filter.filter, filter.not_finite));
-  if (named.empty()) return {};
-  return fmt::format("{} snapping, changes left out because visibility is not finite there: {}.",
-                     variant.snap ? "With" : "Without", fmt::join(named, ", "));
+page::Grade grade_flicker(double flicker, const records::FlickerMotion& motion) {
+  if (flicker >= find_limit(motion)) return page::Grade::kBad;
+  const bool far = flicker < find_least(motion) || flicker < kFar * find_limit(motion);
+  return far ? page::Grade::kGood : page::Grade::kNear;
 }
 
 constexpr std::size_t kStepsPerMark = 8;
@@ -157,25 +87,25 @@ page::ChartAxis choose_change_axis(const records::FlickerMotion& motion) {
 }
 
 std::vector<std::pair<std::string, std::string>> list_flicker_facts(const records::FlickerRecord& record) {
-  return {{"scene", fmt::format("{}, view {}, {} x {} pixels", record.scene, record.view, record.width, record.height)},
-          {"shadow map", fmt::format("{0} x {0} texels", record.map_size)},
-          {"frames", fmt::format("{}", record.frames)},
-          {"OpenGL", fmt::format("{} ({}), {}", record.gl.renderer, record.gl.backend, record.gl.version)},
-          {"program", record.commit},
-          {"command", fmt::format("{}", fmt::join(record.command, " "))},
-          {"took", fmt::format("{:.1f} s", record.seconds)}};
+  auto facts = list_provenance(record);
+  facts.insert(
+      facts.begin(),
+      {{"scene", fmt::format("{}, view {}, {} x {} pixels", record.scene, record.view, record.width, record.height)},
+       {"shadow map", fmt::format("{0} x {0} texels", record.map_size)},
+       {"frames", fmt::format("{}", record.frames)}});
+  return facts;
 }
 
 page::Section make_motion_section(const records::FlickerMotion& motion, int frames) {
   page::Section section{motion.id, fmt::format("{}: {}", motion.id, motion.title), {}};
-  section.blocks = {
-      page::Sentences{{}, describe_flicker(motion)},
-      page::Table{"Change and flicker: root mean squares of visibility per step", make_flicker_table(motion)},
-      page::Sentences{{}, explain_motion(motion, frames)}};
   for (const records::FlickerVariant& variant : motion.variants)
     section.blocks.emplace_back(make_flicker_chart(motion, variant));
   section.blocks.emplace_back(
       page::Gallery{{}, {{motion.picture, "flicker by pixel, without snapping and with it; grey: less than 0.001"}}});
+  section.blocks.emplace_back(page::Details{
+      "All numbers, and how the motion was made",
+      {page::Table{"Change and flicker: root mean squares of visibility per step", make_flicker_table(motion)},
+       page::Sentences{{}, explain_motion(motion, frames)}}});
   return section;
 }
 
@@ -211,6 +141,11 @@ std::vector<std::string> explain_motion(const records::FlickerMotion& motion, in
         "changes its size in {} of {} steps.",
         variant.snap ? "With" : "Without", variant.grid_texels, variant.texel_m, variant.resizes, frames - 1));
   }
+  for (const records::FlickerVariant& variant : motion.variants)
+    for (const records::FlickerFilter& filter : variant.filters)
+      if (filter.not_finite > 0)
+        sentences.push_back(fmt::format("{} snapping, {} changes of {} are left out, because visibility is not finite.",
+                                        variant.snap ? "With" : "Without", filter.not_finite, filter.filter));
   if (!motion.truth.moves) {
     sentences.push_back("The light stands still, and so does the truth at every receiver: all change is flicker.");
     return sentences;
@@ -220,22 +155,6 @@ std::vector<std::string> explain_motion(const records::FlickerMotion& motion, in
                   "at most (root mean square): that is what it would be if frames were "
                   "traced independently, but a pixel's random numbers are the same in all frames.",
                   motion.truth.change, motion.truth.noise));
-  return sentences;
-}
-
-std::vector<std::string> describe_flicker(const records::FlickerMotion& motion) {
-  std::vector<std::string> sentences;
-  for (const records::FlickerVariant& variant : motion.variants)
-    sentences.push_back(describe_extremes(variant, motion));
-  if (motion.truth.change > 0.0)
-    for (const records::FlickerVariant& variant : motion.variants)
-      sentences.push_back(describe_changes(variant, motion.truth));
-  sentences.push_back(describe_snapping(motion.variants[0].filters, motion.variants[1].filters, find_least(motion)));
-  for (const records::FlickerVariant& variant : motion.variants)
-    sentences.push_back(describe_returning(variant, motion.truth));
-  for (const records::FlickerVariant& variant : motion.variants)
-    if (std::string left_out = describe_not_finite(variant); !left_out.empty())
-      sentences.push_back(std::move(left_out));
   return sentences;
 }
 
@@ -268,22 +187,59 @@ page::Chart make_flicker_chart(const records::FlickerMotion& motion, const recor
   chart.y_name = "change of visibility, root mean square";
   chart.x = page::choose_axis({0.0, static_cast<double>(motion.truth.step_change.size())}, {}, page::TickKind::kNumber);
   chart.y = choose_change_axis(motion);
-  for (std::size_t i = 0; i < variant.filters.size(); ++i) add_filter(chart, variant.filters[i], i);
+  std::vector<std::pair<double, std::string>> weights = {{kAlways, "truth"}};
+  for (std::size_t i = 0; i < variant.filters.size(); ++i) {
+    add_filter(chart, variant.filters[i], i);
+    const std::string& name = variant.filters[i].filter;
+    weights.emplace_back(name == "none" ? kAlways : variant.filters[i].flicker, name);
+  }
   page::ChartSeries truth = make_change_line("truth", motion.truth.step_change);
   truth.color = page::kInk;
   truth.line = page::LineStyle::kDashed;
   chart.series.push_back(std::move(truth));
   chart.notes.push_back("one scale without snapping and with it");
+  page::show_most_telling(chart, std::move(weights));
   return chart;
 }
 
+std::string summarize_flicker(const records::FlickerMotion& motion) {
+  const Filters &off = motion.variants[0].filters, &on = motion.variants[1].filters;
+  const auto name = [&](const auto& filter) {
+    const std::string free = measure_flicker(filter->flicker, motion),
+                      snapped = measure_flicker(on[static_cast<std::size_t>(filter - off.begin())].flicker, motion);
+    return fmt::format("{}, {}{}", filter->filter, free, free == snapped ? "" : " (" + snapped + " with snapping)");
+  };
+  const auto [least, most] = std::ranges::minmax_element(off, {}, &records::FlickerFilter::flicker);
+  return fmt::format("{}: most flickers {}{}.", motion.title, name(most),
+                     most->flicker > least->flicker ? "; least " + name(least) : "");
+}
+
+page::Section make_flicker_answer(const records::FlickerRecord& record) {
+  page::Table table{"Flicker, without snapping and with it", {{"motion"}, {}}};
+  std::vector<std::string> sentences;
+  for (const records::FlickerMotion& motion : record.motions) {
+    sentences.push_back(summarize_flicker(motion));
+    for (const records::FlickerVariant& variant : motion.variants)
+      for (const records::FlickerFilter& filter : variant.filters)
+        table.judge(motion.id + (variant.snap ? ", snapped" : ""), filter.filter,
+                    measure_flicker(filter.flicker, motion), grade_flicker(filter.flicker, motion));
+  }
+  return {"answer",
+          "",
+          {page::Paragraph{fmt::format("{}", fmt::join(sentences, " "))}, std::move(table),
+           page::Paragraph{kFlickerNote, true}}};
+}
+
 page::Page make_flicker_page(const records::FlickerRecord& record) {
-  page::Page page{"Flicker: filters in motion against the truth in motion", {}, {}};
-  page.sections.push_back(
-      {{}, {}, {page::Facts{list_flicker_facts(record)}, page::Sentences{{}, define_flicker(record)}}});
+  page::Page page{"Flicker: filters in motion against the truth in motion", {make_flicker_answer(record)}, {}};
   for (const records::FlickerMotion& motion : record.motions)
     page.sections.push_back(make_motion_section(motion, record.frames));
-  page.sections.push_back({"data", "", {link_data({"flicker.json", "flicker.csv"})}});
+  page.sections.push_back(
+      {"data",
+       "",
+       {page::Details{"Settings, terms and data",
+                      {page::Facts{list_flicker_facts(record)}, page::Sentences{{}, define_flicker(record)},
+                       link_data({"flicker.json", "flicker.csv"})}}}});
   return page;
 }
 

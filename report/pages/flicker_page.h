@@ -14,8 +14,8 @@ std::vector<std::string> define_flicker(const records::FlickerRecord& record);
 /// How a motion was made, and what is uncertain.
 std::vector<std::string> explain_motion(const records::FlickerMotion& motion, int frames);
 
-/// What a motion's numbers show: which filter flickers most and least, against the truth, and what snapping buys.
-std::vector<std::string> describe_flicker(const records::FlickerMotion& motion);
+/// Says which filter flickers most and least in a motion, against the truth, without snapping and with it.
+std::string summarize_flicker(const records::FlickerMotion& motion);
 
 /// A motion's table: a row per filter, without snapping and with it.
 records::TextTable make_flicker_table(const records::FlickerMotion& motion);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "report/analysis/cell_group.h"
 #include "report/records/csv.h"
 #include "report/records/json_values.h"
 

@@ -6,9 +6,13 @@
 #include <cmath>
 
 #include "report/analysis/cell_group.h"
+#include "report/analysis/stability_words.h"
 #include "report/analysis/summary.h"
+#include "report/analysis/surprises.h"
 #include "report/images/attribution_bar.h"
+#include "report/pages/answer.h"
 #include "report/pages/column_list.h"
+#include "report/pages/run_data.h"
 #include "report/pages/text_tables.h"
 #include "report/records/error_parts.h"
 #include "report/records/format.h"
@@ -38,24 +42,13 @@ OptionalPath find_path(const analysis::CellGroup& group, ImageMember member) {
   return std::nullopt;
 }
 
-/// One picture of every cell that has it.
-page::Gallery make_cell_gallery(const analysis::CellGroup& group, ImageMember member, const std::string& title,
-                                const std::string& caption) {
-  page::Gallery gallery{title, {}, true};
+/// One picture of every cell that has its numbers' breaks drawn.
+page::Gallery make_stability_gallery(const analysis::CellGroup& group) {
+  page::Gallery gallery{"Where numbers break: overflow, negative variance, 16 bits, and bounds", {}, true};
   for (const records::CellRecord& cell : group.cells)
-    if (cell.images.*member)
-      gallery.pictures.push_back({*(cell.images.*member), analysis::label_cell(group, cell) + caption});
-  return gallery;
-}
-
-page::Gallery make_single_gallery(const analysis::CellGroup& group) {
-  page::Gallery gallery{"Single pictures", {}};
-  for (const records::CellRecord& cell : group.cells) {
-    const std::string name =
-        cell.params.empty() ? cell.filter : cell.filter + " (" + records::describe_params(cell.params) + ")";
-    if (cell.images.picture) gallery.pictures.push_back({*cell.images.picture, name + ": picture"});
-    if (cell.images.visibility) gallery.pictures.push_back({*cell.images.visibility, name + ": visibility"});
-  }
+    if (cell.images.stability)
+      gallery.pictures.push_back({*cell.images.stability,
+                                  analysis::label_cell(group, cell) + ": where its numbers break, or come near to it"});
   return gallery;
 }
 
@@ -108,65 +101,86 @@ std::optional<page::Bars> make_bars(const analysis::CellGroup& group) {
   return bars;
 }
 
-page::Section make_group_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                                 const analysis::CellGroup& group, std::size_t number) {
-  page::Section section{fmt::format("group-{}", number), head_group(run, cells, group.cells.front()), {}};
-  auto& blocks = section.blocks;
+/// All numbers of one scene, folded away.
+page::Details make_group_details(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+                                 const analysis::CellGroup& group) {
+  page::Details details{head_group(run, cells, group.cells.front()), {}};
+  auto& blocks = details.blocks;
   blocks = {page::Paragraph{records::describe_settings(group.cells.front()), true},
-            page::Sentences{{}, analysis::describe_group(group, run.gl)},
             page::Table{"What it costs: " + records::describe_clock(run.gl), make_cost_table(group, run.gl)},
             page::Table{"How wrong it is, and why: errors of visibility in [0,1]", make_accuracy_table(group)}};
+  if (const auto stability = analysis::describe_stability(group); !stability.empty())
+    blocks.emplace_back(page::Sentences{{}, stability});
   if (auto bars = make_bars(group)) blocks.emplace_back(std::move(*bars));
   if (const auto grid = find_path(group, &records::ImagesRecord::grid))
     blocks.emplace_back(page::Gallery{{}, {{*grid, "all filters on " + group.scene + ", full size behind the link"}}});
-  blocks.emplace_back(make_cell_gallery(group, &records::ImagesRecord::attribution,
-                                        "Where in the picture the error comes from", ": the error and its four parts"));
-  blocks.emplace_back(make_cell_gallery(group, &records::ImagesRecord::stability,
-                                        "Where numbers break: overflow, negative variance, 16 bits, and bounds",
-                                        ": where its numbers break, or come near to it"));
-  blocks.emplace_back(make_single_gallery(group));
+  blocks.emplace_back(make_stability_gallery(group));
   blocks.emplace_back(make_map_gallery(group));
   if (const auto exr = find_path(group, &records::ImagesRecord::exr))
     blocks.emplace_back(page::Links{"The float images of all filters:", {{*exr, *exr}}});
+  return details;
+}
+
+/// RMSE of scenes by filters: what the script's table begins with.
+page::Section make_table_section(const std::vector<records::CellRecord>& cells) {
+  std::vector<const records::CellRecord*> all;
+  for (const records::CellRecord& cell : cells) all.push_back(&cell);
+  const std::vector<analysis::Place> places = analysis::list_places(all);
+  records::TextTable table;
+  table.header = {"filter", "kernel"};
+  for (const analysis::Place& place : places) table.header.push_back(analysis::describe_place(place, places));
+  for (const analysis::Configuration& configuration : analysis::list_configurations(all)) {
+    auto& row = table.rows.emplace_back(
+        std::vector<std::string>{configuration.label, records::describe_kernel(configuration.cells.front()->kernel)});
+    row.resize(table.header.size(), records::kNothing);
+    for (const records::CellRecord* cell : configuration.cells) {
+      const auto place = std::ranges::find(places, analysis::place_of(*cell)) - places.begin();
+      row[2 + static_cast<std::size_t>(place)] = records::format_number(cell->error.rmse);
+    }
+  }
+  return {"table", "All numbers", {page::Mount{"numbers", {page::Table{"RMSE to the area truth", std::move(table)}}}}};
+}
+
+page::Section make_evidence_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
+  page::Section section{"evidence", "Behind the numbers", {}};
+  for (const analysis::CellGroup& group : analysis::group_cells(cells))
+    section.blocks.emplace_back(make_group_details(run, cells, group));
+  if (const auto absences = analysis::count_absences(cells); !absences.empty()) {
+    page::Sentences reasons;
+    for (const auto& [reason, count] : absences)
+      reasons.items.push_back(fmt::format("{} ({} of {} cells)", reason, count, cells.size()));
+    section.blocks.emplace_back(page::Details{"What is not there, and why", {reasons}});
+  }
+  section.blocks.emplace_back(explain_columns("timings.csv", records::list_csv_columns(records::CsvTable::kTimings)));
+  section.blocks.emplace_back(explain_columns("accuracy.csv", records::list_csv_columns(records::CsvTable::kAccuracy)));
+  section.blocks.emplace_back(
+      page::Details{"Machine, OpenGL, command and seed", {page::Facts{analysis::list_run_facts(run)}}});
+  section.blocks.emplace_back(page::Links{"Data:",
+                                          {{"summary.md", "summary.md"},
+                                           {"timings.csv", "timings.csv"},
+                                           {"accuracy.csv", "accuracy.csv"},
+                                           {"results.json", "results.json"},
+                                           {"results.schema.json", "its schema"}}});
   return section;
-}
-
-page::Section make_top(const records::RunRecord& run) {
-  return {{},
-          {},
-          {page::Facts{analysis::list_run_facts(run)},
-           page::Paragraph{fmt::format("All times are {}. Filters whose intervals overlap are tied.",
-                                       records::describe_clock(run.gl))},
-           page::Links{"Data:",
-                       {{"summary.md", "summary.md"},
-                        {"timings.csv", "timings.csv"},
-                        {"accuracy.csv", "accuracy.csv"},
-                        {"results.json", "results.json"},
-                        {"results.schema.json", "its schema"}}}}};
-}
-
-page::Section make_absence_section(const std::vector<records::CellRecord>& cells) {
-  page::Sentences reasons;
-  for (const auto& [reason, count] : analysis::count_absences(cells))
-    reasons.items.push_back(fmt::format("{} ({} of {} cells)", reason, count, cells.size()));
-  return {"absent", "What is not there, and why", {reasons}};
 }
 
 }  // namespace
 
 page::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                          const std::optional<Trade>& trade) {
-  page::Page page{"Shadow filters compared", {make_top(run)}, {}};
+  const analysis::AdviceRequest request = choose_request(cells);
+  page::Page page{"Shadow filters compared", {make_answer_section(run, cells, request)}, {}};
   const auto add = [&](page::Section section) { page.sections.push_back(std::move(section)); };
+  if (const auto surprises = analysis::list_surprises(cells); !surprises.empty())
+    add({"surprises", "What surprises", {page::Sentences{{}, surprises}}});
   if (!run.warnings.empty()) add({"warnings", "Warnings", {page::Sentences{{}, run.warnings}}, true});
+  if (!cells.empty()) {
+    add(make_table_section(cells));
+    add({"viewer", "Look closer", {page::Mount{"viewer", {}}}});
+    page.data = make_run_data(run, cells, request);
+  }
   if (trade) add(make_trade_section(run, cells, *trade));
-  const std::vector<analysis::CellGroup> groups = analysis::group_cells(cells);
-  for (std::size_t i = 0; i < groups.size(); ++i) add(make_group_section(run, cells, groups[i], i));
-  if (!analysis::count_absences(cells).empty()) add(make_absence_section(cells));
-  add({"columns",
-       "What the columns mean",
-       {explain_columns("timings.csv", records::list_csv_columns(records::CsvTable::kTimings)),
-        explain_columns("accuracy.csv", records::list_csv_columns(records::CsvTable::kAccuracy))}});
+  add(make_evidence_section(run, cells));
   return page;
 }
 

@@ -9,8 +9,9 @@
 
 namespace shadowbench::pages {
 
-/// Makes the page of a run: its facts, warnings, the trade, per group of comparable cells its sentences, tables, bars
-/// of the error's parts and pictures, what is absent and why, and what the columns of the CSV files mean.
+/// Makes the page of a run: the choice of a filter, what surprises, warnings, the table of all numbers, the viewer, the
+/// trade; folded away the tables and bars of each scene, what is absent and why, the columns of the CSV files, and the
+/// machine.
 page::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                          const std::optional<Trade>& trade);
 

@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <utility>
 
 #include "report/page/chart_style.h"
 #include "report/page/markdown.h"
@@ -73,8 +75,97 @@ std::vector<std::string> list_limits(const records::StressAxis& axis, records::S
   return sentences;
 }
 
-constexpr std::size_t kLimitsPerLine = 5;
+constexpr double kEarly = 0.5;        // a limit before this share of an axis' range fails
 constexpr double kLeastShown = 1e-9;  // on a logarithmic axis
+constexpr const char* kStressNote =
+    "The share that a filter's worst variant is ok in, to its best one's. \u2717: one breaks, or is over the axis' "
+    "bound "
+    "before half of the range.";
+constexpr const char* kNoFilter = "no filter";
+
+/// The share of an axis' range, from its easy end on, in which a case is ok.
+double measure_reach(const records::StressAxis& axis, const records::StressCase& item) {
+  const records::StressOnset* onset = records::find_onset(item, records::StressVerdict::kDegraded);
+  if (!onset) return 1.0;
+  if (!onset->last_before) return 0.0;
+  const auto place = [&](double value) { return axis.log ? std::log(value) : value; };
+  const double easy = *onset->last_before > onset->value ? axis.range.high : axis.range.low;
+  return std::abs((place(*onset->last_before) - place(easy)) / (place(axis.range.high) - place(axis.range.low)));
+}
+
+/// What a filter's variants come to on an axis. A scalar model is no variant: it says what the GL should do.
+struct Standing {
+  double least = 1.0, most = 0.0;  ///< of what measure_reach() measures
+  bool breaks = false;
+
+  page::Grade grade() const {
+    if (breaks || least < kEarly) return page::Grade::kBad;
+    return least < 1.0 ? page::Grade::kNear : page::Grade::kGood;
+  }
+  std::string describe() const {
+    return fmt::format("{:.0f}{} %", 100.0 * least, most > least ? fmt::format(" .. {:.0f}", 100.0 * most) : "");
+  }
+};
+
+std::map<std::string, Standing> find_standings(const records::StressAxis& axis) {
+  std::map<std::string, Standing> standings;
+  for (const records::StressCase& item : axis.cases) {
+    if (item.level == "model" || item.samples.empty()) continue;
+    Standing& standing = standings[item.filter.empty() ? kNoFilter : item.filter];
+    standing.least = std::min(standing.least, measure_reach(axis, item));
+    standing.most = std::max(standing.most, measure_reach(axis, item));
+    standing.breaks = standing.breaks || item.broken;
+  }
+  return standings;
+}
+
+/// Says who holds furthest on the axes that have all filters of a table, and how much of the table fails.
+std::string summarize_stress(const records::StressRecord& record, const page::Table& table) {
+  std::vector<std::pair<double, std::string>> reaches;
+  for (const std::string& name : table.table.header)
+    if (name != table.table.header.front() && name != kNoFilter) reaches.emplace_back(0.0, name);
+  int axes = 0;
+  for (const records::StressAxis& axis : record.axes) {
+    const auto standings = find_standings(axis);
+    const auto has = [&](const auto& reach) { return standings.contains(reach.second); };
+    if (reaches.empty() || !std::ranges::all_of(reaches, has)) continue;
+    ++axes;
+    for (auto& [reach, name] : reaches) reach += standings.at(name).least;
+  }
+  std::string text;
+  if (axes > 0) {
+    const auto [least, most] = std::ranges::minmax_element(reaches, {}, &std::pair<double, std::string>::first);
+    text = fmt::format("On the {} that every filter has, {} holds furthest, {:.0f} % of the range on average",
+                       axes == 1 ? "axis" : fmt::format("{} axes", axes), most->second, 100.0 * most->first / axes);
+    if (least->first < most->first)
+      text += fmt::format(", and {} least far, {:.0f} %", least->second, 100.0 * least->first / axes);
+    text += ". ";
+  }
+  std::ptrdiff_t failed = 0, all = 0;
+  for (const auto& row : table.grades) {
+    failed += std::ranges::count(row, page::Grade::kBad);
+    all += std::ssize(row) - std::ranges::count(row, page::Grade::kNone);
+  }
+  return text + fmt::format(
+                    "{} of {} cells fail; limits that are not where theory puts them, and that nothing "
+                    "explains: {}.",
+                    failed, all, records::count_disagreements(record));
+}
+
+page::Section make_stress_answer(const records::StressRecord& record) {
+  page::Table table{"How much of each axis' range holds", {{"axis"}, {}}};
+  for (const records::StressAxis& axis : record.axes) {
+    const auto standings = find_standings(axis);
+    for (const records::StressCase& item : axis.cases) {
+      const auto found = standings.find(item.filter.empty() ? kNoFilter : item.filter);
+      if (found == standings.end()) continue;
+      table.judge(fmt::format("{}: {}, {:g} .. {:g}", axis.id, axis.quantity, axis.range.low, axis.range.high),
+                  found->first, found->second.describe(), found->second.grade());
+    }
+  }
+  page::Paragraph answer{summarize_stress(record, table)};
+  return {"answer", "", {std::move(answer), std::move(table), page::Paragraph{kStressNote, true}}};
+}
 
 bool is_shown(const records::StressAxis& axis, const std::optional<double>& measured) {
   return measured && (!axis.measured_log || *measured >= kLeastShown);
@@ -142,30 +233,11 @@ void add_theory(page::Chart& chart, const records::StressAxis& axis) {
         onsets.emplace(fmt::format("{:.4g}", *limit.onset), *limit.onset);
     }
   }
-  std::vector<std::pair<double, std::string>> sorted;
-  for (const auto& [label, onset] : onsets) sorted.emplace_back(onset, label);
-  std::ranges::sort(sorted);
-  std::vector<std::string> labels;
-  for (const auto& [onset, label] : sorted) {
-    chart.series.push_back(make_line(labels.empty() ? "theoretical limits" : "", page::exact_point(onset, chart.y.low),
+  std::string title = "theoretical limits";
+  for (const auto& [label, onset] : onsets)
+    chart.series.push_back(make_line(std::exchange(title, {}), page::exact_point(onset, chart.y.low),
                                      page::exact_point(onset, chart.y.high), page::kInk, page::LineStyle::kTies));
-    labels.push_back(label);
-  }
-  for (std::size_t i = 0; i < labels.size(); i += kLimitsPerLine) {
-    const auto begin = labels.begin() + static_cast<std::ptrdiff_t>(i);
-    const auto end = labels.begin() + static_cast<std::ptrdiff_t>(std::min(i + kLimitsPerLine, labels.size()));
-    chart.notes.push_back(fmt::format("theoretical limits: {}", fmt::join(begin, end, ", ")));
-  }
   if (says_none) chart.notes.push_back("some cases have no theoretical limit");
-}
-
-std::vector<std::pair<std::string, std::string>> list_stress_facts(const records::StressRecord& record) {
-  return {{"filters", fmt::format("{}", fmt::join(record.filters, "; "))},
-          {"OpenGL", fmt::format("{} ({}), {}", record.gl.renderer, record.gl.backend, record.gl.version)},
-          {"machine", fmt::format("{}, {} cores", record.machine.cpu, record.machine.cores)},
-          {"program", record.commit},
-          {"command", fmt::format("{}", fmt::join(record.command, " "))},
-          {"took", fmt::format("{:.1f} s", record.seconds)}};
 }
 
 void add_exhibit(std::vector<page::Block>& blocks, const records::StressExhibit& exhibit) {
@@ -178,25 +250,26 @@ void add_exhibit(std::vector<page::Block>& blocks, const records::StressExhibit&
 
 page::Section make_axis_section(const records::StressAxis& axis) {
   page::Section section{axis.id, fmt::format("{}: {}", axis.id, axis.title), {}};
-  const auto add_sentences = [&](const char* lead, std::vector<std::string> sentences) {
-    if (!sentences.empty()) section.blocks.emplace_back(page::Sentences{lead, std::move(sentences)});
-  };
-  section.blocks = {page::Paragraph{describe_axis(axis), true},
-                    page::Table{"What is safe, and where it ends", make_case_table(axis)}};
   if (has_stress_chart(axis)) section.blocks.emplace_back(make_stress_chart(axis));
+  page::Details details{"Every variant, and why",
+                        {page::Paragraph{describe_axis(axis), true},
+                         page::Table{"What is safe, and where it ends", make_case_table(axis)}}};
+  const auto add_sentences = [&](const char* lead, std::vector<std::string> sentences) {
+    if (!sentences.empty()) details.blocks.emplace_back(page::Sentences{lead, std::move(sentences)});
+  };
   add_sentences("Not what theory says, and why:", describe_explanations(axis));
-  add_sentences("Not what theory says, and not explained:", describe_disagreements(axis));
   add_sentences("Also seen:", describe_notes(axis));
-  for (const records::StressExhibit& exhibit : axis.exhibits) add_exhibit(section.blocks, exhibit);
+  for (const records::StressExhibit& exhibit : axis.exhibits) add_exhibit(details.blocks, exhibit);
+  section.blocks.emplace_back(std::move(details));
   return section;
 }
 
-page::Section make_limit_section(const records::StressRecord& record) {
-  page::Section section{"limits", "Measured against theoretical limits", {}};
-  section.blocks.emplace_back(page::Table{"Where each verdict is first met, found to 1 %", make_limit_table(record)});
+page::Details make_limit_details(const records::StressRecord& record) {
+  page::Details details{"Measured against theoretical limits",
+                        {page::Table{"Where each verdict is first met, found to 1 %", make_limit_table(record)}}};
   if (std::vector<std::string> unseen = describe_out_of_sight(record); !unseen.empty())
-    section.blocks.emplace_back(page::Sentences{"Not met, and not expected:", std::move(unseen)});
-  return section;
+    details.blocks.emplace_back(page::Sentences{"Not met, and not expected:", std::move(unseen)});
+  return details;
 }
 
 }  // namespace
@@ -288,8 +361,12 @@ page::Chart make_stress_chart(const records::StressAxis& axis) {
   chart.x = choose_value_axis(axis);
   chart.y = choose_measured_axis(axis);
   std::map<std::string, std::size_t> styles;  // the levels of one variant are drawn alike
+  std::vector<std::pair<double, std::string>> weights;
   for (const records::StressCase& item : axis.cases) {
     if (item.samples.empty()) continue;
+    const bool reference = item.filter == "none" && weights.empty();
+    const double hidden_by = item.level == "model" ? 1.0 : 0.0;  // its GL's curve, which it follows
+    weights.emplace_back(reference ? 1.0 : -measure_reach(axis, item) - hidden_by, records::label_of(item));
     const auto style = styles.emplace(item.filter + ": " + item.variant, styles.size()).first;
     add_case(chart, axis, item, page::style_of(style->second));
   }
@@ -297,6 +374,7 @@ page::Chart make_stress_chart(const records::StressAxis& axis) {
                                    page::exact_point(chart.x.high, axis.bound), "#8a8f98", page::LineStyle::kDashed));
   add_theory(chart, axis);
   chart.notes.push_back("filled: broken, at the upper edge where nothing finite was measured");
+  page::show_most_telling(chart, std::move(weights));
   return chart;
 }
 
@@ -310,15 +388,19 @@ std::string make_limit_text(const records::StressRecord& record) {
 }
 
 page::Page make_stress_page(const records::StressRecord& record) {
-  page::Page page{"Where filters break", {{{}, {}, {page::Facts{list_stress_facts(record)}}}}, {}};
+  page::Page page{"Where filters break", {make_stress_answer(record)}, {}};
   std::vector<std::string> warnings;
   for (const records::StressAxis& axis : record.axes)
     for (const std::string& sentence : describe_disagreements(axis)) warnings.push_back(axis.id + ": " + sentence);
   if (!warnings.empty())
     page.sections.push_back({"warnings", "Warnings", {page::Sentences{{}, std::move(warnings)}}, true});
-  page.sections.push_back(make_limit_section(record));
   for (const records::StressAxis& axis : record.axes) page.sections.push_back(make_axis_section(axis));
-  page.sections.push_back({"data", "", {link_data({"stress.json", "stress.csv"})}});
+  page.sections.push_back({"data",
+                           "",
+                           {make_limit_details(record), page::Details{"Settings and data",
+                                                                      {page::Facts{list_provenance(record)},
+                                                                       page::Sentences{"Filters:", record.filters},
+                                                                       link_data({"stress.json", "stress.csv"})}}}});
   return page;
 }
 

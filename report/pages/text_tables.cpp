@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "reference/metrics/metric_table.h"
-#include "report/analysis/accuracy_words.h"
+#include "report/analysis/accuracy.h"
 #include "report/analysis/cell_group.h"
 #include "report/records/error_parts.h"
 #include "report/records/format.h"

@@ -6,7 +6,6 @@
 
 #include "filters/kernel_width.h"
 #include "report/analysis/cell_group.h"
-#include "report/analysis/front_words.h"
 #include "report/page/chart_style.h"
 #include "report/records/format.h"
 
@@ -85,15 +84,14 @@ class FrontChart {
     return scope_.configurations[front_.configurations[point]];
   }
 
-  /// The line through the front of one class of width, with the members' numbers beside it.
+  /// The line through the front of one class of width.
   void add_front(page::Chart& chart, std::size_t width_class) const {
     const std::string_view name = analysis::name_class(width_class);
     ChartSeries line = start_line(fmt::format("front, {}", name), page::kInk, page::LineStyle::kSteps);
     for (const std::size_t member : front_.members) {
       const analysis::FrontPoint& values = front_.points[member];
       if (values.group != width_class) continue;
-      chart.notes.push_back(fmt::format("{}: {}, {}", chart.notes.size() + 1, configuration_of(member).label, name));
-      line.points.push_back({values.cost, values.error, fmt::format("{}", chart.notes.size())});
+      line.points.push_back({values.cost, values.error});
     }
     if (!line.points.empty()) chart.series.push_back(std::move(line));
   }
@@ -111,7 +109,7 @@ class FrontChart {
   page::ChartPoint make_point(std::size_t point) const {
     const Configuration& configuration = configuration_of(point);
     const analysis::FrontPoint& values = front_.points[point];
-    page::ChartPoint made{values.cost, values.error};
+    page::ChartPoint made{values.cost, values.error, configuration.label};
     made.details = {configuration.label,
                     configuration.params.empty() ? "no parameters" : records::describe_params(configuration.params),
                     "kernel: " + records::describe_kernel(cells_[configuration.cells.front()].kernel),
@@ -119,12 +117,9 @@ class FrontChart {
                     say_value(error_, values.error, gl_),
                     say_value(cost_, values.cost, gl_),
                     describe_standing(point)};
-    for (const std::size_t i : configuration.cells) {
-      const std::string place = fmt::format("{}, {} · {}: ", configuration.label, cells_[i].scene, cells_[i].view);
-      const records::ImagesRecord& images = cells_[i].images;
-      if (images.picture) made.pictures.push_back({*images.picture, place + "picture"});
-      if (images.visibility) made.pictures.push_back({*images.visibility, place + "visibility"});
-    }
+    const auto worst = std::ranges::max_element(configuration.cells, {},
+                                                [&](std::size_t i) { return cells_[i].error.rmse.value_or(0.0); });
+    made.opens = cells_[*worst].key;
     return made;
   }
 
@@ -289,8 +284,7 @@ page::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& sco
     for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error) {
       for (std::size_t cost = 0; cost < analysis::kCostMeasures; ++cost) {
         const analysis::TradeFront front = analysis::make_trade_front(scope, error, cost);
-        choice.entries.push_back(
-            {FrontChart(scope, front, cells, gl).make(filters), analysis::describe_front(scope, front, gl)});
+        choice.entries.push_back({FrontChart(scope, front, cells, gl).make(filters), {}});
       }
     }
   }

@@ -15,12 +15,9 @@ namespace {
 using Blocks = std::vector<page::Block>;
 
 constexpr const char* kFrontsNote =
-    "Lower left is better, among kernels that are equally wide. Filled and joined: the front of each class of width, "
-    "the cells that no other of the class beats, numbered from the cheapest on. Hollow: cannot be told from a cell of "
-    "the front, to which a dotted line leads; or of no class, and compared with nothing. Faint: beaten. A thin line "
-    "joins a filter's cells from narrow to wide kernels. Whiskers are intervals. Point at a cell for its numbers, "
-    "click "
-    "it for its pictures, click a name in the key to hide its cells.";
+    "Lower left is better. Filled and joined: no other filter of the same class of width beats it. Hollow: a tie. "
+    "Faint: "
+    "beaten. Click a mark to look closer.";
 constexpr const char* kCrossoversNote =
     "A width counts where both were measured, or one was and the other is interpolated between its neighbours; "
     "cheaper is said where the 95 % intervals do not overlap. Crosses mark where the medians meet.";
@@ -33,25 +30,10 @@ constexpr const char* kLightsNote =
     "quartiles allow: each number of lights is timed in rounds of its own, and drift of the machine between them is in "
     "the growth, not in the order.";
 
-/// What the fronts of RMSE against both times hold.
-page::Details describe_fronts(const Trade& trade, const records::GlRecord& gl) {
-  page::Details details{"The fronts of RMSE against time in sentences", {}};
-  for (const analysis::TradeScope& scope : trade.scopes) {
-    page::Sentences sentences;
-    for (const std::size_t cost : {std::size_t{0}, std::size_t{1}})
-      for (std::string& sentence : analysis::describe_front(scope, analysis::make_trade_front(scope, 0, cost), gl))
-        sentences.items.push_back(std::move(sentence));
-    details.blocks.emplace_back(page::Heading{scope.title});
-    details.blocks.emplace_back(std::move(sentences));
-  }
-  return details;
-}
-
 void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                 const Trade& trade) {
   blocks.emplace_back(page::Paragraph{kFrontsNote, true});
   blocks.emplace_back(make_front_choice(trade.scopes, cells, run.gl));
-  blocks.emplace_back(describe_fronts(trade, run.gl));
   blocks.emplace_back(page::Details{"How to read the fronts",
                                     {page::Sentences{{}, analysis::explain_fronts()},
                                      page::Links{"All fronts, cell by cell:", {{"fronts.csv", "fronts.csv"}}}}});

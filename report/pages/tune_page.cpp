@@ -9,6 +9,10 @@
 namespace shadowbench::pages {
 namespace {
 
+constexpr const char* kTuneNote =
+    "\u2717: worse than the default; tune for such scenes apart (--scene). Green: gains more than the truth's standard "
+    "error.";
+
 /// Writes a parameter as the command line takes it.
 std::string format_value(double value) { return fmt::format("{:.5g}", value); }
 
@@ -67,7 +71,6 @@ struct SceneScore {
   records::TunedScore mean;
   double truth_se = 0.0;
   int views = 0;
-  int better = 0;  ///< views that gain
 };
 
 std::vector<SceneScore> average_scenes(const records::TunedFilterRecord& filter, const records::TunedRecord& record) {
@@ -81,7 +84,6 @@ std::vector<SceneScore> average_scenes(const records::TunedFilterRecord& filter,
       score.mean.tuned += view.score.tuned;
       score.truth_se += view.truth_se;
       ++score.views;
-      score.better += view.score.gain() > 0.0 ? 1 : 0;
     }
     score.mean.at_default /= score.views;
     score.mean.tuned /= score.views;
@@ -90,36 +92,47 @@ std::vector<SceneScore> average_scenes(const records::TunedFilterRecord& filter,
   return scores;
 }
 
-page::Table make_scene_table(const std::vector<SceneScore>& scores, const std::string& metric, bool truth_counts) {
-  page::Table block{
-      "Means over the unseen views of each scene",
-      {{"scene, unseen views", metric + ", default", metric + ", found", "gain", "better in", "truth's standard error"},
-       {}}};
-  for (const SceneScore& score : scores) {
-    block.table.rows.push_back(
-        {score.scene, records::format_number(score.mean.at_default), records::format_number(score.mean.tuned),
-         format_gain(score.mean), fmt::format("{} of {} views", score.better, score.views),
-         truth_counts ? records::format_number(score.truth_se) : std::string(records::kNothing)});
-  }
-  return block;
+page::Section make_filter_section(const records::TunedFilterRecord& filter, const records::TunedRecord& record) {
+  return {filter.id,
+          filter.label,
+          {page::Paragraph{describe_verdict(filter, record.metric)}, make_param_table(filter, record.metric),
+           make_range_table(filter, record.tolerance),
+           page::Paragraph{fmt::format("{} settings were drawn: {} by the search, the others for the good ranges.",
+                                       filter.evaluations, filter.search_evaluations),
+                           true}}};
 }
 
-page::Section make_filter_section(const records::TunedFilterRecord& filter, const records::TunedRecord& record) {
-  const std::vector<SceneScore> scores = average_scenes(filter, record);
-  page::Section section{filter.id, filter.label, {}};
-  section.blocks = {make_param_table(filter, record.metric), page::Paragraph{describe_verdict(filter, record.metric)},
-                    make_scene_table(scores, record.metric, filter.unseen_truth_se.has_value())};
-  std::vector<std::string> losers;
-  for (const SceneScore& score : scores)
-    if (score.mean.gain() < 0.0) losers.push_back(score.scene);
-  if (!losers.empty())
-    section.blocks.emplace_back(page::Paragraph{fmt::format(
-        "Worse by the parameters found: {}. Tune for such scenes apart (--scene).", fmt::join(losers, ", "))});
-  section.blocks.emplace_back(make_range_table(filter, record.tolerance));
-  section.blocks.emplace_back(
-      page::Paragraph{fmt::format("{} settings were drawn: {} by the search, the others for the good ranges.",
-                                  filter.evaluations, filter.search_evaluations)});
-  return section;
+page::Grade grade_gain(const records::TunedScore& score, double truth_se) {
+  if (score.gain() < 0.0) return page::Grade::kBad;
+  return score.gain() > truth_se ? page::Grade::kGood : page::Grade::kNear;
+}
+
+/// Names what was found for a filter: "vsm radius 7, min_variance 1e-05: rmse 0.12 to 0.08 (+33.3 %)".
+std::string describe_found(const records::TunedFilterRecord& filter, const std::string& metric) {
+  std::vector<std::string> params;
+  for (const records::TunedParamRecord& param : filter.searched)
+    params.push_back(param.name + " " + format_value(param.found));
+  return fmt::format("{} with {}: {} {} to {} ({})", filter.label, fmt::join(params, ", "), metric,
+                     records::format_number(filter.unseen.at_default), records::format_number(filter.unseen.tuned),
+                     format_gain(filter.unseen));
+}
+
+page::Section make_tune_answer(const records::TunedRecord& record) {
+  page::Table table{fmt::format("Gain in {} on unseen views", record.metric), {{"scene"}, {}}};
+  std::vector<std::string> kept, others;
+  for (const records::TunedFilterRecord& filter : record.filters) {
+    for (const SceneScore& score : average_scenes(filter, record))
+      table.judge(score.scene, filter.label, format_gain(score.mean),
+                  grade_gain(score.mean, filter.unseen_truth_se ? score.truth_se : 0.0));
+    table.judge("all scenes", filter.label, format_gain(filter.unseen),
+                grade_gain(filter.unseen, filter.unseen_truth_se.value_or(0.0)));
+    const bool better = filter.verdict == records::TuneVerdict::kBetter;
+    (better ? kept : others).push_back(better ? describe_found(filter, record.metric) : filter.label);
+  }
+  std::string text = kept.empty() ? "Nothing found is better than the defaults on unseen views."
+                                  : fmt::format("Better on unseen views: {}.", fmt::join(kept, "; "));
+  if (!kept.empty() && !others.empty()) text += fmt::format(" The default stays for {}.", fmt::join(others, ", "));
+  return {"answer", "", {page::Paragraph{std::move(text)}, std::move(table), page::Paragraph{kTuneNote, true}}};
 }
 
 std::vector<std::pair<std::string, std::string>> list_tune_facts(const records::TunedRecord& record) {
@@ -158,12 +171,13 @@ std::string describe_verdict(const records::TunedFilterRecord& filter, const std
 }
 
 page::Page make_tune_page(const records::TunedRecord& record) {
-  page::Page page{fmt::format("Parameters tuned for {}", record.metric), {}, {}};
-  page.sections.push_back({{}, {}, {page::Facts{list_tune_facts(record)}}});
-  if (!record.notes.empty()) page.sections.back().blocks.emplace_back(page::Sentences{"Left out:", record.notes});
+  page::Page page{fmt::format("Parameters tuned for {}", record.metric), {make_tune_answer(record)}, {}};
   for (const records::TunedFilterRecord& filter : record.filters)
     page.sections.push_back(make_filter_section(filter, record));
-  page.sections.push_back({"data", "", {link_data({"tuned.json", "evaluations.csv"})}});
+  page::Details details{"Settings and data", {page::Facts{list_tune_facts(record)}}};
+  if (!record.notes.empty()) details.blocks.emplace_back(page::Sentences{"Left out:", record.notes});
+  details.blocks.emplace_back(link_data({"tuned.json", "evaluations.csv"}));
+  page.sections.push_back({"data", "", {std::move(details)}});
   return page;
 }
 

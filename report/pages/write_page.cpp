@@ -1,5 +1,8 @@
 #include "report/pages/write_page.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cassert>
 #include <fstream>
@@ -67,6 +70,14 @@ void write_page(const std::filesystem::path& dir, std::string_view command, page
   write_text_file(dir / own->markdown, page::write_markdown(page));
   write_text_file(dir / own->html, page::write_html(page));
   for (const page::Link& sibling : page.siblings) link_back((dir / sibling.path).lexically_normal());
+}
+
+std::vector<std::pair<std::string, std::string>> list_provenance(const records::Provenance& record) {
+  return {{"OpenGL", fmt::format("{} ({}), {}", record.gl.renderer, record.gl.backend, record.gl.version)},
+          {"machine", fmt::format("{}, {} cores", record.machine.cpu, record.machine.cores)},
+          {"program", record.commit},
+          {"command", fmt::format("{}", fmt::join(record.command, " "))},
+          {"took", fmt::format("{:.1f} s", record.seconds)}};
 }
 
 page::Links link_data(const std::vector<std::string>& files) {

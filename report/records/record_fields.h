@@ -9,22 +9,12 @@
 namespace shadowbench::records {
 
 /// Names the fields that older files of this schema version lack; they are read as null or empty there.
-inline constexpr std::array<std::string_view, 16> kLaterFields = {"time_ms.empty",
-                                                                  "error.rmse_ci95",
-                                                                  "phases",
-                                                                  "time_ms.filter",
-                                                                  "time_ms.moving",
-                                                                  "images.parts",
-                                                                  "work.attribution_s",
-                                                                  "claims",
-                                                                  "lights",
-                                                                  "repeat.cells",
-                                                                  "repeat.overlapping",
-                                                                  "repeat.of",
-                                                                  "suspect_of",
-                                                                  "kernel.sigma_texels",
-                                                                  "kernel.class",
-                                                                  "teaching"};
+inline constexpr std::array<std::string_view, 19> kLaterFields = {
+    "time_ms.empty",       "error.rmse_ci95",    "phases",        "time_ms.filter",
+    "time_ms.moving",      "images.parts",       "images.values", "images.truth_picture",
+    "images.truth_values", "work.attribution_s", "claims",        "lights",
+    "repeat.cells",        "repeat.overlapping", "repeat.of",     "suspect_of",
+    "kernel.sigma_texels", "kernel.class",       "teaching"};
 
 /// Calls `visit(name, value)` for every field of a bias.
 template <class Bias, class Visitor>
@@ -95,10 +85,12 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("images.grid", cell.images.grid);
   visit("images.exr", cell.images.exr);
   visit("images.parts", cell.images.parts);
-  visit("images.attribution", cell.images.attribution);
   visit("images.texel_density", cell.images.texel_density);
   visit("images.texel_grid", cell.images.texel_grid);
   visit("images.stability", cell.images.stability);
+  visit("images.values", cell.images.values);
+  visit("images.truth_picture", cell.images.truth_picture);
+  visit("images.truth_values", cell.images.truth_values);
   visit("warnings", cell.warnings);
   visit("absent", cell.absent);
   for (const metrics::Metric& metric : metrics::metric_table()) metrics::visit_metric(metric, cell, visit);

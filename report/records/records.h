@@ -115,10 +115,12 @@ struct ImagesRecord {
   std::optional<std::string> depth_map;                     ///< one per scene and map settings
   std::optional<std::string> grid;                          ///< one per scene, view and map settings
   std::optional<std::string> exr;                           ///< one per scene
-  std::optional<std::string> attribution = std::nullopt;    ///< the error and its four parts, as heat maps
   std::optional<std::string> texel_density = std::nullopt;  ///< texels per pixel; one per scene, view and map settings
   std::optional<std::string> texel_grid = std::nullopt;     ///< the map's texels on the surfaces, for the same settings
   std::optional<std::string> stability = std::nullopt;      ///< where the cell's numbers break, per texel and per pixel
+  std::optional<std::string> values = std::nullopt;         ///< visibility, error parts and FLIP, for the page's viewer
+  std::optional<std::string> truth_picture = std::nullopt;  ///< one per scene and view
+  std::optional<std::string> truth_values = std::nullopt;   ///< of the same: visibility, its standard error, the mask
   std::optional<std::string> parts = std::nullopt;  ///< no path, but how the names of the cell's parts in `exr` begin
 };
 

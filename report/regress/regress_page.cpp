@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "report/pages/write_page.h"
 #include "report/regress/regress_text.h"
 
@@ -18,36 +21,46 @@ page::Section make_cell_section(const Comparison& comparison, std::size_t place)
   return section;
 }
 
-page::Section make_rest_section(const std::vector<const Comparison*>& rest) {
-  page::Table block{"Each with what is worst about it",
-                    {{"outcome", "scene", "filter", "settings", "what differs", "accepted"}, {}}};
-  for (const Comparison* each : rest)
-    block.table.rows.push_back({name_of(each->outcome), each->scene, each->label, each->settings,
-                                each->findings.front().text, each->accepted ? "yes" : "no"});
-  return {"rest", "Further cells that differ", {std::move(block)}};
+/// By how many times its limit the worst error or difference of pixels of a cell moved; nothing where none did.
+std::string describe_excess(const Comparison& comparison) {
+  double most = 0.0;
+  for (const Finding& finding : comparison.findings)
+    if ((finding.expected && finding.metric.starts_with("error.")) || finding.metric.starts_with("visibility."))
+      if (finding.actual && finding.limit > 0.0)
+        most = std::max(most, std::abs(*finding.actual - finding.expected.value_or(0.0)) / *finding.limit);
+  return most > 0.0 ? fmt::format(", {:.3g} x its limit", most) : "";
+}
+
+page::Section make_answer(const RegressReport& report) {
+  std::string text = describe_counts(report) + ".";
+  if (report.failed() > 0) text += " Worst: " + describe_worst(report) + ".";
+  page::Table table{"The worst cell of each scene and filter", {{"scene"}, {}}};
+  for (const Comparison& each : report.comparisons)  // the worst first
+    table.judge(each.scene, each.filter, name_of(each.outcome) + (each.accepted ? ", accepted" : describe_excess(each)),
+                each.failed()    ? page::Grade::kBad
+                : each.differs() ? page::Grade::kNear
+                                 : page::Grade::kGood);
+  return {"answer", "", {page::Paragraph{std::move(text)}, std::move(table)}};
 }
 
 }  // namespace
 
 page::Page make_regress_page(const RegressReport& report) {
-  page::Page page{"Comparison with the baseline", {}, {}};
-  page::Facts facts{{{"run", report.options.run.string()},
-                     {"baseline", report.options.baseline.string()},
-                     {"result", describe_counts(report)}}};
-  page.sections.push_back({{}, {}, {std::move(facts)}});
+  page::Page page{"Comparison with the baseline", {make_answer(report)}, {}};
   if (const std::string ending = describe_ending(report); !ending.empty())
     page.sections.push_back({"accept", "", {page::Paragraph{ending}}, report.failed() > 0});
   std::size_t place = 0;
-  std::vector<const Comparison*> rest;
-  for (const Comparison& comparison : report.comparisons) {
-    if (!comparison.differs()) continue;
-    if (++place <= kMostListed)
-      page.sections.push_back(make_cell_section(comparison, place));
-    else
-      rest.push_back(&comparison);
-  }
-  if (!rest.empty()) page.sections.push_back(make_rest_section(rest));
-  page.sections.push_back({"data", "", {pages::link_data({"regress.json"})}});
+  for (const Comparison& comparison : report.comparisons)
+    if (comparison.differs() && ++place <= kMostListed) page.sections.push_back(make_cell_section(comparison, place));
+  if (place > kMostListed)
+    page.sections.push_back(
+        {"rest", "", {page::Paragraph{fmt::format("{} more cells differ: see regress.json.", place - kMostListed)}}});
+  page.sections.push_back({"data",
+                           "",
+                           {page::Details{"Settings and data",
+                                          {page::Facts{{{"run", report.options.run.string()},
+                                                        {"baseline", report.options.baseline.string()}}},
+                                           pages::link_data({"regress.json"})}}}});
   return page;
 }
 

@@ -9,8 +9,8 @@
 
 #include "report/analysis/summary.h"
 #include "report/images/color_values.h"
-#include "report/images/figure.h"
-#include "report/images/fit_worst.h"
+#include "report/images/figures/figure.h"
+#include "report/images/figures/fit_worst.h"
 #include "report/images/hardest_edge.h"
 #include "report/images/picture_io.h"
 #include "report/records/format.h"

@@ -95,7 +95,7 @@ TEST_F(Advise, Json_HoldsTheAnswer) {
   const nlohmann::json json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json["advised"]["settings"]["filter"], "tent3x3");
   EXPECT_EQ(json["relaxed"][0]["worst"], 0.06);
-  EXPECT_EQ(json["records::time_unit"], "ms (CPU)");
+  EXPECT_EQ(json["time_unit"], "ms (CPU)");
 }
 
 TEST_F(Advise, LimitsThatAreNotNumbers_AreUsageErrors) {

@@ -156,6 +156,35 @@ TEST_F(Diff, BadOptions_AreUsageErrors) {
   expect_refusal("diff a.exr a.exr --pixels-per-degree wide", 2, {"--pixels-per-degree", "wide"});
 }
 
+TEST_F(Diff, Out_DrawsDifferenceAndFlip) {
+  const Outcome outcome = run("diff 'a.exr#image' 'a.exr#truth' --out new/d.png");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("rmse        0.375"));
+  const images::Image two = images::read_picture(folder() / "new" / "d.png");
+  ASSERT_EQ(run("diff 'a.exr#two' 'a.exr#two' --out one.png").exit_code, 0) << "two channels have no FLIP";
+  EXPECT_GT(two.width, images::read_picture(folder() / "one.png").width);
+  const Outcome refused = run("diff 'a.exr#image' 'a.exr#truth' --out d.exr");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--out: 'd.exr' must end in .png"));
+  EXPECT_EQ(run("diff 'a.exr#image' 'a.exr#truth' --out a.pgm/d.png").exit_code, 6) << "no folder";
+}
+
+TEST_F(Diff, Html_IsAPageWithTheViewer_AndWhatItLoads) {
+  for (const char* parts : {"'a.exr#image' 'a.exr#truth'", "'a.exr#two' 'a.exr#two'", "'a.exr#broken' 'a.exr#truth'"}) {
+    const Outcome outcome = run(std::string("diff ") + parts + " --html page");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::string page = read_text(folder() / "page" / "index.html");
+    EXPECT_THAT(page, HasSubstr("<section id=\"viewer\">"));
+    const std::string start = "id=\"run\">";
+    const std::size_t begin = page.find(start) + start.size();
+    const auto data = nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+    for (const auto& side : {data["cells"][0], data["truths"][0]})
+      for (const char* file : {"picture", "values"})
+        EXPECT_TRUE(side[file].is_null() || std::filesystem::exists(folder() / "page" / side[file].get<std::string>()));
+    EXPECT_TRUE(data["cells"][0]["values"].is_string());
+  }
+}
+
 TEST_F(Diff, PixelsPerDegree_ReachFlip) {
   write("c.pgm", "P2\n4 1\n255\n0 255 0 255\n");
   write("d.pgm", "P2\n4 1\n255\n255 0 255 0\n");

@@ -101,7 +101,10 @@ TEST_F(Sweep, Continued_MeasuresNothingTwice_UnlessSomethingChanged) {
   EXPECT_EQ(cell_times(), before);
   EXPECT_THAT(outcome.err, HasSubstr("nothing is left to do"));
   EXPECT_EQ(results(), first);
-  // Without its results the report is made again, and nothing else.
+  // Without its page or its results the report is made again, and nothing else.
+  std::filesystem::remove(folder() / "out" / "index.html");
+  ASSERT_EQ(run("run e.toml --out out").exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "index.html"));
   std::filesystem::remove(folder() / "out" / "results.json");
   ASSERT_EQ(run("run e.toml --out out").exit_code, 0);
   EXPECT_EQ(cell_times(), before);

@@ -84,7 +84,7 @@ TEST_F(Attributed, PartsAddUp_InEveryPixel_OfEveryFilter) {
     EXPECT_GT(cell["attribution"]["model"]["rms"], 0.001);
     EXPECT_GT(cell["error"]["kernel_rmse"], 0.0);
     EXPECT_EQ(cell["artefact"]["noise"].is_null(), filter != "poisson") << "the others take no random taps";
-    EXPECT_TRUE(std::filesystem::exists(folder_ / cell["images"]["attribution"].get<std::string>()));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / cell["images"]["values"].get<std::string>()));
   }
 }
 

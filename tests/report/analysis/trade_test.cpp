@@ -139,9 +139,9 @@ TEST(TradeFronts, AbsentValues_AreLeftOutWithTheirReason) {
   const TradeScope scope = make_trade_scopes(cells)[0];
   const TradeFront front = make_trade_front(scope, 0, 2);
   EXPECT_THAT(front.configurations, ElementsAre(0));
-  EXPECT_THAT(describe_front(scope, front, make_run().gl),
-              ::testing::IsSupersetOf({"Left out: 1 of 3 (cost.fetches: the filter reads the map's samplers itself).",
-                                       "Left out: 1 of 3 (error.rmse: no truth)."}));
+  EXPECT_THAT(front.left_out, ::testing::UnorderedElementsAre(
+                                  ::testing::Pair("cost.fetches: the filter reads the map's samplers itself", 1),
+                                  ::testing::Pair("error.rmse: no truth", 1)));
 }
 
 TEST(TradeFronts, SuspectCells_AreLeftOut) {
@@ -150,7 +150,7 @@ TEST(TradeFronts, SuspectCells_AreLeftOut) {
   const TradeScope scope = make_trade_scopes(cells)[0];
   const TradeFront front = make_trade_front(scope, 0, 0);
   EXPECT_THAT(front.configurations, ElementsAre(0));
-  EXPECT_THAT(describe_front(scope, front, make_run().gl), Contains("Left out: 1 of 2 (suspect: see the warnings)."));
+  EXPECT_THAT(front.left_out, ElementsAre(::testing::Pair("suspect: see the warnings", 1)));
 }
 
 TEST(TradeFronts, CompareKernelsOfOneClass) {
@@ -163,11 +163,8 @@ TEST(TradeFronts, CompareKernelsOfOneClass) {
   const TradeFront front = make_trade_front(scope, 0, 0);
   EXPECT_THAT(front.members, ElementsAre(2, 0)) << "narrow kernels first";
   EXPECT_EQ(front.placements[1].by, 0u);
-  EXPECT_THAT(describe_front(scope, front, make_run().gl),
-              ElementsAre(HasSubstr("sharp kernels, the front from the cheapest cell on: narrow (0.3"),
-                          HasSubstr("medium kernels, the front from the cheapest cell on: none (0.1"),
-                          "Dominated are 1 of 4: none beats slow.",
-                          "Compared with nothing, for their kernels are of no class, too wide or unknown: mine."));
+  EXPECT_EQ(front.placements[1].standing, Standing::kDominated);
+  EXPECT_EQ(front.placements[3].standing, Standing::kApart);
   EXPECT_THAT(pages::make_fronts_csv(cells, {scope}), HasSubstr(",,,,its kernel is of no class of width\r\n"));
 }
 
@@ -186,60 +183,17 @@ TEST(TradeFronts, OfFewerThanThreeCells_AreNotShown) {
   EXPECT_FALSE(has_trade(make_trade_scopes(cells)));
 }
 
-TEST(FrontWords, SayMembersTiesAndWhatTheyBeat) {
+TEST(TradeFronts, HoldMembersTiesAndWhatTheyBeat) {
   const std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}),
                                                   make_sweep_cell({"cubes", "vsm", 4.0, 2.0, 0.1, 0.05}),
                                                   make_sweep_cell({"cubes", "esm", 4.0, 2.1, 0.1, 0.0505}),
                                                   make_sweep_cell({"cubes", "poisson", 4.0, 4.0, 0.1, 0.08})};
-  const TradeScope scope = make_trade_scopes(cells)[0];
-  const auto words = describe_front(scope, make_trade_front(scope, 0, 0), make_run().gl);
-  ASSERT_THAT(words, SizeIs(3));
-  EXPECT_THAT(words[0],
-              HasSubstr("none (0.1 [0.099, 0.101] at 4 ms (CPU)); vsm (0.05 [0.049, 0.051] at 8 [7.2, 8.8] ms (CPU))"));
-  EXPECT_EQ(words[1], "Not to be told apart in error or cost: vsm is tied with esm.");
-  EXPECT_EQ(words[2], "Dominated are 1 of 4: vsm beats poisson.");
-}
-
-/// A sweep in which `none` and one `vsm` are the front and all else is dominated.
-std::vector<records::CellRecord> make_wide_sweep() {
-  std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}),
-                                            make_sweep_cell({"cubes", "pcf2x2", 0.0, 1.5, 0.0, 0.1})};
-  for (int i = 0; i < 5; ++i) {
-    const double more = 0.1 * i;
-    cells.push_back(make_sweep_cell({"cubes", "vsm", 1.0 + i, 2.0 + more, 0.0, 0.05}));
-    cells.push_back(make_sweep_cell({"cubes", "esm", 1.0 + i, 1.2 + more, 0.0, 0.2 + more}));
-  }
-  cells.push_back(make_sweep_cell({"cubes", "poisson", 4.0, 1.0, 0.0, 0.3}));
-  return cells;
-}
-
-TEST(FrontWords, ManyDominated_AreCountedByFilterWithTheReason) {
-  const TradeScope scope = make_trade_scopes(make_wide_sweep())[0];
-  const auto words = describe_front(scope, make_trade_front(scope, 0, 0), make_run().gl);
-  ASSERT_THAT(words, SizeIs(2));
-  EXPECT_EQ(words[1],
-            "Dominated are 11 of 13: pcf2x2, 4 of 5 of vsm, all 5 of esm, poisson. Of these, 5 cost more and err more, "
-            "5 cost more for "
-            "no less error, 1 err more for no less cost. none beats 7, vsm (radius 1) beats 4; fronts.csv has each.");
-}
-
-TEST(FrontWords, ManyTied_AreCountedByFilter) {
-  std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1})};
-  for (int i = 0; i < 9; ++i)
-    cells.push_back(make_sweep_cell({"cubes", i < 5 ? "vsm" : "esm", 1.0 + i, 1.0, 0.0, 0.1}));
-  const TradeScope scope = make_trade_scopes(cells)[0];
-  EXPECT_THAT(
-      describe_front(scope, make_trade_front(scope, 0, 0), make_run().gl),
-      ::testing::Contains(
-          "Not to be told apart in error or cost from a cell of the front are 9 of 10: all 5 of vsm, all 4 of esm."));
-}
-
-TEST(FrontWords, NeighboursOfUncertainCost_AreNamed) {
-  const std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}),
-                                                  make_sweep_cell({"cubes", "vsm", 4.0, 1.1, 0.2, 0.05})};
-  const TradeScope scope = make_trade_scopes(cells)[0];
-  EXPECT_THAT(describe_front(scope, make_trade_front(scope, 0, 0), make_run().gl),
-              ::testing::Contains(HasSubstr("may be free: none and vsm.")));
+  const TradeFront front = make_trade_front(make_trade_scopes(cells)[0], 0, 0);
+  EXPECT_THAT(front.members, ElementsAre(0, 1));
+  EXPECT_EQ(front.placements[2].standing, Standing::kTied);
+  EXPECT_EQ(front.placements[2].by, 1u);
+  EXPECT_EQ(front.placements[3].standing, Standing::kDominated);
+  EXPECT_EQ(front.placements[3].by, 1u);
 }
 
 TEST(FrontsCsv, HasARowPerCellOfEveryFront) {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "report/images/depth_picture.h"
-#include "report/images/texel_pictures.h"
+#include "report/images/figures/depth_picture.h"
+#include "report/images/figures/texel_pictures.h"
 
 namespace shadowbench::images {
 namespace {

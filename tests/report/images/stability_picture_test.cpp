@@ -1,4 +1,4 @@
-#include "report/images/stability_picture.h"
+#include "report/images/figures/stability_picture.h"
 
 #include <gtest/gtest.h>
 

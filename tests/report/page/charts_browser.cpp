@@ -40,13 +40,15 @@ for (const svg of all(".holder svg")) {
 }
 say("overlaps", overlaps.join("; ") || "none");
 say("wide", String(document.documentElement.scrollWidth > window.innerWidth));
+const opened = [];
+window.shadowbench = { openCell: (key) => opened.push(key) };
 const [svg] = all("#single .holder svg"), [mark] = svg.querySelectorAll("g path[transform]");
 const box = mark.getBoundingClientRect();
 const at = { bubbles: true, clientX: box.x + box.width / 2, clientY: box.y + box.height / 2 };
 svg.dispatchEvent(new PointerEvent("pointermove", at));
 say("tip", document.querySelector("#single .tip:not([hidden])")?.textContent);
 svg.dispatchEvent(new PointerEvent("click", at));
-say("pictures", all("#single .gallery img").map((image) => image.getAttribute("src")).join());
+say("opened", opened.join());
 for (const select of all("#choice select")) {
   select.value = "1";
   select.dispatchEvent(new Event("change"));
@@ -56,6 +58,9 @@ for (const button of all("#choice button")) button.click();
 const count = () => all("#single .holder svg path[transform]").length, before = count();
 all("#single .key")[1].dispatchEvent(new MouseEvent("click"));
 say("hidden", String(before - count()));
+const fewer = count();
+all("#single .key")[2].dispatchEvent(new MouseEvent("click"));
+say("shown", String(count() - fewer));
 </script></body>)JS";
 
 std::string read_output(const std::string& command) {
@@ -112,9 +117,10 @@ TEST_P(Charts, AreDrawn_AndAnswerToThePointer) {
   EXPECT_EQ(found["overlaps"], "none");
   EXPECT_EQ(found["wide"], "false");
   EXPECT_EQ(found["tip"], "a detail &amp; more 0");
-  EXPECT_EQ(found["pictures"], "images/a%20b.png");
+  EXPECT_EQ(found["opened"], "0123456789abcdef");
   EXPECT_EQ(found["chosen"], "The sentence of d");
   EXPECT_EQ(found["hidden"], "12");  // the series, and the untitled one after it
+  EXPECT_EQ(found["shown"], "1");    // the series that is hidden until then
   for (const char* text : {">0.05</text>", ">time of the lookup, ms</text>", ">vsm &lt;b&gt;</text>", ">label 1</text>",
                            "stroke-dasharray=\"6 4\"", "stroke-dasharray=\"2 3\""})
     EXPECT_THAT(dom, HasSubstr(text));

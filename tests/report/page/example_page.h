@@ -9,7 +9,7 @@ inline analysis::Estimate about(double value, double slack = 0.0) {
 }
 
 /// A chart with everything that a chart can have: both kinds of axes, all lines and marks, whiskers, crowded labels,
-/// details, pictures, a point outside the axes, and names that need escaping.
+/// details, cells to open, a point outside the axes, and names that need escaping.
 inline Chart make_example_chart(const std::string& id) {
   Chart chart{id, "Cost & error of <all> filters", "time of the lookup, ms", "RMSE \"to\" the truth", {}, {}, {}, {}};
   chart.x = {true, 0.5, 16.0, {{1.0, "1"}, {2.0, "2"}, {4.0, "4"}, {8.0, "8"}}};
@@ -21,13 +21,16 @@ inline Chart make_example_chart(const std::string& id) {
     const double x = 1.0 + 0.02 * i, y = 0.06 - 0.001 * i;
     line.points.push_back({about(x), about(y), "label " + std::to_string(i + 1)});
     points.points.push_back({about(x, 0.3), about(y, 0.01), {}, {"a detail & more " + std::to_string(i)}});
-    points.points.back().pictures = {{"images/a b.png", "a picture"}};
+    points.points.back().opens = "0123456789abcdef";
     beaten.points.push_back({about(2.0 + i), about(0.09)});
   }
   points.points.push_back({about(100.0), about(0.05)});
   ChartSeries ties{"",    "#0072b2",        Mark::kNone, true,
                    false, LineStyle::kTies, false,       {{about(1.0), about(0.06)}, {about(2.0), about(0.09)}}};
-  chart.series = {line, points, beaten, ties};
+  ChartSeries late{"late", "#0072b2",         Mark::kSquare, true,
+                   false,  LineStyle::kSolid, false,         {{about(3.0), about(0.03)}}};
+  late.hidden = true;
+  chart.series = {line, points, beaten, ties, late};
   chart.notes = {"1: vsm (radius 4) · map 512",
                  "a note that is so long that it does not fit into one line of a chart on a phone"};
   return chart;
@@ -52,6 +55,9 @@ inline Page make_example_page() {
        "Everything",
        {Heading{"A heading"}, Paragraph{"quiet", true},
         Table{"A table", {{"filter", "rmse", "text"}, {{"vsm", "0.25", "short"}, {"a|b", "–", std::string(60, 'x')}}}},
+        Table{"Graded",
+              {{"scene", "vsm", "esm"}, {{"cubes", "1", "3"}, {"stack", "2", "–"}}},
+              {{Grade::kNone, Grade::kGood, Grade::kBad}, {Grade::kNone, Grade::kNear}}},
         Gallery{"Pictures", {{"images/a b.png", "a picture"}}, true}, bars, choice, make_example_chart("single"),
         Details{"More", {Heading{"Within"}, Paragraph{"unfolded"}}}}}};
   return page;

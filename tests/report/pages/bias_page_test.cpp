@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/report/pages/answer.h"
+
 namespace shadowbench::pages {
 namespace {
 
@@ -126,16 +128,33 @@ TEST(BiasPage, Enough_IsTheSmallestAmountWithoutAcne) {
   EXPECT_EQ(find_enough(make_curve("a", 100.0)), std::nullopt);
 }
 
-TEST(BiasPage, Sentences_FollowFromNumbers) {
-  records::BiasModeRecord mode = make_sweep().modes[0];
-  mode.curves.push_back(make_curve("vsm", 0.0));
-  mode.curves.push_back(make_curve("esm", 100.0));
-  const auto sentences = describe_bias_mode(mode);
-  ASSERT_EQ(sentences.size(), 2u);
-  EXPECT_THAT(sentences[0], HasSubstr("below 0.1 %"));
-  EXPECT_THAT(sentences[0],
-              HasSubstr("none needs 1; pcf2x2 needs 1/2; vsm needs none; esm has more at every amount swept."));
-  EXPECT_THAT(sentences[1], HasSubstr("acne lies between 0 % (none) and 25 % (esm); contact gap is 1 %."));
+TEST(BiasPage, BeginsWithTheAnswer_WhichModeFreesOfAcne_AndWhatItCostsInContact) {
+  records::BiasSweepRecord sweep = make_sweep();
+  sweep.modes[0].curves.push_back(make_curve("vsm", 0.0));
+  sweep.modes[0].curves.push_back(make_curve("esm", 100.0));
+  sweep.modes[0].curves.push_back(make_curve("wide", 2.0));
+  for (records::BiasPoint& point : sweep.modes[0].curves[2].points) point.contact_gap = 0.0;
+  const page::Page page = make_bias_page(sweep);
+  EXPECT_EQ(page::answer_of(page),
+            "Best: constant takes acne from 4 of 5 filters, and lights 50 % of the contacts at most. Worst: midpoint "
+            "takes acne from 0 of 1 filters.");
+  const auto verdict = [&](const char* filter) { return page::verdict_of(page, "constant", filter); };
+  using page::Grade;
+  EXPECT_EQ(verdict("none"), std::pair(std::string("1, gap 1 %"), Grade::kNear));
+  EXPECT_EQ(verdict("pcf2x2"), std::pair(std::string("1/2, gap 1 %"), Grade::kNear));
+  EXPECT_EQ(verdict("vsm"), std::pair(std::string("0, gap 0 %"), Grade::kGood));
+  EXPECT_EQ(verdict("esm"), std::pair(std::string("\u2717 acne 25 %"), Grade::kBad));
+  EXPECT_EQ(verdict("wide"), std::pair(std::string("\u2717 2, gap 50 %"), Grade::kBad));
+  EXPECT_EQ(page::verdict_of(page, "midpoint", "none").first, "\u2717 acne 12.5 %");
+}
+
+TEST(BiasChart, AtMostSixCurves_AreShown_OfNoneAndTheFiltersThatNeedMost) {
+  records::BiasSweepRecord sweep = make_sweep();
+  for (const auto& [name, enough] : {std::pair("a", 2.0), std::pair("b", 4.0), std::pair("c", 100.0)})
+    sweep.modes[0].curves.push_back(make_curve(name, enough));
+  EXPECT_THAT(page::list_shown(make_bias_chart(sweep.modes[0], sweep.filters)),
+              ElementsAre("none: acne", "none: contact gap", "b: acne", "b: contact gap", "c: acne", "c: contact gap",
+                          "theory"));
 }
 
 TEST(BiasPage, AbsentRates_AreSaid_NeverNumbers) {
@@ -143,10 +162,9 @@ TEST(BiasPage, AbsentRates_AreSaid_NeverNumbers) {
   make_gap_absent(sweep);
   sweep.contact_receivers = 7;
   const std::string html = page::write_html(make_bias_page(sweep));
-  EXPECT_THAT(html, HasSubstr("contact gap is absent"));
+  EXPECT_THAT(html, HasSubstr("gap absent"));
   EXPECT_THAT(html, HasSubstr("Absent: a rate needs 100."));
   EXPECT_THAT(html, Not(HasSubstr("nan")));
-  EXPECT_THAT(describe_bias_mode(sweep.modes[1]), ElementsAre());
 }
 
 TEST(BiasPage, Texts_AreEscaped) {

@@ -2,12 +2,14 @@
 
 #include "report/pages/flicker_page.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 
-#include "report/images/flicker_picture.h"
+#include "report/images/figures/flicker_picture.h"
 #include "report/records/flicker_json.h"
+#include "tests/report/pages/answer.h"
 
 namespace shadowbench::pages {
 namespace {
@@ -36,48 +38,59 @@ records::FlickerMotion make_motion(double a, double a_snapped, double b = 0.01, 
   return motion;
 }
 
-TEST(FlickerPage, NamesWhoFlickersMostAndLeast_AgainstTheTruth) {
-  EXPECT_THAT(describe_flicker(make_motion(0.03, 0.02)),
-              Contains("Without snapping a flickers most, 0.03, 3.00 times the truth's own change; b least, 0.01, 1.00 "
-                       "times the truth's own change."));
-  EXPECT_THAT(describe_flicker(make_motion(0.005, 0.005)),
-              Contains(HasSubstr("Without snapping b flickers most, 0.01")));
+records::FlickerRecord make_record(const records::FlickerMotion& motion) {
+  records::FlickerRecord record;
+  record.scene = "cubes";
+  record.frames = 3;
+  record.motions = {motion};
+  return record;
+}
+
+TEST(FlickerPage, BeginsWithWhoFlickersMostAndLeast_AgainstTheTruth_AndWhatSnappingBuys) {
+  const page::Page page = make_flicker_page(make_record(make_motion(0.03, 0.02, 0.004, 0.004)));
+  EXPECT_EQ(page::answer_of(page), "The light turns: most flickers a, 3.00 x (2.00 x with snapping); least b, 0.40 x.");
+  EXPECT_EQ(page::verdict_of(page, "light", "a"), std::pair(std::string("\u2717 3.00 x"), page::Grade::kBad));
+  EXPECT_EQ(page::verdict_of(page, "light, snapped", "a"), std::pair(std::string("\u2717 2.00 x"), page::Grade::kBad));
+  EXPECT_EQ(page::verdict_of(page, "light", "b"), std::pair(std::string("0.40 x"), page::Grade::kGood));
+  EXPECT_THAT(summarize_flicker(make_motion(0.005, 0.005)), HasSubstr("most flickers b, 1.00 x; least a, 0.50 x."));
+}
+
+TEST(FlickerPage, WhereTheTruthStandsStill_TheVerdictIsFlickerItself) {
+  records::FlickerMotion motion = make_motion(0.03, 0.0, 0.003, 0.001);
+  motion.truth = {};
+  motion.truth.step_change = {0.0, 0.0};
+  const page::Page page = make_flicker_page(make_record(motion));
+  EXPECT_EQ(page::verdict_of(page, "light", "a"), std::pair(std::string("\u2717 0.03"), page::Grade::kBad));
+  EXPECT_EQ(page::verdict_of(page, "light", "b"), std::pair(std::string("0.003"), page::Grade::kNear));
+  EXPECT_EQ(page::verdict_of(page, "light, snapped", "a"), std::pair(std::string("rounding"), page::Grade::kGood));
 }
 
 TEST(FlickerPage, SaysWhatSnappingBuys) {
-  EXPECT_THAT(describe_flicker(make_motion(0.03, 0.02)),
-              Contains("Snapping divides flicker by 1.50 (a); leaves it as it is, within 5 %, of b."));
-  EXPECT_THAT(describe_flicker(make_motion(0.03, 0.0)),
-              Contains(HasSubstr("takes away all flicker but rounding of a;")));
-  EXPECT_THAT(describe_flicker(make_motion(0.03, 1e-6, 0.01, 0.0)),
-              Contains("Snapping takes away all flicker but rounding of every filter."));
-  EXPECT_THAT(describe_flicker(make_motion(0.02, 0.03)), Contains(HasSubstr("multiplies flicker by 1.50 (a)")));
-  EXPECT_THAT(describe_flicker(make_motion(0.0, 0.0, 0.0, 0.0)),
-              Contains("Snapping changes nothing: nothing flickers."));
+  const auto gain = [](const records::FlickerMotion& motion) { return make_flicker_table(motion).rows[0].back(); };
+  EXPECT_EQ(gain(make_motion(0.03, 0.02)), "1.50");
+  EXPECT_EQ(gain(make_motion(0.03, 0.0)), "all gone");
+  EXPECT_EQ(gain(make_motion(0.02, 0.03)), "0.67");
+  EXPECT_EQ(gain(make_motion(0.0, 0.0)), "–");
 }
 
 TEST(FlickerPage, StillTruth_IsNoYardstick) {
   records::FlickerMotion motion = make_motion(0.03, 0.02);
   motion.truth = {};
   motion.truth.step_change = {0.0, 0.0};
-  for (const std::string& sentence : describe_flicker(motion))
-    EXPECT_THAT(sentence, Not(HasSubstr("times"))) << sentence;
+  EXPECT_THAT(summarize_flicker(motion), Not(HasSubstr(" x")));
   EXPECT_THAT(explain_motion(motion, 3), Contains(HasSubstr("all change is flicker")));
 }
 
 TEST(FlickerPage, WhatIsNotFinite_IsSaid) {
   records::FlickerMotion motion = make_motion(0.03, 0.02);
-  for (const std::string& sentence : describe_flicker(motion)) EXPECT_THAT(sentence, Not(HasSubstr("not finite")));
+  for (const std::string& sentence : explain_motion(motion, 3)) EXPECT_THAT(sentence, Not(HasSubstr("not finite")));
   motion.variants[1].filters[0].not_finite = 7;
-  EXPECT_THAT(describe_flicker(motion),
-              Contains("With snapping, changes left out because visibility is not finite there: a (7)."));
+  EXPECT_THAT(explain_motion(motion, 3),
+              Contains("With snapping, 7 changes of a are left out, because visibility is not finite."));
 }
 
 TEST(FlickerFiles, HoldEveryNumber) {
-  records::FlickerRecord record;
-  record.scene = "cubes";
-  record.frames = 3;
-  record.motions = {make_motion(0.03, 0.02)};
+  const records::FlickerRecord record = make_record(make_motion(0.03, 0.02));
   const nlohmann::json json = nlohmann::json::parse(records::make_flicker_json(record));
   EXPECT_EQ(json["motions"][0]["variants"][1]["filters"][0]["flicker"], 0.02);
   EXPECT_EQ(json["motions"][0]["truth"]["change"], kTruth);
@@ -87,7 +100,7 @@ TEST(FlickerFiles, HoldEveryNumber) {
   EXPECT_EQ(make_flicker_table(record.motions[0]).rows.size(), 3u) << "the filters, and the truth";
   const page::Page page = make_flicker_page(record);
   for (const std::string& written : {page::write_html(page), page::write_markdown(page)})
-    for (const char* part : {"cubes", "The light turns", "flicker.light.png", "flicker.csv", "a flickers most, 0.03"})
+    for (const char* part : {"cubes", "The light turns", "flicker.light.png", "flicker.csv", "most flickers a, 3.00 x"})
       EXPECT_THAT(written, HasSubstr(part));
   EXPECT_THAT(page::write_html(page), HasSubstr("id=\"flicker.light.snapped\""));
 }
@@ -107,6 +120,14 @@ TEST(FlickerCharts, OfOneMotion_ShareTheirScales_AndHoldTheTruth) {
   EXPECT_EQ(free.series[1].points[0].y.value, 0.5);
   EXPECT_EQ(free.series[0].color, free.series[1].color);
   EXPECT_NE(free.series[0].mark, free.series[2].mark);
+}
+
+TEST(FlickerCharts, AtMostSixCurves_AreShown_TheTruthNoneAndTheWorst) {
+  records::FlickerMotion motion = make_motion(0.03, 0.02);
+  motion.variants[0].filters = {make_filter("none", 0.001)};
+  for (int i = 1; i < 9; ++i) motion.variants[0].filters.push_back(make_filter(fmt::format("f{}", i), 0.01 * i));
+  const page::Chart chart = make_flicker_chart(motion, motion.variants[0]);
+  EXPECT_THAT(page::list_shown(chart), ElementsAre("none", "f5", "f6", "f7", "f8", "truth"));
 }
 
 TEST(FlickerPicture, ScaleIsLogarithmic_FromAThousandthOn) {

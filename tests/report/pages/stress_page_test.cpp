@@ -1,11 +1,14 @@
 #include "report/pages/stress_page.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "report/records/stress_json.h"
+#include "tests/report/pages/answer.h"
 
 namespace shadowbench::pages {
 namespace {
@@ -146,6 +149,40 @@ TEST(StressPage, DisagreementsAreSaid_ExplainedOnesWithTheReason) {
               AllOf(HasSubstr("degraded at 11, where theory says none"), HasSubstr("the blur adds")));
 }
 
+TEST(StressPage, BeginsWithTheAnswer_WhoHoldsFurthest_AndWhatFails) {
+  records::StressRecord record = make_record();
+  records::StressCase other = record.axes[0].cases[0];
+  other.filter = "vsm";
+  other.degraded.reset();
+  other.broken.reset();
+  record.axes[0].cases.push_back(other);
+  const page::Page page = make_stress_page(record);
+  EXPECT_EQ(page::answer_of(page),
+            "On the axis that every filter has, vsm holds furthest, 100 % of the range on average, and esm least far, "
+            "0 %. 1 of 2 cells fail; limits that are not where theory puts them, and that nothing explains: 2.");
+  EXPECT_EQ(page::verdict_of(page, "esm-exponent: exponent c, 1 .. 100", "esm"),
+            std::pair(std::string("\u2717 0 %"), page::Grade::kBad));
+  EXPECT_EQ(page::verdict_of(page, "esm-exponent", "vsm"), std::pair(std::string("100 %"), page::Grade::kGood));
+}
+
+TEST(StressPage, Verdict_IsTheWorstVariants_FromTheEasyEndOn) {
+  records::StressRecord record = make_record();
+  std::vector<records::StressCase>& cases = record.axes[0].cases;
+  cases.push_back(cases[0]);
+  cases[0].broken.reset();
+  cases[0].degraded = records::StressOnset{9.9, 10.0, ""};  // the range is hard at its low end
+  cases[2].broken.reset();
+  cases[2].degraded = records::StressOnset{1.1, std::pow(10.0, 0.5), ""};
+  const auto verdict = [&] { return page::verdict_of(make_stress_page(record), "esm-exponent", "esm"); };
+  EXPECT_EQ(verdict(), std::pair(std::string("50 .. 75 %"), page::Grade::kNear));
+  cases[0].degraded->last_before = 11.0;
+  EXPECT_EQ(verdict(), std::pair(std::string("\u2717 48 .. 75 %"), page::Grade::kBad));
+  cases[0].degraded->last_before.reset();
+  EXPECT_EQ(verdict().first, "\u2717 0 .. 75 %");
+  cases[0].level = "model";  // says what the GL should do
+  EXPECT_EQ(verdict(), std::pair(std::string("75 %"), page::Grade::kNear));
+}
+
 TEST(StressPage, HasTablesChartSentencesAndWarnings_InBothFormats) {
   const page::Page page = make_stress_page(make_record());
   const std::string html = page::write_html(page), markdown = page::write_markdown(page);
@@ -173,7 +210,7 @@ TEST(StressPage, Texts_AreEscaped) {
 
 TEST(StressPage, Markdown_EscapesPipes) {
   EXPECT_THAT(page::write_markdown(make_stress_page(make_record())),
-              AllOf(HasSubstr("## esm-exponent: Exponent"), HasSubstr("not explained"), HasSubstr("a\\|b")));
+              AllOf(HasSubstr("## esm-exponent: Exponent"), HasSubstr("nothing explains it."), HasSubstr("a\\|b")));
 }
 
 TEST(StressPage, TerminalShowsTheLimits_AndWhatTheyLeaveOut) {
@@ -213,6 +250,23 @@ TEST(StressChart, LevelsOfAVariant_ShareTheirColour_TheModelIsDashed) {
   EXPECT_EQ(model->color, chart.series[0].color);
   EXPECT_EQ(model->line, page::LineStyle::kDashed);
   EXPECT_EQ(model->mark, page::Mark::kNone);
+}
+
+TEST(StressChart, AtMostSixCases_AreShown_TheWorstAndNone) {
+  records::StressAxis axis = make_record().axes[0];
+  const records::StressCase item = axis.cases[0];
+  axis.cases.clear();
+  for (int i = 0; i < 9; ++i) {
+    axis.cases.push_back(item);
+    axis.cases.back().filter = i == 0 ? "none" : fmt::format("f{}", i);
+    axis.cases.back().degraded = records::StressOnset{99.0, 90.0 - i, ""};
+    axis.cases.push_back(axis.cases.back());
+    axis.cases.back().level = "model";
+  }
+  EXPECT_THAT(page::list_shown(make_stress_chart(axis)),
+              ::testing::ElementsAre("none: r16f, linear (GL)", "f4: r16f, linear (GL)", "f5: r16f, linear (GL)",
+                                     "f6: r16f, linear (GL)", "f7: r16f, linear (GL)", "f8: r16f, linear (GL)",
+                                     "bound, 0.02", "theoretical limits"));
 }
 
 TEST(StressChart, CaseWithNothingMeasured_IsNotDrawn) {

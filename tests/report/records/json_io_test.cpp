@@ -82,7 +82,8 @@ CellRecord make_full_cell() {
   cell.truth = {0.001, 0.9};
   cell.artefact = {0.1, 0.2, 0.3, 0.4};
   cell.attribution = {{0.1, 0.5}, {0.2, -0.1}, {0.3, 0.2}, {0.4, 0.4}};
-  cell.images = {"a.png", "b.png", "c.png", "d.png", "e.exr", "f.png", "g.png", "h.png", "i.png", "vsm"};
+  cell.images = {"a.png", "b.png", "c.png", "d.png", "e.exr", "g.png",
+                 "h.png", "i.png", "j.js",  "k.png", "l.js",  "vsm"};
   cell.stability = {1, 2, 3, -1e-6, 4.5, 11.25, 0.5, 0.25, 0.125, 4, 5};
   cell.coverage = {3.5, 0.25, 0.75, 0.5};
   cell.fit = "view snapped";
@@ -131,10 +132,12 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   EXPECT_FALSE(back.range.far_test);
   EXPECT_FALSE(back.range.behind_test);
   EXPECT_EQ(back.images.exr, "e.exr");
-  EXPECT_EQ(back.images.attribution, "f.png");
   EXPECT_EQ(back.images.texel_density, "g.png");
   EXPECT_EQ(back.images.texel_grid, "h.png");
   EXPECT_EQ(back.images.stability, "i.png");
+  EXPECT_EQ(back.images.values, "j.js");
+  EXPECT_EQ(back.images.truth_picture, "k.png");
+  EXPECT_EQ(back.images.truth_values, "l.js");
   EXPECT_EQ(back.images.parts, "vsm");
   EXPECT_EQ(back.stability.negative_variance_texels, 3);
   EXPECT_EQ(back.stability.safe_exponent, 11.25);
@@ -309,8 +312,8 @@ TEST(JsonIo, BrokenRecords_AreRefusedByTheSchema) {
       json::parse(R"([{"op": "replace", "path": "/cells/0/params/radius", "value": null}])"),
       json::parse(R"([{"op": "replace", "path": "/cells/0/key", "value": "../../x"}])"),
       json::parse(R"([{"op": "replace", "path": "/cells/0/images/picture", "value": "/etc/passwd"}])"),
-      json::parse(R"([{"op": "replace", "path": "/cells/0/images/attribution", "value": "/etc/passwd"}])"),
-      json::parse(R"([{"op": "remove", "path": "/cells/0/images/attribution"}])"),
+      json::parse(R"([{"op": "replace", "path": "/cells/0/images/values", "value": "/etc/passwd"}])"),
+      json::parse(R"([{"op": "remove", "path": "/cells/0/images/stability"}])"),
       json::parse(R"([{"op": "replace", "path": "/cells/0/map_format", "value": "d8"}])"),
       json::parse(R"([{"op": "replace", "path": "/cells/0/fit", "value": "box"}])"),
       json::parse(R"([{"op": "replace", "path": "/cells/0/light", "value": "noon"}])"),

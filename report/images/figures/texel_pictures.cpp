@@ -1,4 +1,4 @@
-#include "report/images/texel_pictures.h"
+#include "report/images/figures/texel_pictures.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "report/images/color_values.h"
-#include "report/images/figure.h"
+#include "report/images/figures/figure.h"
 #include "report/images/picture_io.h"
 
 namespace shadowbench::images {

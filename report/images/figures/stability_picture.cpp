@@ -1,4 +1,4 @@
-#include "report/images/stability_picture.h"
+#include "report/images/figures/stability_picture.h"
 
 #include <fmt/format.h>
 
@@ -9,39 +9,16 @@
 #include <limits>
 
 #include "report/images/color_values.h"
-#include "report/images/figure.h"
-#include "report/images/fit_worst.h"
+#include "report/images/figures/heat_panels.h"
 #include "report/images/picture_io.h"
 #include "report/records/format.h"
 
 namespace shadowbench::images {
 namespace {
 
-constexpr int kStabilityPanelWidth = 640;
-constexpr int kStabilityGap = 40;
-constexpr int kColorBarHeight = 16;
 constexpr Rgb kBroken{1.0f, 0.0f, 1.0f};
 constexpr Rgb kZeroTexel{0.93f, 0.94f, 0.95f};
 constexpr double kLeastVarianceDecade = -10.0;  // of the colour bar; the largest is 0
-
-using Tick = std::pair<float, std::string>;  // place on the colour bar, [0,1]
-
-struct StabilityPanel {
-  std::string title;
-  std::string caption;
-  Image picture;  ///< 3 channels, display values
-  Image bar;      ///< likewise
-  std::vector<Tick> ticks;
-};
-
-int shown_width(const Image& image) {
-  return image.width >= kStabilityPanelWidth ? kStabilityPanelWidth
-                                             : image.width * (kStabilityPanelWidth / image.width);
-}
-
-Image show_worst(const Image& image, const Badness& badness) { return fit_worst(image, shown_width(image), badness); }
-
-Image make_bar() { return make_ramp(kStabilityPanelWidth, kColorBarHeight); }
 
 /// Colours values in [0,1], dark for little.
 Image color_sequential(const Image& values) { return color_values(values, "viridis"); }
@@ -57,17 +34,17 @@ float choose_headroom_scale(const Image& headroom) {
   return std::max(5.0f, 5.0f * std::ceil(most / 5.0f));
 }
 
-StabilityPanel make_headroom_panel(const StabilityPicture& picture) {
+HeatPanel make_headroom_panel(const StabilityPicture& picture) {
   const Image& headroom = picture.images.headroom;
   const float scale = choose_headroom_scale(headroom);
-  const Image shown = show_worst(headroom, [](float v) { return worst_if_nan(v, -v); });
+  const Image shown = fit_heat_panel(headroom, [](float v) { return worst_if_nan(v, -v); });
   Image places = shown;
   for (float& value : places.texels) value = std::isfinite(value) ? std::clamp(value / scale, 0.0f, 1.0f) : 0.0f;
-  StabilityPanel panel{"overflow: what exponents could grow by, per texel of the map",
-                       picture.texels,
-                       color_sequential(places),
-                       color_sequential(make_bar()),
-                       {}};
+  HeatPanel panel{"overflow: what exponents could grow by, per texel of the map",
+                  picture.texels,
+                  color_sequential(places),
+                  color_sequential(make_color_bar()),
+                  {}};
   for (std::size_t i = 0; i < shown.texels.size(); ++i) {
     const float value = shown.texels[i];
     if (std::isfinite(value)) continue;
@@ -87,107 +64,65 @@ float place_variance(float variance) {
   return std::copysign(static_cast<float>(std::clamp(1.0 - decades / kLeastVarianceDecade, 0.0, 1.0)), variance);
 }
 
-StabilityPanel make_variance_panel(const StabilityPicture& picture) {
-  const Image shown = show_worst(
+HeatPanel make_variance_panel(const StabilityPicture& picture) {
+  const Image shown = fit_heat_panel(
       picture.images.variance, [](float v) { return worst_if_nan(v, -v); });
   const auto color_of = [](float v) { return std::isfinite(v) ? map_diverging(-place_variance(v), 1.0f) : kBroken; };
-  StabilityPanel panel{"variance before any clamp, per texel of the map",
-                       picture.variance,
-                       color_values(shown, color_of),
-                       color_values(make_bar(), [](float t) { return map_diverging(1.0f - 2.0f * t, 1.0f); }),
-                       {}};
+  HeatPanel panel{"variance before any clamp, per texel of the map",
+                  picture.variance,
+                  color_values(shown, color_of),
+                  color_values(make_color_bar(), [](float t) { return map_diverging(1.0f - 2.0f * t, 1.0f); }),
+                  {}};
   for (const float variance : {-1e-2f, -1e-5f, -1e-8f, 0.0f, 1e-8f, 1e-5f, 1e-2f})
     panel.ticks.emplace_back(0.5f + 0.5f * place_variance(variance), fmt::format("{:g}", variance));
   return panel;
 }
 
-std::vector<Tick> list_signed_ticks(double scale) {
-  std::vector<Tick> ticks;
-  for (const double part : {-1.0, -0.5, 0.0, 0.5, 1.0})
-    ticks.emplace_back(static_cast<float>(0.5 + 0.5 * part), records::format_number(part * scale));
-  return ticks;
-}
-
-StabilityPanel make_difference_panel(const StabilityPicture& picture) {
+HeatPanel make_difference_panel(const StabilityPicture& picture) {
   const Image& difference = picture.images.half_difference;
   const double scale = choose_error_scale({&difference});
-  const Image shown = show_worst(
+  const Image shown = fit_heat_panel(
       difference, [](float v) { return worst_if_nan(v, std::abs(v)); });
   const auto color_of = [scale](float v) {
     return std::isfinite(v) ? map_diverging(v, static_cast<float>(scale)) : kBroken;
   };
   return {"visibility with the 16-bit store less that with the 32-bit store", picture.difference,
           color_values(shown, color_of),
-          color_values(make_bar(), [](float t) { return map_diverging(2.0f * t - 1.0f, 1.0f); }),
+          color_values(make_color_bar(), [](float t) { return map_diverging(2.0f * t - 1.0f, 1.0f); }),
           list_signed_ticks(scale)};
 }
 
 /// Shortfalls, with what rounding does not explain above all colours.
-StabilityPanel make_bound_panel(const StabilityPicture& picture) {
+HeatPanel make_bound_panel(const StabilityPicture& picture) {
   const Image& shortfall = picture.images.shortfall;
   assert(picture.images.violation.texels.size() == shortfall.texels.size());
   const double scale = choose_error_scale({&shortfall});
   Image marked = shortfall;
   for (std::size_t i = 0; i < marked.texels.size(); ++i)
     if (picture.images.violation.texels[i] > 0.0f) marked.texels[i] = std::numeric_limits<float>::infinity();
-  const Image shown = show_worst(
+  const Image shown = fit_heat_panel(
       marked, [](float v) { return worst_if_nan(v, v); });
   const auto color_of = [scale](float v) {
     return std::isfinite(v) ? map_diverging(-v, static_cast<float>(scale)) : kBroken;
   };
-  StabilityPanel panel{"a bound that must hold: by how much the filter is darker than the PCF of its kernel",
-                       picture.bound,
-                       color_values(shown, color_of),
-                       color_values(make_bar(), [](float t) { return map_diverging(-t, 1.0f); }),
-                       {}};
+  HeatPanel panel{"a bound that must hold: by how much the filter is darker than the PCF of its kernel",
+                  picture.bound,
+                  color_values(shown, color_of),
+                  color_values(make_color_bar(), [](float t) { return map_diverging(-t, 1.0f); }),
+                  {}};
   for (const float part : {0.0f, 0.5f, 1.0f})
     panel.ticks.emplace_back(part, records::format_number(static_cast<double>(part) * scale));
   return panel;
 }
 
-std::vector<StabilityPanel> make_panels(const StabilityPicture& picture) {
-  std::vector<StabilityPanel> panels;
+std::vector<HeatPanel> make_heat_panels(const StabilityPicture& picture) {
+  std::vector<HeatPanel> panels;
   const StabilityImages& images = picture.images;
   if (!images.headroom.empty()) panels.push_back(make_headroom_panel(picture));
   if (!images.variance.empty()) panels.push_back(make_variance_panel(picture));
   if (!images.half_difference.empty()) panels.push_back(make_difference_panel(picture));
   if (!images.shortfall.empty()) panels.push_back(make_bound_panel(picture));
   return panels;
-}
-
-std::vector<std::string> list_lines(const StabilityPanel& panel) {
-  std::vector<std::string> lines = wrap_figure_text(panel.title, kStabilityPanelWidth);
-  for (const std::string& line : wrap_figure_text(panel.caption, kStabilityPanelWidth)) lines.push_back(line);
-  return lines;
-}
-
-int measure_height(const StabilityPanel& panel) {
-  const int line = figure_line_height();
-  return static_cast<int>(list_lines(panel).size()) * line + panel.picture.height + kColorBarHeight + 3 * line;
-}
-
-void draw_panel(Figure& figure, int x, int y, const StabilityPanel& panel) {
-  const int line = figure_line_height();
-  const std::size_t of_title = wrap_figure_text(panel.title, kStabilityPanelWidth).size();
-  std::size_t number = 0;
-  for (const std::string& text : list_lines(panel)) {
-    figure.write(x, y, text, number++ < of_title ? kFigureInk : kFigureSecondInk);
-    y += line;
-  }
-  y += line / 4;
-  figure.place(x, y, panel.picture);
-  y += panel.picture.height + line / 2;
-  figure.place(x, y, panel.bar);
-  for (const auto& [place, label] : panel.ticks) {
-    const int at = x + static_cast<int>(place * static_cast<float>(kStabilityPanelWidth - 1));
-    figure.fill({at, y + kColorBarHeight, 1, 5}, kFigureSecondInk);
-    if (place <= 0.0f)
-      figure.write(x, y + kColorBarHeight + 6, label);
-    else if (place >= 1.0f)
-      figure.write_before(at, y + kColorBarHeight + 6, label);
-    else
-      figure.write_centred(at, y + kColorBarHeight + 6, label);
-  }
 }
 
 }  // namespace
@@ -202,22 +137,7 @@ const std::array<StabilityImage, 5>& list_stability_images() {
 }
 
 Image draw_stability_picture(const StabilityPicture& picture) {
-  const std::vector<StabilityPanel> panels = make_panels(picture);
-  assert(!panels.empty());
-  const int columns = std::min<int>(2, static_cast<int>(panels.size()));
-  std::vector<int> row_heights((panels.size() + 1) / 2, 0);
-  for (std::size_t i = 0; i < panels.size(); ++i)
-    row_heights[i / 2] = std::max(row_heights[i / 2], measure_height(panels[i]));
-  int height = 0;
-  for (const int row : row_heights) height += row;
-  Figure figure(picture.title, picture.note, {columns * kStabilityPanelWidth + (columns - 1) * kStabilityGap, height});
-  int y = figure.body().y;
-  for (std::size_t i = 0; i < panels.size(); ++i) {
-    draw_panel(figure, figure.body().x + static_cast<int>(i % 2) * (kStabilityPanelWidth + kStabilityGap), y,
-               panels[i]);
-    if (i % 2 == 1) y += row_heights[i / 2];
-  }
-  return figure.canvas();
+  return draw_heat_panels(picture.title, picture.note, make_heat_panels(picture));
 }
 
 void write_stability_picture(const std::filesystem::path& path, const StabilityPicture& picture) {

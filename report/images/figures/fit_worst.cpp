@@ -1,4 +1,4 @@
-#include "report/images/fit_worst.h"
+#include "report/images/figures/fit_worst.h"
 
 #include <algorithm>
 #include <cstdint>

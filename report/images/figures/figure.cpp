@@ -1,4 +1,4 @@
-#include "report/images/figure.h"
+#include "report/images/figures/figure.h"
 
 #include <algorithm>
 #include <cassert>

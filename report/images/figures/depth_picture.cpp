@@ -1,4 +1,4 @@
-#include "report/images/depth_picture.h"
+#include "report/images/figures/depth_picture.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "report/images/figure.h"
+#include "report/images/figures/figure.h"
 #include "report/images/picture_io.h"
 #include "report/records/format.h"
 

@@ -1,4 +1,4 @@
-#include "report/images/flicker_picture.h"
+#include "report/images/figures/flicker_picture.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "report/images/color_values.h"
-#include "report/images/figure.h"
-#include "report/images/fit_worst.h"
+#include "report/images/figures/figure.h"
+#include "report/images/figures/fit_worst.h"
 #include "report/images/picture_io.h"
 
 namespace shadowbench::images {

@@ -1,0 +1,222 @@
+#include "report/analysis/surprises.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+#include "reference/metrics/metric_table.h"
+#include "report/analysis/accuracy.h"
+#include "report/analysis/advice.h"
+#include "report/analysis/cell_group.h"
+#include "report/analysis/summary.h"
+#include "report/records/error_parts.h"
+#include "report/records/format.h"
+
+namespace shadowbench::analysis {
+namespace {
+
+constexpr double kDearer = 1.5;          // times as dear: worth a sentence
+constexpr double kNoFault = 0.001;       // below this rate a fault is not seen
+constexpr std::size_t kMostOfAKind = 3;  // sentences
+constexpr double kMajority = 2.0 / 3.0;  // of the cells: what "most" means
+
+using Cells = std::vector<records::CellRecord>;
+
+std::string number(double value) { return records::format_number(value); }
+
+std::string list_some(const std::vector<std::string>& names) {
+  if (names.size() <= kMostOfAKind) return fmt::format("{}", fmt::join(names, ", "));
+  return fmt::format("{} and {} more", fmt::join(names.begin(), names.begin() + kMostOfAKind, ", "),
+                     names.size() - kMostOfAKind);
+}
+
+/// Everything about a run's configurations that sentences are made of.
+class Finder {
+ public:
+  explicit Finder(const Cells& cells) {
+    for (const records::CellRecord& cell : cells) all_.push_back(&cell);
+    places_ = list_places(all_);
+    configurations_ = list_configurations(all_);
+    std::vector<const records::CellRecord*> sound;
+    for (const records::CellRecord* cell : all_)
+      if (cell->status == records::CellStatus::kOk && !cell->teaching.value_or(false)) sound.push_back(cell);
+    sound_ = list_configurations(sound);
+  }
+
+  std::vector<std::string> find() const {
+    std::vector<std::string> all;
+    for (const auto& more : {list_troubles(), list_wasted(), list_turnovers(), list_parts(), list_only()})
+      all.insert(all.end(), more.begin(),
+                 more.begin() + static_cast<std::ptrdiff_t>(std::min(more.size(), kMostOfAKind)));
+    all.resize(std::min(all.size(), kMostSurprises));
+    return all;
+  }
+
+ private:
+  std::string name_place(const records::CellRecord& cell) const { return describe_place(place_of(cell), places_); }
+
+  /// One sentence for all configurations in the same trouble.
+  std::vector<std::string> list_troubles() const {
+    std::map<std::string, std::vector<std::string>> names;
+    for (const Configuration& configuration : configurations_) {
+      const auto bad = std::ranges::find_if(configuration.cells,
+                                            [](const auto* cell) { return cell->status != records::CellStatus::kOk; });
+      if (bad != configuration.cells.end()) names[records::describe_status(**bad)].push_back(configuration.name);
+    }
+    std::vector<std::string> sentences;
+    for (const auto& [status, labels] : names)
+      sentences.push_back(fmt::format("Not ranked or advised: {} ({}).", list_some(labels), status));
+    for (const records::CellRecord* cell : all_)
+      if (cell->nan.value_or(0) > 0)
+        sentences.push_back(fmt::format("{} has {} pixels on {} that are not finite, which no number here counts.",
+                                        cell->filter, *cell->nan, name_place(*cell)));
+    return sentences;
+  }
+
+  /// Calls `visit(a, b, pairs)` with each two configurations of one class of width and the cells of both by place.
+  template <class Visitor>
+  void visit_pairs(Visitor&& visit) const {
+    for (const Configuration& a : sound_) {
+      for (const Configuration& b : sound_) {
+        if (&a == &b || a.surroundings != b.surroundings) continue;
+        const auto of = find_class(*a.cells.front());
+        if (!of || of != find_class(*b.cells.front())) continue;
+        std::vector<std::array<const records::CellRecord*, 2>> pairs;
+        for (const records::CellRecord* cell : a.cells)
+          for (const records::CellRecord* other : b.cells)
+            if (place_of(*cell) == place_of(*other) && cell->error.rmse && other->error.rmse)
+              pairs.push_back({cell, other});
+        if (!pairs.empty()) visit(a, b, pairs);
+      }
+    }
+  }
+
+  /// By how much the first error is clearly the smaller one, as a ratio; 1 where they cannot be told apart.
+  static double gain(const records::CellRecord& a, const records::CellRecord& b) {
+    const double reach = std::max(find_rmse_reach(a), find_rmse_reach(b));
+    return *b.error.rmse - *a.error.rmse > reach ? *b.error.rmse / *a.error.rmse : 1.0;
+  }
+
+  std::vector<std::string> list_turnovers() const {
+    std::multimap<double, std::string, std::greater<>> sentences;
+    std::set<std::string> told;
+    visit_pairs([&](const Configuration& a, const Configuration& b, const auto& pairs) {
+      const auto better = [](const auto& p) { return gain(*p[0], *p[1]); };
+      const auto worse = [](const auto& p) { return gain(*p[1], *p[0]); };
+      const auto best = std::ranges::max_element(pairs, {}, better), worst = std::ranges::max_element(pairs, {}, worse);
+      const double turn = std::min(better(*best), worse(*worst));
+      if (turn <= 1.0 || told.contains(b.name + "\n" + a.name)) return;
+      told.insert(a.name + "\n" + b.name);
+      sentences.emplace(
+          turn,
+          fmt::format("The order turns over: {} has a smaller RMSE than {} on {} ({} against {}), and a larger one "
+                      "on {} ({} against {}).",
+                      a.name, b.name, name_place(*(*best)[0]), number(*(*best)[0]->error.rmse),
+                      number(*(*best)[1]->error.rmse), name_place(*(*worst)[0]), number(*(*worst)[0]->error.rmse),
+                      number(*(*worst)[1]->error.rmse)));
+    });
+    std::vector<std::string> list;
+    for (auto& [turn, sentence] : sentences) list.push_back(std::move(sentence));
+    return list;
+  }
+
+  /// Pairs of which the dearer one is clearly better nowhere; of one dearer filter, the cheapest that equals it.
+  std::vector<std::string> list_wasted() const {
+    std::map<std::string, std::pair<double, std::string>> worst;
+    visit_pairs([&](const Configuration& a, const Configuration& b, const auto& pairs) {
+      double of_a = 0.0, of_b = 0.0;
+      for (const auto& [cell, other] : pairs) {
+        const auto time = frame_time(*cell, LightMotion::kMoving), cheaper = frame_time(*other, LightMotion::kMoving);
+        if (!time || !cheaper || gain(*cell, *other) > 1.0) return;
+        of_a += time->median;
+        of_b += cheaper->median;
+      }
+      if (!(of_b > 0.0) || of_a < kDearer * of_b) return;
+      auto& known = worst[a.name];
+      if (known.first >= of_a / of_b) return;
+      known = {of_a / of_b, fmt::format("With a moving light {} costs {} times what {} does, has a kernel of the same "
+                                        "class of width, and is clearly more accurate on no scene.",
+                                        a.name, number(of_a / of_b), b.name)};
+    });
+    std::vector<std::pair<double, std::string>> sorted;
+    for (auto& [label, sentence] : worst) sorted.push_back(std::move(sentence));
+    std::ranges::sort(sorted, std::greater());
+    std::vector<std::string> sentences;
+    for (auto& [ratio, sentence] : sorted) sentences.push_back(std::move(sentence));
+    return sentences;
+  }
+
+  /// Errors that most of comes from another part than that of most cells.
+  std::vector<std::string> list_parts() const {
+    struct Found {
+      const records::CellRecord* cell;
+      std::string label;
+      std::size_t part;
+    };
+    std::vector<Found> dominated;
+    std::map<std::size_t, std::size_t> counts;
+    for (const Configuration& configuration : sound_) {
+      for (const records::CellRecord* cell : configuration.cells) {
+        const auto shares = records::list_shares(*cell);
+        const auto part = shares && !is_lost_in_truth(*cell) ? find_dominating_part(*shares) : std::nullopt;
+        if (!part) continue;
+        dominated.push_back({cell, configuration.name, *part});
+        ++counts[*part];
+      }
+    }
+    if (counts.size() < 2) return {};
+    const auto usual = std::ranges::max_element(counts, {}, [](const auto& count) { return count.second; });
+    if (static_cast<double>(usual->second) < kMajority * static_cast<double>(dominated.size())) return {};
+    std::map<std::pair<std::string, std::size_t>, std::vector<std::string>> where;
+    for (const Found& each : dominated)
+      if (each.part != usual->first)
+        where[{each.label, each.part}].push_back(fmt::format(
+            "{} ({})", name_place(*each.cell), records::format_share((*records::list_shares(*each.cell))[each.part])));
+    std::vector<std::string> sentences;
+    for (const auto& [key, places] : where) {
+      const records::ErrorPart &own = records::list_error_parts()[key.second],
+                               &most = records::list_error_parts()[usual->first];
+      sentences.push_back(
+          fmt::format("Most of the error of {} comes from {} ({}) on {}; that of most others from {} ({}).", key.first,
+                      own.id, own.meaning, list_some(places), most.id, most.meaning));
+    }
+    return sentences;
+  }
+
+  /// Faults that a single configuration is free of.
+  std::vector<std::string> list_only() const {
+    std::vector<std::string> sentences;
+    for (const metrics::Metric& metric : metrics::metric_table()) {
+      if (metric.group() != "artefact" || metric.limit.empty()) continue;
+      std::vector<std::string> free;
+      std::size_t judged = 0;
+      for (const Configuration& configuration : sound_) {
+        double most = -1.0;
+        for (const records::CellRecord* cell : configuration.cells)
+          most = std::max(most, metric.read(*cell).value_or(-1.0));
+        if (most < 0.0) continue;
+        ++judged;
+        if (most < kNoFault) free.push_back(configuration.name);
+      }
+      if (free.size() == 1 && judged > 2)
+        sentences.push_back(fmt::format("Of {} configurations only {} has {} below {} on every scene.", judged,
+                                        free.front(), metric.title, records::format_rate(kNoFault)));
+    }
+    return sentences;
+  }
+
+  std::vector<const records::CellRecord*> all_;
+  std::vector<Place> places_;
+  std::vector<Configuration> configurations_;
+  std::vector<Configuration> sound_;  ///< of cells that may be ranked
+};
+
+}  // namespace
+
+std::vector<std::string> list_surprises(const Cells& cells) { return Finder(cells).find(); }
+
+}  // namespace shadowbench::analysis

@@ -1,0 +1,47 @@
+#include "report/pages/comparison_page.h"
+
+#include <fmt/format.h>
+
+#include "filters/base/atomic_file.h"
+#include "report/images/picture_io.h"
+#include "report/images/value_file.h"
+#include "report/page/blocks.h"
+
+namespace shadowbench::pages {
+namespace {
+
+using nlohmann::json;
+
+/// Writes a picture and its values beside the page, and says where they are.
+json write_side(const std::filesystem::path& dir, const std::string& stem, const images::Image& rgb,
+                const images::ValuePlanes& planes) {
+  const std::string picture = "images/" + stem + ".png", values = "images/" + stem + ".values.js";
+  images::write_value_file(dir / values, values, planes);
+  if (rgb.empty()) return {{"picture", nullptr}, {"values", values}};
+  images::write_picture_png(dir / picture, rgb);
+  return {{"picture", picture}, {"values", values}};
+}
+
+}  // namespace
+
+void write_comparison_page(const std::filesystem::path& dir, const ComparedPictures& pictures) {
+  images::ValuePlanes planes = {{"visibility", pictures.image_grey}};
+  if (!pictures.flip.empty()) planes.emplace_back("flip", pictures.flip);
+  json cell = write_side(dir, "first", pictures.image_rgb, planes);
+  cell["configuration"] = cell["place"] = 0;
+  page::Page page{"Two pictures compared", {}, {}};
+  page.data = {{"places", {{{"title", "both"}}}},
+               {"configurations", {{{"label", pictures.image}}}},
+               {"truths", {write_side(dir, "second", pictures.truth_rgb, {{"area", pictures.truth_grey}})}},
+               {"cells", {std::move(cell)}}};
+  page.sections = {{"numbers",
+                    "",
+                    {page::Paragraph{fmt::format("The first picture is {}. What stands for the truth is {}. Visibility "
+                                                 "is the mean over the channels of the values as stored.",
+                                                 pictures.image, pictures.truth)},
+                     page::Facts{pictures.numbers}}},
+                   {"viewer", "Look closer", {page::Mount{"viewer", {}}}}};
+  write_text_file(dir / "index.html", page::write_html(page));
+}
+
+}  // namespace shadowbench::pages

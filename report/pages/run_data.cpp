@@ -1,0 +1,179 @@
+#include "report/pages/run_data.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/kernel_width.h"
+#include "reference/metrics/metric_table.h"
+#include "report/analysis/accuracy.h"
+#include "report/analysis/cell_group.h"
+#include "report/analysis/summary.h"
+#include "report/analysis/trade.h"
+#include "report/files/file_name.h"
+#include "report/page/chart_style.h"
+#include "report/records/absence.h"
+#include "report/records/error_parts.h"
+#include "report/records/format.h"
+
+namespace shadowbench::pages {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char *kMoving = "time_ms.moving", *kStill = "time_ms.still";
+
+json value_of(const std::optional<double>& value) { return value && std::isfinite(*value) ? json(*value) : json(); }
+
+json path_of(const std::optional<std::string>& path) { return path ? json(files::encode_url_path(*path)) : json(); }
+
+json make_measure(std::string_view id, std::string_view title, std::string_view text, std::string_view unit,
+                  std::string_view option, std::string_view group,
+                  metrics::MetricDirection direction = metrics::MetricDirection::kLess) {
+  static constexpr const char* kBetter[] = {"less", "more", "zero", "neither"};
+  return {{"id", id},
+          {"title", title},
+          {"text", text},
+          {"unit", unit},
+          {"option", option},
+          {"group", group},
+          {"better", kBetter[static_cast<std::size_t>(direction)]}};
+}
+
+/// Everything that the table can show, and that limits can be set on.
+json list_measures(const records::RunRecord& run) {
+  const std::string unit = records::time_unit(run.gl);
+  json measures = json::array();
+  measures.push_back(make_measure(kMoving, "time, moving light",
+                                  "map, prefilter and lookup less a lookup that reads nothing: what a frame pays in "
+                                  "which light or casters move; " +
+                                      records::describe_clock(run.gl),
+                                  unit, "--max-ms", "cost"));
+  measures.push_back(make_measure(kStill, "time, still light",
+                                  "lookup less a lookup that reads nothing: what a frame pays while light and casters "
+                                  "stand still; " +
+                                      records::describe_clock(run.gl),
+                                  unit, "--max-ms", "cost"));
+  for (const metrics::Metric& metric : metrics::metric_table())
+    if (metric.tabled || !metric.limit.empty())
+      measures.push_back(make_measure(metric.path, metric.title, metric.definition, metric.unit, metric.limit,
+                                      metric.group(), metric.direction));
+  return measures;
+}
+
+json list_values(const records::CellRecord& cell) {
+  json values;
+  const auto time = [&](analysis::LightMotion light) {
+    const auto quartiles = analysis::frame_time(cell, light);
+    return quartiles ? value_of(quartiles->median) : json();
+  };
+  values[kMoving] = time(analysis::LightMotion::kMoving);
+  values[kStill] = time(analysis::LightMotion::kStatic);
+  for (const metrics::Metric& metric : metrics::metric_table())
+    if (metric.tabled || !metric.limit.empty()) values[std::string(metric.path)] = value_of(metric.read(cell));
+  return values;
+}
+
+/// The fields of a limit that have nothing to be measured on.
+json list_nothing(const records::CellRecord& cell) {
+  json fields = json::array();
+  for (const analysis::LimitSpec& spec : analysis::limit_table())
+    if (spec.metric && !spec.metric->read(cell) &&
+        records::is_nothing_to_see(records::explain_absence(cell, spec.field)))
+      fields.push_back(spec.field);
+  return fields;
+}
+
+/// What most of a cell's error comes from, in words; empty where that cannot be said.
+std::string find_cause(const records::CellRecord& cell) {
+  const auto shares = records::list_shares(cell);
+  if (!shares || analysis::is_lost_in_truth(cell)) return {};
+  const auto part = analysis::find_dominating_part(*shares);
+  if (!part) return {};
+  const records::ErrorPart& own = records::list_error_parts()[*part];
+  return std::string(own.id) + ": " + own.meaning;
+}
+
+json make_cell(const records::CellRecord& cell, std::size_t configuration, std::size_t place) {
+  return {{"key", cell.key},
+          {"configuration", configuration},
+          {"place", place},
+          {"status", cell.status == records::CellStatus::kOk ? "ok" : records::describe_status(cell)},
+          {"values_of", list_values(cell)},
+          {"nothing", list_nothing(cell)},
+          {"reach", analysis::find_rmse_reach(cell)},
+          {"cause", find_cause(cell)},
+          {"picture", path_of(cell.images.picture)},
+          {"values", path_of(cell.images.values)}};
+}
+
+/// The mean over the cells of what a frame takes, with the mean of the intervals; null where a cell was not timed.
+json find_cost(const analysis::Configuration& configuration, analysis::LightMotion light) {
+  double mean = 0.0, low = 0.0, high = 0.0, q1 = 0.0, q3 = 0.0;
+  bool has_interval = true;
+  const double weight = 1.0 / static_cast<double>(configuration.cells.size());
+  for (const records::CellRecord* cell : configuration.cells) {
+    const auto time = analysis::frame_time(*cell, light);
+    if (!time) return nullptr;
+    const auto interval = analysis::frame_interval(*cell, light);
+    has_interval = has_interval && interval;
+    mean += weight * time->median;
+    q1 += weight * time->q1;
+    q3 += weight * time->q3;
+    if (interval) low += weight * interval->low;
+    if (interval) high += weight * interval->high;
+  }
+  return {
+      {"mean", mean}, {"ci95", has_interval ? json::array({low, high}) : json()}, {"quartiles", json::array({q1, q3})}};
+}
+
+json make_configuration(const analysis::Configuration& configuration, const std::vector<std::string>& filters) {
+  const records::CellRecord& cell = *configuration.cells.front();
+  const page::ChartStyle style =
+      page::style_of(static_cast<std::size_t>(std::ranges::find(filters, cell.filter) - filters.begin()));
+  return {{"label", configuration.name},
+          {"full", configuration.label},
+          {"filter", cell.filter},
+          {"params", records::describe_params(cell.params)},
+          {"class", analysis::name_class(analysis::find_class(cell))},
+          {"kernel", records::describe_kernel(cell.kernel)},
+          {"sigma", value_of(cell.kernel.sigma_texels)},
+          {"map", cell.map_size},
+          {"teaching", cell.teaching.value_or(false)},
+          {"surroundings", configuration.surroundings},
+          {"color", style.color},
+          {kMoving, find_cost(configuration, analysis::LightMotion::kMoving)},
+          {kStill, find_cost(configuration, analysis::LightMotion::kStatic)}};
+}
+
+}  // namespace
+
+json make_run_data(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+                   const analysis::AdviceRequest& request) {
+  std::vector<const records::CellRecord*> all;
+  for (const records::CellRecord& cell : cells) all.push_back(&cell);
+  const std::vector<analysis::Place> places = analysis::list_places(all);
+  const std::vector<std::string> filters = analysis::list_filters(cells);
+  json data{{"unit", records::time_unit(run.gl)}, {"measures", list_measures(run)}, {"classes", json::array()},
+            {"limits", json::object()},           {"places", json::array()},        {"truths", json::array()},
+            {"configurations", json::array()},    {"cells", json::array()}};
+  for (const auto& each : filters::width_classes()) data["classes"].push_back(each.name);
+  for (const analysis::Demand& demand : request.demands) data["limits"][demand.spec->field] = demand.most;
+  for (const analysis::Place& place : places) {
+    data["places"].push_back({{"title", analysis::describe_place(place, places)}});
+    const auto shown = std::ranges::find_if(
+        cells, [&](const auto& cell) { return analysis::place_of(cell) == place && cell.images.truth_values; });
+    data["truths"].push_back(shown == cells.end() ? json()
+                                                  : json{{"picture", path_of(shown->images.truth_picture)},
+                                                         {"values", path_of(shown->images.truth_values)}});
+  }
+  for (const analysis::Configuration& configuration : analysis::list_configurations(all)) {
+    for (const records::CellRecord* cell : configuration.cells) {
+      const auto place = std::ranges::find(places, analysis::place_of(*cell)) - places.begin();
+      data["cells"].push_back(make_cell(*cell, data["configurations"].size(), static_cast<std::size_t>(place)));
+    }
+    data["configurations"].push_back(make_configuration(configuration, filters));
+  }
+  return data;
+}
+
+}  // namespace shadowbench::pages

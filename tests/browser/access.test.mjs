@@ -1,0 +1,30 @@
+// Every page is silent, accessible and no wider than the screen, in both themes.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { kNarrow, kWide, listViolations, measureOverflow, open, pageOf, settle } from "./support.mjs";
+
+const kPages = [...["several", "odd", "untrue", "single"].map((run) => [run, "index.html"]),
+  ...["stress", "flicker", "bias", "tune"].map((name) => [name, name + ".html"])];
+
+for (const [run, file] of kPages) {
+  test(`OnEveryScreenInBothThemes_NothingIsInaccessibleOrTooWide: ${run}`, async () => {
+    const { page, messages, shoot, close } = await open(pageOf(run, file), { waits: false });
+    const look = async (name) => {
+      await settle(page);
+      await shoot(`${run}_${name}`);
+      assert.ok((await measureOverflow(page)) <= 0, `${name}: the page is wider than the screen`);
+      assert.deepEqual(await listViolations(page), [], name);
+    };
+    for (const [screen, viewport] of [["wide", kWide], ["narrow", kNarrow]]) {
+      await page.setViewportSize(viewport);
+      for (const colorScheme of ["dark", "light"]) {
+        await page.emulateMedia({ colorScheme });
+        await look(`${screen}_${colorScheme}`);
+      }
+    }
+    await page.locator("details").evaluateAll((all) => all.forEach((each) => { each.open = true; }));
+    await look("unfolded");
+    assert.deepEqual(messages, []);
+    await close();
+  });
+}

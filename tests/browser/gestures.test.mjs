@@ -1,0 +1,161 @@
+// Gestures over the viewer, what it says where files are gone, and how it fits a page.
+import assert from "node:assert/strict";
+import { cpSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { changePage, colours, folderOf, hashOf, kNarrow, kWide, labels, measureOverflow, multiply, open, openViewer, pageOf, pick, settle, showCrops } from "./support.mjs";
+
+const kPage = pageOf("several");
+
+const drag = async (page, from, to) => {
+  await page.mouse.move(...from);
+  await page.mouse.down();
+  await page.mouse.move(...to, { steps: 4 });
+  await page.mouse.up();
+};
+
+test("Gestures_PanSplitCropAndPinch", async () => {
+  const { page, messages, shoot, close } = await openViewer(kPage, { hash: "#view=cubes,truth,none,visibility,slider,120,67.5,4", hasTouch: true });
+  await page.waitForSelector(".viewer .strip button canvas");
+  const box = await page.locator(".viewer .panes canvas").first().boundingBox(), step = 240 / box.width / 4;
+  const middle = [box.x + box.width / 2, box.y + box.height / 2];
+  await drag(page, [box.x + 100, box.y + 100], [box.x + 150, box.y + 80]);
+  const [,,,,, x, y] = (await hashOf(page)).split(",").map(Number);
+  assert.ok(Math.abs(x - (120 - 50 * step)) < 1 && Math.abs(y - (67.5 + 20 * step)) < 1, `${x} ${y}`);
+  const caption = page.locator(".viewer caption"), spot = await caption.textContent();
+  await page.mouse.wheel(0, -200);
+  await page.waitForTimeout(100);
+  await page.mouse.move(box.x + 150.4, box.y + 80);
+  assert.equal(await caption.textContent(), spot, "the wheel keeps the pixel under the pointer");
+  await page.mouse.wheel(0, 200);
+  await page.waitForTimeout(100);
+  await drag(page, middle, [box.x + box.width / 4, middle[1]]);
+  assert.ok(Math.abs(await page.getByRole("slider", { name: "Split" }).inputValue() - 25) <= 1);
+  await page.getByRole("slider", { name: "Split" }).focus();
+  await page.keyboard.press("ArrowRight");
+  assert.ok(Math.abs(await page.getByRole("slider", { name: "Split" }).inputValue() - 26) <= 1);
+  await page.keyboard.down("Shift");
+  await drag(page, [box.x + 500, box.y + 200], [box.x + 600, box.y + 280]);
+  await page.keyboard.up("Shift");
+  assert.equal((await hashOf(page)).split(",").length, 9);
+  await shoot("gestures");
+  const client = await page.context().newCDPSession(page);
+  const touch = (type, apart) => client.send("Input.dispatchTouchEvent", { type, touchPoints: apart === null ? []
+    : [{ x: middle[0] - apart, y: middle[1], id: 0 }, { x: middle[0] + apart, y: middle[1], id: 1 }] });
+  await touch("touchStart", 100);
+  for (const apart of [110, 125, 150]) await touch("touchMove", apart);
+  await touch("touchEnd", null);
+  const zoom = Number((await hashOf(page)).split(",")[7]);
+  assert.ok(zoom > 4.5 && zoom < 6.5, String(zoom));
+  assert.deepEqual(messages, []);
+  await close();
+});
+
+test("MissingAndDamagedFiles_AreNamed_AndTheRestWorks", async () => {
+  const folder = folderOf("missing");
+  rmSync(folder, { recursive: true, force: true });
+  cpSync(folderOf("several"), folder, { recursive: true });
+  rmSync(join(folder, "images/cubes.none.values.js"));
+  writeFileSync(join(folder, "images/cubes.pcf2x2.values.js"), readFileSync(join(folder, "images/cubes.pcf2x2.values.js"), "utf8").replace(/"data": ?"[^"]{40}/, '"data": "'));
+  rmSync(join(folder, "images/cubes.tent3x3.picture.png"));
+  const { page, messages, shoot, close } = await openViewer(join(folder, "index.html"), { hash: "#view=cubes,none,pcf2x2,visibility,side,0,0,1" });
+  await page.waitForSelector(".viewer .strip button canvas");
+  assert.deepEqual(await page.locator(".viewer .message").allTextContents(), ["images/cubes.none.values.js cannot be read: the file is not beside this page.",
+    "images/cubes.pcf2x2.values.js cannot be read: it is damaged or cut short."]);
+  await shoot("missing");
+  await pick(page, "Layer", "picture");
+  await pick(page, "Right", { label: "tent3x3" });
+  await settle(page);
+  assert.deepEqual(await page.locator(".viewer .message:visible").allTextContents(), ["images/cubes.tent3x3.picture.png cannot be read: the picture is not beside this page."]);
+  assert.ok(messages.every((text) => text.includes("ERR_FILE_NOT_FOUND")), "nothing but the browser's own word on missing files: " + messages);
+  await close();
+});
+
+test("WithoutTruthOrValues_ThePicturesStay_AndWithNothingTheViewerIsHidden", async () => {
+  const clear = (data) => {
+    data.truths = data.truths.map(() => null);
+    for (const cell of data.cells) cell.values = null;
+  };
+  const bare = changePage("several", "bare.html", clear);
+  const { page, messages, close } = await openViewer(bare);
+  await page.waitForTimeout(800);
+  assert.match((await labels(page))[0], /Left: .none/);
+  assert.ok(Object.keys(await colours(page)).length > 5, "a picture is drawn");
+  await page.getByRole("button", { name: "Difference" }).click();
+  await settle(page);
+  assert.match(await page.locator(".viewer .message:visible").textContent(), /No values are stored/);
+  assert.deepEqual(messages, []);
+  await close();
+  const empty = changePage("several", "empty.html", (data) => {
+    clear(data);
+    for (const cell of data.cells) cell.picture = null;
+  });
+  const hidden = await open(empty, { waits: false });
+  assert.equal(await hidden.page.locator("#viewer").isVisible(), false);
+  assert.deepEqual(hidden.messages, []);
+  await hidden.close();
+});
+
+test("NarrowDarkAndPrinted_FitThePage", async () => {
+  for (const [name, options] of [["narrow", { viewport: kNarrow }], ["dark", { colorScheme: "dark" }]]) {
+    const { page, messages, shoot, close } = await openViewer(kPage, { ...options, hash: "#view=cubes,truth,vsm%20(radius%201),error,side,0,0,1,25-25-50-30" });
+    await showCrops(page);
+    await settle(page);
+    assert.ok(await measureOverflow(page) <= 0, name);
+    await shoot(name);
+    await page.getByRole("button", { name: "Slider" }).click();
+    await settle(page);
+    assert.ok(await measureOverflow(page) <= 0, name);
+    await shoot(name + "_slider");
+    await page.emulateMedia({ media: "print" });
+    assert.equal(await page.locator("#viewer").isVisible(), false);
+    assert.deepEqual(messages, []);
+    await close();
+  }
+});
+
+test("ManyFiltersWithOddNames_StayUsable", async () => {
+  const names = ['a "quoted" <b>name</b>', "مرشح الظل", "a,comma", "name-" + "long".repeat(40)];
+  const file = changePage("several", "many.html", (data) => {
+    multiply(data, 300);
+    names.forEach((name, i) => { data.configurations[i].label = name; });
+  });
+  for (const viewport of [kWide, kNarrow]) {
+    const { page, messages, shoot, close } = await openViewer(file, { viewport, hash: "#view=" + ["cubes", names[0], names[3], "visibility", "side", "9", "9", "1", "10-10-50-50"].map(encodeURIComponent) });
+    await showCrops(page);
+    await settle(page);
+    assert.equal(await page.locator(".viewer .said").textContent(), "");
+    assert.ok(await page.locator(".viewer tbody tr").count() <= 15, "the values of few filters are loaded at first");
+    assert.equal(await page.locator(".viewer b").count(), 0);
+    assert.ok(await measureOverflow(page) <= 0);
+    await shoot("many_" + viewport.width);
+    await pick(page, "Right", { label: names[1] });
+    assert.match(await hashOf(page), /مرشح الظل/);
+    assert.deepEqual(messages, []);
+    await close();
+  }
+});
+
+test("ZoomAndPan_KeepPace", async (context) => {
+  const { page, close } = await openViewer(kPage, { hash: "#view=cubes,truth,none,visibility,side,120,67,1" });
+  await page.waitForSelector(".viewer .strip button canvas");
+  const gaps = await page.evaluate(() => new Promise((resolve) => {
+    const canvas = document.querySelector(".viewer .panes canvas"), box = canvas.getBoundingClientRect(), gaps = [], busy = [];
+    let last = 0;
+    const step = (now) => {
+      if (last) gaps.push(now - last);
+      last = now;
+      const from = performance.now(), at = { clientX: box.left + 200 + gaps.length, clientY: box.top + 150, bubbles: true, cancelable: true };
+      canvas.dispatchEvent(new WheelEvent("wheel", { ...at, deltaY: gaps.length % 60 < 30 ? -40 : 40 }));
+      canvas.dispatchEvent(new PointerEvent("pointermove", at));
+      busy.push(performance.now() - from);
+      if (gaps.length < 240) requestAnimationFrame(step);
+      else resolve(gaps.sort((a, b) => a - b));
+    };
+    requestAnimationFrame(step);
+  }));
+  const at = (share) => gaps[Math.floor(share * (gaps.length - 1))].toFixed(1);
+  context.diagnostic(`frame time while zooming: median ${at(0.5)} ms, 95 % ${at(0.95)} ms, worst ${at(1)} ms`);
+  assert.ok(Number(at(0.5)) < 200, "far above what is usual: the machine may be busy");
+  await close();
+});

@@ -1,0 +1,38 @@
+// Makes the runs whose pages are tested: node runs.mjs PROGRAM FOLDER
+import { spawnSync } from "node:child_process";
+import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const [program, folder] = process.argv.slice(2).map((path) => resolve(path)), filters = join(dirname(fileURLToPath(import.meta.url)), "../user_filters");
+mkdirSync(folder, { recursive: true });
+
+// A scene whose name has quotes, angle brackets and letters that run from right to left.
+const kOddScene = "\u0645\u0634\u0647\u062f \"<b>bold<b>\" & 'it'.obj";
+const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => `v ${i & 1} ${(i >> 2) & 1} ${(i >> 1) & 1}`);
+writeFileSync(join(folder, kOddScene), [...corners, "f 1 2 4 3", "f 5 7 8 6", "f 1 5 6 2", "f 3 4 8 7", "f 1 3 7 5", "f 2 6 8 4", ""].join("\n"));
+copyFileSync(join(filters, "wrong/constant.glsl"), join(folder, "constant.glsl"));
+const titled = readFileSync(join(filters, "nine_compares.glsl"), "utf8").replace(/title = .*/, 'title = "The \\"<b>ninth</b>\\" & \u0645\u0631\u0634\u062d"');
+writeFileSync(join(folder, "nine_compares.glsl"), titled);
+
+const kSmall = ["--size", "160x90", "--map-size", "128", "--rounds", "2"];
+const kRuns = {
+  several: ["run", "--scene", "cubes", "--scene", "ball", "--size", "240x135", "--map-size", "128", "--rounds", "2", "--stability",
+    "--uncertainty", "--filters", "none,pcf2x2,tent3x3,box4x4,box3x3,vsm,vsm:radius=1,esm:radius=1"],
+  odd: ["run", "--scene", kOddScene, "--ground", "--scene", "cubes", ...kSmall, "--filters", "none,constant,nine_compares", "--filter-file",
+    "constant.glsl", "--filter-file", "nine_compares.glsl"],
+  untrue: ["run", "--scene", "cubes", ...kSmall, "--filters", "none,pcf2x2,vsm", "--no-truth"],
+  single: ["run", "--scene", "cubes", ...kSmall, "--filters", "tent3x3"],
+  stress: ["stress", "--filters", "vsm", "--axes", "vsm-cancellation"],
+  flicker: ["flicker", "--filters", "none,vsm", "--frames", "3", "--map-size", "128", "--size", "96x54"],
+  bias: ["bias", "--filters", "none,tent3x3", "--map-size", "128", "--size", "160x90"],
+  tune: ["tune", "--filter", "vsm", "--scene", "cubes", "--budget", "2", "--map-size", "128", "--size", "96x54"],
+};
+for (const [name, words] of Object.entries(kRuns)) {
+  rmSync(join(folder, name, "results.json"), { force: true });  // else a run that is finished writes no page
+  const { status, stderr } = spawnSync(program, [...words, "--cache", "cache", "--out", name], { cwd: folder, encoding: "utf8" });
+  if (status !== 0) {
+    console.error(`shadowbench ${words.join(" ")} ended with ${status}:\n${stderr}`);
+    process.exit(1);
+  }
+}

@@ -1,0 +1,108 @@
+// What the tests of the pages share. CTest puts into the environment where the program, the runs and the packages are.
+import { spawnSync } from "node:child_process";
+import { readFileSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { after, before } from "node:test";
+import { pathToFileURL } from "node:url";
+
+const { SHADOWBENCH_PROGRAM: kProgram, SHADOWBENCH_BROWSER: kFolder, SHADOWBENCH_CHROMIUM: kChromium, SHADOWBENCH_SHOTS: kShots } = process.env;
+if (!kProgram || !kFolder || !kChromium) throw new Error("Run these tests with 'ctest -L browser': it names the program, its runs and the browser.");
+const require = createRequire(join(kFolder, "package.json"));
+const kAxe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
+export const kWide = { width: 1400, height: 900 }, kNarrow = { width: 400, height: 800 };
+
+let browser;
+before(async () => { browser = await require("playwright-core").chromium.launch({ executablePath: kChromium, args: ["--disable-gpu"] }); });
+after(() => browser.close());
+
+export const folderOf = (run) => join(kFolder, "runs", run);
+export const pageOf = (run, file = "index.html") => join(folderOf(run), file);
+export const readResults = (run) => JSON.parse(readFileSync(pageOf(run, "results.json"), "utf8"));
+export const runProgram = (words) => spawnSync(kProgram, words, { encoding: "utf8" });
+
+// Opens a page from disk in a profile of its own, and keeps every word that the console gets.
+export const open = async (file, { hash = "", waits = true, ...options } = {}) => {
+  const context = await browser.newContext({ viewport: kWide, ...options }), page = await context.newPage(), messages = [];
+  page.setDefaultTimeout(15000);
+  page.on("console", (message) => messages.push(message.text()));
+  page.on("pageerror", (error) => messages.push(String(error)));
+  await page.goto(pathToFileURL(file).href + hash);
+  if (waits) await page.waitForFunction(() => document.querySelector(".viewer figcaption bdi"));
+  // Screenshots are for people: they are taken where SHADOWBENCH_SHOTS names a folder.
+  const shoot = async (name) => kShots && page.screenshot({ path: join(kShots, name + ".png"), fullPage: true });
+  return { page, messages, shoot, close: () => context.close() };
+};
+export const openRun = (run, options) => open(pageOf(run), options);
+// What stands below the screen is made when it is scrolled to.
+export const openViewer = async (file, options) => {
+  const opened = await open(file, options);
+  await opened.page.locator("#viewer").evaluate((section) => section.scrollIntoView());
+  return opened;
+};
+export const showCrops = async (page) => {
+  await page.locator(".viewer .strip [data-who]").first().scrollIntoViewIfNeeded();
+  await page.waitForSelector(".viewer .strip [data-who] canvas");
+};
+export const settle = (page) => page.waitForTimeout(250);
+export const measureOverflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+export const readData = (page) => page.evaluate(() => JSON.parse(document.getElementById("run").textContent));
+
+// The viewer's controls, the names of its panes, and what stands in the address.
+export const pick = (page, title, value) => page.getByRole("combobox", { name: title, exact: true }).selectOption(value);
+export const labels = (page) => page.locator(".viewer .panes canvas:visible").evaluateAll((all) => all.map((each) => each.getAttribute("aria-label")));
+export const hashOf = async (page) => {
+  await page.waitForTimeout(450);
+  return decodeURIComponent(new URL(page.url()).hash);
+};
+// Draws a screenshot of one pane into a canvas of another page, since a page from disk may not read its own pictures.
+export const colours = async (page, index = 0) => {
+  const shot = await page.locator(".viewer .panes canvas").nth(index).screenshot();
+  const reader = await (await browser.newContext()).newPage();
+  const all = await reader.evaluate(async (text) => {
+    const image = new Image();
+    image.src = "data:image/png;base64," + text;
+    await image.decode();
+    const canvas = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height }), context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.width, image.height), seen = {};
+    for (let i = 0; i < data.length; i += 4) seen[data.slice(i, i + 3).join()] = (seen[data.slice(i, i + 3).join()] || 0) + 1;
+    return seen;
+  }, shot.toString("base64"));
+  await reader.context().close();
+  return all;
+};
+
+// Writes a page beside a run's own, whose data a function has changed.
+export const changePage = (run, name, edit) => {
+  const html = readFileSync(pageOf(run), "utf8"), pattern = /(id="run">)([^]*?)(<\/script>)/, data = JSON.parse(pattern.exec(html)[2]);
+  edit(data);
+  const file = pageOf(run, name), text = JSON.stringify(data).replaceAll("<", "\\u003c");
+  writeFileSync(file, html.replace(pattern, (_, begin, old, end) => begin + text + end));
+  return file;
+};
+// Repeats the configurations of a page, each with its cells, until there are as many as wanted.
+export const multiply = (data, count) => {
+  const { configurations, cells } = data;
+  data.cells = [];
+  data.configurations = Array.from({ length: count }, (_, i) => {
+    const at = i % configurations.length, twin = i >= configurations.length ? ` (twin ${i})` : "";
+    for (const cell of cells) if (cell.configuration === at) data.cells.push({ ...cell, configuration: i, key: cell.key + twin });
+    return { ...configurations[at], label: configurations[at].label + twin, full: configurations[at].full + twin };
+  });
+};
+
+// What axe-core finds wrong, in a line each.
+export const listViolations = async (page) => {
+  await page.evaluate(kAxe);
+  const { violations } = await page.evaluate(() => axe.run());
+  return violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id} at ${target}: ${failureSummary.replaceAll(/\s+/g, " ")}`));
+};
+
+// Numbers from 0 to 1 that are the same in every run of the tests (mulberry32).
+export const makeRandom = (seed) => () => {
+  seed = (seed + 0x6d2b79f5) | 0;
+  let mixed = Math.imul(seed ^ (seed >>> 15), 1 | seed);
+  mixed = (mixed + Math.imul(mixed ^ (mixed >>> 7), 61 | mixed)) ^ mixed;
+  return ((mixed ^ (mixed >>> 14)) >>> 0) / 2 ** 32;
+};

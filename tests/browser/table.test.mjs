@@ -1,0 +1,141 @@
+// The table of a run's page holds what results.json holds, sorts, filters and marks.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { changePage, open, openRun, readData, readResults } from "./support.mjs";
+
+const readHead = (page) => page.locator(".numbers thead th").allTextContents();
+const readRows = (page) => page.locator(".numbers tbody tr").evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => ({
+  text: [...cell.childNodes].filter((node) => !node.classList?.contains("mark")).map((node) => node.textContent).join(""),
+  mark: [...cell.querySelectorAll(".mark")].map((mark) => mark.textContent.trim()).join(""),
+}))));
+const readNumber = (text) => (text === "\u2013" ? null : Number(text.replace(" %", "")) / (text.endsWith(" %") ? 100 : 1));
+const show = (page, measure) => page.locator('.numbers select[name="measure"]').selectOption(measure);
+const isNear = (shown, value) => (value === null ? shown === null : shown !== null && Math.abs(shown - value) <= 0.0051 * Math.abs(value));
+
+// A value of results.json: the page's times are medians of what a frame takes.
+const readValue = (cell, id) => {
+  const path = { "time_ms.moving": "time_ms.moving.median", "time_ms.still": "time_ms.filter.median" }[id] ?? id;
+  return path.split(".").reduce((value, name) => value?.[name] ?? null, cell);
+};
+
+for (const run of ["several", "odd", "untrue", "single"]) {
+  test(`EveryCellOfEveryMeasure_EqualsTheResults: ${run}`, async () => {
+    const { page, messages, close } = await openRun(run), data = await readData(page);
+    const cells = new Map(readResults(run).cells.map((cell) => [cell.key, cell])), labels = data.configurations.map(({ label }) => label);
+    const shown = await page.locator('.numbers select[name="measure"] option').evaluateAll((all) => all.map(({ value }) => value));
+    assert.deepEqual(shown, data.measures.map(({ id }) => id).filter((id) => [...cells.values()].some((cell) => readValue(cell, id) !== null)));
+    for (const measure of shown) {
+      await show(page, measure);
+      const rows = await readRows(page);
+      assert.deepEqual(rows.map(([name]) => name.text).sort(), [...labels].sort());
+      for (const row of rows) {
+        const configuration = labels.indexOf(row[0].text), mine = data.cells.filter((cell) => cell.configuration === configuration);
+        assert.equal(mine.length, data.places.length);
+        for (const { place, key, status } of mine) {
+          const cell = cells.get(key), { text, mark } = row[3 + place];
+          assert.ok(isNear(readNumber(text), readValue(cell, measure)), `${measure} of ${row[0].text}: ${text}, not ${readValue(cell, measure)}`);
+          assert.equal(mark.includes("!"), cell.status !== "ok", status);
+        }
+        const costs = mine.map(({ key }) => readValue(cells.get(key), "time_ms.moving"));
+        assert.ok(isNear(readNumber(row[2].text), costs.reduce((sum, cost) => sum + cost, 0) / costs.length), "the mean cost");
+      }
+    }
+    assert.deepEqual(messages, []);
+    await close();
+  });
+}
+
+test("StarsAndTies_AreTheBestOfTheirClass_WhateverIsShown", async () => {
+  // A value far below 0 is the least, and not the best.
+  const file = changePage("several", "signs.html", (data) => { for (const cell of data.cells.slice(6, 10)) cell.values_of["error.mean"] = -0.9; });
+  const { page, close } = await open(file), data = await readData(page);
+  for (const [measure, rank] of [["error.rmse", (value) => value], ["error.mean", Math.abs], ["error.flip", (value) => value]]) {
+    await show(page, measure);
+    const wanted = new Map();
+    for (const cell of data.cells) {
+      const of = (each) => rank(each.values_of[measure]), name = data.configurations[cell.configuration];
+      const group = data.cells.filter((each) => each.place === cell.place && each.status === "ok" && data.configurations[each.configuration].class === name.class);
+      const best = group.reduce((least, each) => (of(each) < of(least) ? each : least));
+      const reach = measure === "error.rmse" ? Math.max(cell.reach, best.reach) : 0;
+      wanted.set(`${name.label} ${cell.place}`, cell === best ? "\u2605" : of(cell) - of(best) <= reach ? "\u2248" : "");
+    }
+    const compare = async () => {
+      for (const [name, , , ...rest] of await readRows(page))
+        data.places.forEach((_, place) => assert.equal(rest[place].mark, wanted.get(`${name.text} ${place}`), `${measure} of ${name.text} on ${place}`));
+    };
+    await compare();
+    for (const text of ["box4x4", "none", "vsm"]) {
+      await page.locator('.numbers input[type="search"]').fill(text);
+      await compare();
+    }
+    await page.locator('.numbers input[type="search"]').fill("");
+  }
+  await close();
+});
+
+test("TheWorstOfTheScenes_IsFarthestFromWhatIsBest", async () => {
+  const { page, close } = await openRun("several");
+  for (const [measure, rank] of [["error.rmse", (value) => value], ["error.mean", Math.abs]]) {
+    await show(page, measure);
+    for (const row of await readRows(page)) {
+      const values = row.slice(3).map(({ text }) => readNumber(text)), worst = values.pop();
+      assert.equal(rank(worst), Math.max(...values.map(rank)), `${measure} of ${row[0].text}`);
+    }
+  }
+  await close();
+});
+
+test("EveryHead_SortsUpAndDown_WithWhatIsMissingLast", async () => {
+  const file = changePage("several", "gaps.html", (data) => { data.cells[2].values_of["error.rmse"] = null; });
+  const { page, close } = await open(file), count = (await readHead(page)).length;
+  const kept = (await readRows(page)).map(([name]) => name.text);
+  for (let column = 0; column < count; ++column) {
+    const head = page.locator(".numbers thead th").nth(column), isSorted = (await head.getAttribute("aria-sort")) !== "none";
+    for (const direction of isSorted ? ["descending", "ascending"] : ["ascending", "descending"]) {
+      await head.getByRole("button").click();
+      assert.equal(await head.getAttribute("aria-sort"), direction);
+      assert.equal(await page.locator('.numbers th:not([aria-sort="none"])[scope="col"]').count(), 1);
+      const texts = (await readRows(page)).map((row) => row[column].text);
+      const sorted = column < 2 ? texts : texts.map(readNumber), missing = sorted.filter((value) => value === null).length;
+      assert.ok(sorted.slice(sorted.length - missing).every((value) => value === null), "what is missing comes last");
+      const present = sorted.slice(0, sorted.length - missing);
+      const order = column < 2 ? (a, b) => a.localeCompare(b) : (a, b) => a - b;
+      assert.deepEqual(present, [...present].sort((a, b) => (direction === "ascending" ? 1 : -1) * order(a, b)));
+      assert.equal(await page.evaluate(() => document.activeElement.closest("th")?.cellIndex), column, "the focus stays on the head");
+    }
+  }
+  assert.deepEqual((await readRows(page)).map(([name]) => name.text).sort(), kept.sort());
+  await close();
+});
+
+test("NameParameterAndClass_Filter", async () => {
+  const { page, messages, close } = await openRun("several"), data = await readData(page);
+  const search = page.locator('.numbers input[type="search"]'), width = page.locator('.numbers select[name="width"]');
+  const names = async () => (await readRows(page)).map(([name]) => name.text).sort();
+  const expect = (test) => data.configurations.filter(test).map(({ label }) => label).sort();
+  await search.fill("VSM");
+  assert.deepEqual(await names(), expect(({ filter }) => filter === "vsm"));
+  await search.fill("radius=1");
+  assert.deepEqual(await names(), expect(({ label, params }) => `${label} ${params}`.includes("radius=1")));
+  await search.fill("[(*<b>");
+  assert.deepEqual(await names(), []);
+  await search.fill("");
+  for (const name of data.classes) {
+    await width.selectOption(name);
+    assert.deepEqual(await names(), expect((each) => each.class === name));
+  }
+  await width.selectOption("");
+  assert.equal((await names()).length, data.configurations.length);
+  assert.deepEqual(messages, []);
+  await close();
+});
+
+test("ACell_OpensTheViewer", async () => {
+  const { page, messages, close } = await openRun("several"), data = await readData(page);
+  const row = page.locator(".numbers tbody tr").filter({ hasText: "box4x4" });
+  await row.locator("td button").nth(1).click();
+  const pattern = `#view=${data.places[1].title},truth,box4x4,`;
+  await page.waitForFunction((start) => decodeURIComponent(location.hash).startsWith(start), pattern);
+  assert.deepEqual(messages, []);
+  await close();
+});

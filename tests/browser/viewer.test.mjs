@@ -1,0 +1,166 @@
+// The viewer of a run's page: layers, modes, keys, values and links.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { inflateSync } from "node:zlib";
+import { colours, hashOf, labels, openViewer, pageOf, pick, settle, showCrops } from "./support.mjs";
+
+const kPage = pageOf("several");
+
+test("FirstPaint_ShowsTheTruthAndAFilter_Silently", async () => {
+  const { page, messages, shoot, close } = await openViewer(kPage);
+  await page.waitForSelector(".viewer .strip button canvas");
+  assert.deepEqual((await labels(page)).map((each) => each.replace(/[\u2068\u2069]/g, "")),
+    ["Picture of cubes, Side by side. Left: truth", "Picture of cubes, Side by side. Right: none"]);
+  assert.equal(new URL(page.url()).hash, "", "the address stays until the reader changes something");
+  assert.ok(Object.keys(await colours(page)).length > 20);
+  assert.equal(await page.locator(".viewer .strip button canvas").count(), 6);
+  await shoot("first");
+  assert.deepEqual(messages, []);
+  await close();
+});
+
+test("EveryLayerInEveryMode_IsShownOrExplained", async () => {
+  const { page, messages, shoot, close } = await openViewer(kPage, { hash: "#view=cubes,none,vsm%20(radius%201),picture,side,0,0,1" });
+  await settle(page);
+  const layers = await page.getByRole("combobox", { name: "Layer", exact: true }).locator("option:not([disabled])").evaluateAll((all) => all.map((each) => each.value));
+  for (const name of ["picture", "visibility", "error", "numeric", "estimator", "discretisation", "model", "flip", "stability.half_difference", "uncertainty"])
+    assert.ok(layers.includes(name), name + " is among " + layers);
+  for (const mode of ["Side by side", "Slider", "Flip", "Difference"]) {
+    await page.getByRole("button", { name: mode, exact: true }).click();
+    for (const layer of layers) {
+      await pick(page, "Layer", layer);
+      await settle(page);
+      const isExplained = await page.locator(".viewer .message:visible").count() > 0;
+      assert.ok(isExplained || Object.keys(await colours(page)).length > 1, `${mode} ${layer}`);
+      if (["picture", "error", "flip"].includes(layer)) await shoot(`${mode} ${layer}`.replaceAll(" ", "_"));
+    }
+  }
+  assert.deepEqual(messages, []);
+  await close();
+});
+
+test("Keys_ChooseZoomFlipAndMove", async () => {
+  const { page, messages, close } = await openViewer(kPage);
+  await page.waitForSelector(".viewer .strip button canvas");
+  for (const [key, name] of [["3", "tent3x3"], ["8", "esm"], ["t", "truth"], ["2", "pcf2x2"]]) {
+    await page.keyboard.press(key);
+    await settle(page);
+    assert.ok((await labels(page))[1].includes(name), key);
+  }
+  await page.keyboard.press("+");
+  await page.keyboard.press("+");
+  assert.match(await hashOf(page), /,2\.25$/);
+  const pane = page.locator(".viewer .panes canvas").first();
+  await pane.focus();
+  const before = (await hashOf(page)).split(",").map(Number);
+  await page.keyboard.press("ArrowLeft");
+  await page.keyboard.press("ArrowUp");
+  const moved = (await hashOf(page)).split(",").map(Number);
+  assert.ok(moved[5] < before[5] && moved[6] < before[6]);
+  await page.keyboard.press("Alt+ArrowRight");
+  const live = page.locator(".viewer [aria-live]");
+  const said = await live.textContent();
+  assert.match(said, /^x \d+, y \d+: the truth [\d.]+; .pcf2x2. [\d.]+, error [+\u2212][\d.]+$/);
+  await pane.hover({ position: { x: 40, y: 40 } });
+  assert.equal(await live.textContent(), said, "the pointer is not read aloud");
+  await page.keyboard.press("0");
+  assert.match(await hashOf(page), /,1$/);
+  await page.keyboard.press("f");
+  await settle(page);
+  assert.match((await labels(page))[0], /Flip. Left/);
+  await page.keyboard.press("F");
+  assert.match((await labels(page))[0], /Flip. Right/);
+  await page.getByRole("combobox", { name: "Right", exact: true }).focus();
+  await page.keyboard.press("f");
+  assert.match((await labels(page))[0], /Flip. Right/, "a key typed into a control stays there");
+  assert.deepEqual(messages, []);
+  await close();
+});
+
+// Reads a plane of a file of values without the page's own script: a function of the pixel.
+const readPlane = (file, name) => {
+  const text = readFileSync(pageOf("several", `images/${file}.values.js`), "utf8");
+  const { width, height, planes } = JSON.parse(text.slice(text.indexOf("{"), text.lastIndexOf("}") + 1));
+  const { low, high, data } = planes.find((plane) => plane.name === name), bytes = inflateSync(Buffer.from(data, "base64"));
+  return (x, y) => {
+    let code = 0;
+    for (let i = y * width; i <= y * width + x; ++i) code = (code + 256 * bytes[i] + bytes[width * height + i]) % 65536;
+    return code === 65535 ? NaN : low + ((high - low) * code) / 65534;
+  };
+};
+
+test("Values_UnderThePointer_AreThoseOfTheFile", async () => {
+  const { page, close } = await openViewer(kPage, { hash: "#view=cubes,truth,none,visibility,side,120,67,1" });
+  await page.waitForSelector(".viewer .strip button canvas");
+  assert.equal(await page.locator(".viewer tbody tr").count(), 9);
+  const box = await page.locator(".viewer .panes canvas").first().boundingBox();
+  for (const [x, y] of [[50, 75], [150, 50], [120, 100], [90, 79], [40, 60]]) {
+    await page.mouse.move(box.x + ((x + 0.5) / 240) * box.width, box.y + ((y + 0.5) / 135) * box.height);
+    assert.equal(await page.locator(".viewer caption").textContent(), `Pixel x ${x}, y ${y}`);
+    const shown = await page.locator(".viewer tbody tr").nth(1).locator("td").allTextContents();
+    const read = (file, name) => readPlane(file, name)(x, y), parts = ["numeric", "estimator", "discretisation", "model"];
+    const direct = { value: read("cubes.none", "visibility"), truth: read("cubes.truth.area", "area"), sum: 0 };
+    for (const part of parts) direct.sum += read("cubes.none", part);
+    assert.equal(shown[0], direct.value.toFixed(3));
+    assert.equal(Number(shown[1].replace("\u2212", "-")).toFixed(3), (direct.value - direct.truth).toFixed(3).replace("-0.000", "0.000"));
+    assert.ok(Math.abs(direct.sum - (direct.value - direct.truth)) < 2e-3, "the parts add up");
+  }
+  await close();
+});
+
+test("Link_RestoresTheView_AndUnknownNamesAreSaid", async () => {
+  const first = await openViewer(kPage);
+  await pick(first.page, "Scene", { label: "ball" });
+  await pick(first.page, "Left", { label: "vsm (radius 1)" });
+  await pick(first.page, "Layer", "error");
+  await settle(first.page);
+  const box = await first.page.locator(".viewer .panes canvas").first().boundingBox();
+  await first.page.mouse.move(box.x + 100, box.y + 100);
+  await first.page.mouse.wheel(0, -600);
+  await first.page.getByRole("button", { name: "Crop", exact: true }).click();
+  await first.page.mouse.move(box.x + 50, box.y + 50);
+  await first.page.mouse.down();
+  await first.page.mouse.move(box.x + 200, box.y + 150, { steps: 5 });
+  await first.page.mouse.up();
+  await showCrops(first.page);
+  await settle(first.page);
+  await first.shoot("crop");
+  const hash = new URL((await hashOf(first.page), first.page.url())).hash, before = await labels(first.page);
+  assert.match(decodeURIComponent(hash), /^#view=ball,vsm \(radius 1\),none,error,side,[\d.]+,[\d.]+,[\d.]+,\d+-\d+-\d+-\d+$/);
+  const again = await openViewer(kPage, { hash });
+  await showCrops(again.page);
+  assert.deepEqual(await labels(again.page), before);
+  assert.equal(await again.page.locator(".viewer .strip [data-who]").count(), 9);
+  await again.page.locator(".viewer .strip [data-who]").last().click();
+  await settle(again.page);
+  assert.match((await labels(again.page))[1], /esm/);
+  for (const [bad, expected] of [["#view=nowhere,%E0%A4%A,<b>,glow,spin,NaN,1e999,-4,9-9", /nowhere.*<b>.*glow.*spin/], ["#view=", /^$/], ["#view=cubes", /^$/],
+    ["#view=cubes,truth,none,error,side,1e9,-1e9,1e9,99999-99999-99999-99999", /^$/]]) {
+    const broken = await openViewer(kPage, { hash: bad });
+    assert.match(await broken.page.locator(".viewer .said").textContent(), expected, bad);
+    assert.deepEqual(broken.messages, []);
+    await broken.close();
+  }
+  assert.deepEqual([...first.messages, ...again.messages], []);
+  await first.close();
+  await again.close();
+});
+
+test("OpenViewerAndWorstPlace_ServeThePage", async () => {
+  const { page, messages, close } = await openViewer(kPage);
+  const worst = await page.evaluate(async () => {
+    const { rect, left, right } = await shadowbench.worstPlace(1, 0);
+    await shadowbench.openViewer({ place: 1, right: 0, layer: "error", mode: "slider", rect });
+    return { rect, sizes: [left.width, left.height, right.width, right.height] };
+  });
+  assert.deepEqual([worst.rect.width, worst.rect.height], [30, 30]);
+  assert.deepEqual(worst.sizes, [90, 90, 90, 90]);
+  const [,,, layer, mode, x, y, zoom] = (await hashOf(page)).split(",");
+  assert.deepEqual([layer, mode], ["error", "slider"]);
+  assert.ok(Number(zoom) > 3);
+  assert.ok(Math.abs(x - worst.rect.x - 15) < 33 && Math.abs(y - worst.rect.y - 15) < 33);
+  assert.deepEqual(messages, []);
+  await close();
+});
+

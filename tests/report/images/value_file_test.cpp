@@ -1,0 +1,100 @@
+#include "report/images/value_file.h"
+
+#include <gmock/gmock.h>
+#include <zlib.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "filters/base/atomic_file.h"
+#include "filters/base/error.h"
+#include "tests/report/records/synthetic.h"
+
+namespace shadowbench::images {
+namespace {
+
+/// Decodes base64 as the text of RFC 4648 says, apart from the encoder.
+std::vector<unsigned char> decode_base64(const std::string& text) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<unsigned char> bytes;
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    bits = bits << 6 | static_cast<std::uint32_t>(digits.find(c));
+    if ((count += 6) >= 8) bytes.push_back(static_cast<unsigned char>(bits >> (count -= 8)));
+  }
+  return bytes;
+}
+
+std::vector<double> decode(const nlohmann::json& file, const nlohmann::json& plane) {
+  const std::size_t width = file["width"], count = width * file["height"].get<std::size_t>();
+  const auto packed = decode_base64(plane["data"]);
+  std::vector<unsigned char> bytes(2 * count);
+  uLongf size = static_cast<uLongf>(bytes.size());
+  EXPECT_EQ(uncompress(bytes.data(), &size, packed.data(), static_cast<uLong>(packed.size())), Z_OK);
+  EXPECT_EQ(size, bytes.size());
+  const double low = plane["low"], high = plane["high"];
+  std::vector<double> values;
+  std::uint16_t code = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % width == 0) code = 0;
+    code = static_cast<std::uint16_t>(code + (bytes[i] << 8) + bytes[count + i]);
+    values.push_back(code == 65535 ? std::nan("") : low + (high - low) * code / 65534.0);
+  }
+  return values;
+}
+
+TEST(ValueFile, ComesBackWithinHalfAStep) {
+  const records::TemporaryFolder folder("value_file");
+  Image visibility(5, 3, 1), error(5, 3, 1);
+  for (std::size_t i = 0; i < 15; ++i) {
+    visibility.texels[i] = static_cast<float>(i * i % 15) / 14.0f;
+    error.texels[i] = -2.0f + 0.3f * static_cast<float>(i);
+  }
+  visibility.texels[7] = std::numeric_limits<float>::quiet_NaN();
+  error.texels[8] = std::numeric_limits<float>::infinity();
+  write_value_file(folder.path() / "a.js", "a \"b\".js", {{"visibility", visibility}, {"error", error}});
+  const std::string text = records::read_text(folder.path() / "a.js");
+  const std::string start = "shadowbenchValues(\"a \\\"b\\\".js\", ";
+  ASSERT_EQ(text.substr(0, start.size()), start);
+  ASSERT_EQ(text.substr(text.size() - 3), ");\n");
+  const auto file = nlohmann::json::parse(text.substr(start.size(), text.size() - start.size() - 3));
+  EXPECT_EQ(file["planes"][0]["low"], 0.0);
+  EXPECT_EQ(file["planes"][0]["high"], 1.0);
+  EXPECT_EQ(file["planes"][1]["name"], "error");
+  const Image* const planes[] = {&visibility, &error};
+  for (std::size_t p = 0; p < 2; ++p) {
+    const auto values = decode(file, file["planes"][p]);
+    const double step = (file["planes"][p]["high"].get<double>() - file["planes"][p]["low"].get<double>()) / 65534.0;
+    for (std::size_t i = 0; i < 15; ++i)
+      if (std::isfinite(planes[p]->texels[i]))
+        EXPECT_NEAR(values[i], planes[p]->texels[i], 0.5001 * step) << p << " " << i;
+      else
+        EXPECT_TRUE(std::isnan(values[i])) << p << " " << i;
+  }
+}
+
+TEST(ValueFile, EveryLengthOfBase64_IsWhole) {
+  const records::TemporaryFolder folder("value_file_lengths");
+  for (int width = 1; width < 12; ++width) {
+    Image plane(width, 1, 1);
+    for (int x = 0; x < width; ++x) plane.at(x, 0)[0] = static_cast<float>((37 * x) % 11) / 10.0f;
+    write_value_file(folder.path() / "a.js", "a", {{"p", plane}});
+    const std::string text = records::read_text(folder.path() / "a.js");
+    const auto file = nlohmann::json::parse(text.substr(23, text.size() - 26));
+    EXPECT_EQ(file["planes"][0]["data"].get<std::string>().size() % 4, 0u);
+    EXPECT_THAT(decode(file, file["planes"][0]), ::testing::SizeIs(width));
+  }
+}
+
+TEST(ValueFile, FolderThatCannotBeMade_IsAnError) {
+  const records::TemporaryFolder folder("value_file_bad");
+  write_text_file(folder.path() / "file", "");
+  EXPECT_THROW(write_value_file(folder.path() / "file" / "a.js", "a", {{"p", Image(1, 1, 1)}}), Error);
+}
+
+}  // namespace
+}  // namespace shadowbench::images
