@@ -5,6 +5,7 @@
 #include <tbb/parallel_for_each.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "harness/measure/stability_meter.h"
 #include "harness/run/provenance.h"
@@ -160,12 +161,18 @@ void add_phase_parts(std::vector<images::Part>& parts, const measure::MeasuredCe
     parts.push_back({phase_part(cell.label, i), {"Y"}, cell.phases[i], false});
 }
 
+/// FLIP is only looked at: 256 shades of it take a third of the room.
+images::Image round_shades(images::Image image) {
+  for (float& value : image.texels) value = std::round(255.0f * value) / 255.0f;
+  return image;
+}
+
 /// What the page's viewer shows of a cell beside its picture.
 images::ValuePlanes list_planes(const measure::MeasuredCell& cell) {
   images::ValuePlanes planes = {{"visibility", cell.visibility}};
   for (std::size_t p = 0; p < cell.error_parts.size(); ++p)
     planes.emplace_back(records::list_error_parts()[p].id, cell.error_parts[p]);
-  if (!cell.flip.empty()) planes.emplace_back("flip", cell.flip);
+  if (!cell.flip.empty()) planes.emplace_back("flip", round_shades(cell.flip));
   for (const images::StabilityImage& each : images::list_stability_images())
     if (const images::Image& image = cell.stability.*each.image; image.texels.size() == cell.visibility.texels.size())
       planes.emplace_back(fmt::format("stability.{}", each.id), image);

@@ -101,27 +101,36 @@ class Finder {
     return *b.error.rmse - *a.error.rmse > reach ? *b.error.rmse / *a.error.rmse : 1.0;
   }
 
+  /// The sentences of a map's values, those with the largest numbers first.
+  static std::vector<std::string> sort_sentences(const auto& found) {
+    std::vector<std::pair<double, std::string>> sorted;
+    for (const auto& [key, sentence] : found) sorted.push_back(sentence);
+    std::ranges::stable_sort(sorted, std::greater(), &std::pair<double, std::string>::first);
+    std::vector<std::string> sentences;
+    for (auto& [number, sentence] : sorted) sentences.push_back(std::move(sentence));
+    return sentences;
+  }
+
   std::vector<std::string> list_turnovers() const {
-    std::multimap<double, std::string, std::greater<>> sentences;
-    std::set<std::string> told;
+    std::map<std::set<std::string>, std::pair<double, std::string>> sentences;
     visit_pairs([&](const Configuration& a, const Configuration& b, const auto& pairs) {
       const auto better = [](const auto& p) { return gain(*p[0], *p[1]); };
       const auto worse = [](const auto& p) { return gain(*p[1], *p[0]); };
       const auto best = std::ranges::max_element(pairs, {}, better), worst = std::ranges::max_element(pairs, {}, worse);
       const double turn = std::min(better(*best), worse(*worst));
-      if (turn <= 1.0 || told.contains(b.name + "\n" + a.name)) return;
-      told.insert(a.name + "\n" + b.name);
-      sentences.emplace(
-          turn,
-          fmt::format("The order turns over: {} has a smaller RMSE than {} on {} ({} against {}), and a larger one "
-                      "on {} ({} against {}).",
-                      a.name, b.name, name_place(*(*best)[0]), number(*(*best)[0]->error.rmse),
-                      number(*(*best)[1]->error.rmse), name_place(*(*worst)[0]), number(*(*worst)[0]->error.rmse),
-                      number(*(*worst)[1]->error.rmse)));
+      if (turn <= 1.0) return;
+      // Of all parameters of two filters the pair that turns most.
+      const std::set<std::string> filters = {a.cells.front()->filter, b.cells.front()->filter};
+      auto& known = sentences[filters];
+      if (known.first >= turn) return;
+      known = {turn, fmt::format(
+                         "The order turns over: {} has a smaller RMSE than {} on {} ({} against {}), and a larger one "
+                         "on {} ({} against {}).",
+                         a.name, b.name, name_place(*(*best)[0]), number(*(*best)[0]->error.rmse),
+                         number(*(*best)[1]->error.rmse), name_place(*(*worst)[0]), number(*(*worst)[0]->error.rmse),
+                         number(*(*worst)[1]->error.rmse))};
     });
-    std::vector<std::string> list;
-    for (auto& [turn, sentence] : sentences) list.push_back(std::move(sentence));
-    return list;
+    return sort_sentences(sentences);
   }
 
   /// Pairs of which the dearer one is clearly better nowhere; of one dearer filter, the cheapest that equals it.
@@ -142,12 +151,7 @@ class Finder {
                                         "class of width, and is clearly more accurate on no scene.",
                                         a.name, number(of_a / of_b), b.name)};
     });
-    std::vector<std::pair<double, std::string>> sorted;
-    for (auto& [label, sentence] : worst) sorted.push_back(std::move(sentence));
-    std::ranges::sort(sorted, std::greater());
-    std::vector<std::string> sentences;
-    for (auto& [ratio, sentence] : sorted) sentences.push_back(std::move(sentence));
-    return sentences;
+    return sort_sentences(worst);
   }
 
   /// Errors that most of comes from another part than that of most cells.

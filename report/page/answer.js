@@ -83,7 +83,9 @@
     for (const limit of limits) {
       if (limit.group === "cost") continue;
       const a = findWorst(best, limit.field), b = findWorst(second, limit.field);
-      if (a && b && b.value < a.value - (limit.id === "error.rmse" ? Math.max(a.cell.reach, b.cell.reach) : 0.001 * (limit.group === "artefact")) && number(a.value) !== number(b.value))
+      if (!a || !b) continue;
+      const least = limit.id === "error.rmse" ? Math.max(a.cell.reach, b.cell.reach) : limit.group === "artefact" ? 0.001 : 0.02 * a.value;
+      if (b.value < a.value - least)
         gains.push(`${limit.title} ${number(b.value)} instead of ${number(a.value)} at worst`);
     }
     return gains.length > 0 ? `it would buy ${gains.slice(0, 3).join(", ")}` : "it would buy nothing that was measured";

@@ -36,6 +36,19 @@ TEST(Surprises, OrderThatTurnsOver_IsSaidOnceWithItsNumbers) {
                                                "0.03\\)\\."));
 }
 
+TEST(Surprises, OfOnePairOfFilters_TheStrongestTurnIsSaid) {
+  std::vector<CellRecord> cells = {make_measured("cubes", "a", 0.01, 1.0), make_measured("stack", "a", 0.04, 1.0)};
+  for (const double radius : {1.0, 7.0 / 6.0}) {
+    for (const auto& [scene, rmse] : {std::pair{"cubes", 0.02}, {"stack", 0.03 - 0.01 * (radius - 1.0)}}) {
+      cells.push_back(make_measured(scene, "b", rmse, 1.0));
+      cells.back().params["radius"] = radius;
+    }
+  }
+  const auto said = list_surprises(cells);
+  ASSERT_THAT(said, SizeIs(1));
+  EXPECT_THAT(said[0], HasSubstr("b (radius 1.16667)"));
+}
+
 TEST(Surprises, DifferencesWithinTheIntervals_AreNone) {
   EXPECT_THAT(list_surprises({make_measured("cubes", "a", 0.0100, 1.0), make_measured("stack", "a", 0.0309, 1.0),
                               make_measured("cubes", "b", 0.0105, 1.0), make_measured("stack", "b", 0.0300, 1.0)}),
