@@ -28,6 +28,7 @@ struct ChartPoint {
   std::string label = {};                 ///< beside the point; empty: none
   std::vector<std::string> details = {};  ///< lines shown when one points at it
   std::string opens = {};                 ///< key of the cell that the viewer shows when one clicks it; empty: none
+  std::string group = {};                 ///< the reader may choose one; empty: shown with every group
 };
 
 /// A point without intervals.

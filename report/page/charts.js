@@ -136,7 +136,7 @@
       left += room + 20;
       return at;
     };
-    const entries = chart.series.filter((series) => series.title);
+    const entries = chart.series.filter((series) => series.title && series.points.length > 0);
     for (const series of entries) {
       const lines = wrap(series.title, width - 60), at = place(Math.max(...lines.map(widthOf)) + 34);
       const group = svgElement(svg, "g", { opacity: hidden.has(series.title) ? 0.3 : 1, class: "key" });
@@ -267,12 +267,17 @@
   // Texts and points are packed: see the writer.
   const unpack = (packed) => ({
     ...packed, series: packed.series.map((series) => ({
-      ...series, points: series.points.map(([x, y, label, details, opens]) => ({
+      ...series, points: series.points.map(([x, y, label, details, opens, group]) => ({
         x: typeof x === "number" ? [x, x, x] : x || [null], y: typeof y === "number" ? [y, y, y] : y || [null], label: label || "",
-        details: (details || []).map((i) => page.texts[i]), opens: opens || "",
+        details: (details || []).map((i) => page.texts[i]), opens: opens || "", group: group || "",
       })),
     })),
   });
+
+  // The chart with the points of one group, and those that belong to none.
+  const keepGroup = (chart, group) => !group ? chart : {
+    ...chart, series: chart.series.map((series) => ({ ...series, points: series.points.filter((point) => !point.group || point.group === group) })),
+  };
 
   const start = (choice) => {
     const figure = document.getElementById(choice.id);
@@ -296,9 +301,12 @@
       options.forEach((option, i) => select.add(new Option(option, String(i))));
       return select;
     });
+    const groups = [...new Set(choice.entries.flatMap(({ chart: { series } }) => series.flatMap(({ points }) => points.map((point) => point[5]))))].filter(Boolean);
+    const width = groups.length > 1 ? element(element(controls, "label", {}, "width "), "select", {}) : null;
+    if (width) for (const group of ["", ...groups]) width.add(new Option(group || "any", group));
     const choose = () => {
       const entry = choice.entries[selects.reduce((index, select, i) => index * choice.selectors[i].options.length + Number(select.value), 0)];
-      [chart, sentences] = [unpack(entry.chart), entry.sentences];
+      [chart, sentences] = [keepGroup(unpack(entry.chart), width?.value), entry.sentences];
       said.replaceChildren();
       if (sentences.length > 0) {
         const list = element(said, "ul", {});
@@ -306,7 +314,7 @@
       }
       draw();
     };
-    for (const select of selects) select.addEventListener("change", choose);
+    for (const select of [...selects, width]) select?.addEventListener("change", choose);
     element(controls, "button", { type: "button", onclick: () => saveSvg(chart, hidden) }, "Save as SVG");
     element(controls, "button", { type: "button", onclick: () => savePng(chart, hidden) }, "Save as PNG");
     choose();

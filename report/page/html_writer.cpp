@@ -119,8 +119,8 @@ class ChartPacker {
   }
 
   json pack(const ChartPoint& point) {
-    json packed{pack(point.x), pack(point.y), point.label, pack(point.details), point.opens};
-    for (int last = 4; last > 1 && packed.back().empty(); --last) packed.erase(packed.end() - 1);
+    json packed{pack(point.x), pack(point.y), point.label, pack(point.details), point.opens, point.group};
+    for (int last = 5; last > 1 && packed.back().empty(); --last) packed.erase(packed.end() - 1);
     return packed;
   }
 

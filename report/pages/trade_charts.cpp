@@ -91,7 +91,7 @@ class FrontChart {
     for (const std::size_t member : front_.members) {
       const analysis::FrontPoint& values = front_.points[member];
       if (values.group != width_class) continue;
-      line.points.push_back({values.cost, values.error});
+      line.points.push_back({values.cost, values.error, {}, {}, {}, std::string(name)});
     }
     if (!line.points.empty()) chart.series.push_back(std::move(line));
   }
@@ -110,6 +110,7 @@ class FrontChart {
     const Configuration& configuration = configuration_of(point);
     const analysis::FrontPoint& values = front_.points[point];
     page::ChartPoint made{values.cost, values.error, configuration.label};
+    made.group = analysis::name_class(values.group);
     made.details = {configuration.label,
                     configuration.params.empty() ? "no parameters" : records::describe_params(configuration.params),
                     "kernel: " + records::describe_kernel(cells_[configuration.cells.front()].kernel),
@@ -138,7 +139,13 @@ class FrontChart {
                                                                       : tied;
       own.points.push_back(make_point(i));
       if (standing != analysis::Standing::kTied) continue;
-      for (const std::size_t end : {i, by}) ties.points.push_back({front_.points[end].cost, front_.points[end].error});
+      for (const std::size_t end : {i, by})
+        ties.points.push_back({front_.points[end].cost,
+                               front_.points[end].error,
+                               {},
+                               {},
+                               {},
+                               std::string(analysis::name_class(front_.points[i].group))});
     }
     if (members.points.empty() && tied.points.empty() && beaten.points.empty()) return;
     series.push_back(std::move(members));
@@ -154,8 +161,12 @@ class FrontChart {
     curve.faint = true;
     for (const std::size_t i : each.configurations) {
       const Configuration& configuration = scope_.configurations[i];
-      curve.points.push_back(
-          {*configuration.costs[front_.cost].estimate, *configuration.errors[front_.error].estimate});
+      curve.points.push_back({*configuration.costs[front_.cost].estimate,
+                              *configuration.errors[front_.error].estimate,
+                              {},
+                              {},
+                              {},
+                              std::string(analysis::name_class(configuration.width_class))});
     }
     return curve;
   }

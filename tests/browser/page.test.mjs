@@ -70,7 +70,8 @@ test("AClickOnAMark_OpensTheViewerWithThatFilterAndTheTruth", async () => {
   });
   assert.ok(chart >= 0, "a chart whose marks open cells");
   const figure = page.locator("figure.chart").nth(chart);
-  for (const select of await figure.locator("select").all()) await select.selectOption({ index: (await select.locator("option").count()) - 1 });
+  for (const select of await figure.locator("label:not(:has-text('width')) select").all())
+    await select.selectOption({ index: (await select.locator("option").count()) - 1 });
   await figure.locator("svg").scrollIntoViewIfNeeded();
   const marks = figure.locator("svg > g:not(.key) path[transform]"), opened = new Set();
   for (let i = 0; i < (await marks.count()); ++i) {
@@ -108,5 +109,24 @@ test("AFileOfValuesThatIsGone_IsSaid_AndTheRestWorks", async () => {
   await page.locator('.numbers input[type="search"]').fill("vsm");
   assert.equal(await page.locator(".numbers tbody tr").count(), 2);
   assert.ok(messages.every((text) => text.includes("ERR_FILE_NOT_FOUND")), "nothing but the browser's own word on missing files: " + messages);
+  await close();
+});
+
+test("TheWidth_ChoosesTheMarksOfOneClass", async () => {
+  const { page, messages, close } = await openRun("several"), data = await readData(page);
+  const classes = [...new Set(data.configurations.map((configuration) => configuration.class).filter(Boolean))];
+  const select = page.locator("#front label:has-text('width') select"), keys = page.locator("#front .key text");
+  assert.ok(classes.length > 1);
+  assert.deepEqual((await select.locator("option").evaluateAll((all) => all.map((each) => each.value))).sort(), ["", ...classes].sort());
+  const all = await keys.count();
+  for (const name of classes) {
+    await select.selectOption(name);
+    const filters = new Set(data.configurations.filter((configuration) => configuration.class === name).map(({ filter }) => filter));
+    const shown = (await keys.allTextContents()).filter((text) => !text.startsWith("front"));
+    assert.ok(shown.length > 0 && shown.every((text) => filters.has(text)), `${name}: ${shown}`);
+  }
+  await select.selectOption("");
+  assert.equal(await keys.count(), all);
+  assert.deepEqual(messages, []);
   await close();
 });

@@ -86,6 +86,9 @@ TEST(TradeSection, Fronts_AreChartsOfEveryErrorAndCost) {
                           HasSubstr("RMSE to the area truth: 0.1 [0.099, 0.101]"),
                           HasSubstr("time of map, prefilter and filter, moving light: 4 ms"), "on the front"));
   EXPECT_EQ(member.opens, cells[0].key);
+  EXPECT_EQ(member.group, "medium");
+  for (const page::ChartSeries& series : chart.series)
+    for (const page::ChartPoint& point : series.points) EXPECT_EQ(point.group, "medium") << series.title;
 }
 
 TEST(TradeSection, TimesOverTheWidth_AreChartsWithTheirCrossings) {
