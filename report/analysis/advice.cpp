@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <tuple>
@@ -146,24 +147,17 @@ Verdict judge_limit(const std::vector<const records::CellRecord*>& cells, const 
   return verdict;
 }
 
-Cost measure_cost(const std::vector<const records::CellRecord*>& cells, const AdviceRequest& request) {
-  Cost cost{0.0, {0.0, 0.0}, records::Interval{0.0, 0.0}};
-  const double weight = 1.0 / static_cast<double>(cells.size());
-  for (const records::CellRecord* cell : cells) {
-    const double value = *cost_spec(request.cheapest).read(*cell, request.light);
-    const bool timed = request.cheapest == CostKind::kTime;
-    const records::Quartiles spread =
-        timed ? *frame_time(*cell, request.light) : records::Quartiles{value, value, value, 1};
-    cost.mean += weight * value;
-    cost.quartiles.low += weight * spread.q1;
-    cost.quartiles.high += weight * spread.q3;
-    const auto interval = frame_interval(*cell, request.light);
-    if (!timed || !interval) cost.ci95.reset();
-    if (!cost.ci95) continue;
-    cost.ci95->low += weight * interval->low;
-    cost.ci95->high += weight * interval->high;
+// The mean of intervals about values of which `mean` is the mean: the places are measured independently, so that the
+// distances to the ends add up in quadrature.
+records::Interval combine(double mean, const std::vector<double>& values,
+                          const std::vector<records::Interval>& intervals) {
+  double below = 0.0, above = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    below += std::pow(values[i] - intervals[i].low, 2);
+    above += std::pow(intervals[i].high - values[i], 2);
   }
-  return cost;
+  const double count = static_cast<double>(values.size());
+  return {mean - std::sqrt(below) / count, mean + std::sqrt(above) / count};
 }
 
 std::variant<Candidate, Unjudged> judge(const Configuration& configuration, const Advice& advice) {
@@ -188,7 +182,7 @@ std::variant<Candidate, Unjudged> judge(const Configuration& configuration, cons
   }
   if (const auto gap = find_gap(configuration.cells, cost_spec(request.cheapest), advice))
     return Unjudged{configuration, *gap, {}};
-  candidate.cost = measure_cost(configuration.cells, request);
+  candidate.cost = *measure_cost(configuration.cells, request.cheapest, request.light);
   return candidate;
 }
 
@@ -276,6 +270,27 @@ void add_relaxations(Advice& advice, std::size_t demand) {
 }
 
 }  // namespace
+
+std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& cells, CostKind kind,
+                                 LightMotion light) {
+  const bool timed = kind == CostKind::kTime;
+  double sum = 0.0;
+  std::vector<double> values;
+  std::vector<records::Interval> quartiles, ci95;
+  for (const records::CellRecord* cell : cells) {
+    const auto value = cost_spec(kind).read(*cell, light);
+    if (!value) return std::nullopt;
+    sum += *value;
+    values.push_back(*value);
+    const auto time = timed ? frame_time(*cell, light) : std::nullopt;
+    quartiles.push_back(time ? records::Interval{time->q1, time->q3} : records::Interval{*value, *value});
+    const auto interval = timed ? frame_interval(*cell, light) : std::nullopt;
+    if (interval) ci95.push_back(*interval);
+  }
+  const double mean = sum / static_cast<double>(cells.size());
+  return Cost{mean, combine(mean, values, quartiles),
+              ci95.size() == values.size() ? std::optional(combine(mean, values, ci95)) : std::nullopt};
+}
 
 CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, CostKind kind) {
   const Cost &a = cheaper.cost, &b = dearer.cost;

@@ -36,12 +36,17 @@ struct Verdict {
   const records::CellRecord* lost_in_truth = nullptr;
 };
 
-/// A cost over all places, each counting the same.
+/// A cost over all places, each counting the same. What is known of each place's value (its quartiles, its interval as
+/// frame_interval() gives it) adds up in quadrature, for the places are measured independently.
 struct Cost {
-  double mean = 0.0;
-  records::Interval quartiles;  ///< mean of the lower and of the upper quartiles; of bytes and fetches: the mean twice
-  std::optional<records::Interval> ci95;  ///< the mean of each place's interval; see frame_interval()
+  double mean = 0.0;                      ///< arithmetic
+  records::Interval quartiles;            ///< of bytes and fetches: the mean twice
+  std::optional<records::Interval> ci95;  ///< of times alone; empty where a place has none
 };
+
+/// Measures what a configuration costs over `cells`, which are one or more; nothing where a cell has no value.
+std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& cells, CostKind kind,
+                                 LightMotion light);
 
 /// A configuration that was judged.
 struct Candidate {

@@ -211,20 +211,26 @@ std::string describe_failure(const Advice& advice) {
                                        : fmt::format("in the way: {}", fmt::join(obstacles, ", ")));
 }
 
-std::vector<std::string> list_advice_notes(const Advice& advice, const records::GlRecord& gl) {
+std::vector<std::string> list_run_notes(const Advice& advice, const records::GlRecord& gl) {
   std::vector<std::string> notes;
-  if (advice.request.demands.empty()) {
-    notes.emplace_back(
-        "No limit was given: what does least is then the cheapest; --max-rmse or another limit asks for more.");
-  }
   if (!advice.teaching.empty()) {
     notes.push_back(
         fmt::format("Left out, for they show a mistake and are for teaching: {}.", fmt::join(advice.teaching, ", ")));
   }
   const std::vector<const records::CellRecord*> cells = list_judged_cells(advice);
   if (uses_time(advice.request)) add_time_notes(notes, cells, gl);
-  add_notes_of_nothing_to_see(notes, advice);
   add_setting_notes(notes, cells);
+  return notes;
+}
+
+std::vector<std::string> list_advice_notes(const Advice& advice, const records::GlRecord& gl) {
+  std::vector<std::string> notes;
+  if (advice.request.demands.empty()) {
+    notes.emplace_back(
+        "No limit was given: what does least is then the cheapest; --max-rmse or another limit asks for more.");
+  }
+  for (std::string& note : list_run_notes(advice, gl)) notes.push_back(std::move(note));
+  add_notes_of_nothing_to_see(notes, advice);
   if (advice.keeping.empty()) return notes;
   for (const records::CellRecord* cell : advice.keeping.front().configuration.cells) {
     if (cell->nan.value_or(0) == 0) continue;

@@ -13,6 +13,7 @@
 #include "report/analysis/advice.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/summary.h"
+#include "report/records/absence.h"
 #include "report/records/error_parts.h"
 #include "report/records/format.h"
 
@@ -41,10 +42,11 @@ class Finder {
     for (const records::CellRecord& cell : cells) all_.push_back(&cell);
     places_ = list_places(all_);
     configurations_ = list_configurations(all_);
-    std::vector<const records::CellRecord*> sound;
-    for (const records::CellRecord* cell : all_)
-      if (cell->status == records::CellStatus::kOk && !cell->teaching.value_or(false)) sound.push_back(cell);
-    sound_ = list_configurations(sound);
+    std::vector<const records::CellRecord*> ranked = all_;
+    std::erase_if(ranked, [](const auto* cell) { return cell->teaching.value_or(false); });
+    ranked_places_ = list_places(ranked).size();
+    std::erase_if(ranked, [](const auto* cell) { return cell->status != records::CellStatus::kOk; });
+    sound_ = list_configurations(ranked);
   }
 
   std::vector<std::string> find() const {
@@ -133,10 +135,12 @@ class Finder {
     return sort_sentences(sentences);
   }
 
-  /// Pairs of which the dearer one is clearly better nowhere; of one dearer filter, the cheapest that equals it.
+  /// Pairs, measured in every place, of which the dearer one is clearly better nowhere; of one dearer filter, the
+  /// cheapest that equals it.
   std::vector<std::string> list_wasted() const {
     std::map<std::string, std::pair<double, std::string>> worst;
     visit_pairs([&](const Configuration& a, const Configuration& b, const auto& pairs) {
+      if (pairs.size() < ranked_places_) return;
       double of_a = 0.0, of_b = 0.0;
       for (const auto& [cell, other] : pairs) {
         const auto time = frame_time(*cell, LightMotion::kMoving), cheaper = frame_time(*other, LightMotion::kMoving);
@@ -148,7 +152,7 @@ class Finder {
       auto& known = worst[a.name];
       if (known.first >= of_a / of_b) return;
       known = {of_a / of_b, fmt::format("With a moving light {} costs {} times what {} does, has a kernel of the same "
-                                        "class of width, and is clearly more accurate on no scene.",
+                                        "class of width, and has a clearly smaller RMSE on no scene.",
                                         a.name, number(of_a / of_b), b.name)};
     });
     return sort_sentences(worst);
@@ -191,6 +195,20 @@ class Finder {
     return sentences;
   }
 
+  /// The largest rate of a fault; nothing where a place has none, unless there was nothing to see.
+  std::optional<double> find_most(const Configuration& configuration, const metrics::Metric& metric) const {
+    std::optional<double> most;
+    if (configuration.cells.size() < ranked_places_) return most;
+    for (const records::CellRecord* cell : configuration.cells) {
+      const auto rate = metric.read(*cell);
+      if (rate)
+        most = std::max(most.value_or(0.0), *rate);
+      else if (!records::is_nothing_to_see(records::explain_absence(*cell, std::string(metric.path))))
+        return std::nullopt;
+    }
+    return most;
+  }
+
   /// Faults that a single configuration is free of.
   std::vector<std::string> list_only() const {
     std::vector<std::string> sentences;
@@ -199,16 +217,15 @@ class Finder {
       std::vector<std::string> free;
       std::size_t judged = 0;
       for (const Configuration& configuration : sound_) {
-        double most = -1.0;
-        for (const records::CellRecord* cell : configuration.cells)
-          most = std::max(most, metric.read(*cell).value_or(-1.0));
-        if (most < 0.0) continue;
-        ++judged;
-        if (most < kNoFault) free.push_back(configuration.name);
+        const auto most = find_most(configuration, metric);
+        judged += most.has_value();
+        if (most && *most < kNoFault) free.push_back(configuration.name);
       }
       if (free.size() == 1 && judged > 2)
-        sentences.push_back(fmt::format("Of {} configurations only {} has {} below {} on every scene.", judged,
-                                        free.front(), metric.title, records::format_rate(kNoFault)));
+        sentences.push_back(
+            fmt::format("Of {} configurations of which it was measured only {} has {} below {} on "
+                        "every scene where it can be seen.",
+                        judged, free.front(), metric.title, records::format_rate(kNoFault)));
     }
     return sentences;
   }
@@ -216,6 +233,7 @@ class Finder {
   std::vector<const records::CellRecord*> all_;
   std::vector<Place> places_;
   std::vector<Configuration> configurations_;
+  std::size_t ranked_places_ = 0;
   std::vector<Configuration> sound_;  ///< of cells that may be ranked
 };
 

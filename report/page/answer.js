@@ -2,45 +2,50 @@
 // The answer on top of a run's page: the cheapest configuration within the limits that the reader moves. It judges as
 // `shadowbench advise` does, whose command stands below it.
 (() => {
-  const holder = document.querySelector(".answer"), shadowbench = window.shadowbench, { element } = shadowbench;
+  const holder = document.querySelector(".answer"), shadowbench = window.shadowbench, { element, format } = shadowbench;
   if (!holder || !shadowbench.data) return;
   const { run } = shadowbench.data;
-  const kDigits = 3, kSteps = 60, kTime = "time_ms";
-  const number = (value) => {
-    const text = Number(value.toPrecision(kDigits));
-    return Math.abs(text) >= 1e6 ? text.toLocaleString("en") : String(text);
-  };
-  // The shortest number of three digits that a value keeps as a limit.
+  const kSteps = 60, kTime = "time_ms", kSeen = 0.001;
+  // The shortest number of three digits that a value keeps as a limit; a whole number itself.
   const roundUp = (value) => {
-    const short = Number(value.toPrecision(kDigits));
-    if (short >= value || value === 0) return short;
-    return Number((short + 10 ** (Math.floor(Math.log10(Math.abs(value))) - kDigits + 1)).toPrecision(kDigits));
+    const short = Number(value.toPrecision(3));
+    if (Number.isInteger(value)) return value;
+    return short >= value ? short : Number((short + 10 ** (Math.floor(Math.log10(Math.abs(value))) - 2)).toPrecision(3));
   };
   const places = run.places.map((place) => place.title);
   const cellsOf = run.configurations.map(() => []);
   for (const cell of run.cells) cellsOf[cell.configuration].push(cell);
 
-  const state = { light: "moving", wide: "", limits: {} };
+  const state = { wide: "", limits: {} };
   for (const [field, most] of Object.entries(run.limits)) state.limits[field] = most;
-  const fieldOf = (field) => (field === kTime ? `${kTime}.${state.light}` : field);
+  const fieldOf = (field) => (field === kTime ? `${kTime}.${shadowbench.light}` : field);
   const limits = run.measures.filter((measure) => measure.option && measure.id !== `${kTime}.still`)
     .map((measure) => ({ ...measure, field: measure.option === "--max-ms" ? kTime : measure.id, title: measure.option === "--max-ms" ? "time of a frame" : measure.title }));
 
-  // The worst value of a configuration, where; null where it cannot be judged.
+  const isAsked = ({ teaching, class: width }) => !teaching && (!state.wide || width === state.wide);
+  const valueOf = (cell, field) => cell.values_of[fieldOf(field)];
+  // The worst value of a configuration, and where; null where there is nothing to see anywhere.
   const findWorst = (index, field) => {
-    let worst = null;
-    for (const cell of cellsOf[index]) {
-      const value = cell.values_of[fieldOf(field)];
-      if (value === null && cell.nothing.includes(field)) continue;
-      if (value === null) return null;
-      if (!worst || value > worst.value) worst = { value, cell };
+    const told = cellsOf[index].filter((cell) => valueOf(cell, field) !== null);
+    const worst = told.reduce((most, cell) => (most === null || valueOf(cell, field) > valueOf(most, field) ? cell : most), null);
+    return worst && { value: valueOf(worst, field), cell: worst };
+  };
+  // Why a configuration cannot be said to keep limits; empty where it can. `asked` are the places that count.
+  const findGap = (index, asked, fields) => {
+    const cells = cellsOf[index];
+    for (const place of asked) {
+      const cell = cells.find((each) => each.place === place);
+      if (!cell) return `not measured on ${places[place]}`;
+      if (cell.status !== "ok") return `${cell.status}, on ${places[place]}`;
     }
-    return worst;
+    for (const field of [...fields, kTime]) {
+      const title = titleOf(field), missing = cells.find((cell) => valueOf(cell, field) === null && !cell.nothing.includes(field));
+      if (missing) return `no ${title} on ${places[missing.place]}`;
+      if (!findWorst(index, field)) return `nothing on which ${title} could show`;
+    }
+    return "";
   };
-  const canBeJudged = (index) => {
-    const configuration = run.configurations[index], cells = cellsOf[index];
-    return !configuration.teaching && cells.length === places.length && cells.every((cell) => cell.status === "ok") && costOf(index) !== null;
-  };
+  const listAsked = () => [...new Set(run.cells.filter((cell) => isAsked(run.configurations[cell.configuration])).map((cell) => cell.place))];
   const costOf = (index) => run.configurations[index][fieldOf(kTime)];
   const areTied = (a, b) => {
     const common = costOf(a).ci95 && costOf(b).ci95 && run.configurations[a].surroundings === run.configurations[b].surroundings;
@@ -48,59 +53,66 @@
     return costOf(a)[name][1] >= costOf(b)[name][0];
   };
   const judge = () => {
-    const keeping = [], failing = [];
+    const keeping = [], failing = [], unjudged = [], asked = listAsked(), fields = Object.keys(state.limits);
     run.configurations.forEach((configuration, index) => {
-      if (!canBeJudged(index) || (state.wide && configuration.class !== state.wide)) return;
-      const broken = [];
-      for (const [field, most] of Object.entries(state.limits)) {
-        const worst = findWorst(index, field);
-        if (!worst) return;
-        if (worst.value > most) broken.push({ field, worst, most });
-      }
+      if (!isAsked(configuration)) return;
+      const gap = findGap(index, asked, fields);
+      if (gap) return unjudged.push({ index, gap });
+      const broken = fields.map((field) => ({ field, worst: findWorst(index, field), most: state.limits[field] })).filter(({ worst, most }) => worst.value > most);
       (broken.length > 0 ? failing : keeping).push({ index, broken });
     });
     const byCost = (a, b) => costOf(a.index).mean - costOf(b.index).mean;
-    return { keeping: keeping.sort(byCost), failing: failing.sort(byCost) };
+    return { keeping: keeping.sort(byCost), failing: failing.sort(byCost), unjudged };
   };
 
   const labelOf = (index) => run.configurations[index].label;
   const nameOf = (parent, index) => element(parent, "bdi", {}, labelOf(index));
-  const titleOf = (field) => limits.find((limit) => limit.field === field).title;
-  const costText = (index) => `${number(costOf(index).mean)} ${run.unit}`;
+  const limitOf = (field) => limits.find((limit) => limit.field === field);
+  const titleOf = (field) => limitOf(field)?.title ?? "time of a frame";
+  const say = (value, field) => format(value, limitOf(field)?.unit);
+  const costText = (index) => `${format(costOf(index).mean)} ${run.unit}`;
 
   const command = () => {
     const parts = ["shadowbench advise RUN"];
     for (const limit of limits)
       if (limit.field in state.limits) parts.push(`${limit.option} ${state.limits[limit.field]}`);
     if (state.wide) parts.push(`--class ${state.wide}`);
-    if (state.light === "still") parts.push("--light static");
+    if (shadowbench.light === "still") parts.push("--light static");
     return parts.join(" ");
   };
 
-  // What the runner-up does better than the choice, of what can be limited.
-  const describeGain = (best, second) => {
-    const gains = [];
-    for (const limit of limits) {
-      if (limit.group === "cost") continue;
-      const a = findWorst(best, limit.field), b = findWorst(second, limit.field);
-      if (!a || !b) continue;
-      const least = limit.id === "error.rmse" ? Math.max(a.cell.reach, b.cell.reach) : limit.group === "artefact" ? 0.001 : 0.02 * a.value;
-      if (b.value < a.value - least)
-        gains.push(`${limit.title} ${number(b.value)} instead of ${number(a.value)} at worst`);
+  const list = (texts) => (texts.length > 1 ? `${texts.slice(0, -1).join(", ")} and ${texts.at(-1)}` : texts.join());
+  // How the worst of what can be limited differs between the choice and the runner-up.
+  const compareWorst = (best, second) => {
+    const lower = [], higher = [];
+    for (const { field, group, title } of limits) {
+      const a = findWorst(best, field), b = findWorst(second, field);
+      if (group === "cost" || !a || !b) continue;
+      const least = field === "error.rmse" ? Math.max(a.cell.reach, b.cell.reach) : group === "artefact" ? kSeen : 0.02 * Math.max(a.value, b.value);
+      if (Math.abs(b.value - a.value) > least) (b.value < a.value ? lower : higher).push(`${title} ${say(b.value, field)} instead of ${say(a.value, field)}`);
     }
-    return gains.length > 0 ? `it would buy ${gains.slice(0, 3).join(", ")}` : "it would buy nothing that was measured";
+    const parts = [["lower", lower], ["higher", higher]].filter(([, found]) => found.length > 0).map(([word, found]) => `${word} ${list(found)}`);
+    return parts.length > 0 ? `at worst it has ${parts.join("; and ")}` : "at worst nothing that can be limited differs clearly";
   };
+  // The faults of the choice: those that are seen, those that are not, and those that nobody could see.
   const describeFaults = (best) => {
-    const faults = limits.filter((limit) => limit.group === "artefact")
-      .map((limit) => ({ limit, worst: findWorst(best, limit.field) })).filter(({ worst }) => worst && worst.value >= 0.001);
-    return faults.map(({ limit, worst }) => `${limit.title} ${number(100 * worst.value)} % on ${places[worst.cell.place]}`);
+    const faults = limits.filter(({ group }) => group === "artefact").map(({ field, title }) => ({ field, title, worst: findWorst(best, field) }));
+    const seen = faults.filter(({ worst }) => worst && worst.value >= kSeen), free = faults.filter(({ worst }) => worst && worst.value < kSeen);
+    const unknown = faults.filter(({ worst }) => !worst), titles = (some, word) => some.map(({ title }) => title).join(` ${word} `);
+    return [...seen.map(({ field, title, worst }) => `${title} ${say(worst.value, field)} on ${places[worst.cell.place]}`),
+      free.length > 0 && `no ${titles(free, "or")} is seen`, unknown.length > 0 && `${titles(unknown, "and")} could not be measured`].filter(Boolean);
   };
+  // Where a limit of the choice had nothing to be judged on.
+  const listUnseen = (best) => Object.keys(state.limits).map((field) => {
+    const blind = cellsOf[best].filter((cell) => valueOf(cell, field) === null);
+    return blind.length > 0 && `${titleOf(field)} had nothing to show on ${list(blind.map((cell) => places[cell.place]))}`;
+  }).filter(Boolean);
 
-  const sentences = (list, parts) => parts.forEach((part) => typeof part === "number" ? nameOf(list, part) : list.append(part));
-  const say = (list, lead, ...parts) => {
-    const item = element(list, "li");
+  // An item of the reasons, in which a number stands for a configuration's name.
+  const explain = (lead, ...parts) => {
+    const item = element(reasons, "li");
     element(item, "b", {}, lead + " ");
-    sentences(item, parts);
+    parts.forEach((part) => (typeof part === "number" ? nameOf(item, part) : item.append(part)));
   };
   const headline = element(holder, "p", { className: "choice", "aria-live": "polite" });
   const reasons = element(holder, "ul"), picture = element(holder, "div", { className: "worst" });
@@ -139,48 +151,52 @@
       if (tied.length <= 2) tied.forEach((index) => { headline.append(" or "); nameOf(headline, index); });
       headline.append(": their costs cannot be told apart");
     }
-    headline.append(`. ${tied.length > 0 ? "About " : ""}${costText(best)} a frame with a ${state.light} light.`);
+    headline.append(`. ${tied.length > 0 ? "About " : ""}${costText(best)} a frame with a ${shadowbench.light} light.`);
     const configuration = run.configurations[best];
     const bounds = Object.entries(state.limits).map(([field, most]) => {
-      const worst = findWorst(best, field);
-      return `${titleOf(field)} ${number(worst.value)} at worst, on ${places[worst.cell.place]} (limit ${most})`;
+      const { value, cell } = findWorst(best, field);
+      return `${titleOf(field)} ${say(value, field)} at worst, on ${places[cell.place]} (limit ${say(most, field)})`;
     });
-    say(reasons, "Why:", `it is the cheapest of ${keeping.length} that keep the limits`, bounds.length > 0 ? `: ${bounds.join("; ")}.` : ".");
-    say(reasons, "Kernel:", `${configuration.kernel}${configuration.params ? "; " + configuration.params : ""}.`);
+    const lead = tied.length > 0 ? "it has the lowest mean cost" : "it is the cheapest";
+    explain("Why:", `${lead} of ${keeping.length} ${bounds.length > 0 ? "that keep the limits" : "that can be judged"}`, ...[...bounds, ...listUnseen(best)].map((text, i) => (i === 0 ? ": " : "; ") + text), ".");
+    explain("Kernel:", `${configuration.kernel}${configuration.params ? "; " + configuration.params : ""}.`);
     if (keeping.length > 1) {
       const second = keeping[1].index, more = costOf(second).mean / costOf(best).mean;
-      say(reasons, "Runner-up:", second, tied.includes(second) ? `, whose cost cannot be told from it; ` : `, at ${number(more)} times the cost; `, describeGain(best, second) + ".");
-    } else say(reasons, "Runner-up:", "no other keeps the limits.");
+      explain("Runner-up:", second, tied.includes(second) ? `, whose cost cannot be told from it; ` : `, at ${format(more)} times the cost; `, compareWorst(best, second) + ".");
+    } else explain("Runner-up:", "no other keeps the limits.");
     const cheaper = failing.find((other) => other.broken.length === 1 && costOf(other.index).mean < costOf(best).mean && !areTied(other.index, best));
     if (cheaper) {
       const [only] = cheaper.broken;
-      say(reasons, "Cheaper:", cheaper.index, `, ${costText(cheaper.index)}, were ${titleOf(only.field)} of ${roundUp(only.worst.value)} allowed.`);
+      explain("Cheaper:", cheaper.index, `, ${costText(cheaper.index)}, were ${titleOf(only.field)} of ${say(roundUp(only.worst.value), only.field)} allowed.`);
     }
     const worst = findWorst(best, "error.rmse"), faults = describeFaults(best);
-    if (worst)
-      say(reasons, "Fails at:", `${places[worst.cell.place]}, with RMSE ${number(worst.value)}`, worst.cell.cause ? `, most of it ${worst.cell.cause}` : "",
-        faults.length > 0 ? `; ${faults.join(", ")}.` : "; no fault is seen.");
+    if (worst) explain("Fails at:", [`${places[worst.cell.place]}, with RMSE ${format(worst.value)}${worst.cell.cause ? `, most of it ${worst.cell.cause}` : ""}`, ...faults].join("; "), ".");
     showWorst(best);
   };
+  // How many times a limit the worst value is, at most; beyond a limit of 0, infinitely.
+  const measureExcess = ({ broken }) => Math.max(...broken.map(({ worst, most }) => (most > 0 ? worst.value / most : Infinity)));
   const showNothing = (failing) => {
     headline.textContent = failing.length > 0 ? "Nothing keeps these limits." : "Nothing can be judged: a value, a time or a scene is missing for every filter.";
-    const nearest = failing.slice().sort((a, b) => a.broken.length - b.broken.length || a.broken[0].worst.value / a.broken[0].most - b.broken[0].worst.value / b.broken[0].most)[0];
+    const isNearer = (a, b) => a.broken.length < b.broken.length || (a.broken.length === b.broken.length && measureExcess(a) < measureExcess(b));
+    const nearest = failing.reduce((least, each) => (least && !isNearer(each, least) ? least : each), null);
     if (nearest)
-      say(reasons, "Closest:", nearest.index, ` breaks ${nearest.broken.map((each) => `${titleOf(each.field)}: ${number(each.worst.value)} on ${places[each.worst.cell.place]}`).join(", ")}.`);
+      explain("Closest:", nearest.index, ` breaks ${list(nearest.broken.map(({ field, worst }) => `${titleOf(field)}, with ${say(worst.value, field)} on ${places[worst.cell.place]}`))}.`);
     showWorst.last = null;
     picture.replaceChildren();
   };
   const show = () => {
     reasons.replaceChildren();
-    const { keeping, failing } = judge();
+    const { keeping, failing, unjudged } = judge(), gaps = new Map();
     if (keeping.length > 0) showChoice(keeping, failing);
     else showNothing(failing);
+    for (const { index, gap } of unjudged) gaps.set(gap, [...(gaps.get(gap) ?? []), index]);
+    for (const [gap, [first, ...others]] of gaps) explain("Not judged:", first, others.length > 0 ? ` and ${others.length} more` : "", `: ${gap}.`);
     code.textContent = command();
   };
 
   // A slider's steps are the worst values of the run: each step lets one more configuration through.
-  const addSlider = (limit) => {
-    const values = run.configurations.map((_, index) => (canBeJudged(index) ? findWorst(index, limit.field) : null)).filter(Boolean).map((worst) => roundUp(worst.value));
+  const addSlider = (limit, asked) => {
+    const values = run.configurations.map((each, index) => (each.teaching || findGap(index, asked, [limit.field]) ? null : findWorst(index, limit.field))).filter(Boolean).map((worst) => roundUp(worst.value));
     if (limit.field in state.limits) values.push(state.limits[limit.field]);
     let steps = [...new Set(values)].sort((a, b) => a - b);
     if (steps.length < 2 && !(limit.field in state.limits)) return;
@@ -194,7 +210,7 @@
       const most = steps[Number(slider.value)];
       if (most === undefined) delete state.limits[limit.field];
       else state.limits[limit.field] = most;
-      output.textContent = most === undefined ? "no limit" : `at most ${limit.unit === "share" ? number(100 * most) + " %" : number(most)}`;
+      output.textContent = most === undefined ? "no limit" : `at most ${format(most, limit.unit)}`;
       slider.setAttribute("aria-valuetext", output.textContent);
     };
     slider.addEventListener("input", () => { read(); show(); });
@@ -207,13 +223,13 @@
     for (const [value, title] of options) element(select, "option", { value }, title);
     select.addEventListener("change", () => { take(select.value); showSliders(); show(); });
   };
-  const showSliders = () => { sliders.replaceChildren(); limits.forEach(addSlider); };
+  const showSliders = () => { sliders.replaceChildren(); limits.forEach((limit) => addSlider(limit, listAsked())); };
   [...holder.children].forEach((child) => { if (![headline, reasons, picture, line, controls].includes(child)) child.classList.add("without-script"); });
   const notes = holder.querySelectorAll(".without-script");
   notes.forEach((each) => { if (each !== notes[notes.length - 1]) each.remove(); });
   if (notes.length > 0) holder.append(notes[notes.length - 1]);
   line.prepend("In a terminal: ");
-  addChoice("Light ", "light", [["moving", "moving: map and prefilter in every frame"], ["still", "still: the lookup alone"]], (value) => { state.light = value; delete state.limits[kTime]; });
+  addChoice("Light ", "light", [["moving", "moving: map and prefilter in every frame"], ["still", "still: the lookup alone"]], (value) => { shadowbench.light = value; delete state.limits[kTime]; shadowbench.drawTable?.(); });
   addChoice("Kernel ", "class", [["", "of any width"], ...run.classes.map((name) => [name, name])], (value) => { state.wide = value; });
   const sliders = element(controls, "div", { className: "sliders" });
   showSliders();

@@ -1,13 +1,14 @@
 "use strict";
 // The table of a run: configurations by scenes, of the measure that the reader chooses.
 (() => {
-  const holder = document.querySelector(".numbers"), shadowbench = window.shadowbench, { element } = shadowbench;
+  const holder = document.querySelector(".numbers"), shadowbench = window.shadowbench, { element, format } = shadowbench;
   if (!holder || !shadowbench.data) return;
   const { run } = shadowbench.data;
   const kHeat = 5, kMany = 25;
   const kWorst = { more: "the least value", zero: "the value farthest from 0" };
   const cells = run.configurations.map(() => []);
   for (const cell of run.cells) cells[cell.configuration][cell.place] = cell;
+  shadowbench.light = "moving";  // of which the answer and the table say the cost
   const state = { measure: "error.rmse", sort: "cost", down: false, text: "", wide: "" };
   const measures = run.measures.filter((measure) => run.cells.some((cell) => cell.values_of[measure.id] !== null));
   if (measures.length > 0 && !measures.some((measure) => measure.id === state.measure)) state.measure = measures[0].id;
@@ -19,35 +20,42 @@
     const value = valueOf(index, place);
     return worst === null || (value !== null && rankOf(value) > rankOf(worst)) ? value : worst;
   }, null);
-  const costOf = (index) => run.configurations[index]["time_ms.moving"]?.mean ?? null;
-  const format = (value, unit) => value === null ? "–" : unit === "share" ? `${Number((100 * value).toPrecision(3))} %` : String(Number(value.toPrecision(3)));
+  const timeOf = () => `time_ms.${shadowbench.light}`;
+  const costOf = (index) => run.configurations[index][timeOf()]?.mean ?? null;
 
   const columns = () => {
     const unit = measureOf()?.unit;
     return [
       { id: "filter", title: "filter", text: "a filter, with the parameters and settings that tell it from the others", of: (i) => run.configurations[i].label, name: true },
-      { id: "class", title: "width", text: "class of the kernel's standard deviation: errors are compared within one class", of: (i) => run.configurations[i].class || "–" },
-      { id: "cost", title: `cost, ${run.unit}`, text: run.measures[0].text, of: costOf, unit: "" },
+      { id: "class", title: "width", text: "class of the kernel's standard deviation: errors are compared within one class", of: (i) => run.configurations[i].class || "–", key: (i) => run.configurations[i].sigma },
+      { id: "cost", title: `cost, ${shadowbench.light} light, ${run.unit}`, text: run.measures.find(({ id }) => id === timeOf()).text, of: costOf, unit: "" },
       ...run.places.map((place, at) => ({ id: `place${at}`, title: place.title, text: `${measureOf()?.title} on ${place.title}: ${measureOf()?.text}`, of: (i) => valueOf(i, at), unit, place: at })),
       { id: "worst", title: "worst", text: `${kWorst[measureOf()?.better] ?? "the largest value"} over the scenes`, of: worstOf, unit },
     ];
   };
-  // The best of each class in a column, and what cannot be told from it, whether or not their rows are shown.
+  // In a column: the best of each class of width under the same settings, if there are two to compare, and what cannot
+  // be told from it, whether or not their rows are shown.
   const findMarks = (column) => {
-    const marks = new Map(), best = new Map();
+    const marks = new Map(), groups = new Map();
     if (column.place === undefined || measureOf()?.better === "neither") return marks;
-    const sound = run.configurations.map((_, i) => i).filter((i) => cells[i][column.place]?.status === "ok" && column.of(i) !== null && run.configurations[i].class);
-    for (const i of sound) {
-      const known = best.get(run.configurations[i].class);
-      if (known === undefined || rankOf(column.of(i)) < rankOf(column.of(known))) best.set(run.configurations[i].class, i);
+    for (const [i, { class: width, surroundings, teaching }] of run.configurations.entries()) {
+      if (teaching || !width || cells[i][column.place]?.status !== "ok" || column.of(i) === null) continue;
+      const group = `${width} ${surroundings}`;
+      groups.set(group, [...(groups.get(group) ?? []), i]);
     }
-    for (const i of sound) {
-      const first = best.get(run.configurations[i].class);
-      const reach = state.measure === "error.rmse" ? Math.max(cells[i][column.place].reach, cells[first][column.place].reach) : 0;
-      if (i === first) marks.set(i, "best");
-      else if (rankOf(column.of(i)) - rankOf(column.of(first)) <= reach) marks.set(i, "tied");
+    for (const group of groups.values()) {
+      if (group.length < 2) continue;
+      const rank = (i) => rankOf(column.of(i)), best = group.reduce((least, i) => (rank(i) < rank(least) ? i : least));
+      for (const i of group) {
+        if (rank(i) === rank(best)) marks.set(i, "best");
+        else if (areTied(cells[i][column.place], cells[best][column.place], rank(i) - rank(best))) marks.set(i, "tied");
+      }
     }
     return marks;
+  };
+  const areTied = (cell, best, gap) => {
+    const [own, least] = [cell, best].map(({ intervals }) => intervals[state.measure]);
+    return own && least ? own[0] <= least[1] : state.measure === "error.rmse" && gap <= Math.max(cell.reach, best.reach);
   };
   const listRows = () => {
     const wanted = state.text.toLowerCase();
@@ -55,7 +63,7 @@
       `${run.configurations[i].label} ${run.configurations[i].params}`.toLowerCase().includes(wanted));
     const column = columns().find((each) => each.id === state.sort) || columns()[0];
     const order = (a, b) => {
-      const [x, y] = [column.of(a), column.of(b)];
+      const [x, y] = [a, b].map(column.key ?? column.of);
       if (x === null || y === null) return (x === null) - (y === null);
       return (state.down ? -1 : 1) * (typeof x === "string" ? x.localeCompare(y) : x - y);
     };
@@ -65,6 +73,7 @@
   const controls = element(holder, "div", { className: "controls" });
   const scroll = element(holder, "div", { className: "scroll", tabIndex: 0, role: "region", "aria-label": "All numbers" });
   const note = element(holder, "p", { className: "note" });
+  let key = "";
   const addField = (text, name, properties) => {
     const label = element(controls, "label", {}, text);
     return element(label, name, properties);
@@ -81,6 +90,7 @@
     const head = element(row, "th", { scope: "col", className: column.unit === undefined ? "s" : "n", "aria-sort": sorted ? (state.down ? "descending" : "ascending") : "none" });
     const button = element(head, "button", { type: "button", title: column.text }, column.title + (sorted ? (state.down ? " ▼" : " ▲") : ""));
     button.addEventListener("focus", () => { note.textContent = `${column.title}: ${column.text}.`; });
+    button.addEventListener("blur", () => { note.textContent = key; });
     button.addEventListener("click", () => {
       state.down = sorted ? !state.down : false;
       state.sort = column.id;
@@ -99,7 +109,7 @@
       ? element(made, "button", { type: "button", title: `${run.configurations[index].label} on ${run.places[column.place].title}: look closer` }, text)
       : element(made, "span", {}, text);
     if (shown.type === "button") shown.addEventListener("click", () => shadowbench.openViewer({ place: column.place, left: -1, right: index }));
-    if (mark) element(made, "span", { className: "mark", title: mark === "best" ? "the best of its class of width" : "cannot be told from the best of its class" }, mark === "best" ? " ★" : " ≈");
+    if (mark) element(made, "span", { className: "mark", title: mark === "best" ? "the best of its class of width and settings" : "cannot be told from the best of its class and settings" }, mark === "best" ? " ★" : " ≈");
     if (cell && cell.status !== "ok") element(made, "span", { className: "mark", title: cell.status }, " !");
   };
   const draw = () => {
@@ -114,7 +124,8 @@
       all.forEach((column, i) => addCell(row, column, index, scales[i] ? scales[i](column.of(index)) : null, marks[i].get(index)));
     });
     const many = rows.length > kMany ? ` Print has the first ${kMany} of ${rows.length} rows.` : "";
-    note.textContent = `${rows.length} of ${run.configurations.length} configurations. ★ best of its class of width, ≈ cannot be told from it, ! suspect or not finished.${many}`;
+    key = `${rows.length} of ${run.configurations.length} configurations. ★ best of its class of width and settings, ≈ cannot be told from it, ! suspect or not finished.${many}`;
+    note.textContent = key;
   };
   const addHeadRow = (table, all) => {
     const row = element(element(table, "thead"), "tr");
@@ -130,5 +141,6 @@
   search.addEventListener("input", () => { state.text = search.value; draw(); });
   wide.addEventListener("change", () => { state.wide = wide.value; draw(); });
   [...holder.children].forEach((child) => { if (![controls, scroll, note].includes(child)) child.remove(); });
+  shadowbench.drawTable = draw;
   draw();
 })();

@@ -12,6 +12,15 @@
     return made;
   };
 
+  // A number as people read it: three digits, whole numbers in full, shares in percent, bytes in powers of 1024.
+  shadowbench.format = (value, unit = "") => {
+    if (value === null) return "\u2013";
+    if (unit === "share") return `${Number((100 * value).toPrecision(3))} %`;
+    const step = unit === "bytes" && value >= 1024 ? Math.min(3, Math.floor(Math.log2(value) / 10)) : 0, scaled = value / 1024 ** step;
+    const text = step === 0 && Number.isInteger(value) ? value.toLocaleString("en") : String(Number(scaled.toPrecision(3)));
+    return unit === "bytes" ? `${text} ${["B", "KiB", "MiB", "GiB"][step]}` : text;
+  };
+
   // Acts once an element is near the screen.
   shadowbench.onceSeen = (node, action) => {
     const watcher = new IntersectionObserver((entries) => {

@@ -19,8 +19,7 @@ constexpr double kAllowance = 1.25;  // of the least RMSE
 std::optional<double> find_worst(const analysis::Configuration& configuration) {
   double worst = 0.0;
   for (const records::CellRecord* cell : configuration.cells) {
-    if (!cell->error.rmse || cell->status != records::CellStatus::kOk || cell->teaching.value_or(false))
-      return std::nullopt;
+    if (!cell->error.rmse || cell->status != records::CellStatus::kOk) return std::nullopt;
     worst = std::max(worst, *cell->error.rmse);
   }
   return worst;
@@ -50,7 +49,7 @@ page::Sentences describe_choice(const records::RunRecord& run, const analysis::A
                                      analysis::format_cost(best.cost.mean, advice.request.cheapest, run.gl)),
                          {}};
   answer.items.push_back(fmt::format("Why: the cheapest of {}{}{}.", advice.keeping.size(),
-                                     has_limits ? " that keep the limits" : ", for no error was measured",
+                                     has_limits ? " that keep the limits" : " that can be judged",
                                      describe_limits(advice, best)));
   if (advice.keeping.size() > 1)
     answer.items.push_back(fmt::format("Runner-up: {}, {}.", advice.keeping[1].configuration.label,
@@ -62,7 +61,8 @@ page::Sentences describe_choice(const records::RunRecord& run, const analysis::A
 
 analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& cells) {
   std::vector<const records::CellRecord*> all;
-  for (const records::CellRecord& cell : cells) all.push_back(&cell);
+  for (const records::CellRecord& cell : cells)
+    if (!cell.teaching.value_or(false)) all.push_back(&cell);
   std::optional<double> least;
   const std::size_t places = analysis::list_places(all).size();
   for (const analysis::Configuration& configuration : analysis::list_configurations(all))
@@ -70,7 +70,7 @@ analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& c
       least = std::min(least.value_or(*worst), *worst);
   analysis::AdviceRequest request;
   const auto spec = std::ranges::find(analysis::limit_table(), kRmse, &analysis::LimitSpec::field);
-  if (least && *least > 0.0) request.demands.push_back({&*spec, round_up(kAllowance * *least), {}});
+  if (least) request.demands.push_back({&*spec, *least > 0.0 ? round_up(kAllowance * *least) : 0.0, {}});
   return request;
 }
 
@@ -90,7 +90,7 @@ page::Section make_answer_section(const records::RunRecord& run, const std::vect
     mount.blocks.emplace_back(page::Paragraph{fmt::format("Nothing fits: {}.", analysis::describe_failure(advice))});
   else
     mount.blocks.emplace_back(describe_choice(run, advice));
-  page::Sentences notes{{}, analysis::list_advice_notes(advice, run.gl)};
+  page::Sentences notes{{}, analysis::list_run_notes(advice, run.gl)};
   if (!request.demands.empty())
     notes.items.insert(notes.items.begin(),
                        "The limit to begin with is a quarter above the least RMSE that a filter keeps to on every "

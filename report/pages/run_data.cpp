@@ -73,6 +73,21 @@ json list_values(const records::CellRecord& cell) {
   return values;
 }
 
+/// Of times the 95 % intervals, or the quartiles where there are none.
+json list_intervals(const records::CellRecord& cell) {
+  json intervals = json::object();
+  for (const auto& [id, light] :
+       {std::pair(kMoving, analysis::LightMotion::kMoving), std::pair(kStill, analysis::LightMotion::kStatic)}) {
+    const auto interval = analysis::frame_interval(cell, light);
+    const auto time = analysis::frame_time(cell, light);
+    if (interval)
+      intervals[id] = {interval->low, interval->high};
+    else if (time)
+      intervals[id] = {time->q1, time->q3};
+  }
+  return intervals;
+}
+
 /// The fields of a limit that have nothing to be measured on.
 json list_nothing(const records::CellRecord& cell) {
   json fields = json::array();
@@ -101,29 +116,19 @@ json make_cell(const records::CellRecord& cell, std::size_t configuration, std::
           {"values_of", list_values(cell)},
           {"nothing", list_nothing(cell)},
           {"reach", analysis::find_rmse_reach(cell)},
+          {"intervals", list_intervals(cell)},
           {"cause", find_cause(cell)},
           {"picture", path_of(cell.images.picture)},
           {"values", path_of(cell.images.values)}};
 }
 
-/// The mean over the cells of what a frame takes, with the mean of the intervals; null where a cell was not timed.
-json find_cost(const analysis::Configuration& configuration, analysis::LightMotion light) {
-  double mean = 0.0, low = 0.0, high = 0.0, q1 = 0.0, q3 = 0.0;
-  bool has_interval = true;
-  const double weight = 1.0 / static_cast<double>(configuration.cells.size());
-  for (const records::CellRecord* cell : configuration.cells) {
-    const auto time = analysis::frame_time(*cell, light);
-    if (!time) return nullptr;
-    const auto interval = analysis::frame_interval(*cell, light);
-    has_interval = has_interval && interval;
-    mean += weight * time->median;
-    q1 += weight * time->q1;
-    q3 += weight * time->q3;
-    if (interval) low += weight * interval->low;
-    if (interval) high += weight * interval->high;
-  }
+/// What a frame takes over the places; null where a cell was not timed.
+json describe_cost(const analysis::Configuration& configuration, analysis::LightMotion light) {
+  const auto cost = analysis::measure_cost(configuration.cells, analysis::CostKind::kTime, light);
+  if (!cost) return nullptr;
+  const auto list = [](const records::Interval& interval) { return json::array({interval.low, interval.high}); };
   return {
-      {"mean", mean}, {"ci95", has_interval ? json::array({low, high}) : json()}, {"quartiles", json::array({q1, q3})}};
+      {"mean", cost->mean}, {"ci95", cost->ci95 ? list(*cost->ci95) : json()}, {"quartiles", list(cost->quartiles)}};
 }
 
 json make_configuration(const analysis::Configuration& configuration, const std::vector<std::string>& filters) {
@@ -141,8 +146,8 @@ json make_configuration(const analysis::Configuration& configuration, const std:
           {"teaching", cell.teaching.value_or(false)},
           {"surroundings", configuration.surroundings},
           {"color", style.color},
-          {kMoving, find_cost(configuration, analysis::LightMotion::kMoving)},
-          {kStill, find_cost(configuration, analysis::LightMotion::kStatic)}};
+          {kMoving, describe_cost(configuration, analysis::LightMotion::kMoving)},
+          {kStill, describe_cost(configuration, analysis::LightMotion::kStatic)}};
 }
 
 }  // namespace
@@ -156,7 +161,11 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
   json data{{"unit", records::time_unit(run.gl)}, {"measures", list_measures(run)}, {"classes", json::array()},
             {"limits", json::object()},           {"places", json::array()},        {"truths", json::array()},
             {"configurations", json::array()},    {"cells", json::array()}};
-  for (const auto& each : filters::width_classes()) data["classes"].push_back(each.name);
+  for (const auto& each : filters::width_classes())
+    if (std::ranges::any_of(cells, [&](const records::CellRecord& cell) {
+          return !cell.teaching.value_or(false) && cell.kernel.width_class == each.name;
+        }))
+      data["classes"].push_back(each.name);
   for (const analysis::Demand& demand : request.demands) data["limits"][demand.spec->field] = demand.most;
   for (const analysis::Place& place : places) {
     data["places"].push_back({{"title", analysis::describe_place(place, places)}});

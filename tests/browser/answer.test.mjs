@@ -22,11 +22,12 @@ const compare = async (page, run) => {
   const reasons = (await page.locator(".answer .choice + ul li").allTextContents()).join("\n");
   assert.equal(advice.fits, status === 0);
   const judged = await page.evaluate(() => {
-    const { keeping, failing } = shadowbench.answer.judge();
-    return { best: keeping[0]?.index, keeping: keeping.length, failing: failing.length };
+    const { keeping, failing, unjudged } = shadowbench.answer.judge();
+    return { best: keeping[0]?.index, keeping: keeping.length, failing: failing.length, unjudged: unjudged.length };
   });
   const data = await readData(page), labelOf = ({ settings }) => data.configurations[findConfiguration(run, data, settings)].label;
-  assert.deepEqual([judged.keeping, judged.failing], [advice.keep, advice.fail], command);
+  assert.deepEqual([judged.keeping, judged.failing, judged.unjudged], [advice.keep, advice.fail, advice.not_judged.length], command);
+  assert.equal(/Not judged: /.test(reasons), judged.unjudged > 0, `${command}: ${reasons}`);
   if (status === 1) {
     assert.match(headline, /^Nothing keeps these limits/, command);
     if (advice.closest) assert.ok(reasons.includes(`Closest: ${labelOf(advice.closest)} breaks `), `${command}: ${advice.closest.label}: ${reasons}`);
@@ -37,7 +38,8 @@ const compare = async (page, run) => {
   const cost = advice.advised.cost.mean, [, shown] = /([-\d.e]+) ms \(CPU\) a frame/.exec(headline);
   assert.ok(Math.abs(shown - cost) <= 0.005 * Math.abs(cost), `${command}: ${headline}, not ${cost}`);
   if (advice.runner_up) assert.ok(reasons.includes(`Runner-up: ${labelOf(advice.runner_up)},`), `${command}: ${reasons}`);
-  else assert.ok(reasons.includes("no other keeps the limits"), command);
+  assert.equal(reasons.includes("whose cost cannot be told from it"), advice.runner_up?.lost_by.tied ?? false, `${command}: ${reasons}`);
+  if (!advice.runner_up) assert.ok(reasons.includes("no other keeps the limits"), command);
   return status;
 };
 

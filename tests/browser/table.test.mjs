@@ -8,7 +8,11 @@ const readRows = (page) => page.locator(".numbers tbody tr").evaluateAll((rows) 
   text: [...cell.childNodes].filter((node) => !node.classList?.contains("mark")).map((node) => node.textContent).join(""),
   mark: [...cell.querySelectorAll(".mark")].map((mark) => mark.textContent.trim()).join(""),
 }))));
-const readNumber = (text) => (text === "\u2013" ? null : Number(text.replace(" %", "")) / (text.endsWith(" %") ? 100 : 1));
+const kUnits = { "%": 0.01, B: 1, KiB: 1024, MiB: 1024 ** 2, GiB: 1024 ** 3 };
+const readNumber = (text) => {
+  const [number, unit] = text.replaceAll(",", "").split(" ");
+  return number === "\u2013" ? null : Number(number) * (unit ? kUnits[unit] : 1);
+};
 const show = (page, measure) => page.locator('.numbers select[name="measure"]').selectOption(measure);
 const isNear = (shown, value) => (value === null ? shown === null : shown !== null && Math.abs(shown - value) <= 0.0051 * Math.abs(value));
 
@@ -45,19 +49,30 @@ for (const run of ["several", "odd", "untrue", "single"]) {
   });
 }
 
-test("StarsAndTies_AreTheBestOfTheirClass_WhateverIsShown", async () => {
-  // A value far below 0 is the least, and not the best.
-  const file = changePage("several", "signs.html", (data) => { for (const cell of data.cells.slice(6, 10)) cell.values_of["error.mean"] = -0.9; });
-  const { page, close } = await open(file), data = await readData(page);
-  for (const [measure, rank] of [["error.rmse", (value) => value], ["error.mean", Math.abs], ["error.flip", (value) => value]]) {
+test("StarsAndTies_AreTheBestOfTheirClassAndSettings_WhateverIsShown", async () => {
+  // A value far below 0 is the least, and not the best; of two equal ones both are the best; what is for teaching is none.
+  const file = changePage("several", "signs.html", (data) => {
+    for (const cell of data.cells.slice(6, 10)) cell.values_of["error.mean"] = -0.9;
+    for (const cell of data.cells) if (cell.place === 0) cell.values_of["error.flip"] = Number(cell.values_of["error.flip"].toFixed(2));
+    data.configurations[0].teaching = true;
+    data.configurations.at(-1).surroundings = "another map";
+  });
+  const { page, close } = await open(file), data = await readData(page), seen = new Set();
+  for (const [measure, rank] of [["error.rmse", (value) => value], ["error.mean", Math.abs], ["error.flip", (value) => value], ["time_ms.moving", (value) => value]]) {
     await show(page, measure);
     const wanted = new Map();
     for (const cell of data.cells) {
-      const of = (each) => rank(each.values_of[measure]), name = data.configurations[cell.configuration];
-      const group = data.cells.filter((each) => each.place === cell.place && each.status === "ok" && data.configurations[each.configuration].class === name.class);
-      const best = group.reduce((least, each) => (of(each) < of(least) ? each : least));
-      const reach = measure === "error.rmse" ? Math.max(cell.reach, best.reach) : 0;
-      wanted.set(`${name.label} ${cell.place}`, cell === best ? "\u2605" : of(cell) - of(best) <= reach ? "\u2248" : "");
+      const of = (each) => rank(each.values_of[measure]), own = data.configurations[cell.configuration];
+      const isRival = (each) => {
+        const other = data.configurations[each.configuration];
+        return each.place === cell.place && each.status === "ok" && !other.teaching && other.class === own.class && other.surroundings === own.surroundings;
+      };
+      const group = data.cells.filter(isRival), best = Math.min(...group.map(of)), first = group.find((each) => of(each) === best);
+      const reach = measure === "error.rmse" ? Math.max(cell.reach, first?.reach) : 0;
+      const isTied = measure.startsWith("time") ? () => cell.intervals[measure][0] <= first.intervals[measure][1] : () => of(cell) - best <= reach;
+      const mark = !group.includes(cell) || group.length < 2 ? "" : of(cell) === best ? "\u2605" : isTied() ? "\u2248" : "";
+      wanted.set(`${own.label} ${cell.place}`, mark);
+      seen.add(`${measure.split(".")[0]} ${mark}`);
     }
     const compare = async () => {
       for (const [name, , , ...rest] of await readRows(page))
@@ -70,6 +85,7 @@ test("StarsAndTies_AreTheBestOfTheirClass_WhateverIsShown", async () => {
     }
     await page.locator('.numbers input[type="search"]').fill("");
   }
+  assert.ok(seen.has("error \u2605") && seen.has("error ") && seen.has("time_ms \u2605"), [...seen].join());
   await close();
 });
 
@@ -87,7 +103,7 @@ test("TheWorstOfTheScenes_IsFarthestFromWhatIsBest", async () => {
 
 test("EveryHead_SortsUpAndDown_WithWhatIsMissingLast", async () => {
   const file = changePage("several", "gaps.html", (data) => { data.cells[2].values_of["error.rmse"] = null; });
-  const { page, close } = await open(file), count = (await readHead(page)).length;
+  const { page, close } = await open(file), count = (await readHead(page)).length, data = await readData(page);
   const kept = (await readRows(page)).map(([name]) => name.text);
   for (let column = 0; column < count; ++column) {
     const head = page.locator(".numbers thead th").nth(column), isSorted = (await head.getAttribute("aria-sort")) !== "none";
@@ -96,12 +112,17 @@ test("EveryHead_SortsUpAndDown_WithWhatIsMissingLast", async () => {
       assert.equal(await head.getAttribute("aria-sort"), direction);
       assert.equal(await page.locator('.numbers th:not([aria-sort="none"])[scope="col"]').count(), 1);
       const texts = (await readRows(page)).map((row) => row[column].text);
-      const sorted = column < 2 ? texts : texts.map(readNumber), missing = sorted.filter((value) => value === null).length;
+      const sigma = (row) => data.configurations.find(({ label }) => label === row[0].text).sigma;
+      const sorted = column === 0 ? texts : column === 1 ? (await readRows(page)).map(sigma) : texts.map(readNumber), missing = sorted.filter((value) => value === null).length;
       assert.ok(sorted.slice(sorted.length - missing).every((value) => value === null), "what is missing comes last");
       const present = sorted.slice(0, sorted.length - missing);
-      const order = column < 2 ? (a, b) => a.localeCompare(b) : (a, b) => a - b;
+      const order = column === 0 ? (a, b) => a.localeCompare(b) : (a, b) => a - b;
       assert.deepEqual(present, [...present].sort((a, b) => (direction === "ascending" ? 1 : -1) * order(a, b)));
       assert.equal(await page.evaluate(() => document.activeElement.closest("th")?.cellIndex), column, "the focus stays on the head");
+      const key = page.locator(".numbers > .note");
+      assert.match(await key.textContent(), /^(?!.*\u2605).*: /, "the focus says what the column is");
+      await page.evaluate(() => document.activeElement.blur());
+      assert.match(await key.textContent(), /\u2605/, "then the key is back");
     }
   }
   assert.deepEqual((await readRows(page)).map(([name]) => name.text).sort(), kept.sort());
@@ -137,5 +158,18 @@ test("ACell_OpensTheViewer", async () => {
   const pattern = `#view=${data.places[1].title},truth,box4x4,`;
   await page.waitForFunction((start) => decodeURIComponent(location.hash).startsWith(start), pattern);
   assert.deepEqual(messages, []);
+  await close();
+});
+
+test("TheLightOfTheAnswer_IsThatOfTheCost", async () => {
+  const { page, close } = await openRun("several"), data = await readData(page);
+  for (const light of ["still", "moving"]) {
+    await page.locator('.limits select[name="light"]').selectOption(light);
+    assert.ok((await readHead(page))[2].startsWith(`cost, ${light} light`));
+    for (const row of await readRows(page)) {
+      const { mean } = data.configurations.find(({ label }) => label === row[0].text)[`time_ms.${light}`];
+      assert.ok(isNear(readNumber(row[2].text), mean), row[0].text);
+    }
+  }
   await close();
 });

@@ -72,6 +72,15 @@ TEST(Surprises, CostThatBuysNothing_IsSaid) {
               IsEmpty());
 }
 
+TEST(Surprises, WhatWasNotMeasuredEverywhere_IsSaidOfNoScene) {
+  std::vector<CellRecord> cells = {make_measured("cubes", "dear", 0.02, 6.0), make_measured("stack", "dear", 0.02, 6.0),
+                                   make_measured("cubes", "fair", 0.02, 2.0),
+                                   make_measured("stack", "fair", 0.02, 2.0)};
+  EXPECT_THAT(list_surprises(cells), SizeIs(1));
+  cells[1].error.rmse.reset();
+  EXPECT_THAT(list_surprises(cells), IsEmpty());
+}
+
 TEST(Surprises, PartThatIsNotTheUsualOne_IsNamed) {
   std::vector<CellRecord> cells = {make_measured("cubes", "a", 0.02, 1.0), make_measured("stack", "a", 0.02, 1.0),
                                    make_measured("cubes", "b", 0.02, 1.0), make_measured("stack", "b", 0.02, 1.0)};
@@ -92,7 +101,10 @@ TEST(Surprises, FaultThatOnlyOneIsFreeOf_IsSaid) {
   cells[1].artefact.leak = 0.0;
   const auto said = list_surprises(cells);
   ASSERT_THAT(said, SizeIs(1));
-  EXPECT_THAT(said[0], HasSubstr("Of 3 configurations only b"));
+  EXPECT_THAT(said[0], HasSubstr("Of 3 configurations of which it was measured only b"));
+  cells.push_back(make_measured("stack", "a", 0.02, 1.0));
+  cells.back().artefact.leak = 0.2;
+  EXPECT_THAT(list_surprises(cells), IsEmpty()) << "b and c were not drawn on stack";
 }
 
 TEST(Surprises, WhatIsSuspectOrFailed_ComesFirst_AndIsNotCompared) {

@@ -150,7 +150,7 @@ TEST(RunPage, BeginsWithTheChoice_ItsReasonAndTheRunnerUp) {
 
 TEST(RunPage, WithoutErrorsOrTimes_SaysWhatCanBeSaid) {
   EXPECT_THAT(make_summary(make_run(), {make_cell("cubes", "vsm", 4.0)}),
-              HasSubstr("the cheapest of 1, for no error was measured"));
+              HasSubstr("the cheapest of 1 that can be judged"));
   records::CellRecord untimed = make_attributed_cell("vsm", 0.04, {0.0, 0.1, 0.1, 0.8});
   untimed.time_ms = {};
   EXPECT_THAT(make_summary(make_run(), {untimed}), HasSubstr("Nothing fits: none of 1 configurations can be judged"));
