@@ -2,7 +2,7 @@
 // The answer on top of a run's page: the cheapest configuration within the limits that the reader moves. It judges as
 // `shadowbench advise` does, whose command stands below it.
 (() => {
-  const holder = document.querySelector(".answer"), shadowbench = window.shadowbench, { element, format } = shadowbench;
+  const holder = document.querySelector(".answer"), shadowbench = window.shadowbench, { element, format, link } = shadowbench;
   if (!holder || !shadowbench.data) return;
   const { run } = shadowbench.data;
   const kSteps = 60, kTime = "time_ms", kSeen = 0.001;
@@ -213,7 +213,7 @@
       output.textContent = most === undefined ? "no limit" : `at most ${format(most, limit.unit)}`;
       slider.setAttribute("aria-valuetext", output.textContent);
     };
-    slider.addEventListener("input", () => { read(); show(); });
+    slider.addEventListener("input", () => { read(); change(); });
     read();
   };
   const addChoice = (text, name, options, take) => {
@@ -221,7 +221,8 @@
     element(label, "span", {}, text);
     const select = element(label, "select", { name });
     for (const [value, title] of options) element(select, "option", { value }, title);
-    select.addEventListener("change", () => { take(select.value); showSliders(); show(); });
+    select.addEventListener("change", () => { take(select.value); showSliders(); change(); });
+    return select;
   };
   const showSliders = () => { sliders.replaceChildren(); limits.forEach((limit) => addSlider(limit, listAsked())); };
   [...holder.children].forEach((child) => { if (![headline, reasons, picture, line, controls].includes(child)) child.classList.add("without-script"); });
@@ -229,10 +230,28 @@
   notes.forEach((each) => { if (each !== notes[notes.length - 1]) each.remove(); });
   if (notes.length > 0) holder.append(notes[notes.length - 1]);
   line.prepend("In a terminal: ");
-  addChoice("Light ", "light", [["moving", "moving: map and prefilter in every frame"], ["still", "still: the lookup alone"]], (value) => { shadowbench.light = value; delete state.limits[kTime]; shadowbench.drawTable?.(); });
-  addChoice("Kernel ", "class", [["", "of any width"], ...run.classes.map((name) => [name, name])], (value) => { state.wide = value; });
+  const kLights = [["moving", "moving: map and prefilter in every frame"], ["still", "still: the lookup alone"]];
+  const light = addChoice("Light ", "light", kLights, (value) => { shadowbench.light = value; delete state.limits[kTime]; shadowbench.drawTable?.(); });
+  const wide = addChoice("Kernel ", "class", [["", "of any width"], ...run.classes.map((name) => [name, name])], (value) => { state.wide = value; });
   const sliders = element(controls, "div", { className: "sliders" });
+  const change = () => {
+    link.write("limits", [shadowbench.light, state.wide, ...Object.entries(state.limits).map((limit) => limit.join(":"))]);
+    show();
+  };
+  const openLink = () => {
+    const [motion, width, ...asked] = link.read("limits") ?? [];
+    if (motion === undefined) return;
+    if (kLights.some(([name]) => name === motion)) shadowbench.light = light.value = motion;
+    if (width === "" || run.classes.includes(width)) state.wide = wide.value = width;
+    const known = asked.map((text) => text.split(":")).filter(([field, most]) => limits.some((limit) => limit.field === field) && most && Number.isFinite(Number(most)));
+    state.limits = Object.fromEntries(known.map(([field, most]) => [field, Number(most)]));
+    showSliders();
+    show();
+    shadowbench.drawTable?.();
+  };
+  window.addEventListener("hashchange", openLink);
   showSliders();
   show();
+  openLink();
   shadowbench.answer = { judge, state };
 })();

@@ -1,7 +1,7 @@
 "use strict";
 // The table of a run: configurations by scenes, of the measure that the reader chooses.
 (() => {
-  const holder = document.querySelector(".numbers"), shadowbench = window.shadowbench, { element, format } = shadowbench;
+  const holder = document.querySelector(".numbers"), shadowbench = window.shadowbench, { element, format, link } = shadowbench;
   if (!holder || !shadowbench.data) return;
   const { run } = shadowbench.data;
   const kHeat = 5, kMany = 25;
@@ -28,7 +28,7 @@
     return [
       { id: "filter", title: "filter", text: "a filter, with the parameters and settings that tell it from the others", of: (i) => run.configurations[i].label, name: true },
       { id: "class", title: "width", text: "class of the kernel's standard deviation: errors are compared within one class", of: (i) => run.configurations[i].class || "–", key: (i) => run.configurations[i].sigma },
-      { id: "cost", title: `cost, ${shadowbench.light} light, ${run.unit}`, text: run.measures.find(({ id }) => id === timeOf()).text, of: costOf, unit: "" },
+      { id: "cost", title: `${shadowbench.light} light, ${run.unit}`, text: run.measures.find(({ id }) => id === timeOf()).text, of: costOf, unit: "" },
       ...run.places.map((place, at) => ({ id: `place${at}`, title: place.title, text: `${measureOf()?.title} on ${place.title}: ${measureOf()?.text}`, of: (i) => valueOf(i, at), unit, place: at })),
       { id: "worst", title: "worst", text: `${kWorst[measureOf()?.better] ?? "the largest value"} over the scenes`, of: worstOf, unit },
     ];
@@ -92,9 +92,7 @@
     button.addEventListener("focus", () => { note.textContent = `${column.title}: ${column.text}.`; });
     button.addEventListener("blur", () => { note.textContent = key; });
     button.addEventListener("click", () => {
-      state.down = sorted ? !state.down : false;
-      state.sort = column.id;
-      draw();
+      change({ down: sorted && !state.down, sort: column.id });
       scroll.querySelectorAll("th button")[columns().findIndex((each) => each.id === column.id)].focus();
     });
   };
@@ -137,10 +135,27 @@
     const least = Math.min(...values), most = Math.max(...values);
     return (value) => (value === null || !(most > least) ? null : Math.round(((rankOf(value) - least) / (most - least)) * (kHeat - 1)));
   };
-  chooser.addEventListener("change", () => { state.measure = chooser.value; draw(); });
-  search.addEventListener("input", () => { state.text = search.value; draw(); });
-  wide.addEventListener("change", () => { state.wide = wide.value; draw(); });
+  const change = (changes) => {
+    Object.assign(state, changes);
+    link.write("table", [state.measure, state.sort, state.down ? "down" : "up", state.wide, state.text]);
+    draw();
+  };
+  const openLink = () => {
+    const [measure, sort, direction, width = "", text = ""] = link.read("table") ?? [];
+    if (measure === undefined) return;
+    Object.assign(state, { down: direction === "down", text });
+    if (measures.some(({ id }) => id === measure)) state.measure = measure;
+    if (columns().some(({ id }) => id === sort)) state.sort = sort;
+    if (run.classes.includes(width) || width === "") state.wide = width;
+    [chooser.value, search.value, wide.value] = [state.measure, state.text, state.wide];
+    draw();
+  };
+  chooser.addEventListener("change", () => change({ measure: chooser.value }));
+  search.addEventListener("input", () => change({ text: search.value }));
+  wide.addEventListener("change", () => change({ wide: wide.value }));
+  window.addEventListener("hashchange", openLink);
   [...holder.children].forEach((child) => { if (![controls, scroll, note].includes(child)) child.remove(); });
   shadowbench.drawTable = draw;
   draw();
+  openLink();
 })();

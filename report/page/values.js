@@ -21,6 +21,28 @@
     return unit === "bytes" ? `${text} ${["B", "KiB", "MiB", "GiB"][step]}` : text;
   };
 
+  // What the reader chose is in the page's address, a part for each script, so that a link opens the same view.
+  const kSavedAfterMs = 300, unsaved = new Map();
+  const decodeField = (text) => {
+    try { return decodeURIComponent(text); } catch { return text; }
+  };
+  const readParts = () => new Map(location.hash.slice(1).split("&").map((part) => part.split("=")).filter(([, text]) => text !== undefined));
+  let saving = 0;
+  shadowbench.link = {
+    read: (name) => readParts().get(name)?.split(",").map(decodeField) ?? null,
+    write: (name, fields) => {
+      unsaved.set(name, fields.map(encodeURIComponent).join(","));
+      clearTimeout(saving);
+      saving = setTimeout(() => {
+        const parts = new Map([...readParts(), ...unsaved]);
+        unsaved.clear();
+        try {
+          history.replaceState(null, "", "#" + [...parts].map((part) => part.join("=")).join("&"));
+        } catch { /* a page inside another page may not change its address */ }
+      }, kSavedAfterMs);
+    },
+  };
+
   // Acts once an element is near the screen.
   shadowbench.onceSeen = (node, action) => {
     const watcher = new IntersectionObserver((entries) => {

@@ -1,7 +1,7 @@
 "use strict";
 // Compares pictures of one place: two filters, or a filter and the truth, beside each other, by a slider, by flipping or as a difference.
 (() => {
-  const section = document.getElementById("viewer"), { numbers, data, element, onceSeen } = window.shadowbench;
+  const section = document.getElementById("viewer"), { numbers, data, element, onceSeen, link } = window.shadowbench;
   if (!section || !data) return;
   const { makeStore, subtract, findScale, kPalettes, paint, addSquares, findTiles } = numbers;
   const { run, kTruth, findEntry, listFilters, listAll, nameOf, quote, tell } = data;
@@ -12,7 +12,7 @@
   // What is shown. The view's middle is in pixels of the picture; a zoom of 1 fits the pane.
   const state = { place: 0, left: kTruth, right: 0, layer: "picture", mode: "side", x: 0, y: 0, zoom: 1, crop: null };
   let size = { width: 16, height: 9 }, sides = [{}, {}], scale = 1, split = 0.5, isRight = false, isCropping = false;
-  let cursor = null, turn = 0, frame = 0, saving = 0, wanted = null;
+  let cursor = null, turn = 0, frame = 0, wanted = null;
   const known = new Map();  // the visibility of the place's filters and of its truth
   const layerOf = (name) => layers.find((each) => each.name === name);
   // A family of planes ("stability.min") becomes layers as its planes are met.
@@ -438,22 +438,13 @@
 
   // The link.
   const save = () => {
-    clearTimeout(saving);
-    saving = setTimeout(() => {
-      const { place, left, right, layer, mode, x, y, zoom, crop } = state, short = (value) => Number(value.toFixed(3));
-      const fields = [run.places[place].title, nameOf(left), nameOf(right), layer, mode, short(x), short(y), short(zoom)];
-      if (crop) fields.push([crop.x, crop.y, crop.width, crop.height].join("-"));
-      try {
-        history.replaceState(null, "", "#view=" + fields.map(encodeURIComponent).join(","));
-      } catch { /* a page inside another page may not change its address */ }
-    }, 300);
-  };
-  const decodeField = (text) => {
-    try { return decodeURIComponent(text); } catch { return text; }
+    const { place, left, right, layer, mode, x, y, zoom, crop } = state, short = (value) => Number(value.toFixed(3));
+    link.write("view", [run.places[place].title, nameOf(left), nameOf(right), layer, mode, short(x), short(y), short(zoom),
+      ...(crop ? [[crop.x, crop.y, crop.width, crop.height].join("-")] : [])]);
   };
   const openLink = () => {
-    if (!location.hash.startsWith("#view=")) return false;
-    const fields = location.hash.slice(6).split(",").map(decodeField), unknown = [];
+    const fields = link.read("view"), unknown = [];
+    if (!fields) return false;
     const [title, left, right, layer = "", mode, x, y, zoom, crop = ""] = fields;
     addLayer(layer);
     const pick = (name, found, fallback) => {

@@ -113,3 +113,24 @@ test("LookCloser_OpensTheViewerAtTheWorstPlace", async () => {
   assert.deepEqual(messages, []);
   await close();
 });
+
+test("ALink_OpensTheSameAnswerAndTable", async () => {
+  const { page, close } = await openRun("several");
+  await choose(page, "light", "still");
+  await choose(page, "class", "medium");
+  await move(page, { name: "error.flip" }, 2);
+  await page.locator('.numbers select[name="measure"]').selectOption("error.mean");
+  await page.locator('.numbers input[type="search"]').fill("3x");
+  await page.locator(".numbers thead button").first().click();
+  const read = (from) => from.evaluate(() => [".choice", ".answer code", ".numbers table", ".sliders"].map((name) => document.querySelector(name).textContent));
+  await page.waitForFunction(() => /limits=.*table=.*3x/.test(location.hash));
+  const hash = new URL(page.url()).hash, wanted = await read(page), again = await openRun("several", { hash });
+  assert.match(wanted[1], /--max-flip .*--class medium --light static/);
+  assert.deepEqual(await read(again.page), wanted);
+  assert.deepEqual(again.messages, []);
+  // What the page does not have is left as it was.
+  const bad = await openRun("several", { hash: "#limits=noon,vast,error.rmse:x,nothing:1&table=none,none,none,none,&view" }), plain = await openRun("several");
+  assert.deepEqual((await read(bad.page))[2], (await read(plain.page))[2]);
+  assert.deepEqual(bad.messages, []);
+  for (const each of [{ close }, again, bad, plain]) await each.close();
+});
