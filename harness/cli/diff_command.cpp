@@ -128,15 +128,25 @@ void write_images(const DiffArguments& arguments, const run::ComparisonOptions& 
                                                    made.image_grey, made.truth_grey, made.flip, numbers});
 }
 
-void check_out(const std::optional<std::string>& out) {
-  if (out && std::filesystem::path(*out).extension() != ".png")
-    fail(fmt::format("--out: '{}' must end in .png; --html writes a page", *out));
+/// Refuses what would be written over a picture that is read.
+void check_outputs(const DiffArguments& arguments) {
+  if (arguments.out && std::filesystem::path(*arguments.out).extension() != ".png")
+    fail(fmt::format("--out: '{}' must end in .png; --html writes a page", *arguments.out));
+  for (const std::string& read : {arguments.image, arguments.truth, arguments.mask.value_or("")}) {
+    const std::filesystem::path file = read.substr(0, read.find('#'));
+    std::error_code ignored;
+    if (arguments.out && std::filesystem::equivalent(file, *arguments.out, ignored))
+      fail(fmt::format("--out: '{}' is read by this command and would be lost: choose another file", *arguments.out));
+    if (arguments.html &&
+        std::filesystem::equivalent(file.parent_path(), std::filesystem::path(*arguments.html) / "images", ignored))
+      fail(fmt::format("--html: '{}' holds '{}', which could be lost: choose another folder", *arguments.html, read));
+  }
 }
 
 int diff(const CommandLine& line, const DiffArguments& arguments) {
   if (name_runs(line, arguments)) return diff_runs(arguments.image, arguments.truth, arguments.json);
   check_pixels_per_degree(arguments.pixels_per_degree);
-  check_out(arguments.out);
+  check_outputs(arguments);
   const run::ComparisonOptions options{arguments.image,
                                        arguments.truth,
                                        arguments.mask,

@@ -169,6 +169,15 @@ TEST_F(Diff, Out_DrawsDifferenceAndFlip) {
   EXPECT_EQ(run("diff 'a.exr#image' 'a.exr#truth' --out a.pgm/d.png").exit_code, 6) << "no folder";
 }
 
+TEST_F(Diff, WhatIsRead_IsNotWrittenOver) {
+  ASSERT_EQ(run("diff 'a.exr#image' 'a.exr#truth' --html page").exit_code, 0);
+  ASSERT_EQ(run("diff page/images/first.png page/images/second.png --out other.png").exit_code, 0);
+  expect_refusal("diff page/images/first.png page/images/second.png --out page/./images/second.png", 2,
+                 {"--out: 'page/./images/second.png'", "would be lost"});
+  expect_refusal("diff page/images/second.png page/images/first.png --html page", 2,
+                 {"--html: 'page'", "second.png", "choose another folder"});
+}
+
 TEST_F(Diff, Html_IsAPageWithTheViewer_AndWhatItLoads) {
   for (const char* parts : {"'a.exr#image' 'a.exr#truth'", "'a.exr#two' 'a.exr#two'", "'a.exr#broken' 'a.exr#truth'"}) {
     const Outcome outcome = run(std::string("diff ") + parts + " --html page");
