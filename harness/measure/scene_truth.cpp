@@ -7,6 +7,7 @@
 
 #include "harness/measure/mean_flip.h"
 #include "reference/metrics/error_stats.h"
+#include "reference/metrics/flicker.h"
 #include "reference/metrics/mean_interval.h"
 #include "report/images/picture_io.h"
 #include "report/records/absence.h"
@@ -27,6 +28,8 @@ void summarise_errors(SceneTruth& truth, const truth::TracedVisibility& area) {
 }
 
 /// Notes the mean of every error over the phases; the largest error is the largest of all.
+constexpr const char* kOnePhase = "one phase of the map's grid tells nothing of the others; see --phases";
+
 void note_errors(records::CellRecord& record, const std::vector<metrics::ErrorStats>& phases) {
   const auto list = [&](double metrics::ErrorStats::*member) {
     std::vector<double> values;
@@ -38,13 +41,19 @@ void note_errors(records::CellRecord& record, const std::vector<metrics::ErrorSt
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   };
   using Stats = metrics::ErrorStats;
-  record.error = {mean(&Stats::rmse), mean(&Stats::mae), mean(&Stats::p95), std::ranges::max(list(&Stats::max)),
-                  mean(&Stats::mean), std::nullopt,      std::nullopt};
+  record.error = {mean(&Stats::rmse),
+                  mean(&Stats::mae),
+                  mean(&Stats::p95),
+                  std::ranges::max(list(&Stats::max)),
+                  mean(&Stats::mean),
+                  {},
+                  {},
+                  {}};
   record.phases = static_cast<std::int64_t>(phases.size());
   if (const auto interval = metrics::find_mean_interval(list(&Stats::rmse)))
     record.rmse_ci95 = records::Interval{interval->low, interval->high};
   else
-    record.absent["error.rmse_ci95"] = "one phase of the map's grid tells nothing of the others; see --phases";
+    record.absent["error.rmse_ci95"] = kOnePhase;
 }
 
 }  // namespace
@@ -92,6 +101,11 @@ images::Image score(records::CellRecord& record, const images::Image& visibility
   }
   std::ranges::for_each(other_phases, measure_phase);
   note_errors(record, phases);
+  std::vector<std::span<const float>> images = {visibility.texels};
+  for (const images::Image& phase : other_phases)
+    if (!phase.empty()) images.emplace_back(phase.texels);
+  record.error.flicker = metrics::measure_change(images, truth.mask);
+  if (!record.error.flicker) record.absent["error.flicker"] = kOnePhase;
   // Of the pictures as they are saved, so that `diff` finds the same.
   images::Image flip;
   if (const auto seen = view_picture(images::round_to_half(picture)); seen && truth.area_seen) {

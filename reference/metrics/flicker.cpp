@@ -18,6 +18,19 @@ double root_mean(double squares, std::int64_t count) {
 
 }  // namespace
 
+std::optional<double> measure_change(std::span<const std::span<const float>> images,
+                                     std::span<const std::uint8_t> mask) {
+  double squares = 0.0;
+  std::size_t pairs = 0;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    const auto is_finite = [&](std::span<const float> image) { return std::isfinite(image[i]); };
+    if (mask[i] == 0 || !std::ranges::all_of(images, is_finite)) continue;
+    for (std::size_t a = 0; a < images.size(); ++a)
+      for (std::size_t b = 0; b < a; ++b, ++pairs) squares += square_change(images[a][i], images[b][i]);
+  }
+  return pairs > 0 ? std::optional(std::sqrt(squares / static_cast<double>(pairs))) : std::nullopt;
+}
+
 FlickerMeter::FlickerMeter(std::vector<std::uint8_t> mask)
     : mask_(std::move(mask)), excess_(mask_.size()), excess_steps_(mask_.size()) {}
 

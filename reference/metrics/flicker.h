@@ -26,6 +26,13 @@ struct FlickerStats {
   std::vector<float> by_pixel;            ///< root mean square of d - e over the steps; 0 outside the mask
 };
 
+/// Root mean square, over receivers and pairs of images, of the difference of two images of the same receivers: the
+/// `change` between frames that are independent of each other, where the truth has none. `mask` is not 0 where a pixel
+/// counts; a receiver that is not finite in one image is left out. Nothing for fewer than two images or where no
+/// receiver is left.
+std::optional<double> measure_change(std::span<const std::span<const float>> images,
+                                     std::span<const std::uint8_t> mask);
+
 /// Takes frames one by one and keeps no more than the last.
 class FlickerMeter {
  public:

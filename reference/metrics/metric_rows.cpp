@@ -55,6 +55,11 @@ std::vector<Metric> list_errors() {
        "root mean square of image less ray-traced kernel, over receivers; that is the fraction of the filter's own "
        "kernel, laid on the receiver's tangent plane, that sees the light's centre",
        kError, kTabled},
+      {"error.flicker", at<&V::error, &ErrorRecord::flicker>, "visibility", kPositive, kLess, "flicker",
+       "root mean square of what a receiver's visibility changes by from one place of the map's texel grid to another, "
+       "over receivers and pairs of places: what is seen while the map slides by fractions of a texel, in which the "
+       "truth does not change",
+       kNotKept, kUntabled, "--max-flicker"},
       {"truth.se", at<&V::truth, &TruthRecord::se>, "visibility", kPositive, kLess, "standard error of the truth",
        "standard error of the truth, root mean square over receivers", kKept},
       {"truth.unanimous", at<&V::truth, &TruthRecord::unanimous>, "share", kZeroToOne, kMore, "unanimous receivers",

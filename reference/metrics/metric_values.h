@@ -32,6 +32,7 @@ struct ErrorRecord {
   std::optional<double> mean;
   std::optional<double> flip;
   std::optional<double> kernel_rmse;
+  std::optional<double> flicker;
 };
 
 /// How sure the truth itself is.

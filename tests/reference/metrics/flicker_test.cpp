@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 namespace shadowbench::metrics {
 namespace {
@@ -70,6 +72,17 @@ TEST(Flicker, NotFinite_IsLeftOutAndCounted) {
   EXPECT_THAT(stats.flicker, DoubleNear(0.5, 1e-12));
   EXPECT_THAT(stats.change, DoubleNear(0.5, 1e-12));
   EXPECT_EQ(stats.step_change.size(), 3u);
+}
+
+TEST(Flicker, ChangeBetweenPlacesOfTheGrid_IsOverAllPairs) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<float> a = {0.0f, 0.5f, 1.0f, 0.0f}, b = {0.3f, 0.5f, 0.0f, nan}, c = {0.6f, 0.5f, 0.0f, 0.0f};
+  const std::vector<std::span<const float>> images = {a, b, c};
+  const std::vector<std::uint8_t> mask = {1, 1, 0, 1};
+  EXPECT_THAT(*measure_change(images, mask), DoubleNear(std::sqrt((0.09 + 0.36 + 0.09) / 6.0), 1e-7));
+  EXPECT_EQ(*measure_change(std::vector<std::span<const float>>{b, b}, mask), 0.0);
+  EXPECT_FALSE(measure_change(std::vector<std::span<const float>>{a}, mask)) << "one place";
+  EXPECT_FALSE(measure_change(images, std::vector<std::uint8_t>{0, 0, 0, 0})) << "no receiver";
 }
 
 TEST(Flicker, OneFrame_OrNoReceiver_HasNoAnswer) {

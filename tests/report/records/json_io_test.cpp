@@ -78,7 +78,7 @@ CellRecord make_full_cell() {
   cell.ratio_to_none.moving = Ratio{2.5, {2.25, 2.75}};
   cell.cost.prefilter_texels = 2097152;
   cell.range = {"edge", false, false};
-  cell.error = {0.1, 0.05, 0.2, 1.0, -0.01, 0.3, 0.04};
+  cell.error = {0.1, 0.05, 0.2, 1.0, -0.01, 0.3, 0.04, 0.05};
   cell.truth = {0.001, 0.9};
   cell.artefact = {0.1, 0.2, 0.3, 0.4};
   cell.attribution = {{0.1, 0.5}, {0.2, -0.1}, {0.3, 0.2}, {0.4, 0.4}};

@@ -125,7 +125,7 @@ inline CellRecord make_cell(const std::string& scene, const std::string& filter,
 inline CellRecord make_attributed_cell(const std::string& filter, double rmse, const PartValues& shares) {
   CellRecord cell = make_cell("cubes", filter, 4.0);
   cell.absent.erase("error");
-  cell.error = {rmse, rmse / 4.0, 2.0 * rmse, 1.0, -rmse / 8.0, 0.02, rmse / 2.0};
+  cell.error = {rmse, rmse / 4.0, 2.0 * rmse, 1.0, -rmse / 8.0, 0.02, rmse / 2.0, rmse / 3.0};
   cell.truth = {0.001, 0.9};
   for (std::size_t i = 0; i < metrics::kErrorParts; ++i)
     cell.attribution.*list_error_parts()[i].record = {std::abs(shares[i]) * rmse, shares[i]};
