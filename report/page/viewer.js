@@ -191,7 +191,7 @@
     say(signed ? `\u2212${top}` : "0", words[0]);
     element(bar, "i", {}).style.background = `linear-gradient(to right,${kPalettes[palette].map((stop) => `rgb(${stop})`)})`;
     say(signed ? `+${top}` : String(top), words[1]);
-    if (palette !== "grey") element(bar, "span", { className: "hatch" }, "hatched: not a receiver");
+    if (palette !== "grey") element(bar, "span", { className: "hatch" }, "hatched: " + (run.hatched || "not a receiver"));
   };
   const label = () => {
     const titles = [["Left", state.left], ["Right", state.right]].map(([side, who]) => [side + ": ", nameOf(who)]);

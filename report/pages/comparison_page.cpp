@@ -27,12 +27,15 @@ json write_side(const std::filesystem::path& dir, const std::string& stem, const
 void write_comparison_page(const std::filesystem::path& dir, const ComparedPictures& pictures) {
   images::ValuePlanes planes = {{"visibility", pictures.image_grey}};
   if (!pictures.flip.empty()) planes.emplace_back("flip", pictures.flip);
+  images::ValuePlanes truth_planes = {{"area", pictures.truth_grey}};
+  if (!pictures.mask.empty()) truth_planes.emplace_back("mask", pictures.mask);
   json cell = write_side(dir, "first", pictures.image_rgb, planes);
   cell["configuration"] = cell["place"] = 0;
   page::Page page{"Two pictures compared", {}, {}};
   page.data = {{"places", {{{"title", "both"}}}},
+               {"hatched", "left out by the mask, or not finite"},
                {"configurations", {{{"label", pictures.image}}}},
-               {"truths", {write_side(dir, "second", pictures.truth_rgb, {{"area", pictures.truth_grey}})}},
+               {"truths", {write_side(dir, "second", pictures.truth_rgb, truth_planes)}},
                {"cells", {std::move(cell)}}};
   page.sections = {{"numbers",
                     "",
