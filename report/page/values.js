@@ -62,17 +62,18 @@
     return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
   };
 
-  // All high bytes come first, then all low bytes; each row holds differences to the code at the left.
+  // The words, codes of 16 bits or floats of 32, are differences to the one at the left in their row; all high bytes come first.
   const decode = async (path, width, height, { low, high, data }) => {
     if (!window.DecompressionStream) throw refuse(path, "this browser cannot unpack it; a newer one can.");
     const bytes = await inflate(data).catch(() => []);
-    const count = width * height, step = (high - low) / kLastCode;
-    if (bytes.length !== 2 * count) throw refuse(path, "it is damaged or cut short.");
-    const values = new Float32Array(count);
+    const count = width * height, step = (high - low) / kLastCode, isFloat = low === undefined;
+    if (bytes.length !== (isFloat ? 4 : 2) * count) throw refuse(path, "it is damaged or cut short.");
+    const values = new Float32Array(count), words = new Uint32Array(values.buffer);
     for (let y = 0, i = 0; y < height; ++y) {
       for (let x = 0, code = 0; x < width; ++x, ++i) {
-        code = (code + (bytes[i] << 8) + bytes[count + i]) & 0xffff;
-        values[i] = code > kLastCode ? NaN : low + step * code;
+        const high16 = (bytes[i] << 8) | bytes[count + i];
+        if (isFloat) words[i] = code = (code + ((high16 << 16) | (bytes[2 * count + i] << 8) | bytes[3 * count + i])) | 0;
+        else values[i] = (code = (code + high16) & 0xffff) > kLastCode ? NaN : low + step * code;
       }
     }
     return values;

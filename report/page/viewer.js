@@ -7,6 +7,7 @@
   const { run, kTruth, findEntry, listFilters, listAll, nameOf, quote, tell } = data;
   const { loadFile, namePlane, getNumbers, getMask, getPicture, cut, attempt, layers } = data;
   const kLoadedFirst = 12, kMostZoom = 64, keepColours = makeStore(24e6);
+  const white = Number((run.white || 1).toPrecision(2)), digits = Math.max(3, 2 - Math.floor(Math.log10(white)));
   const kModes = [["side", "Side by side"], ["slider", "Slider"], ["flip", "Flip"], ["difference", "Difference"]];
   const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
   // What is shown. The view's middle is in pixels of the picture; a zoom of 1 fits the pane.
@@ -175,7 +176,7 @@
     const mask = name === "visibility" && !differs ? undefined : (await attempt(getMask(place))).value;
     const planes = found.filter(({ value }) => value).map(({ value }) => value);
     const palette = differs ? "diverging" : look.palette;
-    const top = palette === "grey" ? 1 : findScale(planes, mask, Math.min(0.05, look.least));
+    const top = palette === "grey" ? white : findScale(planes, mask, white * Math.min(0.05, look.least));
     const file = (await Promise.all(whos.map((who) => attempt(loadFile(who, place))))).find(({ value }) => value)?.value;
     const colour = (value, i) => keepColours([place, whos[i], differs && whos[1], name, palette, top].join(), value.length,
       () => paint(value, mask, file.width, { x: 0, y: 0, width: file.width, height: file.height }, palette, top));
@@ -281,14 +282,14 @@
     tableBox.hidden = false;
     readPixel();
   };
-  const signed = (value) => (value < 0 ? "\u2212" : "+") + Math.abs(value).toFixed(3);
+  const signed = (value) => (value < 0 ? "\u2212" : "+") + Math.abs(value).toFixed(digits);
   const readPixel = () => {
     if (!table.caption) return;
     table.caption.textContent = cursor ? `Pixel x ${cursor.x}, y ${cursor.y}` : "Point at a pixel to read its values";
     const at = cursor && cursor.y * size.width + cursor.x, truth = known.get(kTruth)?.value[at ?? -1];
     for (const [who, { value, cells: [visibility, error] }] of known) {
       const here = value[at ?? -1];
-      visibility.textContent = here === undefined ? "" : here.toFixed(3);
+      visibility.textContent = here === undefined ? "" : here.toFixed(digits);
       error.textContent = here === undefined || truth === undefined || who === kTruth ? "" : signed(here - truth);
     }
   };
@@ -326,7 +327,7 @@
     fillStrip(hardest, `Hardest tiles: where ${count < all ? count + " of " : ""}${all} filters have most of their squared error`);
     for (const { rect, share } of tiles) {
       addThumb(hardest, `${(100 * share).toFixed(0)} % at x\u00a0${rect.x}, y\u00a0${rect.y}`, () => showRect(rect), async () =>
-        picture.value ? cut(picture.value, rect, 1) : paint(truth, null, file.width, rect, "grey", 1));
+        picture.value ? cut(picture.value, rect, 1) : paint(truth, null, file.width, rect, "grey", white));
     }
   };
   const fillStrip = (strip, title) => {
@@ -357,7 +358,7 @@
       addThumb(crops, nameOf(who), () => change({ right: who }), async () => {
         if (layer === "picture") return cut(await getPicture(who, place), crop, 1);
         const values = await getNumbers(who, place, layer), mask = layer === "visibility" ? null : (await attempt(getMask(place))).value;
-        return paint(values, mask, size.width, crop, look.palette, look.palette === "grey" ? 1 : scale);
+        return paint(values, mask, size.width, crop, look.palette, look.palette === "grey" ? white : scale);
       }).dataset.who = who;
     }
     label();
