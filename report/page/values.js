@@ -202,6 +202,11 @@
     if (!name) throw new Error(`This layer is not stored for ${tell(who)}.`);
     return file.planes.get(name)();
   };
+  // The layer that a side shows: its visibility where the truth has no such layer.
+  const nameShown = async (who, place, layer) => {
+    const { value } = await attempt(loadFile(who, place));
+    return who === kTruth && value && !namePlane(value, who, layer) ? "visibility" : layer;
+  };
   const getNumbers = async (who, place, layer) =>
     layer !== "error" || who === kTruth ? getPlane(who, place, layer)
       : subtract(await getPlane(who, place, "visibility"), await getPlane(kTruth, place, "visibility"));
@@ -251,7 +256,15 @@
     ...[["flip", "FLIP", 0.05], ["stability", "Stability", 0.01], ["uncertainty", "Uncertainty", 1e-4]].map(([name, title, least]) =>
       ({ name, title, palette: "heat", least, low: "", high: "" })),
   ];
+  const layerOf = (name) => layers.find((each) => each.name === name);
+  // A family of planes ("stability.min") becomes layers as its planes are met. Says whether the plane is new.
+  const addLayer = (name) => {
+    const family = /^(stability|uncertainty)\../.test(name) && layerOf(name.split(".")[0]);
+    if (!family || layerOf(name)) return false;
+    layers.splice(layers.indexOf(family) + 1, 0, { ...family, name, title: `${family.title}: ${name.slice(family.name.length + 1)}` });
+    return true;
+  };
   shadowbench.data = {
-    run, kTruth, findEntry, listFilters, listAll, nameOf, quote, tell, loadFile, namePlane, getNumbers, getMask, getPicture, cut, attempt, layers,
+    run, kTruth, findEntry, listFilters, listAll, nameOf, quote, tell, loadFile, namePlane, nameShown, getNumbers, getMask, getPicture, cut, attempt, layers, layerOf, addLayer,
   };
 })();

@@ -26,7 +26,8 @@ test("Mask_HatchesWhatTheRunDoes", async () => {
   }
   const [run, masked, unmasked] = seen;
   assert.ok(run.colours["156,156,156"] > 1000);
-  assert.deepEqual(masked.colours, run.colours);
+  for (const colour of ["156,156,156", "168,168,168", "189,23,33", "23,79,168"])
+    assert.ok(Math.abs(masked.colours[colour] / run.colours[colour] - 1) < 0.02, colour);
   assert.equal(unmasked.colours["156,156,156"], undefined);
   assert.match(masked.said, /hatched: left out by the mask/);
 });
