@@ -125,7 +125,7 @@ void write_images(const DiffArguments& arguments, const run::ComparisonOptions& 
   }
   if (arguments.html)
     pages::write_comparison_page(*arguments.html, {options.image, options.truth, made.image, made.truth,
-                                                   made.image_grey, made.truth_grey, made.flip, numbers});
+                                                   made.image_grey, made.truth_grey, made.mask, made.flip, numbers});
 }
 
 /// Refuses what would be written over a picture that is read.

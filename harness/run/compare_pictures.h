@@ -30,6 +30,7 @@ struct ComparedImages {
   images::Image truth_grey;  ///< the same
   images::Image difference;  ///< 1 channel: the first grey less the second; NaN where one is not finite, infinite where
                              ///< a pixel does not count
+  images::Image mask;        ///< 1 channel: 1 where a pixel counts; empty where there is no mask
   images::Image flip;        ///< 1 channel; empty where there is none
 };
 

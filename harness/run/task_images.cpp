@@ -161,9 +161,19 @@ void add_phase_parts(std::vector<images::Part>& parts, const measure::MeasuredCe
     parts.push_back({phase_part(cell.label, i), {"Y"}, cell.phases[i], false});
 }
 
-/// FLIP is only looked at: 256 shades of it take a third of the room.
-images::Image round_shades(images::Image image) {
-  for (float& value : image.texels) value = std::round(255.0f * value) / 255.0f;
+/// What is only looked at takes less room in steps: 255 of FLIP, and as many of a part of the error as 16 bits hold.
+images::Image round_values(images::Image image, float steps) {
+  for (float& value : image.texels) value = std::round(steps * value) / steps;
+  return image;
+}
+
+/// Keeps 8 significant bits of values that span decades.
+images::Image round_significant(images::Image image) {
+  for (float& value : image.texels) {
+    int exponent = 0;
+    const float fraction = std::frexp(value, &exponent);
+    if (std::isfinite(value)) value = std::ldexp(std::round(256.0f * fraction) / 256.0f, exponent);
+  }
   return image;
 }
 
@@ -171,12 +181,12 @@ images::Image round_shades(images::Image image) {
 images::ValuePlanes list_planes(const measure::MeasuredCell& cell) {
   images::ValuePlanes planes = {{"visibility", cell.visibility}};
   for (std::size_t p = 0; p < cell.error_parts.size(); ++p)
-    planes.emplace_back(records::list_error_parts()[p].id, cell.error_parts[p]);
-  if (!cell.flip.empty()) planes.emplace_back("flip", round_shades(cell.flip));
+    planes.emplace_back(records::list_error_parts()[p].id, round_values(cell.error_parts[p], 32767.0f));
+  if (!cell.flip.empty()) planes.emplace_back("flip", round_values(cell.flip, 255.0f));
   for (const images::StabilityImage& each : images::list_stability_images())
     if (const images::Image& image = cell.stability.*each.image; image.texels.size() == cell.visibility.texels.size())
-      planes.emplace_back(fmt::format("stability.{}", each.id), image);
-  if (!cell.uncertainty.rounding.empty()) planes.emplace_back("rounding", cell.uncertainty.rounding);
+      planes.emplace_back(fmt::format("stability.{}", each.id), round_significant(image));
+  if (!cell.uncertainty.rounding.empty()) planes.emplace_back("rounding", round_significant(cell.uncertainty.rounding));
   return planes;
 }
 

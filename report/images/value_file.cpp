@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
@@ -17,41 +18,62 @@ namespace shadowbench::images {
 namespace {
 
 constexpr double kHighestCode = 65534.0;
-constexpr std::uint16_t kNoCode = 65535;
+constexpr std::uint32_t kNoCode = 65535, kNoFloat = 0x7fc00000;
+constexpr double kMostOff = 1.0 / 32768.0, kMostOffOfGreatest = 1.0 / 1024.0;  // else codes do not serve
 constexpr int kCompression = 6;
 
-struct Range {
+/// A plane as words of 16 bits, codes over a range, or of 32, floats.
+struct Words {
+  std::vector<std::uint32_t> words;
+  std::size_t bytes = 2;
   double low = 0.0;
   double high = 1.0;
 };
 
-Range find_range(const Image& plane) {
-  Range range;
+/// Covers a plane by [0,1] or [-1,1], or by as much more as it needs.
+Words start_codes(const Image& plane) {
+  Words codes;
   for (const float value : plane.texels) {
     if (!std::isfinite(value)) continue;
-    range.low = std::min(range.low, static_cast<double>(value));
-    range.high = std::max(range.high, static_cast<double>(value));
+    codes.low = std::min(codes.low, value < 0.0f ? std::min(static_cast<double>(value), -1.0) : 0.0);
+    codes.high = std::max(codes.high, static_cast<double>(value));
   }
-  return range;
+  return codes;
 }
 
-std::uint16_t encode(float value, const Range& range) {
-  if (!std::isfinite(value)) return kNoCode;
-  return static_cast<std::uint16_t>(
-      std::lround(kHighestCode * (static_cast<double>(value) - range.low) / (range.high - range.low)));
+Words encode_floats(const Image& plane) {
+  Words floats{{}, sizeof(float), 0.0, 0.0};
+  for (const float value : plane.texels)
+    floats.words.push_back(std::isfinite(value) ? std::bit_cast<std::uint32_t>(value) : kNoFloat);
+  return floats;
 }
 
-std::vector<unsigned char> pack_codes(const Image& plane, const Range& range) {
-  const std::size_t count = plane.texels.size();
-  std::vector<unsigned char> bytes(2 * count);
-  std::uint16_t left = 0;
+/// Takes codes where they are near enough, else floats.
+Words encode(const Image& plane) {
+  Words codes = start_codes(plane);
+  const double step = (codes.high - codes.low) / kHighestCode;
+  double greatest = 0.0, off = 0.0;
+  for (const float value : plane.texels) {
+    codes.words.push_back(kNoCode);
+    if (!std::isfinite(value)) continue;
+    const double exact = value, code = std::round((exact - codes.low) / step);
+    codes.words.back() = static_cast<std::uint32_t>(code);
+    greatest = std::max(greatest, std::abs(exact));
+    off = std::max(off, std::abs(codes.low + step * code - exact));
+  }
+  return off <= std::min(kMostOff, kMostOffOfGreatest * greatest) ? codes : encode_floats(plane);
+}
+
+std::vector<unsigned char> pack_words(const Words& plane, int width) {
+  const std::size_t count = plane.words.size();
+  std::vector<unsigned char> bytes(plane.bytes * count);
+  std::uint32_t left = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    if (i % static_cast<std::size_t>(plane.width) == 0) left = 0;
-    const std::uint16_t code = encode(plane.texels[i], range);
-    const auto step = static_cast<std::uint16_t>(code - left);
-    bytes[i] = static_cast<unsigned char>(step >> 8);
-    bytes[count + i] = static_cast<unsigned char>(step & 0xff);
-    left = code;
+    if (i % static_cast<std::size_t>(width) == 0) left = 0;
+    const std::uint32_t step = plane.words[i] - left;
+    for (std::size_t b = 0; b < plane.bytes; ++b)
+      bytes[b * count + i] = static_cast<unsigned char>(step >> 8 * (plane.bytes - 1 - b) & 0xff);
+    left = plane.words[i];
   }
   return bytes;
 }
@@ -93,9 +115,11 @@ void write_value_file(const std::filesystem::path& path, const std::string& name
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const auto& [title, plane] = planes[i];
     assert(plane.channels == 1 && plane.texels.size() == planes.front().second.texels.size());
-    const Range range = find_range(plane);
-    file.write(fmt::format("{}\n{{\"name\":{},\"low\":{},\"high\":{},\"data\":\"{}\"}}", i > 0 ? "," : "", quote(title),
-                           range.low, range.high, encode_base64(compress_bytes(pack_codes(plane, range)))));
+    const Words words = encode(plane);
+    const std::string range =
+        words.bytes == sizeof(float) ? "" : fmt::format("\"low\":{},\"high\":{},", words.low, words.high);
+    file.write(fmt::format("{}\n{{\"name\":{},{}\"data\":\"{}\"}}", i > 0 ? "," : "", quote(title), range,
+                           encode_base64(compress_bytes(pack_words(words, plane.width)))));
   }
   file.write("]});\n");
   file.commit();

@@ -15,8 +15,10 @@ using ValuePlanes = std::vector<std::pair<std::string, Image>>;
 /// Writes planes as a script that a page opened from disk can load, which pictures' pixels cannot be read by: it calls
 /// `shadowbenchValues(name, {width, height, planes: [{name, low, high, data}]})`. `data` is base64 of a zlib stream of
 /// 16-bit codes, first all high bytes, then all low ones; each code is stored less the one to its left, modulo 65 536.
-/// A value is low + (high - low) * code / 65534, so that it is within 1/131068 of the plane's range; 65535 is a value
-/// that is not finite. Planes within [0,1] have that range. Requires planes of one size.
+/// A value is low + (high - low) * code / 65534; 65535 is a value that is not finite. Planes within [0,1] have that
+/// range, so that a value is off by 1/131068 at most. A plane of which codes would be off by more than 1/32768, or than
+/// 1/1024 of its greatest magnitude, has neither low nor high: its words are the 32 bits of floats, in the same order,
+/// and NaN is a value that is not finite. Requires planes of one size.
 /// Throws Error(kOutput).
 void write_value_file(const std::filesystem::path& path, const std::string& name, const ValuePlanes& planes);
 

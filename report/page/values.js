@@ -93,17 +93,18 @@
     return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
   };
 
-  // All high bytes come first, then all low bytes; each row holds differences to the code at the left.
+  // The words, codes of 16 bits or floats of 32, are differences to the one at the left in their row; all high bytes come first.
   const decode = async (path, width, height, { low, high, data }) => {
     if (!window.DecompressionStream) throw refuse(path, "this browser cannot unpack it; a newer one can.");
     const bytes = await inflate(data).catch(() => []);
-    const count = width * height, step = (high - low) / kLastCode;
-    if (bytes.length !== 2 * count) throw refuse(path, "it is damaged or cut short.");
-    const values = new Float32Array(count);
+    const count = width * height, step = (high - low) / kLastCode, isFloat = low === undefined;
+    if (bytes.length !== (isFloat ? 4 : 2) * count) throw refuse(path, "it is damaged or cut short.");
+    const values = new Float32Array(count), words = new Uint32Array(values.buffer);
     for (let y = 0, i = 0; y < height; ++y) {
       for (let x = 0, code = 0; x < width; ++x, ++i) {
-        code = (code + (bytes[i] << 8) + bytes[count + i]) & 0xffff;
-        values[i] = code > kLastCode ? NaN : low + step * code;
+        const high16 = (bytes[i] << 8) | bytes[count + i];
+        if (isFloat) words[i] = code = (code + ((high16 << 16) | (bytes[2 * count + i] << 8) | bytes[3 * count + i])) | 0;
+        else values[i] = (code = (code + high16) & 0xffff) > kLastCode ? NaN : low + step * code;
       }
     }
     return values;
@@ -232,6 +233,11 @@
     if (!name) throw new Error(`This layer is not stored for ${tell(who)}.`);
     return file.planes.get(name)();
   };
+  // The layer that a side shows: its visibility where the truth has no such layer.
+  const nameShown = async (who, place, layer) => {
+    const { value } = await attempt(loadFile(who, place));
+    return who === kTruth && value && !namePlane(value, who, layer) ? "visibility" : layer;
+  };
   const getNumbers = async (who, place, layer) =>
     layer !== "error" || who === kTruth ? getPlane(who, place, layer)
       : subtract(await getPlane(who, place, "visibility"), await getPlane(kTruth, place, "visibility"));
@@ -281,7 +287,15 @@
     ...[["flip", "FLIP", 0.05], ["stability", "Stability", 0.01], ["uncertainty", "Uncertainty", 1e-4]].map(([name, title, least]) =>
       ({ name, title, palette: "heat", least, low: "", high: "" })),
   ];
+  const layerOf = (name) => layers.find((each) => each.name === name);
+  // A family of planes ("stability.min") becomes layers as its planes are met. Says whether the plane is new.
+  const addLayer = (name) => {
+    const family = /^(stability|uncertainty)\../.test(name) && layerOf(name.split(".")[0]);
+    if (!family || layerOf(name)) return false;
+    layers.splice(layers.indexOf(family) + 1, 0, { ...family, name, title: `${family.title}: ${name.slice(family.name.length + 1)}` });
+    return true;
+  };
   shadowbench.data = {
-    run, kTruth, findEntry, listFilters, listAll, nameOf, quote, tell, loadFile, namePlane, getNumbers, getMask, getPicture, cut, attempt, layers,
+    run, kTruth, findEntry, listFilters, listAll, nameOf, quote, tell, loadFile, namePlane, nameShown, getNumbers, getMask, getPicture, cut, attempt, layers, layerOf, addLayer,
   };
 })();

@@ -5,24 +5,17 @@
   if (!section || !data) return;
   const { makeStore, subtract, findScale, kPalettes, paint, addSquares, findTiles } = numbers;
   const { run, kTruth, findEntry, listFilters, listAll, nameOf, quote, tell } = data;
-  const { loadFile, namePlane, getNumbers, getMask, getPicture, cut, attempt, layers } = data;
+  const { loadFile, namePlane, nameShown, getNumbers, getMask, getPicture, cut, attempt, layers, layerOf, addLayer } = data;
   const kLoadedFirst = 12, kMostZoom = 64, keepColours = makeStore(24e6);
+  const white = Number((run.white || 1).toPrecision(2)), digits = Math.max(3, 2 - Math.floor(Math.log10(white)));
   const kModes = [["side", "Side by side"], ["slider", "Slider"], ["flip", "Flip"], ["difference", "Difference"]];
+  const kNote = " (its visibility: only filters have this layer)";
   const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
   // What is shown. The view's middle is in pixels of the picture; a zoom of 1 fits the pane.
   const state = { place: 0, left: kTruth, right: 0, layer: "picture", mode: "side", x: 0, y: 0, zoom: 1, crop: null };
   let size = { width: 16, height: 9 }, sides = [{}, {}], scale = 1, split = 0.5, isRight = false, isCropping = false;
   let cursor = null, turn = 0, frame = 0, wanted = null;
   const known = new Map();  // the visibility of the place's filters and of its truth
-  const layerOf = (name) => layers.find((each) => each.name === name);
-  // A family of planes ("stability.min") becomes layers as its planes are met.
-  const addLayer = (name) => {
-    const family = /^(stability|uncertainty)\../.test(name) && layerOf(name.split(".")[0]);
-    if (!family || layerOf(name)) return;
-    layers.splice(layers.indexOf(family) + 1, 0,
-      { ...family, name, title: `${family.title}: ${name.slice(family.name.length + 1)}` });
-    fillLayers();
-  };
 
   // Controls.
   const root = section.querySelector(".viewer");
@@ -169,42 +162,50 @@
     const whos = [state.left, state.right];
     const differs = mode === "difference", name = layer === "picture" ? "visibility" : layer, look = layerOf(name);
     if (layer === "picture" && !differs) return { made: await Promise.all(whos.map((who) => attempt(getPicture(who, place)))) };
-    let found = await Promise.all(whos.map((who) => attempt(getNumbers(who, place, name))));
+    const names = await Promise.all(whos.map((who) => (differs ? name : nameShown(who, place, name))));
+    let found = await Promise.all(whos.map((who, i) => attempt(getNumbers(who, place, names[i]))));
     const message = found.map((each) => each.message).filter(Boolean).join(" ");
-    if (differs) found = [message ? { message } : await attempt((async () => subtract(found[0].value, found[1].value))())];
+    if (differs) found = [message ? { message } : await attempt((async () => subtract(found[1].value, found[0].value))())];
     const mask = name === "visibility" && !differs ? undefined : (await attempt(getMask(place))).value;
-    const planes = found.filter(({ value }) => value).map(({ value }) => value);
+    const planes = found.filter(({ value }, i) => value && names[i] === name).map(({ value }) => value);
     const palette = differs ? "diverging" : look.palette;
-    const top = palette === "grey" ? 1 : findScale(planes, mask, Math.min(0.05, look.least));
+    const top = palette === "grey" ? white : findScale(planes, mask, white * Math.min(0.05, look.least));
     const file = (await Promise.all(whos.map((who) => attempt(loadFile(who, place))))).find(({ value }) => value)?.value;
-    const colour = (value, i) => keepColours([place, whos[i], differs && whos[1], name, palette, top].join(), value.length,
-      () => paint(value, mask, file.width, { x: 0, y: 0, width: file.width, height: file.height }, palette, top));
-    const made = found.map((each, i) => (each.value ? { value: colour(each.value, i) } : each));
+    const colour = (value, i) => {
+      const [counts, shades, most] = names[i] === name ? [mask, palette, top] : [undefined, "grey", white], { width, height } = file;
+      return keepColours([place, whos[i], differs && whos[1], names[i], shades, most].join(), value.length,
+        () => paint(value, counts, width, { x: 0, y: 0, width, height }, shades, most));
+    };
+    const made = found.map((each, i) => (each.value ? { value: colour(each.value, i), note: names[i] === name ? "" : kNote } : each));
     return { made, top, palette, look, differs };
   };
   const showScale = ({ top, palette, look, differs }) => {
     bar.hidden = !top;
     bar.replaceChildren();
     if (!top) return;
-    const words = differs ? ["left is lower", "left is higher"] : [look.low, look.high], signed = palette === "diverging";
+    const words = differs ? ["right is lower", "right is higher"] : [look.low, look.high], signed = palette === "diverging";
     const say = (value, word) => element(bar, "span", {}, word ? `${value} (${word})` : value);
     say(signed ? `\u2212${top}` : "0", words[0]);
     element(bar, "i", {}).style.background = `linear-gradient(to right,${kPalettes[palette].map((stop) => `rgb(${stop})`)})`;
     say(signed ? `+${top}` : String(top), words[1]);
-    if (palette !== "grey") element(bar, "span", { className: "hatch" }, "hatched: not a receiver");
+    if (palette !== "grey") element(bar, "span", { className: "hatch" }, "hatched: " + (run.hatched || "not a receiver"));
   };
   const label = () => {
     const titles = [["Left", state.left], ["Right", state.right]].map(([side, who]) => [side + ": ", nameOf(who)]);
-    const layer = selects.layer.selectedOptions[0]?.text;
+    const layer = selects.layer.selectedOptions[0]?.text, notes = [0, 1].map((side) => sides[side].note || "");
     for (const [i, pane] of panes.entries()) {
       pane.figure.hidden = i === 1 && state.mode !== "side";
       const shown = [...shownIn(pane)].sort(), parts = state.mode === "difference" ? [0, 1] : shown;
       pane.caption.replaceChildren();
-      if (state.mode === "difference") pane.caption.append("Left \u2212 right. ");
-      for (const side of parts) element(element(pane.caption, "span", {}, titles[side][0]), "bdi", {}, titles[side][1]);
+      if (state.mode === "difference") pane.caption.append("Right \u2212 left. ");
+      for (const side of parts) {
+        const text = element(pane.caption, "span", {}, titles[side][0]);
+        element(text, "bdi", {}, titles[side][1]);
+        text.append(notes[side]);
+      }
       pane.message.textContent = shown.map((side) => sides[side].message).filter(Boolean).join(" ");
       pane.message.hidden = !pane.message.textContent;
-      const names = parts.map((side) => titles[side][0] + quote(titles[side][1])).join("; ");
+      const names = parts.map((side) => titles[side][0] + quote(titles[side][1]) + notes[side]).join("; ");
       const scene = quote(run.places[state.place].title), [, mode] = kModes.find(([name]) => name === state.mode);
       pane.canvas.setAttribute("aria-label", `${layer} of ${scene}, ${mode}. ${names}`);
       pane.canvas.style.cursor = isCropping ? "crosshair" : "grab";
@@ -253,7 +254,7 @@
   const listKnownLayers = async (mine) => {
     const whos = [state.left, state.right], files = await Promise.all(whos.map((who) => attempt(loadFile(who, state.place))));
     if (mine !== turn) return;
-    for (const { value } of files) for (const name of value?.planes.keys() || []) addLayer(name);
+    for (const { value } of files) for (const name of value?.planes.keys() || []) if (addLayer(name)) fillLayers();
     selects.layer.value = state.layer;
     for (const option of selects.layer) {
       const has = (i) => files[i].value && namePlane(files[i].value, whos[i], option.value);
@@ -281,14 +282,14 @@
     tableBox.hidden = false;
     readPixel();
   };
-  const signed = (value) => (value < 0 ? "\u2212" : "+") + Math.abs(value).toFixed(3);
+  const signed = (value) => (value < 0 ? "\u2212" : "+") + Math.abs(value).toFixed(digits);
   const readPixel = () => {
     if (!table.caption) return;
     table.caption.textContent = cursor ? `Pixel x ${cursor.x}, y ${cursor.y}` : "Point at a pixel to read its values";
     const at = cursor && cursor.y * size.width + cursor.x, truth = known.get(kTruth)?.value[at ?? -1];
     for (const [who, { value, cells: [visibility, error] }] of known) {
       const here = value[at ?? -1];
-      visibility.textContent = here === undefined ? "" : here.toFixed(3);
+      visibility.textContent = here === undefined ? "" : here.toFixed(digits);
       error.textContent = here === undefined || truth === undefined || who === kTruth ? "" : signed(here - truth);
     }
   };
@@ -326,7 +327,7 @@
     fillStrip(hardest, `Hardest tiles: where ${count < all ? count + " of " : ""}${all} filters have most of their squared error`);
     for (const { rect, share } of tiles) {
       addThumb(hardest, `${(100 * share).toFixed(0)} % at x\u00a0${rect.x}, y\u00a0${rect.y}`, () => showRect(rect), async () =>
-        picture.value ? cut(picture.value, rect, 1) : paint(truth, null, file.width, rect, "grey", 1));
+        picture.value ? cut(picture.value, rect, 1) : paint(truth, null, file.width, rect, "grey", white));
     }
   };
   const fillStrip = (strip, title) => {
@@ -356,8 +357,8 @@
     for (const who of listAll(place)) {
       addThumb(crops, nameOf(who), () => change({ right: who }), async () => {
         if (layer === "picture") return cut(await getPicture(who, place), crop, 1);
-        const values = await getNumbers(who, place, layer), mask = layer === "visibility" ? null : (await attempt(getMask(place))).value;
-        return paint(values, mask, size.width, crop, look.palette, look.palette === "grey" ? 1 : scale);
+        const name = await nameShown(who, place, layer), values = await getNumbers(who, place, name), { palette } = layerOf(name);
+        return paint(values, name === "visibility" ? null : (await attempt(getMask(place))).value, size.width, crop, palette, palette === "grey" ? white : scale);
       }).dataset.who = who;
     }
     label();
@@ -446,7 +447,7 @@
     const fields = link.read("view"), unknown = [];
     if (!fields) return false;
     const [title, left, right, layer = "", mode, x, y, zoom, crop = ""] = fields;
-    addLayer(layer);
+    if (addLayer(layer)) fillLayers();
     const pick = (name, found, fallback) => {
       if (found >= 0) return found;
       if (name) unknown.push(quote(name));

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "filters/base/atomic_file.h"
 #include "report/images/picture_io.h"
 #include "report/images/value_file.h"
@@ -22,17 +25,30 @@ json write_side(const std::filesystem::path& dir, const std::string& stem, const
   return {{"picture", picture}, {"values", values}};
 }
 
+/// The greatest magnitude in two pictures, where all is darker than white: tiny values are seen then too.
+double find_white(const ComparedPictures& pictures) {
+  double greatest = 0.0;
+  for (const images::Image* grey : {&pictures.image_grey, &pictures.truth_grey})
+    for (const float value : grey->texels)
+      if (std::isfinite(value)) greatest = std::max(greatest, static_cast<double>(std::abs(value)));
+  return greatest > 0.0 ? std::min(greatest, 1.0) : 1.0;
+}
+
 }  // namespace
 
 void write_comparison_page(const std::filesystem::path& dir, const ComparedPictures& pictures) {
   images::ValuePlanes planes = {{"visibility", pictures.image_grey}};
   if (!pictures.flip.empty()) planes.emplace_back("flip", pictures.flip);
+  images::ValuePlanes truth_planes = {{"area", pictures.truth_grey}};
+  if (!pictures.mask.empty()) truth_planes.emplace_back("mask", pictures.mask);
   json cell = write_side(dir, "first", pictures.image_rgb, planes);
   cell["configuration"] = cell["place"] = 0;
   page::Page page{"Two pictures compared", {}, {}};
   page.data = {{"places", {{{"title", "both"}}}},
+               {"hatched", "left out by the mask, or not finite"},
+               {"white", find_white(pictures)},
                {"configurations", {{{"label", pictures.image}}}},
-               {"truths", {write_side(dir, "second", pictures.truth_rgb, {{"area", pictures.truth_grey}})}},
+               {"truths", {write_side(dir, "second", pictures.truth_rgb, truth_planes)}},
                {"cells", {std::move(cell)}}};
   page.sections = {{"numbers",
                     "",

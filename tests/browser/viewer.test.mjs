@@ -40,6 +40,43 @@ test("EveryLayerInEveryMode_IsShownOrExplained", async () => {
   await close();
 });
 
+test("Difference_IsRightLessLeft_AsTheErrorIs", async () => {
+  const { page, messages, close } = await openViewer(kPage, { hash: "#view=cubes,truth,none,error,flip,0,0,1" });
+  await page.keyboard.press("f");
+  await settle(page);
+  const error = await colours(page), scale = await page.locator(".viewer .scale").textContent();
+  await page.getByRole("button", { name: "Difference" }).click();
+  await pick(page, "Layer", "visibility");
+  await settle(page);
+  assert.ok(error["189,23,33"] > 1.05 * error["23,79,168"], "the sign shows");
+  assert.deepEqual(await colours(page), error);
+  assert.match(await page.locator(".viewer figcaption").first().textContent(), /^Right \u2212 left/);
+  assert.equal((await page.locator(".viewer .scale").textContent()).replaceAll("right is lower", "darker than the truth").replaceAll("right is higher", "lighter than the truth"), scale);
+  assert.deepEqual(messages, []);
+  await close();
+});
+
+test("LayerThatTheTruthLacks_LeavesItsVisibility", async () => {
+  const { page, messages, shoot, close } = await openViewer(kPage, { hash: "#view=cubes,truth,vsm%20(radius%201),visibility,side,0,0,1,30-30-60-60" });
+  await settle(page);
+  const grey = await colours(page);
+  for (const layer of ["error", "model", "flip", "stability.half_difference"]) {
+    await pick(page, "Layer", layer);
+    await settle(page);
+    assert.deepEqual(await colours(page), grey, layer);
+    assert.equal(await page.locator(".viewer .message:visible").count(), 0);
+    assert.deepEqual(await page.locator(".viewer figcaption").allTextContents(), ["Left: truth (its visibility: only filters have this layer)", "Right: vsm (radius 1)"]);
+  }
+  await showCrops(page);
+  await shoot("stands_in");
+  assert.equal(await page.locator(".viewer .strip [data-who='-1']").textContent(), "truth");
+  await pick(page, "Layer", "uncertainty");
+  await settle(page);
+  assert.equal(await page.locator(".viewer figcaption").first().textContent(), "Left: truth");
+  assert.deepEqual(messages, []);
+  await close();
+});
+
 test("Keys_ChooseZoomFlipAndMove", async () => {
   const { page, messages, close } = await openViewer(kPage);
   await page.waitForSelector(".viewer .strip button canvas");

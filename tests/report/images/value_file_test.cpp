@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <zlib.h>
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -31,20 +32,34 @@ std::vector<unsigned char> decode_base64(const std::string& text) {
 
 std::vector<double> decode(const nlohmann::json& file, const nlohmann::json& plane) {
   const std::size_t width = file["width"], count = width * file["height"].get<std::size_t>();
+  const bool floats = !plane.contains("low");
   const auto packed = decode_base64(plane["data"]);
-  std::vector<unsigned char> bytes(2 * count);
+  std::vector<unsigned char> bytes((floats ? 4 : 2) * count);
   uLongf size = static_cast<uLongf>(bytes.size());
   EXPECT_EQ(uncompress(bytes.data(), &size, packed.data(), static_cast<uLong>(packed.size())), Z_OK);
   EXPECT_EQ(size, bytes.size());
-  const double low = plane["low"], high = plane["high"];
   std::vector<double> values;
-  std::uint16_t code = 0;
+  std::uint32_t word = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    if (i % width == 0) code = 0;
-    code = static_cast<std::uint16_t>(code + (bytes[i] << 8) + bytes[count + i]);
-    values.push_back(code == 65535 ? std::nan("") : low + (high - low) * code / 65534.0);
+    std::uint32_t step = 0;
+    for (std::size_t at = i; at < bytes.size(); at += count) step = step << 8 | bytes[at];
+    word = (i % width == 0 ? 0 : word) + step;
+    if (!floats) word &= 65535;
+    if (floats)
+      values.push_back(static_cast<double>(std::bit_cast<float>(word)));
+    else
+      values.push_back(word == 65535 ? std::nan("")
+                                     : plane["low"].get<double>() +
+                                           (plane["high"].get<double>() - plane["low"].get<double>()) * word / 65534.0);
   }
   return values;
+}
+
+nlohmann::json write_and_parse(const Image& plane) {
+  const records::TemporaryFolder folder("value_file_planes");
+  write_value_file(folder.path() / "a.js", "a", {{"p", plane}});
+  const std::string text = records::read_text(folder.path() / "a.js");
+  return nlohmann::json::parse(text.substr(23, text.size() - 26));
 }
 
 TEST(ValueFile, ComesBackWithinHalfAStep) {
@@ -52,7 +67,7 @@ TEST(ValueFile, ComesBackWithinHalfAStep) {
   Image visibility(5, 3, 1), error(5, 3, 1);
   for (std::size_t i = 0; i < 15; ++i) {
     visibility.texels[i] = static_cast<float>(i * i % 15) / 14.0f;
-    error.texels[i] = -2.0f + 0.3f * static_cast<float>(i);
+    error.texels[i] = -1.5f + 0.2f * static_cast<float>(i);
   }
   visibility.texels[7] = std::numeric_limits<float>::quiet_NaN();
   error.texels[8] = std::numeric_limits<float>::infinity();
@@ -78,16 +93,37 @@ TEST(ValueFile, ComesBackWithinHalfAStep) {
 }
 
 TEST(ValueFile, EveryLengthOfBase64_IsWhole) {
-  const records::TemporaryFolder folder("value_file_lengths");
   for (int width = 1; width < 12; ++width) {
     Image plane(width, 1, 1);
     for (int x = 0; x < width; ++x) plane.at(x, 0)[0] = static_cast<float>((37 * x) % 11) / 10.0f;
-    write_value_file(folder.path() / "a.js", "a", {{"p", plane}});
-    const std::string text = records::read_text(folder.path() / "a.js");
-    const auto file = nlohmann::json::parse(text.substr(23, text.size() - 26));
+    const auto file = write_and_parse(plane);
     EXPECT_EQ(file["planes"][0]["data"].get<std::string>().size() % 4, 0u);
     EXPECT_THAT(decode(file, file["planes"][0]), ::testing::SizeIs(width));
   }
+}
+
+TEST(ValueFile, LargeAndTinyValues_ComeBackExactly) {
+  for (const float greatest : {1000.0f, -1000.0f, 1e-5f, 1e-30f}) {
+    Image plane(50, 3, 1);
+    for (std::size_t i = 0; i < 150; ++i)
+      plane.texels[i] = greatest * std::pow(0.9f, static_cast<float>(i)) * (i % 7 == 0 ? -1.0f : 1.0f);
+    plane.texels[70] = std::numeric_limits<float>::infinity();
+    const auto file = write_and_parse(plane);
+    const auto values = decode(file, file["planes"][0]);
+    EXPECT_FALSE(file["planes"][0].contains("low"));
+    for (std::size_t i = 0; i < 150; ++i)
+      if (i == 70)
+        EXPECT_TRUE(std::isnan(values[i]));
+      else
+        EXPECT_EQ(values[i], static_cast<double>(plane.texels[i])) << greatest << " " << i;
+  }
+}
+
+TEST(ValueFile, FewStepsAndNothing_TakeCodes) {
+  Image plane(50, 3, 1);
+  EXPECT_EQ(write_and_parse(plane)["planes"][0]["high"], 1.0);
+  for (std::size_t i = 0; i < 150; ++i) plane.texels[i] = static_cast<float>(i % 5) / 32767.0f - 2.0f / 32767.0f;
+  EXPECT_EQ(write_and_parse(plane)["planes"][0]["low"], -1.0);
 }
 
 TEST(ValueFile, FolderThatCannotBeMade_IsAnError) {
