@@ -66,19 +66,15 @@ inline constexpr std::size_t kMostShown = 6;
 /// with the titled one before it. Curves that no title names stay.
 void show_most_telling(Chart& chart, std::vector<std::pair<double, std::string>> weights_and_titles);
 
-/// Charts of which the reader chooses one, with the sentences that belong to it.
+/// Charts of which the reader chooses one.
 struct ChartChoice {
   struct Selector {
     std::string label;
     std::vector<std::string> options;
   };
-  struct Entry {
-    Chart chart;
-    std::vector<std::string> sentences;
-  };
   std::string id;
   std::vector<Selector> selectors;
-  std::vector<Entry> entries;  ///< in row-major order of the selectors' options: the last selector changes fastest
+  std::vector<Chart> charts;  ///< in row-major order of the selectors' options: the last selector changes fastest
 };
 
 }  // namespace shadowbench::page

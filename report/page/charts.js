@@ -105,14 +105,14 @@
     if (d) svgElement(parent, "path", { d, stroke: color, fill: "none" });
   };
 
-  // Puts labels beside their points, where they cover neither marks nor each other.
+  // Puts labels beside their points, where they cover neither marks nor each other; what says most comes first.
   const drawLabels = (svg, labels, marks, area) => {
     const boxes = marks.map(([px, py]) => [px - 6, py - 6, px + 6, py + 6]);
     const isFree = (box) => box[0] >= area.left && box[2] <= area.right && box[1] >= area.top && box[3] <= area.bottom &&
       boxes.every((other) => box[2] <= other[0] || box[0] >= other[2] || box[3] <= other[1] || box[1] >= other[3]);
-    for (const [px, py, label] of labels) {
+    for (const [px, py, label] of labels.sort((a, b) => a[3] - b[3])) {
       const width = widthOf(label), places = [];
-      for (const away of [8, 20, 34, 50]) {
+      for (const away of [8, 20]) {
         for (const [dx, dy] of [[-1, -1], [1, -1], [1, 1], [-1, 1], [0, -1], [0, 1], [1, 0], [-1, 0]]) {
           const cx = px + dx * (away + width / 2), cy = py + dy * (away + 2);
           places.push([cx - width / 2, cy - kSize / 2, cx + width / 2, cy + kSize / 2]);
@@ -122,7 +122,6 @@
       if (!box) continue;  // the pointer still finds it
       boxes.push(box);
       const [cx, cy] = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
-      if (Math.hypot(cx - px, cy - py) > 22 + width / 2) svgElement(svg, "path", { d: `M${px},${py}L${cx},${cy}`, stroke: kSecond, "stroke-width": 0.5 });
       svgElement(svg, "text", { x: cx, y: cy + kSize * 0.35, "text-anchor": "middle", stroke: kPaper, "stroke-width": 3, "paint-order": "stroke" }, label);
     }
   };
@@ -202,7 +201,7 @@
         if (series.whiskers) drawWhiskers(layers[i], point, x, y, series.color);
         if (series.mark !== "none") drawMark(layers[i], series, ...at);
         if (series.mark !== "none") marks.push(at);
-        if (point.label) labels.push([...at, point.label]);
+        if (point.label) labels.push([...at, point.label, series.faint ? 2 : series.filled ? 0 : 1]);
         if (series.mark !== "none" || point.details.length > 0) hits.push({ at, point, series });
       }
     });
@@ -281,9 +280,9 @@
 
   const start = (choice) => {
     const figure = document.getElementById(choice.id);
-    const [controls, holder, said] = ["controls", "holder", "said"].map((name) => figure.querySelector("." + name));
-    const hidden = new Set(choice.entries.flatMap(({ chart: { series } }) => series.filter((each) => each.hidden).map((each) => each.title)));
-    let chart = null, sentences = [], drawn = 0;
+    const [controls, holder] = ["controls", "holder"].map((name) => figure.querySelector("." + name));
+    const hidden = new Set(choice.charts.flatMap(({ series }) => series.filter((each) => each.hidden).map((each) => each.title)));
+    let chart = null, drawn = 0;
     const draw = () => {
       drawn = holder.clientWidth;
       if (drawn === 0) return;  // folded away
@@ -301,17 +300,12 @@
       options.forEach((option, i) => select.add(new Option(option, String(i))));
       return select;
     });
-    const groups = [...new Set(choice.entries.flatMap(({ chart: { series } }) => series.flatMap(({ points }) => points.map((point) => point[5]))))].filter(Boolean);
+    const groups = [...new Set(choice.charts.flatMap(({ series }) => series.flatMap(({ points }) => points.map((point) => point[5]))))].filter(Boolean);
     const width = groups.length > 1 ? element(element(controls, "label", {}, "width "), "select", {}) : null;
     if (width) for (const group of ["", ...groups]) width.add(new Option(group || "any", group));
     const choose = () => {
-      const entry = choice.entries[selects.reduce((index, select, i) => index * choice.selectors[i].options.length + Number(select.value), 0)];
-      [chart, sentences] = [keepGroup(unpack(entry.chart), width?.value), entry.sentences];
-      said.replaceChildren();
-      if (sentences.length > 0) {
-        const list = element(said, "ul", {});
-        for (const i of sentences) element(list, "li", {}, page.texts[i]);
-      }
+      const packed = choice.charts[selects.reduce((index, select, i) => index * choice.selectors[i].options.length + Number(select.value), 0)];
+      chart = keepGroup(unpack(packed), width?.value);
       draw();
     };
     for (const select of [...selects, width]) select?.addEventListener("change", choose);

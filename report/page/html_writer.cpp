@@ -85,12 +85,11 @@ std::string html_script(std::string_view script) { return fmt::format("<script>\
 class ChartPacker {
  public:
   void add(const ChartChoice& choice) {
-    json selectors = json::array(), entries = json::array();
+    json selectors = json::array(), charts = json::array();
     for (const ChartChoice::Selector& each : choice.selectors)
       selectors.push_back({{"label", each.label}, {"options", each.options}});
-    for (const ChartChoice::Entry& each : choice.entries)
-      entries.push_back({{"chart", pack(each.chart)}, {"sentences", pack(each.sentences)}});
-    charts_.push_back({{"id", choice.id}, {"selectors", selectors}, {"entries", entries}});
+    for (const Chart& each : choice.charts) charts.push_back(pack(each));
+    charts_.push_back({{"id", choice.id}, {"selectors", selectors}, {"charts", charts}});
   }
 
   bool is_empty() const { return charts_.empty(); }
@@ -263,18 +262,15 @@ class HtmlWriter {
                               place(row.net) - 1);
   }
 
-  std::string write(const Chart& chart) { return write(ChartChoice{chart.id, {}, {{chart, {}}}}); }
+  std::string write(const Chart& chart) { return write(ChartChoice{chart.id, {}, {chart}}); }
 
-  /// The sentences of the first chart are there without scripts too.
   std::string write(const ChartChoice& choice) {
-    if (choice.entries.empty()) return {};
+    if (choice.charts.empty()) return {};
     charts_.add(choice);
-    const std::vector<std::string>& said = choice.entries.front().sentences;
     return fmt::format(
         "<figure class=\"chart\" id=\"{}\">\n<div class=\"controls\"></div>\n<div class=\"holder\">"
-        "<noscript>A script draws the chart \"{}\" here.</noscript></div>\n"
-        "<div class=\"said\">{}</div>\n</figure>\n",
-        escape_html(choice.id), escape_html(choice.entries.front().chart.title), said.empty() ? "" : html_list(said));
+        "<noscript>A script draws the chart \"{}\" here.</noscript></div>\n</figure>\n",
+        escape_html(choice.id), escape_html(choice.charts.front().title));
   }
 
   std::string write(const Details& details) {

@@ -78,7 +78,7 @@ std::string write_block(const Chart& chart) {
 std::string write_block(const ChartChoice& choice) {
   std::vector<std::string> labels;
   for (const ChartChoice::Selector& selector : choice.selectors) labels.push_back(escape_markdown(selector.label));
-  return fmt::format("The HTML page draws {} charts here, one for every {}.\n\n", choice.entries.size(),
+  return fmt::format("The HTML page draws {} charts here, one for every {}.\n\n", choice.charts.size(),
                      fmt::join(labels, " and "));
 }
 

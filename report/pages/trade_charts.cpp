@@ -84,7 +84,7 @@ class FrontChart {
     return scope_.configurations[front_.configurations[point]];
   }
 
-  /// The line through the front of one class of width.
+  /// The line through the front of one class of width, where it has more than a point.
   void add_front(page::Chart& chart, std::size_t width_class) const {
     const std::string_view name = analysis::name_class(width_class);
     ChartSeries line = start_line(fmt::format("front, {}", name), page::kInk, page::LineStyle::kSteps);
@@ -93,7 +93,7 @@ class FrontChart {
       if (values.group != width_class) continue;
       line.points.push_back({values.cost, values.error, {}, {}, {}, std::string(name)});
     }
-    if (!line.points.empty()) chart.series.push_back(std::move(line));
+    if (line.points.size() > 1) chart.series.push_back(std::move(line));
   }
 
   std::string describe_standing(std::size_t point) const {
@@ -295,7 +295,7 @@ page::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& sco
     for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error) {
       for (std::size_t cost = 0; cost < analysis::kCostMeasures; ++cost) {
         const analysis::TradeFront front = analysis::make_trade_front(scope, error, cost);
-        choice.entries.push_back({FrontChart(scope, front, cells, gl).make(filters), {}});
+        choice.charts.push_back(FrontChart(scope, front, cells, gl).make(filters));
       }
     }
   }
@@ -309,7 +309,7 @@ page::ChartChoice make_width_choice(const std::vector<analysis::WidthChart>& cha
   for (const analysis::WidthChart& chart : charts) {
     choice.selectors[0].options.push_back(chart.title);
     for (const analysis::LightState light : {analysis::LightState::kStill, analysis::LightState::kMoving})
-      choice.entries.push_back({make_width_chart(chart, light, filters, gl), {}});
+      choice.charts.push_back(make_width_chart(chart, light, filters, gl));
   }
   return choice;
 }

@@ -10,8 +10,8 @@
 
 namespace shadowbench::pages {
 
-/// Draws the fronts of every scope, error and cost, with the sentences that say what each holds. Members are filled,
-/// joined and numbered; tied cells are hollow, dominated ones hollow and faint.
+/// Draws the fronts of every scope, error and cost. Members are filled and joined; tied cells are hollow, dominated
+/// ones hollow and faint.
 page::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& scopes,
                                     const std::vector<records::CellRecord>& cells, const records::GlRecord& gl);
 

@@ -13,8 +13,9 @@
 namespace shadowbench::records {
 namespace {
 
+/// Six digits tell values of a sweep apart, and can be read.
 std::string format_param(const records::ParamValue& value) {
-  if (const auto* number = std::get_if<double>(&value)) return records::dump_line(records::number_json(*number));
+  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:.6g}", *number);
   if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "on" : "off";
   return std::get<std::string>(value);
 }

@@ -66,7 +66,7 @@ test("AClickOnAMark_OpensTheViewerWithThatFilterAndTheTruth", async () => {
   const { page, messages, close } = await openRun("several"), data = await readData(page);
   const chart = await page.evaluate(() => {
     const { charts } = JSON.parse(document.getElementById("charts").textContent);
-    return charts.findIndex(({ entries }) => entries.some(({ chart }) => chart.series.some(({ points }) => points.some((point) => point[4]))));
+    return charts.findIndex(({ charts }) => charts.some(({ series }) => series.some(({ points }) => points.some((point) => point[4]))));
   });
   assert.ok(chart >= 0, "a chart whose marks open cells");
   const figure = page.locator("figure.chart").nth(chart);

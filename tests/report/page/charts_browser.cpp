@@ -53,7 +53,6 @@ for (const select of all("#choice select")) {
   select.value = "1";
   select.dispatchEvent(new Event("change"));
 }
-say("chosen", document.querySelector("#choice .said").textContent);
 for (const button of all("#choice button")) button.click();
 const count = () => all("#single .holder svg path[transform]").length, before = count();
 all("#single .key")[1].dispatchEvent(new MouseEvent("click"));
@@ -118,7 +117,6 @@ TEST_P(Charts, AreDrawn_AndAnswerToThePointer) {
   EXPECT_EQ(found["wide"], "false");
   EXPECT_EQ(found["tip"], "a detail &amp; more 0");
   EXPECT_EQ(found["opened"], "0123456789abcdef");
-  EXPECT_EQ(found["chosen"], "The sentence of d");
   EXPECT_EQ(found["hidden"], "12");  // the series, and the untitled one after it
   EXPECT_EQ(found["shown"], "1");    // the series that is hidden until then
   for (const char* text : {">0.05</text>", ">time of the lookup, ms</text>", ">vsm &lt;b&gt;</text>", ">label 1</text>",

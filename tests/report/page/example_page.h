@@ -40,8 +40,7 @@ inline Chart make_example_chart(const std::string& id) {
 inline Page make_example_page() {
   ChartChoice choice{"choice", {{"scene", {"cubes", "stack"}}, {"cost", {"time", "bytes"}}}, {}};
   for (const char* name : {"a", "b", "c", "d"})
-    choice.entries.push_back(
-        {make_example_chart(std::string("example.") + name), {std::string("The sentence of ") + name}});
+    choice.charts.push_back(make_example_chart(std::string("example.") + name));
   Bars bars{"Where the error comes from",
             {{"#f0bf30", "estimator"}},
             -0.01,

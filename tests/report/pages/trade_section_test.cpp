@@ -60,9 +60,9 @@ TEST(TradeSection, Fronts_AreChartsOfEveryErrorAndCost) {
   const auto cells = make_crossing_cells("cubes");
   const page::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
   const page::ChartChoice& choice = find_choice(section, "front");
-  ASSERT_THAT(choice.entries, SizeIs(16));
+  ASSERT_THAT(choice.charts, SizeIs(16));
   EXPECT_THAT(choice.selectors[1].options, SizeIs(4));
-  const page::Chart& chart = choice.entries[0].chart;
+  const page::Chart& chart = choice.charts[0];
   EXPECT_EQ(chart.id, "cubes.main.960x540.rmse.moving");
   EXPECT_THAT(chart.x_name, HasSubstr("CPU time (software rasteriser)"));
   // Members of the front, tied, beaten, the lines to what a cell is tied with, and each filter's curve over its width.
@@ -91,22 +91,33 @@ TEST(TradeSection, Fronts_AreChartsOfEveryErrorAndCost) {
     for (const page::ChartPoint& point : series.points) EXPECT_EQ(point.group, "medium") << series.title;
 }
 
+TEST(TradeSection, FrontOfOnePoint_HasNoLine_AndNamesHaveSixDigits) {
+  auto cells = make_crossing_cells("cubes");
+  for (std::size_t i = 0; i < cells.size(); ++i) cells[i].params["radius"] = 0.1f * static_cast<float>(i);
+  const page::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
+  for (const page::Chart& chart : find_choice(section, "front").charts)
+    for (const page::ChartSeries& series : chart.series) {
+      if (series.line == page::LineStyle::kSteps) EXPECT_GT(series.points.size(), 1u) << chart.id;
+      for (const page::ChartPoint& point : series.points) EXPECT_LT(point.label.size(), 24u) << point.label;
+    }
+}
+
 TEST(TradeSection, TimesOverTheWidth_AreChartsWithTheirCrossings) {
   const auto cells = make_crossing_cells("cubes");
   const page::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
   const page::ChartChoice& choice = find_choice(section, "width");
-  ASSERT_THAT(choice.entries, SizeIs(2));
-  const page::ChartSeries& crossings = choice.entries[0].chart.series.back();
+  ASSERT_THAT(choice.charts, SizeIs(2));
+  const page::ChartSeries& crossings = choice.charts[0].series.back();
   ASSERT_THAT(crossings.points, SizeIs(1));
   EXPECT_EQ(crossings.title, "crossing");
   EXPECT_NEAR(crossings.points[0].x.value, 3.0, 1e-9);
   EXPECT_EQ(crossings.points[0].label, "3");
-  EXPECT_EQ(choice.entries[0].chart.x_name, "kernel's width (standard deviation), texels");
+  EXPECT_EQ(choice.charts[0].x_name, "kernel's width (standard deviation), texels");
 }
 
 TEST(TradeSection, ChartsOfThePage_AreJsonThatHoldsEveryPoint) {
   const nlohmann::json data = read_charts(write_trade(make_crossing_cells("cubes")));
-  const nlohmann::json& chart = data["charts"][0]["entries"][0]["chart"];
+  const nlohmann::json& chart = data["charts"][0]["charts"][0];
   EXPECT_EQ(chart["series"][1]["points"][0][0], nlohmann::json(4));
   EXPECT_EQ(chart["series"][1]["points"][0][1], nlohmann::json({0.1, 0.099, 0.101}));
   const std::size_t detail = chart["series"][1]["points"][0][3][0];
@@ -127,7 +138,7 @@ TEST(TradeSection, HostileTexts_EndNoElement) {
   EXPECT_EQ(std::distance(std::sregex_iterator(page.begin(), page.end(), opening), {}), 2);
   EXPECT_EQ(std::distance(std::sregex_iterator(page.begin(), page.end(), closing), {}), 2);
   const nlohmann::json data = read_charts(page);
-  EXPECT_EQ(data["charts"][0]["entries"][0]["chart"]["series"][2]["title"], kHostile);
+  EXPECT_EQ(data["charts"][0]["charts"][0]["series"][2]["title"], kHostile);
 }
 
 TEST(TradeSection, Report_HasItBeforeTheEvidence) {
