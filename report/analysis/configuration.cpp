@@ -48,18 +48,12 @@ Census take_census(const std::vector<Configuration>& all) {
   return census;
 }
 
-// Six digits tell values of a sweep apart, and can be read.
-records::ParamValue shorten(const records::ParamValue& value) {
-  const double* number = std::get_if<double>(&value);
-  return number ? records::ParamValue(std::stod(fmt::format("{:.6g}", *number))) : value;
-}
-
 // Settings are named only where not every configuration has them; with `always_map` the map always is.
 std::string make_label(const records::CellRecord& cell, const Census& census, std::size_t configurations,
                        bool always_map) {
   records::ParamMap varying;
   for (const auto& [name, value] : cell.params)
-    if (census.params.at(param_key(cell, name)) < census.filters.at(cell.filter)) varying[name] = shorten(value);
+    if (census.params.at(param_key(cell, name)) < census.filters.at(cell.filter)) varying[name] = value;
   std::string label = cell.filter;
   if (!varying.empty()) label += fmt::format(" ({})", records::describe_params(varying));
   const std::vector<std::string> parts = describe_parts(cell);
