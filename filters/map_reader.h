@@ -51,6 +51,12 @@ class TexelGrid {
     return (static_cast<P>(uv) + offset / size) * size;
   }
 
+  /// How far a position lies past the centre of the texel below it: `texel_fraction` of shaders/lib/map_access.glsl.
+  P fraction(float uv) const {
+    const P past = position(uv, P(0)) - P(0.5);
+    return past - std::floor(past);
+  }
+
   /// Finds the texel that holds a position, and excuses positions within 4 ULP of a border.
   int nearest(P position, Tally& tally) const {
     if (std::abs(position - std::round(position)) <= static_cast<P>(border_tolerance())) tally.excused = true;

@@ -49,6 +49,10 @@ float corner_depth(Receiver r, vec2 offset_texels, float z) {
 #define corner_depth(r, offset_texels, z) (z)
 #endif
 
+// How far the receiver lies past the centre of the texel to its lower left, in texels, [0,1). An offset of whole texels
+// less this is a texel's centre.
+vec2 texel_fraction(Receiver r) { return fract(r.uv / map_texel_uv - 0.5); }
+
 float compare_nearest(Receiver r, vec2 offset_texels, float z) {
   COUNT_FETCH(r, offset_texels, 0.5);
   float reference = store_depth(nearest_depth(r, offset_texels, z));

@@ -143,6 +143,9 @@ TEST(FetchCount, EqualsTheFetchesInTheGlsl) {
   EXPECT_DOUBLE_EQ(fetches_of("tent3x3"), 4.0);
   EXPECT_DOUBLE_EQ(fetches_of("teach4x4"), 4.0);
   EXPECT_DOUBLE_EQ(fetches_of("box4x4"), 4.0);
+  EXPECT_DOUBLE_EQ(fetches_of("tent4x4"), 4.0);
+  EXPECT_DOUBLE_EQ(fetches_of("tent5x5"), 9.0);
+  EXPECT_DOUBLE_EQ(fetches_of("castano7"), 16.0);
   EXPECT_DOUBLE_EQ(fetches_of("poisson:taps=32"), 32.0);
   EXPECT_DOUBLE_EQ(fetches_of("nine_compares"), 9.0);
   EXPECT_DOUBLE_EQ(fetches_of("vsm"), 1.0);

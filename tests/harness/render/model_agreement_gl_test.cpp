@@ -213,7 +213,7 @@ TEST_P(ReceiverPlaneModel, GlImageEqualsModel) {
 INSTANTIATE_TEST_SUITE_P(Filters, ReceiverPlaneModel,
                          ::testing::Combine(::testing::Values("cubes", "steps"),
                                             ::testing::Values("none", "pcf2x2", "tent3x3", "box3x3", "teach4x4",
-                                                              "box4x4", "poisson")),
+                                                              "box4x4", "tent5x5", "castano7", "poisson")),
                          [](const auto& each) { return std::get<0>(each.param) + "_" + std::get<1>(each.param); });
 
 /// What lies outside the map, on a scene with many receivers there.
