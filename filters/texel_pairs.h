@@ -6,6 +6,13 @@
 
 namespace shadowbench::filters {
 
+/// Bounds what the rounding of the receiver's place between texels does to visibility. In units of 2^-24 the place is 8
+/// map sizes off. All weights together change by twice the kernel's top per texel that it slides, which is at most 1,
+/// and those in the fetches' places by as much again; once for each axis.
+inline double bound_pair_placement(int map_size) {
+  return 32.0 * kUnitRoundoff * (static_cast<double>(map_size) + 4.0);
+}
+
 /// The scalar model of shaders/lib/texel_pairs.glsl: a separable kernel over 2 * kPairs texels per axis, read in pairs
 /// by hardware 2x2 fetches. `Weigh` gives the weights of one axis, which sum to 1, from the receiver's place between
 /// texels.
@@ -28,7 +35,7 @@ class TexelPairs {
         sum = sum + share * map_.compare_2x2(r, {x.offset[column], y.offset[row]}, r.depth, tally);
       }
     }
-    return minimum(sum + make_uncertain<T>(0, bound_placement()), T(P(1)));
+    return minimum(sum + make_uncertain<T>(0, bound_pair_placement(map_.grid().size())), T(P(1)));
   }
 
  private:
@@ -50,11 +57,6 @@ class TexelPairs {
     }
     return axis;
   }
-
-  /// Bounds what the rounding of t does to visibility. In units of 2^-24 t is 8 map sizes off. All weights together
-  /// change by twice the kernel's top per texel that it slides, which is at most 1, and those in the fetches' places by
-  /// as much again; once for each axis.
-  double bound_placement() const { return 32.0 * kUnitRoundoff * (static_cast<double>(map_.grid().size()) + 4.0); }
 };
 
 /// A triangle of half-width kPairs - 1/2, integrated over every texel.

@@ -70,6 +70,20 @@ float fetch_depth(Receiver r, vec2 offset_texels) {
   return linear_depth(texture(map_depth, r.uv + offset_texels * map_texel_uv).r);
 }
 
+// Four texels at once, those that compare_2x2 reads at the same offset: x upper left, y upper right, z lower right, w
+// lower left. One fetch each.
+vec4 gather_compare(Receiver r, vec2 offset_texels, float z) {
+  COUNT_FETCH(r, offset_texels, 1.0);
+  float reference = store_depth(corner_depth(r, offset_texels, z));
+  return textureGather(map_compare, r.uv + offset_texels * map_texel_uv, reference);
+}
+
+vec4 gather_depth(Receiver r, vec2 offset_texels) {
+  COUNT_FETCH(r, offset_texels, 1.0);
+  vec4 stored = textureGather(map_depth, r.uv + offset_texels * map_texel_uv);
+  return vec4(linear_depth(stored.x), linear_depth(stored.y), linear_depth(stored.z), linear_depth(stored.w));
+}
+
 vec4 fetch_map(Receiver r, vec2 offset_texels) {
   COUNT_FETCH(r, offset_texels, STORED_REACH_TEXELS);
   return texture(map_stored, r.uv + offset_texels * map_texel_uv);

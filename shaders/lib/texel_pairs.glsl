@@ -1,4 +1,4 @@
-// Separable kernels in pairs * pairs fetches of 2x2 texels. A filter says `const int pairs` before it includes this
+// Separable kernels in pairs * pairs fetches, or gathers, of 2x2 texels. A filter says `const int pairs` before it includes this
 // file. Along each axis, a kernel weighs 2 * pairs texels, of which the first lies pairs - 1 before the one that
 // texel_fraction() counts from; filters/texel_pairs.h does the same.
 
@@ -45,4 +45,18 @@ float compare_pairs(Receiver r, vec2 weights[2 * pairs], float z) {
     for (int x = 0; x < pairs; ++x)
       sum += both[x].x * both[y].y * compare_2x2(r, vec2(offset[x].x, offset[y].y), z);
   return min(sum, 1.0);  // weights that sum to 1 may round to more
+}
+
+// The same, with a gather in the middle of four texels, and the weights put to them here.
+float gather_pairs(Receiver r, vec2 weights[2 * pairs], float z) {
+  vec2 first = 1.5 - float(pairs) - texel_fraction(r);
+  float sum = 0.0;
+  for (int y = 0; y < pairs; ++y) {
+    for (int x = 0; x < pairs; ++x) {
+      vec4 lit = gather_compare(r, first + vec2(2 * x, 2 * y), z);
+      vec2 columns = vec2(weights[2 * x].x, weights[2 * x + 1].x);
+      sum += weights[2 * y].y * dot(columns, lit.wz) + weights[2 * y + 1].y * dot(columns, lit.xy);
+    }
+  }
+  return min(sum, 1.0);
 }

@@ -50,6 +50,8 @@ TEST(KernelNames, TellKernelsApart) {
         "castano5", "castano7", "poisson", "poisson:radius=2", "vsm", "vsm:radius=6", "esm:combine=log"})
     EXPECT_TRUE(names.insert(kernel_of(text).name()).second) << text;
   EXPECT_EQ(kernel_of("vsm").name(), kernel_of("esm").name()) << "one prefilter, one kernel";
+  EXPECT_EQ(kernel_of("gather_pcf").name(), kernel_of("tent5x5").name());
+  EXPECT_EQ(kernel_of("gather_pcf:radius=3,shape=castano").name(), kernel_of("castano7").name());
 }
 
 TEST(KernelNames, TellWeightsAndRadiiApart) {
@@ -187,8 +189,10 @@ TEST(KernelSamples, AreCentred_AndTheirAxesAreIndependent) {
 TEST(PercentageCloser, EqualsTheModelsThatCompare) {
   const DepthMap map = make_random_map(32, 5);
   std::mt19937 random(6);
-  for (const char* text : {"none", "pcf2x2", "box3x3", "tent3x3", "teach4x4", "box4x4", "tent4x4", "tent5x5", "tent7x7",
-                           "castano3", "castano5", "castano7"}) {
+  for (const char* text :
+       {"none", "pcf2x2", "box3x3", "tent3x3", "teach4x4", "box4x4", "tent4x4", "tent5x5", "tent7x7", "castano3",
+        "castano5", "castano7", "gather_pcf:radius=1", "gather_pcf", "gather_pcf:radius=3",
+        "gather_pcf:shape=castano,radius=1", "gather_pcf:shape=castano", "gather_pcf:shape=castano,radius=3"}) {
     const FilterRequest request = catalogue().parse_requests(text).front();
     const ModelInput input{request.spec, request.values, map, {}, 0};
     const auto lookup = make_model(request.spec.id)->prepare(input, Precision::kDouble);

@@ -183,7 +183,8 @@ TEST_P(ModelVariants, GlImageEqualsModel) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Parameters, ModelVariants,
-                         ::testing::Values("poisson:rotation=none", "poisson:rotation=interleaved-gradient,taps=8",
+                         ::testing::Values("gather_pcf:radius=1", "gather_pcf:radius=3,shape=castano",
+                                           "poisson:rotation=none", "poisson:rotation=interleaved-gradient,taps=8",
                                            "poisson:radius=0,taps=4", "poisson:taps=32,radius=6", "vsm:radius=0",
                                            "vsm:radius=12", "vsm:bleed_reduction=0,slope_variance=0",
                                            "vsm:slope_variance=1", "vsm:min_variance=0.001,store=rg16f", "esm:radius=0",
@@ -213,7 +214,8 @@ TEST_P(ReceiverPlaneModel, GlImageEqualsModel) {
 INSTANTIATE_TEST_SUITE_P(Filters, ReceiverPlaneModel,
                          ::testing::Combine(::testing::Values("cubes", "steps"),
                                             ::testing::Values("none", "pcf2x2", "tent3x3", "box3x3", "teach4x4",
-                                                              "box4x4", "tent5x5", "castano7", "poisson")),
+                                                              "box4x4", "tent5x5", "castano7", "gather_pcf",
+                                                              "poisson")),
                          [](const auto& each) { return std::get<0>(each.param) + "_" + std::get<1>(each.param); });
 
 /// What lies outside the map, on a scene with many receivers there.
