@@ -18,8 +18,11 @@ void count_fetch(vec2 uv, vec2 offset_texels, float to_centre_texels) {
   fetch_reach = max(fetch_reach, max(offset.x, offset.y) + to_centre_texels);
 }
 #define COUNT_FETCH(r, offset_texels, to_centre_texels) count_fetch(r.uv, offset_texels, to_centre_texels)
+#define COUNT_GATHER(r, offset_texels) \
+  count_fetch(r.uv, floor(r.uv / map_texel_uv + offset_texels - 0.5) + 1.0 - r.uv / map_texel_uv, 0.5)
 #else
 #define COUNT_FETCH(r, offset_texels, to_centre_texels)
+#define COUNT_GATHER(r, offset_texels)
 #endif
 
 #ifdef RECEIVER_PLANE
@@ -73,13 +76,13 @@ float fetch_depth(Receiver r, vec2 offset_texels) {
 // Four texels at once, those that compare_2x2 reads at the same offset: x upper left, y upper right, z lower right, w
 // lower left. One fetch each.
 vec4 gather_compare(Receiver r, vec2 offset_texels, float z) {
-  COUNT_FETCH(r, offset_texels, 1.0);
+  COUNT_GATHER(r, offset_texels);
   float reference = store_depth(corner_depth(r, offset_texels, z));
   return textureGather(map_compare, r.uv + offset_texels * map_texel_uv, reference);
 }
 
 vec4 gather_depth(Receiver r, vec2 offset_texels) {
-  COUNT_FETCH(r, offset_texels, 1.0);
+  COUNT_GATHER(r, offset_texels);
   vec4 stored = textureGather(map_depth, r.uv + offset_texels * map_texel_uv);
   return vec4(linear_depth(stored.x), linear_depth(stored.y), linear_depth(stored.z), linear_depth(stored.w));
 }

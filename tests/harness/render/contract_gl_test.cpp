@@ -114,7 +114,7 @@ TEST_P(Contract, ExtremeParameters_GiveVisibility) {
   }
 }
 
-TEST_P(Contract, FetchCount_IsKnownUnlessTheFilterReadsSamplers) {
+TEST_P(Contract, ReadsAreCounted_AndWithinTheDeclaredReach) {
   const scene::Scene scene = load_builtin("cubes");
   Bench bench(shared_context(), scene, 64, 64, 36);
   const FilterRequest request = request_of(GetParam());
@@ -123,6 +123,7 @@ TEST_P(Contract, FetchCount_IsKnownUnlessTheFilterReadsSamplers) {
   const render::FilterCost cost = passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map());
   EXPECT_EQ(cost.fetches.has_value(), !request.spec.uses_samplers);
   EXPECT_GE(cost.fetches.value_or(1.0), 1.0);
+  EXPECT_LE(cost.reach_texels.value_or(0.0), filters::reach_texels(request.spec, request.values) + 1e-3);
   EXPECT_EQ(cost.passes, request.spec.has_encode ? 5 : 2);
 }
 

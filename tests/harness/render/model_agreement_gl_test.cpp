@@ -184,12 +184,14 @@ TEST_P(ModelVariants, GlImageEqualsModel) {
 
 INSTANTIATE_TEST_SUITE_P(Parameters, ModelVariants,
                          ::testing::Values("gather_pcf:radius=1", "gather_pcf:radius=3,shape=castano",
-                                           "poisson:rotation=none", "poisson:rotation=interleaved-gradient,taps=8",
-                                           "poisson:radius=0,taps=4", "poisson:taps=32,radius=6", "vsm:radius=0",
-                                           "vsm:radius=12", "vsm:bleed_reduction=0,slope_variance=0",
-                                           "vsm:slope_variance=1", "vsm:min_variance=0.001,store=rg16f", "esm:radius=0",
-                                           "esm:c=20", "esm:combine=log,c=500", "esm:combine=log,radius=0",
-                                           "esm:c=8,store=r16f"),
+                                           "pcss:rotation=none,max_radius=2",
+                                           "pcss:rotation=interleaved-gradient,taps=8,search_taps=4",
+                                           "pcss:max_radius=0", "poisson:rotation=none",
+                                           "poisson:rotation=interleaved-gradient,taps=8", "poisson:radius=0,taps=4",
+                                           "poisson:taps=32,radius=6", "vsm:radius=0", "vsm:radius=12",
+                                           "vsm:bleed_reduction=0,slope_variance=0", "vsm:slope_variance=1",
+                                           "vsm:min_variance=0.001,store=rg16f", "esm:radius=0", "esm:c=20",
+                                           "esm:combine=log,c=500", "esm:combine=log,radius=0", "esm:c=8,store=r16f"),
                          [](const auto& each) {
                            std::string name = each.param;
                            for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
