@@ -51,7 +51,7 @@ bool are_of_a_distribution(const Moments<S>& b) {
 }
 
 template <class S>
-S share_before(const Moments<S>& b, S x, const std::array<S, 3>& c) {
+S share_of_points(const Moments<S>& b, S x, const std::array<S, 3>& c) {
   const S mass = S(1) / (c[0] + x * (c[1] + x * c[2]));
   if (c[2] >= S(0)) return c[1] + S(2) * c[2] * x < S(0) ? S(0) : S(1) - mass;
   const S root = std::sqrt(c[1] * c[1] - S(4) * c[0] * c[2]);
@@ -67,7 +67,7 @@ bool leaves_range(const std::array<S, 3>& c) {
 }
 
 template <class S>
-S share_before_in_range(const Moments<S>& b, S x) {
+S share_with_ends(const Moments<S>& b, S x) {
   const S free = ((b[1] - b[3]) - x * (b[0] - b[2])) / ((b[0] - b[2]) - x * (S(1) - b[1]));
   const S sum = x + free, product = x * free;
   if (free >= x)
@@ -80,12 +80,12 @@ S share_before_in_range(const Moments<S>& b, S x) {
 
 template <class S>
 S find_share(Depths depths, const Moments<S>& b, S x) {
-  if (depths == Depths::kAny) return share_before(b, x, solve(b, x));
+  if (depths == Depths::kAny) return share_of_points(b, x, solve(b, x));
   if (x <= S(-1)) return S(0);
   if (x > S(1)) return S(1);
   x = std::min(x, S(0.9999f));
   const std::array<S, 3> c = solve(b, x);
-  return leaves_range(c) ? share_before_in_range(b, x) : share_before(b, x, c);
+  return leaves_range(c) ? share_with_ends(b, x) : share_of_points(b, x, c);
 }
 
 template <class S>

@@ -17,13 +17,14 @@ text = "triangle weighs as tent4x4, tent5x5 and tent7x7 do, castano as castano3,
 const int pairs = radius + 1;
 #include "lib/texel_pairs.glsl"
 
-const float castano[] =
-    float[](1.0, 2.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 3.0, 4.0, 3.0, 1.0, 0.0, 0.0, 1.0, 5.0, 12.0, 16.0, 12.0, 5.0, 1.0);
+const float castano[] = float[](1.0, 2.0, 1.0,                          // of radius 1
+                                1.0, 3.0, 4.0, 3.0, 1.0,                // of radius 2
+                                1.0, 5.0, 12.0, 16.0, 12.0, 5.0, 1.0);  // of radius 3
 
 float visibility(Receiver r) {
   vec2 t = texel_fraction(r);
-  if (shape == SHAPE_TRIANGLE) return gather_pairs(r, triangle_weights(t), r.depth);
+  if (shape == SHAPE_TRIANGLE) return gather_pairs(r, triangle_weights(float(pairs) - 0.5, t), r.depth);
   float at_texels[2 * pairs - 1];
-  for (int i = 0; i < 2 * pairs - 1; ++i) at_texels[i] = castano[7 * (radius - 1) + i];
+  for (int i = 0; i < 2 * pairs - 1; ++i) at_texels[i] = castano[radius * radius - 1 + i];
   return gather_pairs(r, sliding_weights(at_texels, t), r.depth);
 }

@@ -26,7 +26,6 @@ vec4 encode(EncodeInput e) { return encode_moments(e.depth); }
 float visibility(Receiver r) {
   float bias = fit_moment_bias(moment_bias);
   vec4 moments = decode_moments(fetch_map(r, vec2(0.0)), bias);
-  float x = 2.0 * r.depth - 1.0;
-  float share = share_before(moments, x, solve_moments(moments, x));
+  float share = share_before(moments, 2.0 * r.depth - 1.0);
   return 1.0 - unbias_share(share, bias);
 }

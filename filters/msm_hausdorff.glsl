@@ -26,11 +26,6 @@ vec4 encode(EncodeInput e) { return encode_moments(e.depth); }
 float visibility(Receiver r) {
   float bias = fit_moment_bias(moment_bias);
   vec4 moments = decode_moments(fetch_map(r, vec2(0.0)), bias);
-  float x = 2.0 * r.depth - 1.0;
-  if (x <= -1.0) return 1.0;
-  if (x > 1.0) return 0.0;
-  x = min(x, 0.9999);  // at the ends points would meet
-  vec3 c = solve_moments(moments, x);
-  float share = leaves_range(c) ? share_before_in_range(moments, x) : share_before(moments, x, c);
+  float share = share_before_in_range(moments, 2.0 * r.depth - 1.0);
   return 1.0 - unbias_share(share, bias);
 }

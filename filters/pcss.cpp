@@ -27,7 +27,7 @@ class Pcss {
   T visibility(const Receiver& r, Tally& tally) const {
     const P widening =
         P(0.5) * static_cast<P>(r.light_size) * static_cast<P>(r.depth_range_ws) / static_cast<P>(r.texel_size_ws);
-    const P depth = static_cast<P>(r.depth), search = limit(widening * depth, tally);
+    const P depth = static_cast<P>(r.depth), search = limit(widening * static_cast<P>(r.depth_unbiased), tally);
     if (search < kOneFetch) return map_.compare_2x2(r, {}, r.depth, tally);
     const P angle = P(2) * std::numbers::pi_v<P> * static_cast<P>(turn_of(rotation_, r.pixel, seed_));
     const Turn turn{std::cos(angle), std::sin(angle)};

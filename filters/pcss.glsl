@@ -40,7 +40,7 @@ float biased_depth(Receiver r, vec2 offset) { return r.depth - dot(r.bias_per_te
 
 float visibility(Receiver r) {
   float widening = 0.5 * r.light_size * r.depth_range_ws / r.texel_size_ws;  // the disk's radius, texels per depth
-  float search = min(widening * r.depth, max_radius);
+  float search = min(widening * r.depth_unbiased, max_radius);
   if (search < one_fetch) return compare_2x2(r, vec2(0.0), r.depth);
   float turn = 0.0;
   if (rotation == ROTATION_PER_PIXEL) turn = random_turn(r.pixel);

@@ -7,4 +7,4 @@ radius_texels = 3
 const int pairs = 3;
 #include "lib/texel_pairs.glsl"
 
-float visibility(Receiver r) { return compare_pairs(r, triangle_weights(texel_fraction(r)), r.depth); }
+float visibility(Receiver r) { return compare_pairs(r, triangle_weights(2.5, texel_fraction(r)), r.depth); }

@@ -3,8 +3,8 @@
 
 const float root3 = 1.7320508075688772;
 
-// The moments in a basis in which 16 bits lose least: two odd and two even polynomials that fill [0,1]. Peters et al. 2017,
-// Improved Moment Shadow Maps for Translucent Occluders, Soft Shadows and Single Scattering, JCGT 6(1).
+// The moments in a basis in which 16 bits lose least: two odd and two even polynomials that fill [0,1]. Peters et al.
+// 2017, Improved Moment Shadow Maps for Translucent Occluders, Soft Shadows and Single Scattering, JCGT 6(1).
 vec4 encode_moments(float depth) {
   float x = 2.0 * depth - 1.0;
   float square = x * x;
@@ -38,7 +38,7 @@ vec3 solve_moments(vec4 b, float x) {
 
 // The least share of any distribution with these moments that lies before x. Peters and Klein 2015, Moment Shadow
 // Mapping, I3D (the Hamburger moment problem). Of the two other points, none, one or both lie before x; c says which.
-float share_before(vec4 b, float x, vec3 c) {
+float share_of_points(vec4 b, float x, vec3 c) {
   float mass = 1.0 / (c.x + x * (c.y + x * c.z));
   if (c.z >= 0.0) return c.y + 2.0 * c.z * x < 0.0 ? 0.0 : 1.0 - mass;
   float root = sqrt(c.y * c.y - 4.0 * c.x * c.z);
@@ -56,7 +56,7 @@ bool leaves_range(vec3 c) {
 
 // The same of distributions over [-1,1]: with points at both ends, at x, and at one more. Peters and Klein 2015
 // (the Hausdorff moment problem).
-float share_before_in_range(vec4 b, float x) {
+float share_with_ends(vec4 b, float x) {
   float free = ((b.y - b.w) - x * (b.x - b.z)) / ((b.x - b.z) - x * (1.0 - b.y));
   float sum = x + free;
   float product = x * free;
@@ -65,6 +65,16 @@ float share_before_in_range(vec4 b, float x) {
   float at_x = (b.z - b.x - free * (b.y - 1.0)) / ((x * x - 1.0) * (x - free));
   float at_far = (b.z - b.y * (sum - 1.0) + b.x * (product - sum) + product) / (2.0 * (1.0 - x) * (1.0 - free));
   return 1.0 - at_x - at_far;
+}
+
+float share_before(vec4 b, float x) { return share_of_points(b, x, solve_moments(b, x)); }
+
+float share_before_in_range(vec4 b, float x) {
+  if (x <= -1.0) return 0.0;
+  if (x > 1.0) return 1.0;
+  x = min(x, 0.9999);  // at the ends points would meet
+  vec3 c = solve_moments(b, x);
+  return leaves_range(c) ? share_with_ends(b, x) : share_of_points(b, x, c);
 }
 
 // What the bias of the moments can have added to a share is taken off: the rest is a lower bound again.

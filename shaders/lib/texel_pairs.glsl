@@ -1,12 +1,11 @@
-// Separable kernels in pairs * pairs fetches, or gathers, of 2x2 texels. A filter says `const int pairs` before it includes this
-// file. Along each axis, a kernel weighs 2 * pairs texels, of which the first lies pairs - 1 before the one that
-// texel_fraction() counts from; filters/texel_pairs.h does the same.
+// Separable kernels in pairs * pairs fetches, or gathers, of 2x2 texels. A filter says `const int pairs` before it
+// includes this file. Along each axis, a kernel weighs 2 * pairs texels, of which the first lies pairs - 1 before
+// the one that texel_fraction() counts from; filters/texel_pairs.h does the same.
 
-// A triangle of half-width h = pairs - 1/2 texels, integrated over every texel. At a distance d from its top, a texel
-// gets (h - d) / h^2; the one under the top loses (1/2 - d)^2 / h^2, which the fold cuts off, and the last one on each
-// side is a triangle of its own, with legs of t or 1 - t.
-vec2[2 * pairs] triangle_weights(vec2 t) {
-  const float h = float(pairs) - 0.5;
+// A triangle of half-width h, which is pairs - 1/2 texels, integrated over every texel. At a distance d from its
+// top, a texel gets (h - d) / h^2; the one under the top loses (1/2 - d)^2 / h^2, which the fold cuts off, and the
+// last one on each side is a triangle of its own, with legs of t or 1 - t.
+vec2[2 * pairs] triangle_weights(float h, vec2 t) {
   vec2 weights[2 * pairs];
   weights[0] = 0.5 * (1.0 - t) * (1.0 - t) / (h * h);
   weights[2 * pairs - 1] = 0.5 * t * t / (h * h);
@@ -30,8 +29,8 @@ vec2[2 * pairs] sliding_weights(float at_texels[2 * pairs - 1], vec2 t) {
   return weights;
 }
 
-// The comparisons of these texels, with weights that sum to 1. A fetch lies between two texels where the hardware weighs them as the
-// kernel does, and counts for both.
+// The comparisons of these texels, with weights that sum to 1. A fetch lies between two texels where the hardware
+// weighs them as the kernel does, and counts for both.
 float compare_pairs(Receiver r, vec2 weights[2 * pairs], float z) {
   vec2 t = texel_fraction(r);
   vec2 both[pairs];

@@ -27,7 +27,7 @@ DepthMap make_map(const std::function<float(int x, int y)>& depth) {
 Receiver make_floor_receiver(double x, double y, float light_size) {
   Receiver r;
   r.uv = {static_cast<float>(x / kMapSide), static_cast<float>(y / kMapSide)};
-  r.depth = kFloor;
+  r.depth = r.depth_unbiased = kFloor;
   r.depth_range_ws = 100.0f;
   r.light_size = light_size;
   return r;
