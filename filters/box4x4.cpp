@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "filters/model.h"
 
 namespace shadowbench::filters {
@@ -36,8 +34,7 @@ class Box4x4 {
   DepthReader<T> map_;
 
   Pair place(float uv) const {
-    const P position = map_.grid().position(uv, P(0)) - P(0.5);
-    const P base = std::floor(position), s = position - base;
+    const P s = map_.grid().fraction(uv);
     return {P(1) / (P(2) - s) - P(1) - s, s / (P(1) + s) + P(1) - s, (T(P(1)) + T(s)) / T(P(3))};
   }
 

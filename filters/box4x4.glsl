@@ -5,10 +5,10 @@ kind = "comparison"
 radius_texels = 2
 +++*/
 float visibility(Receiver r) {
-  vec2 s = fract(r.uv / map_texel_uv - 0.5);  // past a texel's centre
-  vec2 low = 1.0 / (2.0 - s) - 1.0 - s;       // between the texels that weigh (1-s)/3 and 1/3
-  vec2 high = s / (1.0 + s) + 1.0 - s;        // between those that weigh 1/3 and s/3
-  vec2 share = (1.0 + s) / 3.0;               // of the high fetch
+  vec2 s = texel_fraction(r);
+  vec2 low = 1.0 / (2.0 - s) - 1.0 - s;  // between the texels that weigh (1-s)/3 and 1/3
+  vec2 high = s / (1.0 + s) + 1.0 - s;   // between those that weigh 1/3 and s/3
+  vec2 share = (1.0 + s) / 3.0;          // of the high fetch
   float bottom = mix(compare_2x2(r, low, r.depth), compare_2x2(r, vec2(high.x, low.y), r.depth), share.x);
   float top = mix(compare_2x2(r, vec2(low.x, high.y), r.depth), compare_2x2(r, high, r.depth), share.x);
   return mix(bottom, top, share.y);

@@ -68,6 +68,19 @@ class EncodedMap {
     return mix(low, high, sy);
   }
 
+  /// What lies at a receiver's place, moved by an offset, between texels; without the error of the place itself. Not
+  /// for maps that are read with the nearest texel.
+  Texel fetch_between(const Receiver& r, const Offset<T>& offset) const {
+    using P = Position<T>;
+    const P px = grid_.position(r.uv.x, offset.x) - P(0.5), py = grid_.position(r.uv.y, offset.y) - P(0.5);
+    const int x = static_cast<int>(std::floor(px)), y = static_cast<int>(std::floor(py));
+    const T sx(px - std::floor(px)), sy(py - std::floor(py));
+    return mix(mix(texel(x, y), texel(x + 1, y), sx), mix(texel(x, y + 1), texel(x + 1, y + 1), sx), sy);
+  }
+
+  /// How far off, in texels, the sampler may read.
+  double placement() const { return bound_sampler_weight(accuracy_, grid_.size()); }
+
  private:
   /// The error of a depth that was linearised in single precision: the stored value may be read one ULP off, and the
   /// division rounds.

@@ -24,6 +24,16 @@ double sample_atoms(const std::vector<Kernel::Atom>& atoms, double u) {
   return atoms.back().offset;
 }
 
+/// The half-width of what a reconstruction adds to a shape.
+double half_width_of(Reconstruction reconstruction) {
+  switch (reconstruction) {
+    case Reconstruction::kNearest: return 0.0;
+    case Reconstruction::kBilinear: return 1.0;
+    case Reconstruction::kTexel: return 0.5;
+  }
+  return 0.0;
+}
+
 }  // namespace
 
 Kernel Kernel::make_point(Reconstruction reconstruction) { return make_grid({{0.0, 1.0}}, reconstruction); }
@@ -54,21 +64,35 @@ Kernel Kernel::make_disk(double radius_texels) {
   return kernel;
 }
 
+Kernel Kernel::make_triangle(double half_width_texels) {
+  assert(half_width_texels > 0.0);
+  Kernel kernel;
+  kernel.triangle_ = half_width_texels;
+  kernel.reconstruction_ = Reconstruction::kTexel;
+  return kernel;
+}
+
+glm::dvec2 Kernel::sample_shape(const glm::dvec2& u) const {
+  if (triangle_ > 0.0) return triangle_ * glm::dvec2(sample_tent(u.x), sample_tent(u.y));
+  if (atoms_.empty()) return disk_radius_ * map_to_disk(u);
+  return {sample_atoms(atoms_, u.x), sample_atoms(atoms_, u.y)};
+}
+
 glm::dvec2 Kernel::sample(const glm::dvec2& shape, const glm::dvec2& between) const {
-  const glm::dvec2 position = atoms_.empty() ? disk_radius_ * map_to_disk(shape)
-                                             : glm::dvec2(sample_atoms(atoms_, shape.x), sample_atoms(atoms_, shape.y));
+  const glm::dvec2 position = sample_shape(shape);
   if (reconstruction_ == Reconstruction::kNearest) return position;
+  if (reconstruction_ == Reconstruction::kTexel) return position + between - 0.5;
   return position + glm::dvec2(sample_tent(between.x), sample_tent(between.y));
 }
 
 double Kernel::half_width() const {
-  const double shape = atoms_.empty() ? disk_radius_ : std::max(-atoms_.front().offset, atoms_.back().offset);
-  return shape + (reconstruction_ == Reconstruction::kBilinear ? 1.0 : 0.0);
+  const double grid = atoms_.empty() ? 0.0 : std::max(-atoms_.front().offset, atoms_.back().offset);
+  return grid + disk_radius_ + triangle_ + half_width_of(reconstruction_);
 }
 
 double Kernel::sigma_texels() const {
-  // Variances add under convolution; those of a disk along an axis, of the unit tent and of a texel:
-  double variance = atoms_.empty() ? 0.25 * disk_radius_ * disk_radius_ : 0.0;
+  // Variances add under convolution; those of a disk along an axis, of a triangle, of the unit tent and of a texel:
+  double variance = 0.25 * disk_radius_ * disk_radius_ + triangle_ * triangle_ / 6.0;
   variance += reconstruction_ == Reconstruction::kBilinear ? 1.0 / 6.0 : 1.0 / 12.0;
   for (const Atom& atom : atoms_) variance += atom.weight * atom.offset * atom.offset;
   return std::sqrt(variance);
@@ -77,6 +101,7 @@ double Kernel::sigma_texels() const {
 bool Kernel::is_point() const { return half_width() == 0.0; }
 
 std::string Kernel::name() const {
+  if (triangle_ > 0.0) return fmt::format("texel * triangle {}", triangle_);
   std::string text = reconstruction_ == Reconstruction::kBilinear ? "tent" : "point";
   if (atoms_.empty()) return text + fmt::format(" * disk {}", disk_radius_);
   for (const Atom& atom : atoms_) text += fmt::format(" {}:{}", atom.offset, atom.weight);

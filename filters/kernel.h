@@ -10,6 +10,7 @@ namespace shadowbench::filters {
 enum class Reconstruction {
   kNearest,   ///< the texel that holds the position: a point of the continuous kernel
   kBilinear,  ///< the four texels around it: the unit tent per axis
+  kTexel,     ///< every texel by the part of the shape that lies over it: the unit box per axis
 };
 
 /// The kernel that a filter averages the map with, in texels around the receiver: a shape convolved with the
@@ -35,6 +36,9 @@ class Kernel {
   /// A uniform disk, read bilinearly.
   static Kernel make_disk(double radius_texels);
 
+  /// The same triangle along both axes, as a product, integrated over each texel. Requires a half-width over 0.
+  static Kernel make_triangle(double half_width_texels);
+
   /// A point of the continuous kernel, in texels; `shape` and `between` in [0,1)^2, equal areas for equal weights.
   glm::dvec2 sample(const glm::dvec2& shape, const glm::dvec2& between) const;
 
@@ -49,8 +53,9 @@ class Kernel {
   bool is_point() const;
 
   Reconstruction reconstruction() const { return reconstruction_; }
-  const std::vector<Atom>& atoms() const { return atoms_; }  ///< per axis; empty for a disk
-  double disk_radius() const { return disk_radius_; }        ///< texels; 0 for a grid
+  const std::vector<Atom>& atoms() const { return atoms_; }  ///< per axis; empty for other shapes
+  double disk_radius() const { return disk_radius_; }        ///< texels; 0 for other shapes
+  double triangle() const { return triangle_; }              ///< half-width in texels; 0 for other shapes
 
   /// A name that no other kernel has.
   std::string name() const;
@@ -58,7 +63,10 @@ class Kernel {
  private:
   std::vector<Atom> atoms_;
   double disk_radius_ = 0.0;
+  double triangle_ = 0.0;
   Reconstruction reconstruction_ = Reconstruction::kNearest;
+
+  glm::dvec2 sample_shape(const glm::dvec2& u) const;
 };
 
 }  // namespace shadowbench::filters

@@ -84,8 +84,8 @@ std::string describe_classes() {
 }
 
 std::optional<double> find_kernel_sigma(const FilterSpec& spec, const ParamValues& values) {
-  const auto model = make_model(spec.id);
-  return model ? std::optional(model->kernel(values).sigma_texels()) : std::nullopt;
+  const auto kernel = find_kernel(spec.id, values);
+  return kernel ? std::optional(kernel->sigma_texels()) : std::nullopt;
 }
 
 double solve_radius(const FilterSpec& spec, const ParamValues& values, const std::string& width) {
@@ -96,7 +96,12 @@ double solve_radius(const FilterSpec& spec, const ParamValues& values, const std
     refuse_width(spec, width,
                  "the filter has no radius that a width could set" +
                      (sigma ? fmt::format("; its kernel is {:.3g} texels wide", *sigma) : std::string()));
-  if (!sigma) refuse_width(spec, width, fmt::format("without a model nobody knows it; set '{}' itself", *name));
+  if (!sigma)
+    refuse_width(
+        spec, width,
+        fmt::format(
+            "without a model, or with a kernel that differs from pixel to pixel, nobody knows it; set '{}' itself",
+            *name));
   const ParamSpec& param = *spec.find_param(*name);
   auto sigma_at = [&, trial = values](double radius) mutable {
     trial[*name] = radius;

@@ -31,7 +31,8 @@ const WidthClass* find_width_class(double sigma_texels);
 /// Lists the classes with their widths and limits: "sharp 0.41 texels, up to 0.51; ...".
 std::string describe_classes();
 
-/// The width of a filter's kernel; empty where the filter has no model, which alone knows it.
+/// The width of a filter's kernel; empty where the filter has no model, which alone knows it, or no kernel that all
+/// receivers share.
 std::optional<double> find_kernel_sigma(const FilterSpec& spec, const ParamValues& values);
 
 /// Finds the radius with which a filter's kernel is as wide as asked for, the other parameters being as in `values`.

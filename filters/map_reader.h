@@ -51,6 +51,12 @@ class TexelGrid {
     return (static_cast<P>(uv) + offset / size) * size;
   }
 
+  /// How far a position lies past the centre of the texel below it: `texel_fraction` of shaders/lib/map_access.glsl.
+  P fraction(float uv) const {
+    const P past = position(uv, P(0)) - P(0.5);
+    return past - std::floor(past);
+  }
+
   /// Finds the texel that holds a position, and excuses positions within 4 ULP of a border.
   int nearest(P position, Tally& tally) const {
     if (std::abs(position - std::round(position)) <= static_cast<P>(border_tolerance())) tally.excused = true;
@@ -97,7 +103,8 @@ class PlaneBias {
   double max_tangent_;
 };
 
-/// Reads a depth map as `compare_nearest`, `compare_2x2` and `fetch_depth` of shaders/lib/map_access.glsl do.
+/// Reads a depth map as `compare_nearest`, `compare_2x2`, `fetch_depth`, `gather_compare` and `gather_depth` of
+/// shaders/lib/map_access.glsl do.
 /// Outside the map the depth is what its border says: 1, unless the run wants to see an artefact.
 template <class T>
 class DepthReader {
@@ -138,13 +145,39 @@ class DepthReader {
     return map_->curve.linear(map_->at(grid_.find(x, y)));
   }
 
+  /// The texels that `compare_2x2` reads: upper left, upper right, lower right, lower left. Which ones they are is
+  /// excused where rounding decides.
+  std::array<T, 4> gather_compare(const Receiver& r, Offset<T> offset, float z, Tally& tally) const {
+    const glm::ivec2 low = lower_left(r, offset, tally);
+    const float at = plane_.depth(r, grid_.size(), glm::dvec2(low) + 1.0, 0.5, z);
+    std::array<T, 4> lit;
+    for (std::size_t i = 0; i < 4; ++i)
+      lit[i] = T(static_cast<P>(compare(low.x + kGathered[i].x, low.y + kGathered[i].y, at, tally)));
+    return lit;
+  }
+
+  std::array<float, 4> gather_depth(const Receiver& r, Offset<T> offset, Tally& tally) const {
+    const glm::ivec2 low = lower_left(r, offset, tally);
+    std::array<float, 4> depths;
+    for (std::size_t i = 0; i < 4; ++i)
+      depths[i] = map_->curve.linear(map_->at(grid_.find(low.x + kGathered[i].x, low.y + kGathered[i].y)));
+    return depths;
+  }
+
   static T mix(T a, T b, T s) { return a + s * (b - a); }
 
  private:
+  inline static const std::array<glm::ivec2, 4> kGathered{glm::ivec2(0, 1), {1, 1}, {1, 0}, {0, 0}};
+
   TexelGrid<T> grid_;
   const DepthMap* map_;
   GlAccuracy accuracy_;
   PlaneBias plane_;
+
+  glm::ivec2 lower_left(const Receiver& r, Offset<T> offset, Tally& tally) const {
+    return {grid_.nearest(grid_.position(r.uv.x, offset.x) - P(0.5), tally),
+            grid_.nearest(grid_.position(r.uv.y, offset.y) - P(0.5), tally)};
+  }
 
   int compare(int x, int y, float z, Tally& tally) const {
     const float stored = map_->at(grid_.find(x, y));

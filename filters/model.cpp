@@ -8,4 +8,9 @@ std::unique_ptr<Model> make_model(const std::string& id) {
   return nullptr;
 }
 
+std::optional<Kernel> find_kernel(const std::string& id, const ParamValues& values) {
+  const auto model = make_model(id);
+  return model ? model->kernel(values) : std::nullopt;
+}
+
 }  // namespace shadowbench::filters

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,8 +41,9 @@ class Model {
   /// Cost: one pass over the map for filters that encode, two more for the prefilter; none otherwise.
   virtual std::unique_ptr<Lookup> prepare(const ModelInput& input, Precision precision) const = 0;
 
-  /// Names the kernel that the filter averages with, for these complete parameter values.
-  virtual Kernel kernel(const ParamValues& values) const = 0;
+  /// Names the kernel that the filter averages with, for these complete parameter values; none where it differs from
+  /// receiver to receiver.
+  virtual std::optional<Kernel> kernel(const ParamValues& values) const = 0;
 };
 
 /// Makes the model of a filter; CMake lists one for each `<id>.cpp` that stands beside its `<id>.glsl`.
@@ -54,8 +56,14 @@ const std::vector<ModelEntry>& model_table();
 /// A filter's model, null where it has none (a user's file).
 std::unique_ptr<Model> make_model(const std::string& id);
 
+/// Why a filter with a model may have no kernel.
+inline constexpr const char* kKernelDiffers = "the filter's kernel differs from pixel to pixel";
+
+/// A filter's kernel; none where it has no model, or none that all receivers share.
+std::optional<Kernel> find_kernel(const std::string& id, const ParamValues& values);
+
 /// Wraps `Filter<T>`, a class made from a ModelInput with `T visibility(const Receiver&, Tally&) const` and
-/// `static Kernel kernel(const ParamValues&)`, as a Model.
+/// `static Kernel kernel(const ParamValues&)`, or an optional one, as a Model.
 template <template <class> class Filter>
 std::unique_ptr<Model> make_templated_model();
 

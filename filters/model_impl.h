@@ -47,7 +47,7 @@ class TemplatedModel final : public Model {
     return nullptr;
   }
 
-  Kernel kernel(const ParamValues& values) const override { return Filter<double>::kernel(values); }
+  std::optional<Kernel> kernel(const ParamValues& values) const override { return Filter<double>::kernel(values); }
 };
 
 template <template <class> class Filter>

@@ -82,7 +82,7 @@ double DiskWeights::at(double dx, double dy) const {
 
 PercentageCloser::PercentageCloser(const Kernel& kernel, const DepthMap& map, double plane_max_tangent)
     : kernel_(kernel), grid_(map.size, map.border), map_(map), plane_(plane_max_tangent) {
-  if (kernel.atoms().empty()) disk_.emplace(kernel.disk_radius());
+  if (kernel.atoms().empty() && kernel.triangle() == 0.0) disk_.emplace(kernel.disk_radius());
 }
 
 bool PercentageCloser::is_lit(int x, int y, const Receiver& receiver) const {
@@ -90,8 +90,18 @@ bool PercentageCloser::is_lit(int x, int y, const Receiver& receiver) const {
   return map_.is_lit(depth, map_.at(grid_.find(x, y)));
 }
 
+PercentageCloser::Span PercentageCloser::spread_triangle(double position) const {
+  const double h = kernel_.triangle();
+  Span span{static_cast<int>(std::floor(position - h)), {}};
+  const int last = static_cast<int>(std::floor(position + h));
+  for (int texel = span.first; texel <= last; ++texel)
+    span.weights.push_back(integrate_tent((texel - position) / h, (texel + 1 - position) / h));
+  return span;
+}
+
 /// `position` in texels, texel centres at .5.
 PercentageCloser::Span PercentageCloser::spread(double position) const {
+  if (kernel_.triangle() > 0.0) return spread_triangle(position);
   Span span;
   const bool bilinear = kernel_.reconstruction() == Reconstruction::kBilinear;
   const double shift = bilinear ? 0.5 : 0.0;

@@ -49,9 +49,10 @@ class PercentageCloser {
   TexelGrid<double> grid_;
   const DepthMap& map_;
   PlaneBias plane_;
-  std::optional<DiskWeights> disk_;  ///< none for grids
+  std::optional<DiskWeights> disk_;  ///< for disks alone
 
   Span spread(double position) const;
+  Span spread_triangle(double position) const;
   bool is_lit(int x, int y, const Receiver& receiver) const;
   double gather_grid(double px, double py, const Receiver& receiver) const;
   double gather_disk(double px, double py, const Receiver& receiver) const;

@@ -23,7 +23,7 @@ class Poisson {
   static Kernel kernel(const ParamValues& values) { return Kernel::make_disk(number(values, "radius")); }
 
   T visibility(const Receiver& r, Tally& tally) const {
-    const P angle = P(2) * std::numbers::pi_v<P> * static_cast<P>(turn(r.pixel));
+    const P angle = P(2) * std::numbers::pi_v<P> * static_cast<P>(turn_of(rotation_, r.pixel, seed_));
     const P c = radius_ * std::cos(angle), s = radius_ * std::sin(angle);
     T sum{};
     for (const glm::vec2& point : points_) {
@@ -39,11 +39,6 @@ class Poisson {
   P radius_;
   std::string rotation_;
   std::uint32_t seed_;
-
-  float turn(glm::ivec2 pixel) const {
-    if (rotation_ == "per-pixel") return random_turn(pixel, seed_);
-    return rotation_ == "interleaved-gradient" ? interleaved_gradient_turn(pixel) : 0.0f;
-  }
 };
 
 }  // namespace

@@ -32,4 +32,9 @@ float interleaved_gradient_turn(glm::ivec2 pixel) {
   return to_turn(static_cast<std::uint32_t>(product >> 26));
 }
 
+float turn_of(const std::string& rotation, glm::ivec2 pixel, std::uint32_t seed) {
+  if (rotation == "per-pixel") return random_turn(pixel, seed);
+  return rotation == "interleaved-gradient" ? interleaved_gradient_turn(pixel) : 0.0f;
+}
+
 }  // namespace shadowbench::filters

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <string>
 
 namespace shadowbench::filters {
 
@@ -16,5 +17,9 @@ float random_turn(glm::ivec2 pixel, std::uint32_t seed);
 /// Next Generation Post Processing in Call of Duty: Advanced Warfare, SIGGRAPH; here in 32-bit fixed point, because its
 /// floating-point form differs between machines.
 float interleaved_gradient_turn(glm::ivec2 pixel);
+
+/// What filters that turn a disk call `rotation`: "per-pixel" and "interleaved-gradient" are the two above, anything
+/// else is no turn.
+float turn_of(const std::string& rotation, glm::ivec2 pixel, std::uint32_t seed);
 
 }  // namespace shadowbench::filters

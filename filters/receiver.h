@@ -19,6 +19,7 @@ struct Receiver {
   float depth = 0.0f;                     ///< [0,1], 0 near, with the run's bias applied
   float depth_unbiased = 0.0f;            ///< [0,1]
   glm::vec2 depth_per_texel{0.0f};        ///< slope of the receiver's plane, per texel in u and in v
+  glm::vec2 bias_per_texel{0.0f};         ///< what the run's bias takes off depth per texel of reach in u and in v
   float texel_size_ws = 1.0f;             ///< metres
   float depth_range_ws = 1.0f;            ///< metres between depth 0 and depth 1
   float light_size = 0.0f;                ///< directional: penumbra width per metre of distance to the occluder

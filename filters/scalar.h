@@ -67,19 +67,17 @@ T make_uncertain(Position<T> value, [[maybe_unused]] double bound) {
     return value;
 }
 
+/// Bounds the error of a filtering weight, or of the place that it stands for.
+inline double bound_sampler_weight(const GlAccuracy& accuracy, double map_size) {
+  // u * size, - 0.5, and the subtraction of the base, each rounded at the map's scale.
+  return 3.0 * kUnitRoundoff * map_size + (accuracy.weight_bits < 23.0 ? std::exp2(-accuracy.weight_bits) : 0.0);
+}
+
 /// The fraction of a texel position as the filtering weight that the sampler would use.
 template <class T>
-T sampler_weight(Position<T> position, Position<T> base, [[maybe_unused]] const GlAccuracy& accuracy,
-                 [[maybe_unused]] double map_size) {
+T sampler_weight(Position<T> position, Position<T> base, const GlAccuracy& accuracy, double map_size) {
   const Position<T> fraction = position - base;
-  if constexpr (std::is_same_v<T, Tracked>) {
-    // u * size, - 0.5, and the subtraction of the base, each rounded at the map's scale.
-    double bound = 3.0 * kUnitRoundoff * map_size;
-    if (accuracy.weight_bits < 23.0) bound += std::exp2(-accuracy.weight_bits);
-    return Tracked(fraction, bound);
-  } else {
-    return fraction;
-  }
+  return make_uncertain<T>(fraction, bound_sampler_weight(accuracy, map_size));
 }
 
 }  // namespace shadowbench::filters

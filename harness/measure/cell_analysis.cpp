@@ -150,15 +150,18 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   records::CellRecord& record = cell.record;
   const filters::FilterRequest& request = cell.request;
   const auto model = filters::make_model(request.spec.id);
+  const auto shape = model ? model->kernel(request.values) : std::nullopt;
   const bool wanted = options_.attribution;
-  if (!model || request.user_file || !wanted) {
-    const char* reason = wanted ? "the filter has no scalar model" : "the run was made with --no-attribution";
+  if (!shape || request.user_file || !wanted) {
+    const char* reason = !wanted                       ? "the run was made with --no-attribution"
+                         : model && !request.user_file ? filters::kKernelDiffers
+                                                       : "the filter has no scalar model";
     for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused"})
       record.absent[field] = reason;
     return;
   }
   const ModelImages images = evaluate(request);
-  const std::vector<float>& kernel = kernel_truth(model->kernel(request.values));
+  const std::vector<float>& kernel = kernel_truth(*shape);
   const std::vector<float>& image = cell.visibility.texels;
   metrics::Attribution attribution =
       metrics::attribute_error({image, images.model, images.closer, kernel, truth_.area.texels, truth_.mask});

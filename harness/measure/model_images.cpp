@@ -14,7 +14,7 @@ ModelImages evaluate_model(const filters::FilterRequest& request, const filters:
   const std::unique_ptr<filters::Model> model = filters::make_model(request.spec.id);
   const filters::ModelInput input{request.spec, request.values, map, {}, seed, plane_max_tangent};
   const std::unique_ptr<filters::Lookup> lookup = model->prepare(input, filters::Precision::kDouble);
-  const filters::PercentageCloser closer(model->kernel(request.values), map, plane_max_tangent);
+  const filters::PercentageCloser closer(*model->kernel(request.values), map, plane_max_tangent);
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   ModelImages images{std::vector<double>(pixels, 1.0), std::vector<double>(pixels, 1.0), 0};
   std::atomic<std::int64_t> excused = 0;

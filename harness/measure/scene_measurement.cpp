@@ -224,7 +224,9 @@ void set_kernel(records::CellRecord& record, const filters::FilterRequest& reque
   record.kernel_radius_texels = filters::radius_texels(request.spec, request.values);
   record.kernel = records::make_kernel_record(filters::find_kernel_sigma(request.spec, request.values));
   if (!record.kernel.sigma_texels)
-    record.absent["kernel"] = "the filter has no model, which alone knows its kernel";
+    record.absent["kernel"] = filters::make_model(request.spec.id) && !request.user_file
+                                  ? filters::kKernelDiffers
+                                  : "the filter has no model, which alone knows its kernel";
   else if (!record.kernel.width_class)
     record.absent["kernel.class"] =
         fmt::format("kernels of more than {:.2f} texels have none", filters::width_classes().back().widest_texels);

@@ -179,6 +179,10 @@ void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filte
     note_absent(cell.record, fields, "the filter has no scalar model");
     return;
   }
+  if (!model->kernel(cell.request.values)) {
+    note_absent(cell.record, fields, filters::kKernelDiffers);
+    return;
+  }
   const auto receivers = render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera), filter.light());
   metrics::BoundCheck check = compare_with_closer(cell, *model, receivers);
   if (check.receivers == 0) {
@@ -200,7 +204,7 @@ metrics::BoundCheck StabilityMeter::compare_with_closer(const MeasuredCell& cell
                                   measure_accuracy(renderer_), options_.seed,       plane_max_tangent};
   const auto exact = model.prepare(input, filters::Precision::kDouble);
   const auto tracked = model.prepare(input, filters::Precision::kTracked);
-  const filters::PercentageCloser closer(model.kernel(cell.request.values), depth_map(), plane_max_tangent);
+  const filters::PercentageCloser closer(*model.kernel(cell.request.values), depth_map(), plane_max_tangent);
   const std::size_t pixels = cell.visibility.texels.size();
   const bool overflowed = cell.record.stability.overflow_texels.value_or(0) > 0;
   std::vector<double> of_model(pixels, 1.0), of_closer(pixels, 1.0),

@@ -62,7 +62,8 @@ void check_reads(MeasuredCell& cell, const render::FilterCost& cost) {
   }
   if (!cost.reach_texels) return;
   if (*cost.fetches == 0.0)
-    suspect(cell, "it reads nothing from the map; call compare_nearest, compare_2x2, fetch_depth or fetch_map");
+    suspect(cell,
+            "it reads nothing from the map; call compare_nearest, compare_2x2, fetch_depth, fetch_map or a gather");
   const double declared = filters::reach_texels(spec, cell.request.values);
   if (*cost.reach_texels <= declared + kReachRoundingTexels) return;
   suspect(cell,

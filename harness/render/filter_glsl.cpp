@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "filters/disk_points.h"
+#include "filters/store_format.h"
 
 namespace shadowbench::render {
 namespace {
@@ -68,6 +69,11 @@ std::vector<gl::Piece> filter_pieces(const FilterRequest& request) {
   parameters.display_name = request.spec.path + " (parameters)";
   for (const ParamSpec& param : request.spec.params)
     if (is_for_shader(param)) parameters.text += declare(param, request.values.at(param.name));
+  if (request.spec.has_encode) {
+    const double largest =
+        filters::largest_number(filters::store_precision(filters::text_or(request.values, "store", "")));
+    parameters.text += fmt::format("const float store_largest = {};\n", literal(static_cast<float>(largest)));
+  }
   for (const filters::DiskTable& disk : request.spec.disks) parameters.text += declare_disk(request, disk);
   return {parameters, {"filter", request.spec.body, request.spec.path, request.spec.body_first_line}};
 }

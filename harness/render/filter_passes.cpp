@@ -16,7 +16,7 @@ Defines map_defines(const filters::FilterRequest& request, const MapSettings& ma
   if (defines.empty() || !request.spec.uses_samplers) return defines;
   throw Error(ErrorKind::kUsage,
               fmt::format("{}: the filter '{}' reads the map's samplers itself, which do not hold "
-                          "linear depth then; let it use compare_nearest, compare_2x2 or fetch_depth",
+                          "linear depth then; let it use compare_nearest, compare_2x2, fetch_depth or a gather",
                           map.curve.reversed ? "--reversed-depth" : "--perspective-depth", request.spec.id));
 }
 
@@ -100,7 +100,8 @@ void FilterPasses::lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTar
 
 ReceiverReads FilterPasses::receiver_reads() const {
   static const std::regex kUsesPlace(
-      "\\b(uv|depth|depth_unbiased|compare_nearest|compare_2x2|fetch_depth|fetch_map|texture)\\b");
+      "\\b(uv|depth|depth_unbiased|compare_nearest|compare_2x2|fetch_depth|gather_compare|"
+      "gather_depth|fetch_map|texture)\\b");
   return {std::regex_search(request_.spec.body, kUsesPlace), lookup_.has("receiver_planes"),
           lookup_.has("gbuffer_position"), lookup_.has("gbuffer_normal")};
 }

@@ -24,6 +24,7 @@ void set_light(gl::Program& program, const LightSetup& light) {
   program.set("bias_constant", static_cast<float>(light.bias.constant_depth));
   program.set("bias_slope", static_cast<float>(light.bias.slope_depth));
   program.set("bias_plane_texels", static_cast<float>(light.bias.plane_texels));
+  program.set("bias_plane_kernels", static_cast<float>(light.bias.plane_kernels));
   program.set("bias_normal_texels", static_cast<float>(light.bias.normal_offset_texels));
   program.set("bias_max_tangent", static_cast<float>(light.bias.max_tangent));
 }

@@ -33,6 +33,13 @@ ReceiverTexels draw_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, co
   return {gbuffer.width(), map.read_floats(4), plane.read_floats(4)};
 }
 
+/// As shaders/lib/receiver.glsl computes it.
+glm::vec2 bias_per_texel(const glm::vec2& depth_per_texel, const LightSetup& light) {
+  const float steepest = static_cast<float>(light.bias.max_tangent) * static_cast<float>(light.frustum.texel_size_ws) /
+                         static_cast<float>(light.frustum.depth_range_ws);
+  return static_cast<float>(light.bias.plane_kernels) * glm::min(glm::abs(depth_per_texel), glm::vec2(steepest));
+}
+
 filters::Receiver make_receiver(const ReceiverTexels& texels, std::size_t i, const LightSetup& light) {
   const float* map = &texels.map[4 * i];
   const float* plane = &texels.plane[4 * i];
@@ -41,6 +48,7 @@ filters::Receiver make_receiver(const ReceiverTexels& texels, std::size_t i, con
   r.depth = map[2];
   r.depth_unbiased = map[3];
   r.depth_per_texel = {plane[0], plane[1]};
+  r.bias_per_texel = bias_per_texel(r.depth_per_texel, light);
   r.n_dot_l = plane[2];
   r.view_depth = plane[3];
   r.texel_size_ws = static_cast<float>(light.frustum.texel_size_ws);

@@ -9,6 +9,7 @@ uniform float light_size;
 uniform float bias_constant;       // depth; the larger of this and the next holds
 uniform float bias_slope;          // depth, times 1 - n.l
 uniform float bias_plane_texels;
+uniform float bias_plane_kernels;   // the share of that per texel of a filter's reach
 uniform float bias_normal_texels;
 uniform float bias_max_tangent;    // steeper planes are treated as this steep
 

@@ -18,8 +18,11 @@ void count_fetch(vec2 uv, vec2 offset_texels, float to_centre_texels) {
   fetch_reach = max(fetch_reach, max(offset.x, offset.y) + to_centre_texels);
 }
 #define COUNT_FETCH(r, offset_texels, to_centre_texels) count_fetch(r.uv, offset_texels, to_centre_texels)
+#define COUNT_GATHER(r, offset_texels) \
+  count_fetch(r.uv, floor(r.uv / map_texel_uv + offset_texels - 0.5) + 1.0 - r.uv / map_texel_uv, 0.5)
 #else
 #define COUNT_FETCH(r, offset_texels, to_centre_texels)
+#define COUNT_GATHER(r, offset_texels)
 #endif
 
 #ifdef RECEIVER_PLANE
@@ -49,6 +52,10 @@ float corner_depth(Receiver r, vec2 offset_texels, float z) {
 #define corner_depth(r, offset_texels, z) (z)
 #endif
 
+// How far the receiver lies past the centre of the texel to its lower left, in texels, [0,1). An offset of whole texels
+// less this is a texel's centre.
+vec2 texel_fraction(Receiver r) { return fract(r.uv / map_texel_uv - 0.5); }
+
 float compare_nearest(Receiver r, vec2 offset_texels, float z) {
   COUNT_FETCH(r, offset_texels, 0.5);
   float reference = store_depth(nearest_depth(r, offset_texels, z));
@@ -64,6 +71,20 @@ float compare_2x2(Receiver r, vec2 offset_texels, float z) {
 float fetch_depth(Receiver r, vec2 offset_texels) {
   COUNT_FETCH(r, offset_texels, 0.5);
   return linear_depth(texture(map_depth, r.uv + offset_texels * map_texel_uv).r);
+}
+
+// Four texels at once, those that compare_2x2 reads at the same offset: x upper left, y upper right, z lower right, w
+// lower left. One fetch each.
+vec4 gather_compare(Receiver r, vec2 offset_texels, float z) {
+  COUNT_GATHER(r, offset_texels);
+  float reference = store_depth(corner_depth(r, offset_texels, z));
+  return textureGather(map_compare, r.uv + offset_texels * map_texel_uv, reference);
+}
+
+vec4 gather_depth(Receiver r, vec2 offset_texels) {
+  COUNT_GATHER(r, offset_texels);
+  vec4 stored = textureGather(map_depth, r.uv + offset_texels * map_texel_uv);
+  return vec4(linear_depth(stored.x), linear_depth(stored.y), linear_depth(stored.z), linear_depth(stored.w));
 }
 
 vec4 fetch_map(Receiver r, vec2 offset_texels) {

@@ -11,6 +11,7 @@ struct Receiver {
   float depth;
   float depth_unbiased;
   vec2 depth_per_texel;
+  vec2 bias_per_texel;
   float texel_size_ws;
   float depth_range_ws;
   float light_size;
@@ -37,6 +38,7 @@ Receiver make_receiver(ivec2 pixel, vec4 place) {
   r.uv = place.xy;
   r.layer = 0;
   r.depth_per_texel = plane.xy;
+  r.bias_per_texel = bias_plane_kernels * min(abs(plane.xy), vec2(bias_max_tangent * texel_size_ws / depth_range_ws));
 #ifdef BIAS_BY_SLOPE
   float flat_part = max(bias_constant, bias_slope * (1.0 - r.n_dot_l));
 #else

@@ -26,7 +26,7 @@ const Catalogue& catalogue() {
 
 Kernel kernel_of(const std::string& text) {
   const FilterRequest request = catalogue().parse_requests(text).front();
-  return make_model(request.spec.id)->kernel(request.values);
+  return find_kernel(request.spec.id, request.values).value();
 }
 
 DepthMap make_random_map(int size, unsigned seed) {
@@ -45,10 +45,13 @@ Receiver make_receiver(double x, double y, int size, float depth) {
 
 TEST(KernelNames, TellKernelsApart) {
   std::set<std::string> names;
-  for (const char* text : {"none", "pcf2x2", "box3x3", "tent3x3", "teach4x4", "box4x4", "poisson", "poisson:radius=2",
-                           "vsm", "vsm:radius=6", "esm:combine=log"})
+  for (const char* text :
+       {"none", "pcf2x2", "box3x3", "tent3x3", "teach4x4", "box4x4", "tent4x4", "tent5x5", "tent7x7", "castano3",
+        "castano5", "castano7", "poisson", "poisson:radius=2", "vsm", "vsm:radius=6", "esm:combine=log"})
     EXPECT_TRUE(names.insert(kernel_of(text).name()).second) << text;
   EXPECT_EQ(kernel_of("vsm").name(), kernel_of("esm").name()) << "one prefilter, one kernel";
+  EXPECT_EQ(kernel_of("gather_pcf").name(), kernel_of("tent5x5").name());
+  EXPECT_EQ(kernel_of("gather_pcf:radius=3,shape=castano").name(), kernel_of("castano7").name());
 }
 
 TEST(KernelNames, TellWeightsAndRadiiApart) {
@@ -66,6 +69,8 @@ TEST(KernelWidths, AreTheShapeAndItsReconstruction) {
   EXPECT_EQ(kernel_of("box3x3").half_width(), 1.0) << "texels, as points";
   EXPECT_EQ(kernel_of("teach4x4").half_width(), 2.0);
   EXPECT_EQ(kernel_of("box4x4").half_width(), 2.0);
+  EXPECT_EQ(kernel_of("tent5x5").half_width(), 3.0) << "half a texel more than the triangle";
+  EXPECT_EQ(kernel_of("castano5").half_width(), 3.0);
   EXPECT_EQ(kernel_of("poisson:radius=3").half_width(), 4.0);
   EXPECT_EQ(kernel_of("vsm:radius=4").half_width(), 5.0);
   EXPECT_EQ(kernel_of("esm:radius=4,combine=log").half_width(), 4.0);
@@ -76,16 +81,19 @@ TEST(KernelWidths, AreTheShapeAndItsReconstruction) {
 TEST(KernelWidths, ReachIsThatOfTheFrontMatter) {
   for (const FilterSpec& spec : catalogue().filters()) {
     const FilterRequest request = catalogue().parse_requests(spec.id).front();
-    const Kernel kernel = make_model(spec.id)->kernel(request.values);
-    const double own_texel = kernel.reconstruction() == Reconstruction::kNearest ? 0.5 : 0.0;
-    EXPECT_EQ(reach_texels(spec, request.values), kernel.half_width() + own_texel) << spec.id;
+    const std::optional<Kernel> kernel = find_kernel(spec.id, request.values);
+    if (!kernel) continue;
+    const double own_texel = kernel->reconstruction() == Reconstruction::kNearest ? 0.5 : 0.0;
+    EXPECT_EQ(reach_texels(spec, request.values), kernel->half_width() + own_texel) << spec.id;
   }
 }
 
 TEST(KernelWidths, AreTheStandardDeviationToTwoDigits) {
   const std::vector<std::pair<const char*, double>> known = {
-      {"none", 0.29},     {"pcf2x2", 0.41},  {"tent3x3", 0.65}, {"box3x3", 0.87}, {"box4x4", 0.91},
-      {"teach4x4", 1.08}, {"poisson", 1.55}, {"vsm", 1.90},     {"esm", 1.90},    {"esm:combine=log", 1.87}};
+      {"none", 0.29},     {"pcf2x2", 0.41},   {"tent3x3", 0.65},  {"box3x3", 0.87},
+      {"box4x4", 0.91},   {"tent4x4", 0.68},  {"tent5x5", 1.06},  {"tent7x7", 1.46},
+      {"castano3", 0.82}, {"castano5", 1.15}, {"castano7", 1.32}, {"teach4x4", 1.08},
+      {"poisson", 1.55},  {"vsm", 1.90},      {"esm", 1.90},      {"esm:combine=log", 1.87}};
   for (const auto& [text, sigma] : known) EXPECT_NEAR(kernel_of(text).sigma_texels(), sigma, 0.005) << text;
 }
 
@@ -144,6 +152,8 @@ TEST(KernelSamples, HaveTheShapesSpread) {
   EXPECT_NEAR(second_moment(kernel_of("box3x3")), 2.0 / 3.0, 2e-3);
   EXPECT_NEAR(second_moment(kernel_of("teach4x4")), 1.0 + 1.0 / 6.0, 1e-3);
   EXPECT_NEAR(second_moment(kernel_of("box4x4")), 2.0 / 3.0 + 1.0 / 6.0, 2e-3);
+  EXPECT_NEAR(second_moment(kernel_of("tent5x5")), 2.5 * 2.5 / 6.0 + 1.0 / 12.0, 2e-3);
+  EXPECT_NEAR(second_moment(kernel_of("castano7")), 82.0 / 52.0 + 1.0 / 6.0, 5e-3);
   EXPECT_NEAR(second_moment(kernel_of("poisson:radius=3")), 9.0 / 4.0 + 1.0 / 6.0, 0.01);
   double gaussian = 0.0;
   const Kernel vsm = kernel_of("vsm:radius=4");
@@ -153,7 +163,8 @@ TEST(KernelSamples, HaveTheShapesSpread) {
 }
 
 TEST(KernelSamples, AreCentred_AndTheirAxesAreIndependent) {
-  for (const char* text : {"pcf2x2", "tent3x3", "poisson:radius=3", "vsm:radius=2", "esm:radius=2,combine=log"}) {
+  for (const char* text :
+       {"pcf2x2", "tent3x3", "tent5x5", "castano7", "poisson:radius=3", "vsm:radius=2", "esm:radius=2,combine=log"}) {
     const Kernel kernel = kernel_of(text);
     constexpr int kSteps = 24;
     glm::dvec2 mean(0.0), squares(0.0);
@@ -179,7 +190,10 @@ TEST(KernelSamples, AreCentred_AndTheirAxesAreIndependent) {
 TEST(PercentageCloser, EqualsTheModelsThatCompare) {
   const DepthMap map = make_random_map(32, 5);
   std::mt19937 random(6);
-  for (const char* text : {"none", "pcf2x2", "box3x3", "tent3x3", "teach4x4", "box4x4"}) {
+  for (const char* text :
+       {"none", "pcf2x2", "box3x3", "tent3x3", "teach4x4", "box4x4", "tent4x4", "tent5x5", "tent7x7", "castano3",
+        "castano5", "castano7", "gather_pcf:radius=1", "gather_pcf", "gather_pcf:radius=3",
+        "gather_pcf:shape=castano,radius=1", "gather_pcf:shape=castano", "gather_pcf:shape=castano,radius=3"}) {
     const FilterRequest request = catalogue().parse_requests(text).front();
     const ModelInput input{request.spec, request.values, map, {}, 0};
     const auto lookup = make_model(request.spec.id)->prepare(input, Precision::kDouble);

@@ -8,8 +8,8 @@ Left out, because what they give is the same filter:
 import re
 from dataclasses import dataclass
 
-READS = r"\b(?:compare_nearest|compare_2x2|fetch_depth|fetch_map)\("
-COMPARES = r"\bcompare_(?:nearest|2x2)\("
+READS = r"\b(?:compare_nearest|compare_2x2|fetch_depth|gather_compare|gather_depth|fetch_map)\("
+COMPARES = r"\b(?:compare_(?:nearest|2x2)|gather_compare)\("
 FLOAT = r"(?<![\w.])\d+\.\d*(?:e-?\d+)?"
 
 

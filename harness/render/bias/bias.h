@@ -8,6 +8,7 @@ struct Bias {
   double constant_depth = 0.0;        ///< in depth, [0,1] over the light's range
   double slope_depth = 0.0;           ///< times 1 - n.l, in depth
   double plane_texels = 0.0;          ///< the receiver plane's depth change over this many shadow-map texels
+  double plane_kernels = 0.0;         ///< the part of that per texel of a filter's reach
   double normal_offset_texels = 0.0;  ///< along the normal, texels times the sine of the angle to the light
   bool receiver_plane = false;        ///< every tap is compared with the receiver plane's depth there, not here
   double max_tangent = 10.0;          ///< planes steeper than this towards the light are biased as this one

@@ -123,6 +123,7 @@ render::Bias resolve(const BiasRule& rule, const scene::LightFrustum& frustum, d
   bias.constant_depth = rule.constant.in_depth(frustum);
   bias.slope_depth = rule.slope.in_depth(frustum);
   bias.plane_texels = rule.plane_texels + rule.plane_kernels * reach_texels;
+  bias.plane_kernels = rule.plane_kernels;
   bias.normal_offset_texels = rule.normal_offset.in_world(frustum) / frustum.texel_size_ws;
   bias.receiver_plane = rule.receiver_plane;
   bias.max_tangent = rule.max_tangent;

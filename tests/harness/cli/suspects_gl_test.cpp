@@ -100,11 +100,11 @@ TEST_F(Suspects, AFilterThatReadsAsFarAsItDeclares_IsNone) {
 TEST_F(Suspects, BuiltInFilters_AreNone) {
   const Outcome outcome =
       run("run --out out --size 160x90 --map-size 1024 --rounds 1 --no-attribution --filters "
-          "none,pcf2x2,box3x3,tent3x3,box4x4,teach4x4,poisson,vsm,esm,vsm:radius=0,esm:radius=8,esm:combine=log,"
-          "poisson:radius=0,poisson:radius=20,rotation=interleaved-gradient");
+          "all,teaching,vsm:radius=0,esm:radius=8,esm:combine=log,poisson:radius=0,gather_pcf:radius=3,"
+          "pcss:max_radius=20,poisson:radius=20,rotation=interleaved-gradient");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto cells = nlohmann::json::parse(read_text(folder() / "out" / "results.json"))["cells"];
-  EXPECT_GE(cells.size(), 5u * 13u);
+  EXPECT_GE(cells.size(), 5u * 24u);
   for (const auto& cell : cells) EXPECT_EQ(cell["status"], "ok") << cell["scene"] << cell["filter"] << cell["message"];
 }
 

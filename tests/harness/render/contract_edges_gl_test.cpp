@@ -121,8 +121,8 @@ void expect_equal(const Cells& seen, const Cells& expected, const std::function<
 /// Gives the kernel's positions along an axis, by its model; a filter without one has a symmetric kernel, as
 /// filters/kernel.h asks.
 std::vector<filters::Kernel::Atom> atoms_of(const FilterRequest& request) {
-  const auto model = filters::make_model(request.spec.id);
-  return model ? model->kernel(request.values).atoms() : std::vector<filters::Kernel::Atom>();
+  const auto kernel = filters::find_kernel(request.spec.id, request.values);
+  return kernel ? kernel->atoms() : std::vector<filters::Kernel::Atom>();
 }
 
 /// Gives the mean offset of the kernel along an axis, in texels; 0 for disks.

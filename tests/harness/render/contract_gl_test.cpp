@@ -114,7 +114,7 @@ TEST_P(Contract, ExtremeParameters_GiveVisibility) {
   }
 }
 
-TEST_P(Contract, FetchCount_IsKnownUnlessTheFilterReadsSamplers) {
+TEST_P(Contract, ReadsAreCounted_AndWithinTheDeclaredReach) {
   const scene::Scene scene = load_builtin("cubes");
   Bench bench(shared_context(), scene, 64, 64, 36);
   const FilterRequest request = request_of(GetParam());
@@ -123,6 +123,7 @@ TEST_P(Contract, FetchCount_IsKnownUnlessTheFilterReadsSamplers) {
   const render::FilterCost cost = passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map());
   EXPECT_EQ(cost.fetches.has_value(), !request.spec.uses_samplers);
   EXPECT_GE(cost.fetches.value_or(1.0), 1.0);
+  EXPECT_LE(cost.reach_texels.value_or(0.0), filters::reach_texels(request.spec, request.values) + 1e-3);
   EXPECT_EQ(cost.passes, request.spec.has_encode ? 5 : 2);
 }
 
@@ -143,9 +144,32 @@ TEST(FetchCount, EqualsTheFetchesInTheGlsl) {
   EXPECT_DOUBLE_EQ(fetches_of("tent3x3"), 4.0);
   EXPECT_DOUBLE_EQ(fetches_of("teach4x4"), 4.0);
   EXPECT_DOUBLE_EQ(fetches_of("box4x4"), 4.0);
+  EXPECT_DOUBLE_EQ(fetches_of("tent4x4"), 4.0);
+  EXPECT_DOUBLE_EQ(fetches_of("tent5x5"), 9.0);
+  EXPECT_DOUBLE_EQ(fetches_of("castano7"), 16.0);
+  EXPECT_DOUBLE_EQ(fetches_of("gather_pcf:radius=3"), 16.0);
   EXPECT_DOUBLE_EQ(fetches_of("poisson:taps=32"), 32.0);
   EXPECT_DOUBLE_EQ(fetches_of("nine_compares"), 9.0);
   EXPECT_DOUBLE_EQ(fetches_of("vsm"), 1.0);
+}
+
+/// With every way to store depth, and with the receiver plane's depth in comparisons.
+TEST(Gathers, AreTheFourTexelsOfAFetch) {
+  const scene::Scene scene = load_builtin("fence");
+  filters::Catalogue filters(options::find_resources().filters);
+  filters.add_user_file(std::string(SHADOWBENCH_SOURCE_DIR) + "/tests/user_filters/gathers.glsl");
+  const FilterRequest request = filters.parse_requests("gathers").front();
+  for (const filters::DepthCurve& curve :
+       {filters::DepthCurve{}, filters::DepthCurve{true, 1.0}, filters::DepthCurve{true, 100.0}}) {
+    for (const char* bias : {"none", "receiver-plane"}) {
+      Bench bench(shared_context(), scene, 256, 160, 90, {GL_DEPTH_COMPONENT32F, curve});
+      const render::BiasRule rule = render::parse_bias({bias});
+      const std::vector<float> image = bench.draw(request, rule);
+      int differing = 0;
+      for (const auto& r : bench.receivers(request, rule)) differing += image[bench.index(r)] != 1.0f;
+      EXPECT_EQ(differing, 0) << bias << " " << render::describe_map(bench.map().settings());
+    }
+  }
 }
 
 TEST(Prefilter, WithoutEncode_CompilesAndRunsNothing) {

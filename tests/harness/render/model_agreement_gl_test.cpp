@@ -173,7 +173,7 @@ TEST_P(ModelVariants, GlImageEqualsModel) {
   const Agreement a = compare(bench, request);
   EXPECT_GT(a.shadowed, 0.01);
   EXPECT_LT(static_cast<double>(a.excused), 0.005 * static_cast<double>(a.compared));
-  const bool half = filters::text_or(request.values, "store", "").ends_with("16f");
+  const bool half = filters::text_or(request.values, "store", "").find("16") != std::string::npos;
   if (request.spec.has_encode) {
     EXPECT_LE(a.worst_bound_ratio, 1.0);
     EXPECT_LE(a.worst_float, half ? 1.0 : 2e-3);
@@ -182,18 +182,24 @@ TEST_P(ModelVariants, GlImageEqualsModel) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Parameters, ModelVariants,
-                         ::testing::Values("poisson:rotation=none", "poisson:rotation=interleaved-gradient,taps=8",
-                                           "poisson:radius=0,taps=4", "poisson:taps=32,radius=6", "vsm:radius=0",
-                                           "vsm:radius=12", "vsm:bleed_reduction=0,slope_variance=0",
-                                           "vsm:slope_variance=1", "vsm:min_variance=0.001,store=rg16f", "esm:radius=0",
-                                           "esm:c=20", "esm:combine=log,c=500", "esm:combine=log,radius=0",
-                                           "esm:c=8,store=r16f"),
-                         [](const auto& each) {
-                           std::string name = each.param;
-                           for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Parameters, ModelVariants,
+    ::testing::Values("gather_pcf:radius=1", "gather_pcf:radius=3,shape=castano", "pcss:rotation=none,max_radius=2",
+                      "pcss:rotation=interleaved-gradient,taps=8,search_taps=4", "pcss:max_radius=0",
+                      "poisson:rotation=none", "poisson:rotation=interleaved-gradient,taps=8",
+                      "poisson:radius=0,taps=4", "evsm2:radius=0", "evsm2:bleed_reduction=0.2",
+                      "evsm4:bleed_reduction=0.2", "gather_pcf:radius=1,shape=castano", "gather_pcf:shape=castano",
+                      "gather_pcf:radius=3", "evsm4:store=rgba16f", "evsm4:radius=1,c_down=20",
+                      "msm_hamburger:store=rgba16", "msm_hausdorff:store=rgba16,radius=1", "msm_hausdorff:radius=1",
+                      "poisson:taps=32,radius=6", "vsm:radius=0", "vsm:radius=12",
+                      "vsm:bleed_reduction=0,slope_variance=0", "vsm:slope_variance=1",
+                      "vsm:min_variance=0.001,store=rg16f", "esm:radius=0", "esm:c=20", "esm:combine=log,c=500",
+                      "esm:combine=log,radius=0", "esm:c=8,store=r16f"),
+    [](const auto& each) {
+      std::string name = each.param;
+      for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+      return name;
+    });
 
 /// Filters that compare tap by tap, with the receiver plane's depth at each tap.
 class ReceiverPlaneModel : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {};
@@ -213,7 +219,8 @@ TEST_P(ReceiverPlaneModel, GlImageEqualsModel) {
 INSTANTIATE_TEST_SUITE_P(Filters, ReceiverPlaneModel,
                          ::testing::Combine(::testing::Values("cubes", "steps"),
                                             ::testing::Values("none", "pcf2x2", "tent3x3", "box3x3", "teach4x4",
-                                                              "box4x4", "poisson")),
+                                                              "box4x4", "tent5x5", "castano7", "gather_pcf",
+                                                              "poisson")),
                          [](const auto& each) { return std::get<0>(each.param) + "_" + std::get<1>(each.param); });
 
 /// What lies outside the map, on a scene with many receivers there.

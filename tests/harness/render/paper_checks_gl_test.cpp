@@ -48,7 +48,7 @@ TEST_P(Bound, IsNeverDarkerThanPercentageCloserFiltering) {
   const filters::ModelInput input{request.spec, request.values, map, accuracy, 7};
   const auto model = filters::make_model(request.spec.id);
   const auto tracked = model->prepare(input, filters::Precision::kTracked);
-  const filters::PercentageCloser closer(model->kernel(request.values), map);
+  const filters::PercentageCloser closer(*model->kernel(request.values), map);
   double darkest_exact = 0.0, darkest_gpu = 0.0;
   int darker = 0, between = 0;
   for (const filters::Receiver& r : bench.receivers(request)) {

@@ -1,0 +1,7 @@
+#include "filters/texel_pairs.h"
+
+namespace shadowbench::filters {
+
+std::unique_ptr<Model> make_castano3_model() { return make_templated_model<SlidingPairs<1, 2, 1>::Filter>(); }
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,7 @@
+#include "filters/texel_pairs.h"
+
+namespace shadowbench::filters {
+
+std::unique_ptr<Model> make_castano5_model() { return make_templated_model<SlidingPairs<1, 3, 4, 3, 1>::Filter>(); }
+
+}  // namespace shadowbench::filters

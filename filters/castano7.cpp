@@ -1,0 +1,9 @@
+#include "filters/texel_pairs.h"
+
+namespace shadowbench::filters {
+
+std::unique_ptr<Model> make_castano7_model() {
+  return make_templated_model<SlidingPairs<1, 5, 12, 16, 12, 5, 1>::Filter>();
+}
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,7 @@
+#include "filters/four_moments.h"
+
+namespace shadowbench::filters {
+
+std::unique_ptr<Model> make_msm_hamburger_model() { return make_templated_model<FourMoments<Depths::kAny>::Filter>(); }
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,9 @@
+#include "filters/four_moments.h"
+
+namespace shadowbench::filters {
+
+std::unique_ptr<Model> make_msm_hausdorff_model() {
+  return make_templated_model<FourMoments<Depths::kInRange>::Filter>();
+}
+
+}  // namespace shadowbench::filters

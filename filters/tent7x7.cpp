@@ -1,0 +1,7 @@
+#include "filters/texel_pairs.h"
+
+namespace shadowbench::filters {
+
+std::unique_ptr<Model> make_tent7x7_model() { return make_templated_model<TrianglePairs<4>::Filter>(); }
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,142 @@
+// Exponential variance and moment shadow maps: what they promise of any map, and closed forms.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "filters/catalogue.h"
+#include "filters/four_moments.h"
+#include "filters/percentage_closer.h"
+
+namespace shadowbench::filters {
+namespace {
+
+constexpr int kMomentMapSide = 32;
+
+/// A map of a few depths in blocks and of noise.
+DepthMap make_blocks(unsigned seed) {
+  std::mt19937 random(seed);
+  DepthMap map{kMomentMapSide, {}};
+  for (int i = 0; i < kMomentMapSide * kMomentMapSide; ++i) {
+    const int block = i % kMomentMapSide / 5 + i / kMomentMapSide / 5;
+    map.stored.push_back(block % 3 == 0 ? static_cast<float>(random()) * 0x1p-32f
+                                        : 0.2f * static_cast<float>(block % 5));
+  }
+  return map;
+}
+
+Receiver make_blocks_receiver(std::mt19937& random) {
+  const auto uniform = [&] { return static_cast<float>(random()) * 0x1p-32f; };
+  Receiver r;
+  r.uv = {uniform(), uniform()};
+  r.depth = 0.02f + 0.96f * uniform();
+  return r;
+}
+
+FilterRequest request_blocks(const std::string& text) {
+  static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
+  return catalogue.parse_requests(text).front();
+}
+
+std::unique_ptr<Lookup> prepare_blocks(const FilterRequest& request, const DepthMap& map,
+                                       Precision precision = Precision::kDouble) {
+  return make_model(request.spec.id)->prepare({request.spec, request.values, map, {}, 0}, precision);
+}
+
+class UpperBound : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(UpperBound, IsNeverDarkerThanPcfOfItsKernel_OnAnyMap) {
+  const FilterRequest request = request_blocks(GetParam());
+  std::mt19937 random(11);
+  int dark = 0;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const DepthMap map = make_blocks(seed);
+    const auto lookup = prepare_blocks(request, map);
+    const PercentageCloser closer(*find_kernel(request.spec.id, request.values), map);
+    for (int i = 0; i < 1000; ++i) {
+      const Receiver r = make_blocks_receiver(random);
+      const double light = lookup->at(r).visibility;
+      ASSERT_GE(light, closer.at(r) - 1e-6) << "depth " << r.depth;  // the weights, as floats, sum to 1 within that
+      dark += light < 0.5 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(dark, 200) << "a bound that is always 1 promises nothing";
+}
+
+INSTANTIATE_TEST_SUITE_P(Filters, UpperBound,
+                         ::testing::Values("evsm2", "evsm4", "evsm4:radius=1,c=20", "msm_hamburger", "msm_hausdorff",
+                                           "msm_hausdorff:radius=1,moment_bias=0.01"));
+
+TEST(Msm, DepthsWithinTheMap_SayMoreThanAnyDepths) {
+  const DepthMap map = make_blocks(5);
+  const auto any = prepare_blocks(request_blocks("msm_hamburger"), map),
+             in_range = prepare_blocks(request_blocks("msm_hausdorff"), map);
+  std::mt19937 random(12);
+  int less = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Receiver r = make_blocks_receiver(random);
+    ASSERT_LE(in_range->at(r).visibility, any->at(r).visibility + 1e-9) << "depth " << r.depth;
+    less += in_range->at(r).visibility < any->at(r).visibility - 1e-3 ? 1 : 0;
+  }
+  EXPECT_GT(less, 100);
+}
+
+/// Moments of two depths are those of no other distribution.
+TEST(Moments, OfTwoDepths_GiveTheLitShare) {
+  constexpr float kNear = 0.3f, kFar = 0.8f;
+  DepthMap map{kMomentMapSide, {}};
+  for (int i = 0; i < kMomentMapSide * kMomentMapSide; ++i)
+    map.stored.push_back(i % kMomentMapSide < kMomentMapSide / 2 ? kNear : kFar);
+  for (const char* text : {"msm_hamburger", "msm_hausdorff", "evsm2", "evsm4"}) {
+    const FilterRequest request = request_blocks(text);
+    const auto lookup = prepare_blocks(request, map);
+    const PercentageCloser closer(*find_kernel(request.spec.id, request.values), map);
+    for (double x = 11.0; x < 21.0; x += 0.37) {
+      Receiver r;
+      r.uv = {static_cast<float>(x / kMomentMapSide), 0.5f};
+      r.depth = kFar - 1e-5f;
+      ASSERT_NEAR(lookup->at(r).visibility, closer.at(r), 5e-3) << text << " at " << x;
+    }
+  }
+}
+
+TEST(Moments, OfADepth_FillTheStore_AndComeBack) {
+  std::array<double, 4> least{1.0, 1.0, 1.0, 1.0}, most{};
+  for (double depth = 0.0; depth <= 1.0; depth += 1.0 / 1024.0) {
+    const auto stored = four_moments::encode(depth);
+    const auto moments = four_moments::decode(stored, 0.0);
+    for (std::size_t i = 0; i < 4; ++i) {
+      least[i] = std::min(least[i], stored[i]);
+      most[i] = std::max(most[i], stored[i]);
+      ASSERT_NEAR(moments[i], std::pow(2.0 * depth - 1.0, static_cast<double>(i + 1)), 1e-14);
+    }
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(least[i], 0.0, 1e-5) << i;
+    EXPECT_NEAR(most[i], 1.0, 1e-5) << i;
+    EXPECT_GE(least[i], -1e-15);
+    EXPECT_LE(most[i], 1.0 + 1e-15);
+  }
+}
+
+/// What a 16-bit store cannot hold is not asked of it.
+TEST(Moments, ParametersAreFitToTheStore) {
+  const DepthMap map = make_blocks(6);
+  for (const auto& [asked, given] :
+       {std::pair("evsm4:store=rgba16f,c=42,c_down=42", "evsm4:store=rgba16f,c=5.54,c_down=5.54"),
+        {"evsm2:store=rg16f,c=30", "evsm2:store=rg16f,c=5.54"},
+        {"msm_hamburger:store=rgba16,moment_bias=1e-5", "msm_hamburger:store=rgba16,moment_bias=1.2e-4"}}) {
+    const FilterRequest one = request_blocks(asked), other = request_blocks(given);
+    const auto a = prepare_blocks(one, map, Precision::kFloat), b = prepare_blocks(other, map, Precision::kFloat);
+    std::mt19937 random(13);
+    for (int i = 0; i < 200; ++i) {
+      const Receiver r = make_blocks_receiver(random);
+      ASSERT_EQ(a->at(r).visibility, b->at(r).visibility) << asked;
+      ASSERT_TRUE(std::isfinite(a->at(r).visibility));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace shadowbench::filters

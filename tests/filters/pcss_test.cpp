@@ -1,0 +1,115 @@
+// Percentage-closer soft shadows against closed forms.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "filters/catalogue.h"
+#include "filters/model.h"
+
+namespace shadowbench::filters {
+namespace {
+
+constexpr int kMapSide = 64;
+constexpr float kFloor = 0.7f;
+
+DepthMap make_map(const std::function<float(int x, int y)>& depth) {
+  DepthMap map{kMapSide, {}};
+  for (int i = 0; i < kMapSide * kMapSide; ++i) map.stored.push_back(depth(i % kMapSide, i / kMapSide));
+  return map;
+}
+
+/// A receiver of the floor, with texels of 1 m and a depth of 100 m.
+Receiver make_floor_receiver(double x, double y, float light_size) {
+  Receiver r;
+  r.uv = {static_cast<float>(x / kMapSide), static_cast<float>(y / kMapSide)};
+  r.depth = r.depth_unbiased = kFloor;
+  r.depth_range_ws = 100.0f;
+  r.light_size = light_size;
+  return r;
+}
+
+/// Looks receivers up by a filter.
+class Filtered {
+ public:
+  Filtered(const std::string& text, const DepthMap& map)
+      : request_(Catalogue(SHADOWBENCH_SOURCE_DIR "/filters").parse_requests(text).front()),
+        lookup_(
+            make_model(request_.spec.id)->prepare({request_.spec, request_.values, map, {}, 0}, Precision::kDouble)) {}
+
+  double at(const Receiver& r) const { return lookup_->at(r).visibility; }
+
+ private:
+  FilterRequest request_;
+  std::unique_ptr<Lookup> lookup_;
+};
+
+TEST(Pcss, LightOfNoSize_EqualsHardShadow) {
+  std::mt19937 random(3);
+  const DepthMap map = make_map([&](int, int) { return static_cast<float>(random()) * 0x1p-32f; });
+  const Filtered pcss("pcss", map), hard("pcf2x2", map);
+  for (int i = 0; i < 500; ++i) {
+    const Receiver r = make_floor_receiver(2.0 + 0.12 * i, 61.0 - 0.11 * i, 0.0f);
+    ASSERT_EQ(pcss.at(r), hard.at(r)) << i;
+  }
+}
+
+/// Where visibility, falling from light to dark, crosses a level; in texels.
+double find_crossing(const std::function<double(double)>& visibility, double level) {
+  double lit = 20.0, dark = -20.0;
+  while (lit - dark > 0.01) {
+    const double middle = 0.5 * (lit + dark);
+    (visibility(middle) > level ? lit : dark) = middle;
+  }
+  return lit;
+}
+
+double find_width(const std::function<double(double)>& visibility) {
+  return find_crossing(visibility, 0.9) - find_crossing(visibility, 0.1);
+}
+
+/// The disk light's penumbra below a straight edge: the share of a disk on one side of a line.
+double share_of_disk(double t) {
+  t = std::clamp(t, -1.0, 1.0);
+  return 1.0 - (std::acos(t) - t * std::sqrt(1.0 - t * t)) / std::numbers::pi;
+}
+
+/// A half-plane over a floor that lies parallel to it.
+TEST(Pcss, PenumbraOfAnEdge_IsAsWideAsTheLightMakesIt) {
+  constexpr float kEdge = 0.3f;
+  const DepthMap map = make_map([](int x, int) { return x < kMapSide / 2 ? kEdge : 1.0f; });
+  const Filtered pcss("pcss:taps=32,search_taps=32,max_radius=20", map);
+  for (const float light_size : {0.1f, 0.2f, 0.4f}) {
+    const double radius = 50.0 * static_cast<double>(light_size * (kFloor - kEdge));
+    const auto seen = [&](double x) {
+      double sum = 0.0;
+      constexpr int kPixels = 200;
+      for (int i = 0; i < kPixels; ++i) {
+        Receiver r = make_floor_receiver(kMapSide / 2 + x, 32.3, light_size);
+        r.pixel = {i, 7 * i};
+        sum += pcss.at(r);
+      }
+      return sum / kPixels;
+    };
+    const double expected = find_width([&](double x) { return share_of_disk(x / radius); });
+    EXPECT_NEAR(find_width(seen), expected, 0.1 * expected) << "radius " << radius;
+  }
+}
+
+TEST(Pcss, EveryTap_IsBiasedByItsOwnDistance) {
+  constexpr float kSlope = 0.002f;
+  const DepthMap map = make_map([](int x, int) { return kFloor + kSlope * (static_cast<float>(x) - 31.5f); });
+  const Filtered pcss("pcss", map);
+  Receiver r = make_floor_receiver(32.0, 32.0, 2.0f);
+  r.depth -= kSlope;  // the reach of one fetch, which bias_texels declares
+  EXPECT_LT(pcss.at(r), 1.0);
+  r.bias_per_texel = {kSlope, 0.0f};
+  EXPECT_EQ(pcss.at(r), 1.0);
+}
+
+}  // namespace
+}  // namespace shadowbench::filters
