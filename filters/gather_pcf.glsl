@@ -24,7 +24,5 @@ const float castano[] = float[](1.0, 2.0, 1.0,                          // of ra
 float visibility(Receiver r) {
   vec2 t = texel_fraction(r);
   if (shape == SHAPE_TRIANGLE) return gather_pairs(r, triangle_weights(float(pairs) - 0.5, t), r.depth);
-  float at_texels[2 * pairs - 1];
-  for (int i = 0; i < 2 * pairs - 1; ++i) at_texels[i] = castano[radius * radius - 1 + i];
-  return gather_pairs(r, sliding_weights(at_texels, t), r.depth);
+  return gather_pairs(r, sliding_weights(castano, radius * radius - 1, t), r.depth);
 }

@@ -29,6 +29,13 @@ vec2[2 * pairs] sliding_weights(float at_texels[2 * pairs - 1], vec2 t) {
   return weights;
 }
 
+// The same, with weights from a table of several kernels, in which this one begins at `first`.
+vec2[2 * pairs] sliding_weights(float table[15], int first, vec2 t) {
+  float at_texels[2 * pairs - 1];
+  for (int i = 0; i < 2 * pairs - 1; ++i) at_texels[i] = table[first + i];
+  return sliding_weights(at_texels, t);
+}
+
 // The comparisons of these texels, with weights that sum to 1. A fetch lies between two texels where the hardware
 // weighs them as the kernel does, and counts for both.
 float compare_pairs(Receiver r, vec2 weights[2 * pairs], float z) {
