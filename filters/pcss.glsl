@@ -38,6 +38,8 @@ const float one_fetch = 0.25;  // texels: a smaller disk is one fetch
 
 float biased_depth(Receiver r, vec2 offset) { return r.depth - dot(r.bias_per_texel, abs(offset)); }
 
+vec2 rotate(vec2 p, float c, float s) { return vec2(c * p.x - s * p.y, s * p.x + c * p.y); }
+
 float visibility(Receiver r) {
   float widening = 0.5 * r.light_size * r.depth_range_ws / r.texel_size_ws;  // the disk's radius, texels per depth
   float search = min(widening * r.depth_unbiased, max_radius);
@@ -47,11 +49,10 @@ float visibility(Receiver r) {
   if (rotation == ROTATION_INTERLEAVED_GRADIENT) turn = interleaved_gradient_turn(r.pixel);
   float c = cos(6.28318530718 * turn);
   float s = sin(6.28318530718 * turn);
-  mat2 turned = mat2(c, s, -s, c);
   float depths = 0.0;
   float blockers = 0.0;
   for (int i = 0; i < search_taps; ++i) {
-    vec2 offset = search * (turned * search_points[i]);
+    vec2 offset = search * rotate(search_points[i], c, s);
     float depth = fetch_depth(r, offset);
     if (depth < biased_depth(r, offset)) {
       depths += depth;
@@ -63,7 +64,7 @@ float visibility(Receiver r) {
   if (radius < one_fetch) return compare_2x2(r, vec2(0.0), r.depth);
   float sum = 0.0;
   for (int i = 0; i < taps; ++i) {
-    vec2 offset = radius * (turned * disk_points[i]);
+    vec2 offset = radius * rotate(disk_points[i], c, s);
     sum += compare_2x2(r, offset, biased_depth(r, offset));
   }
   return sum / float(taps);
