@@ -15,7 +15,7 @@ namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& path, const char* what, int code) {
   throw Error(ErrorKind::kOutput,
-              fmt::format("{} ({}); check the folder's rights and free space, or choose another", what,
+              fmt::format("{} ({}); check the folder's rights and free space, or choose another with --out", what,
                           std::generic_category().message(code)),
               path.string());
 }

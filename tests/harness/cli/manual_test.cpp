@@ -86,7 +86,7 @@ TEST_F(Manual, BashCompletesValues) {
   EXPECT_THAT(complete("run --border = e"), ElementsAre("edge")) << "as bash splits --border=e";
   EXPECT_THAT(complete("run --gl o"), ElementsAre("osmesa"));
   EXPECT_THAT(complete("advise out --cheapest b"), ElementsAre("bytes"));
-  EXPECT_THAT(complete("run --filters none,tent"), ElementsAre("none,tent3x3"));
+  EXPECT_THAT(complete("run --filters none,tent3"), ElementsAre("none,tent3x3"));
   EXPECT_THAT(complete("bias --scene cub"), ElementsAre("cubes"));
   EXPECT_THAT(complete("run gol"), ElementsAre("golden")) << "an experiment";
   EXPECT_THAT(complete("merge pag"), ElementsAre("pages")) << "a folder";
