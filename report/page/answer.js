@@ -159,7 +159,7 @@
     });
     const lead = tied.length > 0 ? "it has the lowest mean cost" : "it is the cheapest";
     explain("Why:", `${lead} of ${keeping.length} ${bounds.length > 0 ? "that keep the limits" : "that can be judged"}`, ...[...bounds, ...listUnseen(best)].map((text, i) => (i === 0 ? ": " : "; ") + text), ".");
-    explain("Kernel:", `${configuration.kernel}${configuration.params ? "; " + configuration.params : ""}.`);
+    explain("Kernel:", `${configuration.sigma === null ? "of no one width that is known" : configuration.kernel}${configuration.params ? "; " + configuration.params : ""}.`);
     if (keeping.length > 1) {
       const second = keeping[1].index, more = costOf(second).mean / costOf(best).mean;
       explain("Runner-up:", second, tied.includes(second) ? `, whose cost cannot be told from it; ` : `, at ${format(more)} times the cost; `, compareWorst(best, second) + ".");
