@@ -12,7 +12,7 @@
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
 #include "filters/base/split_list.h"
-#include "filters/front_matter.h"
+#include "filters/format/front_matter.h"
 #include "filters/kernel_width.h"
 
 namespace shadowbench::filters {

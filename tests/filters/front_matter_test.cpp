@@ -1,4 +1,4 @@
-#include "filters/front_matter.h"
+#include "filters/format/front_matter.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "filters/front_matter.h"
+#include "filters/format/front_matter.h"
 #include "harness/measure/filter_setup.h"
 
 namespace shadowbench::measure {

@@ -1,6 +1,6 @@
 // Whether the interval over phases covers what another place of the map's grid would have given.
 
-#include "filters/front_matter.h"
+#include "filters/format/front_matter.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/phases.h"
 #include "harness/measure/timing/empty_lookup.h"

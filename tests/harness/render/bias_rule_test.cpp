@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "filters/base/error.h"
-#include "filters/front_matter.h"
+#include "filters/format/front_matter.h"
 
 namespace shadowbench::render {
 namespace {

@@ -1,19 +1,19 @@
-#include "filters/front_matter.h"
+#include "filters/format/front_matter.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 
 #include "filters/base/error.h"
-#include "filters/base/nearest_name.h"
 #include "filters/base/toml_depth.h"
+#include "filters/format/front_matter_reader.h"
+#include "filters/format/glsl_words.h"
 #include "filters/store_format.h"
 
 namespace shadowbench::filters {
@@ -25,140 +25,7 @@ constexpr double kMostDiskPoints = 4096.0;
 
 int count_lines(std::string_view text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
-/// Walks the TOML of one front matter; lines in messages are lines of the whole file.
-class Reader {
- public:
-  Reader(std::string path, int first_line) : path_(std::move(path)), first_line_(first_line) {}
-
-  [[noreturn]] void fail(const toml::node* node, const std::string& message) const {
-    const int line = node ? static_cast<int>(node->source().begin.line) : 1;
-    throw Error(ErrorKind::kFilter, message, fmt::format("{}:{}", path_, first_line_ - 1 + std::max(line, 1)));
-  }
-
-  [[noreturn]] void fail_at(int toml_line, const std::string& message) const {
-    throw Error(ErrorKind::kFilter, message, fmt::format("{}:{}", path_, first_line_ - 1 + toml_line));
-  }
-
-  void check_keys(const toml::table& table, const std::vector<std::string>& known, const std::string& place) const {
-    for (const auto& [key, node] : table) {
-      const std::string name(key.str());
-      if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-      fail_at(static_cast<int>(key.source().begin.line),
-              fmt::format("unknown key '{}' in {}{}", name, place, did_you_mean_or_known(name, known)));
-    }
-  }
-
-  std::string text(const toml::table& table, const std::string& key, bool required) const {
-    const toml::node* node = table.get(key);
-    if (!node) {
-      if (required) fail(&table, fmt::format("the front matter lacks '{}', a text", key));
-      return {};
-    }
-    const auto value = node->value_exact<std::string>();
-    if (!value) fail(node, fmt::format("'{}' must be a text in quotes", key));
-    return *value;
-  }
-
-  bool flag(const toml::table& table, const std::string& key) const {
-    const toml::node* node = table.get(key);
-    if (!node) return false;
-    const auto value = node->value_exact<bool>();
-    if (!value) fail(node, fmt::format("'{}' must be true or false", key));
-    return *value;
-  }
-
-  std::optional<double> finite(const toml::table& table, const std::string& key) const {
-    const toml::node* node = table.get(key);
-    if (!node) return std::nullopt;
-    const auto value = node->is_number() ? node->value<double>() : std::nullopt;
-    if (!value || !std::isfinite(*value)) fail(node, fmt::format("'{}' must be a finite number", key));
-    return value;
-  }
-
-  /// A list of texts; one text counts as a list of one.
-  std::vector<std::string> texts(const toml::table& table, const std::string& key) const {
-    const toml::node* node = table.get(key);
-    if (!node) return {};
-    if (const auto one = node->value_exact<std::string>()) return {*one};
-    const toml::array* list = node->as_array();
-    if (!list) fail(node, fmt::format("'{}' must be a text or a list of texts", key));
-    std::vector<std::string> result;
-    for (const toml::node& item : *list) {
-      const auto value = item.value_exact<std::string>();
-      if (!value) fail(&item, fmt::format("'{}' must hold texts only", key));
-      result.push_back(*value);
-    }
-    return result;
-  }
-
-  ParamValue value(const toml::node& node, const std::string& what) const {
-    if (const auto flag_value = node.value_exact<bool>()) return *flag_value;
-    if (const auto text_value = node.value_exact<std::string>()) return *text_value;
-    if (node.is_number() && std::isfinite(*node.value<double>())) return *node.value<double>();
-    fail(&node, fmt::format("{} must be a finite number, a text, true or false", what));
-  }
-
- private:
-  std::string path_;
-  int first_line_;
-};
-
-std::string strip_comments(const std::string& glsl) {
-  std::string code;
-  for (std::size_t i = 0; i < glsl.size();) {
-    const bool line = glsl.compare(i, 2, "//") == 0;
-    const bool block = glsl.compare(i, 2, "/*") == 0;
-    if (!line && !block) {
-      code += glsl[i++];
-      continue;
-    }
-    const std::size_t end = line ? glsl.find('\n', i) : glsl.find("*/", i + 2);
-    code += ' ';
-    if (end == std::string::npos) break;
-    i = line ? end : end + 2;
-  }
-  return code;
-}
-
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-bool is_word_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; }
-
-/// The next place, from `start` on, where the word stands by itself. Regular expressions of the standard library are
-/// not used: they recurse, and a long file of a user would end the program.
-std::size_t find_word(std::string_view code, std::string_view word, std::size_t start) {
-  for (std::size_t at = code.find(word, start); at != std::string_view::npos; at = code.find(word, at + 1)) {
-    const std::size_t end = at + word.size();
-    const bool begins = at == 0 || !is_word_character(code[at - 1]);
-    if (begins && (end == code.size() || !is_word_character(code[end]))) return at;
-  }
-  return std::string_view::npos;
-}
-
-bool has_word(std::string_view code, std::string_view word) {
-  return find_word(code, word, 0) != std::string_view::npos;
-}
-
-/// Whether the code declares `type name(`.
-bool has_function(std::string_view code, std::string_view type, std::string_view name) {
-  constexpr std::string_view kBlank = " \t\r\n\v\f";
-  for (std::size_t at = find_word(code, name, 0); at != std::string_view::npos; at = find_word(code, name, at + 1)) {
-    const std::size_t after = code.find_first_not_of(kBlank, at + name.size());
-    const std::size_t before = at == 0 ? std::string_view::npos : code.find_last_not_of(kBlank, at - 1);
-    if (after == std::string_view::npos || code[after] != '(' || before == std::string_view::npos) continue;
-    const std::string_view left = code.substr(0, before + 1);
-    const bool is_whole = left.size() == type.size() ||
-                          (left.size() > type.size() && !is_word_character(left[left.size() - type.size() - 1]));
-    if (left.ends_with(type) && is_whole) return true;
-  }
-  return false;
-}
-
-bool is_identifier(const std::string& name) {
-  return !name.empty() && is_letter(name.front()) && std::ranges::all_of(name, is_word_character) &&
-         !name.starts_with("gl_") && name.find("__") == std::string::npos;
-}
-
-FilterKind read_kind(const Reader& reader, const toml::table& root) {
+FilterKind read_kind(const FrontMatterReader& reader, const toml::table& root) {
   const std::vector<FilterKind> kinds = {FilterKind::kComparison, FilterKind::kBound, FilterKind::kStochastic,
                                          FilterKind::kOther};
   const std::string name = reader.text(root, "kind", true);
@@ -183,7 +50,7 @@ Ends ends_of(const ParamSpec& param) {
   return ends;
 }
 
-void check_default(const Reader& reader, const toml::node& node, const ParamSpec& param) {
+void check_default(const FrontMatterReader& reader, const toml::node& node, const ParamSpec& param) {
   if (!param.choices.empty()) {
     for (const ParamValue& choice : param.choices)
       if (choice.index() != param.default_value.index())
@@ -208,7 +75,7 @@ void check_default(const Reader& reader, const toml::node& node, const ParamSpec
   }
 }
 
-ParamSpec read_param(const Reader& reader, const std::string& name, const toml::node& node) {
+ParamSpec read_param(const FrontMatterReader& reader, const std::string& name, const toml::node& node) {
   const toml::table* table = node.as_table();
   if (!table) reader.fail(&node, fmt::format("'param.{}' must be a table", name));
   if (!is_identifier(name)) reader.fail(&node, fmt::format("'{}' cannot be the name of a GLSL uniform", name));
@@ -234,7 +101,7 @@ ParamSpec read_param(const Reader& reader, const std::string& name, const toml::
 }
 
 /// `store`, `combine` and `sample` are parameters as well: the first value is the default.
-void add_list_param(const Reader& reader, const toml::table& root, FilterSpec& spec, const std::string& name,
+void add_list_param(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec, const std::string& name,
                     const std::vector<std::string>& known, const char* text) {
   const std::vector<std::string> values = reader.texts(root, name);
   for (const std::string& value : values) {
@@ -251,7 +118,7 @@ void add_list_param(const Reader& reader, const toml::table& root, FilterSpec& s
   spec.params.push_back(param);
 }
 
-void read_params(const Reader& reader, const toml::table& root, FilterSpec& spec) {
+void read_params(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
   const toml::node* node = root.get("param");
   if (!node) return;
   if (!node->as_table()) reader.fail(node, "'param' must hold tables: [param.NAME]");
@@ -263,7 +130,7 @@ void read_params(const Reader& reader, const toml::table& root, FilterSpec& spec
   for (const auto& [name, value] : found) spec.params.push_back(read_param(reader, name, *value));
 }
 
-std::variant<double, std::string> read_number_or_param(const Reader& reader, const toml::table& root,
+std::variant<double, std::string> read_number_or_param(const FrontMatterReader& reader, const toml::table& root,
                                                        const FilterSpec& spec, const std::string& key,
                                                        std::variant<double, std::string> fallback) {
   const toml::node* node = root.get(key);
@@ -280,7 +147,7 @@ std::variant<double, std::string> read_number_or_param(const Reader& reader, con
 }
 
 /// A filter that says how texels combine asks for the Gaussian prefilter; its radius is the kernel's.
-void read_prefilter(const Reader& reader, const toml::table& root, FilterSpec& spec) {
+void read_prefilter(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
   if (!root.contains("combine")) return;
   const auto* name = std::get_if<std::string>(&spec.radius_texels);
   const ParamSpec* param = name ? spec.find_param(*name) : nullptr;
@@ -298,7 +165,7 @@ void read_prefilter(const Reader& reader, const toml::table& root, FilterSpec& s
 }
 
 /// The numeric parameter that a key names; empty without the key.
-std::string read_param_name(const Reader& reader, const toml::table& root, const FilterSpec& spec,
+std::string read_param_name(const FrontMatterReader& reader, const toml::table& root, const FilterSpec& spec,
                             const std::string& key) {
   const std::string name = reader.text(root, key, false);
   const ParamSpec* param = spec.find_param(name);
@@ -308,7 +175,7 @@ std::string read_param_name(const Reader& reader, const toml::table& root, const
 }
 
 /// What the encoded map holds: `--stability` and warnings judge its numbers by that.
-void read_stored(const Reader& reader, const toml::table& root, FilterSpec& spec) {
+void read_stored(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
   spec.holds_moments = reader.flag(root, "moments");
   spec.exponent = read_param_name(reader, root, spec, "exponent");
   spec.variance_floor = read_param_name(reader, root, spec, "variance_floor");
@@ -324,7 +191,7 @@ void read_stored(const Reader& reader, const toml::table& root, FilterSpec& spec
   }
 }
 
-void read_disks(const Reader& reader, const toml::table& root, FilterSpec& spec) {
+void read_disks(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
   const toml::node* node = root.get("disk");
   if (!node) return;
   if (!node->as_table()) reader.fail(node, "'disk' must hold tables: [disk.NAME]");
@@ -355,7 +222,7 @@ void read_disks(const Reader& reader, const toml::table& root, FilterSpec& spec)
   }
 }
 
-void read_root(const Reader& reader, const toml::table& root, FilterSpec& spec) {
+void read_root(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
   reader.check_keys(root,
                     {"title", "source", "kind", "store", "combine", "sample", "claims", "radius_texels", "bias_texels",
                      "teaching", "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk"},
@@ -382,7 +249,7 @@ void read_root(const Reader& reader, const toml::table& root, FilterSpec& spec) 
   read_disks(reader, root, spec);
 }
 
-void inspect_body(const Reader& reader, const toml::table& root, FilterSpec& spec) {
+void inspect_body(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
   const std::string code = strip_comments(spec.body);
   spec.has_encode = has_function(code, "vec4", "encode");
   for (const char* sampler : {"map_depth", "map_compare", "map_compare_nearest", "map_stored"})
@@ -416,7 +283,7 @@ FilterSpec parse_filter(const std::string& text, const std::filesystem::path& pa
   spec.path = path.string();
   const std::size_t begin = open + kOpen.size();
   const int first_line = 1 + count_lines(std::string_view(text).substr(0, begin));
-  const Reader reader(spec.path, first_line);
+  const FrontMatterReader reader(spec.path, first_line);
   const std::string front_matter = text.substr(begin, close - begin);
   if (const int line = find_too_deep_key(front_matter); line > 0)
     reader.fail_at(line, fmt::format("a key has more than {} dots", kMostDots));

@@ -1,0 +1,81 @@
+#include "filters/format/front_matter_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/base/error.h"
+#include "filters/base/nearest_name.h"
+
+namespace shadowbench::filters {
+
+void FrontMatterReader::fail(const toml::node* node, const std::string& message) const {
+  const int line = node ? static_cast<int>(node->source().begin.line) : 1;
+  throw Error(ErrorKind::kFilter, message, fmt::format("{}:{}", path_, first_line_ - 1 + std::max(line, 1)));
+}
+
+void FrontMatterReader::fail_at(int toml_line, const std::string& message) const {
+  throw Error(ErrorKind::kFilter, message, fmt::format("{}:{}", path_, first_line_ - 1 + toml_line));
+}
+
+void FrontMatterReader::check_keys(const toml::table& table, const std::vector<std::string>& known,
+                                   const std::string& place) const {
+  for (const auto& [key, node] : table) {
+    const std::string name(key.str());
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    fail_at(static_cast<int>(key.source().begin.line),
+            fmt::format("unknown key '{}' in {}{}", name, place, did_you_mean_or_known(name, known)));
+  }
+}
+
+std::string FrontMatterReader::text(const toml::table& table, const std::string& key, bool required) const {
+  const toml::node* node = table.get(key);
+  if (!node) {
+    if (required) fail(&table, fmt::format("the front matter lacks '{}', a text", key));
+    return {};
+  }
+  const auto value = node->value_exact<std::string>();
+  if (!value) fail(node, fmt::format("'{}' must be a text in quotes", key));
+  return *value;
+}
+
+bool FrontMatterReader::flag(const toml::table& table, const std::string& key) const {
+  const toml::node* node = table.get(key);
+  if (!node) return false;
+  const auto value = node->value_exact<bool>();
+  if (!value) fail(node, fmt::format("'{}' must be true or false", key));
+  return *value;
+}
+
+std::optional<double> FrontMatterReader::finite(const toml::table& table, const std::string& key) const {
+  const toml::node* node = table.get(key);
+  if (!node) return std::nullopt;
+  const auto value = node->is_number() ? node->value<double>() : std::nullopt;
+  if (!value || !std::isfinite(*value)) fail(node, fmt::format("'{}' must be a finite number", key));
+  return value;
+}
+
+std::vector<std::string> FrontMatterReader::texts(const toml::table& table, const std::string& key) const {
+  const toml::node* node = table.get(key);
+  if (!node) return {};
+  if (const auto one = node->value_exact<std::string>()) return {*one};
+  const toml::array* list = node->as_array();
+  if (!list) fail(node, fmt::format("'{}' must be a text or a list of texts", key));
+  std::vector<std::string> result;
+  for (const toml::node& item : *list) {
+    const auto value = item.value_exact<std::string>();
+    if (!value) fail(&item, fmt::format("'{}' must hold texts only", key));
+    result.push_back(*value);
+  }
+  return result;
+}
+
+ParamValue FrontMatterReader::value(const toml::node& node, const std::string& what) const {
+  if (const auto flag_value = node.value_exact<bool>()) return *flag_value;
+  if (const auto text_value = node.value_exact<std::string>()) return *text_value;
+  if (node.is_number() && std::isfinite(*node.value<double>())) return *node.value<double>();
+  fail(&node, fmt::format("{} must be a finite number, a text, true or false", what));
+}
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,64 @@
+#include "filters/format/glsl_words.h"
+
+#include <algorithm>
+
+namespace shadowbench::filters {
+namespace {
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_word_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; }
+
+/// The next place, from `start` on, where the word stands by itself.
+std::size_t find_word(std::string_view code, std::string_view word, std::size_t start) {
+  for (std::size_t at = code.find(word, start); at != std::string_view::npos; at = code.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    const bool begins = at == 0 || !is_word_character(code[at - 1]);
+    if (begins && (end == code.size() || !is_word_character(code[end]))) return at;
+  }
+  return std::string_view::npos;
+}
+
+}  // namespace
+
+std::string strip_comments(const std::string& glsl) {
+  std::string code;
+  for (std::size_t i = 0; i < glsl.size();) {
+    const bool line = glsl.compare(i, 2, "//") == 0;
+    const bool block = glsl.compare(i, 2, "/*") == 0;
+    if (!line && !block) {
+      code += glsl[i++];
+      continue;
+    }
+    const std::size_t end = line ? glsl.find('\n', i) : glsl.find("*/", i + 2);
+    code += ' ';
+    if (end == std::string::npos) break;
+    i = line ? end : end + 2;
+  }
+  return code;
+}
+
+bool has_word(std::string_view code, std::string_view word) {
+  return find_word(code, word, 0) != std::string_view::npos;
+}
+
+/// Whether the code declares `type name(`.
+bool has_function(std::string_view code, std::string_view type, std::string_view name) {
+  constexpr std::string_view kBlank = " \t\r\n\v\f";
+  for (std::size_t at = find_word(code, name, 0); at != std::string_view::npos; at = find_word(code, name, at + 1)) {
+    const std::size_t after = code.find_first_not_of(kBlank, at + name.size());
+    const std::size_t before = at == 0 ? std::string_view::npos : code.find_last_not_of(kBlank, at - 1);
+    if (after == std::string_view::npos || code[after] != '(' || before == std::string_view::npos) continue;
+    const std::string_view left = code.substr(0, before + 1);
+    const bool is_whole = left.size() == type.size() ||
+                          (left.size() > type.size() && !is_word_character(left[left.size() - type.size() - 1]));
+    if (left.ends_with(type) && is_whole) return true;
+  }
+  return false;
+}
+
+bool is_identifier(const std::string& name) {
+  return !name.empty() && is_letter(name.front()) && std::ranges::all_of(name, is_word_character) &&
+         !name.starts_with("gl_") && name.find("__") == std::string::npos;
+}
+
+}  // namespace shadowbench::filters
