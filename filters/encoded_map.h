@@ -52,6 +52,8 @@ class EncodedMap {
                                  is_nearest(values) ? Reconstruction::kNearest : Reconstruction::kBilinear);
   }
 
+  const Texel& at(int x, int y) const { return texel(x, y); }
+
   Texel fetch(const Receiver& r, Tally& tally) const {
     if (nearest_) {
       const int x = grid_.nearest(grid_.position(r.uv.x, 0), tally);

@@ -40,6 +40,24 @@ struct DiskTable {
   unsigned seed = 1;
 };
 
+/// What a pass of a filter's own is drawn for: once; along u and then along v; for the strides 1, 4, 16, ... of prefix
+/// sums, along u and then along v; or for every mip level.
+enum class PassSteps { kOnce, kAxes, kPrefix, kLevels };
+
+/// A pass of a filter's own, between the encoded map and the lookup. Its map and the GLSL function that writes it have
+/// one name.
+struct PassSpec {
+  std::string name;
+  std::string store;  ///< format, one of pass_formats()
+  PassSteps steps = PassSteps::kOnce;
+  bool half = false;   ///< has half the depth map's texels along each axis
+  int anisotropy = 1;  ///< how much longer than wide a footprint may be that fetch_NAME_grad averages over
+  int line = 1;        ///< of the filter's file
+
+  bool is_integer() const { return store.ends_with("ui"); }
+  const char* texel_type() const { return is_integer() ? "uvec4" : "vec4"; }
+};
+
 /// Everything the front matter of `<id>.glsl` says, and the GLSL that follows it.
 struct FilterSpec {
   std::string id;    ///< file stem
@@ -53,6 +71,7 @@ struct FilterSpec {
   std::variant<double, std::string> bias_texels = 0.0;    ///< half-width over which one depth stands for the receiver
   std::vector<ParamSpec> params;                          ///< `store`, `combine` and `sample` lists included
   std::vector<DiskTable> disks;
+  std::vector<PassSpec> passes;  ///< in the order in which they run
   std::string body;              ///< GLSL after the front matter
   int body_first_line = 1;       ///< line of the file at which `body` begins
   bool has_encode = false;       ///< stores something else than depth

@@ -10,6 +10,21 @@ constexpr double kLargestHalf = 65504.0;
 
 }  // namespace
 
+const std::vector<std::string>& encode_formats() {
+  static const std::vector<std::string> formats = {"r16f",    "r32f", "rg16f", "rg32f", "rgba16f",
+                                                   "rgba32f", "r16",  "rg16",  "rgba16"};
+  return formats;
+}
+
+const std::vector<std::string>& pass_formats() {
+  static const std::vector<std::string> formats = [] {
+    std::vector<std::string> all = encode_formats();
+    for (const char* integer : {"r32ui", "rg32ui", "rgba32ui"}) all.emplace_back(integer);
+    return all;
+  }();
+  return formats;
+}
+
 StorePrecision store_precision(const std::string& format) {
   if (format.ends_with("32f")) return StorePrecision::kSingle;
   return format.ends_with("16f") ? StorePrecision::kHalf : StorePrecision::kUnorm16;
@@ -21,7 +36,7 @@ int store_channels(const std::string& format) {
 }
 
 int store_bytes(const std::string& format) {
-  return store_channels(format) * (store_precision(format) == StorePrecision::kSingle ? 4 : 2);
+  return store_channels(format) * (format.find("32") != std::string::npos ? 4 : 2);
 }
 
 double largest_number(StorePrecision precision) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "filters/tracked.h"
 
@@ -11,6 +12,12 @@ enum class StorePrecision { kSingle, kHalf, kUnorm16 };
 
 /// Reads the precision from a format's name, such as "rg16f".
 StorePrecision store_precision(const std::string& format);
+
+/// The formats that a pass of a filter's own may write; those with `ui` hold whole numbers of 32 bits.
+const std::vector<std::string>& pass_formats();
+
+/// The formats that encode() may write.
+const std::vector<std::string>& encode_formats();
 
 /// The channels of a format's name, 1, 2 or 4.
 int store_channels(const std::string& format);

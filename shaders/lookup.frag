@@ -3,6 +3,7 @@
 #include "lib/map_access.glsl"
 #include "lib/random.glsl"
 #include "lib/encode_input.glsl"
+#include "lib/pass_input.glsl"
 #include "filter_parameters"
 #include "filter"
 

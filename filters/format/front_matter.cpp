@@ -14,6 +14,7 @@
 #include "filters/base/toml_depth.h"
 #include "filters/format/front_matter_reader.h"
 #include "filters/format/glsl_words.h"
+#include "filters/format/passes.h"
 #include "filters/store_format.h"
 
 namespace shadowbench::filters {
@@ -122,12 +123,8 @@ void read_params(const FrontMatterReader& reader, const toml::table& root, Filte
   const toml::node* node = root.get("param");
   if (!node) return;
   if (!node->as_table()) reader.fail(node, "'param' must hold tables: [param.NAME]");
-  std::vector<std::pair<std::string, const toml::node*>> found;
-  for (const auto& [key, value] : *node->as_table()) found.emplace_back(std::string(key.str()), &value);
-  // TOML tables are sorted by name; the author's order is the one people should read.
-  std::sort(found.begin(), found.end(),
-            [](const auto& a, const auto& b) { return a.second->source().begin.line < b.second->source().begin.line; });
-  for (const auto& [name, value] : found) spec.params.push_back(read_param(reader, name, *value));
+  for (const auto& [name, value] : in_order_of_file(*node->as_table()))
+    spec.params.push_back(read_param(reader, name, *value));
 }
 
 std::variant<double, std::string> read_number_or_param(const FrontMatterReader& reader, const toml::table& root,
@@ -225,7 +222,7 @@ void read_disks(const FrontMatterReader& reader, const toml::table& root, Filter
 void read_root(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
   reader.check_keys(root,
                     {"title", "source", "kind", "store", "combine", "sample", "claims", "radius_texels", "bias_texels",
-                     "teaching", "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk"},
+                     "teaching", "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk", "pass"},
                     "the front matter");
   spec.title = reader.text(root, "title", true);
   spec.source = reader.text(root, "source", true);
@@ -233,9 +230,7 @@ void read_root(const FrontMatterReader& reader, const toml::table& root, FilterS
   spec.claims = reader.texts(root, "claims");
   spec.teaching = reader.flag(root, "teaching");
   read_params(reader, root, spec);
-  add_list_param(reader, root, spec, "store",
-                 {"r16f", "r32f", "rg16f", "rg32f", "rgba16f", "rgba32f", "r16", "rg16", "rgba16"},
-                 "format of the encoded map");
+  add_list_param(reader, root, spec, "store", encode_formats(), "format of the encoded map");
   add_list_param(reader, root, spec, "combine", {"linear", "log"},
                  "how the prefilter adds texels; log: log-sum-exp, read with the nearest texel");
   add_list_param(reader, root, spec, "sample", {"linear", "nearest"}, "how the encoded map is read");
@@ -251,9 +246,12 @@ void read_root(const FrontMatterReader& reader, const toml::table& root, FilterS
 
 void inspect_body(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
   const std::string code = strip_comments(spec.body);
+  read_passes(reader, root, code, spec);
   spec.has_encode = has_function(code, "vec4", "encode");
   for (const char* sampler : {"map_depth", "map_compare", "map_compare_nearest", "map_stored"})
     spec.uses_samplers = spec.uses_samplers || has_word(code, sampler);
+  for (const PassSpec& pass : spec.passes)
+    spec.uses_samplers = spec.uses_samplers || has_word(code, "map_" + pass.name);
   spec.reads_unwritten = !spec.has_encode && (has_word(code, "fetch_map") || has_word(code, "map_stored"));
   if (!has_function(code, "float", "visibility")) reader.fail(nullptr, "the GLSL lacks 'float visibility(Receiver r)'");
   const bool stores = root.contains("store");

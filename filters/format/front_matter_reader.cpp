@@ -10,9 +10,13 @@
 
 namespace shadowbench::filters {
 
-void FrontMatterReader::fail(const toml::node* node, const std::string& message) const {
+int FrontMatterReader::line_of(const toml::node* node) const {
   const int line = node ? static_cast<int>(node->source().begin.line) : 1;
-  throw Error(ErrorKind::kFilter, message, fmt::format("{}:{}", path_, first_line_ - 1 + std::max(line, 1)));
+  return first_line_ - 1 + std::max(line, 1);
+}
+
+void FrontMatterReader::fail(const toml::node* node, const std::string& message) const {
+  throw Error(ErrorKind::kFilter, message, fmt::format("{}:{}", path_, line_of(node)));
 }
 
 void FrontMatterReader::fail_at(int toml_line, const std::string& message) const {
@@ -76,6 +80,13 @@ ParamValue FrontMatterReader::value(const toml::node& node, const std::string& w
   if (const auto text_value = node.value_exact<std::string>()) return *text_value;
   if (node.is_number() && std::isfinite(*node.value<double>())) return *node.value<double>();
   fail(&node, fmt::format("{} must be a finite number, a text, true or false", what));
+}
+
+std::vector<std::pair<std::string, const toml::node*>> in_order_of_file(const toml::table& tables) {
+  std::vector<std::pair<std::string, const toml::node*>> found;
+  for (const auto& [key, value] : tables) found.emplace_back(std::string(key.str()), &value);
+  std::ranges::sort(found, {}, [](const auto& each) { return each.second->source().begin.line; });
+  return found;
 }
 
 }  // namespace shadowbench::filters

@@ -4,6 +4,8 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "filters/filter_spec.h"
@@ -15,6 +17,9 @@ namespace shadowbench::filters {
 class FrontMatterReader {
  public:
   FrontMatterReader(std::string path, int first_line) : path_(std::move(path)), first_line_(first_line) {}
+
+  /// The line of the whole file at which a node begins.
+  int line_of(const toml::node* node) const;
 
   [[noreturn]] void fail(const toml::node* node, const std::string& message) const;
   [[noreturn]] void fail_at(int toml_line, const std::string& message) const;
@@ -36,5 +41,9 @@ class FrontMatterReader {
   std::string path_;
   int first_line_;
 };
+
+/// The tables of a table in the order of the file: TOML sorts them by name, and the author's order is the one that
+/// people read.
+std::vector<std::pair<std::string, const toml::node*>> in_order_of_file(const toml::table& tables);
 
 }  // namespace shadowbench::filters

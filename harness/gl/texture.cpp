@@ -58,6 +58,12 @@ void Texture::set_wrap(GLenum mode) {
 
 void Texture::set_border(const glm::vec4& color) { glTextureParameterfv(id(), GL_TEXTURE_BORDER_COLOR, &color[0]); }
 
+void Texture::set_anisotropy(int ratio) {
+  glTextureParameterf(id(), GL_TEXTURE_MAX_ANISOTROPY, static_cast<float>(ratio));
+}
+
+void Texture::set_last_level(int level) { glTextureParameteri(id(), GL_TEXTURE_MAX_LEVEL, level); }
+
 void Texture::set_compare(GLenum function) {
   const bool on = function != GL_NONE;
   glTextureParameteri(id(), GL_TEXTURE_COMPARE_MODE, on ? GL_COMPARE_REF_TO_TEXTURE : GL_NONE);

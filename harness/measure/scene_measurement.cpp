@@ -141,7 +141,7 @@ class SceneBench {
   static void count_passes(SceneMeasurement& result, const render::FilterPasses& filter) {
     const int prefilter = filter.prefilter_passes();
     result.passes_run += 1 + prefilter;
-    result.passes_skipped += 3 - prefilter;
+    result.passes_skipped += std::max(0, 3 - prefilter);
   }
 
   void time(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {

@@ -19,6 +19,9 @@ std::int64_t count_texel_bytes(const RunOptions& options) {
   std::set<std::string> formats;
   for (const filters::FilterRequest& request : options.filters)
     if (request.spec.has_encode) formats.insert(filters::text_or(request.values, "store", ""));
+  for (const filters::FilterRequest& request : options.filters)
+    for (const filters::PassSpec& pass : request.spec.passes)
+      bytes += std::max<std::int64_t>(1, filters::store_bytes(pass.store) / (pass.half ? 4 : 1));
   for (const std::string& format : formats) bytes += filters::store_bytes(format);
   return bytes;
 }

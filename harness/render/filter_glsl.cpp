@@ -7,6 +7,7 @@
 
 #include "filters/disk_points.h"
 #include "filters/store_format.h"
+#include "harness/render/map_passes.h"
 
 namespace shadowbench::render {
 namespace {
@@ -74,6 +75,7 @@ std::vector<gl::Piece> filter_pieces(const FilterRequest& request) {
         filters::largest_number(filters::store_precision(filters::text_or(request.values, "store", "")));
     parameters.text += fmt::format("const float store_largest = {};\n", literal(static_cast<float>(largest)));
   }
+  parameters.text += declare_pass_maps(request.spec);
   for (const filters::DiskTable& disk : request.spec.disks) parameters.text += declare_disk(request, disk);
   return {parameters, {"filter", request.spec.body, request.spec.path, request.spec.body_first_line}};
 }

@@ -37,6 +37,9 @@ FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest&
       map_defines_(map_defines(request, map.settings())),
       lookup_(compile_lookup(shaders, {})) {
   if (request.spec.has_encode) prefilter_.emplace(shaders, request, map_size_, light, map_defines_);
+  if (request.spec.passes.empty()) return;
+  own_.emplace(shaders, request, map_size_, light, map_defines_);
+  if (prefilter_) own_->check_encode(prefilter_->encode_program());
 }
 
 gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, Defines defines) const {
@@ -61,6 +64,7 @@ void FilterPasses::retune(ShaderLibrary& shaders, const filters::ParamValues& va
   light_ = light;
   set_uniforms(lookup_);
   if (prefilter_) prefilter_->retune(shaders, request_, light_);
+  if (own_) own_->retune(request_, light_);
 }
 
 std::shared_ptr<ImageTarget> FilterPasses::make_encoded_target() const {
@@ -69,17 +73,20 @@ std::shared_ptr<ImageTarget> FilterPasses::make_encoded_target() const {
 }
 
 PreparedLight FilterPasses::prepare(const LightSetup& light, std::shared_ptr<ImageTarget> encoded) {
-  return {light, prefilter_ ? prefilter_->find_border(light) : glm::vec4(0.0f), std::move(encoded)};
+  return {light, prefilter_ ? prefilter_->find_border(light) : glm::vec4(0.0f), std::move(encoded),
+          own_ ? own_->make_maps() : nullptr};
 }
 
 void FilterPasses::turn_to(const PreparedLight& light) {
   light_ = light.light;
   set_light(lookup_, light_);
   if (prefilter_) prefilter_->turn_to(light_, light.border, light.encoded);
+  if (own_) own_->turn_to(light_, light.maps);
 }
 
 void FilterPasses::prefilter(const ShadowMap& map) {
   if (prefilter_) prefilter_->run(map);
+  if (own_) own_->run(map, encoded_map());
 }
 
 void FilterPasses::draw_lookup(gl::Program& program, const GBuffer& gbuffer, const ReceiverBuffer& receivers,
@@ -88,6 +95,7 @@ void FilterPasses::draw_lookup(gl::Program& program, const GBuffer& gbuffer, con
   receivers.bind();
   map.bind();
   if (prefilter_) prefilter_->bind();
+  if (own_) own_->bind();
   program.use();
   triangle_.draw();
 }
@@ -101,7 +109,7 @@ void FilterPasses::lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTar
 ReceiverReads FilterPasses::receiver_reads() const {
   static const std::regex kUsesPlace(
       "\\b(uv|depth|depth_unbiased|compare_nearest|compare_2x2|fetch_depth|gather_compare|"
-      "gather_depth|fetch_map|texture)\\b");
+      "gather_depth|fetch_\\w+|load_\\w+|texture)\\b");
   return {std::regex_search(request_.spec.body, kUsesPlace), lookup_.has("receiver_planes"),
           lookup_.has("gbuffer_position"), lookup_.has("gbuffer_normal")};
 }
@@ -130,13 +138,22 @@ void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const
   if (reach >= 0.0) cost.reach_texels = reach;
 }
 
+/// Of a filter without passes of its own the map that it stores counts, or else the depth map; of others what the
+/// lookup reads.
+std::int64_t FilterPasses::count_map_bytes(const ShadowMap& map) const {
+  if (!own_) return prefilter_ ? prefilter_->bytes() : map.bytes();
+  const bool reads_depth = lookup_.has("map_depth") || lookup_.has("map_compare") || lookup_.has("map_compare_nearest");
+  return own_->bytes(lookup_) + (prefilter_ && lookup_.has("map_stored") ? prefilter_->bytes() : 0) +
+         (reads_depth ? map.bytes() : 0);
+}
+
 FilterCost FilterPasses::measure_cost(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map) {
   FilterCost cost;
   if (!request_.spec.uses_samplers) count_fetches(cost, shaders, gbuffer, map);
-  cost.map_bytes = prefilter_ ? prefilter_->bytes() : map.bytes();
+  cost.map_bytes = count_map_bytes(map);
   cost.bytes_per_texel = cost.map_bytes / (static_cast<std::int64_t>(map_size_) * map_size_);
   cost.passes = 2 + prefilter_passes();
-  cost.prefilter_texels = prefilter_ ? prefilter_->texels_written() : 0;
+  cost.prefilter_texels = (prefilter_ ? prefilter_->texels_written() : 0) + (own_ ? own_->texels_written() : 0);
   return cost;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "harness/render/gbuffer.h"
+#include "harness/render/map_passes.h"
 #include "harness/render/prefilter.h"
 
 namespace shadowbench::render {
@@ -16,10 +17,10 @@ struct FilterCost {
   /// From a receiver to the centre of the farthest texel that counts, on either axis, the prefilter included; empty:
   /// the filter reads samplers itself, or the map reaches no receiver.
   std::optional<double> reach_texels;
-  std::int64_t bytes_per_texel = 0;   ///< of the map that the lookup reads
-  std::int64_t passes = 0;            ///< depth map, encode, blur, lookup
-  std::int64_t map_bytes = 0;         ///< of the map that the lookup reads
-  std::int64_t prefilter_texels = 0;  ///< texels that encode and blur write
+  std::int64_t bytes_per_texel = 0;   ///< of the maps that the lookup reads
+  std::int64_t passes = 0;            ///< depth map, encode, blur, the filter's own, lookup
+  std::int64_t map_bytes = 0;         ///< of the maps that the lookup reads
+  std::int64_t prefilter_texels = 0;  ///< texels that encode, blur and the filter's own passes write
 };
 
 /// What a lookup reads of its receivers; the compiler drops what no filter uses.
@@ -37,6 +38,7 @@ struct PreparedLight {
   LightSetup light;
   glm::vec4 border{0.0f};                ///< of the encoded map
   std::shared_ptr<ImageTarget> encoded;  ///< the encoded map; null for filters that read depth
+  std::shared_ptr<PassMaps> maps;        ///< of the filter's own passes; null where it has none
 };
 
 /// One filter, with its parameters, over one G-buffer and one shadow map.
@@ -70,10 +72,12 @@ class FilterPasses {
   /// A target for prepare(); null for filters that read depth.
   std::shared_ptr<ImageTarget> make_encoded_target() const;
 
-  bool has_prefilter() const { return prefilter_.has_value(); }
-  int prefilter_passes() const { return prefilter_ ? prefilter_->passes() : 0; }  ///< encode and blur
+  bool has_prefilter() const { return prefilter_ || own_; }
 
-  /// Encodes and blurs the map; does nothing for filters that read depth.
+  /// Encode, blur, and the steps of the filter's own passes.
+  int prefilter_passes() const { return (prefilter_ ? prefilter_->passes() : 0) + (own_ ? own_->passes() : 0); }
+
+  /// Encodes and blurs the map, and runs the filter's own passes; does nothing for filters that read depth.
   void prefilter(const ShadowMap& map);
 
   /// What encodes and blurs; null for filters that read depth.
@@ -99,9 +103,11 @@ class FilterPasses {
   int map_size_;
   Defines map_defines_;
   std::optional<Prefilter> prefilter_;
+  std::optional<MapPasses> own_;
   gl::Program lookup_;
   gl::FullscreenTriangle triangle_;
 
+  std::int64_t count_map_bytes(const ShadowMap& map) const;
   void set_uniforms(gl::Program& lookup) const;
   gl::Program compile_lookup(ShaderLibrary& shaders, Defines defines) const;
   void draw_lookup(gl::Program& program, const GBuffer& gbuffer, const ReceiverBuffer& receivers, const ShadowMap& map);

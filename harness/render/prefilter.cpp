@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <map>
-
 #include "filters/gaussian.h"
 #include "harness/render/filter_glsl.h"
 
@@ -13,10 +11,7 @@ namespace {
 constexpr GLuint kStoredUnit = 3;  // of lib/map_access.glsl
 
 GLenum store_format(const filters::ParamValues& values) {
-  static const std::map<std::string, GLenum> formats = {
-      {"r16f", GL_R16F},       {"r32f", GL_R32F}, {"rg16f", GL_RG16F}, {"rg32f", GL_RG32F},  {"rgba16f", GL_RGBA16F},
-      {"rgba32f", GL_RGBA32F}, {"r16", GL_R16},   {"rg16", GL_RG16},   {"rgba16", GL_RGBA16}};
-  return formats.at(filters::text_or(values, "store", ""));
+  return gl::parse_pixel_format(filters::text_or(values, "store", "")).internal_format;
 }
 
 /// The kernel, one call of the macro `tap` per texel: "tap(-1.0, 0.25) tap(0.0, 0.5) tap(1.0, 0.25)".

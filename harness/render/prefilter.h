@@ -51,6 +51,8 @@ class Prefilter {
   /// Encodes a map again and reads it back before any blur; the result stays as it is.
   EncodedTexels read_before_blur(const ShadowMap& map);
 
+  const gl::Program& encode_program() const { return encode_; }
+
   int blur_radius_texels() const { return radius_; }
 
   /// What the blur reads outside the map, where that is not the map itself.

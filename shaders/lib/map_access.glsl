@@ -20,9 +20,12 @@ void count_fetch(vec2 uv, vec2 offset_texels, float to_centre_texels) {
 #define COUNT_FETCH(r, offset_texels, to_centre_texels) count_fetch(r.uv, offset_texels, to_centre_texels)
 #define COUNT_GATHER(r, offset_texels) \
   count_fetch(r.uv, floor(r.uv / map_texel_uv + offset_texels - 0.5) + 1.0 - r.uv / map_texel_uv, 0.5)
+#define COUNT_LOAD(place_texels, to_centre_texels) \
+  count_fetch(vec2(0.0), place_texels, to_centre_texels)
 #else
 #define COUNT_FETCH(r, offset_texels, to_centre_texels)
 #define COUNT_GATHER(r, offset_texels)
+#define COUNT_LOAD(place_texels, to_centre_texels)
 #endif
 
 #ifdef RECEIVER_PLANE
@@ -90,4 +93,16 @@ vec4 gather_depth(Receiver r, vec2 offset_texels) {
 vec4 fetch_map(Receiver r, vec2 offset_texels) {
   COUNT_FETCH(r, offset_texels, STORED_REACH_TEXELS);
   return texture(map_stored, r.uv + offset_texels * map_texel_uv);
+}
+
+// A texel of the depth map, linear in [0,1], and one of the encoded map; (0, 0) is the lower left, and outside the map
+// its edge is repeated. For passes.
+float load_depth(ivec2 texel) {
+  COUNT_LOAD(vec2(texel) + 0.5, 0.0);
+  return linear_depth(texelFetch(map_depth, clamp(texel, ivec2(0), textureSize(map_depth, 0) - 1), 0).r);
+}
+
+vec4 load_map(ivec2 texel) {
+  COUNT_LOAD(vec2(texel) + 0.5, STORED_REACH_TEXELS - 1.0);
+  return texelFetch(map_stored, clamp(texel, ivec2(0), textureSize(map_stored, 0) - 1), 0);
 }

@@ -211,5 +211,39 @@ TEST(FrontMatter, DisksOfTooManyPoints_AreRefused) {
   expect_error(with_disk("min = 1\nmax = 64\n", "1e10"), "dir/mine.glsl:14", "'seed'");
 }
 
+TEST(FrontMatter, PassesAreReadInTheirOrder) {
+  const FilterSpec spec = parse_filter(
+      with(
+          "[pass.later]\nstore = \"rg32ui\"\nsteps = \"prefix\"\n[pass.earlier]\nstore = \"r16f\"\nsteps = \"levels\"\n"
+          "size = \"half\"\nanisotropy = 8\n",
+          "uvec4 later(PassInput p) { return uvec4(0); }\nvec4 earlier(PassInput p) { return vec4(0); }\n"
+          "float visibility(Receiver r) { return 1.0; }\n"),
+      "mine.glsl");
+  ASSERT_EQ(spec.passes.size(), 2u);
+  EXPECT_EQ(spec.passes[0].name, "later");
+  EXPECT_TRUE(spec.passes[0].is_integer());
+  EXPECT_EQ(spec.passes[0].steps, PassSteps::kPrefix);
+  EXPECT_EQ(spec.passes[0].line, 6);
+  EXPECT_EQ(spec.passes[1].name, "earlier");
+  EXPECT_TRUE(spec.passes[1].half);
+  EXPECT_EQ(spec.passes[1].anisotropy, 8);
+}
+
+TEST(FrontMatter, BadPassesAreRefused) {
+  expect_error(with("pass = 1\n"), "dir/mine.glsl:6", "'pass' must hold tables");
+  expect_error(with("[pass.p]\nstore = \"rgb9\"\n"), "dir/mine.glsl:7", "store 'rgb9' is unknown; known: r16f");
+  expect_error(with("[pass.p]\nsteps = \"once\"\n"), "dir/mine.glsl:6", "lacks 'store'");
+  expect_error(with("[pass.p]\nstore = \"r32f\"\nsteps = \"twice\"\n"), "dir/mine.glsl:8",
+               "known: once, axes, prefix, levels");
+  expect_error(with("[pass.p]\nstore = \"r32f\"\nsize = \"third\"\n"), "dir/mine.glsl:8", "known: full, half");
+  expect_error(with("[pass.p]\nstore = \"r32f\"\nstep = \"once\"\n"), "dir/mine.glsl:8", "unknown key 'step'");
+  expect_error(with("[pass.map]\nstore = \"r32f\"\n"), "dir/mine.glsl:6", "cannot be the name of a pass");
+  expect_error(with("[pass.p]\nstore = \"r32f\"\n"), "dir/mine.glsl:6", "lacks 'vec4 p(PassInput p)'");
+  expect_error(with("[pass.p]\nstore = \"r32ui\"\n",
+                    "vec4 p(PassInput p) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n"),
+               "dir/mine.glsl:6", "lacks 'uvec4 p(PassInput p)'");
+  expect_error(with("[pass.p]\nstore = \"r32f\"\nanisotropy = 4\n"), "dir/mine.glsl:8", "needs steps = \"levels\"");
+}
+
 }  // namespace
 }  // namespace shadowbench::filters

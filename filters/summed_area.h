@@ -1,0 +1,119 @@
+#pragma once
+
+#include "filters/encoded_map.h"
+#include "filters/model_impl.h"
+
+namespace shadowbench::filters {
+
+/// Means of two moments over boxes of texels, as shaders/lib/summed_area.glsl makes them from its summed-area table;
+/// `side` is the longest side of a box in texels. Whole numbers are added in single precision alone: elsewhere the
+/// moments are as encode() gives them, and tracked precision knows by how much the steps move them.
+template <class T>
+class SummedMoments {
+  using P = Position<T>;
+
+ public:
+  using Moments = std::array<T, 2>;
+
+  template <class Encode>
+  SummedMoments(const ModelInput& input, int side, Encode encode)
+      : size_(input.map.size), steps_(find_steps(side)), table_(static_cast<std::size_t>(size_ * size_)) {
+    const EncodedMap<T, 2> map(input, 0, encode);
+    for (int y = 0; y < size_; ++y)
+      for (int x = 0; x < size_; ++x) table_[index(x, y)] = add(map.at(x, y), x, y);
+  }
+
+  P size() const { return static_cast<P>(size_); }
+
+  /// The moments of a box between two corners, in texels from the map's lower left.
+  Moments mean(const Offset<T>& low, const Offset<T>& high) const {
+    Moments moments = mean_of<T>(low, high);
+    if constexpr (std::is_same_v<T, Tracked>) {
+      for (int edge = 0; edge < 8; ++edge) {
+        const Moments moved = move_edge(low, high, edge);
+        for (std::size_t c = 0; c < 2; ++c) moments[c].bound += 0.5 * std::abs(moved[c].value - moments[c].value);
+      }
+    }
+    return moments;
+  }
+
+ private:
+  struct Sums {
+    std::array<double, 2> values{};
+    std::array<double, 2> bounds{};  ///< of single precision
+  };
+
+  int size_;
+  P steps_;
+  std::vector<Sums> table_;
+
+  static P find_steps(int side) { return std::min(P(16777216), std::floor(P(4e9) / static_cast<P>(side * side))); }
+
+  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y * size_ + x); }
+
+  Sums add(const std::array<T, 2>& moments, int x, int y) const {
+    const Sums &left = at(x - 1, y), &below = at(x, y - 1), &both = at(x - 1, y - 1);
+    Sums sums;
+    for (std::size_t c = 0; c < 2; ++c) {
+      double value = std::clamp(value_of(moments[c]), 0.0, 1.0);
+      if constexpr (std::is_same_v<T, float>)
+        value = static_cast<double>(std::floor(static_cast<float>(value) * steps_ + 0.5f) / steps_);
+      sums.values[c] = value + left.values[c] + below.values[c] - both.values[c];
+      const double rounding = bound_of(moments[c]) + 1.0 / static_cast<double>(steps_);
+      sums.bounds[c] = rounding + left.bounds[c] + below.bounds[c] - both.bounds[c];
+    }
+    return sums;
+  }
+
+  /// The sums of all texels up to this one; 0 below and left of the map.
+  const Sums& at(int x, int y) const {
+    static const Sums none;
+    if (x < 0 || y < 0) return none;
+    return table_[index(std::min(x, size_ - 1), std::min(y, size_ - 1))];
+  }
+
+  /// Sums of whole texels with both ends, and what of them lies outside the map, where depth is 1.
+  std::array<T, 2> window(glm::ivec2 from, glm::ivec2 to) const {
+    const Sums &all = at(to.x, to.y), &left = at(from.x, to.y), &below = at(to.x, from.y), &both = at(from.x, from.y);
+    const glm::ivec2 inside = glm::clamp(to, -1, size_ - 1) - glm::clamp(from, -1, size_ - 1);
+    const int outside = (to.x - from.x) * (to.y - from.y) - inside.x * inside.y;
+    std::array<T, 2> sum;
+    for (std::size_t c = 0; c < 2; ++c) {
+      const double value = all.values[c] - left.values[c] - below.values[c] + both.values[c];
+      const double bound = all.bounds[c] - left.bounds[c] - below.bounds[c] + both.bounds[c];
+      sum[c] = make_uncertain<T>(static_cast<P>(value), std::max(bound, 0.0)) + T(static_cast<P>(outside));
+    }
+    return sum;
+  }
+
+  template <class N>
+  std::array<N, 2> mean_of(const Offset<T>& low, const Offset<T>& high) const {
+    const auto split = [](P at) { return std::pair(static_cast<int>(std::floor(at)) - 1, at - std::floor(at)); };
+    const auto [left, left_part] = split(low.x);
+    const auto [bottom, bottom_part] = split(low.y);
+    const auto [right, right_part] = split(high.x);
+    const auto [top, top_part] = split(high.y);
+    const auto part = [](P fraction, int i) { return i == 0 ? P(1) - fraction : fraction; };
+    std::array<N, 2> moments{};
+    N area{};
+    for (int i = 0; i < 16; ++i) {
+      const glm::ivec2 from(left + (i & 1), bottom + (i >> 2 & 1)), to(right + (i >> 1 & 1), top + (i >> 3));
+      const N weight(part(left_part, i & 1) * part(right_part, i >> 1 & 1) * part(bottom_part, i >> 2 & 1) *
+                     part(top_part, i >> 3));
+      const std::array<T, 2> sum = window(from, to);
+      for (std::size_t c = 0; c < 2; ++c) moments[c] = moments[c] + weight * sum[c];
+      area = area + weight * N(static_cast<P>((to.x - from.x) * (to.y - from.y)));
+    }
+    return {moments[0] / area, moments[1] / area};
+  }
+
+  /// The mean with one edge off by as much as single precision may place it.
+  Moments move_edge(Offset<T> low, Offset<T> high, int edge) const {
+    const P off = P(4) * static_cast<P>(kUnitRoundoff) * size() * (edge % 2 == 0 ? P(1) : P(-1));
+    P* const edges[] = {&low.x, &low.y, &high.x, &high.y};
+    *edges[edge / 2] += off;
+    return mean_of<T>(low, high);
+  }
+};
+
+}  // namespace shadowbench::filters

@@ -1,0 +1,41 @@
+#include "filters/model.h"
+#include "filters/summed_area.h"
+#include "filters/variance.h"
+
+namespace shadowbench::filters {
+namespace {
+
+template <class T>
+class VsmSat {
+  using P = Position<T>;
+
+ public:
+  explicit VsmSat(const ModelInput& input)
+      : variance_(input),
+        radius_(static_cast<int>(number(input.values, "radius"))),
+        moments_(input, 2 * radius_ + 3, [this](const EncodeInput<T>& e) { return variance_.encode(e); }) {}
+
+  static Kernel kernel(const ParamValues& values) {
+    const int radius = static_cast<int>(number(values, "radius"));
+    std::vector<Kernel::Atom> box;
+    for (int i = -radius; i <= radius; ++i) box.push_back({static_cast<double>(i), 1.0 / (2 * radius + 1)});
+    return Kernel::make_grid(std::move(box), Reconstruction::kBilinear);
+  }
+
+  T visibility(const Receiver& r, Tally&) const {
+    const P reach = static_cast<P>(radius_) + P(0.5);
+    const P x = static_cast<P>(r.uv.x) * moments_.size(), y = static_cast<P>(r.uv.y) * moments_.size();
+    return variance_.visibility(moments_.mean({x - reach, y - reach}, {x + reach, y + reach}), r.depth);
+  }
+
+ private:
+  Variance<T> variance_;
+  int radius_;
+  SummedMoments<T> moments_;
+};
+
+}  // namespace
+
+std::unique_ptr<Model> make_vsm_sat_model() { return make_templated_model<VsmSat>(); }
+
+}  // namespace shadowbench::filters

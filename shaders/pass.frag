@@ -1,0 +1,17 @@
+// One step of a pass of a filter's own. PASS is the name of its function, PASS_TEXEL what that gives.
+#include "lib/receiver.glsl"
+#include "lib/map_access.glsl"
+#include "lib/random.glsl"
+#include "lib/encode_input.glsl"
+#include "lib/pass_input.glsl"
+#include "filter_parameters"
+#include "filter"
+
+uniform ivec2 pass_size;
+uniform int pass_step;
+uniform ivec2 pass_direction;
+uniform int pass_stride;
+
+layout(location = 0) out PASS_TEXEL out_texel;
+
+void main() { out_texel = PASS(PassInput(ivec2(gl_FragCoord.xy), pass_size, pass_step, pass_direction, pass_stride)); }

@@ -1,0 +1,198 @@
+// Passes that a filter declares itself, against the same numbers made in its lookup: such a filter gives 1 where they
+// agree and 0 elsewhere.
+
+#include <gmock/gmock.h>
+
+#include "filters/base/error.h"
+#include "filters/format/front_matter.h"
+#include "tests/harness/render/bench_fixture.h"
+
+namespace shadowbench::test {
+namespace {
+
+constexpr int kPassSide = 128;
+
+struct Checked {
+  const char* name;
+  const char* passes;
+  const char* glsl;  ///< has `bool agrees(Receiver r, ivec2 own)`, own being the receiver's texel
+  int passes_run;
+};
+
+filters::FilterRequest make_request(const Checked& checked) {
+  filters::FilterRequest request;
+  request.spec = filters::parse_filter(
+      std::string("/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nradius_texels = 8\n") + checked.passes +
+          "+++*/\n" + checked.glsl +
+          "float visibility(Receiver r) { return agrees(r, ivec2(r.uv / map_texel_uv)) ? 1.0 : 0.0; }\n",
+      "checked.glsl");
+  for (const filters::ParamSpec& param : request.spec.params) request.values[param.name] = param.default_value;
+  return request;
+}
+
+const Checked kPrefix{"Prefix", "[pass.sums]\nstore = \"r32ui\"\nsteps = \"prefix\"\n",
+                      R"(uint steps_of(ivec2 t) { return uint(load_depth(t) * 65536.0); }
+uvec4 sums(PassInput p) {
+  if (p.step == 0) return uvec4(steps_of(p.texel));
+  uvec4 sum = load_sums(p.texel);
+  for (int i = 1; i < 4; ++i) {
+    ivec2 before = p.texel - i * p.stride * p.direction;
+    if (min(before.x, before.y) >= 0) sum += load_sums(before);
+  }
+  return sum;
+}
+bool agrees(Receiver r, ivec2 own) {
+  uint sum = 0u;
+  for (int y = -2; y <= 2; ++y) for (int x = -2; x <= 2; ++x) sum += steps_of(own + ivec2(x, y));
+  uint table = load_sums(own + 2).x - load_sums(own + ivec2(-3, 2)).x - load_sums(own + ivec2(2, -3)).x + load_sums(own - 3).x;
+  return min(own.x, own.y) < 3 || max(own.x, own.y) > textureSize(map_depth, 0).x - 3 || table == sum;
+})",
+                      2 + 1 + 2 * 4};
+
+const Checked kLevels{"Levels", "[pass.farthest]\nstore = \"r32f\"\nsteps = \"levels\"\n",
+                      R"(vec4 farthest(PassInput p) {
+  if (p.step == 0) return vec4(load_depth(p.texel));
+  ivec2 t = 2 * p.texel;
+  int below = p.step - 1;
+  return max(max(load_farthest(t, below), load_farthest(t + ivec2(1, 0), below)),
+             max(load_farthest(t + ivec2(0, 1), below), load_farthest(t + 1, below)));
+}
+bool agrees(Receiver r, ivec2 own) {
+  ivec2 block = own / 8;
+  float largest = 0.0;
+  for (int y = 0; y < 8; ++y) for (int x = 0; x < 8; ++x) largest = max(largest, load_depth(8 * block + ivec2(x, y)));
+  vec2 to_middle = (vec2(own / 8 * 8) + 4.0) - r.uv / map_texel_uv;
+  return load_farthest(block, 3).x == largest && load_farthest(ivec2(0), 7).x == 1.0 &&
+         fetch_farthest_lod(r, to_middle, 3.0).x == largest;
+})",
+                      2 + 8};
+
+const Checked kHalf{"Half", "[pass.mean]\nstore = \"r32f\"\nsize = \"half\"\n",
+                    R"(float mean_of(ivec2 t) {
+  return 0.25 * (load_depth(t) + load_depth(t + ivec2(1, 0)) + load_depth(t + ivec2(0, 1)) + load_depth(t + 1));
+}
+vec4 mean(PassInput p) { return vec4(mean_of(2 * p.texel)); }
+bool agrees(Receiver r, ivec2 own) {
+  float expected = mean_of(own / 2 * 2);
+  vec2 to_middle = vec2(own / 2 * 2 + 1) - r.uv / map_texel_uv;
+  return load_mean(own / 2).x == expected && abs(fetch_mean(r, to_middle).x - expected) < 1e-4;
+})",
+                    2 + 1};
+
+const Checked kAxes{"Axes", "[pass.box]\nstore = \"r32f\"\nsteps = \"axes\"\n",
+                    R"(vec4 box(PassInput p) {
+  float sum = 0.0;
+  for (int i = -1; i <= 1; ++i) {
+    ivec2 t = p.texel + i * p.direction;
+    sum += p.step == 0 ? load_depth(t) : load_box(t).x;
+  }
+  return vec4(sum / 3.0);
+}
+bool agrees(Receiver r, ivec2 own) {
+  float sum = 0.0;
+  for (int y = -1; y <= 1; ++y) for (int x = -1; x <= 1; ++x) sum += load_depth(own + ivec2(x, y));
+  return abs(load_box(own).x - sum / 9.0) < 1e-6;
+})",
+                    2 + 2};
+
+/// Two maps, of which one is made from the other and from what encode() stored, and raw depth beside them.
+const Checked kSeveral{"Several",
+                       "store = \"rg32f\"\n[pass.squares]\nstore = \"r32f\"\n[pass.both]\nstore = \"rg32f\"\n",
+                       R"(vec4 encode(EncodeInput e) { return vec4(e.depth, 1.0 - e.depth, 0.0, 0.0); }
+vec4 squares(PassInput p) { return vec4(load_depth(p.texel) * load_depth(p.texel)); }
+vec4 both(PassInput p) { return vec4(load_squares(p.texel).x, load_map(p.texel).y, 0.0, 0.0); }
+bool agrees(Receiver r, ivec2 own) {
+  float depth = load_depth(own);
+  vec2 to_middle = vec2(own) + 0.5 - r.uv / map_texel_uv;
+  return load_both(own).xy == vec2(depth * depth, 1.0 - depth) && load_map(own).x == depth &&
+         fetch_depth(r, to_middle) == depth;
+})",
+                       2 + 1 + 2};
+
+class OwnPasses : public ::testing::TestWithParam<Checked> {};
+
+TEST_P(OwnPasses, WriteWhatTheyShould) {
+  const scene::Scene scene = load_builtin("stack");
+  Bench bench(shared_context(), scene, kPassSide, 160, 90);
+  const filters::FilterRequest request = make_request(GetParam());
+  const std::vector<float> image = bench.draw(request);
+  const auto receivers = bench.receivers(request);
+  ASSERT_GT(receivers.size(), 1000u);
+  std::size_t differing = 0;
+  for (const filters::Receiver& r : receivers) differing += image[bench.index(r)] != 1.0f;
+  EXPECT_EQ(differing, 0u) << "of " << receivers.size();
+  render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
+  passes.prefilter(bench.map());
+  EXPECT_EQ(passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map()).passes, GetParam().passes_run);
+}
+
+INSTANTIATE_TEST_SUITE_P(Steps, OwnPasses, ::testing::Values(kPrefix, kLevels, kHalf, kAxes, kSeveral),
+                         [](const auto& each) { return std::string(each.param.name); });
+
+/// Lights that take turns keep their maps apart.
+TEST(OwnPassesOfLights, KeepTheirMaps) {
+  const scene::Scene scene = load_builtin("stack");
+  Bench bench(shared_context(), scene, kPassSide, 160, 90);
+  const filters::FilterRequest request = catalogue().parse_requests("vsm_sat").front();
+  const std::vector<float> expected = bench.draw(request);
+  render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
+  render::ImageTarget target("visibility", GL_R32F, 160, 90);
+  const auto first = passes.prepare(bench.light(request), passes.make_encoded_target());
+  const auto second = passes.prepare(bench.light(request), passes.make_encoded_target());
+  passes.turn_to(first);
+  passes.prefilter(bench.map());
+  render::ShadowMap empty(kPassSide, {});
+  empty.draw(bench.shaders(), render::Geometry(scene::Scene{}), bench.frustum());
+  passes.turn_to(second);
+  passes.prefilter(empty);
+  passes.turn_to(first);
+  passes.lookup(bench.gbuffer(), bench.map(), target);
+  EXPECT_EQ(target.texture().read_floats(1), expected);
+}
+
+struct Refused {
+  const char* passes;
+  const char* glsl;
+  const char* where;
+  const char* words;
+};
+
+class RefusedPasses : public ::testing::TestWithParam<Refused> {};
+
+TEST_P(RefusedPasses, AreNamedWithFileAndLine) {
+  const scene::Scene scene = load_builtin("ball");
+  Bench bench(shared_context(), scene, 96, 64, 36);
+  const Refused& refused = GetParam();
+  try {
+    bench.draw(make_request({"", refused.passes, refused.glsl, 0}));
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kFilter);
+    EXPECT_EQ(error.where(), refused.where) << error.message();
+    EXPECT_THAT(error.message(), ::testing::HasSubstr(refused.words));
+  }
+}
+
+constexpr const char* kFirst = "vec4 first(PassInput p) { return vec4(load_second(p.texel)); }\n";
+constexpr const char* kSecond = "vec4 second(PassInput p) { return vec4(1.0); }\n";
+constexpr const char* kAgree = "bool agrees(Receiver r, ivec2 own) { return true; }\n";
+const std::string kTwo = std::string(kFirst) + kSecond + kAgree;
+const std::string kOwn = std::string("vec4 first(PassInput p) { return load_first(p.texel); }\n") + kAgree;
+const std::string kMip =
+    std::string("vec4 first(PassInput p) { return p.step == 0 ? vec4(0.0) : load_first(p.texel, 0); }\n") + kAgree;
+const std::string kStored = std::string("vec4 encode(EncodeInput e) { return load_first(ivec2(0)); }\n") +
+                            "vec4 first(PassInput p) { return vec4(1.0); }\n" + kAgree;
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, RefusedPasses,
+    ::testing::Values(Refused{"[pass.first]\nstore = \"r32f\"\n[pass.second]\nstore = \"r32f\"\n", kTwo.c_str(),
+                              "checked.glsl:6", "reads the map 'second', which is not written yet"},
+                      Refused{"[pass.first]\nstore = \"r32f\"\n", kOwn.c_str(), "checked.glsl:6",
+                              "reads the map 'first', which is not written yet"},
+                      Refused{"[pass.first]\nstore = \"r32f\"\nsteps = \"levels\"\n", kMip.c_str(), "checked.glsl:6",
+                              "power of two, and 'first' has 96 texels"},
+                      Refused{"store = \"r32f\"\n[pass.first]\nstore = \"r32f\"\n", kStored.c_str(), "checked.glsl:7",
+                              "encode() reads the map 'first', which is not written yet"}));
+
+}  // namespace
+}  // namespace shadowbench::test
