@@ -49,6 +49,9 @@ class SummedMoments {
 
   static P find_steps(int side) { return std::min(P(16777216), std::floor(P(4e9) / static_cast<P>(side * side))); }
 
+  /// What the table counts 1 as.
+  P unit() const { return std::is_same_v<T, float> ? steps_ : P(1); }
+
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y * size_ + x); }
 
   Sums add(const std::array<T, 2>& moments, int x, int y) const {
@@ -57,7 +60,7 @@ class SummedMoments {
     for (std::size_t c = 0; c < 2; ++c) {
       double value = std::clamp(value_of(moments[c]), 0.0, 1.0);
       if constexpr (std::is_same_v<T, float>)
-        value = static_cast<double>(std::floor(static_cast<float>(value) * steps_ + 0.5f) / steps_);
+        value = static_cast<double>(std::floor(static_cast<float>(value) * steps_ + 0.5f));
       sums.values[c] = value + left.values[c] + below.values[c] - both.values[c];
       const double rounding = bound_of(moments[c]) + 1.0 / static_cast<double>(steps_);
       sums.bounds[c] = rounding + left.bounds[c] + below.bounds[c] - both.bounds[c];
@@ -81,7 +84,7 @@ class SummedMoments {
     for (std::size_t c = 0; c < 2; ++c) {
       const double value = all.values[c] - left.values[c] - below.values[c] + both.values[c];
       const double bound = all.bounds[c] - left.bounds[c] - below.bounds[c] + both.bounds[c];
-      sum[c] = make_uncertain<T>(static_cast<P>(value), std::max(bound, 0.0)) + T(static_cast<P>(outside));
+      sum[c] = make_uncertain<T>(static_cast<P>(value) / unit(), std::max(bound, 0.0)) + T(static_cast<P>(outside));
     }
     return sum;
   }

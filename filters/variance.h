@@ -22,10 +22,14 @@ class Variance {
     return {e.depth, e.depth * e.depth + T(slope_variance_) * squared};
   }
 
+  T variance(const std::array<T, 2>& moments) const {
+    return maximum(moments[1] - moments[0] * moments[0], T(min_variance_));
+  }
+
   T visibility(const std::array<T, 2>& moments, float depth) const {
     const T zero(P(0)), one(P(1));
     const T distance = maximum(T(static_cast<P>(depth)) - moments[0], zero);
-    const T variance = maximum(moments[1] - moments[0] * moments[0], T(min_variance_));
+    const T variance = this->variance(moments);
     const T bound = value_of(variance) > 0.0 ? chebyshev(variance, distance) : value_of(distance) > 0.0 ? zero : one;
     return maximum(bound - T(reduction_), zero) / (one - T(reduction_));
   }

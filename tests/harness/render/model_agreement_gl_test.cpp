@@ -122,7 +122,8 @@ TEST_P(ModelFormats, GlImageEqualsModel) {
     EXPECT_LT(static_cast<double>(a.excused), 0.01 * static_cast<double>(a.compared)) << id;
     if (request.spec.has_encode) {
       EXPECT_LE(a.worst_bound_ratio, 1.0) << id;
-      EXPECT_LE(a.worst_float, 2e-3) << id;
+      // A depth that is read back one ULP off falls on another step of a summed-area table, alike all over a plane.
+      EXPECT_LE(a.worst_float, request.spec.passes.empty() ? 2e-3 : 1e-2) << id;
     } else {
       EXPECT_LE(a.worst_float, pcf_tolerance()) << id;
       EXPECT_LE(a.worst_double, pcf_tolerance()) << id;
@@ -194,7 +195,9 @@ INSTANTIATE_TEST_SUITE_P(
                       "poisson:taps=32,radius=6", "vsm:radius=0", "vsm:radius=12",
                       "vsm:bleed_reduction=0,slope_variance=0", "vsm:slope_variance=1",
                       "vsm:min_variance=0.001,store=rg16f", "esm:radius=0", "esm:c=20", "esm:combine=log,c=500",
-                      "esm:combine=log,radius=0", "esm:c=8,store=r16f"),
+                      "esm:combine=log,radius=0", "esm:c=8,store=r16f", "vsm_sat:radius=0", "vsm_sat:radius=20",
+                      "vsm_sat:bleed_reduction=0,slope_variance=0", "vssm:max_radius=0",
+                      "vssm:max_radius=4,bleed_reduction=0", "vssm:min_variance=0.001"),
     [](const auto& each) {
       std::string name = each.param;
       for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
