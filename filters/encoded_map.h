@@ -36,14 +36,19 @@ class EncodedMap {
         store_(store_precision(text_or(input.values, "store", "r32f"))),
         log_(combines_logs(input.values)),
         nearest_(is_nearest(input.values)) {
-    border_ = stored(encode(EncodeInput<T>{T(Position<T>(1)), {}}));
-    const std::vector<T> depths = linear_depths(input.map);
-    texels_.reserve(depths.size());
-    for (int y = 0; y < grid_.size(); ++y)
-      for (int x = 0; x < grid_.size(); ++x) texels_.push_back(stored(encode(describe(depths, x, y))));
-    if (radius_texels == 0) return;
-    texels_ = blurred(gaussian_weights(radius_texels), 1, 0);
-    texels_ = blurred(gaussian_weights(radius_texels), 0, 1);
+    fill(input, encode);
+    if (radius_texels > 0) blur(gaussian_weights(radius_texels));
+  }
+
+  /// The map of a pass of a filter's own with steps = "axes": it begins with what `begin` makes of a texel, and takes
+  /// the mean of a box. Outside the map its edge is repeated.
+  template <class Begin>
+  static EncodedMap make_boxes(const ModelInput& input, const std::string& store, int radius_texels, Begin begin) {
+    EncodedMap map(input, store);
+    map.fill(input, begin);
+    map.divisor_ = static_cast<Position<T>>(2 * radius_texels + 1);
+    map.blur(std::vector<float>(static_cast<std::size_t>(2 * radius_texels + 1), 1.0f));
+    return map;
   }
 
   /// The prefilter's kernel, whose half-width is the parameter `radius`.
@@ -84,6 +89,27 @@ class EncodedMap {
   double placement() const { return bound_sampler_weight(accuracy_, grid_.size()); }
 
  private:
+  EncodedMap(const ModelInput& input, const std::string& store)
+      : grid_(input.map.size, Border::kEdge),
+        accuracy_(input.accuracy),
+        store_(store_precision(store)),
+        log_(false),
+        nearest_(false) {}
+
+  template <class Encode>
+  void fill(const ModelInput& input, Encode encode) {
+    border_ = stored(encode(EncodeInput<T>{T(Position<T>(1)), {}}));
+    const std::vector<T> depths = linear_depths(input.map);
+    texels_.reserve(depths.size());
+    for (int y = 0; y < grid_.size(); ++y)
+      for (int x = 0; x < grid_.size(); ++x) texels_.push_back(stored(encode(describe(depths, x, y))));
+  }
+
+  void blur(const std::vector<float>& weights) {
+    texels_ = blurred(weights, 1, 0);
+    texels_ = blurred(weights, 0, 1);
+  }
+
   /// The error of a depth that was linearised in single precision: the stored value may be read one ULP off, and the
   /// division rounds.
   static double linear_rounding(float depth, const DepthCurve& curve) {
@@ -121,6 +147,7 @@ class EncodedMap {
   StorePrecision store_;
   bool log_;
   bool nearest_;
+  Position<T> divisor_ = Position<T>(1);  ///< of the sums of a blur whose weights do not sum to 1
   Texel border_{};
   std::vector<Texel> texels_;
 
@@ -161,6 +188,8 @@ class EncodedMap {
       const T weight(static_cast<Position<T>>(weights[static_cast<std::size_t>(i + radius)]));
       for (std::size_t c = 0; c < N; ++c) sum[c] = sum[c] + weight * tap[c];
     }
+    if (divisor_ == Position<T>(1)) return sum;
+    for (T& channel : sum) channel = channel / T(divisor_);
     return sum;
   }
 

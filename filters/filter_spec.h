@@ -40,8 +40,8 @@ struct DiskTable {
   unsigned seed = 1;
 };
 
-/// What a pass of a filter's own is drawn for: once; along u and then along v; for the strides 1, 4, 16, ... of prefix
-/// sums, along u and then along v; or for every mip level.
+/// What a pass of a filter's own is drawn for: once; once, along u, and along v; once, and for the strides 1, 4, 16,
+/// ... of prefix sums along u and then along v; or for every mip level.
 enum class PassSteps { kOnce, kAxes, kPrefix, kLevels };
 
 /// A pass of a filter's own, between the encoded map and the lookup. Its map and the GLSL function that writes it have

@@ -46,6 +46,13 @@ Kernel Kernel::make_grid(std::vector<Atom> atoms, Reconstruction reconstruction)
   return kernel;
 }
 
+Kernel Kernel::make_box(int radius_texels) {
+  std::vector<Atom> atoms;
+  for (int i = -radius_texels; i <= radius_texels; ++i)
+    atoms.push_back({static_cast<double>(i), 1.0 / (2 * radius_texels + 1)});
+  return make_grid(std::move(atoms), Reconstruction::kBilinear);
+}
+
 Kernel Kernel::make_gaussian(int radius_texels, Reconstruction reconstruction) {
   const std::vector<float> weights = gaussian_weights(radius_texels);
   std::vector<Atom> atoms;

@@ -44,6 +44,16 @@ T exponential(T x, [[maybe_unused]] const GlAccuracy& accuracy) {
   }
 }
 
+/// The sine or cosine, `curve`, of x. GLSL promises nothing of them; Vulkan's absolute error of 2^-11 within a turn is
+/// taken (Khronos 2024, Vulkan 1.3, Precision of Instructions).
+template <class T, class Curve>
+T wave(T x, Curve curve) {
+  if constexpr (std::is_same_v<T, Tracked>)
+    return Tracked(curve(x.value), x.bound + 0x1p-11);
+  else
+    return curve(x);
+}
+
 /// ln x. GLSL grants 3 ULP, or an absolute error of 2^-21 within [0.5, 2] (Khronos 2023, GLSL 4.60, 4.7.1).
 template <class T>
 T logarithm(T x) {

@@ -16,10 +16,7 @@ class VsmSat {
         moments_(input, 2 * radius_ + 3, [this](const EncodeInput<T>& e) { return variance_.encode(e); }) {}
 
   static Kernel kernel(const ParamValues& values) {
-    const int radius = static_cast<int>(number(values, "radius"));
-    std::vector<Kernel::Atom> box;
-    for (int i = -radius; i <= radius; ++i) box.push_back({static_cast<double>(i), 1.0 / (2 * radius + 1)});
-    return Kernel::make_grid(std::move(box), Reconstruction::kBilinear);
+    return Kernel::make_box(static_cast<int>(number(values, "radius")));
   }
 
   T visibility(const Receiver& r, Tally&) const {

@@ -53,7 +53,7 @@ MapPasses::MapPasses(ShaderLibrary& shaders, const filters::FilterRequest& reque
 int MapPasses::count_steps(const PassSpec& spec) const {
   switch (spec.steps) {
     case PassSteps::kOnce: return 1;
-    case PassSteps::kAxes: return 2;
+    case PassSteps::kAxes: return 3;
     case PassSteps::kPrefix: return count_prefix_steps(side(spec));
     case PassSteps::kLevels: break;
   }
@@ -140,9 +140,9 @@ void MapPasses::run(const ShadowMap& map, const Prefilter* encoded) {
 }
 
 void MapPasses::draw(Pass& pass, gl::Framebuffer& target, int step) {
-  const int strides = (pass.steps - 1) / 2;  // of prefix sums, along each axis
+  const int strides = (pass.steps - 1) / 2;  // along each axis
   const bool is_prefix = pass.spec.steps == PassSteps::kPrefix;
-  const bool along_v = is_prefix ? step > strides : step > 0;
+  const bool along_v = step > strides;
   int stride = 1;
   for (int i = 1; is_prefix && i < step - (along_v ? strides : 0); ++i) stride *= kRadix;
   target.bind();

@@ -59,6 +59,28 @@ float corner_depth(Receiver r, vec2 offset_texels, float z) {
 // less this is a texel's centre.
 vec2 texel_fraction(Receiver r) { return fract(r.uv / map_texel_uv - 0.5); }
 
+// Texels from a receiver to the next pixel's, of the two neighbours the nearer: the other one may lie beyond a silhouette.
+vec2 step_to_neighbour(Receiver r, ivec2 way) {
+  ivec2 last = textureSize(receiver_places, 0) - 1;
+  vec2 nearer = vec2(0.0);
+  float least = -1.0;
+  for (int side = -1; side <= 1; side += 2) {
+    ivec2 pixel = r.pixel + side * way;
+    if (any(lessThan(pixel, ivec2(0))) || any(greaterThan(pixel, last))) continue;
+    vec4 place = texelFetch(receiver_places, pixel, 0);
+    vec2 way_texels = (place.xy - r.uv) * float(side) / map_texel_uv;
+    if (place.w == mark_background || (least >= 0.0 && length(way_texels) >= least)) continue;
+    nearer = way_texels;
+    least = length(way_texels);
+  }
+  return nearer;
+}
+
+// What fetch_NAME_grad takes: texels of the map that a step of one pixel crosses, along x and along y.
+mat2 texels_per_pixel(Receiver r) {
+  return mat2(step_to_neighbour(r, ivec2(1, 0)), step_to_neighbour(r, ivec2(0, 1)));
+}
+
 float compare_nearest(Receiver r, vec2 offset_texels, float z) {
   COUNT_FETCH(r, offset_texels, 0.5);
   float reference = store_depth(nearest_depth(r, offset_texels, z));

@@ -27,6 +27,9 @@ filters::GlAccuracy measured_accuracy() {
   return {measured.exp_ulp, static_cast<double>(std::min(measured.rg32f.bits, measured.r32f.bits))};
 }
 
+/// Whether it looks up something else than the depth map.
+bool stores(const filters::FilterSpec& spec) { return spec.has_encode || !spec.passes.empty(); }
+
 double pcf_tolerance() {
   static const int bits = gl::measure_pcf_weight_bits(shared_context(), GL_DEPTH_COMPONENT32F);
   return bits >= 22 ? 1e-4 : 1.0 / 128.0;
@@ -88,7 +91,13 @@ class ModelAgreement : public ::testing::TestWithParam<std::tuple<std::string, s
     return a;
   }
 
-  bool is_encoded() const { return catalogue().find(std::get<1>(GetParam())).has_encode; }
+  bool in_half_floats() const {
+    return std::ranges::any_of(
+        catalogue().find(std::get<1>(GetParam())).passes,
+        [](const filters::PassSpec& pass) { return pass.store.ends_with("16f"); });
+  }
+
+  bool is_encoded() const { return stores(catalogue().find(std::get<1>(GetParam()))); }
 };
 
 TEST_P(ModelAgreement, GlImageEqualsModel) {
@@ -96,7 +105,7 @@ TEST_P(ModelAgreement, GlImageEqualsModel) {
   if (is_encoded()) {
     EXPECT_LE(a.worst_float, 2e-3);
     EXPECT_LE(a.worst_bound_ratio, 1.0);
-    EXPECT_LE(a.median_bound, 0.01) << "a bound this wide says nothing";
+    EXPECT_LE(a.median_bound, in_half_floats() ? 0.03 : 0.01) << "a bound this wide says nothing";
   } else {
     EXPECT_LE(a.worst_float, pcf_tolerance());
     EXPECT_LE(a.worst_double, pcf_tolerance());
@@ -120,7 +129,7 @@ TEST_P(ModelFormats, GlImageEqualsModel) {
     const Agreement a = compare(bench, request);
     EXPECT_GT(a.shadowed, 0.01) << id;
     EXPECT_LT(static_cast<double>(a.excused), 0.01 * static_cast<double>(a.compared)) << id;
-    if (request.spec.has_encode) {
+    if (stores(request.spec)) {
       EXPECT_LE(a.worst_bound_ratio, 1.0) << id;
       // A depth that is read back one ULP off falls on another step of a summed-area table, alike all over a plane.
       EXPECT_LE(a.worst_float, request.spec.passes.empty() ? 2e-3 : 1e-2) << id;
@@ -175,7 +184,7 @@ TEST_P(ModelVariants, GlImageEqualsModel) {
   EXPECT_GT(a.shadowed, 0.01);
   EXPECT_LT(static_cast<double>(a.excused), 0.005 * static_cast<double>(a.compared));
   const bool half = filters::text_or(request.values, "store", "").find("16") != std::string::npos;
-  if (request.spec.has_encode) {
+  if (stores(request.spec)) {
     EXPECT_LE(a.worst_bound_ratio, 1.0);
     EXPECT_LE(a.worst_float, half ? 1.0 : 2e-3);
   } else {
@@ -196,8 +205,8 @@ INSTANTIATE_TEST_SUITE_P(
                       "vsm:bleed_reduction=0,slope_variance=0", "vsm:slope_variance=1",
                       "vsm:min_variance=0.001,store=rg16f", "esm:radius=0", "esm:c=20", "esm:combine=log,c=500",
                       "esm:combine=log,radius=0", "esm:c=8,store=r16f", "vsm_sat:radius=0", "vsm_sat:radius=20",
-                      "vsm_sat:bleed_reduction=0,slope_variance=0", "vssm:max_radius=0",
-                      "vssm:max_radius=4,bleed_reduction=0", "vssm:min_variance=0.001"),
+                      "vsm_sat:bleed_reduction=0,slope_variance=0", "csm_conv:radius=0,damping=0", "csm_conv:scale=1",
+                      "vssm:max_radius=0", "vssm:max_radius=4,bleed_reduction=0", "vssm:min_variance=0.001"),
     [](const auto& each) {
       std::string name = each.param;
       for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
@@ -239,7 +248,7 @@ TEST_P(BorderAgreement, GlImageEqualsModel) {
   EXPECT_GT(a.compared, 20000u);
   EXPECT_GT(a.shadowed, 0.1);
   EXPECT_LT(static_cast<double>(a.excused), 0.02 * static_cast<double>(a.compared));
-  if (request.spec.has_encode) {
+  if (stores(request.spec)) {
     EXPECT_LE(a.worst_bound_ratio, 1.0);
     EXPECT_LE(a.worst_float, 2e-3);
   } else {

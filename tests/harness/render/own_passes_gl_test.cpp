@@ -17,6 +17,7 @@ struct Checked {
   const char* passes;
   const char* glsl;  ///< has `bool agrees(Receiver r, ivec2 own)`, own being the receiver's texel
   int passes_run;
+  double allowed = 0.0;  ///< share of receivers that may disagree
 };
 
 filters::FilterRequest make_request(const Checked& checked) {
@@ -81,19 +82,15 @@ bool agrees(Receiver r, ivec2 own) {
 
 const Checked kAxes{"Axes", "[pass.box]\nstore = \"r32f\"\nsteps = \"axes\"\n",
                     R"(vec4 box(PassInput p) {
-  float sum = 0.0;
-  for (int i = -1; i <= 1; ++i) {
-    ivec2 t = p.texel + i * p.direction;
-    sum += p.step == 0 ? load_depth(t) : load_box(t).x;
-  }
-  return vec4(sum / 3.0);
+  if (p.step == 0) return vec4(load_depth(p.texel));
+  return (load_box(p.texel - p.direction) + load_box(p.texel) + load_box(p.texel + p.direction)) / 3.0;
 }
 bool agrees(Receiver r, ivec2 own) {
   float sum = 0.0;
   for (int y = -1; y <= 1; ++y) for (int x = -1; x <= 1; ++x) sum += load_depth(own + ivec2(x, y));
   return abs(load_box(own).x - sum / 9.0) < 1e-6;
 })",
-                    2 + 2};
+                    2 + 3};
 
 /// Two maps, of which one is made from the other and from what encode() stored, and raw depth beside them.
 const Checked kSeveral{"Several",
@@ -109,6 +106,33 @@ bool agrees(Receiver r, ivec2 own) {
 })",
                        2 + 1 + 2};
 
+/// The mean of a ramp over any footprint is its value in the middle. llvmpipe 22.3 reads other texels for 0.8 % of
+/// these receivers.
+const Checked kFootprint{"Footprint", "[pass.mean]\nstore = \"r32f\"\nsteps = \"levels\"\nanisotropy = 8\n",
+                         R"(vec4 mean(PassInput p) {
+  if (p.step == 0) return vec4(float(p.texel.x));
+  ivec2 t = 2 * p.texel;
+  int finer = p.step - 1;
+  return 0.25 * (load_mean(t, finer) + load_mean(t + ivec2(1, 0), finer) + load_mean(t + ivec2(0, 1), finer) +
+                 load_mean(t + 1, finer));
+}
+bool agrees(Receiver r, ivec2 own) {
+  float here = r.uv.x / map_texel_uv - 0.5;  // on a ramp every mean is the value in its middle
+  bool inside = here > 12.0 && here < 116.0;
+  float level = fetch_mean_grad(r, vec2(0.0), vec2(4.0, 0.0), vec2(0.0, 4.0)).x;
+  float along = fetch_mean_grad(r, vec2(0.0), vec2(8.0, 0.0), vec2(0.0, 1.0)).x;
+  mat2 pixel = texels_per_pixel(r);
+  vec4 next = texelFetch(receiver_places, r.pixel + ivec2(1, 0), 0);
+  vec4 before = texelFetch(receiver_places, r.pixel - ivec2(1, 0), 0);
+  vec2 right = (next.xy - r.uv) / map_texel_uv, left = (r.uv - before.xy) / map_texel_uv;
+  bool is_step = distance(pixel[0], right) < 1e-3 || distance(pixel[0], left) < 1e-3;
+  bool is_shorter = length(pixel[0]) <= min(next.w == mark_background ? 1e9 : length(right),
+                                            before.w == mark_background ? 1e9 : length(left)) + 1e-3;
+  bool at_edge = r.pixel.x == 0 || r.pixel.x == 159;
+  return (!inside || (abs(level - here) < 0.3 && abs(along - here) < 0.3)) && (at_edge || (is_step && is_shorter));
+})",
+                         2 + 8, 0.02};
+
 class OwnPasses : public ::testing::TestWithParam<Checked> {};
 
 TEST_P(OwnPasses, WriteWhatTheyShould) {
@@ -120,13 +144,14 @@ TEST_P(OwnPasses, WriteWhatTheyShould) {
   ASSERT_GT(receivers.size(), 1000u);
   std::size_t differing = 0;
   for (const filters::Receiver& r : receivers) differing += image[bench.index(r)] != 1.0f;
-  EXPECT_EQ(differing, 0u) << "of " << receivers.size();
+  EXPECT_LE(static_cast<double>(differing), GetParam().allowed * static_cast<double>(receivers.size()))
+      << differing << " of " << receivers.size();
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
   EXPECT_EQ(passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map()).passes, GetParam().passes_run);
 }
 
-INSTANTIATE_TEST_SUITE_P(Steps, OwnPasses, ::testing::Values(kPrefix, kLevels, kHalf, kAxes, kSeveral),
+INSTANTIATE_TEST_SUITE_P(Steps, OwnPasses, ::testing::Values(kPrefix, kLevels, kHalf, kAxes, kSeveral, kFootprint),
                          [](const auto& each) { return std::string(each.param.name); });
 
 /// Lights that take turns keep their maps apart.
