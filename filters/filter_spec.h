@@ -51,7 +51,7 @@ struct PassSpec {
   std::string store;  ///< format, one of pass_formats()
   PassSteps steps = PassSteps::kOnce;
   bool half = false;   ///< has half the depth map's texels along each axis
-  int anisotropy = 1;  ///< how much longer than wide a footprint may be that fetch_NAME_grad averages over
+  int anisotropy = 1;  ///< the most fetches that fetch_NAME_grad lays along a footprint
   int line = 1;        ///< of the filter's file
 
   bool is_integer() const { return store.ends_with("ui"); }

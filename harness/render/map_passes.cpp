@@ -93,7 +93,6 @@ PassMap MapPasses::make_map(const PassSpec& spec) const {
   PassMap map{gl::Texture(map_name(spec), format, side(spec), side(spec), levels ? count_steps(spec) : 1), {}};
   map.texture.set_filter(levels && !spec.is_integer() ? GL_LINEAR_MIPMAP_LINEAR : magnify, magnify);
   map.texture.set_wrap(wrap_);
-  if (spec.anisotropy > 1) map.texture.set_anisotropy(spec.anisotropy);
   for (int level = 0; level < (levels ? count_steps(spec) : 1); ++level)
     map.levels.emplace_back(map_name(spec)).attach_color(0, map.texture, level);
   try {

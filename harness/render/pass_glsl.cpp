@@ -23,14 +23,24 @@ vec4 fetch_{name}(Receiver r, vec2 offset_texels) {{
 }}
 )";
 
+// How far a footprint extends follows from the pixel, and not from a kernel: its reach is not counted. Samplers could
+// take as many taps themselves, but not the same ones on every GL.
 constexpr const char* kFetchLevels = R"(
 vec4 fetch_{name}_lod(Receiver r, vec2 offset_texels, float lod) {{
   COUNT_FETCH(r, offset_texels, {texels} * exp2(ceil(max(lod, 0.0))));
   return textureLod(map_{name}, r.uv + offset_texels * map_texel_uv, lod);
 }}
 vec4 fetch_{name}_grad(Receiver r, vec2 offset_texels, vec2 along_x, vec2 along_y) {{
-  COUNT_FETCH(r, offset_texels, max(length(along_x), length(along_y)) + {texels});
-  return textureGrad(map_{name}, r.uv + offset_texels * map_texel_uv, along_x * map_texel_uv, along_y * map_texel_uv);
+  float x = length(along_x), y = length(along_y);
+  int taps = clamp(int(ceil(max(x, y) / max(min(x, y), {texels}))), 1, {anisotropy});
+  float lod = log2(max(max(x, y) / (float(taps) * {texels}), 1.0));
+  vec4 sum = vec4(0.0);
+  for (int i = 0; i < taps; ++i) {{
+    vec2 place = offset_texels + (x > y ? along_x : along_y) * ((float(i) + 0.5) / float(taps) - 0.5);
+    COUNT_FETCH(r, offset_texels, {texels});
+    sum += textureLod(map_{name}, r.uv + place * map_texel_uv, lod);
+  }}
+  return sum / float(taps);
 }}
 )";
 
@@ -50,7 +60,7 @@ std::string declare_pass_map(const PassSpec& spec, GLuint unit) {
     return fmt::format(fmt::runtime(glsl), fmt::arg("unit", unit), fmt::arg("name", spec.name),
                        fmt::arg("sampler", spec.is_integer() ? "usampler2D" : "sampler2D"),
                        fmt::arg("texel", spec.texel_type()), fmt::arg("parameter", parameter), fmt::arg("count", count),
-                       fmt::arg("level", level), fmt::arg("texels", texels));
+                       fmt::arg("level", level), fmt::arg("texels", texels), fmt::arg("anisotropy", spec.anisotropy));
   };
   return write(kLoad) + (spec.is_integer() ? "" : write(kFetch)) +
          (spec.is_integer() || !has_levels ? "" : write(kFetchLevels));

@@ -120,6 +120,8 @@ bool agrees(Receiver r, ivec2 own) {
   float here = r.uv.x / map_texel_uv - 0.5;  // on a ramp every mean is the value in its middle
   bool inside = here > 12.0 && here < 116.0;
   float level = fetch_mean_grad(r, vec2(0.0), vec2(4.0, 0.0), vec2(0.0, 4.0)).x;
+  float texel = load_mean(ivec2(r.uv / map_texel_uv) / 4, 2).x;
+  bool is_level = fetch_mean_grad(r, vec2(own / 4 * 4) + 2.0 - r.uv / map_texel_uv, vec2(4.0, 0.0), vec2(0.0, 4.0)).x == texel;
   float along = fetch_mean_grad(r, vec2(0.0), vec2(8.0, 0.0), vec2(0.0, 1.0)).x;
   mat2 pixel = texels_per_pixel(r);
   vec4 next = texelFetch(receiver_places, r.pixel + ivec2(1, 0), 0);
@@ -129,7 +131,7 @@ bool agrees(Receiver r, ivec2 own) {
   bool is_shorter = length(pixel[0]) <= min(next.w == mark_background ? 1e9 : length(right),
                                             before.w == mark_background ? 1e9 : length(left)) + 1e-3;
   bool at_edge = r.pixel.x == 0 || r.pixel.x == 159;
-  return (!inside || (abs(level - here) < 0.3 && abs(along - here) < 0.3)) && (at_edge || (is_step && is_shorter));
+  return is_level && (!inside || (abs(level - here) < 0.3 && abs(along - here) < 0.3)) && (at_edge || (is_step && is_shorter));
 })",
                          2 + 8, 0.02};
 
