@@ -23,17 +23,11 @@ text = "turn of the disk at each pixel: none shows bands, per-pixel white noise,
 count = "taps"
 seed = 1
 +++*/
+#include "lib/disk.glsl"
+
 float visibility(Receiver r) {
-  float turn = 0.0;
-  if (rotation == ROTATION_PER_PIXEL) turn = random_turn(r.pixel);
-  if (rotation == ROTATION_INTERLEAVED_GRADIENT) turn = interleaved_gradient_turn(r.pixel);
-  float angle = 6.28318530718 * turn;
-  float c = radius * cos(angle);
-  float s = radius * sin(angle);
+  vec2 turn = radius * find_turn(r.pixel);
   float sum = 0.0;
-  for (int i = 0; i < taps; ++i) {
-    vec2 p = disk_points[i];
-    sum += compare_2x2(r, vec2(c * p.x - s * p.y, s * p.x + c * p.y), r.depth);
-  }
+  for (int i = 0; i < taps; ++i) sum += compare_2x2(r, rotate(disk_points[i], turn), r.depth);
   return sum / float(taps);
 }
