@@ -211,5 +211,19 @@ TEST(FrontMatter, DisksOfTooManyPoints_AreRefused) {
   expect_error(with_disk("min = 1\nmax = 64\n", "1e10"), "dir/mine.glsl:14", "'seed'");
 }
 
+TEST(FrontMatter, DisksPattern_IsNamed_OrAParameterThatChooses) {
+  const auto with_pattern = [](const std::string& pattern, const std::string& choices = "\"stratified\", \"vogel\"") {
+    return with(
+        "[param.taps]\ndefault = 4\nmin = 1\nmax = 9\nconst = true\ntext = \"x\"\n[param.p]\ndefault = "
+        "\"vogel\"\nchoices = [" +
+        choices + "]\ntext = \"x\"\n[disk.points]\ncount = \"taps\"\npattern = \"" + pattern + "\"\n");
+  };
+  EXPECT_EQ(parse_filter(with_pattern("blue-noise"), "mine.glsl").disks.front().pattern, "blue-noise");
+  EXPECT_EQ(parse_filter(with_pattern("p"), "mine.glsl").disks.front().pattern, "p");
+  for (const char* wrong : {"sunflower", "taps", ""})
+    expect_error(with_pattern(wrong), "dir/mine.glsl:18", "'pattern'");
+  expect_error(with_pattern("p", "\"vogel\", \"grid\""), "dir/mine.glsl:18", "vogel, stratified, blue-noise");
+}
+
 }  // namespace
 }  // namespace shadowbench::filters
