@@ -38,6 +38,7 @@ struct DiskTable {
   std::string name;
   std::string count;  ///< name of the integer parameter that gives the number of points
   unsigned seed = 1;
+  std::string pattern = "vogel";  ///< one of disk_patterns(), or the name of the parameter that chooses one
 };
 
 /// What a pass of a filter's own is drawn for: once; once, along u, and along v; once, and for the strides 1, 4, 16,

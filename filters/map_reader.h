@@ -164,6 +164,18 @@ class DepthReader {
     return depths;
   }
 
+  /// `nearest_depth` and `corner_depth` of shaders/lib/map_access.glsl: what `compare_nearest` and `compare_2x2`
+  /// compare where they are given `z`.
+  float nearest_depth(const Receiver& r, Offset<T> offset, float z, Tally& tally) const {
+    const int x = grid_.nearest(grid_.position(r.uv.x, offset.x), tally);
+    const int y = grid_.nearest(grid_.position(r.uv.y, offset.y), tally);
+    return plane_.depth(r, grid_.size(), {x + 0.5, y + 0.5}, 0.0, z);
+  }
+
+  float corner_depth(const Receiver& r, Offset<T> offset, float z, Tally& tally) const {
+    return plane_.depth(r, grid_.size(), glm::dvec2(lower_left(r, offset, tally)) + 1.0, 0.5, z);
+  }
+
   static T mix(T a, T b, T s) { return a + s * (b - a); }
 
  private:

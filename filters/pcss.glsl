@@ -34,27 +34,19 @@ seed = 1
 count = "search_taps"
 seed = 2
 +++*/
-const float one_fetch = 0.25;  // texels: a smaller disk is one fetch
-
-float biased_depth(Receiver r, vec2 offset) { return r.depth - dot(r.bias_per_texel, abs(offset)); }
-
-vec2 rotate(vec2 p, float c, float s) { return vec2(c * p.x - s * p.y, s * p.x + c * p.y); }
+#include "lib/penumbra.glsl"
 
 float visibility(Receiver r) {
-  float widening = 0.5 * r.light_size * r.depth_range_ws / r.texel_size_ws;  // the disk's radius, texels per depth
+  float widening = penumbra_per_depth(r);
   float search = min(widening * r.depth_unbiased, max_radius);
   if (search < one_fetch) return compare_2x2(r, vec2(0.0), r.depth);
-  float turn = 0.0;
-  if (rotation == ROTATION_PER_PIXEL) turn = random_turn(r.pixel);
-  if (rotation == ROTATION_INTERLEAVED_GRADIENT) turn = interleaved_gradient_turn(r.pixel);
-  float c = cos(6.28318530718 * turn);
-  float s = sin(6.28318530718 * turn);
+  vec2 turn = find_turn(r.pixel);
   float depths = 0.0;
   float blockers = 0.0;
   for (int i = 0; i < search_taps; ++i) {
-    vec2 offset = search * rotate(search_points[i], c, s);
+    vec2 offset = search * rotate(search_points[i], turn);
     float depth = fetch_depth(r, offset);
-    if (depth < biased_depth(r, offset)) {
+    if (depth < nearest_depth(r, offset, biased_depth(r, offset))) {
       depths += depth;
       blockers += 1.0;
     }
@@ -64,7 +56,7 @@ float visibility(Receiver r) {
   if (radius < one_fetch) return compare_2x2(r, vec2(0.0), r.depth);
   float sum = 0.0;
   for (int i = 0; i < taps; ++i) {
-    vec2 offset = radius * rotate(disk_points[i], c, s);
+    vec2 offset = radius * rotate(disk_points[i], turn);
     sum += compare_2x2(r, offset, biased_depth(r, offset));
   }
   return sum / float(taps);

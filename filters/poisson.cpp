@@ -1,9 +1,6 @@
-#include <cmath>
-#include <numbers>
-
 #include "filters/disk_points.h"
 #include "filters/model.h"
-#include "filters/random.h"
+#include "filters/penumbra/disk_turn.h"
 
 namespace shadowbench::filters {
 namespace {
@@ -23,13 +20,9 @@ class Poisson {
   static Kernel kernel(const ParamValues& values) { return Kernel::make_disk(number(values, "radius")); }
 
   T visibility(const Receiver& r, Tally& tally) const {
-    const P angle = P(2) * std::numbers::pi_v<P> * static_cast<P>(turn_of(rotation_, r.pixel, seed_));
-    const P c = radius_ * std::cos(angle), s = radius_ * std::sin(angle);
+    const DiskTurn<T> turn(rotation_, r.pixel, seed_);
     T sum{};
-    for (const glm::vec2& point : points_) {
-      const P x = static_cast<P>(point.x), y = static_cast<P>(point.y);
-      sum = sum + map_.compare_2x2(r, {c * x - s * y, s * x + c * y}, r.depth, tally);
-    }
+    for (const glm::vec2& point : points_) sum = sum + map_.compare_2x2(r, turn.place(radius_, point), r.depth, tally);
     return sum / T(static_cast<P>(points_.size()));
   }
 

@@ -1,6 +1,6 @@
 /*+++
 title = "Poisson-disk PCF"
-source = "Cook 1986, Stochastic Sampling in Computer Graphics, ACM TOG 5(1); taps not by throwing darts, but on the spiral of Vogel 1979, A Better Way to Construct the Sunflower Head, Mathematical Biosciences 44, as evenly spread as Poisson-disk points and not crowded at the rim"
+source = "Cook 1986, Stochastic Sampling in Computer Graphics, ACM TOG 5(1); taps by default not by throwing darts, but on the spiral of Vogel 1979, A Better Way to Construct the Sunflower Head, Mathematical Biosciences 44, as evenly spread as Poisson-disk points and not crowded at the rim"
 kind = "stochastic"
 radius_texels = "radius"
 [param.taps]
@@ -8,7 +8,7 @@ default = 16
 choices = [4, 8, 16, 32]
 const = true
 unit = "hardware 2x2 fetches"
-text = "points in the disk, on a sunflower's spiral; too few turn the penumbra into noise or bands"
+text = "points in the disk; too few turn the penumbra into noise or bands"
 [param.radius]
 default = 3.0
 min = 0.0
@@ -19,21 +19,20 @@ text = "radius of the disk; wider is softer, and needs more taps and more bias"
 default = "per-pixel"
 choices = ["none", "per-pixel", "interleaved-gradient"]
 text = "turn of the disk at each pixel: none shows bands, per-pixel white noise, interleaved-gradient a regular dither"
+[param.pattern]
+default = "vogel"
+choices = ["vogel", "stratified", "blue-noise"]
+text = "how points are spread: vogel on a sunflower's spiral, stratified one anywhere in each cell of a grid, blue-noise far from each other"
 [disk.disk_points]
 count = "taps"
 seed = 1
+pattern = "pattern"
 +++*/
+#include "lib/disk.glsl"
+
 float visibility(Receiver r) {
-  float turn = 0.0;
-  if (rotation == ROTATION_PER_PIXEL) turn = random_turn(r.pixel);
-  if (rotation == ROTATION_INTERLEAVED_GRADIENT) turn = interleaved_gradient_turn(r.pixel);
-  float angle = 6.28318530718 * turn;
-  float c = radius * cos(angle);
-  float s = radius * sin(angle);
+  vec2 turn = radius * find_turn(r.pixel);
   float sum = 0.0;
-  for (int i = 0; i < taps; ++i) {
-    vec2 p = disk_points[i];
-    sum += compare_2x2(r, vec2(c * p.x - s * p.y, s * p.x + c * p.y), r.depth);
-  }
+  for (int i = 0; i < taps; ++i) sum += compare_2x2(r, rotate(disk_points[i], turn), r.depth);
   return sum / float(taps);
 }

@@ -12,6 +12,7 @@
 
 #include "filters/base/error.h"
 #include "filters/base/toml_depth.h"
+#include "filters/disk_points.h"
 #include "filters/format/front_matter_reader.h"
 #include "filters/format/glsl_words.h"
 #include "filters/format/passes.h"
@@ -188,6 +189,22 @@ void read_stored(const FrontMatterReader& reader, const toml::table& root, Filte
   }
 }
 
+/// One of the patterns, or a parameter whose choices are all patterns.
+std::string read_pattern(const FrontMatterReader& reader, const toml::table& table, const FilterSpec& spec) {
+  if (!table.contains("pattern")) return disk_patterns().front();
+  const std::string name = reader.text(table, "pattern", true);
+  const auto is_pattern = [](const ParamValue& value) {
+    return std::ranges::find(disk_patterns(), to_string(value)) != disk_patterns().end();
+  };
+  const ParamSpec* param = spec.find_param(name);
+  if (param ? param->choices.empty() || !std::ranges::all_of(param->choices, is_pattern) : !is_pattern(name)) {
+    reader.fail(table.get("pattern"), fmt::format("'pattern' is '{}', which is neither of {} nor a parameter that "
+                                                  "chooses among them",
+                                                  name, fmt::join(disk_patterns(), ", ")));
+  }
+  return name;
+}
+
 void read_disks(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
   const toml::node* node = root.get("disk");
   if (!node) return;
@@ -195,7 +212,7 @@ void read_disks(const FrontMatterReader& reader, const toml::table& root, Filter
   for (const auto& [key, value] : *node->as_table()) {
     const toml::table* table = value.as_table();
     if (!table) reader.fail(&value, "'disk' must hold tables: [disk.NAME]");
-    reader.check_keys(*table, {"count", "seed"}, fmt::format("[disk.{}]", key.str()));
+    reader.check_keys(*table, {"count", "seed", "pattern"}, fmt::format("[disk.{}]", key.str()));
     DiskTable disk;
     disk.name = std::string(key.str());
     disk.count = reader.text(*table, "count", true);
@@ -215,6 +232,7 @@ void read_disks(const FrontMatterReader& reader, const toml::table& root, Filter
     if (!(seed >= 0.0 && seed <= 4294967295.0))
       reader.fail(table->get("seed"), "'seed' must be a whole number from 0 to 4294967295");
     disk.seed = static_cast<unsigned>(seed);
+    disk.pattern = read_pattern(reader, *table, spec);
     spec.disks.push_back(disk);
   }
 }

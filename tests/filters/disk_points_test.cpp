@@ -53,6 +53,48 @@ TEST(DiskPoints, AreTheSameOnEveryMachine) {
   EXPECT_NEAR(points[15].y, 0.6232137, 1e-6);
 }
 
+/// Of the points' spread, the mean over seeds; those of a pattern with chance differ from seed to seed.
+Spread measure_mean(const std::string& pattern, int count) {
+  constexpr unsigned kSeeds = 64;
+  Spread mean{0.0, 0.0, 0.0, 0.0};
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    const Spread spread = measure(generate_disk_points(count, seed, pattern));
+    mean.mean_square_radius += spread.mean_square_radius / kSeeds;
+    mean.off_centre = std::max(mean.off_centre, spread.off_centre);
+    mean.farthest = std::max(mean.farthest, spread.farthest);
+    mean.closest += spread.closest / kSeeds;
+  }
+  return mean;
+}
+
+TEST(DiskPoints, OfPatternsWithChance_AreUniformInTheMean) {
+  for (const std::string pattern : {"stratified", "blue-noise"}) {
+    for (const int count : {1, 4, 7, 8, 16, 32, 100}) {
+      const Spread spread = measure_mean(pattern, count);
+      EXPECT_LT(spread.off_centre, 1e-6) << pattern << " " << count;
+      EXPECT_LE(spread.farthest, 1.0 + 1e-6) << pattern << " " << count;
+      if (count >= 16) EXPECT_NEAR(spread.mean_square_radius, 0.5, 0.04) << pattern << " " << count;
+    }
+  }
+}
+
+TEST(DiskPoints, OfBlueNoise_AreApart) {
+  for (const int count : {8, 16, 32, 100}) {
+    const double closest = measure_mean("blue-noise", count).closest;
+    EXPECT_GT(closest, 0.8) << count;
+    EXPECT_GT(closest, 1.5 * measure_mean("stratified", count).closest) << count;
+  }
+}
+
+TEST(DiskPoints, OfPatternsWithChance_AreTheSameOnEveryMachine) {
+  const std::vector<glm::vec2> cells = generate_disk_points(16, 1, "stratified");
+  EXPECT_LT(glm::distance(cells.front(), glm::vec2(-0.4621132f, -0.4561556f)), 1e-6f);
+  EXPECT_LT(glm::distance(cells.back(), glm::vec2(0.4007884f, 0.4879614f)), 1e-6f);
+  const std::vector<glm::vec2> apart = generate_disk_points(16, 1, "blue-noise");
+  EXPECT_LT(glm::distance(apart.front(), glm::vec2(0.5017402f, 0.3007793f)), 1e-6f);
+  EXPECT_LT(glm::distance(apart.back(), glm::vec2(0.8834952f, -0.1211787f)), 1e-6f);
+}
+
 TEST(DiskPoints, ASeedTurnsThem) {
   const std::vector<glm::vec2> one = generate_disk_points(16, 1), other = generate_disk_points(16, 2);
   EXPECT_NE(one, other);

@@ -243,6 +243,18 @@ TEST(FrontMatter, BadPassesAreRefused) {
                     "vec4 p(PassInput p) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n"),
                "dir/mine.glsl:6", "lacks 'uvec4 p(PassInput p)'");
   expect_error(with("[pass.p]\nstore = \"r32f\"\nanisotropy = 4\n"), "dir/mine.glsl:8", "needs steps = \"levels\"");
+TEST(FrontMatter, DisksPattern_IsNamed_OrAParameterThatChooses) {
+  const auto with_pattern = [](const std::string& pattern, const std::string& choices = "\"stratified\", \"vogel\"") {
+    return with(
+        "[param.taps]\ndefault = 4\nmin = 1\nmax = 9\nconst = true\ntext = \"x\"\n[param.p]\ndefault = "
+        "\"vogel\"\nchoices = [" +
+        choices + "]\ntext = \"x\"\n[disk.points]\ncount = \"taps\"\npattern = \"" + pattern + "\"\n");
+  };
+  EXPECT_EQ(parse_filter(with_pattern("blue-noise"), "mine.glsl").disks.front().pattern, "blue-noise");
+  EXPECT_EQ(parse_filter(with_pattern("p"), "mine.glsl").disks.front().pattern, "p");
+  for (const char* wrong : {"sunflower", "taps", ""})
+    expect_error(with_pattern(wrong), "dir/mine.glsl:18", "'pattern'");
+  expect_error(with_pattern("p", "\"vogel\", \"grid\""), "dir/mine.glsl:18", "vogel, stratified, blue-noise");
 }
 
 }  // namespace

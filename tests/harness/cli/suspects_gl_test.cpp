@@ -101,7 +101,7 @@ TEST_F(Suspects, BuiltInFilters_AreNone) {
   const Outcome outcome =
       run("run --out out --size 160x90 --map-size 1024 --rounds 1 --no-attribution --filters "
           "all,teaching,vsm:radius=0,esm:radius=8,esm:combine=log,poisson:radius=0,gather_pcf:radius=3,"
-          "pcss:max_radius=20,poisson:radius=20,rotation=interleaved-gradient");
+          "pcss:max_radius=20,dpcf:max_radius=20,poisson:radius=20,rotation=interleaved-gradient");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto cells = nlohmann::json::parse(read_text(folder() / "out" / "results.json"))["cells"];
   EXPECT_GE(cells.size(), 5u * 24u);

@@ -1,4 +1,4 @@
-// Percentage-closer soft shadows against closed forms.
+// Filters whose kernel is as wide as the penumbra, against closed forms.
 
 #include <gtest/gtest.h>
 
@@ -48,13 +48,25 @@ class Filtered {
   std::unique_ptr<Lookup> lookup_;
 };
 
-TEST(Pcss, LightOfNoSize_EqualsHardShadow) {
+class ContactHardening : public ::testing::TestWithParam<const char*> {
+ protected:
+  /// With disks of up to 20 texels and the most taps.
+  std::string finest() const {
+    const std::string id = GetParam();
+    return id + ":taps=32,max_radius=20" + (id == "pcss" ? ",search_taps=32" : "");
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Filters, ContactHardening, ::testing::Values("pcss", "dpcf"),
+                         [](const auto& each) { return std::string(each.param); });
+
+TEST_P(ContactHardening, LightOfNoSize_EqualsHardShadow) {
   std::mt19937 random(3);
   const DepthMap map = make_map([&](int, int) { return static_cast<float>(random()) * 0x1p-32f; });
-  const Filtered pcss("pcss", map), hard("pcf2x2", map);
+  const Filtered soft(GetParam(), map), hard("pcf2x2", map);
   for (int i = 0; i < 500; ++i) {
     const Receiver r = make_floor_receiver(2.0 + 0.12 * i, 61.0 - 0.11 * i, 0.0f);
-    ASSERT_EQ(pcss.at(r), hard.at(r)) << i;
+    ASSERT_EQ(soft.at(r), hard.at(r)) << i;
   }
 }
 
@@ -79,10 +91,10 @@ double share_of_disk(double t) {
 }
 
 /// A half-plane over a floor that lies parallel to it.
-TEST(Pcss, PenumbraOfAnEdge_IsAsWideAsTheLightMakesIt) {
+TEST_P(ContactHardening, PenumbraOfAnEdge_IsAsWideAsTheLightMakesIt) {
   constexpr float kEdge = 0.3f;
   const DepthMap map = make_map([](int x, int) { return x < kMapSide / 2 ? kEdge : 1.0f; });
-  const Filtered pcss("pcss:taps=32,search_taps=32,max_radius=20", map);
+  const Filtered soft(finest(), map);
   for (const float light_size : {0.1f, 0.2f, 0.4f}) {
     const double radius = 50.0 * static_cast<double>(light_size * (kFloor - kEdge));
     const auto seen = [&](double x) {
@@ -91,7 +103,7 @@ TEST(Pcss, PenumbraOfAnEdge_IsAsWideAsTheLightMakesIt) {
       for (int i = 0; i < kPixels; ++i) {
         Receiver r = make_floor_receiver(kMapSide / 2 + x, 32.3, light_size);
         r.pixel = {i, 7 * i};
-        sum += pcss.at(r);
+        sum += soft.at(r);
       }
       return sum / kPixels;
     };
@@ -100,15 +112,15 @@ TEST(Pcss, PenumbraOfAnEdge_IsAsWideAsTheLightMakesIt) {
   }
 }
 
-TEST(Pcss, EveryTap_IsBiasedByItsOwnDistance) {
-  constexpr float kSlope = 0.002f;
+TEST_P(ContactHardening, EveryTap_IsBiasedByItsOwnDistance) {
+  constexpr float kSlope = 0.015f;
   const DepthMap map = make_map([](int x, int) { return kFloor + kSlope * (static_cast<float>(x) - 31.5f); });
-  const Filtered pcss("pcss", map);
+  const Filtered soft(GetParam(), map);
   Receiver r = make_floor_receiver(32.0, 32.0, 2.0f);
   r.depth -= kSlope;  // the reach of one fetch, which bias_texels declares
-  EXPECT_LT(pcss.at(r), 1.0);
+  EXPECT_LT(soft.at(r), 1.0);
   r.bias_per_texel = {kSlope, 0.0f};
-  EXPECT_EQ(pcss.at(r), 1.0);
+  EXPECT_EQ(soft.at(r), 1.0);
 }
 
 }  // namespace

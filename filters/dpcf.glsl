@@ -1,0 +1,53 @@
+/*+++
+title = "Contact hardening in one set of taps"
+source = "Myers 2021, Shadows of Cold War: A Scalable Approach to Shadowing, SIGGRAPH, Advances in Real-Time Rendering; each of the four texels of a tap weighs as a hardware fetch weighs it"
+kind = "stochastic"
+claims = "contact-hardening"
+radius_texels = "max_radius"
+bias_texels = 1
+[param.taps]
+default = 16
+choices = [4, 8, 16, 32]
+const = true
+unit = "gathers"
+text = "points in the disk that finds blockers and their share; too few turn the penumbra into noise or bands, the more so the harder it is"
+[param.max_radius]
+default = 8.0
+min = 0.0
+max = 64.0
+unit = "texels"
+text = "limit of the disk's radius; too small hardens wide penumbrae, too large spreads the taps so that narrow ones are noisy"
+[param.rotation]
+default = "per-pixel"
+choices = ["none", "per-pixel", "interleaved-gradient"]
+text = "turn of the disk at each pixel: none shows bands, per-pixel white noise, interleaved-gradient a regular dither"
+[disk.disk_points]
+count = "taps"
+seed = 1
++++*/
+#include "lib/penumbra.glsl"
+
+float visibility(Receiver r) {
+  float widening = penumbra_per_depth(r);
+  float search = min(widening * r.depth_unbiased, max_radius);
+  if (search < one_fetch) return compare_2x2(r, vec2(0.0), r.depth);
+  vec2 turn = find_turn(r.pixel);
+  vec2 place = texel_fraction(r);
+  float depths = 0.0;
+  float blocked = 0.0;
+  for (int i = 0; i < taps; ++i) {
+    vec2 offset = search * rotate(disk_points[i], turn);
+    vec2 texel = floor(place + offset);
+    vec2 t = place + offset - texel;
+    vec4 weights = vec4((1.0 - t.x) * t.y, t.x * t.y, t.x * (1.0 - t.y), (1.0 - t.x) * (1.0 - t.y));
+    vec2 corner = texel + 0.5 - place;
+    vec4 depth = gather_depth(r, corner);
+    weights *= vec4(lessThan(depth, vec4(corner_depth(r, corner, biased_depth(r, offset)))));
+    depths += dot(weights, depth);
+    blocked += dot(weights, vec4(1.0));
+  }
+  if (blocked == 0.0) return 1.0;
+  float radius = min(widening * (r.depth - depths / blocked), max_radius);
+  if (radius < one_fetch) return compare_2x2(r, vec2(0.0), r.depth);
+  return clamp(0.5 + (0.5 - blocked / float(taps)) * search / radius, 0.0, 1.0);
+}

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/map_reader.h"
+
+namespace shadowbench::filters {
+
+/// What filters share whose disk is as wide as the penumbra: shaders/lib/penumbra.glsl.
+template <class T>
+class PenumbraDisk {
+ public:
+  using P = Position<T>;
+  static constexpr P kOneFetch = P(0.25);  ///< texels: a smaller disk is one fetch
+  static constexpr P kRounding = P(1e-4);  ///< of radii and of the places of taps, texels
+
+  explicit PenumbraDisk(const ParamValues& values) : max_radius_(static_cast<P>(number(values, "max_radius"))) {}
+
+  /// The radius in texels of the penumbra that a blocker so far above the receiver makes, in depth, within its limit.
+  /// Rounding decides about radii near the end of a single fetch.
+  P radius(const Receiver& r, P depth_above, Tally& tally) const {
+    const P per_depth =
+        P(0.5) * static_cast<P>(r.light_size) * static_cast<P>(r.depth_range_ws) / static_cast<P>(r.texel_size_ws);
+    const P limited = std::min(per_depth * depth_above, max_radius_);
+    if (std::abs(limited - kOneFetch) < kRounding) tally.excused = true;
+    return limited;
+  }
+
+  /// The receiver's depth, biased for a tap by the tap's own distance.
+  static float biased(const Receiver& r, const Offset<T>& offset) {
+    const P bias = static_cast<P>(r.bias_per_texel.x) * std::abs(offset.x) +
+                   static_cast<P>(r.bias_per_texel.y) * std::abs(offset.y);
+    return static_cast<float>(static_cast<P>(r.depth) - bias);
+  }
+
+  /// Whether rounding decides which of two depths is the nearer one.
+  static bool is_close(float depth, float other) { return std::abs(depth - other) < 1e-7f; }
+
+ private:
+  P max_radius_;
+};
+
+}  // namespace shadowbench::filters
