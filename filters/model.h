@@ -53,14 +53,21 @@ struct ModelEntry {
 };
 const std::vector<ModelEntry>& model_table();
 
-/// A filter's model, null where it has none (a user's file).
+/// The model of a built-in filter; null where there is none.
 std::unique_ptr<Model> make_model(const std::string& id);
 
-/// Why a filter with a model may have no kernel.
-inline constexpr const char* kKernelDiffers = "the filter's kernel differs from pixel to pixel";
+/// A filter's model, that of the filter it copies included; null where it has none (a user's file).
+std::unique_ptr<Model> make_model(const FilterSpec& spec);
 
-/// A filter's kernel; none where it has no model, or none that all receivers share.
-std::optional<Kernel> find_kernel(const std::string& id, const ParamValues& values);
+/// Why a filter without a model has none.
+inline constexpr const char* kNoModel = "the filter has no scalar model";
+
+/// A filter's kernel: the one that it declares, or its model's; none where it has neither, or none that all receivers
+/// share.
+std::optional<Kernel> find_kernel(const FilterSpec& spec, const ParamValues& values);
+
+/// Why a filter has no kernel.
+const char* explain_no_kernel(const FilterSpec& spec);
 
 /// Wraps `Filter<T>`, a class made from a ModelInput with `T visibility(const Receiver&, Tally&) const` and
 /// `static Kernel kernel(const ParamValues&)`, or an optional one, as a Model.

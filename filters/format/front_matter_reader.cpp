@@ -10,6 +10,16 @@
 
 namespace shadowbench::filters {
 
+Ends ends_of(const ParamSpec& param) {
+  if (param.choices.empty()) return {*param.min, *param.max};
+  Ends ends{std::get<double>(param.choices.front()), std::get<double>(param.choices.front())};
+  for (const ParamValue& choice : param.choices) {
+    ends.smallest = std::min(ends.smallest, std::get<double>(choice));
+    ends.largest = std::max(ends.largest, std::get<double>(choice));
+  }
+  return ends;
+}
+
 void FrontMatterReader::fail(const toml::node* node, const std::string& message) const {
   const int line = node ? static_cast<int>(node->source().begin.line) : 1;
   throw Error(ErrorKind::kFilter, message, fmt::format("{}:{}", path_, first_line_ - 1 + std::max(line, 1)));

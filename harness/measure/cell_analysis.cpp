@@ -37,7 +37,7 @@ void note_parts(records::CellRecord& record, const metrics::Attribution& attribu
     record.attribution.*
         records::list_error_parts()[p].record = {attribution.stats[p]->rms, attribution.stats[p]->share};
   }
-  if (attribution.stats.front()) return;
+  if (attribution.stats.back()) return;
   record.absent["attribution"] =
       attribution.not_finite > 0 ? "no pixel of the image is finite" : "there is no error to take apart";
 }
@@ -149,13 +149,10 @@ ModelImages CellAnalyser::evaluate(const filters::FilterRequest& request) {
 void CellAnalyser::attribute(MeasuredCell& cell) {
   records::CellRecord& record = cell.record;
   const filters::FilterRequest& request = cell.request;
-  const auto model = filters::make_model(request.spec.id);
-  const auto shape = model ? model->kernel(request.values) : std::nullopt;
-  const bool wanted = options_.attribution;
-  if (!shape || request.user_file || !wanted) {
-    const char* reason = !wanted                       ? "the run was made with --no-attribution"
-                         : model && !request.user_file ? filters::kKernelDiffers
-                                                       : "the filter has no scalar model";
+  const auto shape = filters::find_kernel(request.spec, request.values);
+  if (!shape || !options_.attribution) {
+    const char* reason =
+        options_.attribution ? filters::explain_no_kernel(request.spec) : "the run was made with --no-attribution";
     for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused"})
       record.absent[field] = reason;
     return;
@@ -165,8 +162,13 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   const std::vector<float>& image = cell.visibility.texels;
   metrics::Attribution attribution =
       metrics::attribute_error({image, images.model, images.closer, kernel, truth_.area.texels, truth_.mask});
-  record.excused = images.excused;
-  record.absent.erase("excused");
+  if (images.model.empty()) {
+    record.absent["excused"] = filters::kNoModel;
+    record.absent["attribution.numeric"] = "the filter has no scalar model: numeric error is within the estimator's";
+  } else {
+    record.excused = images.excused;
+    record.absent.erase("excused");
+  }
   note_parts(record, attribution);
   const auto to_kernel = metrics::measure_error(image, kernel, truth_.mask);
   note(record, "error.kernel_rmse", record.error.kernel_rmse, to_kernel ? std::optional(to_kernel->rmse) : std::nullopt,
@@ -176,7 +178,9 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
        random ? metrics::rate_noise(image, images.closer, kernel, truth_.mask, options_.width) : std::nullopt,
        random ? too_few("lie in the kernel's penumbra") : "the filter takes no random taps");
   for (std::vector<float>& part : attribution.parts) {
-    images::Image& to = cell.error_parts.emplace_back(options_.width, options_.height, 1);
+    images::Image& to = cell.error_parts.emplace_back();
+    if (part.empty()) continue;
+    to = {options_.width, options_.height, 1};
     to.texels = std::move(part);
   }
 }

@@ -38,8 +38,8 @@ class CellAnalyser {
                const SceneTruth& truth);
 
   /// Notes attribution and artefacts in the cell's record, or why there are none, and leaves the parts as images.
-  /// Cost: the filter's scalar model and its brute-force percentage-closer filter for every receiver, and its kernel
-  /// traced once for all cells that share it.
+  /// Cost: the filter's scalar model, where it has one, and its brute-force percentage-closer filter for every
+  /// receiver, and its kernel traced once for all cells that share it.
   void analyse(MeasuredCell& cell);
 
   /// The masks of the artefacts; nothing where there is no truth.

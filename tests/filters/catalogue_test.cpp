@@ -35,7 +35,7 @@ void expect_usage_error(const std::string& text, const std::string& words) {
 
 TEST(Catalogue, EveryBuiltInFilter_HasAModelAndASource) {
   for (const FilterSpec& spec : built_in().filters()) {
-    EXPECT_NE(make_model(spec.id), nullptr) << spec.id;
+    EXPECT_NE(make_model(spec), nullptr) << spec.id;
     EXPECT_FALSE(spec.source.empty()) << spec.id;
   }
   EXPECT_EQ(built_in().filters().front().id, "none");

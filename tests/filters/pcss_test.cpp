@@ -38,8 +38,7 @@ class Filtered {
  public:
   Filtered(const std::string& text, const DepthMap& map)
       : request_(Catalogue(SHADOWBENCH_SOURCE_DIR "/filters").parse_requests(text).front()),
-        lookup_(
-            make_model(request_.spec.id)->prepare({request_.spec, request_.values, map, {}, 0}, Precision::kDouble)) {}
+        lookup_(make_model(request_.spec)->prepare({request_.spec, request_.values, map, {}, 0}, Precision::kDouble)) {}
 
   double at(const Receiver& r) const { return lookup_->at(r).visibility; }
 

@@ -45,7 +45,7 @@ TEST_F(Command, UserFilter_GetsCellAndPictures) {
   EXPECT_EQ(cell["params"]["weight"], 0.5);
   EXPECT_EQ(cell["cost"]["fetches"], 9.0);
   EXPECT_TRUE(cell["kernel"]["sigma_texels"].is_null());
-  EXPECT_EQ(cell["absent"]["kernel"], "the filter has no model, which alone knows its kernel");
+  EXPECT_EQ(cell["absent"]["kernel"], "the filter declares no kernel, and has no scalar model that knows it");
   EXPECT_TRUE(std::filesystem::exists(folder() / "out" / cell["images"]["picture"].get<std::string>()));
   for (const auto& entry : std::filesystem::directory_iterator(folder() / "out"))
     EXPECT_NE(entry.path().filename().string().rfind(".worker", 0), 0u) << entry.path();
@@ -243,7 +243,7 @@ TEST_F(Command, AUsersFilter_HasArtefactsButNoAttribution) {
   const nlohmann::json cell = results(folder())["cells"][1];
   EXPECT_EQ(cell["filter"], "nine_compares");
   EXPECT_TRUE(cell["attribution"]["model"]["share"].is_null());
-  EXPECT_EQ(cell["absent"]["attribution"], "the filter has no scalar model");
+  EXPECT_EQ(cell["absent"]["attribution"], "the filter declares no kernel, and has no scalar model that knows it");
   EXPECT_FALSE(cell["artefact"]["acne"].is_null());
   EXPECT_FALSE(cell["error"]["rmse"].is_null());
 }
