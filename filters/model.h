@@ -25,6 +25,9 @@ struct ModelResult {
   double visibility = 1.0;
   double bound = 0.0;    ///< Precision::kTracked: |GL - visibility| cannot exceed this
   bool excused = false;  ///< a tap lies within one depth ULP of a tie or 4 ULP of a texel border: rounding decides
+  /// Where the filter's kernel differs from receiver to receiver: that of this one, a uniform disk of this radius read
+  /// through 2x2 texels; 0 for one fetch, and where the filter averages nothing.
+  double disk_radius_texels = 0.0;
 };
 
 /// A model with its map prepared: encoded and blurred where the filter does that.
@@ -42,7 +45,7 @@ class Model {
   virtual std::unique_ptr<Lookup> prepare(const ModelInput& input, Precision precision) const = 0;
 
   /// Names the kernel that the filter averages with, for these complete parameter values; none where it differs from
-  /// receiver to receiver.
+  /// receiver to receiver, and is ModelResult::disk_radius_texels wide.
   virtual std::optional<Kernel> kernel(const ParamValues& values) const = 0;
 };
 

@@ -37,6 +37,7 @@ class Pcss {
     if (!blocker) return T(P(1));
     const P radius = limit(widening * (depth - *blocker), tally);
     if (radius < kOneFetch) return map_.compare_2x2(r, {}, r.depth, tally);
+    tally.disk_radius_texels = static_cast<double>(radius);
     T sum{};
     for (const glm::vec2& point : points_) {
       const Offset<T> offset = turn.place(radius, point);

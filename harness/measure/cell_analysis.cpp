@@ -79,16 +79,15 @@ CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& option
 }
 
 /// Where all rays of a receiver's surroundings agree, those of a kernel within them are taken to agree with them.
-std::vector<float> CellAnalyser::trace_kernel(const filters::Kernel& kernel) {
+std::vector<float> CellAnalyser::trace_unsettled(double half_width_texels, const Trace& trace) {
   truth::ReceiverImage receivers = truth_.receivers.image;
-  const bool is_within = kernel.half_width() <= around_.half_width_texels;
+  const bool is_within = half_width_texels <= around_.half_width_texels;
   const auto is_known = [&](std::size_t i) { return is_within && around_.settled[i] != 0; };
   if (is_within && !receivers.content.empty())
     receivers.content += fmt::format(" unsettled within {} texels", around_.half_width_texels);
   for (std::size_t i = 0; i < receivers.points.size(); ++i)
     if (is_known(i)) receivers.points[i].counts = false;
-  std::vector<float> visibility =
-      assets_.tracer().trace_kernel(receivers, kernel, scene::make_map_grid(light_.frustum)).visibility;
+  std::vector<float> visibility = trace(receivers, scene::make_map_grid(light_.frustum)).visibility;
   for (std::size_t i = 0; i < visibility.size(); ++i)
     if (is_known(i)) visibility[i] = around_.visibility[i];
   return visibility;
@@ -97,8 +96,18 @@ std::vector<float> CellAnalyser::trace_kernel(const filters::Kernel& kernel) {
 const std::vector<float>& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {
   if (kernel.is_point()) return truth_.rays.hard;
   const auto [place, is_new] = kernels_.try_emplace(kernel.name());
-  if (is_new) place->second = trace_kernel(kernel);
+  if (is_new)
+    place->second = trace_unsettled(kernel.half_width(), [&](const auto& receivers, const auto& grid) {
+      return assets_.tracer().trace_kernel(receivers, kernel, grid);
+    });
   return place->second;
+}
+
+std::vector<float> CellAnalyser::disks_truth(const std::vector<float>& radii_texels) {
+  const double widest = static_cast<double>(*std::ranges::max_element(radii_texels));
+  return trace_unsettled(filters::Kernel::make_disk(widest).half_width(), [&](const auto& receivers, const auto& grid) {
+    return assets_.tracer().trace_disks(receivers, radii_texels, grid);
+  });
 }
 
 void CellAnalyser::analyse(MeasuredCell& cell) {
@@ -138,8 +147,9 @@ std::vector<filters::Receiver> CellAnalyser::read_receivers(const render::Bias& 
 ModelImages CellAnalyser::evaluate(const filters::FilterRequest& request) {
   if (!map_) map_ = light_.map.read();
   const render::Bias own = render::resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
+  const bool has_kernel = filters::find_kernel(request.spec, request.values).has_value();
   const render::Bias comparison =
-      render::resolve_comparison_bias(options_.bias, light_.frustum, request.spec, request.values);
+      has_kernel ? render::resolve_comparison_bias(options_.bias, light_.frustum, request.spec, request.values) : own;
   ModelReceivers receivers{read_receivers(own), {}};
   receivers.closer = own == comparison ? receivers.filter : read_receivers(comparison);
   return evaluate_model(request, *map_, receivers, options_.bias.plane_max_tangent(), options_.seed, options_.width,
@@ -150,7 +160,7 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   records::CellRecord& record = cell.record;
   const filters::FilterRequest& request = cell.request;
   const auto shape = filters::find_kernel(request.spec, request.values);
-  if (!shape || !options_.attribution) {
+  if (!options_.attribution || (!shape && !filters::make_model(request.spec))) {
     const char* reason =
         options_.attribution ? filters::explain_no_kernel(request.spec) : "the run was made with --no-attribution";
     for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused"})
@@ -158,7 +168,7 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
     return;
   }
   const ModelImages images = evaluate(request);
-  const std::vector<float>& kernel = kernel_truth(*shape);
+  const std::vector<float> kernel = shape ? kernel_truth(*shape) : disks_truth(images.disk_radii_texels);
   const std::vector<float>& image = cell.visibility.texels;
   metrics::Attribution attribution =
       metrics::attribute_error({image, images.model, images.closer, kernel, truth_.area.texels, truth_.mask});

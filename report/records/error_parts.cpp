@@ -30,7 +30,7 @@ const std::array<ErrorPart, metrics::kErrorParts>& list_error_parts() {
                 &AttributionRecord::discretisation},
       ErrorPart{"model",
                 "model",
-                "a fixed kernel is not this light's penumbra",
+                "the filter's kernel is not this light's penumbra",
                 {0.80f, 0.47f, 0.65f},
                 &AttributionRecord::model}};
   return kParts;
