@@ -52,7 +52,7 @@ std::vector<std::string> ids_of(const std::string& text) {
 }
 
 TEST(Requests, AllAreThoseThatAreNotForTeaching_Empty_AsksForThem) {
-  EXPECT_THAT(ids_of("teaching"), UnorderedElementsAre("box3x3", "teach4x4"));
+  EXPECT_THAT(ids_of("teaching"), UnorderedElementsAre("box3x3", "teach4x4", "teach_evsm"));
   EXPECT_EQ(ids_of(""), ids_of("all"));
   EXPECT_THAT(ids_of("all"), IsSupersetOf({"none", "box4x4", "vsm"}));
   EXPECT_EQ(ids_of("all,teaching").size(), built_in().filters().size());
