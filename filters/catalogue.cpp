@@ -13,7 +13,9 @@
 #include "filters/base/nearest_name.h"
 #include "filters/base/split_list.h"
 #include "filters/format/front_matter.h"
+#include "filters/format/glsl_words.h"
 #include "filters/kernel_width.h"
+#include "filters/model.h"
 
 namespace shadowbench::filters {
 namespace {
@@ -74,6 +76,19 @@ void apply_width(FilterRequest& request) {
     fail(fmt::format("{} sets '{}' and 'width', which says the same: leave one out", request.spec.id, name));
   request.values[name] = radius;
   request.set_by_user.push_back(name);
+}
+
+/// What a filter computes with: its file without ids, titles, sources, claims, what is said of parameters, and
+/// comments, with every run of blanks as one.
+FilterSpec strip(FilterSpec spec) {
+  for (std::string* text : {&spec.id, &spec.path, &spec.title, &spec.source, &spec.copy_of}) text->clear();
+  for (ParamSpec& param : spec.params) param.unit = param.text = {};
+  for (PassSpec& pass : spec.passes) pass.line = 1;
+  spec.claims.clear();
+  spec.teaching = false;
+  spec.body_first_line = 1;
+  spec.body = squeeze_blanks(strip_comments(spec.body));
+  return spec;
 }
 
 }  // namespace
@@ -147,6 +162,8 @@ void Catalogue::add_user_file(const std::filesystem::path& path) {
   for (const FilterSpec& known : filters_)
     if (known.id == spec.id)
       fail(fmt::format("filter id '{}' of {} is taken by {}: rename the file", spec.id, spec.path, known.path));
+  for (const FilterSpec& known : filters_)
+    if (make_model(known.id) && strip(known) == strip(spec)) spec.copy_of = known.id;
   user_ids_.push_back(spec.id);
   filters_.push_back(std::move(spec));
 }

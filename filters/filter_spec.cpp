@@ -8,11 +8,6 @@
 namespace shadowbench::filters {
 namespace {
 
-double number_or_param(const std::variant<double, std::string>& value, const ParamValues& values) {
-  if (const auto* name = std::get_if<std::string>(&value)) return number(values, *name);
-  return std::get<double>(value);
-}
-
 double find_reach(const std::variant<double, std::string>& half_width, const ParamValues& values) {
   constexpr double kOwnTexel = 0.5, kReconstruction = 1.0;
   const double taps = number_or_param(half_width, values);
@@ -48,6 +43,11 @@ double number(const ParamValues& values, const std::string& name) {
   const auto found = values.find(name);
   assert(found != values.end());
   return std::get<double>(found->second);
+}
+
+double number_or_param(const std::variant<double, std::string>& value, const ParamValues& values) {
+  if (const auto* name = std::get_if<std::string>(&value)) return number(values, *name);
+  return std::get<double>(value);
 }
 
 std::string text_or(const ParamValues& values, const std::string& name, const std::string& fallback) {

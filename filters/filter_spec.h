@@ -31,6 +31,8 @@ struct ParamSpec {
   std::vector<ParamValue> choices;  ///< the only values allowed; empty: any
   std::string unit;
   std::string text;  ///< help: what too little and too much do
+
+  bool operator==(const ParamSpec&) const = default;
 };
 
 /// Asks for a table of points in the unit disk, given to the GLSL as `const vec2 <name>[]`.
@@ -39,6 +41,8 @@ struct DiskTable {
   std::string count;  ///< name of the integer parameter that gives the number of points
   unsigned seed = 1;
   std::string pattern = "vogel";  ///< one of disk_patterns(), or the name of the parameter that chooses one
+
+  bool operator==(const DiskTable&) const = default;
 };
 
 /// What a pass of a filter's own is drawn for: once; once, along u, and along v; once, and for the strides 1, 4, 16,
@@ -57,6 +61,19 @@ struct PassSpec {
 
   bool is_integer() const { return store.ends_with("ui"); }
   const char* texel_type() const { return is_integer() ? "uvec4" : "vec4"; }
+  bool operator==(const PassSpec&) const = default;
+};
+
+enum class KernelShape { kTent, kBox, kDisk, kGaussian, kWeights };
+
+/// A kernel that the front matter declares; make_kernel() makes it.
+struct DeclaredKernel {
+  KernelShape shape = KernelShape::kWeights;
+  std::variant<double, std::string> size = 0.0;  ///< texels: a number or a parameter's name; not of weights
+  std::vector<double> weights;                   ///< one texel apart, centred on the receiver; they sum to 1
+  bool reads_nearest = false;                    ///< instead of the four texels around a tap
+
+  bool operator==(const DeclaredKernel&) const = default;
 };
 
 /// Everything the front matter of `<id>.glsl` says, and the GLSL that follows it.
@@ -72,19 +89,22 @@ struct FilterSpec {
   std::variant<double, std::string> bias_texels = 0.0;    ///< half-width over which one depth stands for the receiver
   std::vector<ParamSpec> params;                          ///< `store`, `combine` and `sample` lists included
   std::vector<DiskTable> disks;
-  std::vector<PassSpec> passes;  ///< in the order in which they run
-  std::string body;              ///< GLSL after the front matter
-  int body_first_line = 1;       ///< line of the file at which `body` begins
-  bool has_encode = false;       ///< stores something else than depth
-  bool uses_samplers = false;    ///< reads the map past the counted functions: its fetch count is unknown
-  bool reads_unwritten = false;  ///< reads the encoded map, and has no encode() that writes it
-  bool has_prefilter = false;    ///< `combine` is given: the map is blurred with radius `radius_texels`
-  bool holds_moments = false;    ///< channels in pairs: a mean, and the mean of its square
-  std::string exponent;          ///< parameter that the exponents of what is stored grow with; empty: none
-  std::string variance_floor;    ///< parameter that variances are raised to; empty: none
-  std::string bound_at_zero;     ///< parameter that a bound holds without, at 0 only; empty: it always holds
+  std::vector<PassSpec> passes;          ///< in the order in which they run
+  std::optional<DeclaredKernel> kernel;  ///< none: only a scalar model knows it
+  std::string copy_of;                   ///< a user's file: the built-in filter that it copies; empty: none
+  std::string body;                      ///< GLSL after the front matter
+  int body_first_line = 1;               ///< line of the file at which `body` begins
+  bool has_encode = false;               ///< stores something else than depth
+  bool uses_samplers = false;            ///< reads the map past the counted functions: its fetch count is unknown
+  bool reads_unwritten = false;          ///< reads the encoded map, and has no encode() that writes it
+  bool has_prefilter = false;            ///< `combine` is given: the map is blurred with radius `radius_texels`
+  bool holds_moments = false;            ///< channels in pairs: a mean, and the mean of its square
+  std::string exponent;                  ///< parameter that the exponents of what is stored grow with; empty: none
+  std::string variance_floor;            ///< parameter that variances are raised to; empty: none
+  std::string bound_at_zero;             ///< parameter that a bound holds without, at 0 only; empty: it always holds
 
   const ParamSpec* find_param(const std::string& name) const;
+  bool operator==(const FilterSpec&) const = default;
 };
 
 /// The names `comparison`, `bound`, `stochastic`, `other`.
@@ -95,6 +115,9 @@ std::string to_string(const ParamValue& value);
 
 /// A numeric parameter's value. Requires that the parameter exists and is a number.
 double number(const ParamValues& values, const std::string& name);
+
+/// A number that the front matter gives itself, or the value of the parameter that it names.
+double number_or_param(const std::variant<double, std::string>& value, const ParamValues& values);
 
 /// A text parameter's value, `fallback` where the filter has no such parameter.
 std::string text_or(const ParamValues& values, const std::string& name, const std::string& fallback);

@@ -84,7 +84,7 @@ std::string describe_classes() {
 }
 
 std::optional<double> find_kernel_sigma(const FilterSpec& spec, const ParamValues& values) {
-  const auto kernel = find_kernel(spec.id, values);
+  const auto kernel = find_kernel(spec, values);
   return kernel ? std::optional(kernel->sigma_texels()) : std::nullopt;
 }
 
@@ -96,12 +96,7 @@ double solve_radius(const FilterSpec& spec, const ParamValues& values, const std
     refuse_width(spec, width,
                  "the filter has no radius that a width could set" +
                      (sigma ? fmt::format("; its kernel is {:.3g} texels wide", *sigma) : std::string()));
-  if (!sigma)
-    refuse_width(
-        spec, width,
-        fmt::format(
-            "without a model, or with a kernel that differs from pixel to pixel, nobody knows it; set '{}' itself",
-            *name));
+  if (!sigma) refuse_width(spec, width, fmt::format("{}; set '{}' itself", explain_no_kernel(spec), *name));
   const ParamSpec& param = *spec.find_param(*name);
   auto sigma_at = [&, trial = values](double radius) mutable {
     trial[*name] = radius;

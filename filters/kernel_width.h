@@ -31,14 +31,13 @@ const WidthClass* find_width_class(double sigma_texels);
 /// Lists the classes with their widths and limits: "sharp 0.41 texels, up to 0.51; ...".
 std::string describe_classes();
 
-/// The width of a filter's kernel; empty where the filter has no model, which alone knows it, or no kernel that all
-/// receivers share.
+/// The width of a filter's kernel; empty where find_kernel() finds none.
 std::optional<double> find_kernel_sigma(const FilterSpec& spec, const ParamValues& values);
 
 /// Finds the radius with which a filter's kernel is as wide as asked for, the other parameters being as in `values`.
 /// `width` is the name of a class or a number of texels. Of whole-numbered radii, and of choices, it is the one whose
 /// width is nearest in ratio, within the class where one is named; others are found to a thousandth of a texel.
-/// Throws Error(kUsage) where the filter has no radius or no model, for a width that is neither, and, with the range
+/// Throws Error(kUsage) where the filter has no radius or no kernel, for a width that is neither, and, with the range
 /// that can be reached, for one that no radius gives.
 double solve_radius(const FilterSpec& spec, const ParamValues& values, const std::string& width);
 

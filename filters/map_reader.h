@@ -17,6 +17,7 @@ namespace shadowbench::filters {
 /// What happened while one receiver was looked up.
 struct Tally {
   bool excused = false;  ///< rounding decided which texel was read, or on which side of a tie a comparison fell
+  double disk_radius_texels = 0.0;  ///< of the kernel used here, where kernels differ; see ModelResult
 };
 
 /// A shift in texels.

@@ -1,5 +1,7 @@
 #include "filters/model.h"
 
+#include "filters/format/declared_kernel.h"
+
 namespace shadowbench::filters {
 
 std::unique_ptr<Model> make_model(const std::string& id) {
@@ -8,9 +10,19 @@ std::unique_ptr<Model> make_model(const std::string& id) {
   return nullptr;
 }
 
-std::optional<Kernel> find_kernel(const std::string& id, const ParamValues& values) {
-  const auto model = make_model(id);
+std::unique_ptr<Model> make_model(const FilterSpec& spec) {
+  return make_model(spec.copy_of.empty() ? spec.id : spec.copy_of);
+}
+
+std::optional<Kernel> find_kernel(const FilterSpec& spec, const ParamValues& values) {
+  if (spec.kernel) return make_kernel(*spec.kernel, values);
+  const auto model = make_model(spec);
   return model ? model->kernel(values) : std::nullopt;
+}
+
+const char* explain_no_kernel(const FilterSpec& spec) {
+  return make_model(spec) ? "the filter's kernel differs from pixel to pixel"
+                          : "the filter declares no kernel, and has no scalar model that knows it";
 }
 
 }  // namespace shadowbench::filters

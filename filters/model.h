@@ -25,6 +25,9 @@ struct ModelResult {
   double visibility = 1.0;
   double bound = 0.0;    ///< Precision::kTracked: |GL - visibility| cannot exceed this
   bool excused = false;  ///< a tap lies within one depth ULP of a tie or 4 ULP of a texel border: rounding decides
+  /// Where the filter's kernel differs from receiver to receiver: that of this one, a uniform disk of this radius read
+  /// through 2x2 texels; 0 for one fetch, and where the filter averages nothing.
+  double disk_radius_texels = 0.0;
 };
 
 /// A model with its map prepared: encoded and blurred where the filter does that.
@@ -42,7 +45,7 @@ class Model {
   virtual std::unique_ptr<Lookup> prepare(const ModelInput& input, Precision precision) const = 0;
 
   /// Names the kernel that the filter averages with, for these complete parameter values; none where it differs from
-  /// receiver to receiver.
+  /// receiver to receiver, and is ModelResult::disk_radius_texels wide.
   virtual std::optional<Kernel> kernel(const ParamValues& values) const = 0;
 };
 
@@ -53,14 +56,21 @@ struct ModelEntry {
 };
 const std::vector<ModelEntry>& model_table();
 
-/// A filter's model, null where it has none (a user's file).
+/// The model of a built-in filter; null where there is none.
 std::unique_ptr<Model> make_model(const std::string& id);
 
-/// Why a filter with a model may have no kernel.
-inline constexpr const char* kKernelDiffers = "the filter's kernel differs from pixel to pixel";
+/// A filter's model, that of the filter it copies included; null where it has none (a user's file).
+std::unique_ptr<Model> make_model(const FilterSpec& spec);
 
-/// A filter's kernel; none where it has no model, or none that all receivers share.
-std::optional<Kernel> find_kernel(const std::string& id, const ParamValues& values);
+/// Why a filter without a model has none.
+inline constexpr const char* kNoModel = "the filter has no scalar model";
+
+/// A filter's kernel: the one that it declares, or its model's; none where it has neither, or none that all receivers
+/// share.
+std::optional<Kernel> find_kernel(const FilterSpec& spec, const ParamValues& values);
+
+/// Why a filter has no kernel.
+const char* explain_no_kernel(const FilterSpec& spec);
 
 /// Wraps `Filter<T>`, a class made from a ModelInput with `T visibility(const Receiver&, Tally&) const` and
 /// `static Kernel kernel(const ParamValues&)`, or an optional one, as a Model.

@@ -27,7 +27,7 @@ class TemplatedLookup final : public Lookup {
   ModelResult at(const Receiver& receiver) const override {
     Tally tally;
     const auto visibility = filter_.visibility(receiver, tally);
-    return {value_of(visibility), bound_of(visibility), tally.excused};
+    return {value_of(visibility), bound_of(visibility), tally.excused, tally.disk_radius_texels};
   }
 
  private:

@@ -31,6 +31,7 @@ class Pcss {
     if (!blocker) return T(P(1));
     const P radius = disk_.radius(r, static_cast<P>(r.depth) - *blocker, tally);
     if (radius < Disk::kOneFetch) return map_.compare_2x2(r, {}, r.depth, tally);
+    tally.disk_radius_texels = static_cast<double>(radius);
     T sum{};
     for (const glm::vec2& point : points_) {
       const Offset<T> offset = turn.place(radius, point);

@@ -48,13 +48,13 @@ double gather_tent(double radius, double dx, double dy) {
 }
 
 constexpr int kMaxTableSide = 640;
-constexpr double kMaxCellsPerTexel = 96.0;
+constexpr double kFewCellsPerTexel = 16.0;
 
 }  // namespace
 
-DiskWeights::DiskWeights(double radius_texels)
+DiskWeights::DiskWeights(double radius_texels, double most_cells_per_texel)
     : reach_(radius_texels + 1.0),
-      cells_per_texel_(std::min(kMaxCellsPerTexel, (kMaxTableSide - 2) / reach_)),
+      cells_per_texel_(std::min(most_cells_per_texel, (kMaxTableSide - 2) / reach_)),
       side_(static_cast<int>(std::ceil(reach_ * cells_per_texel_)) + 2),
       table_(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_)) {
   const auto side = static_cast<std::size_t>(side_);
@@ -80,13 +80,27 @@ double DiskWeights::at(double dx, double dy) const {
   return low + sy * (high - low);
 }
 
-PercentageCloser::PercentageCloser(const Kernel& kernel, const DepthMap& map, double plane_max_tangent)
-    : kernel_(kernel), grid_(map.size, map.border), map_(map), plane_(plane_max_tangent) {
-  if (kernel.atoms().empty() && kernel.triangle() == 0.0) disk_.emplace(kernel.disk_radius());
+PercentageCloser::PercentageCloser(const Kernel& kernel, const DepthMap& map, double plane_max_tangent, Owner owner)
+    : kernel_(kernel),
+      grid_(map.size, map.border),
+      map_(map),
+      plane_(plane_max_tangent),
+      farthest_tap_(owner == Owner::kFewReceivers ? kernel.disk_radius() : 0.0) {
+  if (!kernel.atoms().empty() || kernel.triangle() > 0.0) return;
+  if (owner == Owner::kAllReceivers)
+    disk_.emplace(kernel.disk_radius());
+  else
+    disk_.emplace(kernel.disk_radius(), kFewCellsPerTexel);
 }
 
 bool PercentageCloser::is_lit(int x, int y, const Receiver& receiver) const {
-  const float depth = plane_.depth(receiver, grid_.size(), {x + 0.5, y + 0.5}, 0.0, receiver.depth);
+  const glm::dvec2 centre{x + 0.5, y + 0.5};
+  float biased = receiver.depth;
+  if (farthest_tap_ > 0.0) {
+    const glm::dvec2 way = glm::abs(centre - glm::dvec2(receiver.uv) * static_cast<double>(grid_.size()));
+    biased -= glm::dot(receiver.bias_per_texel, glm::vec2(glm::min(way, farthest_tap_)));
+  }
+  const float depth = plane_.depth(receiver, grid_.size(), centre, 0.0, biased);
   return map_.is_lit(depth, map_.at(grid_.find(x, y)));
 }
 

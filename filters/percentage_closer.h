@@ -14,8 +14,8 @@ namespace shadowbench::filters {
 /// its share of the disk's mean weight.
 class DiskWeights {
  public:
-  /// Cost: about 0.1 s.
-  explicit DiskWeights(double radius_texels);
+  /// Cost: about 0.1 s; it grows with the square of the cells.
+  explicit DiskWeights(double radius_texels, double most_cells_per_texel = 96.0);
   double at(double dx, double dy) const;  ///< texel centre less disk centre, texels
 
  private:
@@ -30,9 +30,17 @@ class DiskWeights {
 /// Source: Reeves, Salesin and Cook 1987, Rendering Antialiased Shadows with Depth Maps, SIGGRAPH.
 class PercentageCloser {
  public:
+  /// Whose the kernel is.
+  enum class Owner {
+    kAllReceivers,
+    kFewReceivers  ///< others have others: their bias covers one fetch, and a tap farther off has that much more of
+                   ///< Receiver::bias_per_texel; a disk's weights are tabulated more coarsely
+  };
+
   /// `map` must outlive this object. With a `plane_max_tangent` every texel is compared with the receiver plane's depth
   /// there; see ModelInput.
-  PercentageCloser(const Kernel& kernel, const DepthMap& map, double plane_max_tangent = 0.0);
+  PercentageCloser(const Kernel& kernel, const DepthMap& map, double plane_max_tangent = 0.0,
+                   Owner owner = Owner::kAllReceivers);
 
   /// The weight of the texels that do not block the receiver's biased depth, in [0,1]. Cost: one comparison per texel
   /// of the kernel. Safe to call from many threads.
@@ -49,6 +57,7 @@ class PercentageCloser {
   TexelGrid<double> grid_;
   const DepthMap& map_;
   PlaneBias plane_;
+  double farthest_tap_;              ///< for which more bias is taken off, texels
   std::optional<DiskWeights> disk_;  ///< for disks alone
 
   Span spread(double position) const;

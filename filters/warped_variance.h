@@ -6,8 +6,8 @@
 namespace shadowbench::filters {
 
 /// The scalar model of exponential variance shadow maps with one warp or two; the same as
-/// shaders/lib/warped_variance.glsl.
-template <int kWarps>
+/// shaders/lib/warped_variance.glsl. Without a fit, as a teaching filter has it, the exponent may overflow the store.
+template <int kWarps, bool kIsFit = true>
 struct WarpedVariance {
   template <class T>
   class Filter {
@@ -22,7 +22,7 @@ struct WarpedVariance {
           map_(input, static_cast<int>(number(input.values, "radius")),
                [this](const EncodeInput<T>& e) { return encode(e.depth); }),
           min_deviation_(read(input.values, "min_deviation")),
-          reduction_(read(input.values, "bleed_reduction")) {}
+          reduction_(kIsFit ? read(input.values, "bleed_reduction") : P(0)) {}
 
     static Kernel kernel(const ParamValues& values) { return EncodedMap<T, kChannels>::kernel(values); }
 
@@ -47,6 +47,7 @@ struct WarpedVariance {
     }
 
     static P fit_exponent(const ParamValues& values, const std::string& name) {
+      if (!kIsFit) return read(values, name);
       const double largest = largest_number(store_precision(text_or(values, "store", "")));
       return std::min(read(values, name), static_cast<P>(largest < 1e5 ? 5.54f : 42.0f));
     }

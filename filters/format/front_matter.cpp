@@ -15,6 +15,7 @@
 #include "filters/disk_points.h"
 #include "filters/format/front_matter_reader.h"
 #include "filters/format/glsl_words.h"
+#include "filters/format/kernel_reader.h"
 #include "filters/format/passes.h"
 #include "filters/store_format.h"
 
@@ -34,22 +35,6 @@ FilterKind read_kind(const FrontMatterReader& reader, const toml::table& root) {
   for (const FilterKind kind : kinds)
     if (to_string(kind) == name) return kind;
   reader.fail(root.get("kind"), fmt::format("kind '{}' is unknown; known: comparison, bound, stochastic, other", name));
-}
-
-/// The least and the greatest value that a numeric parameter may take, by its range or by its choices.
-struct Ends {
-  double smallest;
-  double largest;
-};
-
-Ends ends_of(const ParamSpec& param) {
-  if (param.choices.empty()) return {*param.min, *param.max};
-  Ends ends{std::get<double>(param.choices.front()), std::get<double>(param.choices.front())};
-  for (const ParamValue& choice : param.choices) {
-    ends.smallest = std::min(ends.smallest, std::get<double>(choice));
-    ends.largest = std::max(ends.largest, std::get<double>(choice));
-  }
-  return ends;
 }
 
 void check_default(const FrontMatterReader& reader, const toml::node& node, const ParamSpec& param) {
@@ -240,7 +225,8 @@ void read_disks(const FrontMatterReader& reader, const toml::table& root, Filter
 void read_root(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
   reader.check_keys(root,
                     {"title", "source", "kind", "store", "combine", "sample", "claims", "radius_texels", "bias_texels",
-                     "teaching", "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk", "pass"},
+                     "teaching", "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk", "kernel",
+                     "pass"},
                     "the front matter");
   spec.title = reader.text(root, "title", true);
   spec.source = reader.text(root, "source", true);
@@ -260,6 +246,7 @@ void read_root(const FrontMatterReader& reader, const toml::table& root, FilterS
   if (!spec.bound_at_zero.empty() && spec.kind != FilterKind::kBound)
     reader.fail(root.get("bound_at_zero"), "'bound_at_zero' needs 'kind = \"bound\"'");
   read_disks(reader, root, spec);
+  if (const toml::node* kernel = root.get("kernel")) spec.kernel = read_kernel(reader, *kernel, spec);
 }
 
 void inspect_body(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {

@@ -10,6 +10,16 @@
 
 namespace shadowbench::filters {
 
+Ends ends_of(const ParamSpec& param) {
+  if (param.choices.empty()) return {*param.min, *param.max};
+  Ends ends{std::get<double>(param.choices.front()), std::get<double>(param.choices.front())};
+  for (const ParamValue& choice : param.choices) {
+    ends.smallest = std::min(ends.smallest, std::get<double>(choice));
+    ends.largest = std::max(ends.largest, std::get<double>(choice));
+  }
+  return ends;
+}
+
 int FrontMatterReader::line_of(const toml::node* node) const {
   const int line = node ? static_cast<int>(node->source().begin.line) : 1;
   return first_line_ - 1 + std::max(line, 1);

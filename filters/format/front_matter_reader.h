@@ -12,6 +12,13 @@
 
 namespace shadowbench::filters {
 
+/// The least and the greatest value that a numeric parameter may take, by its range or by its choices.
+struct Ends {
+  double smallest;
+  double largest;
+};
+Ends ends_of(const ParamSpec& param);
+
 /// Walks the TOML of one front matter. What is wrong ends it with Error(kFilter), which names the line of the whole
 /// file.
 class FrontMatterReader {

@@ -5,6 +5,8 @@
 namespace shadowbench::filters {
 namespace {
 
+constexpr std::string_view kBlank = " \t\r\n\v\f";
+
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_word_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; }
 
@@ -37,13 +39,23 @@ std::string strip_comments(const std::string& glsl) {
   return code;
 }
 
+std::string squeeze_blanks(std::string_view text) {
+  std::string squeezed;
+  for (std::size_t at = text.find_first_not_of(kBlank); at < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(kBlank, at), text.size());
+    squeezed += text.substr(at, end - at);
+    at = text.find_first_not_of(kBlank, end);
+    if (at < text.size()) squeezed += text.substr(end, at - end).find('\n') == std::string_view::npos ? ' ' : '\n';
+  }
+  return squeezed;
+}
+
 bool has_word(std::string_view code, std::string_view word) {
   return find_word(code, word, 0) != std::string_view::npos;
 }
 
 /// Whether the code declares `type name(`.
 bool has_function(std::string_view code, std::string_view type, std::string_view name) {
-  constexpr std::string_view kBlank = " \t\r\n\v\f";
   for (std::size_t at = find_word(code, name, 0); at != std::string_view::npos; at = find_word(code, name, at + 1)) {
     const std::size_t after = code.find_first_not_of(kBlank, at + name.size());
     const std::size_t before = at == 0 ? std::string_view::npos : code.find_last_not_of(kBlank, at - 1);

@@ -11,6 +11,9 @@ namespace shadowbench::filters {
 /// The text with every comment turned into a blank.
 std::string strip_comments(const std::string& glsl);
 
+/// The text with every run of blanks between other characters as one: a line's end where it holds one, or a space.
+std::string squeeze_blanks(std::string_view text);
+
 /// Whether the word stands by itself somewhere in the code.
 bool has_word(std::string_view code, std::string_view word);
 

@@ -53,7 +53,7 @@ records::KernelRecord find_kernel(const FilterSpec& spec) {
 void print_filter(const FilterSpec& spec) {
   fmt::print("{}  {}\n  kind {}{}{}{}\n  kernel: {}\n  source: {}\n", spec.id, spec.title,
              filters::to_string(spec.kind), spec.bound_at_zero.empty() ? "" : ", with " + spec.bound_at_zero + "=0",
-             spec.teaching ? ", for teaching" : "", filters::make_model(spec.id) ? "" : ", without a model",
+             spec.teaching ? ", for teaching" : "", filters::make_model(spec) ? "" : ", without a model",
              records::describe_kernel(find_kernel(spec)), spec.source);
   if (const std::string stored = describe_stored(spec); !stored.empty()) fmt::print("  its map holds: {}\n", stored);
   for (const ParamSpec& param : spec.params) {
@@ -100,7 +100,7 @@ nlohmann::json to_json(const FilterSpec& spec) {
           {"claims", spec.claims},
           {"teaching", spec.teaching},
           {"kernel", to_json(find_kernel(spec))},
-          {"model", filters::make_model(spec.id) != nullptr},
+          {"model", filters::make_model(spec) != nullptr},
           {"params", params},
           {"moments", spec.holds_moments},
           {"exponent", spec.exponent},

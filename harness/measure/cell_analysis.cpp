@@ -37,7 +37,7 @@ void note_parts(records::CellRecord& record, const metrics::Attribution& attribu
     record.attribution.*
         records::list_error_parts()[p].record = {attribution.stats[p]->rms, attribution.stats[p]->share};
   }
-  if (attribution.stats.front()) return;
+  if (attribution.stats.back()) return;
   record.absent["attribution"] =
       attribution.not_finite > 0 ? "no pixel of the image is finite" : "there is no error to take apart";
 }
@@ -79,16 +79,15 @@ CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& option
 }
 
 /// Where all rays of a receiver's surroundings agree, those of a kernel within them are taken to agree with them.
-std::vector<float> CellAnalyser::trace_kernel(const filters::Kernel& kernel) {
+std::vector<float> CellAnalyser::trace_unsettled(double half_width_texels, const Trace& trace) {
   truth::ReceiverImage receivers = truth_.receivers.image;
-  const bool is_within = kernel.half_width() <= around_.half_width_texels;
+  const bool is_within = half_width_texels <= around_.half_width_texels;
   const auto is_known = [&](std::size_t i) { return is_within && around_.settled[i] != 0; };
   if (is_within && !receivers.content.empty())
     receivers.content += fmt::format(" unsettled within {} texels", around_.half_width_texels);
   for (std::size_t i = 0; i < receivers.points.size(); ++i)
     if (is_known(i)) receivers.points[i].counts = false;
-  std::vector<float> visibility =
-      assets_.tracer().trace_kernel(receivers, kernel, scene::make_map_grid(light_.frustum)).visibility;
+  std::vector<float> visibility = trace(receivers, scene::make_map_grid(light_.frustum)).visibility;
   for (std::size_t i = 0; i < visibility.size(); ++i)
     if (is_known(i)) visibility[i] = around_.visibility[i];
   return visibility;
@@ -97,8 +96,18 @@ std::vector<float> CellAnalyser::trace_kernel(const filters::Kernel& kernel) {
 const std::vector<float>& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {
   if (kernel.is_point()) return truth_.rays.hard;
   const auto [place, is_new] = kernels_.try_emplace(kernel.name());
-  if (is_new) place->second = trace_kernel(kernel);
+  if (is_new)
+    place->second = trace_unsettled(kernel.half_width(), [&](const auto& receivers, const auto& grid) {
+      return assets_.tracer().trace_kernel(receivers, kernel, grid);
+    });
   return place->second;
+}
+
+std::vector<float> CellAnalyser::disks_truth(const std::vector<float>& radii_texels) {
+  const double widest = static_cast<double>(*std::ranges::max_element(radii_texels));
+  return trace_unsettled(filters::Kernel::make_disk(widest).half_width(), [&](const auto& receivers, const auto& grid) {
+    return assets_.tracer().trace_disks(receivers, radii_texels, grid);
+  });
 }
 
 void CellAnalyser::analyse(MeasuredCell& cell) {
@@ -138,8 +147,9 @@ std::vector<filters::Receiver> CellAnalyser::read_receivers(const render::Bias& 
 ModelImages CellAnalyser::evaluate(const filters::FilterRequest& request) {
   if (!map_) map_ = light_.map.read();
   const render::Bias own = render::resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
+  const bool has_kernel = filters::find_kernel(request.spec, request.values).has_value();
   const render::Bias comparison =
-      render::resolve_comparison_bias(options_.bias, light_.frustum, request.spec, request.values);
+      has_kernel ? render::resolve_comparison_bias(options_.bias, light_.frustum, request.spec, request.values) : own;
   ModelReceivers receivers{read_receivers(own), {}};
   receivers.closer = own == comparison ? receivers.filter : read_receivers(comparison);
   return evaluate_model(request, *map_, receivers, options_.bias.plane_max_tangent(), options_.seed, options_.width,
@@ -149,24 +159,26 @@ ModelImages CellAnalyser::evaluate(const filters::FilterRequest& request) {
 void CellAnalyser::attribute(MeasuredCell& cell) {
   records::CellRecord& record = cell.record;
   const filters::FilterRequest& request = cell.request;
-  const auto model = filters::make_model(request.spec.id);
-  const auto shape = model ? model->kernel(request.values) : std::nullopt;
-  const bool wanted = options_.attribution;
-  if (!shape || request.user_file || !wanted) {
-    const char* reason = !wanted                       ? "the run was made with --no-attribution"
-                         : model && !request.user_file ? filters::kKernelDiffers
-                                                       : "the filter has no scalar model";
+  const auto shape = filters::find_kernel(request.spec, request.values);
+  if (!options_.attribution || (!shape && !filters::make_model(request.spec))) {
+    const char* reason =
+        options_.attribution ? filters::explain_no_kernel(request.spec) : "the run was made with --no-attribution";
     for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused"})
       record.absent[field] = reason;
     return;
   }
   const ModelImages images = evaluate(request);
-  const std::vector<float>& kernel = kernel_truth(*shape);
+  const std::vector<float> kernel = shape ? kernel_truth(*shape) : disks_truth(images.disk_radii_texels);
   const std::vector<float>& image = cell.visibility.texels;
   metrics::Attribution attribution =
       metrics::attribute_error({image, images.model, images.closer, kernel, truth_.area.texels, truth_.mask});
-  record.excused = images.excused;
-  record.absent.erase("excused");
+  if (images.model.empty()) {
+    record.absent["excused"] = filters::kNoModel;
+    record.absent["attribution.numeric"] = "the filter has no scalar model: numeric error is within the estimator's";
+  } else {
+    record.excused = images.excused;
+    record.absent.erase("excused");
+  }
   note_parts(record, attribution);
   const auto to_kernel = metrics::measure_error(image, kernel, truth_.mask);
   note(record, "error.kernel_rmse", record.error.kernel_rmse, to_kernel ? std::optional(to_kernel->rmse) : std::nullopt,
@@ -176,7 +188,9 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
        random ? metrics::rate_noise(image, images.closer, kernel, truth_.mask, options_.width) : std::nullopt,
        random ? too_few("lie in the kernel's penumbra") : "the filter takes no random taps");
   for (std::vector<float>& part : attribution.parts) {
-    images::Image& to = cell.error_parts.emplace_back(options_.width, options_.height, 1);
+    images::Image& to = cell.error_parts.emplace_back();
+    if (part.empty()) continue;
+    to = {options_.width, options_.height, 1};
     to.texels = std::move(part);
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -38,8 +39,8 @@ class CellAnalyser {
                const SceneTruth& truth);
 
   /// Notes attribution and artefacts in the cell's record, or why there are none, and leaves the parts as images.
-  /// Cost: the filter's scalar model and its brute-force percentage-closer filter for every receiver, and its kernel
-  /// traced once for all cells that share it.
+  /// Cost: the filter's scalar model, where it has one, and its brute-force percentage-closer filter for every
+  /// receiver, and its kernel traced once for all cells that share it.
   void analyse(MeasuredCell& cell);
 
   /// The masks of the artefacts; nothing where there is no truth.
@@ -57,8 +58,10 @@ class CellAnalyser {
   std::optional<metrics::ArtefactMasks> masks_;
   std::map<std::string, std::vector<float>> kernels_;  ///< by name
 
-  std::vector<float> trace_kernel(const filters::Kernel& kernel);
+  using Trace = std::function<truth::TracedVisibility(const truth::ReceiverImage&, const truth::MapGrid&)>;
+  std::vector<float> trace_unsettled(double half_width_texels, const Trace& trace);
   const std::vector<float>& kernel_truth(const filters::Kernel& kernel);
+  std::vector<float> disks_truth(const std::vector<float>& radii_texels);
   std::vector<filters::Receiver> read_receivers(const render::Bias& bias) const;
   void count_artefacts(MeasuredCell& cell) const;
   ModelImages evaluate(const filters::FilterRequest& request);

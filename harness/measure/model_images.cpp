@@ -1,6 +1,10 @@
 #include "harness/measure/model_images.h"
 
+#include <tbb/parallel_for_each.h>
+
 #include <atomic>
+#include <cmath>
+#include <map>
 #include <memory>
 
 #include "filters/percentage_closer.h"
@@ -8,23 +12,56 @@
 
 namespace shadowbench::measure {
 
+namespace {
+
+constexpr float kRadiiPerTexel = 16.0f;  // of disks that differ from pixel to pixel
+
+/// Compares every receiver with a disk of its own radius, one radius after the other: each has a table of weights.
+void compare_disks(ModelImages& images, const filters::DepthMap& map, const ModelReceivers& receivers,
+                   double plane_max_tangent, int width, int height) {
+  std::map<float, std::vector<std::size_t>> same_radius;
+  for (std::size_t i = 0; i < receivers.closer.size(); ++i)
+    same_radius[images.disk_radii_texels[find_pixel(receivers.closer[i], width, height)]].push_back(i);
+  tbb::parallel_for_each(same_radius, [&](const auto& entry) {
+    const auto kernel = filters::Kernel::make_disk(static_cast<double>(entry.first));
+    const filters::PercentageCloser closer(kernel, map, plane_max_tangent,
+                                           filters::PercentageCloser::Owner::kFewReceivers);
+    visit_in_parallel(entry.second.size(), [&](std::size_t k) {
+      const filters::Receiver& receiver = receivers.closer[entry.second[k]];
+      images.closer[find_pixel(receiver, width, height)] = closer.at(receiver);
+    });
+  });
+}
+
+}  // namespace
+
 ModelImages evaluate_model(const filters::FilterRequest& request, const filters::DepthMap& map,
                            const ModelReceivers& receivers, double plane_max_tangent, std::uint32_t seed, int width,
                            int height) {
-  const std::unique_ptr<filters::Model> model = filters::make_model(request.spec.id);
+  const std::unique_ptr<filters::Model> model = filters::make_model(request.spec);
   const filters::ModelInput input{request.spec, request.values, map, {}, seed, plane_max_tangent};
-  const std::unique_ptr<filters::Lookup> lookup = model->prepare(input, filters::Precision::kDouble);
-  const filters::PercentageCloser closer(*model->kernel(request.values), map, plane_max_tangent);
+  const auto lookup = model ? model->prepare(input, filters::Precision::kDouble) : nullptr;
+  const auto kernel = filters::find_kernel(request.spec, request.values);
+  const auto closer =
+      kernel ? std::optional<filters::PercentageCloser>(std::in_place, *kernel, map, plane_max_tangent) : std::nullopt;
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  ModelImages images{std::vector<double>(pixels, 1.0), std::vector<double>(pixels, 1.0), 0};
+  ModelImages images;
+  images.closer.assign(pixels, 1.0);
+  if (lookup) images.model.assign(pixels, 1.0);
+  if (!kernel) images.disk_radii_texels.assign(pixels, 0.0f);
   std::atomic<std::int64_t> excused = 0;
   visit_in_parallel(receivers.filter.size(), [&](std::size_t i) {
     const std::size_t pixel = find_pixel(receivers.filter[i], width, height);
+    if (closer) images.closer[pixel] = closer->at(receivers.closer[i]);
+    if (!lookup) return;
     const filters::ModelResult result = lookup->at(receivers.filter[i]);
     images.model[pixel] = result.visibility;
-    images.closer[pixel] = closer.at(receivers.closer[i]);
+    if (!closer)
+      images.disk_radii_texels[pixel] =
+          std::round(kRadiiPerTexel * static_cast<float>(result.disk_radius_texels)) / kRadiiPerTexel;
     if (result.excused) ++excused;
   });
+  if (!closer) compare_disks(images, map, receivers, plane_max_tangent, width, height);
   images.excused = excused;
   return images;
 }

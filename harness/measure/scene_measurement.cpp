@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "filters/kernel_width.h"
+#include "filters/model.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/phases.h"
 #include "harness/measure/stability_meter.h"
@@ -224,9 +225,7 @@ void set_kernel(records::CellRecord& record, const filters::FilterRequest& reque
   record.kernel_radius_texels = filters::radius_texels(request.spec, request.values);
   record.kernel = records::make_kernel_record(filters::find_kernel_sigma(request.spec, request.values));
   if (!record.kernel.sigma_texels)
-    record.absent["kernel"] = filters::make_model(request.spec.id) && !request.user_file
-                                  ? filters::kKernelDiffers
-                                  : "the filter has no model, which alone knows its kernel";
+    record.absent["kernel"] = filters::explain_no_kernel(request.spec);
   else if (!record.kernel.width_class)
     record.absent["kernel.class"] =
         fmt::format("kernels of more than {:.2f} texels have none", filters::width_classes().back().widest_texels);

@@ -28,7 +28,8 @@ struct MeasuredCell {
   images::UncertaintyImages
       uncertainty;     ///< how far rounding and other seeds can move its pixels; empty unless the run asks for it
   images::Image flip;  ///< of the picture to the truth's; empty where there is no truth
-  std::vector<images::Image> error_parts;  ///< in the order of metrics::ErrorPart; empty where there is no attribution
+  std::vector<images::Image> error_parts;  ///< in the order of metrics::ErrorPart; none without an attribution, and an
+                                           ///< empty one where a part is absent
 };
 
 /// One scene seen by one camera through one shadow map, with every filter.

@@ -174,13 +174,13 @@ void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filte
                 fmt::format("the filter is a bound with {}=0 only", cell.request.spec.bound_at_zero));
     return;
   }
-  const auto model = filters::make_model(cell.request.spec.id);
-  if (!model || cell.request.user_file) {
-    note_absent(cell.record, fields, "the filter has no scalar model");
+  const auto model = filters::make_model(cell.request.spec);
+  if (!model) {
+    note_absent(cell.record, fields, filters::kNoModel);
     return;
   }
   if (!model->kernel(cell.request.values)) {
-    note_absent(cell.record, fields, filters::kKernelDiffers);
+    note_absent(cell.record, fields, filters::explain_no_kernel(cell.request.spec));
     return;
   }
   const auto receivers = render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera), filter.light());

@@ -71,7 +71,7 @@ SeedSpread spread_seeds(const DrawnTask& drawn, render::FilterPasses& filter) {
 images::UncertaintyImages measure_uncertainty(const DrawnTask& drawn, render::FilterPasses& filter) {
   images::UncertaintyImages uncertainty;
   const filters::FilterRequest& request = filter.request();
-  const auto model = request.user_file ? nullptr : filters::make_model(request.spec.id);
+  const auto model = filters::make_model(request.spec);
   if (model) uncertainty.rounding = bound_rounding(drawn, *model, filter);
   if (request.spec.kind != filters::FilterKind::kStochastic) return uncertainty;
   SeedSpread spread = spread_seeds(drawn, filter);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "filters/base/content_hash.h"
+#include "filters/model.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/run/provenance.h"
 
@@ -68,6 +69,8 @@ std::string name_cell_content(const std::string& scene_content, const filters::F
   hash.add(fmt::format("{} claims {}", request.user_file, fmt::join(request.spec.claims, " ")));
   hash.add(fmt::format("moments {} exponent {} floor {} bound at zero {}", request.spec.holds_moments,
                        request.spec.exponent, request.spec.variance_floor, request.spec.bound_at_zero));
+  const auto kernel = filters::find_kernel(request.spec, request.values);
+  hash.add(fmt::format("kernel {} model {}", kernel ? kernel->name() : "", request.spec.copy_of));
   return hash.name();
 }
 

@@ -181,7 +181,8 @@ images::Image round_significant(images::Image image) {
 images::ValuePlanes list_planes(const measure::MeasuredCell& cell) {
   images::ValuePlanes planes = {{"visibility", cell.visibility}};
   for (std::size_t p = 0; p < cell.error_parts.size(); ++p)
-    planes.emplace_back(records::list_error_parts()[p].id, round_values(cell.error_parts[p], 32767.0f));
+    if (!cell.error_parts[p].empty())
+      planes.emplace_back(records::list_error_parts()[p].id, round_values(cell.error_parts[p], 32767.0f));
   if (!cell.flip.empty()) planes.emplace_back("flip", round_values(cell.flip, 255.0f));
   for (const images::StabilityImage& each : images::list_stability_images())
     if (const images::Image& image = cell.stability.*each.image; image.texels.size() == cell.visibility.texels.size())
@@ -266,6 +267,7 @@ void write_float_images(const options::RunOptions& options, const measure::Scene
     parts.push_back({picture_part(cell.label), {"R", "G", "B"}, cell.picture, true});
     if (options.worker) parts.push_back({unbiased_part(cell.label), {"Y"}, cell.unbiased, false});
     for (std::size_t p = 0; p < cell.error_parts.size(); ++p) {
+      if (cell.error_parts[p].empty()) continue;
       parts.push_back({fmt::format("{}.error.{}", cell.label, records::list_error_parts()[p].id),
                        {"Y"},
                        cell.error_parts[p],

@@ -12,7 +12,7 @@ namespace {
 /// What a case lacks; empty where it has everything.
 std::string explain_absence(const AxisInputs& inputs, const filters::FilterRequest& request, Level level,
                             Reference reference) {
-  const bool has_model = filters::make_model(request.spec.id) != nullptr;
+  const bool has_model = filters::make_model(request.spec) != nullptr;
   if (level == Level::kGl && !inputs.renderer) return "there is no GL";
   if (level == Level::kModel && !has_model) return "the filter has no scalar model";
   return reference == Reference::kModel && !has_model ? "the filter has no scalar model to be held against" : "";

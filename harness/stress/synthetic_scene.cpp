@@ -43,7 +43,7 @@ class ModelLookup final : public SyntheticLookup {
   ModelLookup(const AxisInputs& inputs, filters::FilterRequest request, filters::Precision precision)
       : seed_(inputs.seed),
         request_(std::move(request)),
-        model_(filters::make_model(request_.spec.id)),
+        model_(filters::make_model(request_.spec)),
         precision_(precision) {}
 
   LookupResult look(const SyntheticScene& scene, const filters::ParamValues& values) override {

@@ -127,7 +127,7 @@ class GlPlane final : public Plane {
 class ModelPlane final : public Plane {
  public:
   explicit ModelPlane(filters::FilterRequest request)
-      : request_(std::move(request)), model_(filters::make_model(request_.spec.id)) {}
+      : request_(std::move(request)), model_(filters::make_model(request_.spec)) {}
 
   void tilt(const PlaneTilt& tilt) override {
     tilt_ = tilt;

@@ -10,7 +10,8 @@ using Parts = std::array<double, kErrorParts>;
 
 Parts split(const AttributionStations& s, std::size_t i) {
   const double image = static_cast<double>(s.image[i]), kernel = static_cast<double>(s.kernel[i]);
-  return {image - s.model[i], s.model[i] - s.closer[i], s.closer[i] - kernel, kernel - static_cast<double>(s.area[i])};
+  const double model = s.model.empty() ? image : s.model[i];
+  return {image - model, model - s.closer[i], s.closer[i] - kernel, kernel - static_cast<double>(s.area[i])};
 }
 
 bool is_finite(const Parts& parts) { return std::isfinite(parts[0] + parts[1] + parts[2] + parts[3]); }
@@ -19,7 +20,8 @@ bool is_finite(const Parts& parts) { return std::isfinite(parts[0] + parts[1] + 
 
 Attribution attribute_error(const AttributionStations& stations) {
   const std::size_t pixels = stations.mask.size();
-  assert(stations.image.size() == pixels && stations.model.size() == pixels && stations.closer.size() == pixels);
+  assert(stations.image.size() == pixels && stations.closer.size() == pixels);
+  assert(stations.model.empty() || stations.model.size() == pixels);
   assert(stations.kernel.size() == pixels && stations.area.size() == pixels);
   Attribution result;
   for (auto& part : result.parts) part.assign(pixels, 0.0f);
@@ -43,6 +45,10 @@ Attribution attribute_error(const AttributionStations& stations) {
   }
   for (std::size_t p = 0; p < kErrorParts && error_squares > 0.0; ++p)
     result.stats[p] = PartStats{std::sqrt(squares[p] / count), products[p] / error_squares};
+  if (stations.model.empty()) {
+    result.parts.front().clear();
+    result.stats.front().reset();
+  }
   return result;
 }
 

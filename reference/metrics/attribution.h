@@ -11,7 +11,7 @@ namespace shadowbench::metrics {
 /// The stations between a filter's image and the truth, one value per pixel each; 1 lit, 0 blocked.
 struct AttributionStations {
   std::span<const float> image;        ///< as the GPU made it
-  std::span<const double> model;       ///< the filter in double precision, on the same map
+  std::span<const double> model;       ///< the filter in double precision, on the same map; may be empty
   std::span<const double> closer;      ///< brute-force percentage-closer filter with the filter's own kernel and depth
   std::span<const float> kernel;       ///< ray-traced continuous kernel: an ideal map and an ideal bias
   std::span<const float> area;         ///< ray-traced visibility of the real light
@@ -30,12 +30,14 @@ struct PartStats {
 
 /// An error as the sum of four signed parts.
 struct Attribution {
-  std::array<std::vector<float>, kErrorParts> parts;        ///< per pixel, 0 where a pixel does not count
+  std::array<std::vector<float>, kErrorParts>
+      parts;  ///< per pixel, 0 where a pixel does not count; empty: there is none
   std::array<std::optional<PartStats>, kErrorParts> stats;  ///< a share is absent where there is no error at all
   std::int64_t not_finite = 0;                              ///< pixels of the mask that are left out
 };
 
 /// Splits image - area into (image - model) + (model - closer) + (closer - kernel) + (kernel - area).
+/// Without a model the first part does not exist, and the second is image - closer, which includes it.
 /// Requires spans of one length.
 Attribution attribute_error(const AttributionStations& stations);
 

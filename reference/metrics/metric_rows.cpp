@@ -136,13 +136,14 @@ std::vector<Metric> list_parts() {
       "image less double-precision model: precision, storage format, hardware filtering");
   add_part<&AttributionRecord::estimator>(
       metrics, "attribution.estimator.rms", "attribution.estimator.share",
-      "double-precision model less brute-force percentage-closer filter with the filter's own kernel on the same map: "
+      "double-precision model (without one the image) less brute-force percentage-closer filter with the filter's own "
+      "kernel on the same map: "
       "light bleeding, noise of few taps; a bound is compared under the bias that a comparison of its kernel needs");
   add_part<&AttributionRecord::discretisation>(
       metrics, "attribution.discretisation.rms", "attribution.discretisation.share",
       "that percentage-closer filter less the ray-traced kernel: map resolution and bias");
   add_part<&AttributionRecord::model>(metrics, "attribution.model.rms", "attribution.model.share",
-                                      "the ray-traced kernel less truth: a fixed kernel is not this light's penumbra");
+                                      "the ray-traced kernel less truth: the kernel is not this light's penumbra");
   return metrics;
 }
 

@@ -79,8 +79,13 @@ class FanTracer {
 class AdaptiveTracer {
  public:
   AdaptiveTracer(const Occluders& occluders, const ReceiverImage& receivers, const SampleSets& samples,
-                 const TraceSettings& settings, const std::function<RayFan(const ReceiverPoint&)>& make_fan)
-      : occluders_(occluders), receivers_(receivers), samples_(samples), settings_(settings), make_fan_(make_fan) {}
+                 const TraceSettings& settings, const MakeFan& make_fan, const SampleSets* scaled)
+      : occluders_(occluders),
+        receivers_(receivers),
+        samples_(samples),
+        settings_(settings),
+        make_fan_(make_fan),
+        scaled_(scaled) {}
 
   TracedVisibility run() {
     const std::size_t pixels = receivers_.points.size();
@@ -101,7 +106,8 @@ class AdaptiveTracer {
   const ReceiverImage& receivers_;
   const SampleSets& samples_;
   const TraceSettings& settings_;
-  const std::function<RayFan(const ReceiverPoint&)>& make_fan_;
+  const MakeFan& make_fan_;
+  const SampleSets* scaled_;
   TracedVisibility truth_;
 
   /// Pixels are traced in tiles, because rays of neighbouring pixels visit the same parts of the scene.
@@ -137,17 +143,28 @@ class AdaptiveTracer {
   /// standard error that is small enough. The one that is stored does not decide: a pixel would stop where its estimate
   /// is small by chance.
   void trace(std::size_t pixel, int least, int most) {
-    const RayFan fan = make_fan_(receivers_.points[pixel]);
+    const RayFan fan = make_fan_(pixel);
     const std::uint32_t key = static_cast<std::uint32_t>(pixel) + filters::hash_bits(settings_.seed);
     const int set = static_cast<int>(filters::hash_bits(key) % SampleSets::kSets);
     FanTracer tracer(fan);
     double foretold = HUGE_VAL;
     for (int points = least / 2, traced = 0;; points *= 2) {
-      for (; traced < points; ++traced) tracer.trace(occluders_, samples_.at(set, traced), settings_);
+      for (; traced < points; ++traced) tracer.trace(occluders_, offsets_of(fan, set, traced), settings_);
       const double error = conclude(pixel, tracer.lit(), points);
       if (points == most || (points >= least && foretold <= settings_.standard_error)) return;
       foretold = kGainOfDoubling * error;
     }
+  }
+
+  SampleSets::Lanes offsets_of(const RayFan& fan, int set, int point) const {
+    SampleSets::Lanes offsets = samples_.at(set, point);
+    if (fan.scale == 0.0f) return offsets;
+    const SampleSets::Lanes& more = scaled_->at(set, point);
+    for (std::size_t i = 0; i < offsets.x.size(); ++i) {
+      offsets.x[i] += fan.scale * more.x[i];
+      offsets.y[i] += fan.scale * more.y[i];
+    }
+    return offsets;
   }
 
   /// Stores mean and standard error over the scrambles, and returns the standard error.
@@ -174,10 +191,9 @@ class AdaptiveTracer {
 }  // namespace
 
 TracedVisibility trace_fans(const Occluders& occluders, const ReceiverImage& receivers, const SampleSets& samples,
-                            const TraceSettings& settings,
-                            const std::function<RayFan(const ReceiverPoint&)>& make_fan) {
+                            const TraceSettings& settings, const MakeFan& make_fan, const SampleSets* scaled) {
   assert(std::has_single_bit(static_cast<unsigned>(samples.max_points())) && samples.max_points() >= kEdgePoints);
-  return AdaptiveTracer(occluders, receivers, samples, settings, make_fan).run();
+  return AdaptiveTracer(occluders, receivers, samples, settings, make_fan, scaled).run();
 }
 
 }  // namespace shadowbench::truth

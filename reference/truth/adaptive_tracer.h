@@ -16,12 +16,17 @@ struct RayFan {
   glm::vec3 direction_y{0.0f};
   glm::vec3 normal{0.0f};       ///< rays below this plane are blocked
   float reach = 0.0f;           ///< in units of a direction's length
+  float scale = 0.0f;           ///< of the second samples, which are added to the first ones
   bool origin_moves = true;     ///< false: origin_x and origin_y are 0
   bool direction_moves = true;  ///< false: direction_x and direction_y are 0
 };
 
-/// Traces every receiver's fan over the same sample sets; see trace_area() for when a pixel stops.
+/// Makes the fan of one receiver, an index into ReceiverImage::points.
+using MakeFan = std::function<RayFan(std::size_t)>;
+
+/// Traces every receiver's fan over the same sample sets; see trace_area() for when a pixel stops. Fans with a scale
+/// need `scaled`, second samples of as many points.
 TracedVisibility trace_fans(const Occluders& occluders, const ReceiverImage& receivers, const SampleSets& samples,
-                            const TraceSettings& settings, const std::function<RayFan(const ReceiverPoint&)>& make_fan);
+                            const TraceSettings& settings, const MakeFan& make_fan, const SampleSets* scaled = nullptr);
 
 }  // namespace shadowbench::truth

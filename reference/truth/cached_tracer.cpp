@@ -100,6 +100,16 @@ TracedVisibility CachedTracer::trace_kernel(const ReceiverImage& receivers, cons
   }));
 }
 
+TracedVisibility CachedTracer::trace_disks(const ReceiverImage& receivers, std::span<const float> radii_texels,
+                                           const MapGrid& grid) {
+  ContentHash radii;
+  radii.add_values(radii_texels);
+  const std::string what = fmt::format("disks {} {}", radii.name(), name_grid(grid));
+  return from_layers(find_or_trace(receivers, what, kTracedLayers, [&] {
+    return to_layers(truth::trace_disks(occluders(), receivers, radii_texels, grid, settings_));
+  }));
+}
+
 TracedVisibility CachedTracer::trace_surroundings(const ReceiverImage& receivers, double half_width_texels,
                                                   const MapGrid& grid) {
   const std::string what = fmt::format("square {} {}", half_width_texels, name_grid(grid));

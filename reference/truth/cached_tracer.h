@@ -32,6 +32,10 @@ class CachedTracer {
   /// Cost: as trace_view().
   TracedVisibility trace_kernel(const ReceiverImage& receivers, const filters::Kernel& kernel, const MapGrid& grid);
 
+  /// Traces disks of a radius for each receiver. Cost: as trace_view().
+  TracedVisibility trace_disks(const ReceiverImage& receivers, std::span<const float> radii_texels,
+                               const MapGrid& grid);
+
   /// Traces a square, with just enough rays to see where they all agree. Cost: 64 to 256 rays a pixel.
   TracedVisibility trace_surroundings(const ReceiverImage& receivers, double half_width_texels, const MapGrid& grid);
 

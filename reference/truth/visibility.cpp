@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "filters/disk_points.h"
 #include "reference/truth/adaptive_tracer.h"
 
 namespace shadowbench::truth {
@@ -58,7 +59,8 @@ TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& rec
                             const TraceSettings& settings) {
   const SampleSets samples(settings.max_points, settings.seed,
                            [&](const glm::dvec2& u, const glm::dvec2&) { return light.map_sample(u); });
-  return trace_fans(occluders, receivers, samples, settings, [&](const ReceiverPoint& point) {
+  return trace_fans(occluders, receivers, samples, settings, [&](std::size_t i) {
+    const ReceiverPoint& point = receivers.points[i];
     RayFan fan;
     fan.origin = occluders.offset_origin(point.position_ws, point.normal_ws);
     fan.direction = light.centre_direction(glm::dvec3(fan.origin));
@@ -76,9 +78,26 @@ TracedVisibility trace_kernel(const Occluders& occluders, const ReceiverImage& r
   const SampleSets samples(
       settings.max_points, settings.seed,
       [&](const glm::dvec2& shape, const glm::dvec2& between) { return kernel.sample(shape, between); });
-  return trace_fans(occluders, receivers, samples, settings, [&](const ReceiverPoint& point) {
-    return make_kernel_fan(occluders, point, grid, kernel.half_width());
+  return trace_fans(occluders, receivers, samples, settings, [&](std::size_t i) {
+    return make_kernel_fan(occluders, receivers.points[i], grid, kernel.half_width());
   });
+}
+
+TracedVisibility trace_disks(const Occluders& occluders, const ReceiverImage& receivers,
+                             std::span<const float> radii_texels, const MapGrid& grid, const TraceSettings& settings) {
+  const filters::Kernel fetch = filters::Kernel::make_point(filters::Reconstruction::kBilinear);
+  const SampleSets fetches(
+      settings.max_points, settings.seed,
+      [&](const glm::dvec2& disk, const glm::dvec2& between) { return fetch.sample(disk, between); });
+  const SampleSets disks(settings.max_points, settings.seed,
+                         [](const glm::dvec2& disk, const glm::dvec2&) { return filters::map_to_disk(disk); });
+  const auto make_fan = [&](std::size_t i) {
+    const double half_width = fetch.half_width() + static_cast<double>(radii_texels[i]);
+    RayFan fan = make_kernel_fan(occluders, receivers.points[i], grid, half_width);
+    fan.scale = radii_texels[i];
+    return fan;
+  };
+  return trace_fans(occluders, receivers, fetches, settings, make_fan, &disks);
 }
 
 TracedVisibility trace_square(const Occluders& occluders, const ReceiverImage& receivers, double half_width_texels,
@@ -86,8 +105,8 @@ TracedVisibility trace_square(const Occluders& occluders, const ReceiverImage& r
   const SampleSets samples(
       settings.max_points, settings.seed,
       [&](const glm::dvec2& u, const glm::dvec2&) { return half_width_texels * (2.0 * u - 1.0); });
-  return trace_fans(occluders, receivers, samples, settings, [&](const ReceiverPoint& point) {
-    return make_kernel_fan(occluders, point, grid, half_width_texels);
+  return trace_fans(occluders, receivers, samples, settings, [&](std::size_t i) {
+    return make_kernel_fan(occluders, receivers.points[i], grid, half_width_texels);
   });
 }
 

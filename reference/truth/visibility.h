@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "filters/kernel.h"
@@ -54,6 +55,11 @@ struct MapGrid {
 /// Adaptive like trace_area(), at the same cost.
 TracedVisibility trace_kernel(const Occluders& occluders, const ReceiverImage& receivers, const filters::Kernel& kernel,
                               const MapGrid& grid, const TraceSettings& settings);
+
+/// The same where every receiver has a disk of its own, read bilinearly: Kernel::make_disk() of its radius, 0 included.
+/// Requires a radius for each receiver.
+TracedVisibility trace_disks(const Occluders& occluders, const ReceiverImage& receivers,
+                             std::span<const float> radii_texels, const MapGrid& grid, const TraceSettings& settings);
 
 /// The same for a uniform square of this half-width in texels.
 TracedVisibility trace_square(const Occluders& occluders, const ReceiverImage& receivers, double half_width_texels,

@@ -13,7 +13,7 @@ namespace shadowbench::analysis {
 double find_rmse_reach(const records::CellRecord& cell);
 
 /// Finds the part that alone is more than half of an error, as an index into list_error_parts().
-std::optional<std::size_t> find_dominating_part(const records::PartValues& shares);
+std::optional<std::size_t> find_dominating_part(const records::PartShares& shares);
 
 /// Whether a cell's RMSE is at most the standard error of its truth; false where either is unknown.
 bool is_lost_in_truth(const records::CellRecord& cell);

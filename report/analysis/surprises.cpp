@@ -183,7 +183,7 @@ class Finder {
     for (const Found& each : dominated)
       if (each.part != usual->first)
         where[{each.label, each.part}].push_back(fmt::format(
-            "{} ({})", name_place(*each.cell), records::format_share((*records::list_shares(*each.cell))[each.part])));
+            "{} ({})", name_place(*each.cell), records::format_share(*(*records::list_shares(*each.cell))[each.part])));
     std::vector<std::string> sentences;
     for (const auto& [key, places] : where) {
       const records::ErrorPart &own = records::list_error_parts()[key.second],

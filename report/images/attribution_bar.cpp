@@ -38,7 +38,7 @@ std::optional<AttributionBar> make_attribution_bar(const records::CellRecord& ce
   if (cell.status == records::CellStatus::kSuspect || !shares || !cell.error.rmse || !std::isfinite(*cell.error.rmse))
     return std::nullopt;
   AttributionBar bar;
-  for (std::size_t i = 0; i < metrics::kErrorParts; ++i) bar.lengths[i] = (*shares)[i] * *cell.error.rmse;
+  for (std::size_t i = 0; i < metrics::kErrorParts; ++i) bar.lengths[i] = (*shares)[i].value_or(0.0) * *cell.error.rmse;
   return bar;
 }
 

@@ -12,7 +12,7 @@ namespace shadowbench::images {
 /// A filter's error as a stacked bar: for each part its share of the RMSE, signed, in visibility.
 /// The lengths sum to the RMSE.
 struct AttributionBar {
-  records::PartValues lengths{};
+  records::PartValues lengths{};  ///< 0 for a part that does not exist
 
   double net() const;  ///< the RMSE
 };

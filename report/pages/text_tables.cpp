@@ -57,7 +57,7 @@ std::string format_dominating_part(const records::CellRecord& cell) {
   const auto shares = records::list_shares(cell);
   if (!shares) return records::kNothing;
   const auto part = analysis::find_dominating_part(*shares);
-  return part ? fmt::format("{} {}", records::list_error_parts()[*part].id, records::format_share((*shares)[*part]))
+  return part ? fmt::format("{} {}", records::list_error_parts()[*part].id, records::format_share(*(*shares)[*part]))
               : "none";
 }
 
@@ -72,7 +72,7 @@ std::string format_shares(const records::CellRecord& cell) {
   const auto shares = records::list_shares(cell);
   if (!shares) return records::kNothing;
   std::vector<std::string> texts;
-  for (const double share : *shares) texts.push_back(records::format_share(share));
+  for (const auto& share : *shares) texts.push_back(share ? records::format_share(*share) : records::kNothing);
   return fmt::format("{}", fmt::join(texts, " / "));
 }
 

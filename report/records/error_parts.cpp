@@ -9,6 +9,11 @@
 #include "report/records/format.h"
 
 namespace shadowbench::records {
+namespace {
+
+constexpr auto kNumeric = static_cast<std::size_t>(metrics::ErrorPart::kNumeric);
+
+}  // namespace
 
 const std::array<ErrorPart, metrics::kErrorParts>& list_error_parts() {
   static const std::array<ErrorPart, metrics::kErrorParts> kParts = {
@@ -25,26 +30,26 @@ const std::array<ErrorPart, metrics::kErrorParts>& list_error_parts() {
                 &AttributionRecord::discretisation},
       ErrorPart{"model",
                 "model",
-                "a fixed kernel is not this light's penumbra",
+                "the filter's kernel is not this light's penumbra",
                 {0.80f, 0.47f, 0.65f},
                 &AttributionRecord::model}};
   return kParts;
 }
 
-std::optional<PartValues> list_shares(const CellRecord& cell) {
-  PartValues shares{};
+std::optional<PartShares> list_shares(const CellRecord& cell) {
+  PartShares shares;
   for (std::size_t i = 0; i < metrics::kErrorParts; ++i) {
-    const auto& share = (cell.attribution.*list_error_parts()[i].record).share;
-    if (!share || !std::isfinite(*share)) return std::nullopt;
-    shares[i] = *share;
+    shares[i] = (cell.attribution.*list_error_parts()[i].record).share;
+    if (shares[i] ? !std::isfinite(*shares[i]) : i != kNumeric) return std::nullopt;
   }
   return shares;
 }
 
-std::string describe_shares(const PartValues& shares) {
+std::string describe_shares(const PartShares& shares) {
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < metrics::kErrorParts; ++i)
-    texts.push_back(fmt::format("{} {}", list_error_parts()[i].id, format_share(shares[i])));
+    if (shares[i]) texts.push_back(fmt::format("{} {}", list_error_parts()[i].id, format_share(*shares[i])));
+  if (!shares[kNumeric]) texts.front() = "numeric and " + texts.front();
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 

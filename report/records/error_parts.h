@@ -27,11 +27,14 @@ const std::array<ErrorPart, metrics::kErrorParts>& list_error_parts();
 /// One number per part, in the order of list_error_parts().
 using PartValues = std::array<double, metrics::kErrorParts>;
 
-/// Returns the shares of a cell's error, or nothing where one of them does not exist.
-std::optional<PartValues> list_shares(const CellRecord& cell);
+/// One share per part. That of a filter without a scalar model has no numeric part: its estimator's includes it.
+using PartShares = std::array<std::optional<double>, metrics::kErrorParts>;
+
+/// Returns the shares of a cell's error, or nothing where one of them does not exist, the numeric part's aside.
+std::optional<PartShares> list_shares(const CellRecord& cell);
 
 /// Lists all parts with their shares: "numeric 0 %, estimator 71 %, discretisation 9 %, model 20 %".
-std::string describe_shares(const PartValues& shares);
+std::string describe_shares(const PartShares& shares);
 
 /// Why a cell shows no attribution: it is suspect, or what its `absent` holds for the attribution, one of its parts, or
 /// the error.

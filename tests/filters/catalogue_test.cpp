@@ -35,7 +35,7 @@ void expect_usage_error(const std::string& text, const std::string& words) {
 
 TEST(Catalogue, EveryBuiltInFilter_HasAModelAndASource) {
   for (const FilterSpec& spec : built_in().filters()) {
-    EXPECT_NE(make_model(spec.id), nullptr) << spec.id;
+    EXPECT_NE(make_model(spec), nullptr) << spec.id;
     EXPECT_FALSE(spec.source.empty()) << spec.id;
   }
   EXPECT_EQ(built_in().filters().front().id, "none");
@@ -52,7 +52,7 @@ std::vector<std::string> ids_of(const std::string& text) {
 }
 
 TEST(Requests, AllAreThoseThatAreNotForTeaching_Empty_AsksForThem) {
-  EXPECT_THAT(ids_of("teaching"), UnorderedElementsAre("box3x3", "teach4x4"));
+  EXPECT_THAT(ids_of("teaching"), UnorderedElementsAre("box3x3", "teach4x4", "teach_evsm"));
   EXPECT_EQ(ids_of(""), ids_of("all"));
   EXPECT_THAT(ids_of("all"), IsSupersetOf({"none", "box4x4", "vsm"}));
   EXPECT_EQ(ids_of("all,teaching").size(), built_in().filters().size());

@@ -10,6 +10,7 @@
 
 #include "filters/catalogue.h"
 #include "filters/model.h"
+#include "filters/percentage_closer.h"
 
 namespace shadowbench::filters {
 namespace {
@@ -38,10 +39,10 @@ class Filtered {
  public:
   Filtered(const std::string& text, const DepthMap& map)
       : request_(Catalogue(SHADOWBENCH_SOURCE_DIR "/filters").parse_requests(text).front()),
-        lookup_(
-            make_model(request_.spec.id)->prepare({request_.spec, request_.values, map, {}, 0}, Precision::kDouble)) {}
+        lookup_(make_model(request_.spec)->prepare({request_.spec, request_.values, map, {}, 0}, Precision::kDouble)) {}
 
   double at(const Receiver& r) const { return lookup_->at(r).visibility; }
+  double radius_at(const Receiver& r) const { return lookup_->at(r).disk_radius_texels; }
 
  private:
   FilterRequest request_;
@@ -112,15 +113,27 @@ TEST_P(ContactHardening, PenumbraOfAnEdge_IsAsWideAsTheLightMakesIt) {
   }
 }
 
+TEST(Pcss, SaysWhichDiskItAveraged) {
+  const DepthMap map = make_map([](int x, int) { return x < kMapSide / 2 ? 0.3f : 1.0f; });
+  const Filtered pcss("pcss", map);
+  EXPECT_NEAR(pcss.radius_at(make_floor_receiver(32.0, 32.3, 0.2f)), 50.0 * 0.2 * 0.4, 1e-4);
+  EXPECT_NEAR(pcss.radius_at(make_floor_receiver(32.0, 32.3, 3.0f)), 12.0, 1e-6) << "its limit";
+  EXPECT_EQ(pcss.radius_at(make_floor_receiver(32.0, 32.3, 0.0f)), 0.0) << "one fetch";
+  EXPECT_EQ(pcss.radius_at(make_floor_receiver(60.0, 32.3, 0.2f)), 0.0) << "no blocker";
+}
+
 TEST_P(ContactHardening, EveryTap_IsBiasedByItsOwnDistance) {
   constexpr float kSlope = 0.015f;
   const DepthMap map = make_map([](int x, int) { return kFloor + kSlope * (static_cast<float>(x) - 31.5f); });
   const Filtered soft(GetParam(), map);
   Receiver r = make_floor_receiver(32.0, 32.0, 2.0f);
   r.depth -= kSlope;  // the reach of one fetch, which bias_texels declares
+  const PercentageCloser closer(Kernel::make_disk(4.0), map, 0.0, PercentageCloser::Owner::kFewReceivers);
   EXPECT_LT(soft.at(r), 1.0);
+  EXPECT_LT(closer.at(r), 1.0);
   r.bias_per_texel = {kSlope, 0.0f};
   EXPECT_EQ(soft.at(r), 1.0);
+  EXPECT_EQ(closer.at(r), 1.0) << "what it is compared with";
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ const Catalogue& catalogue() {
 
 Kernel kernel_of(const std::string& text) {
   const FilterRequest request = catalogue().parse_requests(text).front();
-  return find_kernel(request.spec.id, request.values).value();
+  return find_kernel(request.spec, request.values).value();
 }
 
 DepthMap make_random_map(int size, unsigned seed) {
@@ -81,7 +81,7 @@ TEST(KernelWidths, AreTheShapeAndItsReconstruction) {
 TEST(KernelWidths, ReachIsThatOfTheFrontMatter) {
   for (const FilterSpec& spec : catalogue().filters()) {
     const FilterRequest request = catalogue().parse_requests(spec.id).front();
-    const std::optional<Kernel> kernel = find_kernel(spec.id, request.values);
+    const std::optional<Kernel> kernel = find_kernel(spec, request.values);
     if (!kernel) continue;
     const double own_texel = kernel->reconstruction() == Reconstruction::kNearest ? 0.5 : 0.0;
     EXPECT_EQ(reach_texels(spec, request.values), kernel->half_width() + own_texel) << spec.id;
@@ -196,7 +196,7 @@ TEST(PercentageCloser, EqualsTheModelsThatCompare) {
         "gather_pcf:shape=castano,radius=1", "gather_pcf:shape=castano", "gather_pcf:shape=castano,radius=3"}) {
     const FilterRequest request = catalogue().parse_requests(text).front();
     const ModelInput input{request.spec, request.values, map, {}, 0};
-    const auto lookup = make_model(request.spec.id)->prepare(input, Precision::kDouble);
+    const auto lookup = make_model(request.spec)->prepare(input, Precision::kDouble);
     const PercentageCloser closer(kernel_of(text), map);
     for (int i = 0; i < 2000; ++i) {
       const auto coordinate = [&] { return -2.0 + 36.0 * static_cast<double>(random()) * 0x1p-32; };

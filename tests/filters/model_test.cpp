@@ -36,7 +36,7 @@ double look_up(const std::string& request_text, const DepthMap& map, double x, d
   Receiver r;
   r.uv = {static_cast<float>(x / map.size), static_cast<float>(y / map.size)};
   r.depth = depth;
-  return make_model(request.spec.id)->prepare(input, precision)->at(r).visibility;
+  return make_model(request.spec)->prepare(input, precision)->at(r).visibility;
 }
 
 TEST(NoneModel, ComparesTheTexelThatHoldsThePoint) {

@@ -41,7 +41,7 @@ FilterRequest request_blocks(const std::string& text) {
 
 std::unique_ptr<Lookup> prepare_blocks(const FilterRequest& request, const DepthMap& map,
                                        Precision precision = Precision::kDouble) {
-  return make_model(request.spec.id)->prepare({request.spec, request.values, map, {}, 0}, precision);
+  return make_model(request.spec)->prepare({request.spec, request.values, map, {}, 0}, precision);
 }
 
 class UpperBound : public ::testing::TestWithParam<std::string> {};
@@ -53,7 +53,7 @@ TEST_P(UpperBound, IsNeverDarkerThanPcfOfItsKernel_OnAnyMap) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const DepthMap map = make_blocks(seed);
     const auto lookup = prepare_blocks(request, map);
-    const PercentageCloser closer(*find_kernel(request.spec.id, request.values), map);
+    const PercentageCloser closer(*find_kernel(request.spec, request.values), map);
     for (int i = 0; i < 1000; ++i) {
       const Receiver r = make_blocks_receiver(random);
       const double light = lookup->at(r).visibility;
@@ -91,7 +91,7 @@ TEST(Moments, OfTwoDepths_GiveTheLitShare) {
   for (const char* text : {"msm_hamburger", "msm_hausdorff", "evsm2", "evsm4"}) {
     const FilterRequest request = request_blocks(text);
     const auto lookup = prepare_blocks(request, map);
-    const PercentageCloser closer(*find_kernel(request.spec.id, request.values), map);
+    const PercentageCloser closer(*find_kernel(request.spec, request.values), map);
     for (double x = 11.0; x < 21.0; x += 0.37) {
       Receiver r;
       r.uv = {static_cast<float>(x / kMomentMapSide), 0.5f};

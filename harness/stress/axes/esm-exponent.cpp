@@ -128,8 +128,7 @@ std::vector<Case> make_cases(const AxisInputs& inputs) {
                            "no chosen filter's front matter declares 'exponent' without 'moments'");
 }
 
-/// A published comparison ranked a filter by a 16-bit exponential variance map that overflowed: its exponent was 10,
-/// and the limit is 5.54. This does the same with an exponent that is fine in 32 bits.
+/// The mistake that the axis of warp exponents replays, with an exponential map: the exponent is fine in 32 bits.
 std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
   const auto has_exponent = [](const filters::FilterRequest& request) { return !find_exponent(request.spec).empty(); };
   if (!inputs.renderer || std::ranges::none_of(inputs.filters, has_exponent)) return {};

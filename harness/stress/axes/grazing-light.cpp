@@ -27,7 +27,7 @@ struct Reach {
 };
 
 Reach find_reach(const filters::FilterRequest& request) {
-  const filters::Kernel kernel = *filters::find_kernel(request.spec.id, request.values);
+  const filters::Kernel kernel = *filters::find_kernel(request.spec, request.values);
   const bool nearest = kernel.reconstruction() == filters::Reconstruction::kNearest;
   const double texels = filters::bias_reach_texels(request.spec, request.values), between = nearest ? 0.5 : 1.0;
   return {texels - between, between};
@@ -152,7 +152,7 @@ std::string describe_growth(TiltedPlane& plane, const std::string& label, const 
 const filters::FilterRequest* choose_shown(const std::vector<filters::FilterRequest>& chosen) {
   const filters::FilterRequest* shown = nullptr;
   for (const filters::FilterRequest& request : chosen)
-    if (filters::find_kernel(request.spec.id, request.values) &&
+    if (filters::find_kernel(request.spec, request.values) &&
         (!shown || find_reach(request).texels() > find_reach(*shown).texels()))
       shown = &request;
   return shown;

@@ -12,7 +12,7 @@ constexpr double kSamplerStep = 1.0 / 128.0;  // GPUs interpolate a comparison w
 /// Lists the parameter that is the radius of a filter's kernel; nothing where the radius is no parameter, or only
 /// limits what each receiver chooses.
 std::vector<std::string> list_radius_params(const filters::FilterRequest& request) {
-  const auto model = filters::make_model(request.spec.id);
+  const auto model = filters::make_model(request.spec);
   if (model && !model->kernel(request.values)) return {};
   const auto* param = std::get_if<std::string>(&request.spec.radius_texels);
   return param ? std::vector{*param} : std::vector<std::string>();
@@ -35,7 +35,7 @@ std::string name_base(const filters::FilterSpec& spec, const filters::Kernel& ke
 std::vector<double> expect_visibility(const filters::FilterRequest& request, double radius, const SyntheticScene& scene,
                                       SyntheticLookup& exact) {
   if (radius > 0.0 || !averages_comparisons(request.spec)) return exact.look(scene, request.values).visibility;
-  return compare_whole_kernel(scene, *filters::find_kernel(request.spec.id, request.values));
+  return compare_whole_kernel(scene, *filters::find_kernel(request.spec, request.values));
 }
 
 /// `request` has the radius among its values.
@@ -73,7 +73,7 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, 
   };
   filters::ParamValues without = request.values;
   without[param] = 0.0;
-  const std::string base = name_base(request.spec, *filters::find_kernel(request.spec.id, without));
+  const std::string base = name_base(request.spec, *filters::find_kernel(request.spec, without));
   item.remark = [base](const records::StressCase& record) { return remark_base(record, base); };
   return item;
 }

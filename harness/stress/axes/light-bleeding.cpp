@@ -111,7 +111,7 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, 
       return std::vector<std::string>{
           "its front matter tells of no formula: there is nothing to hold it against but truth"};
     };
-  if (filters::make_model(request.spec.id)) {
+  if (filters::make_model(request.spec)) {
     const std::shared_ptr<SyntheticLookup> exact = make_model_lookup(inputs, request, filters::Precision::kExtended);
     item.explain = [exact, request, occluders](const Disagreement& missed) {
       return explain_by_model(missed, *exact, request, occluders);

@@ -139,7 +139,7 @@ class WiderMap {
  public:
   WiderMap(const AxisInputs& inputs, const filters::FilterRequest& request)
       : values_(request.values), margin_(2 * filters::prefilter_radius_texels(request.spec, request.values)) {
-    if (margin_ > 0 && filters::make_model(request.spec.id))
+    if (margin_ > 0 && filters::make_model(request.spec))
       lookup_ = make_model_lookup(inputs, request, filters::Precision::kDouble);
   }
 

@@ -45,7 +45,7 @@ std::vector<double> keep_clear(SyntheticScene& scene, double reach_texels) {
 Observation observe(const AxisInputs& inputs, const filters::FilterRequest& request, int size) {
   SyntheticScene scene = make_halves(size);
   const double reach = filters::radius_texels(request.spec, request.values) + 1.0;
-  const bool modelled = size <= kLargestModelled && filters::make_model(request.spec.id) != nullptr;
+  const bool modelled = size <= kLargestModelled && filters::make_model(request.spec) != nullptr;
   const std::vector<double> expected =
       modelled ? make_model_lookup(inputs, request, filters::Precision::kDouble)->look(scene, request.values).visibility
                : keep_clear(scene, reach);

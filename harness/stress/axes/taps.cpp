@@ -51,7 +51,7 @@ double find_noise(const AxisInputs& inputs, const filters::FilterRequest& reques
   const SyntheticScene scene = make_scene(request);
   const std::vector<double> seen =
       make_model_lookup(inputs, request, filters::Precision::kDouble)->look(scene, request.values).visibility;
-  const std::vector<double> whole = compare_whole_kernel(scene, *filters::find_kernel(request.spec.id, request.values));
+  const std::vector<double> whole = compare_whole_kernel(scene, *filters::find_kernel(request.spec, request.values));
   double sum = 0.0;
   for (std::size_t i = 0; i < seen.size(); ++i) sum += (seen[i] - whole[i]) * (seen[i] - whole[i]);
   return std::sqrt(sum / static_cast<double>(seen.size()));
@@ -87,7 +87,7 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, 
   item.observe = [&inputs, request, param, level](double taps) {
     return observe_taps(inputs, with_count(request, param, taps), level);
   };
-  if (level == Level::kModel && filters::find_kernel(request.spec.id, request.values))
+  if (level == Level::kModel && filters::find_kernel(request.spec, request.values))
     item.remark = [&inputs, request, param](const records::StressCase& record) {
       return remark_noise(inputs, request, param, record);
     };

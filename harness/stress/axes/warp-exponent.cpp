@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "filters/store_format.h"
+#include "harness/stress/replay.h"
 #include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
@@ -79,7 +81,8 @@ Case make_filter_case(const AxisInputs& inputs, filters::FilterRequest request, 
   if (!item.is_available()) return item;
   const std::string param = driven_param(request.spec);
   item.params.erase(param);
-  item.theories = {make_filter_theory(store)};
+  // A model has no map that could overflow: what it makes of an infinite moment is light.
+  if (level == Level::kGl) item.theories = {make_filter_theory(store)};
   const std::shared_ptr<SyntheticLookup> lookup = make_lookup(inputs, request, level),
                                          exact = make_model_lookup(inputs, request, filters::Precision::kDouble);
   item.observe = [lookup, exact, values = request.values, param, scene = make_ramp_scene()](double c) mutable {
@@ -103,6 +106,18 @@ std::vector<Case> make_cases(const AxisInputs& inputs) {
   return cases;
 }
 
+/// A published comparison ranked a filter by a 16-bit exponential variance map that overflowed: its exponent was 10,
+/// and the limit is 5.54. Kernels here are as wide as those of the default run.
+std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
+  const auto has_moments = [](const filters::FilterRequest& request) { return request.spec.holds_moments; };
+  if (!inputs.renderer || std::ranges::none_of(inputs.filters, has_moments)) return {};
+  const Mistake mistake{"steps",
+                        "teach_evsm:radius=1,c=10,store=rg16f",
+                        {"teach_evsm:radius=1,c=5.54,store=rg16f", "teach_evsm:radius=1,c=10"},
+                        {"vsm:radius=1", "poisson:radius=1"}};
+  return {replay(inputs, mistake, "evsm-mistake")};
+}
+
 }  // namespace warp_exponent
 
 Axis make_warp_exponent_axis() {
@@ -120,6 +135,7 @@ Axis make_warp_exponent_axis() {
       "finite, all lit or all dark";
   axis.driven_param = driven_param;
   axis.make_cases = make_cases;
+  axis.make_exhibits = make_exhibits;
   return axis;
 }
 

@@ -19,7 +19,7 @@ constexpr double kRounding = 2e-3;
 /// Gives the kernel that a filter averages with: its model names it; without one it is that of the prefilter that its
 /// front matter asks for.
 Kernel kernel_of(const FilterRequest& request) {
-  if (const auto kernel = filters::find_kernel(request.spec.id, request.values)) return *kernel;
+  if (const auto kernel = filters::find_kernel(request.spec, request.values)) return *kernel;
   const bool nearest = filters::text_or(request.values, "sample", "nearest") == "nearest";
   return Kernel::make_gaussian(filters::prefilter_radius_texels(request.spec, request.values),
                                nearest ? Reconstruction::kNearest : Reconstruction::kBilinear);

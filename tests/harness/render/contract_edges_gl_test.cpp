@@ -121,7 +121,7 @@ void expect_equal(const Cells& seen, const Cells& expected, const std::function<
 /// Gives the kernel's positions along an axis, by its model; a filter without one has a symmetric kernel, as
 /// filters/kernel.h asks.
 std::vector<filters::Kernel::Atom> atoms_of(const FilterRequest& request) {
-  const auto kernel = filters::find_kernel(request.spec.id, request.values);
+  const auto kernel = filters::find_kernel(request.spec, request.values);
   return kernel ? kernel->atoms() : std::vector<filters::Kernel::Atom>();
 }
 

@@ -40,7 +40,7 @@ Agreement compare(Bench& bench, const filters::FilterRequest& request, const ren
   const filters::DepthMap map = bench.map().read();
   const filters::ModelInput input{
       request.spec, request.values, map, measured_accuracy(), 7, rule.receiver_plane ? rule.max_tangent : 0.0};
-  const auto model = filters::make_model(request.spec.id);
+  const auto model = filters::make_model(request.spec);
   const auto in_float = model->prepare(input, filters::Precision::kFloat);
   const auto tracked = model->prepare(input, filters::Precision::kTracked);
   Agreement result;

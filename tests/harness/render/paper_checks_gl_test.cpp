@@ -46,7 +46,7 @@ TEST_P(Bound, IsNeverDarkerThanPercentageCloserFiltering) {
   const filters::GlAccuracy accuracy{measured.exp_ulp,
                                      static_cast<double>(std::min(measured.rg32f.bits, measured.r32f.bits))};
   const filters::ModelInput input{request.spec, request.values, map, accuracy, 7};
-  const auto model = filters::make_model(request.spec.id);
+  const auto model = filters::make_model(request.spec);
   const auto tracked = model->prepare(input, filters::Precision::kTracked);
   const filters::PercentageCloser closer(*model->kernel(request.values), map);
   double darkest_exact = 0.0, darkest_gpu = 0.0;

@@ -1,5 +1,6 @@
 // Whole runs: every cell's error taken apart, and the parts add up in every pixel of the float images.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -46,6 +47,34 @@ class Attributed : public ::testing::Test {
     return nlohmann::json::parse(file)["cells"];
   }
 
+  /// A square over a floor that lies parallel to it, under a sun of this diameter that stands overhead.
+  std::string write_parallel_planes(double sun_deg) const {
+    std::filesystem::create_directories(folder_);
+    const std::filesystem::path file = folder_ / fmt::format("planes{}.toml", sun_deg);
+    std::ofstream(file) << fmt::format(
+        "title = 'planes'\n[camera]\nposition = [0, 5, 5]\ntarget = [0, 0, 0]\nvertical_fov_deg = 40\n[light]\n"
+        "direction = [0, -1, 0]\nangular_diameter_deg = {}\n[[material]]\nname = 'grey'\ncolor = [0.5, 0.5, 0.5]\n"
+        "[[object]]\nname = 'floor'\nshape = 'plane'\nsize = [4, 4]\ncenter = [0, 0, 0]\ncells = 22\n"
+        "material = 'grey'\n[[object]]\nname = 'square'\nshape = 'plane'\nsize = [1.5, 1.5]\ncenter = [0, 1, 0]\n"
+        "material = 'grey'\n",
+        sun_deg);
+    return file.string();
+  }
+
+  /// Expects the parts of a filter's error to sum to it in every pixel.
+  void expect_sum(const std::string& filter) const {
+    const std::vector<float> area = part("truth.area"), image = part(filter + ".visibility");
+    std::vector<double> sum(image.size(), 0.0);
+    for (const records::ErrorPart& error_part : records::list_error_parts()) {
+      const std::vector<float> values = part(filter + ".error." + error_part.id);
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += static_cast<double>(values[i]);
+    }
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      // Where a pixel does not count, image and truth are equal: dark, or background.
+      ASSERT_NEAR(sum[i], static_cast<double>(image[i]) - static_cast<double>(area[i]), 1e-6);
+    }
+  }
+
   std::vector<float> part(const std::string& name) const {
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
       if (entry.path().extension() != ".exr") continue;
@@ -63,20 +92,10 @@ class Attributed : public ::testing::Test {
 TEST_F(Attributed, PartsAddUp_InEveryPixel_OfEveryFilter) {
   const nlohmann::json cells = run("cubes", "none,pcf2x2,tent3x3,poisson,vsm,esm");
   ASSERT_EQ(cells.size(), 6u);
-  const std::vector<float> area = part("truth.area");
   for (const auto& cell : cells) {
     const std::string filter = cell["filter"];
     SCOPED_TRACE(filter);
-    const std::vector<float> image = part(filter + ".visibility");
-    std::vector<double> sum(image.size(), 0.0);
-    for (const records::ErrorPart& error_part : records::list_error_parts()) {
-      const std::vector<float> values = part(filter + ".error." + error_part.id);
-      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += static_cast<double>(values[i]);
-    }
-    for (std::size_t i = 0; i < sum.size(); ++i) {
-      // Where a pixel does not count, image and truth are equal: dark, or background.
-      ASSERT_NEAR(sum[i], static_cast<double>(image[i]) - static_cast<double>(area[i]), 1e-6);
-    }
+    expect_sum(filter);
     double shares = 0.0;
     for (const auto& [name, values] : cell["attribution"].items()) shares += values["share"].get<double>();
     EXPECT_NEAR(shares, 1.0, 1e-9);
@@ -96,6 +115,26 @@ TEST_F(Attributed, FiltersThatCompareTheirKernel_HaveNoEstimatorError) {
     else
       EXPECT_LT(rms, 1e-12) << cell["filter"];
   }
+}
+
+/// Between parallel planes the disk that pcss chooses is the light's penumbra.
+TEST_F(Attributed, KernelsThatDifferFromPixelToPixel_AreThoseTheFilterChoseThere) {
+  const nlohmann::json cells = run(write_parallel_planes(6.0), "pcf2x2,pcss:taps=32,search_taps=32");
+  expect_sum("pcss (taps=32, search_taps=32)");
+  const nlohmann::json &fixed = cells[0]["attribution"], &chosen = cells[1]["attribution"];
+  EXPECT_LT(chosen["numeric"]["rms"], 1e-3);
+  EXPECT_LT(chosen["model"]["rms"], 0.2 * fixed["model"]["rms"].get<double>());
+  EXPECT_GT(chosen["estimator"]["rms"], 1e-3) << "32 taps are not a disk";
+  EXPECT_LT(cells[1]["error"]["kernel_rmse"], 0.02);
+  EXPECT_FALSE(cells[1]["artefact"]["noise"].is_null());
+  EXPECT_TRUE(cells[1]["kernel"]["sigma_texels"].is_null());
+}
+
+TEST_F(Attributed, UnderALightOfNoSize_PcssIsOneFetch) {
+  const nlohmann::json cells = run(write_parallel_planes(0.0), "pcf2x2,pcss");
+  EXPECT_GT(cells[0]["error"]["rmse"], 0.01);
+  for (const char* group : {"attribution", "excused"}) EXPECT_EQ(cells[1][group], cells[0][group]) << group;
+  for (const char* metric : {"rmse", "kernel_rmse"}) EXPECT_EQ(cells[1]["error"][metric], cells[0]["error"][metric]);
 }
 
 TEST_F(Attributed, MoreTaps_HaveLessNoise) {

@@ -56,6 +56,17 @@ TEST(Attribution, EachPartIsItsOwnDifference) {
   EXPECT_NEAR(result.parts[3][0], 0.125f, 1e-6f);
 }
 
+TEST(Attribution, WithoutAModel_TheEstimatorsPartHoldsTheNumericOne) {
+  Stations stations;
+  stations.add(0.875f, 0.75, 0.5, 0.25f, 0.125f);
+  stations.model.clear();
+  const Attribution result = stations.attribute();
+  EXPECT_TRUE(result.parts[0].empty());
+  EXPECT_FALSE(result.stats[0]);
+  EXPECT_EQ(result.parts[1][0], 0.375f);
+  EXPECT_EQ(result.stats[1]->share, 0.5);
+}
+
 TEST(Attribution, SharesOfCancellingParts_AreNegative) {
   // Estimator +0.5 and model -0.25 in one pixel, nothing in the other: e = 0.25.
   Stations stations;

@@ -123,9 +123,11 @@ TEST_F(Tracer, Kernels_AreKeptByKernelAndGrid) {
     const Kernel tent = Kernel::make_point(filters::Reconstruction::kBilinear);
     for (const MapGrid& grid : {fine, coarse, turned, slanted}) t.trace_kernel(make_receivers(), tent, grid);
     t.trace_kernel(make_receivers(), Kernel::make_disk(3.0), fine);
+    const std::size_t count = make_receivers().points.size();
+    for (const float radius : {1.0f, 2.0f}) t.trace_disks(make_receivers(), std::vector<float>(count, radius), fine);
     t.trace_surroundings(make_receivers(), 4.0, fine);
   };
-  EXPECT_EQ(count_traced(make_meshes(), trace_all), 6);
+  EXPECT_EQ(count_traced(make_meshes(), trace_all), 8);
   EXPECT_EQ(count_traced(make_meshes(), trace_all), 0);
 }
 

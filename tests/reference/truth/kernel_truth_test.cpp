@@ -71,17 +71,42 @@ TEST(KernelTruth, OfAGaussian) {
   });
 }
 
+/// A disk's share below an edge: its chords, each blurred by the tent.
+double disk_below(double radius, double t) {
+  double sum = 0.0;
+  constexpr int kSteps = 4000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double x = radius * (2.0 * (i + 0.5) / kSteps - 1.0);
+    sum += 2.0 * std::sqrt(radius * radius - x * x) * (2.0 * radius / kSteps) * tent_below(t - x);
+  }
+  return sum / (radius * radius * std::numbers::pi);
+}
+
 TEST(KernelTruth, OfADisk) {
-  // Chords of the disk, each blurred by the tent.
-  expect_kernel(Kernel::make_disk(3.0), [](double t) {
-    double sum = 0.0;
-    constexpr int kSteps = 4000;
-    for (int i = 0; i < kSteps; ++i) {
-      const double x = -3.0 + 6.0 * (i + 0.5) / kSteps;
-      sum += 2.0 * std::sqrt(9.0 - x * x) * (6.0 / kSteps) * tent_below(t - x);
-    }
-    return sum / (9.0 * std::numbers::pi);
-  });
+  expect_kernel(
+      Kernel::make_disk(3.0), [](double t) { return disk_below(3.0, t); });
+}
+
+TEST(KernelTruth, OfDisks_IsThatOfEachReceiversOwn) {
+  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
+  const Occluders occluders(meshes);
+  const ReceiverImage image = make_receivers(2.7);
+  const auto radius_at = [](const glm::dvec3& p) { return p.z > 0.0 ? 1.0f : 4.0f; };
+  std::vector<float> radii;
+  for (const ReceiverPoint& point : image.points) radii.push_back(radius_at(glm::dvec3(point.position_ws)));
+  ASSERT_NE(radii.front(), radii.back());
+  expect_agreement(score_seeds(
+      [&](std::uint32_t seed) { return trace_disks(occluders, image, radii, tilted_grid(), {.seed = seed}); }, image,
+      [&](const glm::dvec3& p) { return disk_below(static_cast<double>(radius_at(p)), texels_from_edge(p)); }));
+}
+
+TEST(KernelTruth, OfDisksWithoutSize_IsThatOfAFetch) {
+  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
+  const Occluders occluders(meshes);
+  const ReceiverImage image = make_receivers(1.5);
+  const std::vector<float> radii(image.points.size(), 0.0f);
+  EXPECT_EQ(trace_disks(occluders, image, radii, tilted_grid(), {}).visibility,
+            trace_kernel(occluders, image, Kernel::make_disk(0.0), tilted_grid(), {}).visibility);
 }
 
 TEST(KernelTruth, OfAPoint_IsTheHardShadow) {

@@ -77,6 +77,14 @@ TEST(AttributionBar, WithoutRmseOrAnyShare_ThereIsNone) {
   EXPECT_FALSE(make_attribution_bar(cell));
 }
 
+TEST(AttributionBar, WithoutANumericPart_IsDrawn_AndSaysSo) {
+  records::CellRecord cell = make_attributed_cell("mine", 0.04, {0.0, 0.75, -0.25, 0.5});
+  cell.attribution.numeric = {};
+  EXPECT_DOUBLE_EQ(make_attribution_bar(cell).value().net(), 0.04);
+  EXPECT_EQ(records::describe_shares(*records::list_shares(cell)),
+            "numeric and estimator 75 %, discretisation -25 %, model 50 %");
+}
+
 TEST(AttributionBar, Label_NamesTheTwoLargestAndNoneBelowOnePercent) {
   EXPECT_EQ(label_bar({{0.0, 0.71, 0.09, 0.2}}), "estimator 71 %, model 20 %");
   EXPECT_EQ(label_bar({{0.0, 0.1, -0.4, 1.3}}), "model 130 %, discretisation -40 %");

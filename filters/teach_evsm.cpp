@@ -1,0 +1,7 @@
+#include "filters/warped_variance.h"
+
+namespace shadowbench::filters {
+
+std::unique_ptr<Model> make_teach_evsm_model() { return make_templated_model<WarpedVariance<1, false>::Filter>(); }
+
+}  // namespace shadowbench::filters
