@@ -33,6 +33,7 @@ class Dpcf {
     const P blocker = found.depths / static_cast<P>(value_of(found.weight));
     const P radius = disk_.radius(r, static_cast<P>(r.depth) - blocker, tally);
     if (radius < Disk::kOneFetch) return map_.compare_2x2(r, {}, r.depth, tally);
+    tally.disk_radius_texels = static_cast<double>(radius);
     const T half(P(0.5)), blocked = found.weight / T(static_cast<P>(points_.size()));
     return minimum(maximum(half + (half - blocked) * T(search / radius), T(P(0))), T(P(1)));
   }

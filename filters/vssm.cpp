@@ -29,7 +29,9 @@ class Vssm {
     excuse_near_zero(distance, tally);
     if (value_of(distance) <= 0.0) return lit;
     const T to_blockers = distance + variance_.variance(around) / distance;
-    return variance_.visibility(moments_around(r, limit(widening * to_blockers, search), tally), r.depth);
+    const T half_width = limit(widening * to_blockers, search);
+    tally.disk_radius_texels = value_of(half_width) / static_cast<double>(kBoxOfDisk);
+    return variance_.visibility(moments_around(r, half_width, tally), r.depth);
   }
 
  private:

@@ -243,6 +243,8 @@ TEST(FrontMatter, BadPassesAreRefused) {
                     "vec4 p(PassInput p) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n"),
                "dir/mine.glsl:6", "lacks 'uvec4 p(PassInput p)'");
   expect_error(with("[pass.p]\nstore = \"r32f\"\nanisotropy = 4\n"), "dir/mine.glsl:8", "needs steps = \"levels\"");
+}
+
 TEST(FrontMatter, DisksPattern_IsNamed_OrAParameterThatChooses) {
   const auto with_pattern = [](const std::string& pattern, const std::string& choices = "\"stratified\", \"vogel\"") {
     return with(
