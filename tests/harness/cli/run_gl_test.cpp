@@ -306,11 +306,11 @@ TEST_F(Command, VarianceThatRoundingTakesBelowItsFloor_IsWarnedOf) {
 
 /// A user's file that says what its map holds gets what a built-in filter gets, but for what needs a model.
 TEST_F(Command, Stability_IsCountedDrawnAndLinked) {
-  std::string copied = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/vsm.glsl");
-  write("copied.glsl", copied);
+  const std::string vsm_text = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/vsm.glsl");
+  write("changed.glsl", vsm_text + "const float unused = 0.0;\n");
   const Outcome outcome =
       run("run --stability --out out --size 96x54 --map-size 64 --rounds 1 --scene cubes --no-truth --filters "
-          "none,vsm:bleed_reduction=0,esm:c=20,store=r16f,copied:bleed_reduction=0 --filter-file copied.glsl");
+          "none,vsm:bleed_reduction=0,esm:c=20,store=r16f,changed:bleed_reduction=0 --filter-file changed.glsl");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json cells = results(folder())["cells"];
   ASSERT_EQ(cells.size(), 4u);
