@@ -100,6 +100,7 @@ class FilterPasses {
   Defines map_defines_;
   std::optional<Prefilter> prefilter_;
   gl::Program lookup_;
+  std::optional<gl::Texture> blue_noise_;  ///< for filters that read it
   gl::FullscreenTriangle triangle_;
 
   void set_uniforms(gl::Program& lookup) const;
