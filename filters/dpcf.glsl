@@ -19,8 +19,8 @@ unit = "texels"
 text = "limit of the disk's radius; too small hardens wide penumbrae, too large spreads the taps so that narrow ones are noisy"
 [param.rotation]
 default = "per-pixel"
-choices = ["none", "per-pixel", "interleaved-gradient"]
-text = "turn of the disk at each pixel: none shows bands, per-pixel white noise, interleaved-gradient a regular dither"
+choices = ["none", "per-pixel", "interleaved-gradient", "blue-noise"]
+text = "turn of the disk at each pixel: none shows bands, per-pixel white noise, interleaved-gradient a regular dither, blue-noise one without a pattern"
 [disk.disk_points]
 count = "taps"
 seed = 1
@@ -32,17 +32,14 @@ float visibility(Receiver r) {
   float search = min(widening * r.depth_unbiased, max_radius);
   if (search < one_fetch) return compare_2x2(r, vec2(0.0), r.depth);
   vec2 turn = find_turn(r.pixel);
-  vec2 place = texel_fraction(r);
   float depths = 0.0;
   float blocked = 0.0;
   for (int i = 0; i < taps; ++i) {
     vec2 offset = search * rotate(disk_points[i], turn);
-    vec2 texel = floor(place + offset);
-    vec2 t = place + offset - texel;
-    vec4 weights = vec4((1.0 - t.x) * t.y, t.x * t.y, t.x * (1.0 - t.y), (1.0 - t.x) * (1.0 - t.y));
-    vec2 corner = texel + 0.5 - place;
-    vec4 depth = gather_depth(r, corner);
-    weights *= vec4(lessThan(depth, vec4(corner_depth(r, corner, biased_depth(r, offset)))));
+    Corner corner = find_corner(r, offset);
+    vec4 depth = gather_depth(r, corner.offset);
+    float plane = corner_depth(r, corner.offset, biased_depth(r, offset));
+    vec4 weights = corner.weights * vec4(lessThan(depth, vec4(plane)));
     depths += dot(weights, depth);
     blocked += dot(weights, vec4(1.0));
   }

@@ -25,8 +25,8 @@ unit = "texels"
 text = "limit of both radii; too small hardens wide penumbrae, too large pads the map and spreads the taps"
 [param.rotation]
 default = "per-pixel"
-choices = ["none", "per-pixel", "interleaved-gradient"]
-text = "turn of both disks at each pixel: none shows bands, per-pixel white noise, interleaved-gradient a regular dither"
+choices = ["none", "per-pixel", "interleaved-gradient", "blue-noise"]
+text = "turn of both disks at each pixel: none shows bands, per-pixel white noise, interleaved-gradient a regular dither, blue-noise one without a pattern"
 [disk.disk_points]
 count = "taps"
 seed = 1

@@ -17,8 +17,8 @@ unit = "texels"
 text = "radius of the disk; wider is softer, and needs more taps and more bias"
 [param.rotation]
 default = "per-pixel"
-choices = ["none", "per-pixel", "interleaved-gradient"]
-text = "turn of the disk at each pixel: none shows bands, per-pixel white noise, interleaved-gradient a regular dither"
+choices = ["none", "per-pixel", "interleaved-gradient", "blue-noise"]
+text = "turn of the disk at each pixel: none shows bands, per-pixel white noise, interleaved-gradient a regular dither, blue-noise one without a pattern"
 [param.pattern]
 default = "vogel"
 choices = ["vogel", "stratified", "blue-noise"]

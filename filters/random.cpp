@@ -1,6 +1,6 @@
 #include "filters/random.h"
 
-#include <cmath>
+#include "filters/noise/blue_noise.h"
 
 namespace shadowbench::filters {
 namespace {
@@ -32,8 +32,16 @@ float interleaved_gradient_turn(glm::ivec2 pixel) {
   return to_turn(static_cast<std::uint32_t>(product >> 26));
 }
 
+float blue_noise_turn(glm::ivec2 pixel, std::uint32_t seed) {
+  const std::uint32_t shift = hash_bits(seed);
+  const std::size_t x = (static_cast<std::uint32_t>(pixel.x) + shift) % kBlueNoiseSide;
+  const std::size_t y = (static_cast<std::uint32_t>(pixel.y) + (shift >> 16)) % kBlueNoiseSide;
+  return rank_to_turn(kBlueNoise[y * kBlueNoiseSide + x]);
+}
+
 float turn_of(const std::string& rotation, glm::ivec2 pixel, std::uint32_t seed) {
   if (rotation == "per-pixel") return random_turn(pixel, seed);
+  if (rotation == "blue-noise") return blue_noise_turn(pixel, seed);
   return rotation == "interleaved-gradient" ? interleaved_gradient_turn(pixel) : 0.0f;
 }
 

@@ -18,8 +18,12 @@ float random_turn(glm::ivec2 pixel, std::uint32_t seed);
 /// floating-point form differs between machines.
 float interleaved_gradient_turn(glm::ivec2 pixel);
 
-/// What filters that turn a disk call `rotation`: "per-pixel" and "interleaved-gradient" are the two above, anything
-/// else is no turn.
+/// A turn in [0,1) from a repeating texture of 64x64 pixels, which the seed shifts: blue noise, of which neighbours
+/// differ and which the eye averages soonest. See filters/noise/.
+float blue_noise_turn(glm::ivec2 pixel, std::uint32_t seed);
+
+/// What filters that turn a disk call `rotation`: "per-pixel", "interleaved-gradient" and "blue-noise" are the three
+/// above, anything else is no turn.
 float turn_of(const std::string& rotation, glm::ivec2 pixel, std::uint32_t seed);
 
 }  // namespace shadowbench::filters

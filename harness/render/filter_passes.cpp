@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "filters/base/error.h"
+#include "filters/noise/blue_noise.h"
 #include "harness/render/filter_glsl.h"
 
 namespace shadowbench::render {
@@ -26,6 +27,17 @@ double stored_reach(const filters::FilterRequest& request) {
   return filters::prefilter_radius_texels(request.spec, request.values) + reconstruction;
 }
 
+constexpr GLuint kBlueNoiseUnit = 7;  // of lib/random.glsl
+
+gl::Texture make_blue_noise() {
+  constexpr int kSide = static_cast<int>(filters::kBlueNoiseSide);
+  std::vector<float> turns;
+  for (const std::uint16_t rank : filters::kBlueNoise) turns.push_back(filters::rank_to_turn(rank));
+  gl::Texture texture("blue noise", GL_R32F, kSide, kSide);
+  texture.upload_floats(turns, 1);
+  return texture;
+}
+
 }  // namespace
 
 FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, const ShadowMap& map,
@@ -36,6 +48,7 @@ FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest&
       map_size_(map.size()),
       map_defines_(map_defines(request, map.settings())),
       lookup_(compile_lookup(shaders, {})) {
+  if (lookup_.has("blue_noise")) blue_noise_ = make_blue_noise();
   if (request.spec.has_encode) prefilter_.emplace(shaders, request, map_size_, light, map_defines_);
   if (request.spec.passes.empty()) return;
   own_.emplace(shaders, request, map_size_, light, map_defines_);
@@ -96,6 +109,10 @@ void FilterPasses::draw_lookup(gl::Program& program, const GBuffer& gbuffer, con
   map.bind();
   if (prefilter_) prefilter_->bind();
   if (own_) own_->bind();
+  if (blue_noise_) {
+    gl::Sampler::unbind(kBlueNoiseUnit);
+    blue_noise_->bind(kBlueNoiseUnit);
+  }
   program.use();
   triangle_.draw();
 }

@@ -105,6 +105,7 @@ class FilterPasses {
   std::optional<Prefilter> prefilter_;
   std::optional<MapPasses> own_;
   gl::Program lookup_;
+  std::optional<gl::Texture> blue_noise_;  ///< for filters that read it
   gl::FullscreenTriangle triangle_;
 
   std::int64_t count_map_bytes(const ShadowMap& map) const;

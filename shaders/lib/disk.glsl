@@ -6,6 +6,7 @@ vec2 find_turn(ivec2 pixel) {
   float turn = 0.0;
   if (rotation == ROTATION_PER_PIXEL) turn = random_turn(pixel);
   if (rotation == ROTATION_INTERLEAVED_GRADIENT) turn = interleaved_gradient_turn(pixel);
+  if (rotation == ROTATION_BLUE_NOISE) turn = blue_noise_turn(pixel);
   float angle = 6.28318530718 * turn;
   return vec2(cos(angle), sin(angle));
 }

@@ -8,3 +8,17 @@ float penumbra_per_depth(Receiver r) { return 0.5 * r.light_size * r.depth_range
 
 // The receiver's depth, biased for a tap by the tap's own distance.
 float biased_depth(Receiver r, vec2 offset) { return r.depth - dot(r.bias_per_texel, abs(offset)); }
+
+// The four texels that compare_2x2 reads at an offset, and how it weighs them.
+struct Corner {
+  vec2 offset;   // for a gather: half-way between texels, so that rounding cannot take others
+  vec4 weights;  // in the order of a gather
+};
+
+Corner find_corner(Receiver r, vec2 offset) {
+  vec2 place = texel_fraction(r);
+  vec2 texel = floor(place + offset);
+  vec2 t = place + offset - texel;
+  return Corner(texel + 0.5 - place,
+                vec4((1.0 - t.x) * t.y, t.x * t.y, t.x * (1.0 - t.y), (1.0 - t.x) * (1.0 - t.y)));
+}

@@ -1,5 +1,6 @@
 // Random turns for filters, in integers so that every machine agrees; sources in filters/random.h.
 uniform uint run_seed;
+layout(binding = 7) uniform sampler2D blue_noise;  // bound for filters that read it
 
 uint hash_bits(uint x) {
   x ^= x >> 16;
@@ -22,4 +23,11 @@ float interleaved_gradient_turn(ivec2 pixel) {
   uint low;
   umulExtended(inner, 3555623499u, high, low);
   return bits_to_turn((high << 6) | (low >> 26));
+}
+
+// The texture repeats, and the seed shifts it.
+float blue_noise_turn(ivec2 pixel) {
+  uint shift = hash_bits(run_seed);
+  uvec2 texel = (uvec2(pixel) + uvec2(shift, shift >> 16)) % uvec2(textureSize(blue_noise, 0));
+  return texelFetch(blue_noise, ivec2(texel), 0).r;
 }
