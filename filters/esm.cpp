@@ -47,7 +47,7 @@ class Esm {
     for (int y = -radius_; y <= radius_; ++y) {
       for (int x = -radius_; x <= radius_; ++x) {
         const P weight =
-            radius_ == 0 ? P(1) : std::exp(P(-2) * static_cast<P>(x * x + y * y) / static_cast<P>(radius_ * radius_));
+            std::exp(P(-2) * static_cast<P>(x * x + y * y) / static_cast<P>(std::max(radius_ * radius_, 1)));
         const P bias = static_cast<P>(r.bias_per_texel.x) * (static_cast<P>(std::abs(x)) + P(0.5)) +
                        static_cast<P>(r.bias_per_texel.y) * (static_cast<P>(std::abs(y)) + P(0.5));
         const float depth = static_cast<float>(static_cast<P>(r.depth) - bias);

@@ -39,7 +39,7 @@ float compare_kernel(Receiver r) {
   for (int y = -radius; y <= radius; ++y) {
     for (int x = -radius; x <= radius; ++x) {
       vec2 offset = vec2(x, y);
-      float weight = radius == 0 ? 1.0 : exp(-2.0 * dot(offset, offset) / float(radius * radius));
+      float weight = exp(-2.0 * dot(offset, offset) / float(max(radius * radius, 1)));
       lit += weight * compare_2x2(r, offset, r.depth - dot(r.bias_per_texel, abs(offset) + 0.5));
       all += weight;
     }
