@@ -14,11 +14,11 @@ nlohmann::json results(const std::filesystem::path& folder) {
   return nlohmann::json::parse(read_text(folder / "out" / "results.json"));
 }
 
-TEST_F(Command, ByDefault_AllScenesAndSixFilters_WriteAValidReport) {
+TEST_F(Command, ByDefault_AllScenesAndEightFilters_WriteAValidReport) {
   const Outcome outcome = run("run --out out --size 128x72 --map-size 128 --rounds 2");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json document = results(folder());
-  EXPECT_EQ(document["cells"].size(), 30u);
+  EXPECT_EQ(document["cells"].size(), 40u);
   for (const auto& cell : document["cells"]) EXPECT_EQ(cell["nan"], 0);
   for (const char* scene : {"cubes", "stack", "fence", "ball", "steps"}) {
     EXPECT_TRUE(std::filesystem::exists(folder() / "out" / (std::string(scene) + ".grid.png")));

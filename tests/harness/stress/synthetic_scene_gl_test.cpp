@@ -36,7 +36,7 @@ TEST(GlLookup, EqualsTheModel_ForEveryFilterThatHasOne) {
     const LookupResult gl = make_gl_lookup(inputs, request)->look(edge.scene, request.values);
     const LookupResult model = make_model_lookup(inputs, request)->look(edge.scene, request.values);
     for (std::size_t i = 0; i < gl.visibility.size(); ++i)
-      EXPECT_NEAR(gl.visibility[i], model.visibility[i], 1e-3) << request.spec.id << " " << i;
+      EXPECT_NEAR(gl.visibility[i], model.visibility[i], 2e-3) << request.spec.id << " " << i;  // csm_conv: half floats
   }
 }
 
