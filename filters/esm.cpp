@@ -15,7 +15,6 @@ class Esm {
         log_(text_or(input.values, "combine", "linear") == "log"),
         radius_(static_cast<int>(number(input.values, "radius"))),
         falls_back_(text_or(input.values, "fallback", "none") != "none"),
-        limit_(P(1) + static_cast<P>(static_cast<float>(number(input.values, "fallback_margin")))),
         depths_(input),
         map_(input, radius_, [this](const EncodeInput<T>& e) { return encode(e.depth); }) {}
 
@@ -26,17 +25,18 @@ class Esm {
     const T receiver = T(c_) * T(static_cast<P>(r.depth));
     const T lit = log_ ? exponential(occluder - receiver, accuracy_) : occluder * exponential(-receiver, accuracy_);
     if (!falls_back_) return minimum(lit, T(P(1)));
-    if (std::abs(value_of(lit) - static_cast<double>(limit_)) <= bound_of(lit)) tally.excused = true;
-    return value_of(lit) > static_cast<double>(limit_) ? compare_kernel(r, tally) : minimum(lit, T(P(1)));
+    if (std::abs(value_of(lit) - kLimit) <= bound_of(lit)) tally.excused = true;
+    return value_of(lit) > kLimit ? compare_kernel(r, tally) : minimum(lit, T(P(1)));
   }
 
  private:
+  static constexpr double kLimit = 1.5;  ///< of the filtered test, above which it is not believed
+
   GlAccuracy accuracy_;
   P c_;
   bool log_;
   int radius_;
   bool falls_back_;
-  P limit_;  ///< of the filtered test, above which it is not believed
   DepthReader<T> depths_;
   EncodedMap<T, 1> map_;
 

@@ -24,12 +24,11 @@ text = "exponent; too small fades contact shadows, too large overflows: above 88
 default = "none"
 choices = ["none", "percentage-closer"]
 text = "what stands in where the filtered test exceeds 1, because texels under the kernel lie behind the receiver: none lights these receivers, percentage-closer compares every texel of the kernel, and costs as much there"
-[param.fallback_margin]
-default = 0.5
-min = 0.0
-max = 10.0
-text = "by how much the filtered test may exceed 1 before the fallback; too small compares on every sloped plane, too large leaves light beside edges"
 +++*/
+// By how much the filtered test may exceed 1 before it is not believed: less would compare on every sloped plane, more
+// would leave light beside edges.
+const float fallback_margin = 0.5;
+
 vec4 encode(EncodeInput e) { return vec4(combine == COMBINE_LOG ? c * e.depth : exp(c * e.depth)); }
 
 // Every texel of the kernel, each biased by its own distance.

@@ -38,6 +38,7 @@ class EqualKernels : public ProgramTest {
   static std::map<std::string, Ranked> rank(const nlohmann::json& cells, const std::string& name) {
     std::map<std::string, Ranked> scenes;
     for (const nlohmann::json& cell : cells) {
+      if (cell["kernel"]["sigma_texels"].is_null()) continue;  // it differs from pixel to pixel
       Ranked& scene = scenes[cell["scene"]];
       scene.filters.push_back(cell["filter"]);
       scene.widths.push_back(cell["kernel"]["sigma_texels"]);
@@ -52,20 +53,21 @@ class EqualKernels : public ProgramTest {
   }
 };
 
-// At the filters' own radii, 3 and 4 texels, the correlation is 0.81, 0.75 and 0.67 on cubes, fence and stack; at the
-// medium width it was measured as -0.15, -0.79 and -0.88.
+// At the filters' own radii, 3 and 4 texels, the correlation is 0.85, 0.82 and 0.82 on cubes, fence and stack; at the
+// medium width it was measured as -0.28, -0.73 and -0.79.
 TEST_F(EqualKernels, OrderOfErrors_FollowsTheWidthsNoMore) {
   constexpr double kFollows = 0.5;
   const nlohmann::json matched = measure("");
   for (const nlohmann::json& cell : matched) {
+    if (cell["kernel"]["sigma_texels"].is_null()) continue;
     const bool is_narrow = cell["filter"] == "none" || cell["filter"] == "pcf2x2";
     EXPECT_EQ(cell["kernel"]["class"], is_narrow ? "sharp" : "medium") << cell["filter"];
   }
   for (const auto& [scene, ranked] : rank(matched, "default run")) {
-    ASSERT_EQ(ranked.filters.size(), 6u);
+    ASSERT_EQ(ranked.filters.size(), 7u);
     EXPECT_LT(ranked.correlation(), kFollows) << scene;
   }
-  for (const auto& [scene, ranked] : rank(measure("--filters none,pcf2x2,tent3x3,poisson,vsm,esm"), "own radii"))
+  for (const auto& [scene, ranked] : rank(measure("--filters none,pcf2x2,tent3x3,poisson,vsm,esm,evsm4"), "own radii"))
     EXPECT_GT(ranked.correlation(), kFollows) << scene;
 }
 

@@ -205,7 +205,7 @@ INSTANTIATE_TEST_SUITE_P(
                       "msm_hausdorff:radius=1", "poisson:taps=32,radius=6", "vsm:radius=0", "vsm:radius=12",
                       "vsm:bleed_reduction=0,slope_variance=0", "vsm:slope_variance=1",
                       "vsm:min_variance=0.001,store=rg16f", "esm:radius=0", "esm:c=20",
-                      "esm:fallback=percentage-closer", "esm:fallback=percentage-closer,fallback_margin=0,radius=0",
+                      "esm:fallback=percentage-closer", "esm:fallback=percentage-closer,radius=0",
                       "esm:fallback=percentage-closer,combine=log,radius=1", "esm:combine=log,c=500",
                       "esm:combine=log,radius=0", "esm:c=8,store=r16f", "vsm_sat:radius=0", "vsm_sat:radius=20",
                       "vsm_sat:bleed_reduction=0,slope_variance=0", "csm_conv:radius=0,damping=0", "csm_conv:scale=1",
