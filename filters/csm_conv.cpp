@@ -24,6 +24,8 @@ class CsmConv {
   static Kernel kernel(const ParamValues& values) { return Kernel::make_box(radius_of(values)); }
 
   T visibility(const Receiver& r, Tally& tally) const {
+    if (r.depth > 1.0f) return T(P(0));
+    if (r.uv != glm::clamp(r.uv, 0.0f, 1.0f)) return T(P(1));
     const Waves cosines = cosines_.fetch(r, tally), sines = sines_.fetch(r, tally);
     T sum{};
     for (std::size_t i = 0; i < kTerms; ++i) {

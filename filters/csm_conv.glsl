@@ -43,6 +43,8 @@ vec4 cosines(PassInput p) { BOX_MEAN(cos(frequencies * load_depth(p.texel)), loa
 vec4 sines(PassInput p) { BOX_MEAN(sin(frequencies * load_depth(p.texel)), load_sines) }
 
 float visibility(Receiver r) {
+  if (r.depth > 1.0) return 0.0;  // the series repeats itself
+  if (any(notEqual(r.uv, clamp(r.uv, 0.0, 1.0)))) return 1.0;
   vec4 angles = frequencies * r.depth;
   vec4 weights = exp(-damping * places * places) / frequencies;
   vec4 waves = cos(angles) * fetch_sines(r, vec2(0.0)) - sin(angles) * fetch_cosines(r, vec2(0.0));

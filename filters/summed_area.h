@@ -58,7 +58,8 @@ class SummedMoments {
     const Sums &left = at(x - 1, y), &below = at(x, y - 1), &both = at(x - 1, y - 1);
     Sums sums;
     for (std::size_t c = 0; c < 2; ++c) {
-      double value = std::clamp(value_of(moments[c]), 0.0, 1.0);
+      double value = value_of(moments[c]);
+      value = value > 0.0 ? std::min(value, 1.0) : 0.0;  // what is no number becomes 0, as in the GL
       if constexpr (std::is_same_v<T, float>)
         value = static_cast<double>(std::floor(static_cast<float>(value) * steps_ + 0.5f));
       sums.values[c] = value + left.values[c] + below.values[c] - both.values[c];

@@ -223,11 +223,11 @@ void read_disks(const FrontMatterReader& reader, const toml::table& root, Filter
 }
 
 void read_root(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
-  reader.check_keys(root,
-                    {"title", "source", "kind", "store", "combine", "sample", "claims", "radius_texels", "bias_texels",
-                     "teaching", "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk", "kernel",
-                     "pass"},
-                    "the front matter");
+  reader.check_keys(
+      root,
+      {"title", "source", "kind", "store", "combine", "sample", "claims", "radius_texels", "bias_texels", "teaching",
+       "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk", "kernel", "pass"},
+      "the front matter");
   spec.title = reader.text(root, "title", true);
   spec.source = reader.text(root, "source", true);
   spec.kind = read_kind(reader, root);

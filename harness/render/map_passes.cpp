@@ -29,9 +29,7 @@ int count_prefix_steps(int side) {
 
 MapPasses::MapPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
                      const LightSetup& light, const Defines& map_defines)
-    : filter_(request.spec.path),
-      map_size_(map_size),
-      wrap_(light.range.border == filters::Border::kRepeat ? GL_REPEAT : GL_CLAMP_TO_EDGE) {
+    : filter_(request.spec.path), map_size_(map_size) {
   for (const PassSpec& spec : request.spec.passes) {
     Defines defines = map_defines;
     defines.emplace_back("PASS", spec.name);
@@ -92,7 +90,6 @@ PassMap MapPasses::make_map(const PassSpec& spec) const {
   const GLenum magnify = spec.is_integer() ? GL_NEAREST : GL_LINEAR;
   PassMap map{gl::Texture(map_name(spec), format, side(spec), side(spec), levels ? count_steps(spec) : 1), {}};
   map.texture.set_filter(levels && !spec.is_integer() ? GL_LINEAR_MIPMAP_LINEAR : magnify, magnify);
-  map.texture.set_wrap(wrap_);
   for (int level = 0; level < (levels ? count_steps(spec) : 1); ++level)
     map.levels.emplace_back(map_name(spec)).attach_color(0, map.texture, level);
   try {

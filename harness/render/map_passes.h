@@ -62,7 +62,6 @@ class MapPasses {
 
   std::string filter_;  ///< path of its file
   int map_size_;
-  GLenum wrap_;
   std::vector<Pass> passes_;
   std::shared_ptr<PassMaps> maps_;
   std::vector<std::unique_ptr<PassMap>> scratch_;  ///< steps take turns between two maps; null where there is one step

@@ -24,7 +24,7 @@ constexpr double kDistance = 1.08;  // as far from it as before
 /// a part of what it changes by from pixel to pixel, or jump where a silhouette in the map is narrower than that.
 /// Measured: 37 of 125 929 places are seen otherwise at most.
 constexpr double kBetweenPixels = 0.02, kCurvature = 0.25;
-constexpr double kLargestShare = 0.001;
+constexpr double kLargestShare = 0.001, kHardeningShare = 0.005;
 
 /// A random mean of 24 seeds is that many standard errors off in fewer places than kLargestShare allows (normal: 1e-4).
 constexpr double kQuantile = 4.0;
@@ -145,7 +145,9 @@ TEST_P(CameraIndependence, OtherCamera_SeesTheSameVisibilityInTheWorld) {
               matched, shaded, other);
   EXPECT_GT(matched, 10000);
   EXPECT_GT(shaded, matched / 100);
-  EXPECT_LE(other, kLargestShare * matched);
+  // Where shadows harden at contacts, they are as sharp as the map, and pixels miss more: 251 of 85 681 were measured.
+  const bool hardens = !request_of(filter).spec.claims.empty();
+  EXPECT_LE(other, (hardens ? kHardeningShare : kLargestShare) * matched);
 }
 
 INSTANTIATE_TEST_SUITE_P(AllFilters, CameraIndependence,
