@@ -21,7 +21,7 @@ class CsmConv {
         damping_(static_cast<P>(number(input.values, "damping"))),
         scale_(static_cast<P>(number(input.values, "scale"))) {}
 
-  static Kernel kernel(const ParamValues& values) { return Kernel::make_box(radius_of(values)); }
+  static Kernel kernel(const ParamValues& values) { return Kernel::make_box(2 * radius_of(values) + 1); }
 
   T visibility(const Receiver& r, Tally& tally) const {
     if (r.depth > 1.0f) return T(P(0));

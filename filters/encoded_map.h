@@ -57,7 +57,10 @@ class EncodedMap {
                                  is_nearest(values) ? Reconstruction::kNearest : Reconstruction::kBilinear);
   }
 
-  const Texel& at(int x, int y) const { return texel(x, y); }
+  const Texel& texel(int x, int y) const {
+    const std::optional<std::size_t> found = grid_.find(x, y);
+    return found ? texels_[*found] : border_;
+  }
 
   Texel fetch(const Receiver& r, Tally& tally) const {
     if (nearest_) {
@@ -158,11 +161,6 @@ class EncodedMap {
   Texel stored(Texel texel) const {
     for (T& channel : texel) channel = round_to_store(channel, store_);
     return texel;
-  }
-
-  const Texel& texel(int x, int y) const {
-    const std::optional<std::size_t> found = grid_.find(x, y);
-    return found ? texels_[*found] : border_;
   }
 
   static Texel mix(const Texel& a, const Texel& b, T s) {

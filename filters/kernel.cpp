@@ -46,11 +46,10 @@ Kernel Kernel::make_grid(std::vector<Atom> atoms, Reconstruction reconstruction)
   return kernel;
 }
 
-Kernel Kernel::make_box(int radius_texels) {
+Kernel Kernel::make_box(int taps, Reconstruction reconstruction) {
   std::vector<Atom> atoms;
-  for (int i = -radius_texels; i <= radius_texels; ++i)
-    atoms.push_back({static_cast<double>(i), 1.0 / (2 * radius_texels + 1)});
-  return make_grid(std::move(atoms), Reconstruction::kBilinear);
+  for (int i = 0; i < taps; ++i) atoms.push_back({i - 0.5 * (taps - 1), 1.0 / taps});
+  return make_grid(std::move(atoms), reconstruction);
 }
 
 Kernel Kernel::make_gaussian(int radius_texels, Reconstruction reconstruction) {

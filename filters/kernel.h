@@ -30,8 +30,8 @@ class Kernel {
   /// The same atoms along both axes, as a product. Requires weights that sum to 1, offsets that ascend.
   static Kernel make_grid(std::vector<Atom> atoms, Reconstruction reconstruction);
 
-  /// A box of 2 * radius + 1 equal weights along both axes, read bilinearly.
-  static Kernel make_box(int radius_texels);
+  /// As many equal weights along both axes, a texel apart.
+  static Kernel make_box(int taps, Reconstruction reconstruction = Reconstruction::kBilinear);
 
   /// The weights of the Gaussian prefilter; see gaussian_weights().
   static Kernel make_gaussian(int radius_texels, Reconstruction reconstruction);

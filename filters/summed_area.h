@@ -20,14 +20,14 @@ class SummedMoments {
       : size_(input.map.size), steps_(find_steps(side)), table_(static_cast<std::size_t>(size_ * size_)) {
     const EncodedMap<T, 2> map(input, 0, encode);
     for (int y = 0; y < size_; ++y)
-      for (int x = 0; x < size_; ++x) table_[index(x, y)] = add(map.at(x, y), x, y);
+      for (int x = 0; x < size_; ++x) table_[index(x, y)] = add(map.texel(x, y), x, y);
   }
 
   P size() const { return static_cast<P>(size_); }
 
   /// The moments of a box between two corners, in texels from the map's lower left.
   Moments mean(const Offset<T>& low, const Offset<T>& high) const {
-    Moments moments = mean_of<T>(low, high);
+    Moments moments = mean_of(low, high);
     if constexpr (std::is_same_v<T, Tracked>) {
       for (int edge = 0; edge < 8; ++edge) {
         const Moments moved = move_edge(low, high, edge);
@@ -54,7 +54,7 @@ class SummedMoments {
 
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y * size_ + x); }
 
-  Sums add(const std::array<T, 2>& moments, int x, int y) const {
+  Sums add(const Moments& moments, int x, int y) const {
     const Sums &left = at(x - 1, y), &below = at(x, y - 1), &both = at(x - 1, y - 1);
     Sums sums;
     for (std::size_t c = 0; c < 2; ++c) {
@@ -77,11 +77,11 @@ class SummedMoments {
   }
 
   /// Sums of whole texels with both ends, and what of them lies outside the map, where depth is 1.
-  std::array<T, 2> window(glm::ivec2 from, glm::ivec2 to) const {
+  Moments window(glm::ivec2 from, glm::ivec2 to) const {
     const Sums &all = at(to.x, to.y), &left = at(from.x, to.y), &below = at(to.x, from.y), &both = at(from.x, from.y);
     const glm::ivec2 inside = glm::clamp(to, -1, size_ - 1) - glm::clamp(from, -1, size_ - 1);
     const int outside = (to.x - from.x) * (to.y - from.y) - inside.x * inside.y;
-    std::array<T, 2> sum;
+    Moments sum;
     for (std::size_t c = 0; c < 2; ++c) {
       const double value = all.values[c] - left.values[c] - below.values[c] + both.values[c];
       const double bound = all.bounds[c] - left.bounds[c] - below.bounds[c] + both.bounds[c];
@@ -90,23 +90,22 @@ class SummedMoments {
     return sum;
   }
 
-  template <class N>
-  std::array<N, 2> mean_of(const Offset<T>& low, const Offset<T>& high) const {
+  Moments mean_of(const Offset<T>& low, const Offset<T>& high) const {
     const auto split = [](P at) { return std::pair(static_cast<int>(std::floor(at)) - 1, at - std::floor(at)); };
     const auto [left, left_part] = split(low.x);
     const auto [bottom, bottom_part] = split(low.y);
     const auto [right, right_part] = split(high.x);
     const auto [top, top_part] = split(high.y);
     const auto part = [](P fraction, int i) { return i == 0 ? P(1) - fraction : fraction; };
-    std::array<N, 2> moments{};
-    N area{};
+    Moments moments{};
+    T area{};
     for (int i = 0; i < 16; ++i) {
       const glm::ivec2 from(left + (i & 1), bottom + (i >> 2 & 1)), to(right + (i >> 1 & 1), top + (i >> 3));
-      const N weight(part(left_part, i & 1) * part(right_part, i >> 1 & 1) * part(bottom_part, i >> 2 & 1) *
+      const T weight(part(left_part, i & 1) * part(right_part, i >> 1 & 1) * part(bottom_part, i >> 2 & 1) *
                      part(top_part, i >> 3));
-      const std::array<T, 2> sum = window(from, to);
+      const Moments sum = window(from, to);
       for (std::size_t c = 0; c < 2; ++c) moments[c] = moments[c] + weight * sum[c];
-      area = area + weight * N(static_cast<P>((to.x - from.x) * (to.y - from.y)));
+      area = area + weight * T(static_cast<P>((to.x - from.x) * (to.y - from.y)));
     }
     return {moments[0] / area, moments[1] / area};
   }
@@ -116,7 +115,7 @@ class SummedMoments {
     const P off = P(4) * static_cast<P>(kUnitRoundoff) * size() * (edge % 2 == 0 ? P(1) : P(-1));
     P* const edges[] = {&low.x, &low.y, &high.x, &high.y};
     *edges[edge / 2] += off;
-    return mean_of<T>(low, high);
+    return mean_of(low, high);
   }
 };
 

@@ -16,7 +16,7 @@ class VsmSat {
         moments_(input, 2 * radius_ + 3, [this](const EncodeInput<T>& e) { return variance_.encode(e); }) {}
 
   static Kernel kernel(const ParamValues& values) {
-    return Kernel::make_box(static_cast<int>(number(values, "radius")));
+    return Kernel::make_box(2 * static_cast<int>(number(values, "radius")) + 1);
   }
 
   T visibility(const Receiver& r, Tally&) const {

@@ -21,7 +21,7 @@ Kernel make_kernel(const DeclaredKernel& declared, const ParamValues& values) {
     case KernelShape::kTent: return Kernel::make_triangle(size);
     case KernelShape::kDisk: return Kernel::make_disk(size);
     case KernelShape::kGaussian: return Kernel::make_gaussian(static_cast<int>(size), read);
-    default: return make_taps(std::vector<double>(static_cast<std::size_t>(size), 1.0 / size), read);
+    default: return Kernel::make_box(static_cast<int>(size), read);
   }
 }
 

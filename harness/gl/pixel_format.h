@@ -13,7 +13,6 @@ struct PixelFormat {
   int channels = 0;
   int bytes_per_texel = 0;  ///< as stored; D24 counts 4, which is what every GL takes for it
   bool depth = false;
-  bool integer = false;
 
   /// Returns GL's transfer format for `count` channels of this format: GL_RED ... GL_RGBA or GL_DEPTH_COMPONENT.
   /// Throws std::logic_error for a count that the format does not have.
