@@ -8,10 +8,7 @@ class Box3x3 {
  public:
   explicit Box3x3(const ModelInput& input) : map_(input) {}
 
-  static Kernel kernel(const ParamValues&) {
-    constexpr double kThird = 1.0 / 3.0;
-    return Kernel::make_grid({{-1.0, kThird}, {0.0, kThird}, {1.0, kThird}}, Reconstruction::kNearest);
-  }
+  static Kernel kernel(const ParamValues&) { return Kernel::make_box(3, Reconstruction::kNearest); }
 
   T visibility(const Receiver& r, Tally& tally) const {
     using P = Position<T>;

@@ -10,10 +10,7 @@ class Box4x4 {
  public:
   explicit Box4x4(const ModelInput& input) : map_(input) {}
 
-  static Kernel kernel(const ParamValues&) {
-    constexpr double kThird = 1.0 / 3.0;
-    return Kernel::make_grid({{-1.0, kThird}, {0.0, kThird}, {1.0, kThird}}, Reconstruction::kBilinear);
-  }
+  static Kernel kernel(const ParamValues&) { return Kernel::make_box(3); }
 
   T visibility(const Receiver& r, Tally& tally) const {
     const Pair x = place(r.uv.x), y = place(r.uv.y);

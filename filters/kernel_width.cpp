@@ -20,7 +20,7 @@ constexpr double kRadiiPerTexel = 1000.0;  // among those that need not be whole
 
 std::array<WidthClass, 3> make_classes() {
   const Kernel fetch = Kernel::make_point(Reconstruction::kBilinear), disk = Kernel::make_disk(3.0);
-  const Kernel tent = Kernel::make_grid({{-0.5, 0.5}, {0.5, 0.5}}, Reconstruction::kBilinear);
+  const Kernel tent = Kernel::make_box(2);
   const double sharp = fetch.sigma_texels(), medium = tent.sigma_texels(), soft = disk.sigma_texels();
   return {WidthClass{"sharp", sharp, std::sqrt(sharp * medium)}, WidthClass{"medium", medium, std::sqrt(medium * soft)},
           WidthClass{"soft", soft, soft * std::sqrt(soft / medium)}};

@@ -8,9 +8,7 @@ class Tent3x3 {
  public:
   explicit Tent3x3(const ModelInput& input) : map_(input) {}
 
-  static Kernel kernel(const ParamValues&) {
-    return Kernel::make_grid({{-0.5, 0.5}, {0.5, 0.5}}, Reconstruction::kBilinear);
-  }
+  static Kernel kernel(const ParamValues&) { return Kernel::make_box(2); }
 
   T visibility(const Receiver& r, Tally& tally) const {
     using P = Position<T>;

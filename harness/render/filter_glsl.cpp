@@ -80,7 +80,9 @@ std::vector<gl::Piece> filter_pieces(const FilterRequest& request) {
   return {parameters, {"filter", request.spec.body, request.spec.path, request.spec.body_first_line}};
 }
 
-void set_parameters(gl::Program& program, const FilterRequest& request) {
+void set_uniforms(gl::Program& program, const FilterRequest& request, const LightSetup& light) {
+  set_light(program, light);
+  program.set("run_seed", light.seed);
   for (const ParamSpec& param : request.spec.params) {
     const ParamValue& value = request.values.at(param.name);
     if (param.is_const || std::holds_alternative<std::string>(value)) continue;

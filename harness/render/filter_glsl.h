@@ -5,6 +5,7 @@
 #include "filters/catalogue.h"
 #include "harness/gl/program.h"
 #include "harness/gl/shader_source.h"
+#include "harness/render/light_setup.h"
 
 namespace shadowbench::render {
 
@@ -13,7 +14,8 @@ namespace shadowbench::render {
 /// tables of points, and the filter's own GLSL with the line numbers of its file.
 std::vector<gl::Piece> filter_pieces(const filters::FilterRequest& request);
 
-/// Sets the uniforms of the parameters that are not `const`.
-void set_parameters(gl::Program& program, const filters::FilterRequest& request);
+/// Sets what every program that holds a filter's GLSL is told: the light, the seed, and the parameters that are not
+/// `const`.
+void set_uniforms(gl::Program& program, const filters::FilterRequest& request, const LightSetup& light);
 
 }  // namespace shadowbench::render

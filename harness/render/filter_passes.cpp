@@ -66,10 +66,8 @@ gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, Defines defines
 }
 
 void FilterPasses::set_uniforms(gl::Program& lookup) const {
-  set_light(lookup, light_);
-  lookup.set("run_seed", light_.seed);
+  render::set_uniforms(lookup, request_, light_);
   lookup.set("map_texel_uv", 1.0f / static_cast<float>(map_size_));
-  set_parameters(lookup, request_);
 }
 
 void FilterPasses::retune(ShaderLibrary& shaders, const filters::ParamValues& values, const LightSetup& light) {

@@ -108,10 +108,8 @@ std::shared_ptr<PassMaps> MapPasses::make_maps() const {
 
 void MapPasses::retune(const filters::FilterRequest& request, const LightSetup& light) {
   for (Pass& pass : passes_) {
-    set_light(pass.program, light);
-    pass.program.set("run_seed", light.seed);
+    set_uniforms(pass.program, request, light);
     pass.program.set("map_texel_uv", 1.0f / static_cast<float>(map_size_));
-    set_parameters(pass.program, request);
   }
 }
 

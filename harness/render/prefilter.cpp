@@ -42,9 +42,7 @@ Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& reque
 }
 
 void Prefilter::retune(ShaderLibrary& shaders, const filters::FilterRequest& request, const LightSetup& light) {
-  set_light(encode_, light);
-  encode_.set("run_seed", light.seed);
-  set_parameters(encode_, request);
+  set_uniforms(encode_, request, light);
   set_border(encode_border(store_format(request.values)));
   radius_ = filters::prefilter_radius_texels(request.spec, request.values);
   if (radius_ == 0) return;
