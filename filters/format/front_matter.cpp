@@ -5,7 +5,9 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -85,22 +87,46 @@ ParamSpec read_param(const FrontMatterReader& reader, const std::string& name, c
   return param;
 }
 
-/// `store`, `combine` and `sample` are parameters as well: the first value is the default.
-void add_list_param(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec, const std::string& name,
-                    const std::vector<std::string>& known, const char* text) {
+/// Makes a parameter of a list, whose first value is the default.
+void add_list_param(FilterSpec& spec, const std::string& name, std::vector<ParamValue> values, const char* text) {
+  if (values.empty()) return;
+  ParamSpec param;
+  param.name = name;
+  param.default_value = values.front();
+  param.integer = std::holds_alternative<double>(values.front());
+  param.choices = std::move(values);
+  param.is_const = true;
+  param.text = text;
+  spec.params.push_back(param);
+}
+
+void read_texts_param(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec,
+                      const std::string& name, const std::vector<std::string>& known, const char* text) {
   const std::vector<std::string> values = reader.texts(root, name);
   for (const std::string& value : values) {
     if (std::find(known.begin(), known.end(), value) != known.end()) continue;
     reader.fail_unknown(root.get(name), name, value, known);
   }
-  if (values.empty()) return;
-  ParamSpec param;
-  param.name = name;
-  param.default_value = values.front();
-  param.choices.assign(values.begin(), values.end());
-  param.is_const = true;
-  param.text = text;
-  spec.params.push_back(param);
+  add_list_param(spec, name, {values.begin(), values.end()}, text);
+}
+
+void read_samples(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
+  const toml::node* node = root.get("samples");
+  if (!node) return;
+  spec.samples_line = reader.line_of(node);
+  std::vector<ParamValue> values;
+  const auto take = [&](const toml::node& item) {
+    const auto count = item.value_exact<std::int64_t>();
+    if (!count || *count < 1 || *count > 16 || !std::has_single_bit(static_cast<std::uint64_t>(*count)))
+      reader.fail(&item, "'samples' must be 1, 2, 4, 8 or 16, or a list of such numbers");
+    values.emplace_back(static_cast<double>(*count));
+  };
+  if (const toml::array* list = node->as_array())
+    for (const toml::node& item : *list) take(item);
+  else
+    take(*node);
+  if (values.empty()) reader.fail(node, "'samples' is an empty list");
+  add_list_param(spec, "samples", std::move(values), "samples of depth a texel; encode() is asked for each");
 }
 
 std::variant<double, std::string> read_number_or_param(const FrontMatterReader& reader, const toml::table& root,
@@ -205,8 +231,8 @@ std::vector<std::string> read_root(const FrontMatterReader& reader, const toml::
   std::vector<std::string> names;
   reader.check_keys(
       root,
-      {"title", "source", "kind", "store", "combine", "sample", "claims", "radius_texels", "bias_texels", "teaching",
-       "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk", "kernel", "pass"},
+      {"title", "source", "kind", "store", "combine", "sample", "samples", "claims", "radius_texels", "bias_texels",
+       "teaching", "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk", "kernel", "pass"},
       "the front matter");
   spec.title = reader.text(root, "title", true);
   spec.source = reader.text(root, "source", true);
@@ -215,10 +241,11 @@ std::vector<std::string> read_root(const FrontMatterReader& reader, const toml::
   spec.teaching = reader.flag(root, "teaching");
   for (const auto& [name, table] : reader.named_tables(root, "param", names))
     spec.params.push_back(read_param(reader, name, *table));
-  add_list_param(reader, root, spec, "store", encode_formats(), "format of the encoded map");
-  add_list_param(reader, root, spec, "combine", {"linear", "log"},
-                 "how the prefilter adds texels; log: log-sum-exp, read with the nearest texel");
-  add_list_param(reader, root, spec, "sample", {"linear", "nearest"}, "how the encoded map is read");
+  read_texts_param(reader, root, spec, "store", encode_formats(), "format of the encoded map");
+  read_texts_param(reader, root, spec, "combine", {"linear", "log"},
+                   "how the prefilter adds texels; log: log-sum-exp, read with the nearest texel");
+  read_texts_param(reader, root, spec, "sample", {"linear", "nearest"}, "how the encoded map is read");
+  read_samples(reader, root, spec);
   spec.radius_texels = read_number_or_param(reader, root, spec, "radius_texels", 0.0);
   spec.bias_texels = read_number_or_param(reader, root, spec, "bias_texels", spec.radius_texels);
   read_prefilter(reader, root, spec);
@@ -251,7 +278,7 @@ void inspect_body(const FrontMatterReader& reader, const toml::table& root, cons
   for (const char* key : {"combine", "sample"})
     if (root.contains(key) && !stores)
       reader.fail(root.get(key), fmt::format("'{}' needs 'store': a depth map is not prefiltered", key));
-  for (const char* key : {"moments", "exponent"})
+  for (const char* key : {"moments", "exponent", "samples"})
     if (root.contains(key) && !stores)
       reader.fail(root.get(key), fmt::format("'{}' says what is stored, and needs 'store'", key));
 }

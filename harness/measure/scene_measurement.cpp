@@ -61,8 +61,6 @@ class SceneBench {
     }
     time(result, filters);
     draw_phases(result, filters);
-    result.stored_map = light_.map.read_picture();
-    result.depth_map = read_linear_depth(light_.map);
     warn_of_coarse_depth(result);
     renderer_.context->require_no_gl_errors();
     return result;
@@ -125,7 +123,7 @@ class SceneBench {
   /// A map that holds depth in steps shadows surfaces by up to half a step, in the light's face as on a slope.
   void warn_of_coarse_depth(SceneMeasurement& result) const {
     float farthest = 0.0f;
-    for (const float depth : result.depth_map.texels) farthest = depth < 1.0f ? std::max(farthest, depth) : farthest;
+    for (const float depth : read_linear_depth(light_.map).texels) farthest = depth < 1.0f ? std::max(farthest, depth) : farthest;
     const double step_m =
         render::find_coarsest_step(options_.map, static_cast<double>(farthest)) * light_.frustum.depth_range_ws;
     const double bias_m = options_.bias.constant.in_world(light_.frustum);

@@ -117,6 +117,7 @@ void ShadowMap::draw_casters(ShaderLibrary& shaders, const Geometry& geometry, c
 
 void ShadowMap::draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
                      const MapBias& bias) {
+  drawn_.emplace(geometry, frustum, bias);
   if (bias.midpoint)
     draw_midpoint(shaders, geometry, frustum, bias);
   else
@@ -140,6 +141,28 @@ void ShadowMap::draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, 
   map_.framebuffer.bind();
   shaders.fullscreen("midpoint.frag", curve_defines(settings_.curve)).use();
   gl::FullscreenTriangle().draw_depth();
+}
+
+void ShadowMap::draw_samples(ShaderLibrary& shaders, gl::Framebuffer& framebuffer) const {
+  if (drawn_ && !drawn_->bias.midpoint) {
+    glEnable(GL_SAMPLE_SHADING);  // each sample has a depth and a hole of its own
+    glMinSampleShading(1.0f);
+    draw_casters(shaders, drawn_->geometry, drawn_->frustum, drawn_->bias, framebuffer, {});
+    glDisable(GL_SAMPLE_SHADING);
+    return;
+  }
+  for (const GLuint unit : {0u, 1u}) {
+    gl::Sampler::unbind(unit);
+    map_.depth.bind(unit);
+  }
+  framebuffer.bind();
+  shaders.fullscreen("midpoint.frag", curve_defines(settings_.curve)).use();
+  gl::FullscreenTriangle().draw_depth();
+}
+
+void ShadowMap::upload(std::span<const float> stored) {
+  map_.depth.upload_floats(stored, 1);
+  drawn_.reset();
 }
 
 void ShadowMap::bind() const {

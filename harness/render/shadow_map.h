@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,9 +48,13 @@ class ShadowMap {
   void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
             const MapBias& bias = {});
 
+  /// Draws what the map holds into a multisampled depth texture of the map's size and format: the same casters, or the
+  /// map itself where it was uploaded, or where it holds no surface that could be drawn.
+  void draw_samples(ShaderLibrary& shaders, gl::Framebuffer& framebuffer) const;
+
   /// Replaces the map's contents by stored depths, row 0 at v = 0. Fixed-point formats clamp them. Requires size() *
   /// size() values.
-  void upload(std::span<const float> stored) { map_.depth.upload_floats(stored, 1); }
+  void upload(std::span<const float> stored);
 
   /// Binds the map to the three units of lib/map_access.glsl that read depth.
   void bind() const;
@@ -73,8 +78,16 @@ class ShadowMap {
     gl::Framebuffer framebuffer;
   };
 
+  /// What draw() drew last.
+  struct Drawn {
+    Geometry geometry;
+    scene::LightFrustum frustum;
+    MapBias bias;
+  };
+
   MapSettings settings_;
   Layer map_;
+  std::optional<Drawn> drawn_;   ///< nothing where the map was uploaded
   std::vector<Layer> surfaces_;  ///< first and second, only for midpoint maps
   gl::Sampler plain_{"depth, plain"};
   gl::Sampler compare_linear_{"depth, compared, 2x2"};

@@ -120,6 +120,9 @@ TEST(FrontMatter, StoreAndEncode_ComeTogether) {
   expect_error(with("", "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }"),
                "dir/mine.glsl:1", "lacks 'store'");
   expect_error(with("combine = \"linear\"\n"), "dir/mine.glsl:6", "needs 'store'");
+  expect_error(with("samples = 4\n"), "dir/mine.glsl:6", "'samples' says what is stored, and needs 'store'");
+  for (const char* wrong : {"3", "0", "32", "4.0", "[1, 5]", "\"4\"", "[]"})
+    expect_error(with(fmt::format("store = \"r32f\"\nsamples = {}\n", wrong)), "dir/mine.glsl:7", "'samples'");
   expect_error(with("store = \"rgb8\"\n"), "dir/mine.glsl:6", "'rgb8' is unknown");
 }
 
