@@ -123,7 +123,7 @@ void TaskRun::write_images(const measure::SceneTask& task, measure::SceneMeasure
     return;
   }
   if (!options_.worker) {
-    write_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size).frustum);
+    write_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size));
     write_pictures(options_, task, measured, truth, gl_);
   }
   if (options_.border_page) draw_border_page(task);

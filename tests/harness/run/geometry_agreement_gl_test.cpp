@@ -75,7 +75,7 @@ TEST_P(Geometry, RaysHitWhatTheDepthMapSees) {
   EXPECT_EQ(different, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(BuiltIn, Geometry, ::testing::ValuesIn(builtin_scenes()),
+INSTANTIATE_TEST_SUITE_P(BuiltIn, Geometry, ::testing::ValuesIn(scenes_of_all_lights()),
                          [](const auto& test) { return test.param; });
 
 }  // namespace
