@@ -70,9 +70,9 @@ Spot read_spot(const TomlTable& table) {
   Spot spot;
   spot.position_ws = glm::vec3(table.vec3("position", kAnyNumber));
   spot.target_ws = glm::vec3(table.vec3("target", kAnyNumber));
-  spot.cone_deg = table.number_f("cone_deg", {kLeastCone_deg, double{kWidestCone_deg}}, 60.0);
-  spot.inner_cone_deg = table.number_f("inner_cone_deg", {0.0, static_cast<double>(spot.cone_deg)},
-                                       0.75 * static_cast<double>(spot.cone_deg));
+  const double cone_deg = table.number("cone_deg", {kLeastCone_deg, double{kWidestCone_deg}}, 60.0);
+  spot.cone_deg = static_cast<float>(cone_deg);
+  spot.inner_cone_deg = table.number_f("inner_cone_deg", {0.0, cone_deg}, 0.75 * cone_deg);
   spot.radius_m = table.number_f("radius", {0.0, 1000.0}, static_cast<double>(spot.radius_m));
   if (spot.position_ws == spot.target_ws)
     throw table.error("target", "'target' in [light] is where the light stands: it has no direction");
