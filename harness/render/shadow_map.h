@@ -19,8 +19,8 @@ namespace shadowbench::render {
 /// The wrap mode of samplers that reads outside a map as `border` says, e.g. GL_CLAMP_TO_BORDER.
 GLenum wrap_mode(filters::Border border);
 
-/// What a light's map holds: a perspective one the depth of its projection. Throws Error(kUsage) where another curve was
-/// asked for.
+/// What a light's map holds: a perspective one the depth of its projection. Throws Error(kUsage) where another curve
+/// was asked for.
 MapSettings fit_settings(MapSettings settings, const scene::LightFrustum& frustum);
 
 /// Names map settings as records do: "d32f", "d16 reversed", "d24 perspective 1000".
