@@ -42,6 +42,7 @@ STAGES = (
     Stage("contract", RENDER, ("*Contract.*/{id}", "*LinearKernel.*/{id}", "*Blocker.*/{id}")),
     Stage("model", RENDER, ("*ModelAgreement.*_{id}", "*ModelVariants.*/{id}_*", "*ReceiverPlaneModel.*_{id}")),
     Stage("goldens", GOLDEN, ("*/{id}", "*_{id}", "*_{id}_*")),
+    Stage("outside", RENDER, ("*MapRange.*/{id}",)),
 )
 
 
