@@ -56,7 +56,7 @@ double light_size(const Light& light) {
   return std::visit(Each{[](const Sun& sun) {
                            return 2.0 * std::tan(0.5 * glm::radians(static_cast<double>(sun.angular_diameter_deg)));
                          },
-                         [](const Spot& spot) { return 2.0 * static_cast<double>(spot.radius_m); }},
+                         [](const Spot& spot) { return diameter_of(spot); }},
                     light.kind);
 }
 
@@ -141,7 +141,10 @@ std::string describe_light(const Light& light) {
   return std::visit(
       Each{[](const Sun& sun) { return fmt::format("a sun of {:.3g} degrees", sun.angular_diameter_deg); },
            [](const Spot& spot) {
-             return fmt::format("a spot light of {:.3g} m, {:.3g} m from its target", 2.0f * spot.radius_m,
+             const std::string size = spot.size_m.x > 0.0f
+                                          ? fmt::format("{:.3g} x {:.3g}", spot.size_m.x, spot.size_m.y)
+                                          : fmt::format("{:.3g}", 2.0f * spot.radius_m);
+             return fmt::format("a spot light of {} m, {:.3g} m from its target", size,
                                 glm::distance(spot.position_ws, spot.target_ws));
            }},
       light.kind);
@@ -159,7 +162,8 @@ std::map<std::string, std::variant<double, std::string>> light_metadata(const Li
                                            {"light_target_ws", write_vector(spot.target_ws)},
                                            {"light_cone_deg", static_cast<double>(spot.cone_deg)},
                                            {"light_inner_cone_deg", static_cast<double>(spot.inner_cone_deg)},
-                                           {"light_radius_m", static_cast<double>(spot.radius_m)}};
+                                           {"light_radius_m", static_cast<double>(spot.radius_m)},
+                                           {"light_size_m", fmt::format("{} {}", spot.size_m.x, spot.size_m.y)}};
                          }},
                     light.kind);
 }
@@ -173,9 +177,10 @@ std::vector<std::string> list_light_content(const Light& light) {
                                 light.intensity, sun.angular_diameter_deg);
            },
            [&](const Spot& spot) {
-             return fmt::format("{} {} {} {} {} {} {} {} {}", light.kind.index(), write_vector(spot.position_ws),
-                                write_vector(spot.target_ws), c.r, c.g, c.b, light.intensity, spot.radius_m,
-                                fmt::format("{} {}", spot.cone_deg, spot.inner_cone_deg));
+             return fmt::format(
+                 "{} {} {} {} {} {} {} {} {}", light.kind.index(), write_vector(spot.position_ws),
+                 write_vector(spot.target_ws), c.r, c.g, c.b, light.intensity, spot.radius_m,
+                 fmt::format("{} {} {} {}", spot.cone_deg, spot.inner_cone_deg, spot.size_m.x, spot.size_m.y));
            }},
       light.kind)};
   if (!light.map_window) return content;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/mesh_tools.h"
@@ -52,6 +53,8 @@ PerspectiveMap make_planes(const Beam& beam, const Extent& extent) {
   return {beam, std::max(extent.nearest * (1.0 - kPadding), kLeastNear * far_m), far_m};
 }
 
+bool is_rectangle(const Spot& spot) { return spot.size_m.x > 0.0f && spot.size_m.y > 0.0f; }
+
 }  // namespace
 
 double Beam::cone_at(const glm::dvec3& point_ws) const {
@@ -62,7 +65,7 @@ double Beam::cone_at(const glm::dvec3& point_ws) const {
 }
 
 const std::vector<std::string>& spot_keys() {
-  static const std::vector<std::string> keys = {"position", "target", "cone_deg", "inner_cone_deg", "radius"};
+  static const std::vector<std::string> keys = {"position", "target", "cone_deg", "inner_cone_deg", "radius", "size"};
   return keys;
 }
 
@@ -74,6 +77,11 @@ Spot read_spot(const TomlTable& table) {
   spot.cone_deg = static_cast<float>(cone_deg);
   spot.inner_cone_deg = table.number_f("inner_cone_deg", {0.0, cone_deg}, 0.75 * cone_deg);
   spot.radius_m = table.number_f("radius", {0.0, 1000.0}, static_cast<double>(spot.radius_m));
+  if (table.has("size")) {
+    if (table.has("radius")) throw table.error("size", "[light] has both a 'radius' and a 'size': give one");
+    spot.size_m = glm::vec2(table.vec2("size", kPositive));
+    spot.radius_m = 0.0f;
+  }
   if (spot.position_ws == spot.target_ws)
     throw table.error("target", "'target' in [light] is where the light stands: it has no direction");
   return spot;
@@ -83,7 +91,8 @@ Spot checked_spot(const Spot& spot, const std::string& where) {
   unit_direction(spot.target_ws - spot.position_ws, "the light", where);
   const double cone = static_cast<double>(spot.cone_deg);
   if (cone >= kLeastCone_deg && cone <= double{kWidestCone_deg} && spot.inner_cone_deg >= 0.0f &&
-      spot.inner_cone_deg <= spot.cone_deg && spot.radius_m >= 0.0f && std::isfinite(spot.radius_m))
+      spot.inner_cone_deg <= spot.cone_deg && spot.radius_m >= 0.0f && std::isfinite(spot.radius_m) &&
+      glm::all(glm::greaterThanEqual(spot.size_m, glm::vec2(0.0f))) && std::isfinite(spot.size_m.x + spot.size_m.y))
     return spot;
   fail_input(fmt::format("the spot light has a cone of {} degrees, {} within, and a radius of {} m: the cone must lie "
                          "within {} .. {}, and the inner one within it",
@@ -98,8 +107,18 @@ Beam make_beam(const Spot& spot) {
           half_cosine(spot.cone_deg), glm::length(way)};
 }
 
+double diameter_of(const Spot& spot) {
+  if (!is_rectangle(spot)) return 2.0 * static_cast<double>(spot.radius_m);
+  return 2.0 * std::sqrt(static_cast<double>(spot.size_m.x) * static_cast<double>(spot.size_m.y) / std::numbers::pi);
+}
+
 truth::AreaLight make_area_light(const Spot& spot) {
   const Beam beam = make_beam(spot);
+  if (is_rectangle(spot)) {
+    const glm::dmat3 axes = glm::transpose(light_rotation(beam.axis_ws));
+    return truth::AreaLight::make_rectangle(beam.position_ws, 0.5 * static_cast<double>(spot.size_m.x) * axes[0],
+                                            0.5 * static_cast<double>(spot.size_m.y) * axes[1]);
+  }
   return truth::AreaLight::make_disk(beam.position_ws, beam.axis_ws, static_cast<double>(spot.radius_m));
 }
 

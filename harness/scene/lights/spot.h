@@ -14,13 +14,15 @@ struct FitRequest;
 struct LightFrustum;
 struct Scene;
 
-/// A lamp that stands in the scene: a disk that faces its target, whose light fills a cone with a soft edge.
+/// A lamp that stands in the scene: a disk or a rectangle that faces its target, whose light fills a cone with a soft
+/// edge.
 struct Spot {
   glm::vec3 position_ws{0.0f, 1.0f, 0.0f};
   glm::vec3 target_ws{0.0f};     ///< the cone's axis leads there, and its light is as strong there as a sun's
   float cone_deg = 60.0f;        ///< from edge to edge; no light beyond
   float inner_cone_deg = 45.0f;  ///< the same, full strength within
   float radius_m = 0.05f;        ///< of the disk; 0: a point
+  glm::vec2 size_m{0.0f};        ///< sides of a rectangle in place of the disk, along the map\'s u and v; 0: the disk
 };
 
 /// A cone must be narrower than a half-space: its map is drawn through one perspective.
@@ -36,7 +38,10 @@ Spot checked_spot(const Spot& spot, const std::string& where);
 /// Its cone.
 Beam make_beam(const Spot& spot);
 
-/// Rays to the lamp's disk.
+/// The diameter of the lamp's disk, metres; of a rectangle that of the disk of its area.
+double diameter_of(const Spot& spot);
+
+/// Rays to the lamp's disk or rectangle.
 truth::AreaLight make_area_light(const Spot& spot);
 
 /// The frustum around the cone, whose depth runs from the nearest to the farthest vertex in it; see fit_light().

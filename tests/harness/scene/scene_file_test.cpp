@@ -172,6 +172,10 @@ TEST(SceneFileTest, Spot_HasAConeThatFacesItsTarget) {
   expect_complaint("target = [0, 0, 0]\ncone_deg = 40\ninner_cone_deg = 41", "'inner_cone_deg'");
   expect_complaint("target = [0, 0, 0]\nradius = -1", "'radius'");
   expect_complaint("target = [0, 0, nan]", "'target'");
+  expect_complaint("target = [0, 0, 0]\nsize = [1, 0]", "'size'");
+  expect_complaint("target = [0, 0, 0]\nsize = [1, 1]\nradius = 1", "both a 'radius' and a 'size'");
+  const Scene tube = load_text(spot("target = [0, 0, 0]\nsize = [2, 0.1]"));
+  EXPECT_EQ(std::get<Spot>(tube.light.kind).size_m, glm::vec2(2.0f, 0.1f));
   expect_complaint("target = [0, 0, 0]\nangular_diameter_deg = 1", "unknown key 'angular_diameter_deg'");
   expect_complaint("target = [0, 0, 0]\nmap_width = 3", "unknown key 'map_width'");
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "filters/depth_curve.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/mesh_tools.h"
@@ -105,6 +107,22 @@ TEST(Beam, FadesFromTheInnerConeToTheOuter) {
   for (double degrees = 20.5; degrees < 30.0; degrees += 0.5) EXPECT_LT(at(degrees), at(degrees - 0.5));
   EXPECT_EQ(beam.cone_at({0.0, 4.0, 0.0}), 0.0) << "behind";
   EXPECT_EQ(beam.cone_at({0.0, 2.0, 0.0}), 0.0) << "the lamp itself";
+}
+
+TEST(Spot, WithASize_IsARectangleAlongItsMap) {
+  Scene scene = make_spot_scene(kLampPositions[1]);
+  auto& spot = std::get<Spot>(scene.light.kind);
+  const truth::AreaLight disk = make_area_light(scene.light);
+  EXPECT_NEAR(glm::length(disk.half_u()), 0.1, 1e-7);
+  EXPECT_NEAR(light_size(scene.light), 0.2, 1e-7);
+  spot.size_m = {0.6f, 0.2f};
+  const truth::AreaLight rectangle = make_area_light(scene.light);
+  const LightFrustum fit = fit_light(scene, FitMode::kTight, kSpotMap, kSpotPadding);
+  const glm::dvec3 u = glm::dmat3(fit.light_from_world) * rectangle.half_u(),
+                   v = glm::dmat3(fit.light_from_world) * rectangle.half_v();
+  EXPECT_NEAR(glm::distance(u, glm::dvec3(0.3, 0.0, 0.0)), 0.0, 1e-7);
+  EXPECT_NEAR(glm::distance(v, glm::dvec3(0.0, 0.1, 0.0)), 0.0, 1e-7);
+  EXPECT_NEAR(std::numbers::pi * std::pow(0.5 * light_size(scene.light), 2.0), 0.6 * 0.2, 1e-7) << "a disk of its area";
 }
 
 TEST(Spot, GoesRoundItsTarget) {
