@@ -84,6 +84,7 @@ FilterSpec strip(FilterSpec spec) {
   for (std::string* text : {&spec.id, &spec.path, &spec.title, &spec.source, &spec.copy_of}) text->clear();
   for (ParamSpec& param : spec.params) param.unit = param.text = {};
   for (PassSpec& pass : spec.passes) pass.line = 1;
+  spec.samples_line = 1;
   spec.claims.clear();
   spec.teaching = false;
   spec.body_first_line = 1;

@@ -28,8 +28,7 @@ seed = 1
 #include "lib/penumbra.glsl"
 
 float visibility(Receiver r) {
-  float widening = penumbra_per_depth(r);
-  float search = min(widening * r.depth_unbiased, max_radius);
+  float search = min(penumbra_radius(r, r.depth_unbiased), max_radius);
   if (search < one_fetch) return compare_2x2(r, vec2(0.0), r.depth);
   vec2 turn = find_turn(r.pixel);
   float depths = 0.0;
@@ -44,7 +43,7 @@ float visibility(Receiver r) {
     blocked += dot(weights, vec4(1.0));
   }
   if (blocked == 0.0) return 1.0;
-  float radius = min(widening * (r.depth - depths / blocked), max_radius);
+  float radius = min(penumbra_radius(r, r.depth - depths / blocked), max_radius);
   if (radius < one_fetch) return compare_2x2(r, vec2(0.0), r.depth);
   return clamp(0.5 + (0.5 - blocked / float(taps)) * search / radius, 0.0, 1.0);
 }

@@ -77,6 +77,10 @@ bool reads_nearest(const ParamValues& values) {
   return combines_logs(values) || text_or(values, "sample", "linear") == "nearest";
 }
 
+int depth_samples(const ParamValues& values) {
+  return values.contains("samples") ? static_cast<int>(number(values, "samples")) : 1;
+}
+
 int prefilter_radius_texels(const FilterSpec& spec, const ParamValues& values) {
   return spec.has_prefilter ? static_cast<int>(radius_texels(spec, values)) : 0;
 }

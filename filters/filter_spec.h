@@ -87,13 +87,14 @@ struct FilterSpec {
   bool teaching = false;  ///< shows a mistake: drawn where it is named, and never advised
   std::variant<double, std::string> radius_texels = 0.0;  ///< kernel half-width: a number or a parameter's name
   std::variant<double, std::string> bias_texels = 0.0;    ///< half-width over which one depth stands for the receiver
-  std::vector<ParamSpec> params;                          ///< `store`, `combine` and `sample` lists included
+  std::vector<ParamSpec> params;  ///< the lists `store`, `combine`, `sample`, `samples` included
   std::vector<DiskTable> disks;
   std::vector<PassSpec> passes;          ///< in the order in which they run
   std::optional<DeclaredKernel> kernel;  ///< none: only a scalar model knows it
   std::string copy_of;                   ///< a user's file: the built-in filter that it copies; empty: none
   std::string body;                      ///< GLSL after the front matter
   int body_first_line = 1;               ///< line of the file at which `body` begins
+  int samples_line = 1;                  ///< line of the file at which `samples` stands
   bool has_encode = false;               ///< stores something else than depth
   bool uses_samplers = false;            ///< reads the map past the counted functions: its fetch count is unknown
   bool reads_unwritten = false;          ///< reads the encoded map, and has no encode() that writes it
@@ -142,6 +143,9 @@ bool combines_logs(const ParamValues& values);
 
 /// Whether fetches of the encoded map read its nearest texel, and not the four around a point.
 bool reads_nearest(const ParamValues& values);
+
+/// The samples of depth a texel that encode() is asked for, and whose mean is stored: 1, or what `samples` says.
+int depth_samples(const ParamValues& values);
 
 /// The radius in texels of the Gaussian prefilter, 0 where the filter has none.
 int prefilter_radius_texels(const FilterSpec& spec, const ParamValues& values);

@@ -37,8 +37,7 @@ seed = 2
 #include "lib/penumbra.glsl"
 
 float visibility(Receiver r) {
-  float widening = penumbra_per_depth(r);
-  float search = min(widening * r.depth_unbiased, max_radius);
+  float search = min(penumbra_radius(r, r.depth_unbiased), max_radius);
   if (search < one_fetch) return compare_2x2(r, vec2(0.0), r.depth);
   vec2 turn = find_turn(r.pixel);
   float depths = 0.0;
@@ -52,7 +51,7 @@ float visibility(Receiver r) {
     }
   }
   if (blockers == 0.0) return 1.0;
-  float radius = min(widening * (r.depth - depths / blockers), max_radius);
+  float radius = min(penumbra_radius(r, r.depth - depths / blockers), max_radius);
   if (radius < one_fetch) return compare_2x2(r, vec2(0.0), r.depth);
   float sum = 0.0;
   for (int i = 0; i < taps; ++i) {

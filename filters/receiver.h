@@ -20,11 +20,12 @@ struct Receiver {
   float depth_unbiased = 0.0f;            ///< [0,1]
   glm::vec2 depth_per_texel{0.0f};        ///< slope of the receiver's plane, per texel in u and in v
   glm::vec2 bias_per_texel{0.0f};         ///< what the run's bias takes off depth per texel of reach in u and in v
-  float texel_size_ws = 1.0f;             ///< metres
+  float texel_size_ws = 1.0f;             ///< metres; under a lamp it grows with the distance
   float depth_range_ws = 1.0f;            ///< metres between depth 0 and depth 1
-  float light_size = 0.0f;                ///< directional: penumbra width per metre of distance to the occluder
-  float view_depth = 0.0f;                ///< metres from the camera, along its axis
-  glm::ivec2 pixel{0};                    ///< (0,0) is the lower left pixel
+  float light_size = 0.0f;      ///< penumbra width per metre of distance to an occluder that is near the receiver
+  float light_nearness = 0.0f;  ///< 1 / metres to the light, along its axis; 0 for a light at infinity
+  float view_depth = 0.0f;      ///< metres from the camera, along its axis
+  glm::ivec2 pixel{0};          ///< (0,0) is the lower left pixel
 };
 
 }  // namespace shadowbench::filters

@@ -1,4 +1,5 @@
 #include "filters/model.h"
+#include "filters/penumbra/penumbra_disk.h"
 #include "filters/summed_area.h"
 #include "filters/variance.h"
 
@@ -23,13 +24,16 @@ class Vssm {
                      static_cast<P>(r.texel_size_ws));
     const T depth(static_cast<P>(r.depth)), lit(P(1));
     const T widest(std::max(static_cast<P>(max_radius_), kLeastHalfWidth));
-    const T search = limit(widening * T(static_cast<P>(r.depth_unbiased)), widest);
+    const auto half_width_of = [&](const T& above) {
+      return widening * above / T(PenumbraDisk<T>::shrink(r, static_cast<P>(value_of(above))));
+    };
+    const T search = limit(half_width_of(T(static_cast<P>(r.depth_unbiased))), widest);
     const auto around = moments_around(r, search, tally);
     const T distance = depth - around[0];
     excuse_near_zero(distance, tally);
     if (value_of(distance) <= 0.0) return lit;
     const T to_blockers = distance + variance_.variance(around) / distance;
-    const T half_width = limit(widening * to_blockers, search);
+    const T half_width = limit(half_width_of(to_blockers), search);
     tally.disk_radius_texels = value_of(half_width) / static_cast<double>(kBoxOfDisk);
     return variance_.visibility(moments_around(r, half_width, tally), r.depth);
   }

@@ -35,6 +35,7 @@ text = "share of the dark end that is cut to black; hides light bleeding, and ha
 store = "rg32ui"
 steps = "prefix"
 +++*/
+#include "lib/penumbra_radius.glsl"
 #include "lib/summed_area.glsl"
 
 const float least_half_width = 0.5;   // texels: the box is never smaller than a texel
@@ -56,16 +57,18 @@ vec2 moments_around(Receiver r, float half_width) {
 
 float variance_of(vec2 moments) { return max(moments.y - moments.x * moments.x, min_variance); }
 
+// The half-width of the box for a blocker so far above the receiver in depth, texels.
+float half_width(Receiver r, float depth_above) { return box_of_disk * penumbra_radius(r, depth_above); }
+
 float visibility(Receiver r) {
-  float widening = box_of_disk * 0.5 * r.light_size * r.depth_range_ws / r.texel_size_ws;  // texels per depth
-  float search = clamp(widening * r.depth_unbiased, least_half_width, max(float(max_radius), least_half_width));
+  float search = clamp(half_width(r, r.depth_unbiased), least_half_width, max(float(max_radius), least_half_width));
   vec2 around = moments_around(r, search);
   float distance = r.depth - around.x;
   if (distance <= 0.0) return 1.0;
   // The mean distance to the blockers, where all that does not block has the receiver's depth and the blocked share is
   // what Chebyshev's inequality leaves.
   float to_blockers = distance + variance_of(around) / distance;
-  vec2 moments = moments_around(r, clamp(widening * to_blockers, least_half_width, search));
+  vec2 moments = moments_around(r, clamp(half_width(r, to_blockers), least_half_width, search));
   distance = r.depth - moments.x;
   if (distance <= 0.0) return 1.0;
   float variance = variance_of(moments);

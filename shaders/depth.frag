@@ -7,9 +7,10 @@ layout(binding = 0) uniform sampler2D first_surface;
 const float same_surface = 1e-6;  // two triangles that share an edge differ by rounding
 #endif
 
-// A perspective map is drawn with linear depth, which is bent here; a reversed one is reversed by the projection.
+// With BEND_DEPTH the projection gives linear depth, and the map stores that of a perspective. A reversed map is reversed
+// by the projection.
 float own_depth() {
-#ifdef PERSPECTIVE_DEPTH
+#ifdef BEND_DEPTH
   return gl_FragCoord.z;
 #else
   return linear_depth(gl_FragCoord.z);
@@ -24,7 +25,7 @@ void main() {
 #ifdef ALPHA_MASK
   surface_color(v_surface_uv);
 #endif
-#ifdef PERSPECTIVE_DEPTH
+#ifdef BEND_DEPTH
   gl_FragDepth = store_depth(own_depth());
 #endif
 }

@@ -8,10 +8,14 @@ layout(location = 1) out vec4 out_plane;
 const float faces_light = 1e-5;
 
 // A plane may be steep, but not parallel to the light: its bias would have no bound.
-vec2 plane_depth_per_texel(vec3 normal_ws, float n_dot_l) {
+vec2 plane_depth_per_texel(vec3 position_ws, vec3 normal_ws, float n_dot_l) {
   vec2 along_map = vec2(dot(normal_ws, light_right_ws), dot(normal_ws, light_up_ws));
+#ifdef PERSPECTIVE_LIGHT
+  // A step of a texel slides along the receiver's own ray, which is as long as the axis is to there.
+  n_dot_l = dot(normal_ws, light_position_ws - position_ws) / distance_along_light(position_ws);
+#endif
   vec2 tangent = along_map / max(n_dot_l, 1e-4);
-  return tangent * (texel_size_ws / depth_range_ws);
+  return tangent * (texel_size_at(position_ws) / depth_range_ws);
 }
 
 // Whether the map says anything about a receiver. The NO_ variants show what goes wrong without these tests: see
@@ -35,18 +39,23 @@ void main() {
   vec3 normal = texelFetch(gbuffer_normal, pixel, 0).xyz;
   float n_dot_l = dot(normal, direction_to_light(position.xyz));
   float sin_theta = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0));
-  precise vec3 offset_ws = position.xyz + normal * (bias_normal_texels * texel_size_ws * sin_theta);
+  precise vec3 offset_ws = position.xyz + normal * (bias_normal_texels * texel_size_at(position.xyz) * sin_theta);
   precise vec4 lookup_point = uv_depth_from_world * vec4(offset_ws, 1.0);
   precise vec4 own_point = uv_depth_from_world * vec4(position.xyz, 1.0);
-#ifdef PROJECTIVE_MAP
+#ifdef PERSPECTIVE_LIGHT
   // Behind the light, where w < 0, this mirrors the map: see map_reaches().
+  lookup_point.xy /= lookup_point.w;
+#elif defined(PROJECTIVE_MAP)
   lookup_point.xyz /= lookup_point.w;
   own_point.xyz /= own_point.w;
 #endif
-  vec2 depth_per_texel = plane_depth_per_texel(normal, n_dot_l);
-  vec2 steepness = min(abs(depth_per_texel), vec2(bias_max_tangent * texel_size_ws / depth_range_ws));
+  vec2 depth_per_texel = plane_depth_per_texel(position.xyz, normal, n_dot_l);
+  vec2 steepness = min(abs(depth_per_texel), vec2(bias_max_tangent * texel_size_at(position.xyz) / depth_range_ws));
   out_plane = vec4(depth_per_texel, n_dot_l, position.w);
   out_place = vec4(lookup_point.xyz, steepness.x + steepness.y);
   if (!map_reaches(own_point.z, own_point.w)) out_place.w = mark_beyond;
   if (n_dot_l <= faces_light) out_place.w = mark_away;
+#ifdef PERSPECTIVE_LIGHT
+  if (light_cone_at(position.xyz) <= 0.0) out_place.w = mark_away;
+#endif
 }

@@ -31,5 +31,5 @@ void main() {
   float visibility = texelFetch(visibility_image, pixel, 0).r;
   // The sky is brighter than the ground, so that ambient light models form as well.
   vec3 ambient = kAmbient * (0.75 + 0.25 * normal.y) * albedo;
-  out_color = vec4(ambient + visibility * light_radiance * (albedo * n_dot_l + specular), 1.0);
+  out_color = vec4(ambient + visibility * light_strength(position) * light_radiance * (albedo * n_dot_l + specular), 1.0);
 }

@@ -5,9 +5,12 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <sstream>
 
 #include "filters/base/error.h"
@@ -29,12 +32,12 @@ constexpr double kMostDiskPoints = 4096.0;
 int count_lines(std::string_view text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
 FilterKind read_kind(const FrontMatterReader& reader, const toml::table& root) {
-  const std::vector<FilterKind> kinds = {FilterKind::kComparison, FilterKind::kBound, FilterKind::kStochastic,
-                                         FilterKind::kOther};
-  const std::string name = reader.text(root, "kind", true);
-  for (const FilterKind kind : kinds)
-    if (to_string(kind) == name) return kind;
-  reader.fail(root.get("kind"), fmt::format("kind '{}' is unknown; known: comparison, bound, stochastic, other", name));
+  reader.text(root, "kind", true);
+  std::vector<std::pair<std::string, FilterKind>> kinds;
+  for (const FilterKind kind :
+       {FilterKind::kComparison, FilterKind::kBound, FilterKind::kStochastic, FilterKind::kOther})
+    kinds.emplace_back(to_string(kind), kind);
+  return reader.choose<FilterKind>(root, "kind", kinds);
 }
 
 void check_default(const FrontMatterReader& reader, const toml::node& node, const ParamSpec& param) {
@@ -62,55 +65,68 @@ void check_default(const FrontMatterReader& reader, const toml::node& node, cons
   }
 }
 
-ParamSpec read_param(const FrontMatterReader& reader, const std::string& name, const toml::node& node) {
-  const toml::table* table = node.as_table();
-  if (!table) reader.fail(&node, fmt::format("'param.{}' must be a table", name));
-  if (!is_identifier(name)) reader.fail(&node, fmt::format("'{}' cannot be the name of a GLSL uniform", name));
-  reader.check_keys(*table, {"default", "min", "max", "choices", "unit", "text", "const"},
+ParamSpec read_param(const FrontMatterReader& reader, const std::string& name, const toml::table& table) {
+  reader.check_keys(table, {"default", "min", "max", "choices", "unit", "text", "const"},
                     fmt::format("[param.{}]", name));
-  const toml::node* default_node = table->get("default");
-  if (!default_node) reader.fail(table, fmt::format("[param.{}] lacks 'default'", name));
+  const toml::node* default_node = table.get("default");
+  if (!default_node) reader.fail(&table, fmt::format("[param.{}] lacks 'default'", name));
   ParamSpec param;
   param.name = name;
   param.default_value = reader.value(*default_node, "'default'");
   param.integer = default_node->is_integer();
-  param.min = reader.finite(*table, "min");
-  param.max = reader.finite(*table, "max");
-  param.unit = reader.text(*table, "unit", false);
-  param.text = reader.text(*table, "text", true);
-  if (const toml::node* choices = table->get("choices")) {
+  param.min = reader.finite(table, "min");
+  param.max = reader.finite(table, "max");
+  param.unit = reader.text(table, "unit", false);
+  param.text = reader.text(table, "text", true);
+  if (const toml::node* choices = table.get("choices")) {
     if (!choices->as_array()) reader.fail(choices, "'choices' must be a list");
     for (const toml::node& item : *choices->as_array()) param.choices.push_back(reader.value(item, "a choice"));
   }
-  param.is_const = reader.flag(*table, "const") || std::holds_alternative<std::string>(param.default_value);
+  param.is_const = reader.flag(table, "const") || std::holds_alternative<std::string>(param.default_value);
   check_default(reader, *default_node, param);
   return param;
 }
 
-/// `store`, `combine` and `sample` are parameters as well: the first value is the default.
-void add_list_param(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec, const std::string& name,
-                    const std::vector<std::string>& known, const char* text) {
-  const std::vector<std::string> values = reader.texts(root, name);
-  for (const std::string& value : values) {
-    if (std::find(known.begin(), known.end(), value) != known.end()) continue;
-    reader.fail(root.get(name), fmt::format("{} '{}' is unknown; known: {}", name, value, fmt::join(known, ", ")));
-  }
+/// Makes a parameter of a list, whose first value is the default.
+void add_list_param(FilterSpec& spec, const std::string& name, std::vector<ParamValue> values, const char* text) {
   if (values.empty()) return;
   ParamSpec param;
   param.name = name;
   param.default_value = values.front();
-  param.choices.assign(values.begin(), values.end());
+  param.integer = std::holds_alternative<double>(values.front());
+  param.choices = std::move(values);
   param.is_const = true;
   param.text = text;
   spec.params.push_back(param);
 }
 
-void read_params(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
-  const toml::node* node = root.get("param");
+void read_texts_param(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec,
+                      const std::string& name, const std::vector<std::string>& known, const char* text) {
+  const std::vector<std::string> values = reader.texts(root, name);
+  for (const std::string& value : values) {
+    if (std::find(known.begin(), known.end(), value) != known.end()) continue;
+    reader.fail_unknown(root.get(name), name, value, known);
+  }
+  add_list_param(spec, name, {values.begin(), values.end()}, text);
+}
+
+void read_samples(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
+  const toml::node* node = root.get("samples");
   if (!node) return;
-  if (!node->as_table()) reader.fail(node, "'param' must hold tables: [param.NAME]");
-  for (const auto& [name, value] : in_order_of_file(*node->as_table()))
-    spec.params.push_back(read_param(reader, name, *value));
+  spec.samples_line = reader.line_of(node);
+  std::vector<ParamValue> values;
+  const auto take = [&](const toml::node& item) {
+    const auto count = item.value_exact<std::int64_t>();
+    if (!count || *count < 1 || *count > 16 || !std::has_single_bit(static_cast<std::uint64_t>(*count)))
+      reader.fail(&item, "'samples' must be 1, 2, 4, 8 or 16, or a list of such numbers");
+    values.emplace_back(static_cast<double>(*count));
+  };
+  if (const toml::array* list = node->as_array())
+    for (const toml::node& item : *list) take(item);
+  else
+    take(*node);
+  if (values.empty()) reader.fail(node, "'samples' is an empty list");
+  add_list_param(spec, "samples", std::move(values), "samples of depth a texel; encode() is asked for each");
 }
 
 std::variant<double, std::string> read_number_or_param(const FrontMatterReader& reader, const toml::table& root,
@@ -190,54 +206,46 @@ std::string read_pattern(const FrontMatterReader& reader, const toml::table& tab
   return name;
 }
 
-void read_disks(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
-  const toml::node* node = root.get("disk");
-  if (!node) return;
-  if (!node->as_table()) reader.fail(node, "'disk' must hold tables: [disk.NAME]");
-  for (const auto& [key, value] : *node->as_table()) {
-    const toml::table* table = value.as_table();
-    if (!table) reader.fail(&value, "'disk' must hold tables: [disk.NAME]");
-    reader.check_keys(*table, {"count", "seed", "pattern"}, fmt::format("[disk.{}]", key.str()));
-    DiskTable disk;
-    disk.name = std::string(key.str());
-    disk.count = reader.text(*table, "count", true);
-    const ParamSpec* param = spec.find_param(disk.count);
-    if (!is_identifier(disk.name))
-      reader.fail(table, fmt::format("'{}' cannot be the name of a GLSL array", disk.name));
-    if (!param || !param->integer || !param->is_const) {
-      reader.fail(table->get("count"),
-                  fmt::format("'count' names '{}', which is not a const integer parameter", disk.count));
-    }
-    if (const double most = ends_of(*param).largest; most > kMostDiskPoints) {
-      reader.fail(table->get("count"),
-                  fmt::format("'count' names '{}', which may be up to {}: at most {} points are made", disk.count, most,
-                              kMostDiskPoints));
-    }
-    const double seed = reader.finite(*table, "seed").value_or(1.0);
-    if (!(seed >= 0.0 && seed <= 4294967295.0))
-      reader.fail(table->get("seed"), "'seed' must be a whole number from 0 to 4294967295");
-    disk.seed = static_cast<unsigned>(seed);
-    disk.pattern = read_pattern(reader, *table, spec);
-    spec.disks.push_back(disk);
+DiskTable read_disk(const FrontMatterReader& reader, const std::string& name, const toml::table& table,
+                    const FilterSpec& spec) {
+  reader.check_keys(table, {"count", "seed", "pattern"}, fmt::format("[disk.{}]", name));
+  DiskTable disk;
+  disk.name = name;
+  disk.count = reader.text(table, "count", true);
+  const ParamSpec* param = spec.find_param(disk.count);
+  if (!param || !param->integer || !param->is_const) {
+    reader.fail(table.get("count"),
+                fmt::format("'count' names '{}', which is not a const integer parameter", disk.count));
   }
+  if (const double most = ends_of(*param).largest; most > kMostDiskPoints) {
+    reader.fail(table.get("count"), fmt::format("'count' names '{}', which may be up to {}: at most {} points are made",
+                                                disk.count, most, kMostDiskPoints));
+  }
+  disk.seed = reader.whole(table, "seed", 0, std::numeric_limits<unsigned>::max());
+  disk.pattern = read_pattern(reader, table, spec);
+  return disk;
 }
 
-void read_root(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
+/// Gives the names that the file took.
+std::vector<std::string> read_root(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
+  std::vector<std::string> names;
   reader.check_keys(
       root,
-      {"title", "source", "kind", "store", "combine", "sample", "claims", "radius_texels", "bias_texels", "teaching",
-       "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk", "kernel", "pass"},
+      {"title", "source", "kind", "store", "combine", "sample", "samples", "claims", "radius_texels", "bias_texels",
+       "teaching", "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk", "kernel", "pass"},
       "the front matter");
   spec.title = reader.text(root, "title", true);
   spec.source = reader.text(root, "source", true);
   spec.kind = read_kind(reader, root);
   spec.claims = reader.texts(root, "claims");
   spec.teaching = reader.flag(root, "teaching");
-  read_params(reader, root, spec);
-  add_list_param(reader, root, spec, "store", encode_formats(), "format of the encoded map");
-  add_list_param(reader, root, spec, "combine", {"linear", "log"},
-                 "how the prefilter adds texels; log: log-sum-exp, read with the nearest texel");
-  add_list_param(reader, root, spec, "sample", {"linear", "nearest"}, "how the encoded map is read");
+  for (const auto& [name, table] : reader.named_tables(root, "param", names))
+    spec.params.push_back(read_param(reader, name, *table));
+  read_texts_param(reader, root, spec, "store", encode_formats(), "format of the encoded map");
+  read_texts_param(reader, root, spec, "combine", {"linear", "log"},
+                   "how the prefilter adds texels; log: log-sum-exp, read with the nearest texel");
+  read_texts_param(reader, root, spec, "sample", {"linear", "nearest"}, "how the encoded map is read");
+  read_samples(reader, root, spec);
   spec.radius_texels = read_number_or_param(reader, root, spec, "radius_texels", 0.0);
   spec.bias_texels = read_number_or_param(reader, root, spec, "bias_texels", spec.radius_texels);
   read_prefilter(reader, root, spec);
@@ -245,13 +253,16 @@ void read_root(const FrontMatterReader& reader, const toml::table& root, FilterS
   spec.bound_at_zero = read_param_name(reader, root, spec, "bound_at_zero");
   if (!spec.bound_at_zero.empty() && spec.kind != FilterKind::kBound)
     reader.fail(root.get("bound_at_zero"), "'bound_at_zero' needs 'kind = \"bound\"'");
-  read_disks(reader, root, spec);
+  for (const auto& [name, table] : reader.named_tables(root, "disk", names))
+    spec.disks.push_back(read_disk(reader, name, *table, spec));
   if (const toml::node* kernel = root.get("kernel")) spec.kernel = read_kernel(reader, *kernel, spec);
+  return names;
 }
 
-void inspect_body(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
+void inspect_body(const FrontMatterReader& reader, const toml::table& root, const std::vector<std::string>& names,
+                  FilterSpec& spec) {
   const std::string code = strip_comments(spec.body);
-  read_passes(reader, root, code, spec);
+  read_passes(reader, root, code, names, spec);
   spec.has_encode = has_function(code, "vec4", "encode");
   for (const char* sampler : {"map_depth", "map_compare", "map_compare_nearest", "map_stored"})
     spec.uses_samplers = spec.uses_samplers || has_word(code, sampler);
@@ -267,7 +278,7 @@ void inspect_body(const FrontMatterReader& reader, const toml::table& root, Filt
   for (const char* key : {"combine", "sample"})
     if (root.contains(key) && !stores)
       reader.fail(root.get(key), fmt::format("'{}' needs 'store': a depth map is not prefiltered", key));
-  for (const char* key : {"moments", "exponent"})
+  for (const char* key : {"moments", "exponent", "samples"})
     if (root.contains(key) && !stores)
       reader.fail(root.get(key), fmt::format("'{}' says what is stored, and needs 'store'", key));
 }
@@ -297,10 +308,10 @@ FilterSpec parse_filter(const std::string& text, const std::filesystem::path& pa
     reader.fail_at(static_cast<int>(error.source().begin.line),
                    fmt::format("malformed front matter: {}", error.description()));
   }
-  read_root(reader, root, spec);
+  const std::vector<std::string> names = read_root(reader, root, spec);
   spec.body = text.substr(close + kClose.size());
   spec.body_first_line = 1 + count_lines(std::string_view(text).substr(0, close));
-  inspect_body(reader, root, spec);
+  inspect_body(reader, root, names, spec);
   return spec;
 }
 

@@ -1,12 +1,14 @@
 #include "filters/format/front_matter_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
+#include "filters/format/glsl_words.h"
 
 namespace shadowbench::filters {
 
@@ -31,6 +33,11 @@ void FrontMatterReader::fail(const toml::node* node, const std::string& message)
 
 void FrontMatterReader::fail_at(int toml_line, const std::string& message) const {
   throw Error(ErrorKind::kFilter, message, fmt::format("{}:{}", path_, first_line_ - 1 + toml_line));
+}
+
+void FrontMatterReader::fail_unknown(const toml::node* node, const std::string& key, const std::string& value,
+                                     const std::vector<std::string>& known) const {
+  fail(node, fmt::format("{} '{}' is unknown; known: {}", key, value, fmt::join(known, ", ")));
 }
 
 void FrontMatterReader::check_keys(const toml::table& table, const std::vector<std::string>& known,
@@ -70,6 +77,14 @@ std::optional<double> FrontMatterReader::finite(const toml::table& table, const 
   return value;
 }
 
+unsigned FrontMatterReader::whole(const toml::table& table, const std::string& key, unsigned least,
+                                  unsigned most) const {
+  const double value = finite(table, key).value_or(1.0);
+  if (!(value >= least && value <= most) || value != std::floor(value))
+    fail(table.get(key), fmt::format("'{}' must be a whole number from {} to {}", key, least, most));
+  return static_cast<unsigned>(value);
+}
+
 std::vector<std::string> FrontMatterReader::texts(const toml::table& table, const std::string& key) const {
   const toml::node* node = table.get(key);
   if (!node) return {};
@@ -92,10 +107,23 @@ ParamValue FrontMatterReader::value(const toml::node& node, const std::string& w
   fail(&node, fmt::format("{} must be a finite number, a text, true or false", what));
 }
 
-std::vector<std::pair<std::string, const toml::node*>> in_order_of_file(const toml::table& tables) {
-  std::vector<std::pair<std::string, const toml::node*>> found;
-  for (const auto& [key, value] : tables) found.emplace_back(std::string(key.str()), &value);
+std::vector<std::pair<std::string, const toml::table*>> FrontMatterReader::named_tables(
+    const toml::table& root, const std::string& key, std::vector<std::string>& taken) const {
+  std::vector<std::pair<std::string, const toml::table*>> found;
+  const toml::node* node = root.get(key);
+  if (!node) return found;
+  if (!node->as_table()) fail(node, fmt::format("'{0}' must hold tables: [{0}.NAME]", key));
+  for (const auto& [name, value] : *node->as_table()) {
+    if (!value.as_table()) fail(&value, fmt::format("'{0}' must hold tables: [{0}.NAME]", key));
+    found.emplace_back(std::string(name.str()), value.as_table());
+  }
   std::ranges::sort(found, {}, [](const auto& each) { return each.second->source().begin.line; });
+  for (const auto& [name, table] : found) {
+    if (!is_identifier(name)) fail(table, fmt::format("[{}.{}]: '{}' cannot be a name in GLSL", key, name, name));
+    if (std::ranges::find(taken, name) != taken.end())
+      fail(table, fmt::format("[{}.{}]: '{}' is the name of something else; choose another", key, name, name));
+    taken.push_back(name);
+  }
   return found;
 }
 

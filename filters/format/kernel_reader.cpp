@@ -106,11 +106,8 @@ DeclaredKernel read_kernel(const FrontMatterReader& reader, const toml::node& no
     kernel.weights = read_weights(reader, *weights);
   else
     read_shape(reader, *table->get("shape"), spec, kernel);
-  const std::string read = reader.text(*table, "read", false);
-  if (!read.empty() && read != "bilinear" && read != "nearest")
-    reader.fail(table->get("read"), fmt::format("'read' is '{}'; known: bilinear, nearest", read));
-  kernel.reads_nearest = read == "nearest";
-  if (!read.empty() && (kernel.shape == KernelShape::kTent || kernel.shape == KernelShape::kDisk))
+  kernel.reads_nearest = reader.choose<bool>(*table, "read", {{"bilinear", false}, {"nearest", true}});
+  if (table->contains("read") && (kernel.shape == KernelShape::kTent || kernel.shape == KernelShape::kDisk))
     reader.fail(table->get("read"), "'read' is for taps at whole texels: a box, a gaussian, or weights");
   return kernel;
 }

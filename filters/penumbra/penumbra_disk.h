@@ -22,9 +22,14 @@ class PenumbraDisk {
   P radius(const Receiver& r, P depth_above, Tally& tally) const {
     const P per_depth =
         P(0.5) * static_cast<P>(r.light_size) * static_cast<P>(r.depth_range_ws) / static_cast<P>(r.texel_size_ws);
-    const P limited = std::min(per_depth * depth_above, max_radius_);
+    const P limited = std::min(per_depth * depth_above / shrink(r, depth_above), max_radius_);
     if (std::abs(limited - kOneFetch) < kRounding) tally.excused = true;
     return limited;
+  }
+
+  /// The share of the light's distance at which a blocker so far above the receiver is; 1 for a light at infinity.
+  static P shrink(const Receiver& r, P depth_above) {
+    return std::max(P(1) - depth_above * static_cast<P>(r.depth_range_ws) * static_cast<P>(r.light_nearness), P(1e-4));
   }
 
   /// The receiver's depth, biased for a tap by the tap's own distance.

@@ -83,21 +83,17 @@ std::vector<scene::LightFrustum> fit_frames(Motion motion, const scene::Scene& s
   return frusta;
 }
 
-glm::dvec3 find_place(const scene::LightFrustum& frustum, int map_size, const glm::vec3& point_ws) {
-  const glm::dvec4 seen = frustum.light_from_world * glm::dvec4(point_ws, 1.0);
-  return {seen.x / frustum.texel_size_ws + 0.5 * map_size, seen.y / frustum.texel_size_ws + 0.5 * map_size,
-          -seen.z / frustum.depth_range_ws};
-}
-
 std::vector<std::uint8_t> mark_receivers(const truth::ReceiverImage& receivers,
                                          const std::vector<scene::LightFrustum>& frusta, int map_size,
                                          double pad_texels) {
   std::vector<std::uint8_t> marked;
   for (const truth::ReceiverPoint& point : receivers.points) {
-    const bool counts = point.counts && std::ranges::all_of(frusta, [&](const scene::LightFrustum& frustum) {
-                          return glm::dot(point.normal_ws, -frustum.direction_ws) > filters::kFacesLight &&
-                                 lies_inside(find_place(frustum, map_size, point.position_ws), map_size, pad_texels);
-                        });
+    const bool counts =
+        point.counts && std::ranges::all_of(frusta, [&](const scene::LightFrustum& frustum) {
+          return glm::dot(glm::dvec3(point.normal_ws), frustum.to_light(glm::dvec3(point.position_ws))) >
+                     double{filters::kFacesLight} &&
+                 lies_inside(frustum.place(glm::dvec3(point.position_ws), map_size), map_size, pad_texels);
+        });
     marked.push_back(counts ? 1 : 0);
   }
   return marked;
@@ -108,9 +104,9 @@ std::optional<double> measure_grid_move(const truth::ReceiverImage& receivers, c
   std::vector<double> moves;
   for (std::size_t i = 0; i < marked.size(); ++i) {
     if (!marked[i]) continue;
-    glm::dvec3 before = find_place(frusta.front(), map_size, receivers.points[i].position_ws);
+    glm::dvec3 before = frusta.front().place(glm::dvec3(receivers.points[i].position_ws), map_size);
     for (std::size_t t = 1; t < frusta.size(); ++t) {
-      const glm::dvec3 now = find_place(frusta[t], map_size, receivers.points[i].position_ws);
+      const glm::dvec3 now = frusta[t].place(glm::dvec3(receivers.points[i].position_ws), map_size);
       moves.push_back(std::hypot(leave_out_whole(now.x - before.x), leave_out_whole(now.y - before.y)));
       before = now;
     }

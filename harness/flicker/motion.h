@@ -50,9 +50,6 @@ struct MapFollowing {
 std::vector<scene::LightFrustum> fit_frames(Motion motion, const scene::Scene& scene, const std::vector<Frame>& frames,
                                             const MapFollowing& following);
 
-/// A point's place in a map of `map_size` texels: texels from its first row and column, and depth in [0,1].
-glm::dvec3 find_place(const scene::LightFrustum& frustum, int map_size, const glm::vec3& point_ws);
-
 /// Marks, with 1, the receivers that face the light and lie in the map, `pad_texels` from its edge, in every frame.
 std::vector<std::uint8_t> mark_receivers(const truth::ReceiverImage& receivers,
                                          const std::vector<scene::LightFrustum>& frusta, int map_size,

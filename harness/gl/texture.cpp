@@ -36,12 +36,16 @@ void reset_transfer_state() {
 
 }  // namespace
 
-Texture::Texture(std::string_view label, GLenum internal_format, int width, int height, int levels)
-    : format_(&pixel_format(internal_format)), width_(width), height_(height), levels_(levels) {
+Texture::Texture(std::string_view label, GLenum internal_format, int width, int height, int levels, int samples)
+    : format_(&pixel_format(internal_format)), width_(width), height_(height), levels_(levels), samples_(samples) {
   require_size(label, width, height);
-  handle_ = Handle<GL_TEXTURE>(label, GL_TEXTURE_2D);
-  glTextureStorage2D(id(), levels, internal_format, width, height);
+  handle_ = Handle<GL_TEXTURE>(label, samples > 0 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D);
+  if (samples > 0)
+    glTextureStorage2DMultisample(id(), samples, internal_format, width, height, GL_TRUE);
+  else
+    glTextureStorage2D(id(), levels, internal_format, width, height);
   require_allocated(fmt::format("texture '{}' of {}x{} {}", label, width, height, format_->name));
+  if (samples > 0) return;
   set_filter(GL_NEAREST, GL_NEAREST);
   set_wrap(GL_CLAMP_TO_EDGE);
 }
@@ -114,7 +118,7 @@ std::size_t Texture::bytes() const {
     const auto height = static_cast<std::size_t>(std::max(1, height_ >> level));
     total += width * height * static_cast<std::size_t>(format_->bytes_per_texel);
   }
-  return total;
+  return total * static_cast<std::size_t>(std::max(1, samples_));
 }
 
 void Texture::require_count(std::size_t count, int channels) const {

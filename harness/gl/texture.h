@@ -17,8 +17,9 @@ namespace shadowbench::gl {
 class Texture {
  public:
   /// Allocates `levels` mip levels of a sized format such as GL_R32F or GL_DEPTH_COMPONENT24. The texels are undefined.
+  /// With `samples` above 0 it is a multisampled one of a single level, which shaders read by texelFetch alone.
   /// Throws Error(kUsage) for a size below 1 or above what this GL gives, Error(kContext) when memory runs out.
-  Texture(std::string_view label, GLenum internal_format, int width, int height, int levels = 1);
+  Texture(std::string_view label, GLenum internal_format, int width, int height, int levels = 1, int samples = 0);
 
   void set_filter(GLenum minify, GLenum magnify);
   /// Sets the wrap mode of both axes, e.g. GL_CLAMP_TO_BORDER.
@@ -60,6 +61,7 @@ class Texture {
   int width_;
   int height_;
   int levels_;
+  int samples_;
 };
 
 }  // namespace shadowbench::gl

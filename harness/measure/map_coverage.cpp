@@ -25,9 +25,8 @@ class PixelProjector {
         orthographic_(camera.orthographic_height_m > 0.0f),
         pixel_(orthographic_ ? static_cast<double>(camera.orthographic_height_m) / height
                              : 2.0 * std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad)) / height),
-        texel_from_world_(frustum.light_from_world),
-        texels_per_metre_(1.0 / frustum.texel_size_ws),
-        half_map_(0.5 * map_size) {}
+        frustum_(frustum),
+        map_size_(map_size) {}
 
   Footprint project(const truth::ReceiverPoint& point) const {
     const glm::dvec3 position(point.position_ws), normal(point.normal_ws);
@@ -38,25 +37,30 @@ class PixelProjector {
     constexpr double kGrazing = 1e-6;
     const double facing = std::min(glm::dot(normal, ray), -kGrazing);
     const auto edge = [&](const glm::dvec3& across) {
-      const glm::dvec3 on_plane = side * (across - ray * (glm::dot(normal, across) / facing));
-      return glm::dvec2(glm::dmat3(texel_from_world_) * on_plane) * texels_per_metre_;
+      glm::dvec3 on_plane = side * (across - ray * (glm::dot(normal, across) / facing));
+      if (frustum_.perspective) on_plane += slide_along_light(position, on_plane);
+      return glm::dvec2(glm::dmat3(frustum_.light_from_world) * on_plane) / frustum_.texel_size_at(position);
     };
-    const glm::dvec2 seen(texel_from_world_ * glm::dvec4(position, 1.0));
-    return {seen * texels_per_metre_ + half_map_, edge(right_), edge(up_)};
+    return {glm::dvec2(frustum_.place(position, map_size_)), edge(right_), edge(up_)};
   }
 
   bool is_in_map(const Footprint& texels) const {
     return glm::all(glm::greaterThanEqual(texels.centre, glm::dvec2(0.0))) &&
-           glm::all(glm::lessThanEqual(texels.centre, glm::dvec2(2.0 * half_map_)));
+           glm::all(glm::lessThanEqual(texels.centre, glm::dvec2(map_size_)));
   }
 
  private:
   glm::dvec3 eye_, forward_, right_, up_;
   bool orthographic_;
-  double pixel_;                 ///< side of a pixel: per metre ahead, or in metres where the camera is orthographic
-  glm::dmat4 texel_from_world_;  ///< rigid; in metres
-  double texels_per_metre_;
-  double half_map_;
+  double pixel_;  ///< side of a pixel: per metre ahead, or in metres where the camera is orthographic
+  const scene::LightFrustum& frustum_;
+  int map_size_;
+
+  /// Under a lamp a step's image in the map is that of the step moved along the ray, to the distance where it began.
+  glm::dvec3 slide_along_light(const glm::dvec3& position, const glm::dvec3& step) const {
+    const scene::PerspectiveMap& map = *frustum_.perspective;
+    return (map.beam.position_ws - position) * (glm::dot(step, map.beam.axis_ws) / map.distance(position));
+  }
 };
 
 /// The map's area in cells, marked where footprints fall.

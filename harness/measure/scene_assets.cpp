@@ -35,9 +35,9 @@ LightMap SceneAssets::make_light_map(const scene::Light& light, const scene::Cam
                                      const glm::dvec2& shift_texels) {
   const double pad_texels = limit_padding(pad_texels_, map_size);
   const double aspect = static_cast<double>(options_.width) / options_.height;
-  LightMap made{scene::fit_light(
-                    scene_, {options_.fit, map_size, pad_texels, options_.snap, &camera, aspect, &light, shift_texels}),
-                render::ShadowMap(map_size, options_.map)};
+  const scene::LightFrustum frustum = scene::fit_light(
+      scene_, {options_.fit, map_size, pad_texels, options_.snap, &camera, aspect, &light, shift_texels});
+  LightMap made{frustum, render::ShadowMap(map_size, render::fit_settings(options_.map, frustum))};
   made.map.set_border(options_.range.border);
   redraw(made);
   return made;

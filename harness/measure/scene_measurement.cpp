@@ -61,8 +61,6 @@ class SceneBench {
     }
     time(result, filters);
     draw_phases(result, filters);
-    result.stored_map = light_.map.read_picture();
-    result.depth_map = read_linear_depth(light_.map);
     warn_of_coarse_depth(result);
     renderer_.context->require_no_gl_errors();
     return result;
@@ -125,16 +123,17 @@ class SceneBench {
   /// A map that holds depth in steps shadows surfaces by up to half a step, in the light's face as on a slope.
   void warn_of_coarse_depth(SceneMeasurement& result) const {
     float farthest = 0.0f;
-    for (const float depth : result.depth_map.texels) farthest = depth < 1.0f ? std::max(farthest, depth) : farthest;
-    const double step_m =
-        render::find_coarsest_step(options_.map, static_cast<double>(farthest)) * light_.frustum.depth_range_ws;
+    for (const float depth : read_linear_depth(light_.map).texels)
+      farthest = depth < 1.0f ? std::max(farthest, depth) : farthest;
+    const double step_m = render::find_coarsest_step(light_.map.settings(), static_cast<double>(farthest)) *
+                          light_.frustum.depth_range_ws;
     const double bias_m = options_.bias.constant.in_world(light_.frustum);
     if (bias_m == 0.0 || bias_m >= 0.5 * step_m) return;
     const std::string warning(fmt::format(
         "{}: a map stored as {} holds depth in steps of up to {} m, but the constant bias is {} m: expect "
         "acne on what faces the light; choose --bias with a constant of {} m or more, --reversed-depth with d32f, or a "
         "smaller --perspective-depth",
-        task_.scene->name, render::describe_map(options_.map), records::format_number(step_m),
+        task_.scene->name, render::describe_map(light_.map.settings()), records::format_number(step_m),
         records::format_number(bias_m), records::format_number(0.5 * step_m)));
     for (MeasuredCell& cell : result.cells) cell.record.warnings.push_back(warning);
   }

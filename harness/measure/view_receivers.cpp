@@ -26,6 +26,14 @@ std::vector<std::uint8_t> ViewReceivers::mask() const {
   return result;
 }
 
+namespace {
+
+bool faces(const scene::Light& light, const glm::vec3& position, const glm::vec3& normal) {
+  return glm::dot(normal, scene::to_light(light, position)) > filters::kFacesLight && scene::shines_on(light, position);
+}
+
+}  // namespace
+
 ViewReceivers read_view_receivers(const render::GBuffer& gbuffer, const scene::Light& light) {
   const images::Image positions = render::read_image(gbuffer.position(), 4);
   const images::Image normals = render::read_image(gbuffer.normal(), 4);
@@ -36,8 +44,7 @@ ViewReceivers read_view_receivers(const render::GBuffer& gbuffer, const scene::L
     const glm::vec3 position(p[0], p[1], p[2]), normal(n[0], n[1], n[2]);
     const bool is_surface = p[3] != 0.0f;
     receivers.is_surface.push_back(is_surface ? 1 : 0);
-    receivers.image.points.push_back(
-        {position, normal, is_surface && glm::dot(normal, scene::to_light(light, position)) > filters::kFacesLight});
+    receivers.image.points.push_back({position, normal, is_surface && faces(light, position, normal)});
   }
   ContentHash hash;
   hash.add_values(std::span<const float>(positions.texels));

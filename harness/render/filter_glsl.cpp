@@ -59,8 +59,10 @@ std::string declare_disk(const FilterRequest& request, const filters::DiskTable&
   return fmt::format("const vec2 {}[{}] = vec2[]({});\n", disk.name, generated.size(), points);
 }
 
-/// `store` and `sample` are for the program and not for the shader; `sample` is also a keyword of GLSL.
-bool is_for_shader(const ParamSpec& param) { return param.name != "store" && param.name != "sample"; }
+/// `store`, `sample` and `samples` are for the program and not for the shader; `sample` is also a keyword of GLSL.
+bool is_for_shader(const ParamSpec& param) {
+  return param.name != "store" && param.name != "sample" && param.name != "samples";
+}
 
 }  // namespace
 

@@ -49,7 +49,7 @@ FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest&
       map_defines_(map_defines(request, map.settings())),
       lookup_(compile_lookup(shaders, {})) {
   if (lookup_.has("blue_noise")) blue_noise_ = make_blue_noise();
-  if (request.spec.has_encode) prefilter_.emplace(shaders, request, map_size_, light, map_defines_);
+  if (request.spec.has_encode) prefilter_.emplace(shaders, request, map, light, map_defines_);
   if (request.spec.passes.empty()) return;
   own_.emplace(shaders, request, map_size_, light, map_defines_);
   if (prefilter_) own_->check_encode(prefilter_->encode_program());

@@ -44,22 +44,25 @@ gl::Texture upload(const scene::Texture& texture) {
 
 }  // namespace
 
-Geometry::Geometry(const scene::Scene& scene) : materials_(scene.materials) {
+Geometry::Geometry(const scene::Scene& scene) {
+  auto parts = std::make_shared<Parts>();
+  parts->materials = scene.materials;
   std::vector<GpuVertex> vertices;
   for (const scene::Mesh& mesh : scene.meshes) {
     const int first = static_cast<int>(vertices.size());
     append_mesh(vertices, mesh);
-    ranges_.push_back(
+    parts->ranges.push_back(
         {first, static_cast<int>(vertices.size()) - first, mesh.material, mesh.casts_shadow, mesh.may_cull_front});
   }
-  triangles_ = static_cast<std::int64_t>(vertices.size() / 3);
-  for (const scene::Texture& texture : scene.textures) textures_.push_back(upload(texture));
-  buffer_.emplace_back("scene vertices", std::as_bytes(std::span(vertices)));
-  array_.set_vertices(buffer_.front(), sizeof(GpuVertex));
-  array_.set_attribute(0, 3, offsetof(GpuVertex, position_ws));
-  array_.set_attribute(1, 3, offsetof(GpuVertex, shading_normal_ws));
-  array_.set_attribute(2, 3, offsetof(GpuVertex, face_normal_ws));
-  array_.set_attribute(3, 2, offsetof(GpuVertex, uv));
+  parts->triangles = static_cast<std::int64_t>(vertices.size() / 3);
+  for (const scene::Texture& texture : scene.textures) parts->textures.push_back(upload(texture));
+  parts->buffer.emplace_back("scene vertices", std::as_bytes(std::span(vertices)));
+  parts->array.set_vertices(parts->buffer.front(), sizeof(GpuVertex));
+  parts->array.set_attribute(0, 3, offsetof(GpuVertex, position_ws));
+  parts->array.set_attribute(1, 3, offsetof(GpuVertex, shading_normal_ws));
+  parts->array.set_attribute(2, 3, offsetof(GpuVertex, face_normal_ws));
+  parts->array.set_attribute(3, 2, offsetof(GpuVertex, uv));
+  parts_ = std::move(parts);
 }
 
 Defines Geometry::variant(const scene::Material& material) const {
@@ -74,7 +77,7 @@ void Geometry::set_material(gl::Program& program, const scene::Material& materia
   if (material.alpha_mode == scene::AlphaMode::kMask) program.set("alpha_cutoff", material.alpha_cutoff);
   if (material.base_color_texture < 0) return;
   gl::Sampler::unbind(kBaseColorUnit);
-  textures_[static_cast<std::size_t>(material.base_color_texture)].bind(kBaseColorUnit);
+  parts_->textures[static_cast<std::size_t>(material.base_color_texture)].bind(kBaseColorUnit);
 }
 
 bool Geometry::is_in(DrawSet set, const Range& range) {

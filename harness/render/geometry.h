@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "harness/gl/objects.h"
@@ -17,7 +18,8 @@ enum class DrawSet {
   kUncullableCasters,  ///< the other casters
 };
 
-/// A scene's triangles and textures in GL memory; corners are not shared, so that each carries its face's normal.
+/// A scene's triangles and textures in GL memory, which copies share; corners are not shared, so that each carries its
+/// face's normal.
 class Geometry {
  public:
   explicit Geometry(const scene::Scene& scene);
@@ -28,7 +30,7 @@ class Geometry {
   void draw(ShaderLibrary& shaders, const std::string& shader, DrawSet set, Prepare prepare,
             const Defines& more = {}) const;
 
-  std::int64_t triangle_count() const { return triangles_; }
+  std::int64_t triangle_count() const { return parts_->triangles; }
 
  private:
   struct Range {
@@ -38,12 +40,15 @@ class Geometry {
     bool casts = true;
     bool may_cull_front = true;
   };
-  std::vector<Range> ranges_;
-  std::vector<scene::Material> materials_;
-  std::vector<gl::Texture> textures_;
-  std::vector<gl::Buffer> buffer_;  // one; a vector because it is made after the vertices are
-  gl::VertexArray array_{"scene"};
-  std::int64_t triangles_ = 0;
+  struct Parts {
+    std::vector<Range> ranges;
+    std::vector<scene::Material> materials;
+    std::vector<gl::Texture> textures;
+    std::vector<gl::Buffer> buffer;  // one; a vector because it is made after the vertices are
+    gl::VertexArray array{"scene"};
+    std::int64_t triangles = 0;
+  };
+  std::shared_ptr<const Parts> parts_;
 
   Defines variant(const scene::Material& material) const;
   void set_material(gl::Program& program, const scene::Material& material) const;
@@ -54,10 +59,10 @@ class Geometry {
 template <class Prepare>
 void Geometry::draw(ShaderLibrary& shaders, const std::string& shader, DrawSet set, Prepare prepare,
                     const Defines& more) const {
-  array_.bind();
-  for (const Range& range : ranges_) {
+  parts_->array.bind();
+  for (const Range& range : parts_->ranges) {
     if (!is_in(set, range)) continue;
-    const scene::Material& material = materials_[static_cast<std::size_t>(range.material)];
+    const scene::Material& material = parts_->materials[static_cast<std::size_t>(range.material)];
     Defines defines = variant(material);
     defines.insert(defines.end(), more.begin(), more.end());
     gl::Program& program = shaders.geometry(shader, defines);

@@ -9,7 +9,14 @@ glm::vec3 row(const glm::dmat4& m, int r) { return glm::vec3(glm::dvec3(m[0][r],
 
 LightSetup make_light_setup(const scene::LightFrustum& frustum, const scene::Light& light, const Bias& bias,
                             std::uint32_t seed, const filters::RangeRule& range) {
-  return {frustum, scene::penumbra_per_metre(light), bias, seed, range};
+  return {frustum, scene::light_size(light), bias, seed, range};
+}
+
+void set_beam(gl::Program& program, const scene::Beam& beam) {
+  program.set("light_direction_ws", glm::vec3(beam.axis_ws));
+  program.set("light_position_ws", glm::vec3(beam.position_ws));
+  program.set("light_cone", glm::vec2(beam.cos_inner, beam.cos_outer));
+  program.set("light_reference_m", static_cast<float>(beam.reference_m));
 }
 
 void set_light(gl::Program& program, const LightSetup& light) {
@@ -27,11 +34,13 @@ void set_light(gl::Program& program, const LightSetup& light) {
   program.set("bias_plane_kernels", static_cast<float>(light.bias.plane_kernels));
   program.set("bias_normal_texels", static_cast<float>(light.bias.normal_offset_texels));
   program.set("bias_max_tangent", static_cast<float>(light.bias.max_tangent));
+  if (frustum.perspective) set_beam(program, frustum.perspective->beam);
 }
 
 Defines range_defines(const LightSetup& light) {
   Defines defines;
   if (light.frustum.projective) defines.emplace_back("PROJECTIVE_MAP", "1");
+  if (light.frustum.perspective) defines.push_back(kPerspectiveLight);
   if (!light.range.far_test) defines.emplace_back("NO_FAR_TEST", "1");
   if (light.frustum.projective && !light.range.behind_test) defines.emplace_back("NO_BEHIND_TEST", "1");
   return defines;
@@ -40,6 +49,7 @@ Defines range_defines(const LightSetup& light) {
 Defines receiver_defines(const LightSetup& light) {
   Defines defines;
   if (light.frustum.projective) defines.emplace_back("PROJECTIVE_MAP", "1");
+  if (light.frustum.perspective) defines.push_back(kPerspectiveLight);
   if (light.bias.slope_depth > 0.0) defines.emplace_back("BIAS_BY_SLOPE", "1");
   return defines;
 }

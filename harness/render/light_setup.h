@@ -14,7 +14,7 @@ namespace shadowbench::render {
 /// A light as the lookup sees it: where its map lies, how large it is, and how receivers are biased.
 struct LightSetup {
   scene::LightFrustum frustum;
-  double light_size = 0.0;  ///< penumbra width per metre of distance to the occluder
+  double light_size = 0.0;  ///< see scene::light_size()
   Bias bias;
   std::uint32_t seed = 0;         ///< of the run: random rotations
   filters::RangeRule range = {};  ///< what becomes of receivers that the map does not hold
@@ -24,8 +24,14 @@ struct LightSetup {
 LightSetup make_light_setup(const scene::LightFrustum& frustum, const scene::Light& light, const Bias& bias,
                             std::uint32_t seed, const filters::RangeRule& range = {});
 
+/// Sets the cone of a light that stands in the scene: a program with the define PERSPECTIVE_LIGHT.
+void set_beam(gl::Program& program, const scene::Beam& beam);
+
 /// Sets the uniforms of lib/light.glsl.
 void set_light(gl::Program& program, const LightSetup& light);
+
+/// The define for a light that stands in the scene.
+inline const Defines::value_type kPerspectiveLight = {"PERSPECTIVE_LIGHT", "1"};
 
 /// What prepare_receivers.frag needs for this light; nothing for an orthographic map with the right range rule.
 Defines range_defines(const LightSetup& light);

@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
+#include "filters/base/error.h"
 #include "filters/gaussian.h"
 #include "harness/render/filter_glsl.h"
 
 namespace shadowbench::render {
 namespace {
 
-constexpr GLuint kStoredUnit = 3;  // of lib/map_access.glsl
+constexpr GLuint kStoredUnit = 3;   // of lib/map_access.glsl
+constexpr GLuint kSamplesUnit = 4;  // of encode.frag
 
 GLenum store_format(const filters::ParamValues& values) {
   return gl::parse_pixel_format(filters::text_or(values, "store", "")).internal_format;
@@ -25,14 +27,37 @@ Defines blur_defines(const filters::FilterRequest& request, int radius) {
   return defines;
 }
 
+/// Throws Error(kFilter) with the line of `samples` where the GL gives fewer.
+Defines add_samples(Defines defines, const filters::FilterRequest& request) {
+  const int samples = filters::depth_samples(request.values);
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_DEPTH_TEXTURE_SAMPLES, &most);
+  if (samples > most) {
+    throw Error(ErrorKind::kFilter,
+                fmt::format("samples = {}: this GL gives at most {} samples of depth a texel", samples, most),
+                fmt::format("{}:{}", request.spec.path, request.spec.samples_line));
+  }
+  if (samples > 1) defines.emplace_back("SAMPLES", std::to_string(samples));
+  if (filters::combines_logs(request.values)) defines.emplace_back("COMBINE_LOGS", "1");
+  return defines;
+}
+
 }  // namespace
 
-Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
-                     const LightSetup& light, const Defines& map_defines)
-    : stored_(
-          std::make_shared<ImageTarget>(request.spec.id + " map", store_format(request.values), map_size, map_size)),
-      encode_(shaders.compile_filter(request.spec.id + " encode", "encode.frag", map_defines, filter_pieces(request))) {
-  encode_.set("map_texel_uv", 1.0f / static_cast<float>(map_size));
+Prefilter::Samples::Samples(const ShadowMap& map, int samples)
+    : count(samples), depth("depth samples", map.settings().format, map.size(), map.size(), 1, samples) {
+  framebuffer.attach_depth(depth);
+}
+
+Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, const ShadowMap& map,
+                     const LightSetup& light, Defines map_defines)
+    : shaders_(&shaders),
+      stored_(std::make_shared<ImageTarget>(request.spec.id + " map", store_format(request.values), map.size(),
+                                            map.size())),
+      encode_(shaders.compile_filter(request.spec.id + " encode", "encode.frag",
+                                     add_samples(std::move(map_defines), request), filter_pieces(request))) {
+  if (const int samples = filters::depth_samples(request.values); samples > 1) samples_.emplace(map, samples);
+  encode_.set("map_texel_uv", 1.0f / static_cast<float>(map.size()));
   const bool nearest = filters::reads_nearest(request.values);
   sampler_.set_filter(nearest ? GL_NEAREST : GL_LINEAR, nearest ? GL_NEAREST : GL_LINEAR);
   sampler_.set_wrap(wrap_mode(light.range.border));
@@ -83,11 +108,20 @@ glm::vec4 Prefilter::encode_border(GLenum format) {
   return {value[0], value[1], value[2], value[3]};
 }
 
-void Prefilter::run(const ShadowMap& map) {
+void Prefilter::encode(const ShadowMap& map, ImageTarget& to) {
+  if (samples_) {
+    map.draw_samples(*shaders_, samples_->framebuffer);
+    gl::Sampler::unbind(kSamplesUnit);
+    samples_->depth.bind(kSamplesUnit);
+  }
   map.bind();
-  stored_->bind();
+  to.bind();
   encode_.use();
   triangle_.draw();
+}
+
+void Prefilter::run(const ShadowMap& map) {
+  encode(map, *stored_);
   if (radius_ == 0) return;
   blur(stored_->texture(), *scratch_, {1.0f, 0.0f});
   blur(scratch_->texture(), *stored_, {0.0f, 1.0f});
@@ -117,16 +151,13 @@ EncodedTexels Prefilter::read() const { return read(*stored_); }
 
 EncodedTexels Prefilter::read_before_blur(const ShadowMap& map) {
   if (radius_ == 0) return read(*stored_);
-  map.bind();
-  scratch_->bind();
-  encode_.use();
-  triangle_.draw();
+  encode(map, *scratch_);
   return read(*scratch_);
 }
 
 std::int64_t Prefilter::texels_written() const {
   const std::int64_t side = stored_->texture().width();
-  return passes() * side * side;
+  return (passes() + (samples_ ? samples_->count - 1 : 0)) * side * side;
 }
 
 }  // namespace shadowbench::render

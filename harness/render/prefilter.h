@@ -26,8 +26,8 @@ struct EncodedTexels {
 class Prefilter {
  public:
   /// Throws Error(kFilter) with the line of the filter's file, Error(kUsage) when the GL cannot give the map's size.
-  Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size, const LightSetup& light,
-            const Defines& map_defines = {});
+  Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, const ShadowMap& map,
+            const LightSetup& light, Defines map_defines = {});
 
   /// Changes the light, and parameters that are neither `const` nor texts. The light must have the same range rule.
   void retune(ShaderLibrary& shaders, const filters::FilterRequest& request, const LightSetup& light);
@@ -60,13 +60,23 @@ class Prefilter {
     return reads_border_ && radius_ > 0 ? std::optional(border_) : std::nullopt;
   }
 
-  int passes() const { return radius_ > 0 ? 3 : 1; }
+  int passes() const { return (radius_ > 0 ? 3 : 1) + (samples_ ? 1 : 0); }
   std::int64_t bytes() const { return static_cast<std::int64_t>(stored_->texture().bytes()); }
   GLenum format() const { return stored_->texture().format().internal_format; }
   std::int64_t texels_written() const;
 
  private:
+  /// The depth map once more, with several samples a texel.
+  struct Samples {
+    Samples(const ShadowMap& map, int count);
+    int count;
+    gl::Texture depth;
+    gl::Framebuffer framebuffer{"depth samples"};
+  };
+
   int radius_ = 0;
+  ShaderLibrary* shaders_;
+  std::optional<Samples> samples_;  ///< for filters that ask for them
   std::shared_ptr<ImageTarget> stored_;
   std::optional<ImageTarget> scratch_;  ///< only with a blur
   gl::Program encode_;
@@ -78,6 +88,7 @@ class Prefilter {
   gl::Sampler blur_sampler_{"encoded map, to blur"};
 
   static EncodedTexels read(const ImageTarget& target);
+  void encode(const ShadowMap& map, ImageTarget& to);
   glm::vec4 encode_border(GLenum format);
   void blur(const gl::Texture& from, ImageTarget& to, glm::vec2 direction);
   void set_border(const glm::vec4& border);

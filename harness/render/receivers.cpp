@@ -5,10 +5,11 @@
 namespace shadowbench::render {
 namespace {
 
-/// The receiver pass as it was read back: two RGBA texels per pixel.
+/// The receiver pass as it was read back: three RGBA texels per pixel.
 struct ReceiverTexels {
   int width;
   std::vector<float> map;    // uv, depth, depth_unbiased
+  std::vector<float> light;  // texel_size_ws, light_size, light_nearness
   std::vector<float> plane;  // depth_per_texel, n_dot_l, view_depth (0: no receiver, negative: beyond the map's reach)
 
   std::size_t pixels() const { return map.size() / 4; }
@@ -19,9 +20,11 @@ struct ReceiverTexels {
 ReceiverTexels draw_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light) {
   const gl::Texture map("receivers in the map", GL_RGBA32F, gbuffer.width(), gbuffer.height());
   const gl::Texture plane("receiver planes", GL_RGBA32F, gbuffer.width(), gbuffer.height());
+  const gl::Texture size("receivers and the light", GL_RGBA32F, gbuffer.width(), gbuffer.height());
   gl::Framebuffer framebuffer("receivers");
   framebuffer.attach_color(0, map);
   framebuffer.attach_color(1, plane);
+  framebuffer.attach_color(2, size);
   gl::Program& program = shaders.fullscreen("receiver.frag", receiver_defines(light));
   const ReceiverBuffer& receivers = gbuffer.receivers(shaders, light);
   set_light(program, light);
@@ -30,13 +33,13 @@ ReceiverTexels draw_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, co
   receivers.bind();
   program.use();
   gl::FullscreenTriangle().draw();
-  return {gbuffer.width(), map.read_floats(4), plane.read_floats(4)};
+  return {gbuffer.width(), map.read_floats(4), size.read_floats(4), plane.read_floats(4)};
 }
 
 /// As shaders/lib/receiver.glsl computes it.
-glm::vec2 bias_per_texel(const glm::vec2& depth_per_texel, const LightSetup& light) {
-  const float steepest = static_cast<float>(light.bias.max_tangent) * static_cast<float>(light.frustum.texel_size_ws) /
-                         static_cast<float>(light.frustum.depth_range_ws);
+glm::vec2 bias_per_texel(const glm::vec2& depth_per_texel, float texel_size_ws, const LightSetup& light) {
+  const float steepest =
+      static_cast<float>(light.bias.max_tangent) * texel_size_ws / static_cast<float>(light.frustum.depth_range_ws);
   return static_cast<float>(light.bias.plane_kernels) * glm::min(glm::abs(depth_per_texel), glm::vec2(steepest));
 }
 
@@ -48,12 +51,13 @@ filters::Receiver make_receiver(const ReceiverTexels& texels, std::size_t i, con
   r.depth = map[2];
   r.depth_unbiased = map[3];
   r.depth_per_texel = {plane[0], plane[1]};
-  r.bias_per_texel = bias_per_texel(r.depth_per_texel, light);
+  r.texel_size_ws = texels.light[4 * i];
+  r.light_size = texels.light[4 * i + 1];
+  r.light_nearness = texels.light[4 * i + 2];
+  r.bias_per_texel = bias_per_texel(r.depth_per_texel, r.texel_size_ws, light);
   r.n_dot_l = plane[2];
   r.view_depth = plane[3];
-  r.texel_size_ws = static_cast<float>(light.frustum.texel_size_ws);
   r.depth_range_ws = static_cast<float>(light.frustum.depth_range_ws);
-  r.light_size = static_cast<float>(light.light_size);
   r.pixel = {static_cast<int>(i) % texels.width, static_cast<int>(i) / texels.width};
   return r;
 }

@@ -23,9 +23,20 @@ glm::dmat4 reverse_depth(glm::dmat4 clip) {
 
 }  // namespace
 
+MapSettings fit_settings(MapSettings settings, const scene::LightFrustum& frustum) {
+  if (!frustum.perspective) return settings;
+  if (!settings.curve.is_linear()) {
+    throw Error(ErrorKind::kUsage,
+                "--perspective-depth: this light stands in the scene, and its map holds the depth of its own "
+                "projection; leave the option out");
+  }
+  settings.curve.far_over_near = frustum.perspective->far_over_near();
+  return settings;
+}
+
 std::string describe_map(const MapSettings& settings) {
   std::string text(gl::pixel_format(settings.format).name);
-  if (!settings.curve.is_linear()) text += fmt::format(" perspective {}", settings.curve.far_over_near);
+  if (!settings.curve.is_linear()) text += fmt::format(" perspective {:.6g}", settings.curve.far_over_near);
   return settings.curve.reversed ? text + " reversed" : text;
 }
 
@@ -93,14 +104,15 @@ void ShadowMap::draw_casters(ShaderLibrary& shaders, const Geometry& geometry, c
   framebuffer.clear_depth(settings_.curve.far_plane());
   const filters::DepthCurve& curve = settings_.curve;
   for (auto& define : curve_defines(curve)) defines.push_back(std::move(define));
+  if (!curve.is_linear() && !frustum.perspective) defines.emplace_back("BEND_DEPTH", "1");
   const float away = curve.reversed ? -1.0f : 1.0f;
   if (curve.reversed) glDepthFunc(GL_GREATER);
   if (bias.polygon_factor != 0.0 || bias.polygon_units != 0.0) {
-    assert(curve.is_linear());
+    assert(curve.is_linear() || frustum.perspective);
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(away * static_cast<float>(bias.polygon_factor), away * static_cast<float>(bias.polygon_units));
   }
-  const glm::mat4 clip_from_world = curve.reversed && curve.is_linear()
+  const glm::mat4 clip_from_world = curve.reversed && (curve.is_linear() || frustum.perspective)
                                         ? glm::mat4(reverse_depth(frustum.clip_from_light) * frustum.light_from_world)
                                         : frustum.clip_from_world;
   const auto prepare = [&](gl::Program& program) { program.set("clip_from_world", clip_from_world); };
@@ -117,6 +129,7 @@ void ShadowMap::draw_casters(ShaderLibrary& shaders, const Geometry& geometry, c
 
 void ShadowMap::draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
                      const MapBias& bias) {
+  drawn_.emplace(geometry, frustum, bias);
   if (bias.midpoint)
     draw_midpoint(shaders, geometry, frustum, bias);
   else
@@ -140,6 +153,28 @@ void ShadowMap::draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, 
   map_.framebuffer.bind();
   shaders.fullscreen("midpoint.frag", curve_defines(settings_.curve)).use();
   gl::FullscreenTriangle().draw_depth();
+}
+
+void ShadowMap::draw_samples(ShaderLibrary& shaders, gl::Framebuffer& framebuffer) const {
+  if (drawn_ && !drawn_->bias.midpoint) {
+    glEnable(GL_SAMPLE_SHADING);  // each sample has a depth and a hole of its own
+    glMinSampleShading(1.0f);
+    draw_casters(shaders, drawn_->geometry, drawn_->frustum, drawn_->bias, framebuffer, {});
+    glDisable(GL_SAMPLE_SHADING);
+    return;
+  }
+  for (const GLuint unit : {0u, 1u}) {
+    gl::Sampler::unbind(unit);
+    map_.depth.bind(unit);
+  }
+  framebuffer.bind();
+  shaders.fullscreen("midpoint.frag", curve_defines(settings_.curve)).use();
+  gl::FullscreenTriangle().draw_depth();
+}
+
+void ShadowMap::upload(std::span<const float> stored) {
+  map_.depth.upload_floats(stored, 1);
+  drawn_.reset();
 }
 
 void ShadowMap::bind() const {

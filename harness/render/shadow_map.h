@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,10 @@ namespace shadowbench::render {
 
 /// The wrap mode of samplers that reads outside a map as `border` says, e.g. GL_CLAMP_TO_BORDER.
 GLenum wrap_mode(filters::Border border);
+
+/// What a light's map holds: a perspective one the depth of its projection. Throws Error(kUsage) where another curve
+/// was asked for.
+MapSettings fit_settings(MapSettings settings, const scene::LightFrustum& frustum);
 
 /// Names map settings as records do: "d32f", "d16 reversed", "d24 perspective 1000".
 std::string describe_map(const MapSettings& settings);
@@ -47,9 +52,13 @@ class ShadowMap {
   void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
             const MapBias& bias = {});
 
+  /// Draws what the map holds into a multisampled depth texture of the map's size and format: the same casters, or the
+  /// map itself where it was uploaded, or where it holds no surface that could be drawn.
+  void draw_samples(ShaderLibrary& shaders, gl::Framebuffer& framebuffer) const;
+
   /// Replaces the map's contents by stored depths, row 0 at v = 0. Fixed-point formats clamp them. Requires size() *
   /// size() values.
-  void upload(std::span<const float> stored) { map_.depth.upload_floats(stored, 1); }
+  void upload(std::span<const float> stored);
 
   /// Binds the map to the three units of lib/map_access.glsl that read depth.
   void bind() const;
@@ -73,8 +82,16 @@ class ShadowMap {
     gl::Framebuffer framebuffer;
   };
 
+  /// What draw() drew last.
+  struct Drawn {
+    Geometry geometry;
+    scene::LightFrustum frustum;
+    MapBias bias;
+  };
+
   MapSettings settings_;
   Layer map_;
+  std::optional<Drawn> drawn_;   ///< nothing where the map was uploaded
   std::vector<Layer> surfaces_;  ///< first and second, only for midpoint maps
   gl::Sampler plain_{"depth, plain"};
   gl::Sampler compare_linear_{"depth, compared, 2x2"};

@@ -40,14 +40,14 @@ void write_depth(const std::filesystem::path& path, const std::string& scene, co
 
 void write_map_pictures(const options::RunOptions& options, const measure::SceneTask& task,
                         measure::SceneMeasurement& measured, const measure::MapCoverage& coverage,
-                        const scene::LightFrustum& frustum) {
+                        const measure::LightMap& light) {
   const std::string base = "images/" + task_stem(options, task);
   const std::string depth = base + ".depth_map.png", density = base + ".texel_density.png",
                     grid = base + ".texel_grid.png";
   const std::string& scene = task.scene->name;
   const std::string settings = records::describe_settings(measured.cells.front().record);
   const std::string note = settings + " · " + records::describe_coverage(coverage.record);
-  write_depth(options.out / depth, scene, settings, options.map, measured, frustum);
+  write_depth(options.out / depth, scene, settings, light.map.settings(), measured, light.frustum);
   images::write_density_picture(options.out / density, {scene + ": map texels per pixel", note, coverage.density});
   const measure::MeasuredCell* background = choose_background(measured.cells);
   if (background) {

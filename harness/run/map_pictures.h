@@ -1,6 +1,7 @@
 #pragma once
 
 #include "harness/measure/map_coverage.h"
+#include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_measurement.h"
 
 namespace shadowbench::run {
@@ -10,6 +11,6 @@ namespace shadowbench::run {
 /// Error(kOutput).
 void write_map_pictures(const options::RunOptions& options, const measure::SceneTask& task,
                         measure::SceneMeasurement& measured, const measure::MapCoverage& coverage,
-                        const scene::LightFrustum& frustum);
+                        const measure::LightMap& light);
 
 }  // namespace shadowbench::run

@@ -62,6 +62,9 @@ void TaskRun::run_group(const Requests& built_in, const Requests& of_users) {
   if (!built_in.empty())
     measured = measure::measure_scene(renderer_, options_, task_of(built_in), assets_,
                                       [&](const std::string& label) { show(label); });
+  const measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
+  measured.stored_map = light.map.read_picture();
+  measured.depth_map = measure::read_linear_depth(light.map);
   for (measure::MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
   Requests all = built_in;
   all.insert(all.end(), of_users.begin(), of_users.end());
@@ -120,7 +123,7 @@ void TaskRun::write_images(const measure::SceneTask& task, measure::SceneMeasure
     return;
   }
   if (!options_.worker) {
-    write_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size).frustum);
+    write_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size));
     write_pictures(options_, task, measured, truth, gl_);
   }
   if (options_.border_page) draw_border_page(task);

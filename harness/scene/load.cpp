@@ -83,7 +83,8 @@ Scene load_model(const fs::path& file, const LoadOptions& options) {
   scene.cameras = std::move(model.cameras);
   const std::optional<Light> light = model.light;
   scene = validate_geometry(add_mesh_file(std::move(scene), std::move(model)), file.string());
-  scene.light = light ? *light : make_default_sun(scene.bounds());
+  const Bounds bounds = scene.bounds();
+  scene.light = light ? aim_light(*light, 0.5f * (bounds.min + bounds.max)) : make_default_sun(bounds);
   return validate(completed(std::move(scene), options), file.string());
 }
 

@@ -13,13 +13,17 @@
 namespace shadowbench::truth {
 namespace {
 
-/// A kernel's fan: parallel rays that start on the receiver's tangent plane, below the texels that they stand for.
+/// A kernel's fan: rays to the light's centre that start on the receiver's tangent plane, below the texels that they
+/// stand for.
 RayFan make_kernel_fan(const Occluders& occluders, const ReceiverPoint& point, const MapGrid& grid, double half_width) {
-  const glm::dvec3 normal(point.normal_ws);
-  const double n_dot_l = glm::dot(normal, grid.to_light);
+  const glm::dvec3 normal(point.normal_ws), position(point.position_ws);
+  const glm::dvec3 to_light = grid.lamp ? grid.lamp->position_ws - position : grid.to_light;
+  const double texel_ws =
+      grid.lamp ? grid.texel_size_ws * glm::dot(to_light, grid.to_light) / grid.lamp->reference_m : grid.texel_size_ws;
+  const double n_dot_l = glm::dot(normal, to_light);
   // A step of one texel, slid along the light until it lies in the plane.
   const auto slide = [&](const glm::dvec3& axis) {
-    return grid.texel_size_ws * (axis - grid.to_light * (glm::dot(normal, axis) / n_dot_l));
+    return texel_ws * (axis - to_light * (glm::dot(normal, axis) / n_dot_l));
   };
   const glm::dvec3 right = slide(grid.right), up = slide(grid.up);
   RayFan fan;
@@ -31,6 +35,12 @@ RayFan make_kernel_fan(const Occluders& occluders, const ReceiverPoint& point, c
   fan.normal = point.normal_ws;
   fan.reach = std::numeric_limits<float>::infinity();
   fan.direction_moves = false;
+  if (!grid.lamp) return fan;
+  fan.direction = grid.lamp->position_ws - glm::dvec3(fan.origin);
+  fan.direction_x = -fan.origin_x;
+  fan.direction_y = -fan.origin_y;
+  fan.direction_moves = true;
+  fan.reach = 1.0f;
   return fan;
 }
 
@@ -130,7 +140,6 @@ std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& r
 
 std::vector<float> trace_first_blockers(const Occluders& occluders, const ReceiverImage& receivers,
                                         const AreaLight& light) {
-  assert(std::isinf(light.reach()));
   std::vector<float> distances(receivers.points.size(), std::numeric_limits<float>::infinity());
   for_each_group(receivers, [&](const std::vector<std::size_t>& group) {
     RayPacket packet;
@@ -138,9 +147,11 @@ std::vector<float> trace_first_blockers(const Occluders& occluders, const Receiv
     for (std::size_t lane = 0; lane < group.size(); ++lane) {
       const ReceiverPoint& point = receivers.points[group[lane]];
       const glm::vec3 origin = occluders.offset_origin(point.position_ws, point.normal_ws);
-      // The ray starts beyond everything and runs back to the receiver.
-      lengths[lane] = 1.01f * (glm::length(origin) + occluders.farthest());
-      const glm::vec3 way = glm::vec3(light.centre_direction(glm::dvec3(0.0))) * lengths[lane];
+      // The ray starts at the light, or beyond everything, and runs back to the receiver.
+      const glm::vec3 to_light(light.centre_direction(glm::dvec3(origin)));
+      const bool is_lamp = std::isfinite(light.reach());
+      lengths[lane] = is_lamp ? glm::length(to_light) : 1.01f * (glm::length(origin) + occluders.farthest());
+      const glm::vec3 way = is_lamp ? to_light : to_light * lengths[lane];
       packet.set(lane, origin + way, -way, 1.0f);
     }
     const RayPacket::Lanes hits = occluders.find_nearest(packet);

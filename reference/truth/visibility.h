@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,16 +43,24 @@ inline constexpr std::uint32_t kRaysOfSettledPixel = 64;
 TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
                             const TraceSettings& settings);
 
-/// The texel grid of a directional light's map, which says where a kernel lies in the world.
+/// The texel grid of a light's map, which says where a kernel lies in the world.
 struct MapGrid {
   glm::dvec3 to_light{0.0, 1.0, 0.0};  ///< unit length
   glm::dvec3 right{1.0, 0.0, 0.0};     ///< one texel in u is `texel_size_ws` metres along it; unit length
   glm::dvec3 up{0.0, 0.0, 1.0};        ///< the same for v
-  double texel_size_ws = 1.0;          ///< metres
+  double texel_size_ws = 1.0;          ///< metres; of a lamp's map at `Lamp::reference_m`
+
+  /// Of a perspective map: the texels grow with the distance along the axis, which `to_light` points against.
+  struct Lamp {
+    glm::dvec3 position_ws{0.0};
+    double reference_m = 1.0;
+  };
+  std::optional<Lamp> lamp = {};  ///< none: rays are parallel to `to_light`
 };
 
 /// Traces the fraction of a kernel, centred on each receiver and projected along the light onto its tangent plane, from
-/// which the light's centre is seen: the filter with an ideal map and an ideal receiver-plane bias.
+/// which the light's centre is seen: the filter with an ideal map and an ideal receiver-plane bias. Under a lamp the
+/// kernel's texels on that plane are taken to be as large as at the receiver.
 /// Adaptive like trace_area(), at the same cost.
 TracedVisibility trace_kernel(const Occluders& occluders, const ReceiverImage& receivers, const filters::Kernel& kernel,
                               const MapGrid& grid, const TraceSettings& settings);
@@ -70,7 +79,6 @@ std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& r
 
 /// Returns how far from each receiver, towards the light, the surface lies that the light meets first; metres. An ideal
 /// depth map would hold that surface. Infinity where nothing blocks the light and where a point does not count.
-/// Requires a light at infinity.
 std::vector<float> trace_first_blockers(const Occluders& occluders, const ReceiverImage& receivers,
                                         const AreaLight& light);
 

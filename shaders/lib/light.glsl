@@ -13,5 +13,37 @@ uniform float bias_plane_kernels;   // the share of that per texel of a filter's
 uniform float bias_normal_texels;
 uniform float bias_max_tangent;    // steeper planes are treated as this steep
 
+#ifdef PERSPECTIVE_LIGHT
+// A light that stands in the scene, with a map drawn through a perspective. light_size is its diameter in metres.
+uniform vec3 light_position_ws;
+uniform vec2 light_cone;          // cosines to the axis: full strength within the first, none beyond the second
+uniform float light_reference_m;  // where a texel has texel_size_ws, and the light its strength
+
+vec3 direction_to_light(vec3 position_ws) { return normalize(light_position_ws - position_ws); }
+
+float distance_along_light(vec3 position_ws) { return dot(position_ws - light_position_ws, light_direction_ws); }
+
+float texel_size_at(vec3 position_ws) {
+  return texel_size_ws * (distance_along_light(position_ws) / light_reference_m);
+}
+
+// As scene::Beam::cone_at() computes it.
+float light_cone_at(vec3 position_ws) {
+  float cosine = dot(-direction_to_light(position_ws), light_direction_ws);
+  float ramp = clamp((cosine - light_cone.y) / max(light_cone.x - light_cone.y, 1e-4), 0.0, 1.0);
+  return ramp * ramp;
+}
+
+float light_strength(vec3 position_ws) {
+  vec3 way = (position_ws - light_position_ws) / light_reference_m;
+  return light_cone_at(position_ws) / max(dot(way, way), 1e-4);
+}
+#else
 // The direction from a point to the light's centre, unit length.
 vec3 direction_to_light(vec3 position_ws) { return -light_direction_ws; }
+
+float texel_size_at(vec3 position_ws) { return texel_size_ws; }
+
+// Of what arrives where nothing is in the way.
+float light_strength(vec3 position_ws) { return 1.0; }
+#endif

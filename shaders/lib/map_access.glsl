@@ -34,7 +34,7 @@ void count_fetch(vec2 uv, vec2 offset_texels, float to_centre_texels) {
 const float plane_slack_texels = 1.0 / 128.0;
 
 float plane_depth(Receiver r, vec2 from_receiver_texels, float reach_texels, float z) {
-  float steepest = bias_max_tangent * texel_size_ws / depth_range_ws;
+  float steepest = bias_max_tangent * r.texel_size_ws / depth_range_ws;
   vec2 slope = clamp(r.depth_per_texel, vec2(-steepest), vec2(steepest));
   float lowest = (reach_texels + plane_slack_texels) * (abs(slope.x) + abs(slope.y));
   return min(z + dot(slope, from_receiver_texels) - lowest, 1.0);

@@ -15,6 +15,7 @@ struct Receiver {
   float texel_size_ws;
   float depth_range_ws;
   float light_size;
+  float light_nearness;
   float view_depth;
   ivec2 pixel;
 };
@@ -38,7 +39,8 @@ Receiver make_receiver(ivec2 pixel, vec4 place) {
   r.uv = place.xy;
   r.layer = 0;
   r.depth_per_texel = plane.xy;
-  r.bias_per_texel = bias_plane_kernels * min(abs(plane.xy), vec2(bias_max_tangent * texel_size_ws / depth_range_ws));
+  r.texel_size_ws = texel_size_at(r.position_ws);
+  r.bias_per_texel = bias_plane_kernels * min(abs(plane.xy), vec2(bias_max_tangent * r.texel_size_ws / depth_range_ws));
 #ifdef BIAS_BY_SLOPE
   float flat_part = max(bias_constant, bias_slope * (1.0 - r.n_dot_l));
 #else
@@ -48,13 +50,18 @@ Receiver make_receiver(ivec2 pixel, vec4 place) {
   precise float biased = place.z - (flat_part + bias_plane_texels * place.w);
   r.depth = biased;
   precise vec4 own_point = uv_depth_from_world * vec4(r.position_ws, 1.0);
-#ifdef PROJECTIVE_MAP
+#if defined(PROJECTIVE_MAP) && !defined(PERSPECTIVE_LIGHT)
   own_point.z /= own_point.w;
 #endif
   r.depth_unbiased = own_point.z;
-  r.texel_size_ws = texel_size_ws;
   r.depth_range_ws = depth_range_ws;
+#ifdef PERSPECTIVE_LIGHT
+  r.light_nearness = 1.0 / distance_along_light(r.position_ws);
+  r.light_size = light_size * r.light_nearness;
+#else
+  r.light_nearness = 0.0;
   r.light_size = light_size;
+#endif
   r.view_depth = plane.w;
   r.pixel = pixel;
   return r;

@@ -96,13 +96,21 @@ TEST_P(ContactHardening, PenumbraOfAnEdge_IsAsWideAsTheLightMakesIt) {
   constexpr float kEdge = 0.3f;
   const DepthMap map = make_map([](int x, int) { return x < kMapSide / 2 ? kEdge : 1.0f; });
   const Filtered soft(finest(), map);
-  for (const float light_size : {0.1f, 0.2f, 0.4f}) {
-    const double radius = 50.0 * static_cast<double>(light_size * (kFloor - kEdge));
+  struct Case {
+    float light_size, nearness;
+  };
+  // The last two are of lamps 100 m and 80 m away, 40 m of which lie between the edge and the floor.
+  for (const auto& [light_size, nearness] :
+       {Case{0.1f, 0.0f}, {0.2f, 0.0f}, {0.4f, 0.0f}, {0.2f, 0.01f}, {0.1f, 0.0125f}}) {
+    const double above = static_cast<double>(kFloor - kEdge);
+    const double radius =
+        50.0 * static_cast<double>(light_size) * above / (1.0 - 100.0 * above * static_cast<double>(nearness));
     const auto seen = [&](double x) {
       double sum = 0.0;
       constexpr int kPixels = 200;
       for (int i = 0; i < kPixels; ++i) {
         Receiver r = make_floor_receiver(kMapSide / 2 + x, 32.3, light_size);
+        r.light_nearness = nearness;
         r.pixel = {i, 7 * i};
         sum += soft.at(r);
       }

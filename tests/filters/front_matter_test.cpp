@@ -1,5 +1,6 @@
 #include "filters/format/front_matter.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -111,7 +112,7 @@ TEST(FrontMatter, WrongTypes_AreRefused) {
   expect_error(with("[param.a]\ndefault = \"x\"\nchoices = [\"y\"]\ntext = \"x\"\n"), "dir/mine.glsl:7",
                "not one of its choices");
   expect_error(with("[param.gl_a]\ndefault = 1.0\nmin = 0.0\nmax = 1.0\ntext = \"x\"\n"), "dir/mine.glsl:6",
-               "GLSL uniform");
+               "[param.gl_a]: 'gl_a' cannot be a name in GLSL");
 }
 
 TEST(FrontMatter, StoreAndEncode_ComeTogether) {
@@ -119,6 +120,9 @@ TEST(FrontMatter, StoreAndEncode_ComeTogether) {
   expect_error(with("", "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }"),
                "dir/mine.glsl:1", "lacks 'store'");
   expect_error(with("combine = \"linear\"\n"), "dir/mine.glsl:6", "needs 'store'");
+  expect_error(with("samples = 4\n"), "dir/mine.glsl:6", "'samples' says what is stored, and needs 'store'");
+  for (const char* wrong : {"3", "0", "32", "4.0", "[1, 5]", "\"4\"", "[]"})
+    expect_error(with(fmt::format("store = \"r32f\"\nsamples = {}\n", wrong)), "dir/mine.glsl:7", "'samples'");
   expect_error(with("store = \"rgb8\"\n"), "dir/mine.glsl:6", "'rgb8' is unknown");
 }
 
@@ -208,6 +212,7 @@ TEST(FrontMatter, DisksOfTooManyPoints_AreRefused) {
   expect_error(with_disk("min = 1\nmax = 2000000000\n", "1"), "dir/mine.glsl:13", "at most 4096 points");
   expect_error(with_disk("choices = [4, 5000]\n", "1"), "dir/mine.glsl:12", "at most 4096 points");
   expect_error(with_disk("min = 1\nmax = 64\n", "-1"), "dir/mine.glsl:14", "'seed'");
+  expect_error(with_disk("min = 1\nmax = 64\n", "1.5"), "dir/mine.glsl:14", "'seed' must be a whole number from 0");
   expect_error(with_disk("min = 1\nmax = 64\n", "1e10"), "dir/mine.glsl:14", "'seed'");
 }
 
@@ -237,11 +242,21 @@ TEST(FrontMatter, BadPassesAreRefused) {
                "known: once, axes, prefix, levels");
   expect_error(with("[pass.p]\nstore = \"r32f\"\nsize = \"third\"\n"), "dir/mine.glsl:8", "known: full, half");
   expect_error(with("[pass.p]\nstore = \"r32f\"\nstep = \"once\"\n"), "dir/mine.glsl:8", "unknown key 'step'");
-  expect_error(with("[pass.map]\nstore = \"r32f\"\n"), "dir/mine.glsl:6", "cannot be the name of a pass");
+  for (const char* taken : {"map", "depth", "stored", "compare", "compare_nearest", "encode", "visibility"}) {
+    expect_error(with(fmt::format("[pass.{}]\nstore = \"r32f\"\n", taken)), "dir/mine.glsl:6",
+                 fmt::format("[pass.{0}]: '{0}' is the name of something else", taken));
+  }
+  expect_error(with("[pass.p-1]\nstore = \"r32f\"\n"), "dir/mine.glsl:6", "'p-1' cannot be a name in GLSL");
+  expect_error(with("[param.p]\ndefault = 1\nmin = 0\nmax = 2\ntext = \"t\"\n[pass.p]\nstore = \"r32f\"\n"),
+               "dir/mine.glsl:11", "'p' is the name of something else");
   expect_error(with("[pass.p]\nstore = \"r32f\"\n"), "dir/mine.glsl:6", "lacks 'vec4 p(PassInput p)'");
   expect_error(with("[pass.p]\nstore = \"r32ui\"\n",
                     "vec4 p(PassInput p) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n"),
                "dir/mine.glsl:6", "lacks 'uvec4 p(PassInput p)'");
+  for (const char* number : {"2.5", "0", "17"}) {
+    expect_error(with(fmt::format("[pass.p]\nstore = \"r32f\"\nanisotropy = {}\n", number)), "dir/mine.glsl:8",
+                 "'anisotropy' must be a whole number from 1 to 16");
+  }
   expect_error(with("[pass.p]\nstore = \"r32f\"\nanisotropy = 4\n"), "dir/mine.glsl:8", "needs steps = \"levels\"");
 }
 

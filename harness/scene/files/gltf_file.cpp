@@ -228,13 +228,14 @@ class GltfImporter {
     if (extension == node.extensions.end() || !extension->second.Has("light")) return;
     const int index = extension->second.Get("light").GetNumberAsInt();
     const tinygltf::Light& source = find_element(source_.lights, index, "there is no light", where_);
-    const std::optional<LightKind> kind = make_gltf_light(source.type, world_from_node);
+    const std::optional<LightKind> kind =
+        make_gltf_light(source.type, world_from_node, source.spot.innerConeAngle, source.spot.outerConeAngle);
     if (!kind) {
       warn(fmt::format("{} lights are not modelled yet; they are left out", source.type));
       return;
     }
     if (result_.light) {
-      warn("more than one directional light: only the first is used");
+      warn("more than one light: only the first is used");
       return;
     }
     Light light;

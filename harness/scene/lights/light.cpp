@@ -32,16 +32,32 @@ std::optional<MapWindow> read_map_window(const TomlTable& table) {
   return window;
 }
 
+std::string write_vector(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
+
 }  // namespace
 
-glm::vec3 to_light(const Light& light, const glm::vec3&) {
-  return std::visit([](const Sun& sun) { return -sun.direction_ws; }, light.kind);
+glm::vec3 to_light(const Light& light, const glm::vec3& point_ws) {
+  return std::visit(Each{[](const Sun& sun) { return -sun.direction_ws; },
+                         [&](const Spot& spot) { return glm::normalize(spot.position_ws - point_ws); }},
+                    light.kind);
 }
 
-double penumbra_per_metre(const Light& light) {
-  return std::visit(
-      [](const Sun& sun) { return 2.0 * std::tan(0.5 * glm::radians(static_cast<double>(sun.angular_diameter_deg))); },
-      light.kind);
+std::optional<Beam> find_beam(const Light& light) {
+  const auto* spot = std::get_if<Spot>(&light.kind);
+  return spot ? std::optional(make_beam(*spot)) : std::nullopt;
+}
+
+bool shines_on(const Light& light, const glm::vec3& point_ws) {
+  const std::optional<Beam> beam = find_beam(light);
+  return !beam || beam->cone_at(glm::dvec3(point_ws)) > 0.0;
+}
+
+double light_size(const Light& light) {
+  return std::visit(Each{[](const Sun& sun) {
+                           return 2.0 * std::tan(0.5 * glm::radians(static_cast<double>(sun.angular_diameter_deg)));
+                         },
+                         [](const Spot& spot) { return 2.0 * static_cast<double>(spot.radius_m); }},
+                    light.kind);
 }
 
 truth::AreaLight make_area_light(const Light& light) {
@@ -49,13 +65,18 @@ truth::AreaLight make_area_light(const Light& light) {
 }
 
 Light turn_light(Light light, const std::function<glm::vec3(const glm::vec3&)>& turn) {
-  std::visit([&](Sun& sun) { sun.direction_ws = turn(sun.direction_ws); }, light.kind);
+  std::visit(Each{[&](Sun& sun) { sun.direction_ws = turn(sun.direction_ws); },
+                  [&](Spot& spot) {
+                    const glm::vec3 way = spot.target_ws - spot.position_ws;
+                    spot.position_ws = spot.target_ws - glm::length(way) * turn(glm::normalize(way));
+                  }},
+             light.kind);
   return light;
 }
 
 Light place_in_sky(Light light, double azimuth_deg, double elevation_deg) {
-  std::visit([&](Sun& sun) { sun.direction_ws = glm::vec3(light_direction(azimuth_deg, elevation_deg)); }, light.kind);
-  return light;
+  const glm::vec3 direction(light_direction(azimuth_deg, elevation_deg));
+  return turn_light(std::move(light), [&](const glm::vec3&) { return direction; });
 }
 
 std::vector<Light> make_light_ring(const Light& first, int count) {
@@ -70,24 +91,47 @@ std::vector<Light> make_light_ring(const Light& first, int count) {
 
 Light read_light(const TomlTable& table) {
   std::vector<std::string> keys = {"type", "color", "intensity", "map_center", "map_width", "map_near", "map_far"};
-  keys.insert(keys.end(), sun_keys().begin(), sun_keys().end());
+  const bool is_spot = table.choice("type", {"directional", "spot"}, "directional") == "spot";
+  const std::vector<std::string>& own_keys = is_spot ? spot_keys() : sun_keys();
+  if (is_spot) std::erase_if(keys, [](const std::string& key) { return key.starts_with("map_"); });
+  keys.insert(keys.end(), own_keys.begin(), own_keys.end());
   table.require_known_keys(keys);
-  table.choice("type", {"directional"}, "directional");
   Light light;
-  light.kind = read_sun(table);
+  if (is_spot)
+    light.kind = read_spot(table);
+  else
+    light.kind = read_sun(table);
   light.color = glm::vec3(table.vec3("color", kColor, glm::dvec3(1.0)));
   light.intensity = table.number_f("intensity", {0.0, 1000.0}, 1.0);
   light.map_window = read_map_window(table);
   return light;
 }
 
-std::optional<LightKind> make_gltf_light(std::string_view type, const glm::dmat4& world_from_node) {
-  if (type == "directional") return Sun{glm::vec3(-world_from_node[2])};
-  return std::nullopt;
+std::optional<LightKind> make_gltf_light(std::string_view type, const glm::dmat4& world_from_node,
+                                         double inner_cone_rad, double outer_cone_rad) {
+  const glm::dvec3 ahead = -glm::dvec3(world_from_node[2]), position(world_from_node[3]);
+  if (type == "directional") return Sun{glm::vec3(ahead)};
+  if (type != "spot") return std::nullopt;
+  const auto full_deg = [](double half_rad) { return static_cast<float>(2.0 * glm::degrees(half_rad)); };
+  return Spot{.position_ws = glm::vec3(position),
+              .target_ws = glm::vec3(position + glm::normalize(ahead)),
+              .cone_deg = std::min(full_deg(outer_cone_rad), kWidestCone_deg),
+              .inner_cone_deg = std::min(full_deg(inner_cone_rad), kWidestCone_deg)};
+}
+
+Light aim_light(Light light, const glm::vec3& center_ws) {
+  if (auto* spot = std::get_if<Spot>(&light.kind)) {
+    const glm::vec3 ahead = spot->target_ws - spot->position_ws;
+    const float distance = glm::dot(center_ws - spot->position_ws, ahead);
+    if (distance > 0.0f) spot->target_ws = spot->position_ws + distance * ahead;
+  }
+  return light;
 }
 
 Light checked_light(Light light, const std::string& where) {
-  light.kind = std::visit([&](const Sun& sun) -> LightKind { return checked_sun(sun, where); }, light.kind);
+  light.kind = std::visit(Each{[&](const Sun& sun) -> LightKind { return checked_sun(sun, where); },
+                               [&](const Spot& spot) -> LightKind { return checked_spot(spot, where); }},
+                          light.kind);
   const bool shines = std::isfinite(light.color.r + light.color.g + light.color.b) &&
                       glm::all(glm::greaterThanEqual(light.color, glm::vec3(0.0f))) && std::isfinite(light.intensity) &&
                       light.intensity >= 0.0f;
@@ -98,29 +142,45 @@ Light checked_light(Light light, const std::string& where) {
 }
 
 std::string describe_light(const Light& light) {
-  return std::visit([](const Sun& sun) { return fmt::format("a sun of {:.3g} degrees", sun.angular_diameter_deg); },
-                    light.kind);
+  return std::visit(
+      Each{[](const Sun& sun) { return fmt::format("a sun of {:.3g} degrees", sun.angular_diameter_deg); },
+           [](const Spot& spot) {
+             return fmt::format("a spot light of {:.3g} m, {:.3g} m from its target", 2.0f * spot.radius_m,
+                                glm::distance(spot.position_ws, spot.target_ws));
+           }},
+      light.kind);
 }
 
 std::map<std::string, std::variant<double, std::string>> light_metadata(const Light& light) {
   using Metadata = std::map<std::string, std::variant<double, std::string>>;
-  return std::visit(
-      [](const Sun& sun) {
-        const glm::vec3& d = sun.direction_ws;
-        return Metadata{{"light_direction_ws", fmt::format("{} {} {}", d.x, d.y, d.z)},
-                        {"light_angular_diameter_deg", static_cast<double>(sun.angular_diameter_deg)}};
-      },
-      light.kind);
+  return std::visit(Each{[](const Sun& sun) {
+                           return Metadata{
+                               {"light_direction_ws", write_vector(sun.direction_ws)},
+                               {"light_angular_diameter_deg", static_cast<double>(sun.angular_diameter_deg)}};
+                         },
+                         [](const Spot& spot) {
+                           return Metadata{{"light_position_ws", write_vector(spot.position_ws)},
+                                           {"light_target_ws", write_vector(spot.target_ws)},
+                                           {"light_cone_deg", static_cast<double>(spot.cone_deg)},
+                                           {"light_inner_cone_deg", static_cast<double>(spot.inner_cone_deg)},
+                                           {"light_radius_m", static_cast<double>(spot.radius_m)}};
+                         }},
+                    light.kind);
 }
 
 std::vector<std::string> list_light_content(const Light& light) {
   const glm::vec3& c = light.color;
   std::vector<std::string> content = {std::visit(
-      [&](const Sun& sun) {
-        const glm::vec3& d = sun.direction_ws;
-        return fmt::format("{} {} {} {} {} {} {} {} {}", light.kind.index(), d.x, d.y, d.z, c.r, c.g, c.b,
-                           light.intensity, sun.angular_diameter_deg);
-      },
+      Each{[&](const Sun& sun) {
+             const glm::vec3& d = sun.direction_ws;
+             return fmt::format("{} {} {} {} {} {} {} {} {}", light.kind.index(), d.x, d.y, d.z, c.r, c.g, c.b,
+                                light.intensity, sun.angular_diameter_deg);
+           },
+           [&](const Spot& spot) {
+             return fmt::format("{} {} {} {} {} {} {} {} {}", light.kind.index(), write_vector(spot.position_ws),
+                                write_vector(spot.target_ws), c.r, c.g, c.b, light.intensity, spot.radius_m,
+                                fmt::format("{} {}", spot.cone_deg, spot.inner_cone_deg));
+           }},
       light.kind)};
   if (!light.map_window) return content;
   const MapWindow& w = *light.map_window;

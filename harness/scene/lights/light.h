@@ -9,13 +9,20 @@
 #include <variant>
 #include <vector>
 
+#include "harness/scene/lights/spot.h"
 #include "harness/scene/lights/sun.h"
 #include "reference/truth/area_light.h"
 
 namespace shadowbench::scene {
 
 /// The kinds of light: each has a file of its own, and is chosen from in light.cpp alone.
-using LightKind = std::variant<Sun>;
+using LightKind = std::variant<Sun, Spot>;
+
+/// Asks each kind of light by a function of its own.
+template <class... Functions>
+struct Each : Functions... {
+  using Functions::operator()...;
+};
 
 /// A light's map that is not fitted to the scene: it may leave receivers outside.
 struct MapWindow {
@@ -40,16 +47,23 @@ struct Light {
 /// The direction from a point to the light's centre, unit length.
 glm::vec3 to_light(const Light& light, const glm::vec3& point_ws);
 
-/// The width of a penumbra for each metre between a receiver and its occluder.
-double penumbra_per_metre(const Light& light);
+/// The cone of a light that stands in the scene; nothing for one at infinity.
+std::optional<Beam> find_beam(const Light& light);
+
+/// Whether any of the light goes to a point.
+bool shines_on(const Light& light, const glm::vec3& point_ws);
+
+/// The light's size: of one at infinity the width of a penumbra for each metre between a receiver and its occluder, of
+/// one in the scene its diameter in metres.
+double light_size(const Light& light);
 
 /// The light as the truth traces it.
 truth::AreaLight make_area_light(const Light& light);
 
-/// The light with all its directions and positions mapped by `turn`.
+/// The light with its direction mapped by `turn`; one in the scene goes round its target.
 Light turn_light(Light light, const std::function<glm::vec3(const glm::vec3&)>& turn);
 
-/// The light moved to a place in the sky; see light_direction().
+/// The light moved to a place in the sky, see light_direction(); one in the scene as seen from its target.
 Light place_in_sky(Light light, double azimuth_deg, double elevation_deg);
 
 /// Turns a light about the vertical (+y): light i of `count` is `first`, turned by i * 360 / count degrees. A light
@@ -59,8 +73,14 @@ std::vector<Light> make_light_ring(const Light& first, int count);
 /// Reads the [light] of a scene file. Throws kInput.
 Light read_light(const TomlTable& table);
 
-/// Returns the light of a glTF node, or nothing for a type that is not modelled.
-std::optional<LightKind> make_gltf_light(std::string_view type, const glm::dmat4& world_from_node);
+/// Returns the light of a glTF node, or nothing for a type that is not modelled. A spot's cones are given as half
+/// angles, radians; glTF knows no size of lamps, so that it gets that of a spot without `radius` in a scene file.
+std::optional<LightKind> make_gltf_light(std::string_view type, const glm::dmat4& world_from_node,
+                                         double inner_cone_rad = 0.0, double outer_cone_rad = 0.0);
+
+/// A light in the scene whose target is as far ahead as `center_ws` is; others stay as they are. A
+/// glTF file says where a spot looks, and not how far.
+Light aim_light(Light light, const glm::vec3& center_ws);
 
 /// Throws kInput, with `where`, for a light that is not finite or has no direction.
 Light checked_light(Light light, const std::string& where);

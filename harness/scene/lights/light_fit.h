@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <string_view>
 
 #include "harness/scene/scene.h"
@@ -32,18 +33,46 @@ struct FitRequest {
   glm::dvec2 shift_texels{0.0};    ///< moves the fitted map along its axes; at most half a texel, or padding is used up
 };
 
-/// The orthographic frustum of a directional light: a square map over casters and receivers.
+/// What the map of a light in the scene is drawn through. Depth is linear in the distance along the light's axis, as
+/// all filters see it; the map stores the depth of the projection, a filters::DepthCurve with far_over_near().
+struct PerspectiveMap {
+  Beam beam;
+  double near_m = 0.0;  ///< depth 0, metres along the axis
+  double far_m = 0.0;   ///< depth 1
+
+  double far_over_near() const { return far_m / near_m; }
+  double distance(const glm::dvec3& point_ws) const { return glm::dot(point_ws - beam.position_ws, beam.axis_ws); }
+};
+
+/// The frustum of a light's square map: orthographic, over casters and receivers, or a perspective one around a cone.
 struct LightFrustum {
   glm::dmat4 light_from_world{1.0};     ///< rigid; looks along -z
-  glm::dmat4 clip_from_light{1.0};      ///< orthographic; depth in [0,1], 0 near
+  glm::dmat4 clip_from_light{1.0};      ///< depth in [0,1], 0 near
   glm::mat4 clip_from_world{1.0f};      ///< the product of both
   glm::mat4 uv_depth_from_world{1.0f};  ///< to (u, v, depth) in [0,1]; v = 0 is the map's first row, as in GL
-  double width_ws = 0.0;                ///< side of the map, padding included
-  double texel_size_ws = 0.0;
-  double depth_range_ws = 0.0;  ///< from depth 0 to depth 1
-  bool projective = false;      ///< uv_depth_from_world ends with a division by w, which is negative behind the light
-  glm::vec3 direction_ws{0.0f, 0.0f, 1.0f};  ///< the way the light travels, unit length
+  double width_ws = 0.0;                ///< side of the map, padding included; of a perspective one at its reference
+  double texel_size_ws = 0.0;           ///< likewise: it grows with the distance
+  double depth_range_ws = 0.0;          ///< from depth 0 to depth 1
+  bool projective = false;  ///< uv_depth_from_world ends with a division by w, which is negative behind the light
+  glm::vec3 direction_ws{0.0f, 0.0f, 1.0f};   ///< the way the light travels, unit length
+  std::optional<PerspectiveMap> perspective;  ///< then u and v end with the division, and depth does not
+
+  glm::dvec3 to_light(const glm::dvec3& point_ws) const;   ///< unit length
+  double texel_size_at(const glm::dvec3& point_ws) const;  ///< metres
+
+  /// Where a point lies in the map: texels from its corner, and depth.
+  glm::dvec3 place(const glm::dvec3& point_ws, int map_size) const;
 };
+
+/// World axes seen by a light, which looks along -z; rows are its x, y and z.
+glm::dmat3 light_rotation(const glm::dvec3& direction);
+
+/// The texels along a side that padding and snapping leave. Throws kUsage for none.
+double count_used_texels(const FitRequest& request);
+
+/// Sets the matrices of a perspective map whose half side is `tangent` times the distance; `shift_clip` moves it along
+/// its axes.
+void set_perspective(LightFrustum& frustum, double tangent, const glm::dvec2& shift_clip);
 
 /// Where a filter's kernel lies in the world.
 truth::MapGrid make_map_grid(const LightFrustum& frustum);

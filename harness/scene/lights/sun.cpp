@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "filters/base/error.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/toml_reader.h"
@@ -26,13 +25,6 @@ struct Box {
 void add(Box& box, const glm::dvec3& seen) {
   box.min = glm::min(box.min, seen);
   box.max = glm::max(box.max, seen);
-}
-
-/// World axes seen by the light, which looks along -z; rows are the light's x, y and z.
-glm::dmat3 light_rotation(const glm::dvec3& direction) {
-  const glm::dvec3 back = -direction;
-  const glm::dvec3 right = glm::normalize(glm::cross(axis_least_parallel(direction), back));
-  return glm::transpose(glm::dmat3(right, glm::cross(back, right), back));
 }
 
 glm::dvec3 center_of(const Bounds& bounds) { return 0.5 * (glm::dvec3(bounds.min) + glm::dvec3(bounds.max)); }
@@ -132,15 +124,6 @@ glm::dvec3 snap_to_texels(const glm::dvec3& place, const glm::dvec3& world_origi
     return std::round((place[axis] - world_origin[axis]) / texel_ws) * texel_ws + world_origin[axis];
   };
   return {snapped(0), snapped(1), place.z};
-}
-
-double count_used_texels(const FitRequest& request) {
-  const double used = request.map_size - 2.0 * request.pad_texels - (request.snap ? 1.0 : 0.0);
-  if (used >= 1.0) return used;
-  throw Error(ErrorKind::kUsage,
-              fmt::format("a map of {} texels has no room for a kernel of {} texels on every side{}; "
-                          "use a larger map or a smaller radius",
-                          request.map_size, request.pad_texels, request.snap ? " and a texel to snap" : ""));
 }
 
 void set_matrices(LightFrustum& fit) {

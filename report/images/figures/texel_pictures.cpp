@@ -75,13 +75,13 @@ Image draw_density_picture(const DensityPicture& picture) {
   assert(picture.density.channels == 1);
   const int line = figure_line_height();
   const int width = std::max(picture.density.width, kSmallestWidth);
-  Figure figure(picture.title, picture.note, {width, picture.density.height + 4 * line + kScaleHeight});
+  Figure figure(picture.title, picture.note, {width, picture.density.height + 5 * line + kScaleHeight});
   const Rect& body = figure.body();
   figure.place(body.x, body.y, color_densities(picture.density));
   int y = body.y + picture.density.height + line / 2;
-  figure.write(body.x, y,
-               "map texels per pixel · grey: turned away from the light, or outside the map · white: background");
-  y += line + line / 2;
+  figure.write(body.x, y, "map texels per pixel · white: background");
+  figure.write(body.x, y + line, "grey: turned away from the light, or outside its cone or map");
+  y += 2 * line + line / 2;
   draw_color_bar(figure, {body.x + 40, y, width - 80, kScaleHeight});
   return figure.canvas();
 }

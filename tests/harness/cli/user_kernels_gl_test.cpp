@@ -50,6 +50,18 @@ TEST_F(UserKernel, OfACopy_OfAnyBuiltInFilter_GivesTheBuiltInsNumbers) {
   }
 }
 
+TEST_F(UserKernel, AloneInARun_HasTheMapsPicturesAsWell) {
+  write_copy("tent5x5", "mine", "# mine\n");
+  const auto picture = [&](const std::string& arguments) {
+    const json cells = measure(arguments);
+    EXPECT_EQ(cells.size(), 1u);
+    return read_text(folder() / "out" / cells[0]["images"]["depth_map"].get<std::string>());
+  };
+  const std::string alone = picture("--filters mine --filter-file mine.glsl");
+  std::filesystem::remove_all(folder() / "out");
+  EXPECT_EQ(alone, picture("--filters tent5x5"));
+}
+
 TEST_F(UserKernel, Declared_GivesWidthAndAttribution_WithNumericErrorInTheEstimators) {
   write_copy("tent5x5", "declared", "kernel = \"tent:2.5\"\n");
   const json cells = measure("--filters tent5x5,declared --filter-file declared.glsl");

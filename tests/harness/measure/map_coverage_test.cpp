@@ -135,5 +135,33 @@ TEST(MapCoverage, ReceiversOutsideTheMap_HaveNoSay) {
   EXPECT_EQ(c.density.texels[0], 0.0f);
 }
 
+/// Under a lamp a pixel covers what its corners, projected one by one, enclose.
+TEST(MapCoverage, OfALamp_IsThatOfThePixelsCorners) {
+  scene::LightFrustum frustum;
+  const scene::Spot spot{{0.6f, 3.0f, -0.8f}, {0.0f, 0.0f, 0.2f}, 100.0f, 90.0f, 0.0f};
+  const scene::Beam beam = make_beam(spot);
+  frustum.light_from_world = glm::dmat4(scene::light_rotation(beam.axis_ws));
+  frustum.light_from_world[3] = frustum.light_from_world * glm::dvec4(-beam.position_ws, 1.0);
+  frustum.direction_ws = glm::vec3(beam.axis_ws);
+  frustum.perspective = scene::PerspectiveMap{beam, 1.0, 8.0};
+  frustum.depth_range_ws = 7.0;
+  frustum.texel_size_ws = 2.0 * 1.5 * beam.reference_m / 256;
+  set_perspective(frustum, 1.5, {});
+  const scene::Camera camera = camera_above(1.0f, 0.0f);
+  const ViewReceivers floor = look_at_floor(camera);
+  const MapCoverage coverage = measure_coverage(floor, camera, frustum, half_filled_map(256));
+  for (const int i : {0, 17, 20 * kWidth + 3, kWidth * kHeight - 1}) {
+    const auto at = static_cast<std::size_t>(i);
+    const glm::dvec3 p(floor.image.points[at].position_ws);
+    // The camera looks straight down from 1 m: pixels are squares on the floor.
+    const double half = std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad)) / kHeight * 1e-3;
+    const auto place = [&](double x, double z) { return glm::dvec2(frustum.place(p + glm::dvec3(x, 0.0, z), 256)); };
+    const glm::dvec2 along_x = (place(half, 0.0) - place(-half, 0.0)) * 1e3,
+                     along_z = (place(0.0, half) - place(0.0, -half)) * 1e3;
+    const double area = std::abs(along_x.x * along_z.y - along_x.y * along_z.x);
+    EXPECT_NEAR(static_cast<double>(coverage.density.texels[at]), area, 1e-4 * area) << i;
+  }
+}
+
 }  // namespace
 }  // namespace shadowbench::measure

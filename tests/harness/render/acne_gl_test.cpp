@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tests/harness/render/bench_fixture.h"
 
@@ -28,7 +29,7 @@ std::vector<Triangle> casters_of(const scene::Scene& scene) {
 }
 
 /// Moller and Trumbore 1997, Fast, Minimum Storage Ray/Triangle Intersection.
-bool hits(const Triangle& t, const glm::dvec3& origin, const glm::dvec3& direction) {
+bool hits(const Triangle& t, const glm::dvec3& origin, const glm::dvec3& direction, double reach) {
   const glm::dvec3 p = glm::cross(direction, t.edge2);
   const double determinant = glm::dot(t.edge1, p);
   if (std::abs(determinant) < 1e-14) return false;
@@ -36,7 +37,8 @@ bool hits(const Triangle& t, const glm::dvec3& origin, const glm::dvec3& directi
   const double u = glm::dot(s, p) / determinant;
   const glm::dvec3 q = glm::cross(s, t.edge1);
   const double v = glm::dot(direction, q) / determinant;
-  return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && glm::dot(t.edge2, q) / determinant > 0.0;
+  const double distance = glm::dot(t.edge2, q) / determinant;
+  return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0 && distance < reach;
 }
 
 /// Which receivers see the light's centre; 1 lit, 0 blocked, -1 no receiver.
@@ -45,9 +47,11 @@ std::vector<int> trace(Bench& bench, const scene::Scene& scene, const std::vecto
   std::vector<int> lit(static_cast<std::size_t>(kWidth * kHeight), -1);
   for (const filters::Receiver& r : receivers) {
     const glm::dvec3 origin = glm::dvec3(r.position_ws) + 1e-4 * glm::dvec3(r.normal_ws);
-    const glm::dvec3 to_light = -glm::dvec3(bench.frustum().direction_ws);
-    const bool blocked =
-        std::any_of(casters.begin(), casters.end(), [&](const Triangle& t) { return hits(t, origin, to_light); });
+    const glm::dvec3 to_light = bench.frustum().to_light(origin);
+    const auto& lamp = bench.frustum().perspective;
+    const double reach = lamp ? glm::distance(lamp->beam.position_ws, origin) : std::numeric_limits<double>::infinity();
+    const bool blocked = std::any_of(casters.begin(), casters.end(),
+                                     [&](const Triangle& t) { return hits(t, origin, to_light, reach); });
     lit[bench.index(r)] = blocked ? 0 : 1;
   }
   return lit;
@@ -117,7 +121,7 @@ TEST_P(DefaultBias, LeavesNoVisibleAcne) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(BuiltIn, DefaultBias, ::testing::ValuesIn(builtin_scenes()),
+INSTANTIATE_TEST_SUITE_P(BuiltIn, DefaultBias, ::testing::ValuesIn(scenes_of_all_lights()),
                          [](const auto& each) { return each.param; });
 
 /// The default constant covers half a step of the coarsest format.

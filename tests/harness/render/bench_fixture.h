@@ -27,7 +27,7 @@ class Bench {
         shaders_(options::find_resources().shaders),
         geometry_(scene),
         frustum_(scene::fit_light(scene, scene::FitMode::kTight, map_size, 6.0)),
-        map_(map_size, map),
+        map_(map_size, render::fit_settings(map, frustum_)),
         gbuffer_(width, height),
         target_("visibility", GL_R32F, width, height) {
     map_.draw(shaders_, geometry_, frustum_);
@@ -97,6 +97,13 @@ inline scene::Scene load_builtin(const std::string& name) {
 inline std::vector<std::string> builtin_scenes() {
   std::vector<std::string> names;
   for (const auto& info : scene::list_scenes(options::find_resources().scenes)) names.push_back(info.name);
+  return names;
+}
+
+/// With one of each other kind of light.
+inline std::vector<std::string> scenes_of_all_lights() {
+  std::vector<std::string> names = builtin_scenes();
+  names.push_back("lamp");
   return names;
 }
 

@@ -151,7 +151,8 @@ TEST_P(CameraIndependence, OtherCamera_SeesTheSameVisibilityInTheWorld) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllFilters, CameraIndependence,
-                         ::testing::Combine(::testing::ValuesIn(builtin_scenes()), ::testing::ValuesIn(filter_ids())),
+                         ::testing::Combine(::testing::ValuesIn(scenes_of_all_lights()),
+                                            ::testing::ValuesIn(filter_ids())),
                          [](const auto& each) { return std::get<0>(each.param) + "_" + std::get<1>(each.param); });
 
 }  // namespace

@@ -9,6 +9,8 @@
 namespace shadowbench::test {
 namespace {
 
+constexpr int kMapTexels = 256;
+
 class Geometry : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Geometry, HasTheSameTrianglesAndBounds) {
@@ -31,13 +33,12 @@ TEST_P(Geometry, HasTheSameTrianglesAndBounds) {
 class DepthRays {
  public:
   DepthRays(const truth::Occluders& occluders, const scene::LightFrustum& frustum)
-      : occluders_(occluders), frustum_(frustum), world_from_light_(glm::inverse(frustum.light_from_world)) {}
+      : occluders_(occluders), world_from_clip_(glm::inverse(frustum.clip_from_light * frustum.light_from_world)) {}
 
   double at(double x, double y) const {
-    const double half = 0.5 * frustum_.width_ws, texel = frustum_.texel_size_ws;
-    const glm::dvec4 start = world_from_light_ * glm::dvec4(x * texel - half, y * texel - half, 0.0, 1.0);
+    const glm::dvec3 start = find_point(x, y, 0.0);
     truth::RayPacket packet;
-    packet.set(0, glm::vec3(glm::dvec3(start)), glm::vec3(glm::dvec3(frustum_.direction_ws) * frustum_.depth_range_ws));
+    packet.set(0, glm::vec3(start), glm::vec3(find_point(x, y, 1.0) - start));
     return static_cast<double>(occluders_.find_nearest(packet)[0]);
   }
 
@@ -52,12 +53,17 @@ class DepthRays {
 
  private:
   const truth::Occluders& occluders_;
-  const scene::LightFrustum& frustum_;
-  glm::dmat4 world_from_light_;
+  glm::dmat4 world_from_clip_;
+
+  glm::dvec3 find_point(double x, double y, double depth) const {
+    const glm::dvec4 point =
+        world_from_clip_ * glm::dvec4(2.0 * x / kMapTexels - 1.0, 2.0 * y / kMapTexels - 1.0, depth, 1.0);
+    return glm::dvec3(point) / point.w;
+  }
 };
 
 TEST_P(Geometry, RaysHitWhatTheDepthMapSees) {
-  constexpr int kSize = 256;
+  constexpr int kSize = kMapTexels;
   const scene::Scene scene = load_builtin(GetParam());
   Bench bench(shared_context(), scene, kSize, 64, 36);
   const filters::DepthMap map = bench.map().read();
@@ -65,7 +71,7 @@ TEST_P(Geometry, RaysHitWhatTheDepthMapSees) {
   const DepthRays rays(occluders, bench.frustum());
   int seen = 0, different = 0;
   for (int i = 0; i < kSize * kSize; ++i) {
-    const double depth = static_cast<double>(map.stored[static_cast<std::size_t>(i)]);
+    const double depth = map.curve.linear(static_cast<double>(map.stored[static_cast<std::size_t>(i)]));
     seen += depth < 1.0 ? 1 : 0;
     // Steep faces gain this depth within a hundredth of a texel; rasterisers snap vertices to fractions of one.
     if (!rays.matches_nearby(i % kSize + 0.5, i / kSize + 0.5, depth, 5e-5)) ++different;
@@ -75,7 +81,7 @@ TEST_P(Geometry, RaysHitWhatTheDepthMapSees) {
   EXPECT_EQ(different, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(BuiltIn, Geometry, ::testing::ValuesIn(builtin_scenes()),
+INSTANTIATE_TEST_SUITE_P(BuiltIn, Geometry, ::testing::ValuesIn(scenes_of_all_lights()),
                          [](const auto& test) { return test.param; });
 
 }  // namespace

@@ -150,7 +150,30 @@ TEST(SceneFileTest, Light_NeedsExactlyOneDirection) {
               HasSubstr("either"));
   const Error no_light = error_of([] { load_text(replaced(kBase, "[light]\ndirection = [0, -1, 0]\n", "")); });
   EXPECT_THAT(no_light.message(), HasSubstr("no [light]"));
-  EXPECT_THAT(complaint_about(replaced(kBase, "[light]", "[light]\ntype = \"spot\"")).message, HasSubstr("'spot'"));
+  EXPECT_THAT(complaint_about(replaced(kBase, "[light]", "[light]\ntype = \"moon\"")).message, HasSubstr("'moon'"));
+}
+
+TEST(SceneFileTest, Spot_HasAConeThatFacesItsTarget) {
+  const auto spot = [](const std::string& lines) {
+    return replaced(kBase, "direction = [0, -1, 0]", "type = \"spot\"\nposition = [0, 3, 0]\n" + lines);
+  };
+  const Scene scene = load_text(spot("target = [0, 1, 0]\ncone_deg = 40\nradius = 0.2"));
+  const auto& light = std::get<Spot>(scene.light.kind);
+  EXPECT_EQ(light.inner_cone_deg, 30.0f);
+  EXPECT_EQ(light.radius_m, 0.2f);
+  EXPECT_EQ(to_light(scene.light, {0.0f, 2.0f, 0.0f}), glm::vec3(0.0f, 1.0f, 0.0f));
+  const auto expect_complaint = [&](const std::string& lines, const char* words) {
+    EXPECT_THAT(complaint_about(spot(lines)).message, HasSubstr(words)) << lines;
+  };
+  expect_complaint("radius = 0.1", "'target'");
+  expect_complaint("target = [0, 3, 0]", "it has no direction");
+  expect_complaint("target = [0, 0, 0]\ncone_deg = 0", "'cone_deg'");
+  expect_complaint("target = [0, 0, 0]\ncone_deg = 180", "'cone_deg'");
+  expect_complaint("target = [0, 0, 0]\ncone_deg = 40\ninner_cone_deg = 41", "'inner_cone_deg'");
+  expect_complaint("target = [0, 0, 0]\nradius = -1", "'radius'");
+  expect_complaint("target = [0, 0, nan]", "'target'");
+  expect_complaint("target = [0, 0, 0]\nangular_diameter_deg = 1", "unknown key 'angular_diameter_deg'");
+  expect_complaint("target = [0, 0, 0]\nmap_width = 3", "unknown key 'map_width'");
 }
 
 TEST(SceneFileTest, AzimuthAndElevation_SayWhereTheLightStands) {

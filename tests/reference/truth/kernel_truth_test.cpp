@@ -71,6 +71,22 @@ TEST(KernelTruth, OfAGaussian) {
   });
 }
 
+/// A lamp that looks straight down: on the floor, parallel to its map, all texels are of one size.
+TEST(KernelTruth, OfATent_UnderALamp) {
+  constexpr double kLampHeight = 4.0, kSheetEdge = 0.5, kReference = 2.0;
+  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, kSheetEdge, -40.0, 40.0, kHeight),
+                                            make_sheet(-40.0, 40.0, -40.0, 40.0, 0.0)};
+  const Occluders occluders(meshes);
+  const double edge = kSheetEdge * kLampHeight / (kLampHeight - kHeight), texel = kTexel * kLampHeight / kReference;
+  const MapGrid grid{
+      {0.0, 1.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, kTexel, MapGrid::Lamp{{0.0, kLampHeight, 0.0}, kReference}};
+  const Kernel kernel = Kernel::make_point(Reconstruction::kBilinear);
+  const ReceiverImage image = make_line(edge - 0.9 * texel, edge + 0.9 * texel, 160, 8);
+  expect_agreement(
+      score_seeds([&](std::uint32_t seed) { return trace_kernel(occluders, image, kernel, grid, {.seed = seed}); },
+                  image, [&](const glm::dvec3& p) { return tent_below((p.x - edge) / texel); }));
+}
+
 /// A disk's share below an edge: its chords, each blurred by the tent.
 double disk_below(double radius, double t) {
   double sum = 0.0;

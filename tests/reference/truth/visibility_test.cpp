@@ -161,6 +161,22 @@ TEST(FirstBlockers, GiveTheSurfaceThatLightMeetsFirst) {
   for (std::size_t i = 0; i < 60; ++i) EXPECT_NEAR(distances[i], i < 20 || i >= 40 ? 0.5f : 2.0f, 1e-5f) << i;
 }
 
+TEST(FirstBlockers, OfALamp_LieBetweenItAndTheReceiver) {
+  const std::vector<OccluderMesh> sheets = {make_sheet(-0.5, 0.5, -5.0, 5.0, 2.0),
+                                            make_sheet(-5.0, 5.0, -5.0, 5.0, 3.5)};
+  const Occluders occluders(sheets);
+  const ReceiverImage image = make_line(-3.0, 3.0, 60, 1);
+  const auto lamp = AreaLight::make_disk({0.0, 3.0, 0.0}, {0.0, -1.0, 0.0}, 0.1);
+  const std::vector<float> distances = trace_first_blockers(occluders, image, lamp);
+  for (std::size_t i = 0; i < 60; ++i) {
+    const float x = image.points[i].position_ws.x, way = std::hypot(x, 3.0f);
+    const bool is_below = std::abs(x) < 1.5f;
+    if (is_below) EXPECT_NEAR(distances[i], way * 2.0f / 3.0f, 0.01f) << x;
+    if (!is_below)
+      EXPECT_EQ(distances[i], std::numeric_limits<float>::infinity()) << x << ": the other is above the lamp";
+  }
+}
+
 TEST(Occluders, CountTrianglesAndBounds_WithoutTheDegenerate) {
   OccluderMesh mesh = make_sheet(-1.0, 2.0, -3.0, 4.0, 0.5, 3);
   mesh.indices.insert(mesh.indices.end(), {0, 0, 1, 2, 2, 2});

@@ -374,6 +374,24 @@ TEST(GltfFileTest, DirectionalLight_ShinesAlongItsNodesMinusZ) {
   EXPECT_THAT(model.warnings, testing::ElementsAre(HasSubstr("point lights are not modelled")));
 }
 
+TEST(GltfFileTest, SpotLight_ShinesFromItsNode) {
+  GltfParts parts;
+  parts.more = R"(, "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual": {"lights": [
+      {"type": "spot", "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.5}}, {"type": "directional"}]}})";
+  parts.nodes = R"([{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [1, 5, 2],
+      "rotation": [-0.70710678118654752, 0, 0, 0.70710678118654752]},
+      {"extensions": {"KHR_lights_punctual": {"light": 1}}}])";
+  parts.scenes = R"([{"nodes": [0, 1, 2]}])";
+  const MeshFile model = import_parts(parts);
+  ASSERT_TRUE(model.light.has_value());
+  const auto spot = std::get<Spot>(aim_light(*model.light, {7.0f, 2.0f, 7.0f}).kind);
+  EXPECT_NEAR(glm::distance(spot.position_ws, glm::vec3(1, 5, 2)), 0.0f, 1e-6f);
+  EXPECT_NEAR(glm::distance(spot.target_ws, glm::vec3(1, 2, 2)), 0.0f, 1e-5f) << "as far ahead as the scene's middle";
+  EXPECT_NEAR(spot.cone_deg, glm::degrees(1.0f), 1e-4f);
+  EXPECT_NEAR(spot.inner_cone_deg, glm::degrees(0.5f), 1e-4f);
+  EXPECT_THAT(model.warnings, testing::ElementsAre(HasSubstr("only the first is used")));
+}
+
 TEST(GltfFileTest, Materials_KeepColourAndAlphaMode) {
   GltfParts parts;
   parts.more = R"(, "materials": [{"name": "leaf", "alphaMode": "MASK", "alphaCutoff": 0.25,

@@ -26,7 +26,7 @@ TEST(LightRing, LightsAreEvenlySpaced_AllAsHighAsTheFirst) {
       EXPECT_LT(glm::length(to_light(lights[static_cast<std::size_t>(i)], {}) - expected), 1e-6f)
           << i << " of " << count;
       EXPECT_EQ(lights[static_cast<std::size_t>(i)].intensity, 3.0f);
-      EXPECT_EQ(penumbra_per_metre(lights[static_cast<std::size_t>(i)]), penumbra_per_metre(lights[0]));
+      EXPECT_EQ(light_size(lights[static_cast<std::size_t>(i)]), light_size(lights[0]));
     }
   }
 }

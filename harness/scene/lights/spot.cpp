@@ -1,0 +1,126 @@
+#include "harness/scene/lights/spot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "harness/scene/lights/light_fit.h"
+#include "harness/scene/mesh_tools.h"
+#include "harness/scene/toml_reader.h"
+#include "harness/scene/validate.h"
+
+namespace shadowbench::scene {
+namespace {
+
+constexpr double kLeastCone_deg = 0.1;
+
+/// Distances along the axis of what stands in the cone; empty where nothing does.
+struct Extent {
+  double nearest = std::numeric_limits<double>::max();
+  double farthest = 0.0;
+};
+
+/// The map is a square around the cone: a vertex counts where the square's edges see it. A triangle that crosses the
+/// plane of the lamp begins at it.
+Extent find_extent(const Scene& scene, const glm::dmat4& light_from_world, double tangent) {
+  Extent extent;
+  const auto see = [&](const glm::vec3& p) { return glm::dvec3(light_from_world * glm::dvec4(p, 1.0)); };
+  for (const Mesh& mesh : scene.meshes) {
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      glm::dvec3 least(std::numeric_limits<double>::max()), most(std::numeric_limits<double>::lowest());
+      for (std::size_t k = 0; k < 3; ++k) {
+        const glm::dvec3 seen = see(mesh.vertices[mesh.indices[i + k]].position_ws);
+        least = glm::min(least, seen);
+        most = glm::max(most, seen);
+      }
+      const double reach = -least.z * tangent;  // half of the square where it is widest over this triangle
+      if (-least.z <= 0.0 || least.x > reach || most.x < -reach || least.y > reach || most.y < -reach) continue;
+      extent.nearest = std::min(extent.nearest, std::max(-most.z, 0.0));
+      extent.farthest = std::max(extent.farthest, -least.z);
+    }
+  }
+  return extent;
+}
+
+/// Depth is computed in float, and a near plane at the lamp would leave none of it for the scene.
+PerspectiveMap make_planes(const Beam& beam, const Extent& extent) {
+  constexpr double kPadding = 1e-3, kLeastNear = 1.0 / 500.0;
+  if (extent.farthest <= 0.0) return {beam, 0.5 * beam.reference_m, 2.0 * beam.reference_m};
+  const double far_m = extent.farthest * (1.0 + kPadding);
+  return {beam, std::max(extent.nearest * (1.0 - kPadding), kLeastNear * far_m), far_m};
+}
+
+}  // namespace
+
+double Beam::cone_at(const glm::dvec3& point_ws) const {
+  const glm::dvec3 way = point_ws - position_ws;
+  const double cosine = glm::dot(way, axis_ws) / std::max(glm::length(way), std::numeric_limits<double>::min());
+  const double ramp = std::clamp((cosine - cos_outer) / std::max(cos_inner - cos_outer, 1e-4), 0.0, 1.0);
+  return ramp * ramp;
+}
+
+const std::vector<std::string>& spot_keys() {
+  static const std::vector<std::string> keys = {"position", "target", "cone_deg", "inner_cone_deg", "radius"};
+  return keys;
+}
+
+Spot read_spot(const TomlTable& table) {
+  Spot spot;
+  spot.position_ws = glm::vec3(table.vec3("position", kAnyNumber));
+  spot.target_ws = glm::vec3(table.vec3("target", kAnyNumber));
+  const double cone_deg = table.number("cone_deg", {kLeastCone_deg, double{kWidestCone_deg}}, 60.0);
+  spot.cone_deg = static_cast<float>(cone_deg);
+  spot.inner_cone_deg = table.number_f("inner_cone_deg", {0.0, cone_deg}, 0.75 * cone_deg);
+  spot.radius_m = table.number_f("radius", {0.0, 1000.0}, static_cast<double>(spot.radius_m));
+  if (spot.position_ws == spot.target_ws)
+    throw table.error("target", "'target' in [light] is where the light stands: it has no direction");
+  return spot;
+}
+
+Spot checked_spot(const Spot& spot, const std::string& where) {
+  unit_direction(spot.target_ws - spot.position_ws, "the light", where);
+  const double cone = static_cast<double>(spot.cone_deg);
+  if (cone >= kLeastCone_deg && cone <= double{kWidestCone_deg} && spot.inner_cone_deg >= 0.0f &&
+      spot.inner_cone_deg <= spot.cone_deg && spot.radius_m >= 0.0f && std::isfinite(spot.radius_m))
+    return spot;
+  fail_input(fmt::format("the spot light has a cone of {} degrees, {} within, and a radius of {} m: the cone must lie "
+                         "within {} .. {}, and the inner one within it",
+                         spot.cone_deg, spot.inner_cone_deg, spot.radius_m, kLeastCone_deg, kWidestCone_deg),
+             where);
+}
+
+Beam make_beam(const Spot& spot) {
+  const glm::dvec3 way = glm::dvec3(spot.target_ws) - glm::dvec3(spot.position_ws);
+  const auto half_cosine = [](float degrees) { return std::cos(0.5 * glm::radians(static_cast<double>(degrees))); };
+  return {glm::dvec3(spot.position_ws), glm::normalize(way), half_cosine(spot.inner_cone_deg),
+          half_cosine(spot.cone_deg), glm::length(way)};
+}
+
+truth::AreaLight make_area_light(const Spot& spot) {
+  const Beam beam = make_beam(spot);
+  return truth::AreaLight::make_disk(beam.position_ws, beam.axis_ws, static_cast<double>(spot.radius_m));
+}
+
+LightFrustum fit_spot(const Spot& spot, const Scene& scene, const FitRequest& request) {
+  const Beam beam = make_beam(spot);
+  const double used_texels = count_used_texels(request);
+  const double tangent =
+      std::tan(0.5 * glm::radians(static_cast<double>(spot.cone_deg))) * request.map_size / used_texels;
+  LightFrustum fit;
+  const glm::dmat3 rotation = light_rotation(beam.axis_ws);
+  fit.light_from_world = glm::dmat4(rotation);
+  fit.light_from_world[3] = glm::dvec4(-(rotation * beam.position_ws), 1.0);
+  fit.perspective = make_planes(beam, find_extent(scene, fit.light_from_world, tangent));
+  fit.projective = true;
+  fit.direction_ws = glm::vec3(beam.axis_ws);
+  fit.width_ws = 2.0 * tangent * beam.reference_m;
+  fit.texel_size_ws = fit.width_ws / request.map_size;
+  const double near_m = fit.perspective->near_m, far_m = fit.perspective->far_m;
+  fit.depth_range_ws = far_m - near_m;
+  set_perspective(fit, tangent, 2.0 * request.shift_texels / static_cast<double>(request.map_size));
+  return fit;
+}
+
+}  // namespace shadowbench::scene

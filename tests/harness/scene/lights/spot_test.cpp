@@ -1,0 +1,120 @@
+#include "harness/scene/lights/spot.h"
+
+#include <gtest/gtest.h>
+
+#include "filters/depth_curve.h"
+#include "harness/scene/lights/light_fit.h"
+#include "harness/scene/mesh_tools.h"
+#include "harness/scene/primitives.h"
+
+namespace shadowbench::scene {
+namespace {
+
+constexpr int kSpotMap = 256;
+constexpr double kSpotPadding = 5.5;
+
+/// A floor under a box, and a spot that looks at it from somewhere.
+Scene make_spot_scene(const glm::vec3& position) {
+  Scene scene;
+  scene.meshes.push_back(make_plane({10.0f, 8.0f}, 4));
+  scene.meshes.push_back(make_box({1.0f, 2.0f, 0.5f}, 2));
+  scene.light.kind = Spot{position, {0.3f, 0.2f, -0.1f}, 50.0f, 40.0f, 0.1f};
+  return scene;
+}
+
+const std::vector<glm::vec3> kLampPositions{
+    {0.3f, 5.0f, -0.1f}, {4.0f, 3.0f, 2.0f}, {-5.0f, 0.5f, 0.0f}, {0.3f, -4.0f, -0.1f}};
+
+TEST(SpotFit, HoldsItsCone_AndDepthIsLinearAlongTheAxis) {
+  for (const glm::vec3& position : kLampPositions) {
+    const Scene scene = make_spot_scene(position);
+    const LightFrustum fit = fit_light(scene, FitMode::kTight, kSpotMap, kSpotPadding);
+    ASSERT_TRUE(fit.perspective);
+    const PerspectiveMap& map = *fit.perspective;
+    const glm::dmat4 world_from_light = glm::inverse(fit.light_from_world);
+    const double tangent = std::tan(glm::radians(25.0));
+    const filters::DepthCurve curve{false, map.far_over_near()};
+    for (const double distance : {map.near_m, 0.5 * (map.near_m + map.far_m), map.far_m}) {
+      const double depth = (distance - map.near_m) / (map.far_m - map.near_m);
+      for (const glm::dvec2& edge : {glm::dvec2(0, 0), {1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+        const glm::dvec4 point = world_from_light * glm::dvec4(tangent * distance * edge, -distance, 1.0);
+        const glm::vec4 seen = fit.uv_depth_from_world * glm::vec4(point);
+        const glm::dvec3 place = fit.place(glm::dvec3(point), kSpotMap);
+        for (int i = 0; i < 2; ++i) {
+          const double expected = 0.5 * kSpotMap + edge[i] * (0.5 * kSpotMap - kSpotPadding);
+          EXPECT_NEAR(static_cast<double>(seen[i] / seen.w) * kSpotMap, expected, 0.01);
+          EXPECT_NEAR(place[i], expected, 1e-9);
+        }
+        EXPECT_NEAR(static_cast<double>(seen.z), depth, 1e-6);
+        EXPECT_NEAR(place.z, depth, 1e-9);
+        const glm::vec4 clip = fit.clip_from_world * glm::vec4(point);
+        EXPECT_NEAR(static_cast<double>(clip.z / clip.w), curve.store(depth), 1e-4) << "what the map stores";
+      }
+      const glm::dvec3 on_axis = map.beam.position_ws + distance * map.beam.axis_ws;
+      EXPECT_NEAR(fit.texel_size_at(on_axis), 2.0 * tangent * distance / (kSpotMap - 2.0 * kSpotPadding), 1e-9);
+    }
+  }
+}
+
+TEST(SpotFit, EveryVertexInTheCone_HasADepth) {
+  for (const glm::vec3& position : kLampPositions) {
+    const Scene scene = make_spot_scene(position);
+    const LightFrustum fit = fit_light(scene, FitMode::kTight, kSpotMap, kSpotPadding);
+    int inside = 0;
+    for (const Mesh& mesh : scene.meshes) {
+      for (const Vertex& vertex : mesh.vertices) {
+        if (fit.perspective->beam.cone_at(glm::dvec3(vertex.position_ws)) == 0.0) continue;
+        const double depth = fit.place(glm::dvec3(vertex.position_ws), kSpotMap).z;
+        EXPECT_GT(depth, 0.0);
+        EXPECT_LT(depth, 1.0);
+        ++inside;
+      }
+    }
+    EXPECT_GT(inside, 0);
+  }
+}
+
+TEST(SpotFit, MovesByPartsOfATexel) {
+  const Scene scene = make_spot_scene(kLampPositions[1]);
+  FitRequest request{.map_size = kSpotMap, .pad_texels = kSpotPadding};
+  const glm::dvec3 point(0.4, 0.1, 0.2), before = fit_light(scene, request).place(point, kSpotMap);
+  request.shift_texels = {0.25, -0.5};
+  const glm::dvec3 moved = fit_light(scene, request).place(point, kSpotMap) - before;
+  EXPECT_NEAR(moved.x, -0.25, 1e-9);
+  EXPECT_NEAR(moved.y, 0.5, 1e-9);
+  EXPECT_NEAR(moved.z, 0.0, 1e-12);
+}
+
+TEST(SpotFit, NothingInTheCone_AndThingsAtTheLamp_StillGiveAFrustum) {
+  for (const glm::vec3& target : {glm::vec3(0.0f, 9.0f, 0.0f), glm::vec3(0.1f, 0.0f, 0.0f)}) {
+    Scene scene = make_spot_scene({0.0f, 0.5f, 0.0f});  // within the box
+    std::get<Spot>(scene.light.kind).target_ws = target;
+    const LightFrustum fit = fit_light(scene, FitMode::kTight, kSpotMap, kSpotPadding);
+    EXPECT_GT(fit.perspective->near_m, 0.0);
+    EXPECT_GT(fit.perspective->far_m, fit.perspective->near_m);
+    EXPECT_LE(fit.perspective->far_over_near(), 500.0 + 1e-9);
+  }
+}
+
+TEST(Beam, FadesFromTheInnerConeToTheOuter) {
+  const Beam beam = make_beam({{0.0f, 2.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 60.0f, 40.0f, 0.0f});
+  const auto at = [&](double degrees) { return beam.cone_at({2.0 * std::tan(glm::radians(degrees)), 0.0, 0.0}); };
+  EXPECT_EQ(at(0.0), 1.0);
+  EXPECT_EQ(at(19.9), 1.0);
+  EXPECT_EQ(at(30.1), 0.0);
+  for (double degrees = 20.5; degrees < 30.0; degrees += 0.5) EXPECT_LT(at(degrees), at(degrees - 0.5));
+  EXPECT_EQ(beam.cone_at({0.0, 4.0, 0.0}), 0.0) << "behind";
+  EXPECT_EQ(beam.cone_at({0.0, 2.0, 0.0}), 0.0) << "the lamp itself";
+}
+
+TEST(Spot, GoesRoundItsTarget) {
+  Light light;
+  light.kind = Spot{{3.0f, 4.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 50.0f, 40.0f, 0.1f};
+  const std::vector<Light> ring = make_light_ring(light, 4);
+  EXPECT_NEAR(glm::distance(std::get<Spot>(ring[1].kind).position_ws, glm::vec3(0.0f, 4.0f, -3.0f)), 0.0f, 1e-5f);
+  const auto high = std::get<Spot>(place_in_sky(light, 90.0, 90.0).kind);
+  EXPECT_NEAR(glm::distance(high.position_ws, glm::vec3(0.0f, 5.0f, 0.0f)), 0.0f, 1e-5f);
+}
+
+}  // namespace
+}  // namespace shadowbench::scene
