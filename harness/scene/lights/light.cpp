@@ -90,17 +90,13 @@ std::vector<Light> make_light_ring(const Light& first, int count) {
 }
 
 Light read_light(const TomlTable& table) {
-  std::vector<std::string> keys = {"type", "color", "intensity", "map_center", "map_width", "map_near", "map_far"};
   const bool is_spot = table.choice("type", {"directional", "spot"}, "directional") == "spot";
-  const std::vector<std::string>& own_keys = is_spot ? spot_keys() : sun_keys();
-  if (is_spot) std::erase_if(keys, [](const std::string& key) { return key.starts_with("map_"); });
-  keys.insert(keys.end(), own_keys.begin(), own_keys.end());
+  std::vector<std::string> keys = is_spot ? spot_keys() : sun_keys();
+  keys.insert(keys.begin(), {"type", "color", "intensity"});
+  if (!is_spot) keys.insert(keys.end(), {"map_center", "map_width", "map_near", "map_far"});
   table.require_known_keys(keys);
   Light light;
-  if (is_spot)
-    light.kind = read_spot(table);
-  else
-    light.kind = read_sun(table);
+  light.kind = is_spot ? LightKind(read_spot(table)) : read_sun(table);
   light.color = glm::vec3(table.vec3("color", kColor, glm::dvec3(1.0)));
   light.intensity = table.number_f("intensity", {0.0, 1000.0}, 1.0);
   light.map_window = read_map_window(table);
