@@ -11,15 +11,15 @@
 namespace shadowbench::test {
 namespace {
 
-constexpr int kFine = 4, kSmallWidth = 240, kSmallHeight = 135;
+constexpr int kFine = 4, kSmallWidth = 192, kSmallHeight = 108;
 
 class Minification : public ProgramTest {
  protected:
   void measure(const char* out, int width, int height, const std::string& filters) const {
-    const Outcome outcome =
-        run(fmt::format("run --scene minified --size {}x{} --map-size 2048 --rounds 1 --out {} --filter-file "
-                        "'{}/tests/user_filters/vsm_mips.glsl' --filters {}",
-                        width, height, out, SHADOWBENCH_SOURCE_DIR, filters));
+    const Outcome outcome = run(fmt::format(
+        "run --scene minified --size {}x{} --map-size 2048 --rounds 1 --no-attribution --out {} --filter-file "
+        "'{}/tests/user_filters/vsm_mips.glsl' --filters {}",
+        width, height, out, SHADOWBENCH_SOURCE_DIR, filters));
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
 
@@ -46,7 +46,8 @@ TEST_F(Minification, MipsEndFlicker_AndAnisotropyKeepsMoreOfTheShadow) {
   const auto document = nlohmann::json::parse(read_text(folder() / "small" / "results.json"));
   for (const auto& cell : document["cells"]) {
     const std::string lookup = cell["params"]["lookup"];
-    EXPECT_GE(cell["coverage"]["texels_per_pixel"], 16.0) << "the middle receiver's";
+    EXPECT_GE(cell["coverage"]["fewest_texels_per_pixel"], 8.0);
+    EXPECT_EQ(cell["status"], "ok");
     flicker[lookup] = cell["error"]["flicker"];
     const std::string label = lookup == "anisotropic" ? "vsm_mips" : fmt::format("vsm_mips (lookup={})", lookup);
     const std::vector<float> seen = read("small", label + ".visibility");
@@ -56,15 +57,15 @@ TEST_F(Minification, MipsEndFlicker_AndAnisotropyKeepsMoreOfTheShadow) {
       sum += std::pow(static_cast<double>(seen[i]) - truth[i], 2.0);
       count += 1.0;
     }
-    ASSERT_GT(count, 5000.0);
+    ASSERT_GT(count, 2000.0);
     rmse[lookup] = std::sqrt(sum / count);
     std::printf("%s: flicker %.4f, RMSE to the mean truth of a pixel %.4f, to that of its middle %.4f\n",
                 lookup.c_str(), flicker[lookup], rmse[lookup], cell["error"]["rmse"].get<double>());
   }
   EXPECT_LT(flicker["mips"], 0.4 * flicker["finest"]);
   EXPECT_LT(flicker["anisotropic"], 0.4 * flicker["finest"]);
-  EXPECT_LT(rmse["anisotropic"], 0.9 * rmse["mips"]);
-  EXPECT_LT(rmse["anisotropic"], rmse["finest"]);
+  EXPECT_LT(rmse["anisotropic"], 0.5 * rmse["finest"]);
+  EXPECT_LT(rmse["anisotropic"], 0.5 * rmse["mips"]) << "a square as wide as the footprint is long blurs";
 }
 
 }  // namespace
