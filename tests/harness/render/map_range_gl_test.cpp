@@ -45,6 +45,16 @@ class EdgeScene {
     return dark / all;
   }
 
+  /// How far the darkest and the lightest of such receivers are from wholly lit.
+  double farthest_from_lit(const std::string& filter, const std::function<bool(const Receiver&)>& belongs) {
+    bench_.set_range({});
+    const std::vector<float> image = bench_.draw(catalogue().parse_requests(filter).front());
+    double farthest = 0.0;
+    for (const Receiver& r : receivers_)
+      if (belongs(r)) farthest = std::max(farthest, std::abs(1.0 - static_cast<double>(image[bench_.index(r)])));
+    return farthest;
+  }
+
   Bench& bench() { return bench_; }
   std::size_t receivers() const { return receivers_.size(); }
 
@@ -72,6 +82,7 @@ TEST_P(MapRange, RightRule_LightsEverythingOutside) {
   EXPECT_EQ(edge.dark(GetParam(), {}, is_outside), 0.0);
   EXPECT_EQ(edge.dark(GetParam(), {}, is_in_streak), 0.0);
   EXPECT_EQ(edge.dark(GetParam(), {}, is_beyond_far), 0.0);
+  EXPECT_LT(edge.farthest_from_lit(GetParam(), is_outside), 1e-3);
 }
 
 TEST_P(MapRange, Repeat_TilesTheShadows) {
