@@ -15,7 +15,7 @@ struct Receiver {
   glm::vec3 normal_ws{0.0f, 1.0f, 0.0f};  ///< geometric, flipped to the viewer
   float n_dot_l = 1.0f;                   ///< of the geometric normal; filters are asked only where it is positive
   glm::vec2 uv{0.5f};                     ///< where in the map, [0,1]; outside is lit
-  int layer = 0;                          ///< cascade or cube face; 0 for directional lights
+  int layer = 0;                          ///< of the light's map: a cascade, a face of a cube; 0 where there is one
   float depth = 0.0f;                     ///< [0,1], 0 near, with the run's bias applied
   float depth_unbiased = 0.0f;            ///< [0,1]
   glm::vec2 depth_per_texel{0.0f};        ///< slope of the receiver's plane, per texel in u and in v
@@ -26,6 +26,7 @@ struct Receiver {
   float light_nearness = 0.0f;  ///< 1 / metres to the light, along its axis; 0 for a light at infinity
   float view_depth = 0.0f;      ///< metres from the camera, along its axis
   glm::ivec2 pixel{0};          ///< (0,0) is the lower left pixel
+  float layer_share = 1.0f;     ///< of the pixel's visibility that comes from this layer; not told to filters
 };
 
 }  // namespace shadowbench::filters

@@ -14,9 +14,16 @@ layout(location = 1) out vec2 out_reads;  // number of fetches, and their reach 
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
+#ifdef LAYERED
+  // The layers of a map add up what each makes of its share of a receiver.
+  float share = texelFetch(receiver_shares, pixel, 0).x;
+  if (share == 0.0) discard;
+#else
+  const float share = 1.0;
+#endif
   vec4 place = texelFetch(receiver_places, pixel, 0);
   if (place.w < 0.0) {
-    out_visibility = place.w == mark_away ? 0.0 : 1.0;
+    out_visibility = place.w == mark_away ? 0.0 : share;
 #ifdef COUNT_FETCHES
     out_reads = vec2(place.w == mark_beyond ? 0.0 : -1.0, -1.0);
 #endif
@@ -25,7 +32,7 @@ void main() {
 #ifdef COUNT_FETCHES
   counted_uv = place.xy;
 #endif
-  out_visibility = visibility(make_receiver(pixel, place));
+  out_visibility = share * visibility(make_receiver(pixel, place));
 #ifdef COUNT_FETCHES
   out_reads = vec2(float(fetch_count), fetch_reach);
 #endif

@@ -3,6 +3,9 @@
 
 layout(location = 0) out vec4 out_place;
 layout(location = 1) out vec4 out_plane;
+#ifdef LAYERED
+layout(location = 2) out float out_share;  // of the receiver that this layer of the map serves; the background is layer 0's
+#endif
 
 // A surface faces the light where n.l is greater than this; filters/receiver.h has the same number.
 const float faces_light = 1e-5;
@@ -30,11 +33,36 @@ bool map_reaches(float depth_unbiased, float w) {
   return true;
 }
 
+#ifdef VIEW_SLICE
+uniform vec4 layer_slice;  // view depths: fade in from, to; fade out from, to
+
+float ramp(float view_depth, float from, float to) {
+  return from < to ? clamp((view_depth - from) / (to - from), 0.0, 1.0) : float(view_depth >= from);
+}
+
+float find_share(vec4 position) {
+  return ramp(position.w, layer_slice.x, layer_slice.y) - ramp(position.w, layer_slice.z, layer_slice.w);
+}
+#endif
+
+#ifdef CUBE_FACE
+uniform int layer_face;  // +x, -x, +y, -y, +z, -z
+
+float find_share(vec4 position) {
+  vec3 way = position.xyz - light_position_ws, length_along = abs(way);
+  int axis = length_along.x >= max(length_along.y, length_along.z) ? 0 : length_along.y >= length_along.z ? 1 : 2;
+  return float(2 * axis + int(way[axis] < 0.0) == layer_face);
+}
+#endif
+
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   vec4 position = texelFetch(gbuffer_position, pixel, 0);
   out_place = vec4(0.0, 0.0, 0.0, mark_background);
   out_plane = vec4(0.0);
+#ifdef LAYERED
+  out_share = position.w == 0.0 ? float(light_layer == 0) : find_share(position);
+#endif
   if (position.w == 0.0) return;
   vec3 normal = texelFetch(gbuffer_normal, pixel, 0).xyz;
   float n_dot_l = dot(normal, direction_to_light(position.xyz));

@@ -94,7 +94,7 @@ class BiasSweep {
   }
 
   render::LightSetup make_light(const render::Bias& bias) const {
-    return render::make_light_setup(light_.frustum, scene_.light, bias, options_.seed);
+    return render::make_light_setup(light_.frustum(), scene_.light, bias, options_.seed);
   }
 
   /// Finds the lit receivers, for which theory is computed.
@@ -138,8 +138,8 @@ class BiasSweep {
     record_.slope_depth = steep.slope_per_texel;
     record_.angle_deg = glm::degrees(std::acos(steep.n_dot_l));
     record_.percentile = kPercentile;
-    record_.texel_m = light_.frustum.texel_size_ws;
-    record_.depth_range_m = light_.frustum.depth_range_ws;
+    record_.texel_m = light_.frustum().texel_size_ws;
+    record_.depth_range_m = light_.frustum().depth_range_ws;
     record_.gap_above = metrics::kArtefactLimits.contact_gap_above;
     record_.acne_below = metrics::kArtefactLimits.acne_below;
     record_.acne_receivers = count(masks_.acne);
@@ -163,7 +163,7 @@ class BiasSweep {
 
   images::Image draw(const filters::FilterRequest& request, const render::BiasRule& rule) {
     draw_map(rule.map);
-    const render::Bias bias = render::resolve_bias(rule, light_.frustum, request.spec, request.values);
+    const render::Bias bias = render::resolve_bias(rule, light_.frustum(), request.spec, request.values);
     render::FilterPasses filter(renderer_.shaders, request, light_.map, make_light(bias));
     return measure::draw_visibility(filter, light_.map, assets_.gbuffer(camera()), target_);
   }
@@ -195,8 +195,8 @@ class BiasSweep {
         render::find_theory(mode, filters::bias_reach_texels(request.spec, request.values), lit_, kPercentile);
     curve.theory_setting = mode.amount(theory);
     curve.lift_depth = mode.lift_depth(theory);
-    curve.lift_m = curve.lift_depth * light_.frustum.depth_range_ws;
-    curve.lift_texels = curve.lift_m / light_.frustum.texel_size_ws;
+    curve.lift_m = curve.lift_depth * light_.frustum().depth_range_ws;
+    curve.lift_texels = curve.lift_m / light_.frustum().texel_size_ws;
     for (const double factor : kFactors) shots.push_back(shoot(mode, request, factor, factor * curve.theory_setting));
     return shots;
   }

@@ -40,13 +40,15 @@ void add_map_options(Command& command, RunArguments& a) {
               "store depth as a perspective projection would whose far plane is this many times as far away as its "
               "near plane; filters read linear depth all the same");
   command
-      .add("--fit", &a.fit,
-           "light frustum: 'tight' around casters and receivers; 'sphere', which is stable under rotation; or 'view', "
-           "around what the camera sees and the casters before it")
-      .such_as({"tight", "sphere", "view"});
+      .add(
+          "--fit", &a.fit,
+          "light frustum: 'tight' around casters and receivers; 'sphere', which is stable under rotation; 'view', "
+          "around what the camera sees and the casters before it; or 'cascades', which give slices of that a map each: "
+          "cascades:count=2..4,split=uniform|practical|logarithmic,blend=0.1,depths=all|seen")
+      .such_as({"tight", "sphere", "view", "cascades"});
   command
       .add("--snap", &a.snap,
-           "keep the map's texels fixed in the world while the frustum of --fit view moves: on or off")
+           "keep the map's texels fixed in the world while the frusta of --fit view and cascades move: on or off")
       .one_of(kSwitch);
   command
       .add("--light", &a.light,

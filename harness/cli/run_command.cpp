@@ -80,7 +80,7 @@ void check_ranges(const RunArguments& arguments) {
 void set_map_and_light(options::RunOptions& options, const RunArguments& arguments) {
   options.map = {gl::parse_depth_format(arguments.map_format).internal_format,
                  {arguments.reversed_depth, arguments.perspective_depth.value_or(1.0)}};
-  options.fit = scene::parse_fit_mode(arguments.fit);
+  options.fit = scene::parse_fit_rule(arguments.fit);
   options.snap = arguments.snap == "on";
   if (!arguments.light.empty()) options.light = parse_light(arguments.light);
 }

@@ -70,7 +70,7 @@ TruthFrames FlickerBench::trace(Motion motion, const std::vector<Frame>& frames,
 
 images::Image FlickerBench::draw(render::FilterPasses& filter) {
   filter.retune(renderer_.shaders, filter.request().values,
-                measure::make_filter_light(options_, scene_.light, map_.frustum, filter.request()));
+                measure::make_filter_light(options_, scene_.light, map_.layers, filter.request()));
   return measure::draw_visibility(filter, map_.map, assets_.gbuffer(camera()), target_);
 }
 
@@ -81,7 +81,7 @@ std::vector<metrics::FlickerStats> FlickerBench::measure(const std::vector<scene
   std::vector<metrics::FlickerMeter> meters(filters_.size(), metrics::FlickerMeter(mask));
   for (std::size_t t = 0; t < frusta.size(); ++t) {
     on_frame(static_cast<int>(t));
-    map_.frustum = frusta[t];
+    map_.layers = {frusta[t]};
     assets_.redraw(map_);
     for (std::size_t i = 0; i < filters_.size(); ++i) meters[i].add(draw(*filters_[i]).texels, truth.visibility[t]);
   }

@@ -20,6 +20,13 @@ void FullscreenTriangle::draw() const {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
+void FullscreenTriangle::draw_added() const {
+  set_state();
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
 void FullscreenTriangle::draw_depth() const {
   set_state();
   glEnable(GL_DEPTH_TEST);  // without the test there is no writing either

@@ -14,6 +14,9 @@ class FullscreenTriangle {
   /// culling and polygon offset, opened the colour mask, and set polygon mode to fill.
   void draw() const;
 
+  /// The same, adding what the program writes to what is there.
+  void draw_added() const;
+
   /// The same for a program that writes gl_FragDepth into a framebuffer's depth, whatever is there.
   void draw_depth() const;
 

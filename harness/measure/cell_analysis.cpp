@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/measure/filter_setup.h"
 #include "harness/render/receivers.h"
 #include "reference/metrics/attribution.h"
 #include "reference/metrics/error_stats.h"
@@ -42,27 +43,29 @@ void note_parts(records::CellRecord& record, const metrics::Attribution& attribu
       attribution.not_finite > 0 ? "no pixel of the image is finite" : "there is no error to take apart";
 }
 
-metrics::ArtefactMasks make_masks(const Surroundings& around, const scene::LightFrustum& frustum,
+metrics::ArtefactMasks make_masks(const Surroundings& around, const std::vector<TracedLayer>& layers,
                                   const SceneTruth& truth) {
   return metrics::make_artefact_masks({truth.mask, truth.rays.area.visibility, find_settled(truth.rays.area),
                                        around.visibility, around.settled, truth.rays.first_blockers_ws,
-                                       metrics::kArtefactLimits.contact_texels * frustum.texel_size_ws});
+                                       metrics::kArtefactLimits.contact_texels * layers.front().grid.texel_size_ws});
 }
 
 }  // namespace
 
-Surroundings trace_surroundings(truth::CachedTracer& tracer, const scene::LightFrustum& frustum,
+Surroundings trace_surroundings(truth::CachedTracer& tracer, const std::vector<TracedLayer>& layers,
                                 const SceneTruth& truth, double widest_kernel_texels) {
   const double half_width = widest_kernel_texels + metrics::kArtefactLimits.guard_texels;
   truth::TracedVisibility traced =
-      tracer.trace_surroundings(truth.receivers.image, half_width, scene::make_map_grid(frustum));
+      trace_layers(layers, truth.receivers.image, [&](const auto& receivers, const auto& grid, std::size_t) {
+        return tracer.trace_surroundings(receivers, half_width, grid);
+      });
   std::vector<std::uint8_t> settled = find_settled(traced);
   return {half_width, std::move(traced.visibility), std::move(settled)};
 }
 
-metrics::ArtefactMasks find_artefact_masks(truth::CachedTracer& tracer, const scene::LightFrustum& frustum,
+metrics::ArtefactMasks find_artefact_masks(truth::CachedTracer& tracer, const std::vector<TracedLayer>& layers,
                                            const SceneTruth& truth, double widest_kernel_texels) {
-  return make_masks(trace_surroundings(tracer, frustum, truth, widest_kernel_texels), frustum, truth);
+  return make_masks(trace_surroundings(tracer, layers, truth, widest_kernel_texels), layers, truth);
 }
 
 CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
@@ -74,12 +77,14 @@ CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& option
       truth_(truth),
       light_(assets.light_map(*task.camera, task.map_size)) {
   if (!truth_.absent.empty()) return;
-  around_ = trace_surroundings(assets_.tracer(), light_.frustum, truth_, widest_kernel_texels(options_));
-  masks_ = make_masks(around_, light_.frustum, truth_);
+  layers_ = list_traced_layers(renderer.shaders, assets.gbuffer(*task.camera),
+                               make_unbiased_light(options, task.scene->light, light_.layers));
+  around_ = trace_surroundings(assets_.tracer(), layers_, truth_, widest_kernel_texels(options_));
+  masks_ = make_masks(around_, layers_, truth_);
 }
 
 /// Where all rays of a receiver's surroundings agree, those of a kernel within them are taken to agree with them.
-std::vector<float> CellAnalyser::trace_unsettled(double half_width_texels, const Trace& trace) {
+std::vector<float> CellAnalyser::trace_unsettled(double half_width_texels, const LayerTrace& trace) {
   truth::ReceiverImage receivers = truth_.receivers.image;
   const bool is_within = half_width_texels <= around_.half_width_texels;
   const auto is_known = [&](std::size_t i) { return is_within && around_.settled[i] != 0; };
@@ -87,7 +92,7 @@ std::vector<float> CellAnalyser::trace_unsettled(double half_width_texels, const
     receivers.content += fmt::format(" unsettled within {} texels", around_.half_width_texels);
   for (std::size_t i = 0; i < receivers.points.size(); ++i)
     if (is_known(i)) receivers.points[i].counts = false;
-  std::vector<float> visibility = trace(receivers, scene::make_map_grid(light_.frustum)).visibility;
+  std::vector<float> visibility = trace_layers(layers_, receivers, trace).visibility;
   for (std::size_t i = 0; i < visibility.size(); ++i)
     if (is_known(i)) visibility[i] = around_.visibility[i];
   return visibility;
@@ -97,17 +102,20 @@ const std::vector<float>& CellAnalyser::kernel_truth(const filters::Kernel& kern
   if (kernel.is_point()) return truth_.rays.hard;
   const auto [place, is_new] = kernels_.try_emplace(kernel.name());
   if (is_new)
-    place->second = trace_unsettled(kernel.half_width(), [&](const auto& receivers, const auto& grid) {
+    place->second = trace_unsettled(kernel.half_width(), [&](const auto& receivers, const auto& grid, std::size_t) {
       return assets_.tracer().trace_kernel(receivers, kernel, grid);
     });
   return place->second;
 }
 
-std::vector<float> CellAnalyser::disks_truth(const std::vector<float>& radii_texels) {
-  const double widest = static_cast<double>(*std::ranges::max_element(radii_texels));
-  return trace_unsettled(filters::Kernel::make_disk(widest).half_width(), [&](const auto& receivers, const auto& grid) {
-    return assets_.tracer().trace_disks(receivers, radii_texels, grid);
-  });
+std::vector<float> CellAnalyser::disks_truth(const std::vector<std::vector<float>>& radii_texels) {
+  double widest = 0.0;
+  for (const std::vector<float>& layer : radii_texels)
+    widest = std::max(widest, static_cast<double>(*std::ranges::max_element(layer)));
+  return trace_unsettled(filters::Kernel::make_disk(widest).half_width(),
+                         [&](const auto& receivers, const auto& grid, std::size_t layer) {
+                           return assets_.tracer().trace_disks(receivers, radii_texels[layer], grid);
+                         });
 }
 
 void CellAnalyser::analyse(MeasuredCell& cell) {
@@ -139,20 +147,25 @@ void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
                          touching, metrics::kFewestReceivers));
 }
 
-std::vector<filters::Receiver> CellAnalyser::read_receivers(const render::Bias& bias) const {
-  const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed, options_.range);
-  return render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera), light);
+ModelLayer CellAnalyser::read_layer(const filters::FilterRequest& request, const scene::LightFrustum& layer) const {
+  const render::Bias own = render::resolve_bias(options_.bias, layer, request.spec, request.values);
+  const bool has_kernel = filters::find_kernel(request.spec, request.values).has_value();
+  const render::Bias comparison =
+      has_kernel ? render::resolve_comparison_bias(options_.bias, layer, request.spec, request.values) : own;
+  const auto read = [&](const render::Bias& bias) {
+    return render::read_receivers(
+        renderer_.shaders, assets_.gbuffer(*task_.camera),
+        render::make_light_setup(layer, task_.scene->light, bias, options_.seed, options_.range));
+  };
+  ModelLayer made{light_.map.read(layer.layer), read(own), {}};
+  made.closer = own == comparison ? made.filter : read(comparison);
+  return made;
 }
 
 ModelImages CellAnalyser::evaluate(const filters::FilterRequest& request) {
-  if (!map_) map_ = light_.map.read();
-  const render::Bias own = render::resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
-  const bool has_kernel = filters::find_kernel(request.spec, request.values).has_value();
-  const render::Bias comparison =
-      has_kernel ? render::resolve_comparison_bias(options_.bias, light_.frustum, request.spec, request.values) : own;
-  ModelReceivers receivers{read_receivers(own), {}};
-  receivers.closer = own == comparison ? receivers.filter : read_receivers(comparison);
-  return evaluate_model(request, *map_, receivers, options_.bias.plane_max_tangent(), options_.seed, options_.width,
+  std::vector<ModelLayer> layers;
+  for (const scene::LightFrustum& layer : light_.layers) layers.push_back(read_layer(request, layer));
+  return evaluate_model(request, layers, options_.bias.plane_max_tangent(), options_.seed, options_.width,
                         options_.height);
 }
 

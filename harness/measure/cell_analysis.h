@@ -6,6 +6,7 @@
 #include <string>
 
 #include "filters/model.h"
+#include "harness/measure/layer_truth.h"
 #include "harness/measure/model_images.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_measurement.h"
@@ -23,12 +24,12 @@ struct Surroundings {
 
 /// Traces the surroundings of a view's receivers, `widest_kernel_texels` and a little more, or takes them from the
 /// cache. Requires a truth.
-Surroundings trace_surroundings(truth::CachedTracer& tracer, const scene::LightFrustum& frustum,
+Surroundings trace_surroundings(truth::CachedTracer& tracer, const std::vector<TracedLayer>& layers,
                                 const SceneTruth& truth, double widest_kernel_texels);
 
 /// Finds where artefacts can occur in a view: the guard around a receiver is `widest_kernel_texels` and a little more.
 /// Requires a truth. Cost: that of the surroundings.
-metrics::ArtefactMasks find_artefact_masks(truth::CachedTracer& tracer, const scene::LightFrustum& frustum,
+metrics::ArtefactMasks find_artefact_masks(truth::CachedTracer& tracer, const std::vector<TracedLayer>& layers,
                                            const SceneTruth& truth, double widest_kernel_texels);
 
 /// Says why the cells of one task are wrong: takes their errors apart, and counts the artefacts a person sees.
@@ -53,16 +54,15 @@ class CellAnalyser {
   SceneAssets& assets_;
   const SceneTruth& truth_;
   LightMap& light_;
-  std::optional<filters::DepthMap> map_;
+  std::vector<TracedLayer> layers_;
   Surroundings around_;
   std::optional<metrics::ArtefactMasks> masks_;
   std::map<std::string, std::vector<float>> kernels_;  ///< by name
 
-  using Trace = std::function<truth::TracedVisibility(const truth::ReceiverImage&, const truth::MapGrid&)>;
-  std::vector<float> trace_unsettled(double half_width_texels, const Trace& trace);
+  std::vector<float> trace_unsettled(double half_width_texels, const LayerTrace& trace);
   const std::vector<float>& kernel_truth(const filters::Kernel& kernel);
-  std::vector<float> disks_truth(const std::vector<float>& radii_texels);
-  std::vector<filters::Receiver> read_receivers(const render::Bias& bias) const;
+  std::vector<float> disks_truth(const std::vector<std::vector<float>>& radii_texels);
+  ModelLayer read_layer(const filters::FilterRequest& request, const scene::LightFrustum& layer) const;
   void count_artefacts(MeasuredCell& cell) const;
   ModelImages evaluate(const filters::FilterRequest& request);
   void attribute(MeasuredCell& cell);

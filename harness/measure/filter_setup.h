@@ -9,9 +9,14 @@
 
 namespace shadowbench::measure {
 
-/// A light as one filter sees it: with the run's bias, resolved for the filter's kernel.
-render::LightSetup make_filter_light(const options::RunOptions& options, const scene::Light& light,
-                                     const scene::LightFrustum& frustum, const filters::FilterRequest& request);
+/// A light as one filter sees it: with the run's bias, resolved for the filter's kernel in each layer of its map.
+render::LightLayers make_filter_light(const options::RunOptions& options, const scene::Light& light,
+                                      const std::vector<scene::LightFrustum>& layers,
+                                      const filters::FilterRequest& request);
+
+/// The layers of a light's map without bias: where receivers lie in it, whatever the filter.
+render::LightLayers make_unbiased_light(const options::RunOptions& options, const scene::Light& light,
+                                        const std::vector<scene::LightFrustum>& layers);
 
 /// Compiles one filter over a light's map.
 /// Throws as render::FilterPasses.

@@ -113,24 +113,34 @@ double share_of_casters(const images::Image& depth_map) {
   return static_cast<double>(filled) / static_cast<double>(depth_map.texels.size());
 }
 
-records::CoverageRecord summarise_coverage(std::vector<float> densities, const CoverageCells& cells) {
+records::CoverageRecord summarise_coverage(std::vector<float> densities, const std::vector<CoverageCells>& layers) {
   records::CoverageRecord record;
   if (densities.empty()) return record;
   record.fewest_texels_per_pixel = static_cast<double>(*std::min_element(densities.begin(), densities.end()));
   const auto middle = densities.begin() + static_cast<std::ptrdiff_t>(densities.size() / 2);
   std::nth_element(densities.begin(), middle, densities.end());
   record.texels_per_pixel = static_cast<double>(*middle);
-  record.map_used = cells.share();
+  double used = 0.0;
+  for (const CoverageCells& cells : layers) used += cells.share() / static_cast<double>(layers.size());
+  record.map_used = used;
   return record;
+}
+
+/// The layer that serves most of a pixel.
+std::size_t choose_layer(const std::vector<CoveredLayer>& layers, std::size_t pixel) {
+  if (layers.size() == 1) return 0;
+  const auto most = std::ranges::max_element(layers, {}, [&](const CoveredLayer& each) { return each.shares[pixel]; });
+  return static_cast<std::size_t>(most - layers.begin());
 }
 
 }  // namespace
 
 MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera& camera,
-                             const scene::LightFrustum& frustum, const images::Image& depth_map) {
-  const int width = receivers.image.width, height = receivers.image.height;
-  const PixelProjector projector(camera, frustum, height, depth_map.width);
-  CoverageCells cells(depth_map.width);
+                             const std::vector<CoveredLayer>& layers, const images::Image& depth_map) {
+  const int width = receivers.image.width, height = receivers.image.height, map_size = depth_map.height;
+  std::vector<PixelProjector> projectors;
+  for (const CoveredLayer& each : layers) projectors.emplace_back(camera, each.frustum, height, map_size);
+  std::vector<CoverageCells> cells(layers.size(), CoverageCells(map_size));
   MapCoverage coverage{images::Image(width, height, 1), images::Image(width, height, 2), {}};
   std::vector<float> densities;
   for (std::size_t i = 0; i < receivers.image.points.size(); ++i) {
@@ -139,11 +149,12 @@ MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera
       coverage.density.texels[i] = receivers.is_surface[i] ? 0.0f : -1.0f;
       continue;
     }
-    const Footprint footprint = projector.project(point);
-    if (!projector.is_in_map(footprint)) continue;
-    cells.mark(footprint);
+    const std::size_t layer = choose_layer(layers, i);
+    const Footprint footprint = projectors[layer].project(point);
+    if (!projectors[layer].is_in_map(footprint)) continue;
+    cells[layer].mark(footprint);
     coverage.density.texels[i] = static_cast<float>(footprint.area());
-    coverage.texel.texels[2 * i] = static_cast<float>(footprint.centre.x);
+    coverage.texel.texels[2 * i] = static_cast<float>(footprint.centre.x + static_cast<double>(layer) * map_size);
     coverage.texel.texels[2 * i + 1] = static_cast<float>(footprint.centre.y);
     densities.push_back(coverage.density.texels[i]);
   }

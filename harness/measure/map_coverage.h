@@ -18,6 +18,12 @@ struct MapCoverage {
   records::CoverageRecord record;  ///< empty fields where no receiver in the map faces the light
 };
 
+/// A layer of a light's map, and the share of each pixel that it serves, rows top to bottom; empty: all of every one.
+struct CoveredLayer {
+  scene::LightFrustum frustum;
+  std::vector<float> shares = {};
+};
+
 /// Lays the pixels of a view out in the map.
 ///
 /// A pixel's footprint is the parallelogram that its sides cut out of its receiver's tangent plane, seen from the
@@ -27,7 +33,8 @@ struct MapCoverage {
 /// where it has fewer; a footprint wider than 64 cells counts where its centre lies. `map_filled` is the share of the
 /// texels of `depth_map` that are nearer than 1. Cost: 0.05 s for half a million pixels on one core, and one pass over
 /// the map.
+/// Of a map with layers a pixel falls in the one that serves most of it; layers stand side by side, as in `depth_map`.
 MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera& camera,
-                             const scene::LightFrustum& frustum, const images::Image& depth_map);
+                             const std::vector<CoveredLayer>& layers, const images::Image& depth_map);
 
 }  // namespace shadowbench::measure

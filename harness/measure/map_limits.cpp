@@ -145,13 +145,13 @@ std::string warn_of_variance(const FilterRequest& request, const TexelHealth& he
 
 }  // namespace
 
-ReadMap::ReadMap(render::FilterPasses& filter, const render::ShadowMap& map)
+ReadMap::ReadMap(render::FilterPasses& filter, const render::ShadowMap& map, int layer)
     : request_(filter.request()),
-      texels_(filter.encoded_map()->read()),
-      radius_(filter.encoded_map()->blur_radius_texels()),
-      border_(filter.encoded_map()->blurred_border()) {
+      texels_(filter.encoded_map(layer)->read()),
+      radius_(filter.encoded_map(layer)->blur_radius_texels()),
+      border_(filter.encoded_map(layer)->blurred_border()) {
   const bool is_half = filters::store_precision(store_of(request_.values)) == filters::StorePrecision::kHalf;
-  if (is_half) before_blur_ = filter.encoded_map()->read_before_blur(map);
+  if (is_half) before_blur_ = filter.encoded_map(layer)->read_before_blur(map, layer);
 }
 
 metrics::StoredMap ReadMap::stored() const {
@@ -163,8 +163,15 @@ metrics::StoredMap ReadMap::stored() const {
   return stored;
 }
 
+metrics::TexelHealth check_map(render::FilterPasses& filter, const render::ShadowMap& map) {
+  metrics::TexelHealth health = metrics::check_texels(ReadMap(filter, map).stored());
+  for (int layer = 1; layer < filter.layers(); ++layer)
+    health.add(metrics::check_texels(ReadMap(filter, map, layer).stored()));
+  return health;
+}
+
 std::int64_t count_broken_texels(render::FilterPasses& filter, const render::ShadowMap& map) {
-  return filter.encoded_map() ? metrics::check_texels(ReadMap(filter, map).stored()).broken() : 0;
+  return filter.encoded_map() ? check_map(filter, map).broken() : 0;
 }
 
 std::optional<double> find_safe_exponent(const FilterRequest& request, const MapTrial& trial) {

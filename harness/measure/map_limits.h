@@ -20,7 +20,7 @@ class ReadMap {
  public:
   /// Reads the map of a filter back, of a 16-bit float store before its blur, too: there a GL may saturate, and the
   /// blur hides it. Requires a filter that encodes, and that its map was made.
-  ReadMap(render::FilterPasses& filter, const render::ShadowMap& map);
+  ReadMap(render::FilterPasses& filter, const render::ShadowMap& map, int layer = 0);
 
   /// What is looked at; the object must outlive it.
   metrics::StoredMap stored() const;
@@ -34,6 +34,9 @@ class ReadMap {
   int radius_ = 0;
   std::optional<glm::vec4> border_;
 };
+
+/// Looks through all layers of a filter's encoded map. Requires a filter that encodes, and that its map was made.
+metrics::TexelHealth check_map(render::FilterPasses& filter, const render::ShadowMap& map);
 
 /// Counts the texels of a filter's encoded map that overflowed or are NaN; 0 for filters that read depth. Requires that
 /// its map was made.

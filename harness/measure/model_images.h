@@ -11,22 +11,24 @@ namespace shadowbench::measure {
 /// What a filter's scalar model and its kernel make of a view; rows run from top to bottom. Visibility is 1 where there
 /// is no receiver, and where the map does not reach.
 struct ModelImages {
-  std::vector<double> model;             ///< the filter in double precision; empty where it has no scalar model
-  std::vector<double> closer;            ///< brute-force percentage-closer filter with its kernel
-  std::vector<float> disk_radii_texels;  ///< of the pixels' own kernels, where these differ; empty otherwise
-  std::int64_t excused = 0;              ///< receivers where rounding decides which texel is read, or a comparison
+  std::vector<double> model;   ///< the filter in double precision; empty where it has no scalar model
+  std::vector<double> closer;  ///< brute-force percentage-closer filter with its kernel
+  /// Of the pixels' own kernels, where these differ, by layer of the map; empty otherwise.
+  std::vector<std::vector<float>> disk_radii_texels;
+  std::int64_t excused = 0;  ///< receivers where rounding decides which texel is read, or a comparison
 };
 
-/// The receivers of one view, with the bias of the filter and with that of its percentage-closer filter.
-struct ModelReceivers {
+/// A layer of a light's map, with the receivers of a view that it serves: with the bias of the filter, and with that of
+/// its percentage-closer filter.
+struct ModelLayer {
+  filters::DepthMap map;
   std::vector<filters::Receiver> filter;
   std::vector<filters::Receiver> closer;  ///< the same pixels in the same order
 };
 
 /// Evaluates a model for receivers that the GPU handed out, in parallel; `plane_max_tangent` as in ModelInput.
 /// Requires a filter that has a kernel or a model.
-ModelImages evaluate_model(const filters::FilterRequest& request, const filters::DepthMap& map,
-                           const ModelReceivers& receivers, double plane_max_tangent, std::uint32_t seed, int width,
-                           int height);
+ModelImages evaluate_model(const filters::FilterRequest& request, const std::vector<ModelLayer>& layers,
+                           double plane_max_tangent, std::uint32_t seed, int width, int height);
 
 }  // namespace shadowbench::measure

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "filters/base/error.h"
 #include "harness/measure/mean_flip.h"
@@ -23,7 +24,7 @@ SceneAssets::SceneAssets(Renderer& renderer, const options::RunOptions& options,
       tracer_([&scene] { return list_occluders(scene); }, cache, options.seed) {}
 
 LightMap& SceneAssets::light_map(const scene::Camera& camera, int map_size) {
-  const std::pair key(options_.fit == scene::FitMode::kView ? &camera : nullptr, map_size);
+  const std::pair key(options_.fit.follows_view() ? &camera : nullptr, map_size);
   const auto found = maps_.find(key);
   if (found != maps_.end()) return found->second;
   LightMap& kept = maps_.emplace(key, make_light_map(scene_.light, camera, map_size)).first->second;
@@ -35,16 +36,31 @@ LightMap SceneAssets::make_light_map(const scene::Light& light, const scene::Cam
                                      const glm::dvec2& shift_texels) {
   const double pad_texels = limit_padding(pad_texels_, map_size);
   const double aspect = static_cast<double>(options_.width) / options_.height;
-  const scene::LightFrustum frustum = scene::fit_light(
-      scene_, {options_.fit, map_size, pad_texels, options_.snap, &camera, aspect, &light, shift_texels});
-  LightMap made{frustum, render::ShadowMap(map_size, render::fit_settings(options_.map, frustum))};
+  std::vector<scene::LightFrustum> layers =
+      scene::fit_layers(scene_, {options_.fit.mode, map_size, pad_texels, options_.snap, &camera, aspect, &light,
+                                 shift_texels, options_.fit.cascades, find_seen_depths(camera)});
+  render::ShadowMap map(map_size, render::fit_settings(options_.map, layers.front()), static_cast<int>(layers.size()));
+  LightMap made{std::move(layers), std::move(map)};
   made.map.set_border(options_.range.border);
   redraw(made);
   return made;
 }
 
+/// The least and the largest depth in a G-buffer, where cascades ask for them.
+std::optional<scene::DepthSpan> SceneAssets::find_seen_depths(const scene::Camera& camera) {
+  if (options_.fit.mode != scene::FitMode::kCascades || !options_.fit.cascades.seen) return std::nullopt;
+  const std::vector<float> positions = gbuffer(camera).position().read_floats(4);
+  scene::DepthSpan span{std::numeric_limits<double>::max(), 0.0};
+  for (std::size_t i = 3; i < positions.size(); i += 4) {
+    if (positions[i] == 0.0f) continue;
+    const double depth = static_cast<double>(positions[i]);
+    span = {std::min(span.near_m, depth), std::max(span.far_m, depth)};
+  }
+  return span.far_m > 0.0 ? std::optional(span) : std::nullopt;
+}
+
 void SceneAssets::redraw(LightMap& light, const render::MapBias& bias) {
-  light.map.draw(renderer_.shaders, geometry_, light.frustum, bias);
+  for (const scene::LightFrustum& layer : light.layers) light.map.draw(renderer_.shaders, geometry_, layer, bias);
 }
 
 images::Image read_linear_depth(const render::ShadowMap& map) {
@@ -54,8 +70,8 @@ images::Image read_linear_depth(const render::ShadowMap& map) {
 }
 
 bool SceneAssets::has_casters(const LightMap& light) {
-  const filters::DepthMap map = light.map.read();
-  return std::any_of(map.stored.begin(), map.stored.end(), [&](float d) { return d != map.curve.far_plane(); });
+  const images::Image map = light.map.read_picture();
+  return std::ranges::any_of(map.texels, [&](float d) { return d != light.map.settings().curve.far_plane(); });
 }
 
 void SceneAssets::require_casters(const LightMap& light) const {

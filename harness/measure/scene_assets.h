@@ -12,10 +12,12 @@
 
 namespace shadowbench::measure {
 
-/// A light's depth map with the frustum it was drawn in.
+/// A light's depth map with the frusta that its layers were drawn in.
 struct LightMap {
-  scene::LightFrustum frustum;
+  std::vector<scene::LightFrustum> layers;  ///< one, or those that share the receivers
   render::ShadowMap map;
+
+  const scene::LightFrustum& frustum() const { return layers.front(); }
 };
 
 /// What all cells of one scene share: its geometry, one G-buffer per view, one depth map per size. Each is drawn when
@@ -62,6 +64,8 @@ class SceneAssets {
   std::map<std::pair<const scene::Camera*, int>, LightMap> maps_;  ///< the camera is null where all share a map
   std::map<const scene::Camera*, render::GBuffer> gbuffers_;
   std::map<const scene::Camera*, SceneTruth> truths_;
+
+  std::optional<scene::DepthSpan> find_seen_depths(const scene::Camera& camera);
 
   /// Throws Error(kUsage) where culling left the map empty.
   void require_casters(const LightMap& light) const;

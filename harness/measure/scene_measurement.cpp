@@ -84,7 +84,7 @@ class SceneBench {
   MeasuredCell draw(render::FilterPasses& filter) {
     MeasuredCell cell;
     cell.record = make_record(options_, task_, filter.request());
-    cell.record.map_scale = {light_.frustum.texel_size_ws, light_.frustum.depth_range_ws};
+    cell.record.map_scale = {light_.frustum().texel_size_ws, light_.frustum().depth_range_ws};
     cell.request = filter.request();
     cell.label = filter.request().label();
     drawn_ms_ += time_once(filter, light_.map, gbuffer_, target_, renderer_.timer);
@@ -102,10 +102,12 @@ class SceneBench {
   /// Draws a filter without bias, in the receivers and in the map; its light and the map are as before afterwards.
   images::Image draw_unbiased(render::FilterPasses& filter) {
     const filters::ParamValues values = filter.request().values;
-    const render::LightSetup own = filter.light();
-    render::LightSetup unbiased = own;
-    unbiased.bias = {};
-    unbiased.bias.max_tangent = 0.0;  // the passes may follow the receiver's plane: let it be flat
+    const render::LightLayers own = filter.light();
+    render::LightLayers unbiased = own;
+    for (render::LightSetup& layer : unbiased) {
+      layer.bias = {};
+      layer.bias.max_tangent = 0.0;  // the passes may follow the receiver's plane: let it be flat
+    }
     const bool biased_map = options_.bias.map != render::MapBias();
     if (biased_map) assets_.redraw(light_, {});
     filter.retune(renderer_.shaders, values, unbiased);
@@ -126,8 +128,8 @@ class SceneBench {
     for (const float depth : read_linear_depth(light_.map).texels)
       farthest = depth < 1.0f ? std::max(farthest, depth) : farthest;
     const double step_m = render::find_coarsest_step(light_.map.settings(), static_cast<double>(farthest)) *
-                          light_.frustum.depth_range_ws;
-    const double bias_m = options_.bias.constant.in_world(light_.frustum);
+                          light_.frustum().depth_range_ws;
+    const double bias_m = options_.bias.constant.in_world(light_.frustum());
     if (bias_m == 0.0 || bias_m >= 0.5 * step_m) return;
     const std::string warning(fmt::format(
         "{}: a map stored as {} holds depth in steps of up to {} m, but the constant bias is {} m: expect "
@@ -191,9 +193,9 @@ class SceneBench {
       const LightMap moved = assets_.make_light_map(task_.scene->light, *task_.camera, task_.map_size, shifts[phase]);
       for (std::size_t i = 0; i < filters.size(); ++i) {
         render::FilterPasses& filter = *filters[i];
-        const auto encoded = filter.make_encoded_target();
+        const auto encoded = filter.make_encoded_targets();
         filter.turn_to(
-            filter.prepare(make_filter_light(options_, task_.scene->light, moved.frustum, filter.request()), encoded));
+            filter.prepare(make_filter_light(options_, task_.scene->light, moved.layers, filter.request()), encoded));
         result.cells[i].phases.push_back(draw_visibility(filter, moved.map, gbuffer_, target_));
       }
     }
@@ -255,7 +257,7 @@ records::CellRecord make_record(const options::RunOptions& options, const SceneT
   record.claims = request.spec.claims;
   record.map_size = task.map_size;
   record.map_format = render::describe_map(options.map);
-  record.fit = std::string(scene::name_of(options.fit)) + (options.snap ? " snapped" : "");
+  record.fit = scene::describe_fit(options.fit) + (options.snap ? " snapped" : "");
   if (options.light) record.light = describe_light(*options.light);
   const render::BiasRule& bias = options.bias;
   const auto amount = [](const render::BiasAmount& a) { return records::BiasAmountRecord{a.depth, a.texels, a.world}; };

@@ -21,14 +21,13 @@
 namespace shadowbench::measure {
 namespace {
 
-/// Rows of a map from top to bottom, as pictures have them.
-images::Image make_map_image(const std::vector<float>& values, int side) {
-  images::Image image(side, side, 1);
+/// Puts a layer of a map into a picture of all, side by side; rows from top to bottom.
+void put_layer(images::Image& image, int layer, const std::vector<float>& values) {
+  const int side = image.height;
   for (int y = 0; y < side; ++y) {
     const auto row = values.begin() + static_cast<std::ptrdiff_t>(side - 1 - y) * side;
-    std::copy(row, row + side, image.at(0, y));
+    std::copy(row, row + side, image.at(layer * side, y));
   }
-  return image;
 }
 
 images::Image make_view_image(std::vector<float> values, const options::RunOptions& options) {
@@ -72,13 +71,8 @@ MapTrial StabilityMeter::make_trial(const filters::FilterRequest& request) const
     tried.values = values;
     const auto passes = make_filter_passes(renderer_, options_, *task_.scene, light_, tried);
     passes->prefilter(light_.map);
-    return metrics::check_texels(ReadMap(*passes, light_.map).stored());
+    return check_map(*passes, light_.map);
   };
-}
-
-const filters::DepthMap& StabilityMeter::depth_map() {
-  if (!map_) map_ = light_.map.read();
-  return *map_;
 }
 
 const std::vector<std::uint8_t>& StabilityMeter::mask() {
@@ -88,7 +82,7 @@ const std::vector<std::uint8_t>& StabilityMeter::mask() {
 
 void StabilityMeter::warn(MeasuredCell& cell, render::FilterPasses& filter) const {
   if (!filter.encoded_map()) return;
-  const metrics::TexelHealth health = metrics::check_texels(ReadMap(filter, light_.map).stored());
+  const metrics::TexelHealth health = check_map(filter, light_.map);
   const std::string name = fmt::format("{}: {}", task_.scene->name, cell.label);
   for (std::string& warning : list_exceeded_limits(name, cell.request, health, make_trial(cell.request)))
     cell.record.warnings.push_back(std::move(warning));
@@ -109,28 +103,36 @@ void StabilityMeter::check_texels(MeasuredCell& cell, render::FilterPasses& filt
         kReadsDepth);
     return;
   }
-  const ReadMap read(filter, light_.map);
-  const metrics::StoredMap map = read.stored();
-  const metrics::TexelHealth health = metrics::check_texels(map);
+  const metrics::TexelHealth health = check_map(filter, light_.map);
+  const ReadMap first(filter, light_.map);
+  const bool holds_moments = first.stored().moments;
   stability.overflow_texels = health.overflowed;
   stability.nan_texels = health.nan;
-  cell.stability.headroom = make_map_image(metrics::measure_headroom(map), read.side());
+  cell.stability.headroom = draw_layers(filter, metrics::measure_headroom);
   if (health.largest && *health.largest > 0.0)
-    stability.headroom = std::log(map.largest_number) - std::log(*health.largest);
+    stability.headroom = std::log(first.stored().largest_number) - std::log(*health.largest);
   else
     note_absent(cell.record, {"headroom"}, health.largest ? "the map holds nothing but 0" : "the map overflowed");
   stability.safe_exponent = find_safe_exponent(cell.request, make_trial(cell.request));
   if (!stability.safe_exponent)
     note_absent(cell.record, {"safe_exponent"},
                 "the map holds no exponentials, or none that a smaller exponent keeps finite");
-  if (!map.moments) {
+  if (!holds_moments) {
     note_absent(cell.record, {"negative_variance_texels", "lowest_variance"},
                 "the filter does not say that its map holds moments");
     return;
   }
   stability.negative_variance_texels = health.negative_variance;
   stability.lowest_variance = health.lowest_variance;
-  cell.stability.variance = make_map_image(metrics::measure_variance(map), read.side());
+  cell.stability.variance = draw_layers(filter, metrics::measure_variance);
+}
+
+images::Image StabilityMeter::draw_layers(render::FilterPasses& filter,
+                                          std::vector<float> (*of_layer)(const metrics::StoredMap&)) const {
+  images::Image image(filter.layers() * light_.map.size(), light_.map.size(), 1);
+  for (int layer = 0; layer < filter.layers(); ++layer)
+    put_layer(image, layer, of_layer(ReadMap(filter, light_.map, layer).stored()));
+  return image;
 }
 
 void StabilityMeter::compare_stores(MeasuredCell& cell) {
@@ -183,8 +185,7 @@ void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filte
     note_absent(cell.record, fields, filters::explain_no_kernel(cell.request.spec));
     return;
   }
-  const auto receivers = render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera), filter.light());
-  metrics::BoundCheck check = compare_with_closer(cell, *model, receivers);
+  metrics::BoundCheck check = compare_with_closer(cell, *model, filter.light());
   if (check.receivers == 0) {
     note_absent(cell.record, fields, "no receiver can be compared");
     return;
@@ -198,26 +199,36 @@ void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filte
 
 /// Compares both at the depth that the filter itself compares with: another bias would be another bound.
 metrics::BoundCheck StabilityMeter::compare_with_closer(const MeasuredCell& cell, const filters::Model& model,
-                                                        const std::vector<filters::Receiver>& receivers) {
+                                                        const render::LightLayers& light) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const double plane_max_tangent = options_.bias.plane_max_tangent();
-  const filters::ModelInput input{cell.request.spec,           cell.request.values, depth_map(),
-                                  measure_accuracy(renderer_), options_.seed,       plane_max_tangent};
-  const auto exact = model.prepare(input, filters::Precision::kDouble);
-  const auto tracked = model.prepare(input, filters::Precision::kTracked);
-  const filters::PercentageCloser closer(*model.kernel(cell.request.values), depth_map(), plane_max_tangent);
   const std::size_t pixels = cell.visibility.texels.size();
   const bool overflowed = cell.record.stability.overflow_texels.value_or(0) > 0;
-  std::vector<double> of_model(pixels, 1.0), of_closer(pixels, 1.0),
-      tolerance(pixels, std::numeric_limits<double>::quiet_NaN());
-  visit_in_parallel(receivers.size(), [&](std::size_t i) {
-    const filters::ModelResult bounded = tracked->at(receivers[i]);
-    if (bounded.excused) return;
-    const std::size_t pixel = find_pixel(receivers[i], options_.width, options_.height);
-    of_model[pixel] = exact->at(receivers[i]).visibility;
-    of_closer[pixel] = closer.at(receivers[i]);
-    // In a map that overflowed an infinite bound on rounding explains nothing: the overflow is no rounding.
-    tolerance[pixel] = std::isfinite(bounded.bound) ? bounded.bound : overflowed ? 0.0 : HUGE_VAL;
-  });
+  std::vector<double> of_model(pixels, 1.0), of_closer(pixels, 1.0), tolerance(pixels, kNone);
+  std::vector<std::uint8_t> excused(pixels);
+  for (const render::LightSetup& layer : light) {
+    const auto receivers = render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera), layer);
+    const filters::DepthMap map = light_.map.read(layer.frustum.layer);
+    const filters::ModelInput input{cell.request.spec,           cell.request.values, map,
+                                    measure_accuracy(renderer_), options_.seed,       plane_max_tangent};
+    const auto exact = model.prepare(input, filters::Precision::kDouble);
+    const auto tracked = model.prepare(input, filters::Precision::kTracked);
+    const filters::PercentageCloser closer(*model.kernel(cell.request.values), map, plane_max_tangent);
+    visit_in_parallel(receivers.size(), [&](std::size_t i) {
+      const filters::Receiver& r = receivers[i];
+      const filters::ModelResult bounded = tracked->at(r);
+      const std::size_t pixel = find_pixel(r, options_.width, options_.height);
+      put_share(of_model[pixel], r, exact->at(r).visibility);
+      put_share(of_closer[pixel], r, closer.at(r));
+      // In a map that overflowed an infinite bound on rounding explains nothing: the overflow is no rounding.
+      const double bound = std::isfinite(bounded.bound) ? bounded.bound : overflowed ? 0.0 : HUGE_VAL;
+      const double so_far = std::isnan(tolerance[pixel]) ? 0.0 : tolerance[pixel];
+      tolerance[pixel] = so_far + static_cast<double>(r.layer_share) * bound;
+      if (bounded.excused) excused[pixel] = 1;
+    });
+  }
+  for (std::size_t i = 0; i < pixels; ++i)
+    if (excused[i]) tolerance[i] = kNone;
   return metrics::check_bound({cell.visibility.texels, of_model, of_closer, tolerance});
 }
 

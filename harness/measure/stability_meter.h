@@ -33,17 +33,17 @@ class StabilityMeter {
   SceneTask task_;
   SceneAssets& assets_;
   LightMap& light_;
-  std::optional<filters::DepthMap> map_;
   std::optional<std::vector<std::uint8_t>> mask_;
 
   MapTrial make_trial(const filters::FilterRequest& request) const;
-  const filters::DepthMap& depth_map();
   const std::vector<std::uint8_t>& mask();
   void check_texels(MeasuredCell& cell, render::FilterPasses& filter) const;
+  images::Image draw_layers(render::FilterPasses& filter,
+                            std::vector<float> (*of_layer)(const metrics::StoredMap&)) const;
   void compare_stores(MeasuredCell& cell);
   void check_bound(MeasuredCell& cell, render::FilterPasses& filter);
   metrics::BoundCheck compare_with_closer(const MeasuredCell& cell, const filters::Model& model,
-                                          const std::vector<filters::Receiver>& receivers);
+                                          const render::LightLayers& light);
 };
 
 /// Names the store with as many channels and the other float precision; nothing where the filter does not offer

@@ -16,19 +16,24 @@ namespace {
 /// Bounds what the same computation in single precision may make of each pixel.
 images::Image bound_rounding(const DrawnTask& drawn, const filters::Model& model, const render::FilterPasses& filter) {
   const options::RunOptions& options = drawn.options;
-  const filters::DepthMap map = drawn.assets.light_map(*drawn.task.camera, drawn.task.map_size).map.read();
+  const LightMap& light = drawn.assets.light_map(*drawn.task.camera, drawn.task.map_size);
   const filters::FilterRequest& request = filter.request();
-  const auto tracked = model.prepare({request.spec, request.values, map, measure_accuracy(drawn.renderer), options.seed,
-                                      options.bias.plane_max_tangent()},
-                                     filters::Precision::kTracked);
-  const auto receivers =
-      render::read_receivers(drawn.renderer.shaders, drawn.assets.gbuffer(*drawn.task.camera), filter.light());
   images::Image image(options.width, options.height, 1);
-  visit_in_parallel(receivers.size(), [&](std::size_t i) {
-    const filters::ModelResult result = tracked->at(receivers[i]);
-    const float bound = result.bound < 1.0 ? static_cast<float>(result.bound) : 1.0f;
-    image.texels[find_pixel(receivers[i], options.width, options.height)] = result.excused ? images::kMayFlip : bound;
-  });
+  for (const render::LightSetup& layer : filter.light()) {
+    const filters::DepthMap map = light.map.read(layer.frustum.layer);
+    const auto tracked = model.prepare({request.spec, request.values, map, measure_accuracy(drawn.renderer),
+                                        options.seed, options.bias.plane_max_tangent()},
+                                       filters::Precision::kTracked);
+    const auto receivers =
+        render::read_receivers(drawn.renderer.shaders, drawn.assets.gbuffer(*drawn.task.camera), layer);
+    visit_in_parallel(receivers.size(), [&](std::size_t i) {
+      const filters::ModelResult result = tracked->at(receivers[i]);
+      const float of_share = receivers[i].layer_share < 1.0f ? 0x1p-23f : 0.0f;
+      const float bound = result.bound < 1.0 ? static_cast<float>(result.bound) + of_share : 1.0f;
+      float& pixel = image.texels[find_pixel(receivers[i], options.width, options.height)];
+      pixel = result.excused ? images::kMayFlip : pixel + receivers[i].layer_share * bound;
+    });
+  }
   return image;
 }
 
@@ -43,12 +48,12 @@ SeedSpread spread_seeds(const DrawnTask& drawn, render::FilterPasses& filter) {
   LightMap& light = drawn.assets.light_map(*drawn.task.camera, drawn.task.map_size);
   render::GBuffer& gbuffer = drawn.assets.gbuffer(*drawn.task.camera);
   render::ImageTarget target("visibility of a seed", GL_R32F, options.width, options.height);
-  const render::LightSetup own = filter.light();
+  const render::LightLayers own = filter.light();
   SeedSpread spread{images::Image(options.width, options.height, 1), images::Image(options.width, options.height, 1)};
   std::vector<double> sum(spread.mean.texels.size()), squares(sum.size());
   for (std::uint32_t i = 1; i <= static_cast<std::uint32_t>(images::kSpreadSeeds); ++i) {
-    render::LightSetup other = own;
-    other.seed = filters::hash_bits(own.seed + i);
+    render::LightLayers other = own;
+    for (render::LightSetup& layer : other) layer.seed = filters::hash_bits(own.front().seed + i);
     filter.retune(drawn.renderer.shaders, filter.request().values, other);
     const images::Image image = draw_visibility(filter, light.map, gbuffer, target);
     for (std::size_t p = 0; p < sum.size(); ++p) {

@@ -66,7 +66,7 @@ struct RunOptions {
   int height = 540;
   std::vector<std::string> views;  ///< names of cameras; none: all that each scene has
   render::MapSettings map;
-  scene::FitMode fit = scene::FitMode::kTight;
+  scene::FitRule fit;
   bool snap = false;                 ///< keep the map's texel grid fixed in the world
   std::optional<LightAngles> light;  ///< in place of the light of every scene
   render::BiasRule bias;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
+#include <numeric>
 #include <regex>
 
 #include "filters/base/error.h"
@@ -41,70 +43,109 @@ gl::Texture make_blue_noise() {
 }  // namespace
 
 FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, const ShadowMap& map,
-                           const LightSetup& light)
+                           const LightLayers& light)
     : shaders_(&shaders),
       request_(request),
-      light_(light),
+      layers_{{light.front(), glm::vec4(0.0f), nullptr, nullptr}},
       map_size_(map.size()),
       map_defines_(map_defines(request, map.settings())),
       lookup_(compile_lookup(shaders, {})) {
   if (lookup_.has("blue_noise")) blue_noise_ = make_blue_noise();
-  if (request.spec.has_encode) prefilter_.emplace(shaders, request, map, light, map_defines_);
-  if (request.spec.passes.empty()) return;
-  own_.emplace(shaders, request, map_size_, light, map_defines_);
-  if (prefilter_) own_->check_encode(prefilter_->encode_program());
+  if (request.spec.has_encode) prefilter_.emplace(shaders, request, map, light.front(), map_defines_);
+  if (!request.spec.passes.empty()) {
+    own_.emplace(shaders, request, map_size_, light.front(), map_defines_);
+    if (prefilter_) own_->check_encode(prefilter_->encode_program());
+  }
+  if (light.size() == 1) return;  // else every layer has maps of its own
+  layers_.resize(light.size());
+  turn_to(prepare(light, make_encoded_targets()));
 }
 
 gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, Defines defines) const {
-  for (const Defines& more : {map_defines_, receiver_defines(light_)})
+  for (const Defines& more : {map_defines_, receiver_defines(layers_.front().light)})
     defines.insert(defines.end(), more.begin(), more.end());
-  if (light_.bias.receiver_plane) defines.emplace_back("RECEIVER_PLANE", "1");
+  if (layers_.front().light.bias.receiver_plane) defines.emplace_back("RECEIVER_PLANE", "1");
   gl::Program program =
       shaders.compile_filter(request_.spec.id + " lookup", "lookup.frag", defines, filter_pieces(request_));
-  set_uniforms(program);
+  set_uniforms(program, layers_.front().light);
   return program;
 }
 
-void FilterPasses::set_uniforms(gl::Program& lookup) const {
-  render::set_uniforms(lookup, request_, light_);
+void FilterPasses::set_uniforms(gl::Program& lookup, const LightSetup& light) const {
+  render::set_uniforms(lookup, request_, light);
   lookup.set("map_texel_uv", 1.0f / static_cast<float>(map_size_));
 }
 
-void FilterPasses::retune(ShaderLibrary& shaders, const filters::ParamValues& values, const LightSetup& light) {
+LightLayers FilterPasses::light() const {
+  LightLayers light;
+  for (const PreparedLayer& layer : layers_) light.push_back(layer.light);
+  return light;
+}
+
+void FilterPasses::retune(ShaderLibrary& shaders, const filters::ParamValues& values, const LightLayers& light) {
+  assert(light.size() == layers_.size());
   request_.values = values;
-  light_ = light;
-  set_uniforms(lookup_);
-  if (prefilter_) prefilter_->retune(shaders, request_, light_);
-  if (own_) own_->retune(request_, light_);
+  set_uniforms(lookup_, light.front());
+  if (prefilter_) prefilter_->retune(shaders, request_, light.front());
+  if (own_) own_->retune(request_, light.front());
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    layers_[i].light = light[i];
+    if (layers() > 1 && prefilter_) layers_[i].border = prefilter_->find_border(light[i]);
+  }
 }
 
-std::shared_ptr<ImageTarget> FilterPasses::make_encoded_target() const {
-  if (!prefilter_) return nullptr;
-  return std::make_shared<ImageTarget>(request_.spec.id + " map", prefilter_->format(), map_size_, map_size_);
+EncodedTargets FilterPasses::make_encoded_targets() const {
+  EncodedTargets targets;
+  for (int layer = 0; prefilter_ && layer < layers(); ++layer)
+    targets.push_back(
+        std::make_shared<ImageTarget>(request_.spec.id + " map", prefilter_->format(), map_size_, map_size_));
+  return targets;
 }
 
-PreparedLight FilterPasses::prepare(const LightSetup& light, std::shared_ptr<ImageTarget> encoded) {
-  return {light, prefilter_ ? prefilter_->find_border(light) : glm::vec4(0.0f), std::move(encoded),
-          own_ ? own_->make_maps() : nullptr};
+PreparedLight FilterPasses::prepare(const LightLayers& light, const EncodedTargets& encoded) {
+  PreparedLight prepared;
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    prepared.push_back({light[i], prefilter_ ? prefilter_->find_border(light[i]) : glm::vec4(0.0f),
+                        prefilter_ ? encoded[i] : nullptr, own_ ? own_->make_maps() : nullptr});
+  }
+  return prepared;
 }
 
 void FilterPasses::turn_to(const PreparedLight& light) {
-  light_ = light.light;
-  set_light(lookup_, light_);
-  if (prefilter_) prefilter_->turn_to(light_, light.border, light.encoded);
-  if (own_) own_->turn_to(light_, light.maps);
+  assert(light.size() == layers_.size());
+  layers_ = light;
+  turn(layers_.front());
+}
+
+void FilterPasses::turn(const PreparedLayer& layer) {
+  set_light(lookup_, layer.light);
+  if (prefilter_) prefilter_->turn_to(layer.light, layer.border, layer.encoded);
+  if (own_) own_->turn_to(layer.light, layer.maps);
+}
+
+/// The only layer is what the passes are turned to anyway.
+void FilterPasses::select(int layer) {
+  if (layers() > 1) turn(layers_[static_cast<std::size_t>(layer)]);
+}
+
+Prefilter* FilterPasses::encoded_map(int layer) {
+  if (!prefilter_) return nullptr;
+  select(layer);
+  return &*prefilter_;
 }
 
 void FilterPasses::prefilter(const ShadowMap& map) {
-  if (prefilter_) prefilter_->run(map);
-  if (own_) own_->run(map, encoded_map());
+  for (int layer = 0; layer < layers(); ++layer) {
+    select(layer);
+    if (prefilter_) prefilter_->run(map, layer);
+    if (own_) own_->run(map, layer, prefilter_ ? &*prefilter_ : nullptr);
+  }
 }
 
-void FilterPasses::draw_lookup(gl::Program& program, const GBuffer& gbuffer, const ReceiverBuffer& receivers,
-                               const ShadowMap& map) {
+void FilterPasses::bind_lookup(gl::Program& program, const GBuffer& gbuffer, int layer, const ShadowMap& map) {
   gbuffer.bind();
-  receivers.bind();
-  map.bind();
+  gbuffer.receivers(*shaders_, layers_[static_cast<std::size_t>(layer)].light).bind();
+  map.bind(layer);
   if (prefilter_) prefilter_->bind();
   if (own_) own_->bind();
   if (blue_noise_) {
@@ -112,13 +153,19 @@ void FilterPasses::draw_lookup(gl::Program& program, const GBuffer& gbuffer, con
     blue_noise_->bind(kBlueNoiseUnit);
   }
   program.use();
-  triangle_.draw();
 }
 
 void FilterPasses::lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& target) {
-  const ReceiverBuffer& receivers = gbuffer.receivers(*shaders_, light_);
-  target.bind();
-  draw_lookup(lookup_, gbuffer, receivers, map);
+  if (layers() > 1) target.clear(glm::vec4(0.0f));
+  for (int layer = 0; layer < layers(); ++layer) {
+    select(layer);
+    bind_lookup(lookup_, gbuffer, layer, map);
+    target.bind();
+    if (layers() > 1)
+      triangle_.draw_added();
+    else
+      triangle_.draw();
+  }
 }
 
 ReceiverReads FilterPasses::receiver_reads() const {
@@ -138,27 +185,34 @@ void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const
   gl::Framebuffer framebuffer("fetch count");
   framebuffer.attach_color(0, visibility);
   framebuffer.attach_color(1, reads);
-  const ReceiverBuffer& prepared = gbuffer.receivers(shaders, light_);
-  framebuffer.bind();
-  draw_lookup(counting, gbuffer, prepared, map);
-  double sum = 0.0, receivers = 0.0, reach = -1.0;
-  const std::vector<float> counted = reads.read_floats(2);
-  for (std::size_t i = 0; i < counted.size(); i += 2) {
-    if (counted[i] < 0.0f) continue;
-    sum += static_cast<double>(counted[i]);
-    receivers += 1.0;
-    reach = std::max(reach, static_cast<double>(counted[i + 1]));
+  std::vector<double> sums(static_cast<std::size_t>(gbuffer.width()) * static_cast<std::size_t>(gbuffer.height()),
+                           -1.0);
+  double reach = -1.0;
+  for (int layer = 0; layer < layers(); ++layer) {
+    select(layer);
+    set_uniforms(counting, layers_[static_cast<std::size_t>(layer)].light);
+    bind_lookup(counting, gbuffer, layer, map);
+    framebuffer.bind();
+    framebuffer.clear_color(1, glm::vec4(-1.0f));
+    triangle_.draw();
+    const std::vector<float> counted = reads.read_floats(2);
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      if (counted[2 * i] < 0.0f) continue;
+      sums[i] = std::max(sums[i], 0.0) + static_cast<double>(counted[2 * i]);
+      reach = std::max(reach, static_cast<double>(counted[2 * i + 1]));
+    }
   }
-  cost.fetches = receivers > 0.0 ? sum / receivers : 0.0;
+  std::erase_if(sums, [](double sum) { return sum < 0.0; });
+  cost.fetches = sums.empty() ? 0.0 : std::accumulate(sums.begin(), sums.end(), 0.0) / static_cast<double>(sums.size());
   if (reach >= 0.0) cost.reach_texels = reach;
 }
 
 /// Of a filter without passes of its own the map that it stores counts, or else the depth map; of others what the
 /// lookup reads.
 std::int64_t FilterPasses::count_map_bytes(const ShadowMap& map) const {
-  if (!own_) return prefilter_ ? prefilter_->bytes() : map.bytes();
+  if (!own_) return prefilter_ ? layers() * prefilter_->bytes() : map.bytes();
   const bool reads_depth = lookup_.has("map_depth") || lookup_.has("map_compare") || lookup_.has("map_compare_nearest");
-  return own_->bytes(lookup_) + (prefilter_ && lookup_.has("map_stored") ? prefilter_->bytes() : 0) +
+  return layers() * (own_->bytes(lookup_) + (prefilter_ && lookup_.has("map_stored") ? prefilter_->bytes() : 0)) +
          (reads_depth ? map.bytes() : 0);
 }
 
@@ -166,9 +220,10 @@ FilterCost FilterPasses::measure_cost(ShaderLibrary& shaders, const GBuffer& gbu
   FilterCost cost;
   if (!request_.spec.uses_samplers) count_fetches(cost, shaders, gbuffer, map);
   cost.map_bytes = count_map_bytes(map);
-  cost.bytes_per_texel = cost.map_bytes / (static_cast<std::int64_t>(map_size_) * map_size_);
-  cost.passes = 2 + prefilter_passes();
-  cost.prefilter_texels = (prefilter_ ? prefilter_->texels_written() : 0) + (own_ ? own_->texels_written() : 0);
+  cost.bytes_per_texel = cost.map_bytes / (std::int64_t{layers()} * map_size_ * map_size_);
+  cost.passes = 2 * layers() + prefilter_passes();
+  cost.prefilter_texels =
+      layers() * ((prefilter_ ? prefilter_->texels_written() : 0) + (own_ ? own_->texels_written() : 0));
   return cost;
 }
 

@@ -33,13 +33,19 @@ struct ReceiverReads {
   auto operator<=>(const ReceiverReads&) const = default;
 };
 
-/// A prepared light: passes can change to it by setting uniforms alone.
-struct PreparedLight {
+/// A prepared layer of a light's map: passes can change to it by setting uniforms alone.
+struct PreparedLayer {
   LightSetup light;
   glm::vec4 border{0.0f};                ///< of the encoded map
   std::shared_ptr<ImageTarget> encoded;  ///< the encoded map; null for filters that read depth
   std::shared_ptr<PassMaps> maps;        ///< of the filter's own passes; null where it has none
 };
+
+/// A prepared light, layer by layer.
+using PreparedLight = std::vector<PreparedLayer>;
+
+/// The encoded maps of a light, by layer; empty for filters that read depth.
+using EncodedTargets = std::vector<std::shared_ptr<ImageTarget>>;
 
 /// One filter, with its parameters, over one G-buffer and one shadow map.
 class FilterPasses {
@@ -49,17 +55,17 @@ class FilterPasses {
   /// Throws Error(kFilter) with the line of the filter's file, Error(kUsage) where it reads the samplers itself
   /// and would take what the map's curve makes of depth for depth.
   FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, const ShadowMap& map,
-               const LightSetup& light);
+               const LightLayers& light);
 
   /// Changes the light and parameter values without compiling anything; the result equals that of new passes. Requires
-  /// that only values change that are neither `const` nor texts, and a light with the same range rule and map size, and
-  /// with a bias by slope only if the one before had it.
-  void retune(ShaderLibrary& shaders, const filters::ParamValues& values, const LightSetup& light);
+  /// that only values change that are neither `const` nor texts, and a light with the same range rule, map size and
+  /// number of layers, and with a bias by slope only if the one before had it.
+  void retune(ShaderLibrary& shaders, const filters::ParamValues& values, const LightLayers& light);
 
-  /// Prepares another light with the same range rule and map size. `encoded` has encoded_format() and the map's size,
-  /// or is null for filters that read depth; passes that take turns may share it. The light of these passes is
-  /// undefined afterwards until turn_to() sets one.
-  PreparedLight prepare(const LightSetup& light, std::shared_ptr<ImageTarget> encoded);
+  /// Prepares another light with the same range rule, map size and number of layers. `encoded` are as
+  /// make_encoded_targets() makes them; passes that take turns may share them. The light of these passes is undefined
+  /// afterwards until turn_to() sets one.
+  PreparedLight prepare(const LightLayers& light, const EncodedTargets& encoded);
 
   /// Draws with another light from now on, as new passes would. Parameters stay.
   void turn_to(const PreparedLight& light);
@@ -69,21 +75,24 @@ class FilterPasses {
     return prefilter_ ? std::optional(prefilter_->format()) : std::nullopt;
   }
 
-  /// A target for prepare(); null for filters that read depth.
-  std::shared_ptr<ImageTarget> make_encoded_target() const;
+  /// Targets for prepare().
+  EncodedTargets make_encoded_targets() const;
 
   bool has_prefilter() const { return prefilter_ || own_; }
 
-  /// Encode, blur, and the steps of the filter's own passes.
-  int prefilter_passes() const { return (prefilter_ ? prefilter_->passes() : 0) + (own_ ? own_->passes() : 0); }
+  /// Encode, blur, and the steps of the filter's own passes; in all layers of the map.
+  int prefilter_passes() const {
+    return layers() * ((prefilter_ ? prefilter_->passes() : 0) + (own_ ? own_->passes() : 0));
+  }
 
   /// Encodes and blurs the map, and runs the filter's own passes; does nothing for filters that read depth.
   void prefilter(const ShadowMap& map);
 
-  /// What encodes and blurs; null for filters that read depth.
-  Prefilter* encoded_map() { return prefilter_ ? &*prefilter_ : nullptr; }
+  /// What encodes and blurs, turned to a layer of the map; null for filters that read depth.
+  Prefilter* encoded_map(int layer = 0);
 
-  /// Looks every receiver up; `target` is R32F, of the G-buffer's size. Background is 1.
+  /// Looks every receiver up; `target` is R32F, of the G-buffer's size. Background is 1. Of a map with layers each is
+  /// looked up in a pass of its own, for the receivers that it serves, and what they make of their shares is added.
   void lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& target);
 
   /// Compiles and runs the counting variant of the lookup. Call after prefilter().
@@ -94,12 +103,13 @@ class FilterPasses {
   ReceiverReads receiver_reads() const;
 
   const filters::FilterRequest& request() const { return request_; }
-  const LightSetup& light() const { return light_; }
+  LightLayers light() const;
+  int layers() const { return static_cast<int>(layers_.size()); }
 
  private:
   ShaderLibrary* shaders_;
   filters::FilterRequest request_;
-  LightSetup light_;
+  PreparedLight layers_;
   int map_size_;
   Defines map_defines_;
   std::optional<Prefilter> prefilter_;
@@ -108,10 +118,12 @@ class FilterPasses {
   std::optional<gl::Texture> blue_noise_;  ///< for filters that read it
   gl::FullscreenTriangle triangle_;
 
+  void turn(const PreparedLayer& layer);
+  void select(int layer);
   std::int64_t count_map_bytes(const ShadowMap& map) const;
-  void set_uniforms(gl::Program& lookup) const;
+  void set_uniforms(gl::Program& lookup, const LightSetup& light) const;
   gl::Program compile_lookup(ShaderLibrary& shaders, Defines defines) const;
-  void draw_lookup(gl::Program& program, const GBuffer& gbuffer, const ReceiverBuffer& receivers, const ShadowMap& map);
+  void bind_lookup(gl::Program& program, const GBuffer& gbuffer, int layer, const ShadowMap& map);
   void count_fetches(FilterCost& cost, ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
 };
 

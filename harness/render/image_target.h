@@ -13,6 +13,7 @@ class ImageTarget {
   ImageTarget(std::string_view label, GLenum internal_format, int width, int height);
 
   void bind() { framebuffer_.bind(); }
+  void clear(const glm::vec4& color) { framebuffer_.clear_color(0, color); }
   const gl::Texture& texture() const { return texture_; }
 
  private:

@@ -34,6 +34,7 @@ void set_light(gl::Program& program, const LightSetup& light) {
   program.set("bias_plane_kernels", static_cast<float>(light.bias.plane_kernels));
   program.set("bias_normal_texels", static_cast<float>(light.bias.normal_offset_texels));
   program.set("bias_max_tangent", static_cast<float>(light.bias.max_tangent));
+  program.set("light_layer", frustum.layer);
   if (frustum.perspective) set_beam(program, frustum.perspective->beam);
 }
 
@@ -43,6 +44,9 @@ Defines range_defines(const LightSetup& light) {
   if (light.frustum.perspective) defines.push_back(kPerspectiveLight);
   if (!light.range.far_test) defines.emplace_back("NO_FAR_TEST", "1");
   if (light.frustum.projective && !light.range.behind_test) defines.emplace_back("NO_BEHIND_TEST", "1");
+  if (light.frustum.is_layered()) defines.emplace_back("LAYERED", "1");
+  if (std::holds_alternative<scene::ViewSlice>(light.frustum.share)) defines.emplace_back("VIEW_SLICE", "1");
+  if (std::holds_alternative<scene::CubeFace>(light.frustum.share)) defines.emplace_back("CUBE_FACE", "1");
   return defines;
 }
 
@@ -51,6 +55,7 @@ Defines receiver_defines(const LightSetup& light) {
   if (light.frustum.projective) defines.emplace_back("PROJECTIVE_MAP", "1");
   if (light.frustum.perspective) defines.push_back(kPerspectiveLight);
   if (light.bias.slope_depth > 0.0) defines.emplace_back("BIAS_BY_SLOPE", "1");
+  if (light.frustum.is_layered()) defines.emplace_back("LAYERED", "1");
   return defines;
 }
 

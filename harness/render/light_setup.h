@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "filters/map_range.h"
 #include "harness/gl/program.h"
@@ -20,7 +22,13 @@ struct LightSetup {
   filters::RangeRule range = {};  ///< what becomes of receivers that the map does not hold
 };
 
-/// The setup of a light whose map has this frustum.
+/// The layers of a light's map, each as the lookup sees it: one, or those that share the receivers.
+struct LightLayers : std::vector<LightSetup> {
+  using std::vector<LightSetup>::vector;
+  LightLayers(LightSetup only) : std::vector<LightSetup>{std::move(only)} {}
+};
+
+/// The setup of a light, or of a layer, whose map has this frustum.
 LightSetup make_light_setup(const scene::LightFrustum& frustum, const scene::Light& light, const Bias& bias,
                             std::uint32_t seed, const filters::RangeRule& range = {});
 

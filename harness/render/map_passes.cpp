@@ -122,8 +122,8 @@ void MapPasses::bind() const {
   for (std::size_t i = 0; i < passes_.size(); ++i) (*maps_)[i].texture.bind(kFirstPassUnit + static_cast<GLuint>(i));
 }
 
-void MapPasses::run(const ShadowMap& map, const Prefilter* encoded) {
-  map.bind();
+void MapPasses::run(const ShadowMap& map, int layer, const Prefilter* encoded) {
+  map.bind(layer);
   if (encoded) encoded->bind();
   bind();
   for (std::size_t i = 0; i < passes_.size(); ++i)

@@ -45,7 +45,7 @@ class MapPasses {
   void turn_to(const LightSetup& light, std::shared_ptr<PassMaps> maps);
 
   /// Requires that the depth map and the encoded map are written; `encoded` is null where the filter has none.
-  void run(const ShadowMap& map, const Prefilter* encoded);
+  void run(const ShadowMap& map, int layer, const Prefilter* encoded);
 
   void bind() const;
 

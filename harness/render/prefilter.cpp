@@ -108,20 +108,20 @@ glm::vec4 Prefilter::encode_border(GLenum format) {
   return {value[0], value[1], value[2], value[3]};
 }
 
-void Prefilter::encode(const ShadowMap& map, ImageTarget& to) {
+void Prefilter::encode(const ShadowMap& map, int layer, ImageTarget& to) {
   if (samples_) {
-    map.draw_samples(*shaders_, samples_->framebuffer);
+    map.draw_samples(*shaders_, samples_->framebuffer, layer);
     gl::Sampler::unbind(kSamplesUnit);
     samples_->depth.bind(kSamplesUnit);
   }
-  map.bind();
+  map.bind(layer);
   to.bind();
   encode_.use();
   triangle_.draw();
 }
 
-void Prefilter::run(const ShadowMap& map) {
-  encode(map, *stored_);
+void Prefilter::run(const ShadowMap& map, int layer) {
+  encode(map, layer, *stored_);
   if (radius_ == 0) return;
   blur(stored_->texture(), *scratch_, {1.0f, 0.0f});
   blur(scratch_->texture(), *stored_, {0.0f, 1.0f});
@@ -149,9 +149,9 @@ EncodedTexels Prefilter::read(const ImageTarget& target) {
 
 EncodedTexels Prefilter::read() const { return read(*stored_); }
 
-EncodedTexels Prefilter::read_before_blur(const ShadowMap& map) {
+EncodedTexels Prefilter::read_before_blur(const ShadowMap& map, int layer) {
   if (radius_ == 0) return read(*stored_);
-  encode(map, *scratch_);
+  encode(map, layer, *scratch_);
   return read(*scratch_);
 }
 

@@ -39,8 +39,8 @@ class Prefilter {
   /// `stored` and bind() binds it; it has format() and the map's size. Reads nothing back.
   void turn_to(const LightSetup& light, const glm::vec4& border, std::shared_ptr<ImageTarget> stored);
 
-  /// Encodes and blurs the depth map.
-  void run(const ShadowMap& map);
+  /// Encodes and blurs a layer of the depth map.
+  void run(const ShadowMap& map, int layer = 0);
 
   /// Binds the result to the unit of lib/map_access.glsl that fetch_map reads.
   void bind() const;
@@ -49,7 +49,7 @@ class Prefilter {
   EncodedTexels read() const;
 
   /// Encodes a map again and reads it back before any blur; the result stays as it is.
-  EncodedTexels read_before_blur(const ShadowMap& map);
+  EncodedTexels read_before_blur(const ShadowMap& map, int layer = 0);
 
   const gl::Program& encode_program() const { return encode_; }
 
@@ -88,7 +88,7 @@ class Prefilter {
   gl::Sampler blur_sampler_{"encoded map, to blur"};
 
   static EncodedTexels read(const ImageTarget& target);
-  void encode(const ShadowMap& map, ImageTarget& to);
+  void encode(const ShadowMap& map, int layer, ImageTarget& to);
   glm::vec4 encode_border(GLenum format);
   void blur(const gl::Texture& from, ImageTarget& to, glm::vec2 direction);
   void set_border(const glm::vec4& border);

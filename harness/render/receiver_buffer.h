@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "harness/gl/objects.h"
 #include "harness/render/light_setup.h"
 
@@ -7,8 +9,8 @@ namespace shadowbench::render {
 
 class GBuffer;
 
-/// Where a view's receivers lie in one light's map, as lib/receiver.glsl reads it: all that lookups need and that does
-/// not depend on their filters, two RGBA32F texels per pixel.
+/// Where a view's receivers lie in one light's map, or in a layer of it, as lib/receiver.glsl reads it: all that
+/// lookups need and that does not depend on their filters, two RGBA32F texels per pixel.
 class ReceiverBuffer {
  public:
   /// Draws it. `prepare` is prepare_receivers.frag with the light's range_defines().
@@ -23,6 +25,7 @@ class ReceiverBuffer {
   LightSetup light_;
   gl::Texture places_;
   gl::Texture planes_;
+  std::optional<gl::Texture> shares_;  ///< only where the light's map has layers
 };
 
 }  // namespace shadowbench::render

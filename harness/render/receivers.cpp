@@ -9,12 +9,12 @@ namespace {
 struct ReceiverTexels {
   int width;
   std::vector<float> map;    // uv, depth, depth_unbiased
-  std::vector<float> light;  // texel_size_ws, light_size, light_nearness
+  std::vector<float> light;  // texel_size_ws, light_size, light_nearness, the layer's share
   std::vector<float> plane;  // depth_per_texel, n_dot_l, view_depth (0: no receiver, negative: beyond the map's reach)
 
   std::size_t pixels() const { return map.size() / 4; }
   bool counts(std::size_t i) const { return plane[4 * i + 3] != 0.0f && plane[4 * i + 2] > filters::kFacesLight; }
-  bool is_asked_about(std::size_t i) const { return counts(i) && plane[4 * i + 3] > 0.0f; }
+  bool is_asked_about(std::size_t i) const { return counts(i) && plane[4 * i + 3] > 0.0f && light[4 * i + 3] > 0.0f; }
 };
 
 ReceiverTexels draw_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light) {
@@ -54,6 +54,8 @@ filters::Receiver make_receiver(const ReceiverTexels& texels, std::size_t i, con
   r.texel_size_ws = texels.light[4 * i];
   r.light_size = texels.light[4 * i + 1];
   r.light_nearness = texels.light[4 * i + 2];
+  r.layer = light.frustum.layer;
+  r.layer_share = texels.light[4 * i + 3];
   r.bias_per_texel = bias_per_texel(r.depth_per_texel, r.texel_size_ws, light);
   r.n_dot_l = plane[2];
   r.view_depth = plane[3];
@@ -64,11 +66,20 @@ filters::Receiver make_receiver(const ReceiverTexels& texels, std::size_t i, con
 
 }  // namespace
 
-std::int64_t count_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light) {
-  const ReceiverTexels texels = draw_receivers(shaders, gbuffer, light);
+std::int64_t count_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightLayers& light) {
+  const ReceiverTexels texels = draw_receivers(shaders, gbuffer, light.front());
   std::int64_t count = 0;
   for (std::size_t i = 0; i < texels.pixels(); ++i) count += texels.counts(i) ? 1 : 0;
   return count;
+}
+
+std::vector<float> read_layer_shares(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& layer) {
+  const ReceiverTexels texels = draw_receivers(shaders, gbuffer, layer);
+  const auto width = static_cast<std::size_t>(gbuffer.width()), height = static_cast<std::size_t>(gbuffer.height());
+  std::vector<float> shares;
+  for (std::size_t y = height; y-- > 0;)
+    for (std::size_t x = 0; x < width; ++x) shares.push_back(texels.light[4 * (y * width + x) + 3]);
+  return shares;
 }
 
 std::vector<filters::Receiver> read_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light) {

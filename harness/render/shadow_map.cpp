@@ -78,9 +78,10 @@ ShadowMap::Layer::Layer(const char* label, GLenum format, int size)
   framebuffer.attach_depth(depth);
 }
 
-ShadowMap::ShadowMap(int size, const MapSettings& settings)
-    : settings_(settings), map_("shadow map", settings.format, size) {
-  require_depth_bits(settings.format, map_.depth.depth_bits());
+ShadowMap::ShadowMap(int size, const MapSettings& settings, int layers)
+    : settings_(settings), drawn_(static_cast<std::size_t>(layers)) {
+  for (int layer = 0; layer < layers; ++layer) layers_.emplace_back("shadow map", settings.format, size);
+  require_depth_bits(settings.format, texture().depth_bits());
   const GLenum compare = settings.curve.reversed ? GL_GEQUAL : GL_LEQUAL;
   for (gl::Sampler* sampler : {&plain_, &compare_linear_, &compare_nearest_}) {
     sampler->set_filter(GL_NEAREST, GL_NEAREST);
@@ -129,11 +130,12 @@ void ShadowMap::draw_casters(ShaderLibrary& shaders, const Geometry& geometry, c
 
 void ShadowMap::draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
                      const MapBias& bias) {
-  drawn_.emplace(geometry, frustum, bias);
+  const auto layer = static_cast<std::size_t>(frustum.layer);
+  drawn_[layer].emplace(geometry, frustum, bias);
   if (bias.midpoint)
     draw_midpoint(shaders, geometry, frustum, bias);
   else
-    draw_casters(shaders, geometry, frustum, bias, map_.framebuffer, {});
+    draw_casters(shaders, geometry, frustum, bias, layers_[layer].framebuffer, {});
 }
 
 /// Woo 1992, The Shadow Depth Map Revisited, Graphics Gems III: the map lies between the first and the second surface,
@@ -150,22 +152,23 @@ void ShadowMap::draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, 
   draw_casters(shaders, geometry, frustum, bias, surfaces_[1].framebuffer, {{"BEHIND_FIRST", "1"}});
   gl::Sampler::unbind(1);
   surfaces_[1].depth.bind(1);
-  map_.framebuffer.bind();
+  layers_[static_cast<std::size_t>(frustum.layer)].framebuffer.bind();
   shaders.fullscreen("midpoint.frag", curve_defines(settings_.curve)).use();
   gl::FullscreenTriangle().draw_depth();
 }
 
-void ShadowMap::draw_samples(ShaderLibrary& shaders, gl::Framebuffer& framebuffer) const {
-  if (drawn_ && !drawn_->bias.midpoint) {
+void ShadowMap::draw_samples(ShaderLibrary& shaders, gl::Framebuffer& framebuffer, int layer) const {
+  const std::optional<Drawn>& drawn = drawn_[static_cast<std::size_t>(layer)];
+  if (drawn && !drawn->bias.midpoint) {
     glEnable(GL_SAMPLE_SHADING);  // each sample has a depth and a hole of its own
     glMinSampleShading(1.0f);
-    draw_casters(shaders, drawn_->geometry, drawn_->frustum, drawn_->bias, framebuffer, {});
+    draw_casters(shaders, drawn->geometry, drawn->frustum, drawn->bias, framebuffer, {});
     glDisable(GL_SAMPLE_SHADING);
     return;
   }
   for (const GLuint unit : {0u, 1u}) {
     gl::Sampler::unbind(unit);
-    map_.depth.bind(unit);
+    layers_[static_cast<std::size_t>(layer)].depth.bind(unit);
   }
   framebuffer.bind();
   shaders.fullscreen("midpoint.frag", curve_defines(settings_.curve)).use();
@@ -173,22 +176,31 @@ void ShadowMap::draw_samples(ShaderLibrary& shaders, gl::Framebuffer& framebuffe
 }
 
 void ShadowMap::upload(std::span<const float> stored) {
-  map_.depth.upload_floats(stored, 1);
-  drawn_.reset();
+  layers_.front().depth.upload_floats(stored, 1);
+  drawn_.front().reset();
 }
 
-void ShadowMap::bind() const {
+void ShadowMap::bind(int layer) const {
   const gl::Sampler* samplers[] = {&plain_, &compare_linear_, &compare_nearest_};
   for (GLuint unit = 0; unit < 3; ++unit) {
-    map_.depth.bind(unit);
+    layers_[static_cast<std::size_t>(layer)].depth.bind(unit);
     samplers[unit]->bind(unit);
   }
 }
 
-filters::DepthMap ShadowMap::read() const {
-  return {size(), map_.depth.read_floats(1), settings_.curve, settings_.format != GL_DEPTH_COMPONENT32F, border_};
+filters::DepthMap ShadowMap::read(int layer) const {
+  return {size(), layers_[static_cast<std::size_t>(layer)].depth.read_floats(1), settings_.curve,
+          settings_.format != GL_DEPTH_COMPONENT32F, border_};
 }
 
-images::Image ShadowMap::read_picture() const { return read_image(map_.depth, 1); }
+images::Image ShadowMap::read_picture() const {
+  if (layers() == 1) return read_image(texture(), 1);
+  images::Image picture(layers() * size(), size(), 1);
+  for (int layer = 0; layer < layers(); ++layer) {
+    const images::Image own = read_image(layers_[static_cast<std::size_t>(layer)].depth, 1);
+    for (int y = 0; y < size(); ++y) std::copy_n(own.at(0, y), size(), picture.at(layer * size(), y));
+  }
+  return picture;
+}
 
 }  // namespace shadowbench::render

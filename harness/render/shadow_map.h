@@ -37,16 +37,18 @@ Defines curve_defines(const filters::DepthCurve& curve);
 /// Throws Error(kUsage) if not: another precision than the one asked for would be studied.
 void require_depth_bits(GLenum format, int bits);
 
-/// The depth map of one light; depth in [0,1], 0 near, whatever the format and the curve it is stored by.
+/// The depth map of one light; depth in [0,1], 0 near, whatever the format and the curve it is stored by. It has one
+/// layer or, where cascades or the faces of a cube share the receivers, several of one size.
 class ShadowMap {
  public:
   /// Throws Error(kUsage) when the GL cannot give this size or format.
-  explicit ShadowMap(int size, const MapSettings& settings = {});
+  explicit ShadowMap(int size, const MapSettings& settings = {}, int layers = 1);
 
   /// Chooses what lookups read outside; a new map has depth 1 there.
   void set_border(filters::Border border);
 
-  /// Draws the casters as the light sees them; by default nothing is culled, nothing is biased.
+  /// Draws the casters as the light sees them, into the frustum's layer; by default nothing is culled, nothing is
+  /// biased.
   /// Cost: one pass over the casters, two and a full-screen pass for a midpoint map.
   /// Requires linear depth where the bias has a polygon offset, which the GL adds to depth as it is drawn.
   void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
@@ -54,25 +56,27 @@ class ShadowMap {
 
   /// Draws what the map holds into a multisampled depth texture of the map's size and format: the same casters, or the
   /// map itself where it was uploaded, or where it holds no surface that could be drawn.
-  void draw_samples(ShaderLibrary& shaders, gl::Framebuffer& framebuffer) const;
+  void draw_samples(ShaderLibrary& shaders, gl::Framebuffer& framebuffer, int layer) const;
 
-  /// Replaces the map's contents by stored depths, row 0 at v = 0. Fixed-point formats clamp them. Requires size() *
-  /// size() values.
+  /// Replaces the first layer's contents by stored depths, row 0 at v = 0. Fixed-point formats clamp them. Requires
+  /// size() * size() values.
   void upload(std::span<const float> stored);
 
-  /// Binds the map to the three units of lib/map_access.glsl that read depth.
-  void bind() const;
+  /// Binds a layer to the three units of lib/map_access.glsl that read depth.
+  void bind(int layer = 0) const;
 
-  /// Reads the map back for the models, as it is stored.
-  filters::DepthMap read() const;
+  /// Reads a layer back for the models, as it is stored.
+  filters::DepthMap read(int layer = 0) const;
 
-  /// Reads the map back as a picture, rows top to bottom: row 0 is v = 1. As it is stored; see settings().curve.
+  /// Reads the map back as a picture, rows top to bottom: row 0 is v = 1; layers stand side by side. As it is stored;
+  /// see settings().curve.
   images::Image read_picture() const;
 
-  const gl::Texture& texture() const { return map_.depth; }
-  int size() const { return map_.depth.width(); }
+  const gl::Texture& texture() const { return layers_.front().depth; }
+  int size() const { return texture().width(); }
+  int layers() const { return static_cast<int>(layers_.size()); }
   const MapSettings& settings() const { return settings_; }
-  std::int64_t bytes() const { return static_cast<std::int64_t>(map_.depth.bytes()); }
+  std::int64_t bytes() const { return layers() * static_cast<std::int64_t>(texture().bytes()); }
 
  private:
   /// A depth texture that is drawn into.
@@ -90,9 +94,9 @@ class ShadowMap {
   };
 
   MapSettings settings_;
-  Layer map_;
-  std::optional<Drawn> drawn_;   ///< nothing where the map was uploaded
-  std::vector<Layer> surfaces_;  ///< first and second, only for midpoint maps
+  std::vector<Layer> layers_;
+  std::vector<std::optional<Drawn>> drawn_;  ///< by layer; nothing where it was uploaded
+  std::vector<Layer> surfaces_;              ///< first and second, only for midpoint maps
   gl::Sampler plain_{"depth, plain"};
   gl::Sampler compare_linear_{"depth, compared, 2x2"};
   gl::Sampler compare_nearest_{"depth, compared, nearest"};

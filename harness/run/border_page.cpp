@@ -45,8 +45,8 @@ class TilePainter {
   TilePainter& operator=(const TilePainter&) = delete;
 
   images::GridTile draw(const filters::FilterRequest& request, const Variant& variant) {
-    const render::Bias bias = render::resolve_bias(options_.bias, light_.frustum, request.spec, request.values);
-    const auto light = render::make_light_setup(light_.frustum, task_.scene->light, bias, options_.seed, variant.rule);
+    render::LightLayers light = measure::make_filter_light(options_, task_.scene->light, light_.layers, request);
+    for (render::LightSetup& layer : light) layer.range = variant.rule;
     light_.map.set_border(variant.rule.border);
     render::FilterPasses passes(renderer_.shaders, request, light_.map, light);
     images::GridTile tile;

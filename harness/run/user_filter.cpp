@@ -61,7 +61,7 @@ std::vector<std::string> worker_arguments(const options::RunOptions& options, co
                                         "--size",        fmt::format("{}x{}", options.width, options.height),
                                         "--seed",        fmt::format("{}", options.seed),
                                         "--phases",      fmt::format("{}", options.phases),
-                                        "--fit",         std::string(scene::name_of(options.fit)),
+                                        "--fit",         scene::describe_fit(options.fit),
                                         "--snap",        options.snap ? "on" : "off",
                                         "--map-format",  std::string(gl::pixel_format(options.map.format).name),
                                         "--pad-texels",  fmt::format("{}", measure::padding_texels(options)),

@@ -12,14 +12,24 @@ struct HalfSpace {
   double distance(const glm::dvec3& p) const { return glm::dot(normal, p) + offset; }
 };
 
-std::vector<HalfSpace> bound_view(const Camera& camera, double aspect) {
-  const glm::dvec3 eye(camera.position_ws), forward(camera.forward_ws);
-  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(camera.up_ws)));
-  const glm::dvec3 up = glm::cross(right, forward);
-  const double half_height = 0.5 * static_cast<double>(camera.orthographic_height_m);
-  const double tangent = std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad));
+struct ViewAxes {
+  explicit ViewAxes(const Camera& camera)
+      : eye(camera.position_ws),
+        forward(camera.forward_ws),
+        right(glm::normalize(glm::cross(forward, glm::dvec3(camera.up_ws)))),
+        up(glm::cross(right, forward)),
+        half_height(0.5 * static_cast<double>(camera.orthographic_height_m)),
+        tangent(std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad))) {}
+
+  glm::dvec3 eye, forward, right, up;
+  double half_height;  ///< of an orthographic camera; else 0
+  double tangent;
+};
+
+std::vector<HalfSpace> bound_view(const Camera& camera, double aspect, const std::optional<DepthSpan>& span) {
+  const auto [eye, forward, right, up, half_height, tangent] = ViewAxes(camera);
   std::vector<HalfSpace> bounds;
-  const auto add = [&](const glm::dvec3& normal, double offset) {
+  const auto add = [&bounds, &eye = eye](const glm::dvec3& normal, double offset) {
     bounds.push_back({normal, offset - glm::dot(normal, eye)});
   };
   for (const double side : {-1.0, 1.0}) {
@@ -27,6 +37,10 @@ std::vector<HalfSpace> bound_view(const Camera& camera, double aspect) {
     add(side * up + (half_height > 0.0 ? 0.0 : tangent) * forward, half_height);
   }
   if (!(half_height > 0.0)) add(forward, 0.0);
+  if (span) {
+    add(forward, -span->near_m);
+    add(-forward, span->far_m);
+  }
   return bounds;
 }
 
@@ -45,8 +59,25 @@ Polygon cut(const Polygon& polygon, const HalfSpace& bound) {
 
 }  // namespace
 
-std::vector<glm::dvec3> list_visible_corners(const Scene& scene, const Camera& camera, double aspect) {
-  const std::vector<HalfSpace> bounds = bound_view(camera, aspect);
+double view_depth(const Camera& camera, const glm::dvec3& point_ws) {
+  return glm::dot(point_ws - glm::dvec3(camera.position_ws), glm::dvec3(camera.forward_ws));
+}
+
+ViewCorners list_view_corners(const Camera& camera, double aspect, const DepthSpan& span) {
+  const ViewAxes axes(camera);
+  ViewCorners corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const double depth = i < 4 ? span.near_m : span.far_m;
+    const double half = axes.half_height > 0.0 ? axes.half_height : axes.tangent * depth;
+    corners[i] = axes.eye + depth * axes.forward + (i % 2 ? half : -half) * aspect * axes.right +
+                 (i / 2 % 2 ? half : -half) * axes.up;
+  }
+  return corners;
+}
+
+std::vector<glm::dvec3> list_visible_corners(const Scene& scene, const Camera& camera, double aspect,
+                                             const std::optional<DepthSpan>& span) {
+  const std::vector<HalfSpace> bounds = bound_view(camera, aspect, span);
   std::vector<glm::dvec3> corners;
   for (const Mesh& mesh : scene.meshes) {
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {

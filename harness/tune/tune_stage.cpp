@@ -63,7 +63,11 @@ TuneStage::TuneStage(measure::Renderer& renderer, const TuneSettings& settings, 
     on_view(fmt::format("truth of {}, {}", scene_.name, camera.name));
     View view{&camera, &assets_.truth(camera), std::nullopt};
     if (view.truth->absent.empty() && is_artefact(settings.metric->kind))
-      view.masks = measure::find_artefact_masks(assets_.tracer(), light_->frustum, *view.truth, settings.pad_texels);
+      view.masks = measure::find_artefact_masks(
+          assets_.tracer(),
+          measure::list_traced_layers(renderer.shaders, assets_.gbuffer(camera),
+                                      measure::make_unbiased_light(*settings.options, scene_.light, light_->layers)),
+          *view.truth, settings.pad_texels);
     const std::string reason = explain_absent(view);
     if (reason.empty())
       views_.push_back(std::move(view));
@@ -82,8 +86,8 @@ std::string TuneStage::explain_absent(const View& view) const {
                      acne ? "lit" : "blocked", settings_.metric->name, metrics::kFewestReceivers);
 }
 
-render::LightSetup TuneStage::make_light(const filters::FilterRequest& request) const {
-  return measure::make_filter_light(*settings_.options, scene_.light, light_->frustum, request);
+render::LightLayers TuneStage::make_light(const filters::FilterRequest& request) const {
+  return measure::make_filter_light(*settings_.options, scene_.light, light_->layers, request);
 }
 
 render::FilterPasses TuneStage::make_passes(const filters::FilterRequest& request) {

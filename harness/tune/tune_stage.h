@@ -68,7 +68,7 @@ class TuneStage {
 
   /// Gives why a view has no such metric; empty where it has.
   std::string explain_absent(const View& view) const;
-  render::LightSetup make_light(const filters::FilterRequest& request) const;
+  render::LightLayers make_light(const filters::FilterRequest& request) const;
 };
 
 }  // namespace shadowbench::tune

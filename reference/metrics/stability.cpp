@@ -98,6 +98,16 @@ void check_variances(const StoredMap& map, TexelHealth& health) {
 
 }  // namespace
 
+void TexelHealth::add(const TexelHealth& other) {
+  texels += other.texels;
+  overflowed += other.overflowed;
+  nan += other.nan;
+  if (largest) largest = other.largest ? std::optional(std::max(*largest, *other.largest)) : std::nullopt;
+  if (negative_variance) *negative_variance += other.negative_variance.value_or(0);
+  if (!lowest_variance || (other.lowest_variance && *other.lowest_variance < *lowest_variance))
+    lowest_variance = other.lowest_variance;
+}
+
 TexelHealth check_texels(const StoredMap& map) {
   TexelHealth health;
   const std::vector<std::uint8_t> saturated = find_saturated(map);

@@ -31,6 +31,9 @@ struct TexelHealth {
   std::optional<double> lowest_variance;          ///< moments only, and only where some texel is finite
 
   std::int64_t broken() const { return overflowed + nan; }
+
+  /// Adds another layer of the same map.
+  void add(const TexelHealth& other);
 };
 
 /// Looks through an encoded map.

@@ -12,6 +12,7 @@ uniform float bias_plane_texels;
 uniform float bias_plane_kernels;   // the share of that per texel of a filter's reach
 uniform float bias_normal_texels;
 uniform float bias_max_tangent;    // steeper planes are treated as this steep
+uniform int light_layer;           // of the map: a cascade, a face of a cube; 0 where there is one
 
 #ifdef PERSPECTIVE_LIGHT
 // A light that stands in the scene, with a map drawn through a perspective. light_size is its diameter in metres.

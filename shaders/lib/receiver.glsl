@@ -24,6 +24,9 @@ struct Receiver {
 // compiler drops the rest.
 layout(binding = 5) uniform sampler2D receiver_places;  // uv, depth before its bias, steepness; or a mark, in w
 layout(binding = 6) uniform sampler2D receiver_planes;  // depth_per_texel, n_dot_l, view_depth
+#ifdef LAYERED
+layout(binding = 16) uniform sampler2D receiver_shares;  // of each receiver that this layer of the map serves, 0 .. 1
+#endif
 
 // Marks of pixels that no filter is asked about.
 const float mark_background = -1.0;  // lit
@@ -37,7 +40,7 @@ Receiver make_receiver(ivec2 pixel, vec4 place) {
   r.normal_ws = texelFetch(gbuffer_normal, pixel, 0).xyz;
   r.n_dot_l = plane.z;
   r.uv = place.xy;
-  r.layer = 0;
+  r.layer = light_layer;
   r.depth_per_texel = plane.xy;
   r.texel_size_ws = texel_size_at(r.position_ws);
   r.bias_per_texel = bias_plane_kernels * min(abs(plane.xy), vec2(bias_max_tangent * r.texel_size_ws / depth_range_ws));

@@ -11,24 +11,22 @@
 namespace shadowbench::measure {
 namespace {
 
-using SharedTarget = std::shared_ptr<render::ImageTarget>;
-
 /// The encoded maps of every light, for each format that some filter stores.
 class EncodedMaps {
  public:
   explicit EncodedMaps(std::size_t lights) : lights_(lights) {}
 
-  /// Null for a filter that reads depth.
-  SharedTarget find(const render::FilterPasses& filter, std::size_t light) {
-    if (!filter.encoded_format()) return nullptr;
-    std::vector<SharedTarget>& maps = maps_[*filter.encoded_format()];
-    while (maps.size() < lights_) maps.push_back(filter.make_encoded_target());
+  /// Empty for a filter that reads depth.
+  render::EncodedTargets find(const render::FilterPasses& filter, std::size_t light) {
+    if (!filter.encoded_format()) return {};
+    std::vector<render::EncodedTargets>& maps = maps_[*filter.encoded_format()];
+    while (maps.size() < lights_) maps.push_back(filter.make_encoded_targets());
     return maps[light];
   }
 
  private:
   std::size_t lights_;
-  std::map<GLenum, std::vector<SharedTarget>> maps_;
+  std::map<GLenum, std::vector<render::EncodedTargets>> maps_;
 };
 
 records::LightCountRecord make_record(int count, const RoundTimes& times, std::size_t filter, const LightFrame& frame,
@@ -62,7 +60,7 @@ void LightFrameBench::prepare_filters(const std::vector<scene::Light>& lights) {
   for (render::FilterPasses* filter : frame_.filters) {
     std::vector<render::PreparedLight>& prepared = prepared_.emplace_back();
     for (std::size_t i = 0; i < lights.size(); ++i) {
-      prepared.push_back(filter->prepare(make_filter_light(options_, lights[i], maps_[i].frustum, filter->request()),
+      prepared.push_back(filter->prepare(make_filter_light(options_, lights[i], maps_[i].layers, filter->request()),
                                          encoded.find(*filter, i)));
     }
   }

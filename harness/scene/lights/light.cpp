@@ -38,13 +38,14 @@ std::string write_vector(const glm::vec3& v) { return fmt::format("{} {} {}", v.
 
 glm::vec3 to_light(const Light& light, const glm::vec3& point_ws) {
   return std::visit(Each{[](const Sun& sun) { return -sun.direction_ws; },
-                         [&](const Spot& spot) { return glm::normalize(spot.position_ws - point_ws); }},
+                         [&](const auto& lamp) { return glm::normalize(lamp.position_ws - point_ws); }},
                     light.kind);
 }
 
 std::optional<Beam> find_beam(const Light& light) {
-  const auto* spot = std::get_if<Spot>(&light.kind);
-  return spot ? std::optional(make_beam(*spot)) : std::nullopt;
+  return std::visit(Each{[](const Sun&) -> std::optional<Beam> { return std::nullopt; },
+                         [](const auto& lamp) -> std::optional<Beam> { return make_beam(lamp); }},
+                    light.kind);
 }
 
 bool shines_on(const Light& light, const glm::vec3& point_ws) {
@@ -56,7 +57,8 @@ double light_size(const Light& light) {
   return std::visit(Each{[](const Sun& sun) {
                            return 2.0 * std::tan(0.5 * glm::radians(static_cast<double>(sun.angular_diameter_deg)));
                          },
-                         [](const Spot& spot) { return diameter_of(spot); }},
+                         [](const Spot& spot) { return diameter_of(spot); },
+                         [](const PointLight& point) { return 2.0 * static_cast<double>(point.radius_m); }},
                     light.kind);
 }
 
@@ -69,6 +71,10 @@ Light turn_light(Light light, const std::function<glm::vec3(const glm::vec3&)>& 
                   [&](Spot& spot) {
                     const glm::vec3 way = spot.target_ws - spot.position_ws;
                     spot.position_ws = spot.target_ws - glm::length(way) * turn(glm::normalize(way));
+                  },
+                  [&](PointLight& point) {
+                    const float distance = glm::length(point.position_ws);
+                    if (distance > 0.0f) point.position_ws = -distance * turn(-point.position_ws / distance);
                   }},
              light.kind);
   return light;
@@ -90,13 +96,18 @@ std::vector<Light> make_light_ring(const Light& first, int count) {
 }
 
 Light read_light(const TomlTable& table) {
-  const bool is_spot = table.choice("type", {"directional", "spot"}, "directional") == "spot";
-  std::vector<std::string> keys = is_spot ? spot_keys() : sun_keys();
+  const std::string type = table.choice("type", {"directional", "spot", "point"}, "directional");
+  std::vector<std::string> keys = type == "spot" ? spot_keys() : type == "point" ? point_keys() : sun_keys();
   keys.insert(keys.begin(), {"type", "color", "intensity"});
-  if (!is_spot) keys.insert(keys.end(), {"map_center", "map_width", "map_near", "map_far"});
+  if (type == "directional") keys.insert(keys.end(), {"map_center", "map_width", "map_near", "map_far"});
   table.require_known_keys(keys);
   Light light;
-  light.kind = is_spot ? LightKind(read_spot(table)) : read_sun(table);
+  if (type == "spot")
+    light.kind = read_spot(table);
+  else if (type == "point")
+    light.kind = read_point(table);
+  else
+    light.kind = read_sun(table);
   light.color = glm::vec3(table.vec3("color", kColor, glm::dvec3(1.0)));
   light.intensity = table.number_f("intensity", {0.0, 1000.0}, 1.0);
   light.map_window = read_map_window(table);
@@ -107,6 +118,7 @@ std::optional<LightKind> make_gltf_light(std::string_view type, const glm::dmat4
                                          double inner_cone_rad, double outer_cone_rad) {
   const glm::dvec3 ahead = -glm::dvec3(world_from_node[2]), position(world_from_node[3]);
   if (type == "directional") return Sun{glm::vec3(ahead)};
+  if (type == "point") return PointLight{.position_ws = glm::vec3(position)};
   if (type != "spot") return std::nullopt;
   const auto full_deg = [](double half_rad) { return static_cast<float>(2.0 * glm::degrees(half_rad)); };
   return Spot{.position_ws = glm::vec3(position),
@@ -121,12 +133,17 @@ Light aim_light(Light light, const glm::vec3& center_ws) {
     const float distance = glm::dot(center_ws - spot->position_ws, ahead);
     if (distance > 0.0f) spot->target_ws = spot->position_ws + distance * ahead;
   }
+  if (auto* point = std::get_if<PointLight>(&light.kind)) {
+    const float distance = glm::distance(center_ws, point->position_ws);
+    if (distance > 0.0f) point->reference_m = distance;
+  }
   return light;
 }
 
 Light checked_light(Light light, const std::string& where) {
   light.kind = std::visit(Each{[&](const Sun& sun) -> LightKind { return checked_sun(sun, where); },
-                               [&](const Spot& spot) -> LightKind { return checked_spot(spot, where); }},
+                               [&](const Spot& spot) -> LightKind { return checked_spot(spot, where); },
+                               [&](const PointLight& point) -> LightKind { return checked_point(point, where); }},
                           light.kind);
   const bool shines = std::isfinite(light.color.r + light.color.g + light.color.b) &&
                       glm::all(glm::greaterThanEqual(light.color, glm::vec3(0.0f))) && std::isfinite(light.intensity) &&
@@ -146,6 +163,9 @@ std::string describe_light(const Light& light) {
                                           : fmt::format("{:.3g}", 2.0f * spot.radius_m);
              return fmt::format("a spot light of {} m, {:.3g} m from its target", size,
                                 glm::distance(spot.position_ws, spot.target_ws));
+           },
+           [](const PointLight& point) {
+             return fmt::format("a point light, a sphere of {:.3g} m", 2.0f * point.radius_m);
            }},
       light.kind);
 }
@@ -164,6 +184,11 @@ std::map<std::string, std::variant<double, std::string>> light_metadata(const Li
                                            {"light_inner_cone_deg", static_cast<double>(spot.inner_cone_deg)},
                                            {"light_radius_m", static_cast<double>(spot.radius_m)},
                                            {"light_size_m", fmt::format("{} {}", spot.size_m.x, spot.size_m.y)}};
+                         },
+                         [](const PointLight& point) {
+                           return Metadata{{"light_position_ws", write_vector(point.position_ws)},
+                                           {"light_reference_m", static_cast<double>(point.reference_m)},
+                                           {"light_radius_m", static_cast<double>(point.radius_m)}};
                          }},
                     light.kind);
 }
@@ -181,6 +206,10 @@ std::vector<std::string> list_light_content(const Light& light) {
                  "{} {} {} {} {} {} {} {} {}", light.kind.index(), write_vector(spot.position_ws),
                  write_vector(spot.target_ws), c.r, c.g, c.b, light.intensity, spot.radius_m,
                  fmt::format("{} {} {} {}", spot.cone_deg, spot.inner_cone_deg, spot.size_m.x, spot.size_m.y));
+           },
+           [&](const PointLight& point) {
+             return fmt::format("{} {} {} {} {} {} {} {}", light.kind.index(), write_vector(point.position_ws), c.r,
+                                c.g, c.b, light.intensity, point.radius_m, point.reference_m);
            }},
       light.kind)};
   if (!light.map_window) return content;

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "harness/scene/lights/point.h"
 #include "harness/scene/lights/spot.h"
 #include "harness/scene/lights/sun.h"
 #include "reference/truth/area_light.h"
@@ -16,7 +17,7 @@
 namespace shadowbench::scene {
 
 /// The kinds of light: each has a file of its own, and is chosen from in light.cpp alone.
-using LightKind = std::variant<Sun, Spot>;
+using LightKind = std::variant<Sun, Spot, PointLight>;
 
 /// Asks each kind of light by a function of its own.
 template <class... Functions>
@@ -60,10 +61,10 @@ double light_size(const Light& light);
 /// The light as the truth traces it.
 truth::AreaLight make_area_light(const Light& light);
 
-/// The light with its direction mapped by `turn`; one in the scene goes round its target.
+/// The light with its direction mapped by `turn`; one in the scene goes round its target, or the world's origin.
 Light turn_light(Light light, const std::function<glm::vec3(const glm::vec3&)>& turn);
 
-/// The light moved to a place in the sky, see light_direction(); one in the scene as seen from its target.
+/// The light moved to a place in the sky, see light_direction(); one in the scene as seen from what it goes round.
 Light place_in_sky(Light light, double azimuth_deg, double elevation_deg);
 
 /// Turns a light about the vertical (+y): light i of `count` is `first`, turned by i * 360 / count degrees. A light
@@ -74,12 +75,12 @@ std::vector<Light> make_light_ring(const Light& first, int count);
 Light read_light(const TomlTable& table);
 
 /// Returns the light of a glTF node, or nothing for a type that is not modelled. A spot's cones are given as half
-/// angles, radians; glTF knows no size of lamps, so that it gets that of a spot without `radius` in a scene file.
+/// angles, radians; glTF knows no size of lamps, so that it gets that of one without `radius` in a scene file.
 std::optional<LightKind> make_gltf_light(std::string_view type, const glm::dmat4& world_from_node,
                                          double inner_cone_rad = 0.0, double outer_cone_rad = 0.0);
 
-/// A light in the scene whose target is as far ahead as `center_ws` is; others stay as they are. A
-/// glTF file says where a spot looks, and not how far.
+/// A light in the scene whose light is as strong as a sun's where `center_ws` is, or as far ahead; others stay as they
+/// are. A glTF file says where a spot looks, and not how far.
 Light aim_light(Light light, const glm::vec3& center_ws);
 
 /// Throws kInput, with `where`, for a light that is not finite or has no direction.

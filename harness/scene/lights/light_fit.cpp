@@ -1,30 +1,14 @@
 #include "harness/scene/lights/light_fit.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
-#include <array>
+#include <cassert>
 
 #include "filters/base/error.h"
+#include "harness/scene/lights/cascades.h"
 #include "harness/scene/mesh_tools.h"
 
 namespace shadowbench::scene {
-namespace {
-
-constexpr std::array<std::string_view, 3> kFitNames = {"sphere", "tight", "view"};  // in the order of FitMode
-
-}  // namespace
-
-std::string_view name_of(FitMode mode) { return kFitNames[static_cast<std::size_t>(mode)]; }
-
-FitMode parse_fit_mode(std::string_view name) {
-  const auto found = std::find(kFitNames.begin(), kFitNames.end(), name);
-  if (found != kFitNames.end()) return static_cast<FitMode>(found - kFitNames.begin());
-  throw Error(ErrorKind::kUsage,
-              fmt::format("--fit: unknown fit '{}'; there are {}", name, fmt::join(kFitNames, ", ")));
-}
-
 glm::dvec3 LightFrustum::to_light(const glm::dvec3& point_ws) const {
   return perspective ? glm::normalize(perspective->beam.position_ws - point_ws) : -glm::dvec3(direction_ws);
 }
@@ -87,10 +71,21 @@ LightFrustum fit_light(const Scene& scene, FitMode mode, int map_size, double pa
 }
 
 LightFrustum fit_light(const Scene& scene, const FitRequest& request) {
+  std::vector<LightFrustum> layers = fit_layers(scene, request);
+  assert(layers.size() == 1);
+  return std::move(layers.front());
+}
+
+std::vector<LightFrustum> fit_layers(const Scene& scene, const FitRequest& request) {
+  using Layers = std::vector<LightFrustum>;
   const Light& light = request.light ? *request.light : scene.light;
   const MapWindow* window = light.map_window ? &*light.map_window : nullptr;
-  return std::visit(Each{[&](const Sun& sun) { return fit_sun(sun, window, scene, request); },
-                         [&](const Spot& spot) { return fit_spot(spot, scene, request); }},
+  return std::visit(Each{[&](const Sun& sun) {
+                           if (request.mode == FitMode::kCascades && !window) return fit_cascades(sun, scene, request);
+                           return Layers{fit_sun(sun, window, scene, request)};
+                         },
+                         [&](const Spot& spot) { return Layers{fit_spot(spot, scene, request)}; },
+                         [&](const PointLight& point) { return fit_point(point, scene, request); }},
                     light.kind);
 }
 

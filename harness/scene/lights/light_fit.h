@@ -2,24 +2,15 @@
 
 #include <glm/glm.hpp>
 #include <optional>
-#include <string_view>
+#include <vector>
 
+#include "harness/scene/lights/fit_rule.h"
+#include "harness/scene/lights/layer_share.h"
 #include "harness/scene/scene.h"
+#include "harness/scene/view_clip.h"
 #include "reference/truth/visibility.h"
 
 namespace shadowbench::scene {
-
-/// Chooses what the light's frustum encloses.
-enum class FitMode {
-  kSphere,  ///< a sphere around the scene: its size does not change when the light turns
-  kTight,   ///< casters and receivers, as the light sees them
-  kView,    ///< what the camera sees of the scene, with the casters between that and the light
-};
-
-/// The fit's name on the command line and in records.
-std::string_view name_of(FitMode mode);
-/// Throws kUsage for a name that is no fit, with those there are.
-FitMode parse_fit_mode(std::string_view name);
 
 /// What a light's frustum is fitted to, and how.
 struct FitRequest {
@@ -27,10 +18,12 @@ struct FitRequest {
   int map_size = 1024;      ///< texels along a side
   double pad_texels = 0.0;  ///< stay free on every side
   bool snap = false;        ///< keep the texel grid fixed in the world while the camera or the scene's extent moves
-  const Camera* camera = nullptr;  ///< FitMode::kView only
+  const Camera* camera = nullptr;  ///< for a fit that follows the view
   double aspect = 1.0;             ///< of its picture, width / height
   const Light* light = nullptr;    ///< in place of the scene's own
   glm::dvec2 shift_texels{0.0};    ///< moves the fitted map along its axes; at most half a texel, or padding is used up
+  CascadeRule cascades = {};       ///< FitMode::kCascades only
+  std::optional<DepthSpan> seen = {};  ///< the depths that pixels show, for cascades that split these
 };
 
 /// What the map of a light in the scene is drawn through. Depth is linear in the distance along the light's axis, as
@@ -56,7 +49,10 @@ struct LightFrustum {
   bool projective = false;  ///< uv_depth_from_world ends with a division by w, which is negative behind the light
   glm::vec3 direction_ws{0.0f, 0.0f, 1.0f};   ///< the way the light travels, unit length
   std::optional<PerspectiveMap> perspective;  ///< then u and v end with the division, and depth does not
+  int layer = 0;                              ///< of the light's map
+  LayerShare share;                           ///< the receivers that this layer serves
 
+  bool is_layered() const { return !std::holds_alternative<std::monostate>(share); }
   glm::dvec3 to_light(const glm::dvec3& point_ws) const;   ///< unit length
   double texel_size_at(const glm::dvec3& point_ws) const;  ///< metres
 
@@ -92,8 +88,15 @@ truth::MapGrid make_map_grid(const LightFrustum& frustum);
 /// up to a power of 2^(1/8), at most 9 % larger: while the camera moves by less than a texel the grid stays where it
 /// is, and the edges of shadows do not crawl. That costs one texel of the map's side.
 ///
-/// Requires a camera for FitMode::kView. Throws kUsage where the padding leaves no texel for the scene. Cost: one or
-/// two passes over the vertices.
+/// FitMode::kCascades fits a layer to each slice of the view as FitMode::kView does; with `snap` around a sphere that
+/// holds the slice of the camera's own frustum, whose size does not change when the camera turns. A light in the scene
+/// has nothing to split: it is fitted as ever.
+///
+/// Requires a camera for a fit that follows the view. Throws kUsage where the padding leaves no texel for the scene.
+/// Cost: one or two passes over the vertices.
+std::vector<LightFrustum> fit_layers(const Scene& scene, const FitRequest& request);
+
+/// The same for a fit that makes one layer.
 LightFrustum fit_light(const Scene& scene, const FitRequest& request);
 LightFrustum fit_light(const Scene& scene, FitMode mode, int map_size, double pad_texels);
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "harness/scene/lights/light_fit.h"
+#include "harness/scene/lights/perspective_fit.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/toml_reader.h"
 #include "harness/scene/validate.h"
@@ -16,42 +16,6 @@ namespace shadowbench::scene {
 namespace {
 
 constexpr double kLeastCone_deg = 0.1;
-
-/// Distances along the axis of what stands in the cone; empty where nothing does.
-struct Extent {
-  double nearest = std::numeric_limits<double>::max();
-  double farthest = 0.0;
-};
-
-/// The map is a square around the cone: a vertex counts where the square's edges see it. A triangle that crosses the
-/// plane of the lamp begins at it.
-Extent find_extent(const Scene& scene, const glm::dmat4& light_from_world, double tangent) {
-  Extent extent;
-  const auto see = [&](const glm::vec3& p) { return glm::dvec3(light_from_world * glm::dvec4(p, 1.0)); };
-  for (const Mesh& mesh : scene.meshes) {
-    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-      glm::dvec3 least(std::numeric_limits<double>::max()), most(std::numeric_limits<double>::lowest());
-      for (std::size_t k = 0; k < 3; ++k) {
-        const glm::dvec3 seen = see(mesh.vertices[mesh.indices[i + k]].position_ws);
-        least = glm::min(least, seen);
-        most = glm::max(most, seen);
-      }
-      const double reach = -least.z * tangent;  // half of the square where it is widest over this triangle
-      if (-least.z <= 0.0 || least.x > reach || most.x < -reach || least.y > reach || most.y < -reach) continue;
-      extent.nearest = std::min(extent.nearest, std::max(-most.z, 0.0));
-      extent.farthest = std::max(extent.farthest, -least.z);
-    }
-  }
-  return extent;
-}
-
-/// Depth is computed in float, and a near plane at the lamp would leave none of it for the scene.
-PerspectiveMap make_planes(const Beam& beam, const Extent& extent) {
-  constexpr double kPadding = 1e-3, kLeastNear = 1.0 / 500.0;
-  if (extent.farthest <= 0.0) return {beam, 0.5 * beam.reference_m, 2.0 * beam.reference_m};
-  const double far_m = extent.farthest * (1.0 + kPadding);
-  return {beam, std::max(extent.nearest * (1.0 - kPadding), kLeastNear * far_m), far_m};
-}
 
 bool is_rectangle(const Spot& spot) { return spot.size_m.x > 0.0f && spot.size_m.y > 0.0f; }
 
@@ -124,22 +88,8 @@ truth::AreaLight make_area_light(const Spot& spot) {
 
 LightFrustum fit_spot(const Spot& spot, const Scene& scene, const FitRequest& request) {
   const Beam beam = make_beam(spot);
-  const double used_texels = count_used_texels(request);
-  const double tangent =
-      std::tan(0.5 * glm::radians(static_cast<double>(spot.cone_deg))) * request.map_size / used_texels;
-  LightFrustum fit;
-  const glm::dmat3 rotation = light_rotation(beam.axis_ws);
-  fit.light_from_world = glm::dmat4(rotation);
-  fit.light_from_world[3] = glm::dvec4(-(rotation * beam.position_ws), 1.0);
-  fit.perspective = make_planes(beam, find_extent(scene, fit.light_from_world, tangent));
-  fit.projective = true;
-  fit.direction_ws = glm::vec3(beam.axis_ws);
-  fit.width_ws = 2.0 * tangent * beam.reference_m;
-  fit.texel_size_ws = fit.width_ws / request.map_size;
-  const double near_m = fit.perspective->near_m, far_m = fit.perspective->far_m;
-  fit.depth_range_ws = far_m - near_m;
-  set_perspective(fit, tangent, 2.0 * request.shift_texels / static_cast<double>(request.map_size));
-  return fit;
+  const double tangent = pad_tangent(std::tan(0.5 * glm::radians(static_cast<double>(spot.cone_deg))), request);
+  return fit_perspective(beam, tangent, find_extent(scene, look_along(beam), tangent), request);
 }
 
 }  // namespace shadowbench::scene

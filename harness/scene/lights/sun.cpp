@@ -16,6 +16,22 @@
 namespace shadowbench::scene {
 namespace {
 
+/// The light's axes, and the place that its coordinates count from.
+struct SunView {
+  SunView(const Sun& sun, const Scene& scene, const FitRequest& request)
+      : direction(glm::normalize(glm::dvec3(sun.direction_ws))),
+        rotation(light_rotation(direction)),
+        bounds(scene.bounds()),
+        center(0.5 * (glm::dvec3(bounds.min) + glm::dvec3(bounds.max))),
+        used_texels(count_used_texels(request)) {}
+
+  glm::dvec3 direction;
+  glm::dmat3 rotation;
+  Bounds bounds;
+  glm::dvec3 center;
+  double used_texels;
+};
+
 /// A box in the light's space.
 struct Box {
   glm::dvec3 min{std::numeric_limits<double>::max()};
@@ -26,8 +42,6 @@ void add(Box& box, const glm::dvec3& seen) {
   box.min = glm::min(box.min, seen);
   box.max = glm::max(box.max, seen);
 }
-
-glm::dvec3 center_of(const Bounds& bounds) { return 0.5 * (glm::dvec3(bounds.min) + glm::dvec3(bounds.max)); }
 
 template <typename Visit>
 void for_each_position(const Scene& scene, const Visit& visit) {
@@ -89,28 +103,17 @@ double square_side(const Box& box) {
   return std::max({extent.x, extent.y, 1e-3 * extent.z});
 }
 
-Box view_box(const Scene& scene, const FitRequest& request, const glm::dmat3& rotation, const glm::dvec3& center,
-             double used_texels) {
-  assert(request.camera);
+Box box_over(const std::vector<glm::dvec3>& receivers, const Scene& scene, const FitRequest& request,
+             const SunView& view) {
   Box box;
-  for (const glm::dvec3& p : list_visible_corners(scene, *request.camera, request.aspect))
-    add(box, rotation * (p - center));
-  if (box.min.x > box.max.x) return tight_box(scene, rotation, center);
+  for (const glm::dvec3& p : receivers) add(box, view.rotation * (p - view.center));
+  if (box.min.x > box.max.x) return tight_box(scene, view.rotation, view.center);
   // The square map may reach beyond the box on its shorter side, snapping included.
   const double side = square_side(box);
-  const double map_side = 1.1 * side * request.map_size / used_texels;
-  add_casters(box, scene, rotation, center, map_side - std::min(box.max.x - box.min.x, box.max.y - box.min.y));
+  const double map_side = 1.1 * side * request.map_size / view.used_texels;
+  add_casters(box, scene, view.rotation, view.center,
+              map_side - std::min(box.max.x - box.min.x, box.max.y - box.min.y));
   return box;
-}
-
-Box choose_box(const Scene& scene, const FitRequest& request, const glm::dmat3& rotation, const glm::dvec3& center,
-               double used_texels) {
-  switch (request.mode) {
-    case FitMode::kSphere: return sphere_box(scene, center);
-    case FitMode::kView: return view_box(scene, request, rotation, center, used_texels);
-    case FitMode::kTight: break;
-  }
-  return tight_box(scene, rotation, center);
 }
 
 double round_up_texel(double texel_ws) {
@@ -134,6 +137,41 @@ void set_matrices(LightFrustum& fit) {
   fit.uv_depth_from_world = glm::mat4(uv_from_clip * fit.clip_from_light * fit.light_from_world);
 }
 
+/// Replaces what was fitted by what the window says; the light's direction stays.
+void set_window(LightFrustum& fit, const MapWindow& window, int map_size) {
+  const glm::dvec3 center(fit.light_from_world * glm::dvec4(window.center_ws, 1.0));
+  glm::dvec3 eye(center.x, center.y, 0.0);
+  if (window.planes) {
+    eye.z = center.z - window.planes->near_m;
+    fit.depth_range_ws = window.planes->far_m - window.planes->near_m;
+  }
+  fit.light_from_world[3] -= glm::dvec4(eye, 0.0);
+  fit.width_ws = window.width_m;
+  fit.texel_size_ws = window.width_m / map_size;
+}
+
+LightFrustum fit_box(const SunView& view, const Box& box, const MapWindow* window, const FitRequest& request) {
+  const double side = square_side(box);
+  const double range = box.max.z - box.min.z;
+  const glm::dvec3 farthest = glm::max(glm::abs(glm::dvec3(view.bounds.min)), glm::abs(glm::dvec3(view.bounds.max)));
+  const double padding = depth_padding(range, side, std::max({farthest.x, farthest.y, farthest.z}));
+
+  LightFrustum fit;
+  fit.texel_size_ws = side / view.used_texels;
+  if (request.snap) fit.texel_size_ws = round_up_texel(fit.texel_size_ws);
+  fit.width_ws = fit.texel_size_ws * request.map_size;
+  fit.depth_range_ws = range + 2.0 * padding;
+  fit.direction_ws = glm::vec3(view.direction);
+  glm::dvec3 eye(0.5 * (box.min.x + box.max.x), 0.5 * (box.min.y + box.max.y), box.max.z + padding);
+  if (request.snap) eye = snap_to_texels(eye, -(view.rotation * view.center), fit.texel_size_ws);
+  fit.light_from_world = glm::dmat4(view.rotation);
+  fit.light_from_world[3] = glm::dvec4(-(view.rotation * view.center) - eye, 1.0);
+  if (window) set_window(fit, *window, request.map_size);
+  fit.light_from_world[3] -= glm::dvec4(fit.texel_size_ws * request.shift_texels, 0.0, 0.0);
+  set_matrices(fit);
+  return fit;
+}
+
 glm::dvec3 read_sun_direction(const TomlTable& table) {
   const bool by_angles = table.has("azimuth_deg") || table.has("elevation_deg");
   if (table.has("direction") == by_angles) {
@@ -147,19 +185,6 @@ glm::dvec3 read_sun_direction(const TomlTable& table) {
   const glm::dvec3 direction = table.vec3("direction", kAnyNumber);
   if (glm::length(direction) > 0.0) return direction;
   throw table.error("direction", "the light has no direction: 'direction' is [0, 0, 0]");
-}
-
-/// Replaces what was fitted by what the window says; the light's direction stays.
-void set_window(LightFrustum& fit, const MapWindow& window, int map_size) {
-  const glm::dvec3 center(fit.light_from_world * glm::dvec4(window.center_ws, 1.0));
-  glm::dvec3 eye(center.x, center.y, 0.0);
-  if (window.planes) {
-    eye.z = center.z - window.planes->near_m;
-    fit.depth_range_ws = window.planes->far_m - window.planes->near_m;
-  }
-  fit.light_from_world[3] -= glm::dvec4(eye, 0.0);
-  fit.width_ws = window.width_m;
-  fit.texel_size_ws = window.width_m / map_size;
 }
 
 }  // namespace
@@ -192,32 +217,23 @@ truth::AreaLight make_area_light(const Sun& sun) {
 }
 
 LightFrustum fit_sun(const Sun& sun, const MapWindow* window, const Scene& scene, const FitRequest& request) {
-  const double used_texels = count_used_texels(request);
-  const Bounds bounds = scene.bounds();
-  const glm::dvec3 center = center_of(bounds);
-  const glm::dvec3 direction = glm::normalize(glm::dvec3(sun.direction_ws));
-  const glm::dmat3 rotation = light_rotation(direction);
-  const Box box = choose_box(scene, request, rotation, center, used_texels);
+  const SunView view(sun, scene, request);
+  switch (request.mode) {
+    case FitMode::kSphere: return fit_box(view, sphere_box(scene, view.center), window, request);
+    case FitMode::kTight: break;
+    case FitMode::kView:
+    case FitMode::kCascades:
+      assert(request.camera);
+      return fit_box(view, box_over(list_visible_corners(scene, *request.camera, request.aspect), scene, request, view),
+                     window, request);
+  }
+  return fit_box(view, tight_box(scene, view.rotation, view.center), window, request);
+}
 
-  const double side = square_side(box);
-  const double range = box.max.z - box.min.z;
-  const glm::dvec3 farthest = glm::max(glm::abs(glm::dvec3(bounds.min)), glm::abs(glm::dvec3(bounds.max)));
-  const double padding = depth_padding(range, side, std::max({farthest.x, farthest.y, farthest.z}));
-
-  LightFrustum fit;
-  fit.texel_size_ws = side / used_texels;
-  if (request.snap) fit.texel_size_ws = round_up_texel(fit.texel_size_ws);
-  fit.width_ws = fit.texel_size_ws * request.map_size;
-  fit.depth_range_ws = range + 2.0 * padding;
-  fit.direction_ws = glm::vec3(direction);
-  glm::dvec3 eye(0.5 * (box.min.x + box.max.x), 0.5 * (box.min.y + box.max.y), box.max.z + padding);
-  if (request.snap) eye = snap_to_texels(eye, -(rotation * center), fit.texel_size_ws);
-  fit.light_from_world = glm::dmat4(rotation);
-  fit.light_from_world[3] = glm::dvec4(-(rotation * center) - eye, 1.0);
-  if (window) set_window(fit, *window, request.map_size);
-  fit.light_from_world[3] -= glm::dvec4(fit.texel_size_ws * request.shift_texels, 0.0, 0.0);
-  set_matrices(fit);
-  return fit;
+LightFrustum fit_sun_over(const Sun& sun, const Scene& scene, const FitRequest& request,
+                          const std::vector<glm::dvec3>& receivers) {
+  const SunView view(sun, scene, request);
+  return fit_box(view, box_over(receivers, scene, request, view), nullptr, request);
 }
 
 }  // namespace shadowbench::scene

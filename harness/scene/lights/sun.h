@@ -36,4 +36,9 @@ truth::AreaLight make_area_light(const Sun& sun);
 /// An orthographic frustum, fitted to the scene or, where `window` is not null, to that; see fit_light().
 LightFrustum fit_sun(const Sun& sun, const MapWindow* window, const Scene& scene, const FitRequest& request);
 
+/// The same over these receivers, in world space, with the casters between them and the light; without any, over the
+/// whole scene.
+LightFrustum fit_sun_over(const Sun& sun, const Scene& scene, const FitRequest& request,
+                          const std::vector<glm::dvec3>& receivers);
+
 }  // namespace shadowbench::scene

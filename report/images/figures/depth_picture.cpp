@@ -13,7 +13,7 @@
 namespace shadowbench::images {
 namespace {
 
-constexpr int kMapSide = 768;
+constexpr int kMapSide = 768, kLayerSide = 384;  // pixels, of the only map and of one of several
 constexpr int kPlotHeight = 220;
 constexpr int kAxisWidth = 90;  // for the counts' labels
 constexpr int kBinWidth = 4;
@@ -25,6 +25,11 @@ struct DepthPanel {
   std::string title;
   Image depth;
   filters::DepthCurve curve;  ///< says what depth a value stands for
+  double range_m = 0.0;
+  int width = 0;  ///< pixels
+
+  int bins() const { return (width - kAxisWidth) / kBinWidth; }
+  int map_side() const { return depth.width >= width ? width : depth.width * (width / depth.width); }
 };
 
 struct Range {
@@ -42,14 +47,10 @@ Range find_range(const DepthPanel& panel) {
   return range.least < range.most ? range : Range{0.0f, 1.0f};
 }
 
-int displayed_side(const Image& depth) {
-  return depth.width >= kMapSide ? kMapSide : depth.width * (kMapSide / depth.width);
-}
-
 /// Shows the map's texels as squares where it is small, and one of many where it is large.
 Image draw_map(const DepthPanel& panel, const Range& range) {
   const Image& depth = panel.depth;
-  const int side = displayed_side(depth);
+  const int side = panel.map_side();
   Image map(side, side, 3);
   for (int y = 0; y < side; ++y) {
     for (int x = 0; x < side; ++x) {
@@ -80,7 +81,9 @@ void draw_count_axis(Figure& figure, const Rect& plot, int decades) {
 
 void draw_depth_axis(Figure& figure, const Rect& plot, const filters::DepthCurve& curve, double range_m) {
   const int top = plot.y + plot.height + 8;
-  for (const double value : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+  const int quarters = plot.width > kLayerSide ? 1 : 2;  // labels need room
+  for (int quarter = 0; quarter <= 4; quarter += quarters) {
+    const double value = 0.25 * quarter;
     const int x = plot.x + static_cast<int>(value * plot.width);
     figure.fill({x, plot.y + plot.height, 1, 6}, kFigureSecondInk);
     figure.write_centred(x, top, records::format_number(value));
@@ -104,37 +107,37 @@ void draw_histogram(Figure& figure, const Rect& plot, const DepthHistogram& hist
   draw_depth_axis(figure, plot, curve, range_m);
 }
 
-constexpr int kBins = (kMapSide - kAxisWidth) / kBinWidth;
-
 /// Draws the panel with its left top corner at (x, y).
-void draw_panel(Figure& figure, int x, int y, const DepthPanel& panel, double range_m) {
+void draw_panel(Figure& figure, int x, int y, const DepthPanel& panel) {
   const Range range = find_range(panel);
-  const DepthHistogram histogram = count_depths(panel.depth, kBins, panel.curve.far_plane());
+  const DepthHistogram histogram = count_depths(panel.depth, panel.bins(), panel.curve.far_plane());
   const Image map = draw_map(panel, range);
   const int line = figure_line_height();
   figure.write(x, y, panel.title);
   y += line + line / 4;
   figure.place(x, y, map);
   y += map.height + line / 4;
-  figure.write(
-      x, y,
-      fmt::format("black: {} · light grey: {} · blue: nothing drawn, {} of {} texels",
-                  records::format_number(static_cast<double>(range.least)),
-                  records::format_number(static_cast<double>(range.most)), histogram.empty, panel.depth.texels.size()));
+  figure.write(x, y,
+               fmt::format("black: {} · light grey: {}", records::format_number(static_cast<double>(range.least)),
+                           records::format_number(static_cast<double>(range.most))));
+  y += line;
+  figure.write(x, y, fmt::format("blue: nothing drawn, {} of {} texels", histogram.empty, panel.depth.texels.size()));
   y += 2 * line;
-  figure.write(x, y, fmt::format("texels per bin of 1/{} of the values (logarithmic)", kBins));
+  figure.write(x, y, fmt::format("texels per 1/{} of the values (logarithmic)", panel.bins()));
   y += line + line / 2;
-  draw_histogram(figure, {x + kAxisWidth, y, kBins * kBinWidth, kPlotHeight}, histogram, panel.curve, range_m);
+  draw_histogram(figure, {x + kAxisWidth, y, panel.bins() * kBinWidth, kPlotHeight}, histogram, panel.curve,
+                 panel.range_m);
 }
 
 /// As stored first; the rest is what cannot be seen in that.
-std::vector<DepthPanel> make_panels(const DepthPicture& picture) {
-  if (picture.curve.is_linear() && !picture.curve.reversed)
-    return {{"depth, linear as it is stored", picture.stored, {}}};
-  Image linear = picture.stored;
-  for (float& depth : linear.texels) depth = picture.curve.linear(depth);
-  return {{"as stored", picture.stored, picture.curve},
-          {"linearised: depth over the light's range", std::move(linear), {}}};
+std::vector<DepthPanel> make_panels(const DepthLayer& layer, const filters::DepthCurve& curve, int width) {
+  const std::string before = layer.name.empty() ? "" : layer.name + ": ";
+  if (curve.is_linear() && !curve.reversed)
+    return {{before + "depth, linear as it is stored", layer.stored, {}, layer.range_m, width}};
+  Image linear = layer.stored;
+  for (float& depth : linear.texels) depth = curve.linear(depth);
+  return {{before + "as stored", layer.stored, curve, layer.range_m, width},
+          {before + "linearised: depth over the light's range", std::move(linear), {}, layer.range_m, width}};
 }
 
 }  // namespace
@@ -154,16 +157,21 @@ DepthHistogram count_depths(const Image& depth, int bins, float far_plane) {
 }
 
 Image draw_depth_picture(const DepthPicture& picture) {
-  constexpr int kPanelWidth = kMapSide + 20, kGap = 60;
-  const std::vector<DepthPanel> panels = make_panels(picture);
-  const int count = static_cast<int>(panels.size()), line = figure_line_height();
-  Figure figure(
-      picture.title, picture.note,
-      {count * kPanelWidth + (count - 1) * kGap, displayed_side(picture.stored) + kPlotHeight + 8 * line + line / 2});
-  int x = figure.body().x;
-  for (const DepthPanel& panel : panels) {
-    draw_panel(figure, x, figure.body().y, panel, picture.range_m);
-    x += kPanelWidth + kGap;
+  const bool is_layered = picture.layers.size() > 1;
+  const int width = is_layered ? kLayerSide : kMapSide, panel_width = width + 20, gap = is_layered ? 40 : 60;
+  const int line = figure_line_height();
+  std::vector<std::vector<DepthPanel>> layers;
+  for (const DepthLayer& layer : picture.layers) layers.push_back(make_panels(layer, picture.curve, width));
+  const int kinds = static_cast<int>(layers.front().size()), count = static_cast<int>(layers.size());
+  const int columns = is_layered ? count : kinds, rows = is_layered ? kinds : 1;
+  const int panel_height = layers.front().front().map_side() + kPlotHeight + 9 * line + line / 2;
+  Figure figure(picture.title, picture.note, {columns * (panel_width + gap) - gap, rows * panel_height});
+  for (int layer = 0; layer < count; ++layer) {
+    for (int kind = 0; kind < kinds; ++kind) {
+      const int column = is_layered ? layer : kind, row = is_layered ? kind : 0;
+      draw_panel(figure, figure.body().x + column * (panel_width + gap), figure.body().y + row * panel_height,
+                 layers[static_cast<std::size_t>(layer)][static_cast<std::size_t>(kind)]);
+    }
   }
   return figure.canvas();
 }

@@ -10,13 +10,19 @@
 
 namespace shadowbench::images {
 
+/// A layer of a depth map: all of it, a cascade, or a face of a cube.
+struct DepthLayer {
+  Image stored;          ///< one channel, [0,1], row 0 on top; the curve's far plane: nothing was drawn
+  double range_m = 0.0;  ///< metres from depth 0 to depth 1
+  std::string name = {};
+};
+
 /// A depth map to be looked at.
 struct DepthPicture {
   std::string title;
   std::string note;
-  Image stored;               ///< one channel, [0,1], row 0 on top; the curve's far plane: nothing was drawn
+  std::vector<DepthLayer> layers;
   filters::DepthCurve curve;  ///< says what depth a stored value stands for
-  double range_m = 0.0;       ///< metres from depth 0 to depth 1
 };
 
 /// How often depths occur.
@@ -29,8 +35,9 @@ struct DepthHistogram {
 DepthHistogram count_depths(const Image& depth, int bins, float far_plane = 1.0f);
 
 /// Draws a depth map as it is stored and, where that is not linear depth, linearised beside it: each stretched over the
-/// values that occur, with its histogram below, texels per bin on a logarithmic axis over value and metres. Display
-/// values. Throws Error(kOutput) where the font is not installed.
+/// values that occur, with its histogram below, texels per bin on a logarithmic axis over value and metres. Several
+/// layers stand side by side, smaller, and what is linearised below what is stored. Display values. Throws
+/// Error(kOutput) where the font is not installed.
 Image draw_depth_picture(const DepthPicture& picture);
 
 /// Writes it as PNG. Throws Error(kOutput).

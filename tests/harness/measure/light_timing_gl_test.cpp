@@ -71,10 +71,10 @@ class LightFrames {
 
   std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request, const measure::LightMap& map,
                                                     const scene::Light& light) {
-    const render::Bias bias = render::resolve_bias(options_.bias, map.frustum, request.spec, request.values);
+    const render::Bias bias = render::resolve_bias(options_.bias, map.frustum(), request.spec, request.values);
     return std::make_unique<render::FilterPasses>(
         renderer_.shaders, request, map.map,
-        render::make_light_setup(map.frustum, light, bias, options_.seed, options_.range));
+        render::make_light_setup(map.frustum(), light, bias, options_.seed, options_.range));
   }
 };
 

@@ -63,7 +63,7 @@ images::Image half_filled_map(int size) {
 TEST(MapCoverage, OrthographicViewAlongTheLight_IsTexelAreaOverPixelArea) {
   // A pixel is 0.1 m wide, a texel 0.05 m; the view covers 4 m x 3 m of 12.8 m x 12.8 m.
   const MapCoverage c = measure_coverage(look_at_floor(camera_above(5.0f, 3.0f)), camera_above(5.0f, 3.0f),
-                                         light_from_above(12.8, 256), half_filled_map(256));
+                                         {{light_from_above(12.8, 256)}}, half_filled_map(256));
   EXPECT_NEAR(*c.record.texels_per_pixel, 4.0, 1e-4);
   EXPECT_NEAR(*c.record.fewest_texels_per_pixel, 4.0, 1e-4);
   EXPECT_NEAR(*c.record.map_used, 12.0 / (12.8 * 12.8), 1e-3);
@@ -73,7 +73,7 @@ TEST(MapCoverage, OrthographicViewAlongTheLight_IsTexelAreaOverPixelArea) {
 TEST(MapCoverage, TiltedLight_SpreadsATexelByOneOverTheCosine) {
   const scene::Camera camera = camera_above(5.0f, 3.0f);
   const MapCoverage c =
-      measure_coverage(look_at_floor(camera), camera, light_from_above(12.8, 256, 60.0f), half_filled_map(256));
+      measure_coverage(look_at_floor(camera), camera, {{light_from_above(12.8, 256, 60.0f)}}, half_filled_map(256));
   EXPECT_NEAR(*c.record.texels_per_pixel, 2.0, 1e-4);
 }
 
@@ -85,7 +85,7 @@ TEST(MapCoverage, PerspectiveFootprints_AddUpToWhatThePictureShows) {
   camera.vertical_fov_rad = 0.7f;
   const ViewReceivers view = look_at_floor(camera);
   const scene::LightFrustum light = light_from_above(20.0, 256, 30.0f);
-  const MapCoverage c = measure_coverage(view, camera, light, half_filled_map(256));
+  const MapCoverage c = measure_coverage(view, camera, {{light}}, half_filled_map(256));
   const glm::dvec3 forward(camera.forward_ws), right(1.0, 0.0, 0.0), up = glm::cross(right, forward);
   const double t = std::tan(0.35);
   const auto hit = [&](double sx, double sy) {
@@ -105,7 +105,7 @@ TEST(MapCoverage, PerspectiveFootprints_AddUpToWhatThePictureShows) {
 TEST(MapCoverage, ReceiversPlaceInTheMap_IsWhereTheFrustumPutsIt) {
   const scene::Camera camera = camera_above(5.0f, 3.0f);
   const MapCoverage c =
-      measure_coverage(look_at_floor(camera), camera, light_from_above(12.8, 256), half_filled_map(256));
+      measure_coverage(look_at_floor(camera), camera, {{light_from_above(12.8, 256)}}, half_filled_map(256));
   // The left upper pixel lies at x = -1.95 m, z = -1.45 m; +v is -z.
   EXPECT_NEAR(c.texel.at(0, 0)[0], 128.0 - 1.95 / 0.05, 1e-3);
   EXPECT_NEAR(c.texel.at(0, 0)[1], 128.0 + 1.45 / 0.05, 1e-3);
@@ -118,7 +118,7 @@ TEST(MapCoverage, SurfacesTurnedAwayAndBackground_HaveNoSay) {
     view.image.points[i].counts = false;
     view.is_surface[i] = i % 2 == 0 ? 1 : 0;
   }
-  const MapCoverage c = measure_coverage(view, camera, light_from_above(12.8, 256), half_filled_map(256));
+  const MapCoverage c = measure_coverage(view, camera, {{light_from_above(12.8, 256)}}, half_filled_map(256));
   EXPECT_FALSE(c.record.texels_per_pixel);
   EXPECT_FALSE(c.record.map_used);
   EXPECT_TRUE(c.record.map_filled);
@@ -129,7 +129,8 @@ TEST(MapCoverage, SurfacesTurnedAwayAndBackground_HaveNoSay) {
 /// The view is 4 m wide, the map 2 m: half of the columns and two thirds of the rows lie in it.
 TEST(MapCoverage, ReceiversOutsideTheMap_HaveNoSay) {
   const scene::Camera camera = camera_above(5.0f, 3.0f);
-  const MapCoverage c = measure_coverage(look_at_floor(camera), camera, light_from_above(2.0, 64), half_filled_map(64));
+  const MapCoverage c =
+      measure_coverage(look_at_floor(camera), camera, {{light_from_above(2.0, 64)}}, half_filled_map(64));
   EXPECT_NEAR(*c.record.map_used, 1.0, 1e-9);
   EXPECT_EQ(std::count_if(c.density.texels.begin(), c.density.texels.end(), [](float d) { return d > 0.0f; }), 20 * 20);
   EXPECT_EQ(c.density.texels[0], 0.0f);
@@ -149,7 +150,7 @@ TEST(MapCoverage, OfALamp_IsThatOfThePixelsCorners) {
   set_perspective(frustum, 1.5, {});
   const scene::Camera camera = camera_above(1.0f, 0.0f);
   const ViewReceivers floor = look_at_floor(camera);
-  const MapCoverage coverage = measure_coverage(floor, camera, frustum, half_filled_map(256));
+  const MapCoverage coverage = measure_coverage(floor, camera, {{frustum}}, half_filled_map(256));
   for (const int i : {0, 17, 20 * kWidth + 3, kWidth * kHeight - 1}) {
     const auto at = static_cast<std::size_t>(i);
     const glm::dvec3 p(floor.image.points[at].position_ws);

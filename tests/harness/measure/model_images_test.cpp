@@ -17,17 +17,22 @@ filters::Receiver make_receiver(int x, int y, float depth) {
   return r;
 }
 
-ModelImages evaluate(const ModelReceivers& receivers) {
+using Receivers = std::vector<filters::Receiver>;
+
+ModelLayer make_layer(const Receivers& filter, const Receivers& closer) {
+  return {{4, std::vector<float>(16, 0.5f)}, filter, closer};
+}
+
+ModelImages evaluate(const std::vector<ModelLayer>& layers) {
   static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  static const filters::DepthMap map{4, std::vector<float>(16, 0.5f)};
-  return evaluate_model(catalogue.parse_requests("none").front(), map, receivers, 0.0, 1, kImageWidth, kImageHeight);
+  return evaluate_model(catalogue.parse_requests("none").front(), layers, 0.0, 1, kImageWidth, kImageHeight);
 }
 
 TEST(ModelImages, HaveTheirTopRowFirst_AndAreLitWhereThereIsNoReceiver) {
   // GL counts rows from below: (2, 0) is the last pixel of the image, (0, 3) its first.
   const std::vector<filters::Receiver> blocked = {make_receiver(2, 0, 0.75f), make_receiver(0, 3, 0.75f),
                                                   make_receiver(1, 2, 0.25f)};
-  const ModelImages images = evaluate({blocked, blocked});
+  const ModelImages images = evaluate({make_layer(blocked, blocked)});
   std::vector<double> expected(kImageWidth * kImageHeight, 1.0);
   expected.front() = expected.back() = 0.0;
   EXPECT_EQ(images.model, expected);
@@ -36,7 +41,7 @@ TEST(ModelImages, HaveTheirTopRowFirst_AndAreLitWhereThereIsNoReceiver) {
 }
 
 TEST(ModelImages, AskEachStationWithItsOwnBias) {
-  const ModelImages images = evaluate({{make_receiver(1, 1, 0.75f)}, {make_receiver(1, 1, 0.25f)}});
+  const ModelImages images = evaluate({make_layer({make_receiver(1, 1, 0.75f)}, {make_receiver(1, 1, 0.25f)})});
   constexpr std::size_t kPixel = 2 * kImageWidth + 1;
   EXPECT_EQ(images.model[kPixel], 0.0);
   EXPECT_EQ(images.closer[kPixel], 1.0);
@@ -45,7 +50,20 @@ TEST(ModelImages, AskEachStationWithItsOwnBias) {
 TEST(ModelImages, CountWhatIsExcused) {
   const std::vector<filters::Receiver> receivers = {make_receiver(0, 0, 0.5f), make_receiver(1, 0, 0.25f),
                                                     make_receiver(2, 0, 0.5f)};
-  EXPECT_EQ(evaluate({receivers, receivers}).excused, 2) << "ties";
+  EXPECT_EQ(evaluate({make_layer(receivers, receivers)}).excused, 2) << "ties";
+}
+
+TEST(ModelImages, AddWhatLayersMakeOfTheirShares) {
+  const auto share = [](float of, float depth) {
+    filters::Receiver r = make_receiver(1, 1, depth);
+    r.layer_share = of;
+    return make_layer({r}, {r});
+  };
+  constexpr std::size_t kPixel = 2 * kImageWidth + 1;
+  const ModelImages images = evaluate({share(0.25f, 0.75f), share(0.75f, 0.25f)});
+  EXPECT_EQ(images.model[kPixel], 0.75);
+  EXPECT_EQ(images.closer[kPixel], 0.75);
+  EXPECT_EQ(evaluate({share(0.25f, 0.75f), share(0.75f, 0.75f)}).model[kPixel], 0.0);
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ TEST_P(DefaultBias, LeavesNoVisibleAcne) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(BuiltIn, DefaultBias, ::testing::ValuesIn(scenes_of_all_lights()),
+INSTANTIATE_TEST_SUITE_P(BuiltIn, DefaultBias, ::testing::ValuesIn(scenes_of_all_maps()),
                          [](const auto& each) { return each.param; });
 
 /// The default constant covers half a step of the coarsest format.

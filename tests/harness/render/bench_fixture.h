@@ -17,20 +17,29 @@
 
 namespace shadowbench::test {
 
+/// What the scene's light is fitted by: cascades are for the deep one.
+inline scene::FitMode fit_of(const scene::Scene& scene) {
+  return scene.name == "avenue" ? scene::FitMode::kCascades : scene::FitMode::kTight;
+}
+
 /// A scene drawn with one filter, everything at hand that the harness itself uses.
 class Bench {
  public:
   Bench(gl::Context& context, const scene::Scene& scene, int map_size = 1024, int width = 480, int height = 270,
-        const render::MapSettings& map = {})
+        const render::MapSettings& map = {}, double pad_texels = 6.0)
       : context_(context),
         scene_(scene),
         shaders_(options::find_resources().shaders),
         geometry_(scene),
-        frustum_(scene::fit_light(scene, scene::FitMode::kTight, map_size, 6.0)),
-        map_(map_size, render::fit_settings(map, frustum_)),
+        layers_(scene::fit_layers(scene, {.mode = fit_of(scene),
+                                          .map_size = map_size,
+                                          .pad_texels = pad_texels,
+                                          .camera = &scene.cameras.front(),
+                                          .aspect = static_cast<double>(width) / height})),
+        map_(map_size, render::fit_settings(map, layers_.front()), static_cast<int>(layers_.size())),
         gbuffer_(width, height),
         target_("visibility", GL_R32F, width, height) {
-    map_.draw(shaders_, geometry_, frustum_);
+    redraw({});
     gbuffer_.draw(shaders_, geometry_, scene_, scene_.cameras.front());
   }
 
@@ -40,13 +49,19 @@ class Bench {
     map_.set_border(range.border);
   }
 
-  render::LightSetup light(const filters::FilterRequest& request, const render::BiasRule& rule = {}) const {
-    const render::Bias bias = render::resolve_bias(rule, frustum_, request.spec, request.values);
-    return render::make_light_setup(frustum_, scene_.light, bias, 7, range_);
+  render::LightLayers light(const filters::FilterRequest& request, const render::BiasRule& rule = {}) const {
+    render::LightLayers light;
+    for (const scene::LightFrustum& layer : layers_) {
+      const render::Bias bias = render::resolve_bias(rule, layer, request.spec, request.values);
+      light.push_back(render::make_light_setup(layer, scene_.light, bias, 7, range_));
+    }
+    return light;
   }
 
   /// Draws the map again, with another bias in it.
-  void redraw(const render::MapBias& bias) { map_.draw(shaders_, geometry_, frustum_, bias); }
+  void redraw(const render::MapBias& bias) {
+    for (const scene::LightFrustum& layer : layers_) map_.draw(shaders_, geometry_, layer, bias);
+  }
 
   /// Gives visibility as the GL wrote it: rows bottom to top, like Receiver::pixel.
   std::vector<float> draw(const filters::FilterRequest& request, const render::BiasRule& rule = {}) {
@@ -58,8 +73,14 @@ class Bench {
     return visibility;
   }
 
+  /// Of all layers; where these share a pixel, it is there once for each.
   std::vector<filters::Receiver> receivers(const filters::FilterRequest& request, const render::BiasRule& rule = {}) {
-    return render::read_receivers(shaders_, gbuffer_, light(request, rule));
+    std::vector<filters::Receiver> all;
+    for (const render::LightSetup& layer : light(request, rule)) {
+      const auto own = render::read_receivers(shaders_, gbuffer_, layer);
+      all.insert(all.end(), own.begin(), own.end());
+    }
+    return all;
   }
 
   std::size_t index(const filters::Receiver& r) const {
@@ -70,14 +91,15 @@ class Bench {
   render::ShaderLibrary& shaders() { return shaders_; }
   render::GBuffer& gbuffer() { return gbuffer_; }
   render::ShadowMap& map() { return map_; }
-  const scene::LightFrustum& frustum() const { return frustum_; }
+  const scene::LightFrustum& frustum() const { return layers_.front(); }
+  const std::vector<scene::LightFrustum>& layers() const { return layers_; }
 
  private:
   gl::Context& context_;
   const scene::Scene& scene_;
   render::ShaderLibrary shaders_;
   render::Geometry geometry_;
-  scene::LightFrustum frustum_;
+  std::vector<scene::LightFrustum> layers_;
   filters::RangeRule range_;
   render::ShadowMap map_;
   render::GBuffer gbuffer_;
@@ -103,7 +125,14 @@ inline std::vector<std::string> builtin_scenes() {
 /// With one of each other kind of light.
 inline std::vector<std::string> scenes_of_all_lights() {
   std::vector<std::string> names = builtin_scenes();
-  names.push_back("lamp");
+  names.insert(names.end(), {"lamp", "lantern"});
+  return names;
+}
+
+/// With cascades, too.
+inline std::vector<std::string> scenes_of_all_maps() {
+  std::vector<std::string> names = scenes_of_all_lights();
+  names.push_back("avenue");
   return names;
 }
 

@@ -41,11 +41,12 @@ inline bool is_stochastic(const filters::FilterRequest& request) {
 /// Draws visibility once per seed 1, 2, ..., `seeds`, each as Bench::draw gives it.
 inline std::vector<std::vector<float>> draw_seeds(Bench& bench, const filters::FilterRequest& request,
                                                   std::uint32_t seeds) {
-  render::LightSetup light = bench.light(request);
+  render::LightLayers light = bench.light(request);
   render::FilterPasses passes(bench.shaders(), request, bench.map(), light);
   render::ImageTarget target("visibility, by seed", GL_R32F, bench.gbuffer().width(), bench.gbuffer().height());
   std::vector<std::vector<float>> images;
-  for (light.seed = 1; light.seed <= seeds; ++light.seed) {
+  for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
+    for (render::LightSetup& layer : light) layer.seed = seed;
     passes.retune(bench.shaders(), request.values, light);
     passes.prefilter(bench.map());
     passes.lookup(bench.gbuffer(), bench.map(), target);

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
 
 #include "filters/model.h"
+#include "harness/measure/receiver_pixels.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {
@@ -36,34 +38,59 @@ double pcf_tolerance() {
   return bits >= 22 ? 1e-4 : 1.0 / 128.0;
 }
 
+/// What the model makes of a pixel, in single and double precision, all layers of the map together.
+struct ModelPixel {
+  double single = 1.0;
+  double reference = 1.0;
+  double bound = 0.0;
+  bool excused = false;
+};
+
+constexpr double kShareRounding = 0x1p-23;  // of a share, and of the sum
+
+std::map<std::size_t, ModelPixel> model_pixels(Bench& bench, const filters::FilterRequest& request,
+                                               const render::BiasRule& rule) {
+  const auto model = filters::make_model(request.spec);
+  std::map<std::size_t, ModelPixel> pixels;
+  for (int layer = 0; layer < bench.map().layers(); ++layer) {
+    const filters::DepthMap map = bench.map().read(layer);
+    const filters::ModelInput input{
+        request.spec, request.values, map, measured_accuracy(), 7, rule.receiver_plane ? rule.max_tangent : 0.0};
+    const auto in_float = model->prepare(input, filters::Precision::kFloat);
+    const auto tracked = model->prepare(input, filters::Precision::kTracked);
+    for (const filters::Receiver& r : bench.receivers(request, rule)) {
+      if (r.layer != layer) continue;
+      const filters::ModelResult single = in_float->at(r), reference = tracked->at(r);
+      ModelPixel& pixel = pixels[bench.index(r)];
+      measure::put_share(pixel.single, r, single.visibility);
+      measure::put_share(pixel.reference, r, reference.visibility);
+      pixel.bound += static_cast<double>(r.layer_share) * reference.bound;
+      if (r.layer_share < 1.0f) pixel.bound += kShareRounding;
+      pixel.excused |= single.excused || reference.excused;
+    }
+  }
+  return pixels;
+}
+
 Agreement compare(Bench& bench, const filters::FilterRequest& request, const render::BiasRule& rule = {}) {
   const std::vector<float> image = bench.draw(request, rule);
-  const filters::DepthMap map = bench.map().read();
-  const filters::ModelInput input{
-      request.spec, request.values, map, measured_accuracy(), 7, rule.receiver_plane ? rule.max_tangent : 0.0};
-  const auto model = filters::make_model(request.spec);
-  const auto in_float = model->prepare(input, filters::Precision::kFloat);
-  const auto tracked = model->prepare(input, filters::Precision::kTracked);
   Agreement result;
   std::vector<double> bounds;
-  for (const filters::Receiver& r : bench.receivers(request, rule)) {
-    const double gpu = static_cast<double>(image[bench.index(r)]);
-    const filters::ModelResult single = in_float->at(r), reference = tracked->at(r);
+  for (const auto& [index, pixel] : model_pixels(bench, request, rule)) {
+    const double gpu = static_cast<double>(image[index]);
     ++result.compared;
     if (gpu < 0.5) result.shadowed += 1.0;
-    if (single.excused || reference.excused) {
+    if (pixel.excused) {
       ++result.excused;
       continue;
     }
-    EXPECT_TRUE(std::isfinite(gpu)) << "pixel " << r.pixel.x << "," << r.pixel.y;
-    if (!(reference.bound < 1.0)) ++result.unbounded;
-    result.worst_float = std::max(result.worst_float, std::abs(gpu - single.visibility));
-    result.worst_double = std::max(result.worst_double, std::abs(gpu - reference.visibility));
-    if (reference.bound > 0.0) {
-      result.worst_bound_ratio =
-          std::max(result.worst_bound_ratio, std::abs(gpu - reference.visibility) / reference.bound);
-    }
-    bounds.push_back(reference.bound);
+    EXPECT_TRUE(std::isfinite(gpu)) << "pixel " << index;
+    if (!(pixel.bound < 1.0)) ++result.unbounded;
+    result.worst_float = std::max(result.worst_float, std::abs(gpu - pixel.single));
+    result.worst_double = std::max(result.worst_double, std::abs(gpu - pixel.reference));
+    if (pixel.bound > 0.0)
+      result.worst_bound_ratio = std::max(result.worst_bound_ratio, std::abs(gpu - pixel.reference) / pixel.bound);
+    bounds.push_back(pixel.bound);
   }
   std::nth_element(bounds.begin(), bounds.begin() + static_cast<std::ptrdiff_t>(bounds.size() / 2), bounds.end());
   result.median_bound = bounds[bounds.size() / 2];
@@ -86,7 +113,9 @@ class ModelAgreement : public ::testing::TestWithParam<std::tuple<std::string, s
         a.worst_bound_ratio, a.median_bound);
     EXPECT_GT(a.compared, 20000u);
     EXPECT_GT(a.shadowed, 0.01);
-    EXPECT_LT(static_cast<double>(a.excused), 0.005 * static_cast<double>(a.compared));
+    // Filters that choose their kernel are excused by that choice, too.
+    const double most_excused = catalogue().find(filter).claims.empty() ? 0.005 : 0.01;
+    EXPECT_LT(static_cast<double>(a.excused), most_excused * static_cast<double>(a.compared));
     // Across a silhouette the position's rounding alone can exceed the minimum variance, and light-bleeding reduction
     // widens every bound. So does reading depth back from a perspective map.
     if (a.is_linear) EXPECT_LT(static_cast<double>(a.unbounded), 0.06 * static_cast<double>(a.compared));
@@ -115,7 +144,7 @@ TEST_P(ModelAgreement, GlImageEqualsModel) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllFilters, ModelAgreement,
-                         ::testing::Combine(::testing::ValuesIn(scenes_of_all_lights()),
+                         ::testing::Combine(::testing::ValuesIn(scenes_of_all_maps()),
                                             ::testing::ValuesIn(filter_ids())),
                          [](const auto& each) { return std::get<0>(each.param) + "_" + std::get<1>(each.param); });
 

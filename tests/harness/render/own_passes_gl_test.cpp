@@ -164,8 +164,8 @@ TEST(OwnPassesOfLights, KeepTheirMaps) {
   const std::vector<float> expected = bench.draw(request);
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   render::ImageTarget target("visibility", GL_R32F, 160, 90);
-  const auto first = passes.prepare(bench.light(request), passes.make_encoded_target());
-  const auto second = passes.prepare(bench.light(request), passes.make_encoded_target());
+  const auto first = passes.prepare(bench.light(request), passes.make_encoded_targets());
+  const auto second = passes.prepare(bench.light(request), passes.make_encoded_targets());
   passes.turn_to(first);
   passes.prefilter(bench.map());
   render::ShadowMap empty(kPassSide, {});

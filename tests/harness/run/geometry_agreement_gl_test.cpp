@@ -39,7 +39,8 @@ class DepthRays {
     const glm::dvec3 start = find_point(x, y, 0.0);
     truth::RayPacket packet;
     packet.set(0, glm::vec3(start), glm::vec3(find_point(x, y, 1.0) - start));
-    return static_cast<double>(occluders_.find_nearest(packet)[0]);
+    const double hit = static_cast<double>(occluders_.find_nearest(packet)[0]);
+    return hit <= 1.0 ? hit : std::numeric_limits<double>::infinity();
   }
 
   /// Is anything within a hundredth of a texel as deep as this?
@@ -66,22 +67,25 @@ TEST_P(Geometry, RaysHitWhatTheDepthMapSees) {
   constexpr int kSize = kMapTexels;
   const scene::Scene scene = load_builtin(GetParam());
   Bench bench(shared_context(), scene, kSize, 64, 36);
-  const filters::DepthMap map = bench.map().read();
   const truth::Occluders occluders(measure::list_occluders(scene));
-  const DepthRays rays(occluders, bench.frustum());
   int seen = 0, different = 0;
-  for (int i = 0; i < kSize * kSize; ++i) {
-    const double depth = map.curve.linear(static_cast<double>(map.stored[static_cast<std::size_t>(i)]));
-    seen += depth < 1.0 ? 1 : 0;
-    // Steep faces gain this depth within a hundredth of a texel; rasterisers snap vertices to fractions of one.
-    if (!rays.matches_nearby(i % kSize + 0.5, i / kSize + 0.5, depth, 5e-5)) ++different;
+  for (const scene::LightFrustum& layer : bench.layers()) {
+    const filters::DepthMap map = bench.map().read(layer.layer);
+    const DepthRays rays(occluders, layer);
+    for (int i = 0; i < kSize * kSize; ++i) {
+      const double depth = map.curve.linear(static_cast<double>(map.stored[static_cast<std::size_t>(i)]));
+      seen += depth < 1.0 ? 1 : 0;
+      // Steep faces gain this depth within a hundredth of a texel; rasterisers snap vertices to fractions of one.
+      if (!rays.matches_nearby(i % kSize + 0.5, i / kSize + 0.5, depth, 5e-5)) ++different;
+    }
   }
-  std::printf("%s: %d of %d texels see a caster, %d differ\n", GetParam().c_str(), seen, kSize * kSize, different);
+  std::printf("%s: %d of %zu x %d texels see a caster, %d differ\n", GetParam().c_str(), seen, bench.layers().size(),
+              kSize * kSize, different);
   EXPECT_GT(seen, 5000);
   EXPECT_EQ(different, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(BuiltIn, Geometry, ::testing::ValuesIn(scenes_of_all_lights()),
+INSTANTIATE_TEST_SUITE_P(BuiltIn, Geometry, ::testing::ValuesIn(scenes_of_all_maps()),
                          [](const auto& test) { return test.param; });
 
 }  // namespace

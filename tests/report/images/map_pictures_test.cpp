@@ -44,13 +44,13 @@ TEST(DepthHistogram, DepthsOutsideTheRange_GoToTheNearestBin) {
 }
 
 TEST(DepthPicture, ShowsTheMapAndABarForEveryFilledBin) {
-  const DepthPicture picture{"map", "note", make_depth_map(256), {}, 12.0};
+  const DepthPicture picture{"map", "note", {{make_depth_map(256), 12.0}}, {}};
   const Image drawn = draw_depth_picture(picture);
   EXPECT_EQ(count_color(drawn, 0.80f, 0.87f, 0.95f), 768u * 384u) << "the empty half";
   const std::size_t bars = count_color(drawn, 0.20f, 0.36f, 0.60f);
   EXPECT_GT(bars, 5000u);
   DepthPicture flat = picture;
-  for (float& depth : flat.stored.texels) depth = depth < 1.0f ? 0.4f : 1.0f;
+  for (float& depth : flat.layers.front().stored.texels) depth = depth < 1.0f ? 0.4f : 1.0f;
   EXPECT_LT(count_color(draw_depth_picture(flat), 0.20f, 0.36f, 0.60f), bars / 20) << "one bin instead of many";
 }
 
@@ -58,10 +58,10 @@ TEST(DepthPicture, MapThatDoesNotHoldLinearDepth_IsShownTwice_AsStoredAndLineari
   const Image depth = make_depth_map(256);
   for (const filters::DepthCurve& curve :
        {filters::DepthCurve{true}, filters::DepthCurve{false, 50.0}, filters::DepthCurve{true, 50.0}}) {
-    DepthPicture stored{"map", "note", depth, curve, 12.0};
-    for (float& d : stored.stored.texels) d = curve.store(d);
+    DepthPicture stored{"map", "note", {{depth, 12.0}}, curve};
+    for (float& d : stored.layers.front().stored.texels) d = curve.store(d);
     const Image drawn = draw_depth_picture(stored);
-    const Image once = draw_depth_picture({"map", "note", depth, {}, 12.0});
+    const Image once = draw_depth_picture({"map", "note", {{depth, 12.0}}, {}});
     EXPECT_EQ(drawn.height, once.height);
     EXPECT_GT(drawn.width, 3 * once.width / 2);
     EXPECT_EQ(count_color(drawn, 0.80f, 0.87f, 0.95f), 2 * 768u * 384u) << "the empty half, twice";

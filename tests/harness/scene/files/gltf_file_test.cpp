@@ -362,7 +362,7 @@ TEST(GltfFileTest, Cameras_StandWhereTheirNodesAre) {
 TEST(GltfFileTest, DirectionalLight_ShinesAlongItsNodesMinusZ) {
   GltfParts parts;
   parts.more = R"(, "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual": {"lights": [
-      {"type": "point"}, {"type": "directional", "color": [1, 0.5, 0.25], "intensity": 100000}]}})";
+      {"type": "area"}, {"type": "directional", "color": [1, 0.5, 0.25], "intensity": 100000}]}})";
   parts.nodes = R"([{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}},
       {"extensions": {"KHR_lights_punctual": {"light": 1}}, "rotation": [-0.70710678118654752, 0, 0, 0.70710678118654752]}])";
   parts.scenes = R"([{"nodes": [0, 1, 2]}])";
@@ -371,7 +371,21 @@ TEST(GltfFileTest, DirectionalLight_ShinesAlongItsNodesMinusZ) {
   EXPECT_NEAR(glm::distance(to_light(*model.light, {}), glm::vec3(0, 1, 0)), 0.0f, 1e-6f);
   EXPECT_EQ(model.light->color, glm::vec3(1.0f, 0.5f, 0.25f));
   EXPECT_FLOAT_EQ(model.light->intensity, 1.0f);
-  EXPECT_THAT(model.warnings, testing::ElementsAre(HasSubstr("point lights are not modelled")));
+  EXPECT_THAT(model.warnings, testing::ElementsAre(HasSubstr("area lights are not modelled")));
+}
+
+TEST(GltfFileTest, PointLight_ShinesFromItsNode) {
+  GltfParts parts;
+  parts.more = R"(, "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual": {"lights": [
+      {"type": "point"}]}})";
+  parts.nodes = R"([{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [1, 5, 2]}])";
+  parts.scenes = R"([{"nodes": [0, 1]}])";
+  const MeshFile model = import_parts(parts);
+  ASSERT_TRUE(model.light.has_value());
+  const auto point = std::get<PointLight>(aim_light(*model.light, {1.0f, 2.0f, 6.0f}).kind);
+  EXPECT_EQ(point.position_ws, glm::vec3(1.0f, 5.0f, 2.0f));
+  EXPECT_FLOAT_EQ(point.reference_m, 5.0f) << "as strong as a sun in the scene's middle";
+  EXPECT_TRUE(model.warnings.empty());
 }
 
 TEST(GltfFileTest, SpotLight_ShinesFromItsNode) {

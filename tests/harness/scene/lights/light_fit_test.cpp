@@ -272,13 +272,5 @@ TEST_P(LightFitTest, Snapped_StillHoldsEveryVertexWithItsPadding) {
   }
 }
 
-TEST(FitNames, GoBothWays_AndAnUnknownOneIsRefused) {
-  for (const FitMode mode : {FitMode::kSphere, FitMode::kTight, FitMode::kView})
-    EXPECT_EQ(parse_fit_mode(name_of(mode)), mode);
-  EXPECT_EQ(name_of(FitMode::kView), "view");
-  const Error error = error_of([] { parse_fit_mode("box"); });
-  EXPECT_EQ(error.kind(), ErrorKind::kUsage);
-}
-
 }  // namespace
 }  // namespace shadowbench::scene
