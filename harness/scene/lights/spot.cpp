@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "harness/scene/files/file_bytes.h"
+#include "harness/scene/files/mesh_file.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/toml_reader.h"
@@ -53,6 +55,17 @@ PerspectiveMap make_planes(const Beam& beam, const Extent& extent) {
   return {beam, std::max(extent.nearest * (1.0 - kPadding), kLeastNear * far_m), far_m};
 }
 
+/// Whatever is wrong with the picture is the fault of the line that names it.
+std::shared_ptr<const Texture> read_cookie(const TomlTable& table) {
+  const std::filesystem::path file = table.file("cookie");
+  try {
+    const std::string name = file.filename().string();
+    return std::make_shared<const Texture>(decode_texture(read_file_bytes(file), name, file.string(), {}));
+  } catch (const Error& e) {
+    throw table.error("cookie", fmt::format("'cookie' in {}, {}: {}", table.title(), file.string(), e.message()));
+  }
+}
+
 bool is_rectangle(const Spot& spot) { return spot.size_m.x > 0.0f && spot.size_m.y > 0.0f; }
 
 }  // namespace
@@ -65,7 +78,8 @@ double Beam::cone_at(const glm::dvec3& point_ws) const {
 }
 
 const std::vector<std::string>& spot_keys() {
-  static const std::vector<std::string> keys = {"position", "target", "cone_deg", "inner_cone_deg", "radius", "size"};
+  static const std::vector<std::string> keys = {"position", "target", "cone_deg", "inner_cone_deg",
+                                                "radius",   "size",   "cookie"};
   return keys;
 }
 
@@ -84,6 +98,7 @@ Spot read_spot(const TomlTable& table) {
   }
   if (spot.position_ws == spot.target_ws)
     throw table.error("target", "'target' in [light] is where the light stands: it has no direction");
+  if (table.has("cookie")) spot.cookie = read_cookie(table);
   return spot;
 }
 
