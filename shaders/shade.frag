@@ -2,6 +2,9 @@
 // Source: Blinn 1977, Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH.
 #include "lib/gbuffer.glsl"
 #include "lib/light.glsl"
+#ifdef HAS_COOKIE
+#include "lib/cookie.glsl"
+#endif
 layout(binding = 10) uniform sampler2D gbuffer_shading_normal;
 layout(binding = 11) uniform sampler2D gbuffer_albedo;
 layout(binding = 4) uniform sampler2D visibility_image;
@@ -31,5 +34,9 @@ void main() {
   float visibility = texelFetch(visibility_image, pixel, 0).r;
   // The sky is brighter than the ground, so that ambient light models form as well.
   vec3 ambient = kAmbient * (0.75 + 0.25 * normal.y) * albedo;
-  out_color = vec4(ambient + visibility * light_strength(position) * light_radiance * (albedo * n_dot_l + specular), 1.0);
+  vec3 radiance = light_radiance;
+#ifdef HAS_COOKIE
+  radiance *= cookie_at(position);
+#endif
+  out_color = vec4(ambient + visibility * light_strength(position) * radiance * (albedo * n_dot_l + specular), 1.0);
 }

@@ -1,5 +1,7 @@
 #include "harness/render/shade_pass.h"
 
+#include <cmath>
+
 #include "harness/gl/fullscreen.h"
 #include "harness/render/light_setup.h"
 
@@ -7,6 +9,30 @@ namespace shadowbench::render {
 namespace {
 
 constexpr GLuint kVisibilityUnit = 4;  // of shade.frag
+constexpr GLuint kCookieUnit = 13;     // of lib/cookie.glsl
+
+Defines shade_defines(const scene::Light& light) {
+  Defines defines;
+  if (scene::find_beam(light)) defines.push_back(kPerspectiveLight);
+  if (scene::find_cookie(light)) defines.emplace_back("HAS_COOKIE", "1");
+  return defines;
+}
+
+gl::Texture upload_cookie(const scene::Texture& picture) {
+  gl::Texture cookie("cookie " + picture.name, GL_SRGB8_ALPHA8, picture.width, picture.height);
+  cookie.upload_bytes(picture.rgba, 4);
+  cookie.set_filter(GL_LINEAR, GL_LINEAR);
+  return cookie;
+}
+
+void set_cookie(gl::Program& program, const gl::Texture& cookie, const scene::Beam& beam) {
+  const glm::dmat3 axes = glm::transpose(scene::light_rotation(beam.axis_ws));
+  program.set("light_right_ws", glm::vec3(axes[0]));
+  program.set("light_up_ws", glm::vec3(axes[1]));
+  program.set("cookie_tangent", static_cast<float>(std::tan(std::acos(beam.cos_outer))));
+  gl::Sampler::unbind(kCookieUnit);
+  cookie.bind(kCookieUnit);
+}
 
 }  // namespace
 
@@ -14,7 +40,7 @@ images::Image shade(ShaderLibrary& shaders, const GBuffer& gbuffer, const gl::Te
                     const scene::Scene& scene, const scene::Camera& camera) {
   ImageTarget target("picture", GL_RGBA32F, gbuffer.width(), gbuffer.height());
   const std::optional<scene::Beam> beam = scene::find_beam(scene.light);
-  gl::Program& program = shaders.fullscreen("shade.frag", beam ? Defines{kPerspectiveLight} : Defines{});
+  gl::Program& program = shaders.fullscreen("shade.frag", shade_defines(scene.light));
   program.set("camera_position_ws", camera.position_ws);
   program.set("camera_forward_ws", camera.forward_ws);
   program.set("orthographic", camera.orthographic_height_m > 0.0f ? 1 : 0);
@@ -28,6 +54,11 @@ images::Image shade(ShaderLibrary& shaders, const GBuffer& gbuffer, const gl::Te
   gbuffer.bind();
   gl::Sampler::unbind(kVisibilityUnit);
   visibility.bind(kVisibilityUnit);
+  std::optional<gl::Texture> cookie;
+  if (const scene::Texture* picture = scene::find_cookie(scene.light)) {
+    cookie = upload_cookie(*picture);
+    set_cookie(program, *cookie, *beam);
+  }
   program.use();
   gl::FullscreenTriangle().draw();
   return read_image(target.texture(), 3);

@@ -30,7 +30,7 @@ class SceneBuilder {
     scene_.light = read_light(*light);
     for (const TomlTable& table : root_.tables("material")) add_material(table);
     for (const TomlTable& table : root_.tables("object")) add_object(table);
-    if (root_.has("model")) scene_ = add_mesh_file(std::move(scene_), read_model(root_, "model"));
+    if (root_.has("model")) scene_ = add_mesh_file(std::move(scene_), import_mesh_file(root_.file("model")));
     for (const TomlTable& table : root_.tables("camera")) add_camera(table);
     scene_ = validate_geometry(std::move(scene_), file_.string());
     if (scene_.cameras.empty()) scene_.cameras.push_back(frame_camera(scene_, kPictureAspect, std::nullopt));
@@ -106,16 +106,7 @@ class SceneBuilder {
     std::vector<std::string> known = common_object_keys();
     known.emplace_back("file");
     table.require_known_keys(known);
-    return read_model(table, "file");
-  }
-
-  /// Reads the model that `key` names; a missing file is the fault of that line.
-  MeshFile read_model(const TomlTable& table, const std::string& key) const {
-    const std::filesystem::path file = file_.parent_path() / table.string(key);
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored))
-      throw table.error(key, fmt::format("'{}' in {}: there is no file {}", key, table.title(), file.string()));
-    return import_mesh_file(file);
+    return import_mesh_file(table.file("file"));
   }
 
   /// The index of the object's material; objects without one share a grey default.

@@ -126,6 +126,13 @@ std::string TomlTable::choice(std::string_view key, const std::vector<std::strin
                                fmt::join(choices, ", "), did_you_mean(value, choices)));
 }
 
+std::filesystem::path TomlTable::file(std::string_view key) const {
+  std::filesystem::path named = std::filesystem::path(file_).parent_path() / string(key);
+  std::error_code ignored;
+  if (std::filesystem::exists(named, ignored)) return named;
+  throw error(key, fmt::format("'{}' in {}: there is no file {}", key, title_, named.string()));
+}
+
 std::optional<TomlTable> TomlTable::table(std::string_view key) const {
   const toml::node* node = table_->get(key);
   if (!node) return std::nullopt;

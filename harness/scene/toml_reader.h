@@ -52,6 +52,8 @@ class TomlTable {
   /// Reads a string that must be one of `choices`.
   std::string choice(std::string_view key, const std::vector<std::string>& choices,
                      std::optional<std::string> fallback = std::nullopt) const;
+  /// Reads the name of a file, relative to the one that the table stands in. Throws, too, where there is none.
+  std::filesystem::path file(std::string_view key) const;
 
   /// The table under `key`, if there is one.
   std::optional<TomlTable> table(std::string_view key) const;

@@ -43,6 +43,8 @@ void require_usable_size(const std::vector<unsigned char>& bytes, const std::str
   constexpr std::uint64_t kMostPixelsOfAll = std::uint64_t{1} << 28;
   const std::optional<PictureSize> size = read_picture_size(bytes);
   if (!size) fail_input(fmt::format("image '{}' cannot be decoded: use PNG or JPEG", name), where);
+  if (size->width == 0 || size->height == 0)
+    fail_input(fmt::format("image '{}' has no pixels: {} x {}", name, size->width, size->height), where);
   const bool short_enough = std::max(size->width, size->height) <= kLongestSide;
   if (!short_enough || size->width * size->height > kMostPixels) {
     fail_input(fmt::format("image '{}' says that it has {} x {} pixels; at most {} a side and {} in all are read", name,

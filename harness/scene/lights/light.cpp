@@ -6,8 +6,10 @@
 #include <cmath>
 #include <glm/gtx/rotate_vector.hpp>
 
+#include "filters/base/content_hash.h"
 #include "filters/base/error.h"
 #include "harness/scene/lights/light_fit.h"
+#include "harness/scene/scene.h"
 #include "harness/scene/toml_reader.h"
 
 namespace shadowbench::scene {
@@ -46,6 +48,11 @@ std::optional<Beam> find_beam(const Light& light) {
   return std::visit(Each{[](const Sun&) -> std::optional<Beam> { return std::nullopt; },
                          [](const auto& lamp) -> std::optional<Beam> { return make_beam(lamp); }},
                     light.kind);
+}
+
+const Texture* find_cookie(const Light& light) {
+  const auto* spot = std::get_if<Spot>(&light.kind);
+  return spot ? spot->cookie.get() : nullptr;
 }
 
 bool shines_on(const Light& light, const glm::vec3& point_ws) {
@@ -212,6 +219,11 @@ std::vector<std::string> list_light_content(const Light& light) {
                                 c.g, c.b, light.intensity, point.radius_m, point.reference_m);
            }},
       light.kind)};
+  if (const Texture* cookie = find_cookie(light)) {
+    ContentHash texels;
+    texels.add_values(std::span<const std::uint8_t>(cookie->rgba));
+    content.push_back(fmt::format("cookie {} {} {}", cookie->width, cookie->height, texels.name()));
+  }
   if (!light.map_window) return content;
   const MapWindow& w = *light.map_window;
   content.push_back(fmt::format("window {} {} {} {}", w.center_ws.x, w.center_ws.y, w.center_ws.z, w.width_m));

@@ -51,6 +51,9 @@ glm::vec3 to_light(const Light& light, const glm::vec3& point_ws);
 /// The cone of a light that stands in the scene; nothing for one at infinity.
 std::optional<Beam> find_beam(const Light& light);
 
+/// The picture that a light shines through; null where it has none.
+const Texture* find_cookie(const Light& light);
+
 /// Whether any of the light goes to a point.
 bool shines_on(const Light& light, const glm::vec3& point_ws);
 

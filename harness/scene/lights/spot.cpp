@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "harness/scene/files/file_bytes.h"
+#include "harness/scene/files/mesh_file.h"
 #include "harness/scene/lights/perspective_fit.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/toml_reader.h"
@@ -16,6 +18,17 @@ namespace shadowbench::scene {
 namespace {
 
 constexpr double kLeastCone_deg = 0.1;
+
+/// Whatever is wrong with the picture is the fault of the line that names it.
+std::shared_ptr<const Texture> read_cookie(const TomlTable& table) {
+  const std::filesystem::path file = table.file("cookie");
+  try {
+    const std::string name = file.filename().string();
+    return std::make_shared<const Texture>(decode_texture(read_file_bytes(file), name, file.string(), {}));
+  } catch (const Error& e) {
+    throw table.error("cookie", fmt::format("'cookie' in {}, {}: {}", table.title(), file.string(), e.message()));
+  }
+}
 
 bool is_rectangle(const Spot& spot) { return spot.size_m.x > 0.0f && spot.size_m.y > 0.0f; }
 
@@ -29,7 +42,8 @@ double Beam::cone_at(const glm::dvec3& point_ws) const {
 }
 
 const std::vector<std::string>& spot_keys() {
-  static const std::vector<std::string> keys = {"position", "target", "cone_deg", "inner_cone_deg", "radius", "size"};
+  static const std::vector<std::string> keys = {"position", "target", "cone_deg", "inner_cone_deg",
+                                                "radius",   "size",   "cookie"};
   return keys;
 }
 
@@ -48,6 +62,7 @@ Spot read_spot(const TomlTable& table) {
   }
   if (spot.position_ws == spot.target_ws)
     throw table.error("target", "'target' in [light] is where the light stands: it has no direction");
+  if (table.has("cookie")) spot.cookie = read_cookie(table);
   return spot;
 }
 

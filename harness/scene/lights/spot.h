@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ class TomlTable;
 struct FitRequest;
 struct LightFrustum;
 struct Scene;
+struct Texture;
 
 /// A lamp that stands in the scene: a disk or a rectangle that faces its target, whose light fills a cone with a soft
 /// edge.
@@ -22,7 +24,9 @@ struct Spot {
   float cone_deg = 60.0f;        ///< from edge to edge; no light beyond
   float inner_cone_deg = 45.0f;  ///< the same, full strength within
   float radius_m = 0.05f;        ///< of the disk; 0: a point
-  glm::vec2 size_m{0.0f};        ///< sides of a rectangle in place of the disk, along the map\'s u and v; 0: the disk
+  glm::vec2 size_m{0.0f};        ///< sides of a rectangle in place of the disk, along the map's u and v; 0: the disk
+  /// Colours the light, but no shadow: over the square around the outer cone. Null: none.
+  std::shared_ptr<const Texture> cookie = nullptr;
 };
 
 /// A cone must be narrower than a half-space: its map is drawn through one perspective.
