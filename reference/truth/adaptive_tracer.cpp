@@ -31,6 +31,20 @@ void write_lanes(RayPacket::Lanes& to, float base, float along_x, float along_y,
   for (std::size_t i = 0; i < to.size(); ++i) to[i] = base + offsets.x[i] * along_x + offsets.y[i] * along_y;
 }
 
+/// Writes the ways to the near side of a sphere, spread evenly over the directions that it fills by Lambert's azimuthal
+/// equal-area map of the unit disk. The fan's direction leads to the centre; those across it are sqrt(2 cap) as long.
+void write_cap(std::array<RayPacket::Lanes, 3>& to, const RayFan& fan, const SampleSets::Lanes& offsets) {
+  for (std::size_t i = 0; i < offsets.x.size(); ++i) {
+    const float x = offsets.x[i], y = offsets.y[i];
+    const float rise = fan.cap * std::min(x * x + y * y, 1.0f), cosine = 1.0f - rise;
+    const float root = std::sqrt((fan.cap - rise) * (2.0f - fan.cap - rise));  // of sin^2 of the cone less the ray's
+    const float length = (1.0f - fan.cap) * (1.0f - fan.cap) / (cosine + root), across = std::sqrt(1.0f - 0.5f * rise);
+    for (int axis = 0; axis < 3; ++axis)
+      to[static_cast<std::size_t>(axis)][i] =
+          length * (cosine * fan.direction[axis] + across * (x * fan.direction_x[axis] + y * fan.direction_y[axis]));
+  }
+}
+
 /// Traces a fan's points, one packet of all scrambles for each, and counts the rays that reach the light.
 class FanTracer {
  public:
@@ -44,7 +58,10 @@ class FanTracer {
   void trace(const Occluders& occluders, const SampleSets::Lanes& offsets, const TraceSettings& settings) {
     if (fan_.origin_moves) write(offsets, packet_.origin, fan_.origin, fan_.origin_x, fan_.origin_y);
     if (fan_.direction_moves) {
-      write(offsets, packet_.direction, fan_.direction, fan_.direction_x, fan_.direction_y);
+      if (fan_.cap > 0.0f)
+        write_cap(packet_.direction, fan_, offsets);
+      else
+        write(offsets, packet_.direction, fan_.direction, fan_.direction_x, fan_.direction_y);
       find_active();
     }
     packet_.reach.fill(fan_.reach);

@@ -6,7 +6,7 @@
 
 namespace shadowbench::truth {
 
-/// The rays of one receiver: origin and direction are affine in a sample's offset.
+/// The rays of one receiver: origin and direction are affine in a sample's offset, but for those to a sphere.
 struct RayFan {
   glm::vec3 origin{0.0f};
   glm::vec3 origin_x{0.0f};
@@ -16,6 +16,7 @@ struct RayFan {
   glm::vec3 direction_y{0.0f};
   glm::vec3 normal{0.0f};       ///< rays below this plane are blocked
   float reach = 0.0f;           ///< in units of a direction's length
+  float cap = 0.0f;             ///< above 0: rays to a sphere, which fills a cone; 1 - cos of half its angle, below 1
   float scale = 0.0f;           ///< of the second samples, which are added to the first ones
   bool origin_moves = true;     ///< false: origin_x and origin_y are 0
   bool direction_moves = true;  ///< false: direction_x and direction_y are 0

@@ -54,12 +54,31 @@ AreaLight AreaLight::make_rectangle(const glm::dvec3& centre_ws, const glm::dvec
   return light;
 }
 
+AreaLight AreaLight::make_sphere(const glm::dvec3& centre_ws, double radius_m) {
+  AreaLight light;
+  light.shape_ = Shape::kSphere;
+  light.centre_ = centre_ws;
+  light.u_.x = light.v_.y = radius_m;
+  return light;
+}
+
 glm::dvec2 AreaLight::map_sample(const glm::dvec2& sample) const {
   return shape_ == Shape::kRectangle ? 2.0 * sample - 1.0 : filters::map_to_disk(sample);
 }
 
 glm::dvec3 AreaLight::centre_direction(const glm::dvec3& from) const {
   return shape_ == Shape::kSun ? centre_ : centre_ - from;
+}
+
+AreaLight::Aim AreaLight::aim(const glm::dvec3& from) const {
+  if (shape_ != Shape::kSphere) return {u_, v_};
+  const glm::dvec3 to_centre = centre_ - from;
+  const double distance = glm::length(to_centre), sine = u_.x / distance;
+  if (!(sine < 1.0)) return {.cap = 1.0f};
+  const double cap = sine * sine / (1.0 + std::sqrt(1.0 - sine * sine));
+  const Tangents tangents = make_tangents(to_centre);
+  const double half = distance * std::sqrt(2.0 * cap);
+  return {half * tangents.u, half * tangents.v, static_cast<float>(cap)};
 }
 
 float AreaLight::reach() const { return shape_ == Shape::kSun ? std::numeric_limits<float>::infinity() : 1.0f; }

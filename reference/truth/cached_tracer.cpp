@@ -82,7 +82,8 @@ Layers CachedTracer::find_or_trace(const ReceiverImage& receivers, const std::st
 }
 
 ViewRays CachedTracer::trace_view(const ReceiverImage& receivers, const AreaLight& light) {
-  const std::string what = fmt::format("light at {} u {} v {}", name_vector(light.centre_direction(glm::dvec3(0.0))),
+  const std::string what = fmt::format("light {} at {} u {} v {}", static_cast<int>(light.shape()),
+                                       name_vector(light.centre_direction(glm::dvec3(0.0))),
                                        name_vector(light.half_u()), name_vector(light.half_v()));
   Layers layers = find_or_trace(receivers, what, kViewLayers, [&] {
     Layers traced = to_layers(trace_area(occluders(), receivers, light, settings_));

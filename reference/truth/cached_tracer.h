@@ -26,7 +26,7 @@ class CachedTracer {
   /// `cache`, and what `list_meshes` refers to, must outlive this object.
   CachedTracer(MeshList list_meshes, TruthCache& cache, std::uint32_t seed);
 
-  /// Requires a light at infinity. Cost: 64 rays for most pixels, up to 16384 at the edges of shadows.
+  /// Cost: 64 rays for most pixels, up to 16384 at the edges of shadows.
   ViewRays trace_view(const ReceiverImage& receivers, const AreaLight& light);
 
   /// Cost: as trace_view().

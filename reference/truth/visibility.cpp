@@ -74,11 +74,18 @@ TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& rec
     RayFan fan;
     fan.origin = occluders.offset_origin(point.position_ws, point.normal_ws);
     fan.direction = light.centre_direction(glm::dvec3(fan.origin));
-    fan.direction_x = light.half_u();
-    fan.direction_y = light.half_v();
+    const AreaLight::Aim aim = light.aim(glm::dvec3(fan.origin));
+    fan.direction_x = aim.u;
+    fan.direction_y = aim.v;
+    fan.cap = aim.cap;
     fan.normal = point.normal_ws;
     fan.reach = light.reach();
     fan.origin_moves = false;
+    if (aim.cap < 1.0f) return fan;
+    // Inside a sphere: the rays end where they start.
+    fan.direction = point.normal_ws;
+    fan.direction_moves = false;
+    fan.reach = 0.0f;
     return fan;
   });
 }

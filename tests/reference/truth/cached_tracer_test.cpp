@@ -101,6 +101,12 @@ TEST_F(Tracer, WhatTheTruthFollowsFrom_TracesAgain) {
   EXPECT_EQ(count_traced(make_meshes(), [&](CachedTracer& t) { t.trace_view(other, make_light()); }), 1);
   for (const AreaLight& light : {AreaLight::make_sun({0.0, 1.0, 0.0}, 2.1), AreaLight::make_sun({0.1, 1.0, 0.0}, 2.0)})
     EXPECT_EQ(count_traced(make_meshes(), [&](CachedTracer& t) { t.trace_view(make_receivers(), light); }), 1);
+  const AreaLight disk = AreaLight::make_disk({0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}, 0.1),
+                  sphere = AreaLight::make_sphere({0.0, 1.0, 0.0}, 0.1);
+  for (const AreaLight& light : {disk, sphere, AreaLight::make_rectangle({0.0, 1.0, 0.0}, disk.half_u(), disk.half_v()),
+                                 AreaLight::make_rectangle({0.0, 1.0, 0.0}, sphere.half_u(), sphere.half_v())})
+    EXPECT_EQ(count_traced(make_meshes(), [&](CachedTracer& t) { t.trace_view(make_receivers(), light); }), 1)
+        << "another shape with the same edges";
   EXPECT_EQ(count_traced(make_meshes(), view, 2), 1) << "another seed";
   EXPECT_EQ(count_traced(make_meshes(), view), 0) << "the first is still there";
 }
