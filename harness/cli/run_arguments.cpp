@@ -41,10 +41,11 @@ void add_map_options(Command& command, RunArguments& a) {
               "near plane; filters read linear depth all the same");
   command
       .add(
-          "--fit", &a.fit,
+          "--fit", &a.fits,
           "light frustum: 'tight' around casters and receivers; 'sphere', which is stable under rotation; 'view', "
           "around what the camera sees and the casters before it; or 'cascades', which give slices of that a map each: "
-          "cascades:count=2..4,split=uniform|practical|logarithmic,blend=0.1,depths=all|seen")
+          "cascades:count=2..4,split=uniform|practical|logarithmic,blend=0.1,depths=all|seen; may be repeated "
+          "(default: tight)")
       .such_as({"tight", "sphere", "view", "cascades"});
   command
       .add("--snap", &a.snap,

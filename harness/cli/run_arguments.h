@@ -24,7 +24,7 @@ struct RunArguments : DrawingArguments {
   std::string map_sizes = "1024";
   std::string sizes = "960x540";
   std::vector<std::string> bias;
-  std::string fit = "tight";
+  std::vector<std::string> fits;
   std::string snap = "off";
   std::string map_format = "d32f";
   bool reversed_depth = false;

@@ -80,7 +80,9 @@ void check_ranges(const RunArguments& arguments) {
 void set_map_and_light(options::RunOptions& options, const RunArguments& arguments) {
   options.map = {gl::parse_depth_format(arguments.map_format).internal_format,
                  {arguments.reversed_depth, arguments.perspective_depth.value_or(1.0)}};
-  options.fit = scene::parse_fit_rule(arguments.fit);
+  if (!arguments.fits.empty()) options.fits.clear();
+  for (const std::string& fit : arguments.fits) options.fits.push_back(scene::parse_fit_rule(fit));
+  options.fit = options.fits.front();
   options.snap = arguments.snap == "on";
   if (!arguments.light.empty()) options.light = parse_light(arguments.light);
 }

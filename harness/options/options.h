@@ -66,7 +66,8 @@ struct RunOptions {
   int height = 540;
   std::vector<std::string> views;  ///< names of cameras; none: all that each scene has
   render::MapSettings map;
-  scene::FitRule fit;
+  std::vector<scene::FitRule> fits = {{}};  ///< of all maps of a run
+  scene::FitRule fit;                       ///< of the maps that are drawn at present
   bool snap = false;                 ///< keep the map's texel grid fixed in the world
   std::optional<LightAngles> light;  ///< in place of the light of every scene
   render::BiasRule bias;

@@ -7,8 +7,6 @@
 namespace shadowbench::render {
 namespace {
 
-constexpr std::size_t kKeptLights = 16;
-
 struct DepthRange {
   double near;
   double far;
@@ -89,7 +87,7 @@ void GBuffer::draw(ShaderLibrary& shaders, const Geometry& geometry, const scene
 const ReceiverBuffer& GBuffer::receivers(ShaderLibrary& shaders, const LightSetup& light) const {
   const auto found = std::ranges::find_if(receivers_, [&](const ReceiverBuffer& each) { return each.is_of(light); });
   if (found != receivers_.end()) return *found;
-  if (receivers_.size() == kKeptLights) receivers_.pop_front();
+  if (receivers_.size() == kKeptReceiverMaps) receivers_.pop_front();
   return receivers_.emplace_back(shaders.fullscreen("prepare_receivers.frag", range_defines(light)), *this, light);
 }
 

@@ -10,6 +10,9 @@
 
 namespace shadowbench::render {
 
+/// Layers of lights' maps for which a view keeps its receivers.
+inline constexpr std::size_t kKeptReceiverMaps = 32;
+
 /// What a camera sees, drawn once per view; every filter and the truth use the same receiver points.
 class GBuffer {
  public:
@@ -26,7 +29,8 @@ class GBuffer {
     normal_.upload_floats(normals, 4);
   }
 
-  /// Where the receivers lie in a light's map; drawn when it is first asked for, and kept for the last 16 lights.
+  /// Where the receivers lie in a light's map; drawn when it is first asked for, and kept for the
+  /// last kKeptReceiverMaps.
   const ReceiverBuffer& receivers(ShaderLibrary& shaders, const LightSetup& light) const;
 
   /// Binds the textures to the units that lib/gbuffer.glsl and shade.frag name.

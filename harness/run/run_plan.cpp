@@ -8,6 +8,7 @@
 
 #include "filters/base/content_hash.h"
 #include "filters/base/error.h"
+#include "harness/render/gbuffer.h"
 #include "harness/run/cell_content.h"
 #include "harness/run/scene_loading.h"
 #include "report/records/json_io.h"
@@ -15,7 +16,7 @@
 namespace shadowbench::run {
 namespace {
 
-/// Every scene in every picture size.
+/// Every scene in every picture size, with every fit of its light's map.
 std::vector<PlannedScene> plan_scenes(const options::RunOptions& options) {
   std::vector<PlannedScene> planned;
   for (const options::PictureSize& size : options.sizes) {
@@ -23,8 +24,12 @@ std::vector<PlannedScene> plan_scenes(const options::RunOptions& options) {
     framed.width = size.width;
     framed.height = size.height;
     std::vector<scene::Scene> scenes = load_scenes(framed);
-    for (std::size_t i = 0; i < scenes.size(); ++i)
-      planned.push_back({framed, options.scenes[i], std::move(scenes[i])});
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      for (const scene::FitRule& fit : options.fits) {
+        framed.fit = fit;
+        planned.push_back({framed, options.scenes[i], scenes[i]});
+      }
+    }
   }
   return planned;
 }
@@ -51,6 +56,21 @@ void require_views(const options::RunOptions& options, const std::vector<Planned
   }
 }
 
+/// Beyond that, timed frames would prepare receivers as well.
+void require_few_maps(const std::vector<PlannedScene>& scenes) {
+  for (const PlannedScene& each : scenes) {
+    const int layers = scene::count_layers(each.scene.light, each.options.fit);
+    const int most = static_cast<int>(render::kKeptReceiverMaps) / layers;
+    for (const int lights : each.options.lights) {
+      if (lights <= most) continue;
+      throw Error(ErrorKind::kUsage, fmt::format("--lights: {} lights on {} have {} maps ({} each), more than the {} "
+                                                 "that a frame may have; choose {} lights or fewer",
+                                                 lights, each.scene.name, lights * layers, layers,
+                                                 render::kKeptReceiverMaps, most));
+    }
+  }
+}
+
 class Planner {
  public:
   Planner(const options::RunOptions& options, const std::string& renderer) : options_(options), renderer_(renderer) {}
@@ -58,6 +78,7 @@ class Planner {
   RunPlan plan() {
     plan_.scenes = plan_scenes(options_);
     require_views(options_, plan_.scenes);
+    require_few_maps(plan_.scenes);
     for (std::size_t i = 0; i < plan_.scenes.size(); ++i) add_scene(i);
     plan_.settings = hash_.name();
     require_cells();

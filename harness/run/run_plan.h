@@ -10,9 +10,9 @@
 
 namespace shadowbench::run {
 
-/// A scene as one picture size frames it, with what the command line called it.
+/// A scene as one picture size frames it, and one fit its light's map, with what the command line called it.
 struct PlannedScene {
-  options::RunOptions options;  ///< of the run, with one picture size
+  options::RunOptions options;  ///< of the run, with one picture size and one fit
   std::string argument;         ///< name or path
   scene::Scene scene;
 };
@@ -25,7 +25,7 @@ struct PlannedTask {
   std::vector<std::string> contents;  ///< of those still to be measured; see name_cell_content()
 };
 
-/// What a run is to measure, in the order of its records: picture size, scene, view, map size, filter.
+/// What a run is to measure, in the order of its records: picture size, scene, fit, view, map size, filter.
 struct RunPlan {
   std::vector<PlannedScene> scenes;
   std::vector<PlannedTask> tasks;

@@ -235,6 +235,7 @@ std::string task_stem(const options::RunOptions& options, const measure::SceneTa
   std::string name = task.scene->name;
   if (task.scene->cameras.size() > 1) name += "." + task.camera->name;
   if (options.map_sizes.size() > 1) name += fmt::format(".map{}", task.map_size);
+  if (options.fits.size() > 1) name += "." + scene::describe_fit(options.fit);
   if (options.sizes.size() > 1) name += fmt::format(".{}x{}", options.width, options.height);
   return files::make_file_stem(name);
 }

@@ -122,6 +122,7 @@ measure::MeasuredCell read_cell(const options::RunOptions& options, const measur
   options::RunOptions of_worker = options;
   of_worker.map_sizes = {task.map_size};
   of_worker.sizes = {{options.width, options.height}};
+  of_worker.fits = {options.fit};
   const images::ExrFile file = images::read_exr(folder / exr_name(of_worker, task));
   cell.phases.resize(static_cast<std::size_t>(options.phases) - 1);
   for (const images::Part& part : file.parts) {

@@ -24,6 +24,8 @@ struct CubeFace {
   bool operator==(const CubeFace&) const = default;
 };
 
+inline constexpr int kCubeFaces = 6;
+
 /// What a layer of a light's map serves of the receivers: all of them, or a share.
 using LayerShare = std::variant<std::monostate, ViewSlice, CubeFace>;
 

@@ -96,6 +96,9 @@ truth::MapGrid make_map_grid(const LightFrustum& frustum);
 /// Cost: one or two passes over the vertices.
 std::vector<LightFrustum> fit_layers(const Scene& scene, const FitRequest& request);
 
+/// How many layers that makes.
+int count_layers(const Light& light, const FitRule& rule);
+
 /// The same for a fit that makes one layer.
 LightFrustum fit_light(const Scene& scene, const FitRequest& request);
 LightFrustum fit_light(const Scene& scene, FitMode mode, int map_size, double pad_texels);

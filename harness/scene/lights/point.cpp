@@ -11,8 +11,6 @@
 namespace shadowbench::scene {
 namespace {
 
-constexpr int kFaces = 6;
-
 Beam make_face_beam(const PointLight& point, int face) {
   Beam beam = make_beam(point);
   beam.axis_ws = glm::dvec3(0.0);
@@ -63,10 +61,10 @@ truth::AreaLight make_area_light(const PointLight& point) {
 std::vector<LightFrustum> fit_point(const PointLight& point, const Scene& scene, const FitRequest& request) {
   const double tangent = pad_tangent(1.0, request);
   AxisExtent extent;
-  for (int face = 0; face < kFaces; ++face)
+  for (int face = 0; face < kCubeFaces; ++face)
     extent = extent.joined(find_extent(scene, look_along(make_face_beam(point, face)), tangent));
   std::vector<LightFrustum> faces;
-  for (int face = 0; face < kFaces; ++face) {
+  for (int face = 0; face < kCubeFaces; ++face) {
     faces.push_back(fit_perspective(make_face_beam(point, face), tangent, extent, request));
     faces.back().layer = face;
     faces.back().share = CubeFace{face};

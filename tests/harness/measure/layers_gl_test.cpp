@@ -165,6 +165,7 @@ TEST(CubeFaces, ShowNoLineWhereTheyMeetInAShadow) {
 struct MeanError {
   double mean = 0.0;
   double standard_error = 0.0;
+  double pixels = 0.0;
 };
 
 MeanError find_mean_error(const std::vector<float>& image, const truth::TracedVisibility& truth,
@@ -178,17 +179,13 @@ MeanError find_mean_error(const std::vector<float>& image, const truth::TracedVi
     n += 1.0;
   }
   const double mean = sum / n;
-  return {mean, std::sqrt(std::max(squares / n - mean * mean, 0.0) / n)};
+  return {mean, std::sqrt(std::max(squares / n - mean * mean, 0.0) / n), n};
 }
 
-/// Against the traced kernel: what a fixed kernel makes of a penumbra differs from place to place anyway.
-TEST(CubeFaces, LeaveNoSeamInAShadowThatCrossesThem) {
-  const scene::Scene scene = make_floor(Caster{{0.6f, 0.02f, 0.06f}, {0.25, 0.25, 0.03}});
-  Bench bench(shared_context(), scene, kLayersMap, kLayersWidth, kLayersHeight);
-  const auto shares = list_shares(bench);
-  const auto at_border = mark_borders(shares, 2);
-  auto around = mark_borders(shares, 8);
-  for (std::size_t i = 0; i < around.size(); ++i) around[i] = around[i] && !at_border[i];
+/// The error of filters against their traced kernels where marked, beside that around it: what a fixed kernel makes of a
+/// penumbra differs from place to place anyway.
+void expect_no_seam(const scene::Scene& scene, Bench& bench, const std::vector<std::uint8_t>& at_border,
+                    const std::vector<std::uint8_t>& around) {
   const auto receivers = measure::read_view_receivers(bench.gbuffer(), scene.light);
   const truth::Occluders occluders(measure::list_occluders(scene));
   for (const char* filter : {"pcf2x2", "tent3x3", "tent5x5", "castano5", "tent7x7"}) {
@@ -201,10 +198,76 @@ TEST(CubeFaces, LeaveNoSeamInAShadowThatCrossesThem) {
         });
     const std::vector<float> image = draw_rows(bench, filter);
     const MeanError border = find_mean_error(image, truth, at_border), beside = find_mean_error(image, truth, around);
-    std::printf("%s: error at the border %.4f +- %.4f, beside it %.4f +- %.4f\n", filter, border.mean,
-                border.standard_error, beside.mean, beside.standard_error);
+    std::printf("%s %s: error at the border %.4f +- %.4f (%.0f pixels), beside it %.4f +- %.4f\n", scene.name.c_str(),
+                filter, border.mean, border.standard_error, border.pixels, beside.mean, beside.standard_error);
+    EXPECT_GE(border.pixels, 8.0) << filter;
     EXPECT_LT(std::abs(border.mean - beside.mean), 3.0 * std::hypot(border.standard_error, beside.standard_error))
         << filter;
+  }
+}
+
+TEST(CubeFaces, LeaveNoSeamInAShadowThatCrossesThem) {
+  const scene::Scene scene = make_floor(Caster{{0.6f, 0.02f, 0.06f}, {0.25, 0.25, 0.03}});
+  Bench bench(shared_context(), scene, kLayersMap, kLayersWidth, kLayersHeight);
+  const auto shares = list_shares(bench);
+  const auto at_border = mark_borders(shares, 2);
+  auto around = mark_borders(shares, 8);
+  for (std::size_t i = 0; i < around.size(); ++i) around[i] = around[i] && !at_border[i];
+  expect_no_seam(scene, bench, at_border, around);
+}
+
+/// A path with a rail along it, whose shadow runs through all cascades.
+scene::Scene make_path() {
+  scene::Scene scene = make_floor({});
+  scene.name = "avenue";
+  scene.meshes.clear();
+  for (const float x : {0.0f, -0.4f, -0.8f, -1.2f}) {
+    const glm::vec3 size = x == 0.0f ? glm::vec3(8.0f, 0.02f, 44.0f) : glm::vec3(0.15f, 0.1f, 44.0f);
+    scene.meshes.push_back(
+        scene::transform_mesh(scene::make_box(size, 40), glm::translate(glm::dmat4(1.0), glm::dvec3(x, -x, -20.0))));
+    scene.meshes.back().material = 0;
+  }
+  scene.light.kind = scene::Sun{glm::normalize(glm::vec3(-1.0f, -1.0f, -0.3f)), 0.53f};
+  scene::Camera& camera = scene.cameras.front();
+  camera.position_ws = {0.0f, 1.2f, 2.0f};
+  camera.forward_ws = glm::normalize(glm::vec3(-0.1f, -0.22f, -1.0f));
+  camera.up_ws = {0.0f, 1.0f, 0.0f};
+  camera.orthographic_height_m = 0.0f;
+  camera.vertical_fov_rad = 0.8f;
+  return scene;
+}
+
+TEST(Cascades, LeaveNoSeamWhereTheyBlend) {
+  const scene::Scene scene = make_path();
+  Bench bench(shared_context(), scene, kLayersMap, kLayersWidth, kLayersHeight);
+  const auto shares = list_shares(bench);
+  ASSERT_EQ(shares.size(), 4u);
+  std::vector<std::uint8_t> blended(shares.front().size()), around(blended.size());
+  for (std::size_t i = 0; i < blended.size(); ++i) blended[i] = count_served(shares, i).layers > 1;
+  constexpr std::ptrdiff_t kReach = 12;  // rows: as near to the camera, or as far
+  for (std::size_t i = 0; i < blended.size(); ++i) {
+    if (!blended[i]) continue;
+    for (std::ptrdiff_t dy = -kReach; dy <= kReach; ++dy) {
+      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) + dy * kLayersWidth;
+      if (at >= 0 && at < std::ssize(blended) && !blended[static_cast<std::size_t>(at)])
+        around[static_cast<std::size_t>(at)] = 1;
+    }
+  }
+  expect_no_seam(scene, bench, blended, around);
+}
+
+/// A light where a filter might divide by nothing: on the floor, in its plane, and inside a caster.
+TEST(PointLights, InDegeneratePlaces_GiveNumbers) {
+  for (const glm::vec3 place : {glm::vec3(0.3f, 0.0f, 0.2f), glm::vec3(0.0f, 1e-6f, 0.0f), glm::vec3(0.2f, 0.3f, 0.0f)}) {
+    scene::Scene scene = make_floor(Caster{{0.16f, 0.1f, 0.16f}, {0.2, 0.3, 0.0}});
+    std::get<scene::PointLight>(scene.light.kind).position_ws = place;
+    Bench bench(shared_context(), scene, 128, 64, 36);
+    for (const std::string& filter : filter_ids()) {
+      for (const float v : bench.draw(catalogue().parse_requests(filter).front())) {
+        ASSERT_TRUE(v >= -1e-3f && v <= 1.001f) << filter << ": " << v << " under a light at " << place.x << ", "
+                                               << place.y << ", " << place.z;
+      }
+    }
   }
 }
 
