@@ -71,8 +71,8 @@ void add_range_options(Command& command, RunArguments& a) {
       .one_of(kSwitch);
   command
       .add("--behind-test", &a.behind_test,
-           "whether what lies behind the light is lit; 'off' mirrors the map through the light. Only projective maps "
-           "have a behind, and no light of this version has such a map")
+           "whether a spot light leaves out what is behind it; 'off' mirrors its cone, its cookie and its map through "
+           "the light")
       .one_of(kSwitch);
   command.add("--border-page", &a.border_page,
               "also draw SCENE.borders.png: every filter with the right border, with each wrong one, and without the "

@@ -89,7 +89,8 @@ class SceneBench {
     cell.label = filter.request().label();
     drawn_ms_ += time_once(filter, light_.map, gbuffer_, target_, renderer_.timer);
     cell.visibility = render::read_image(target_.texture(), 1);
-    cell.picture = render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera);
+    cell.picture =
+        render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera, options_.range);
     cell.record.nan = count_not_finite(cell.visibility);
     if (receivers_ < 0) receivers_ = render::count_receivers(renderer_.shaders, gbuffer_, filter.light());
     cell.record.receivers = receivers_;

@@ -90,6 +90,11 @@ void check_against_truth(MeasuredCell& cell, const SceneTruth& truth) {
     lit += truth.area.texels[i] == 1.0f;
     blocked += truth.area.texels[i] == 0.0f;
   }
+  if (blocked > 0 && blocked == std::ranges::count(truth.mask, std::uint8_t{1}))
+    cell.record.warnings.push_back(
+        fmt::format("{}: no receiver in view sees the light: does it stand inside a caster, "
+                    "or below the ground?",
+                    cell.record.scene));
   if (std::min(lit, blocked) < metrics::kFewestReceivers || range.least > range.most) return;
   if (range.most - range.least > kRounding) return;
   suspect(cell, fmt::format("its visibility is {} at every receiver, though {} of them are wholly lit in truth and {} "

@@ -68,8 +68,8 @@ struct RunOptions {
   render::MapSettings map;
   std::vector<scene::FitRule> fits = {{}};  ///< of all maps of a run
   scene::FitRule fit;                       ///< of the maps that are drawn at present
-  bool snap = false;                 ///< keep the map's texel grid fixed in the world
-  std::optional<LightAngles> light;  ///< in place of the light of every scene
+  bool snap = false;                        ///< keep the map's texel grid fixed in the world
+  std::optional<LightAngles> light;         ///< in place of the light of every scene
   render::BiasRule bias;
   filters::RangeRule range;          ///< outside the map, beyond its far plane, behind the light
   bool border_page = false;          ///< also draw every rule for what lies outside the map, side by side

@@ -11,9 +11,10 @@ namespace {
 constexpr GLuint kVisibilityUnit = 4;  // of shade.frag
 constexpr GLuint kCookieUnit = 13;     // of lib/cookie.glsl
 
-Defines shade_defines(const scene::Light& light) {
+Defines shade_defines(const scene::Light& light, const filters::RangeRule& range) {
   Defines defines;
   if (scene::find_beam(light)) defines.push_back(kPerspectiveLight);
+  if (scene::find_beam(light) && !range.behind_test) defines.emplace_back("NO_BEHIND_TEST", "1");
   if (scene::find_cookie(light)) defines.emplace_back("HAS_COOKIE", "1");
   return defines;
 }
@@ -37,10 +38,10 @@ void set_cookie(gl::Program& program, const gl::Texture& cookie, const scene::Be
 }  // namespace
 
 images::Image shade(ShaderLibrary& shaders, const GBuffer& gbuffer, const gl::Texture& visibility,
-                    const scene::Scene& scene, const scene::Camera& camera) {
+                    const scene::Scene& scene, const scene::Camera& camera, const filters::RangeRule& range) {
   ImageTarget target("picture", GL_RGBA32F, gbuffer.width(), gbuffer.height());
   const std::optional<scene::Beam> beam = scene::find_beam(scene.light);
-  gl::Program& program = shaders.fullscreen("shade.frag", shade_defines(scene.light));
+  gl::Program& program = shaders.fullscreen("shade.frag", shade_defines(scene.light, range));
   program.set("camera_position_ws", camera.position_ws);
   program.set("camera_forward_ws", camera.forward_ws);
   program.set("orthographic", camera.orthographic_height_m > 0.0f ? 1 : 0);

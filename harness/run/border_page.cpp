@@ -53,7 +53,8 @@ class TilePainter {
     tile.visibility = measure::draw_visibility(passes, light_.map, gbuffer_, target_);
     tile.label = request.label();
     tile.caption = variant.caption;
-    tile.picture = render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera);
+    tile.picture =
+        render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera, variant.rule);
     return tile;
   }
 

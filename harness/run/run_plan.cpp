@@ -63,10 +63,10 @@ void require_few_maps(const std::vector<PlannedScene>& scenes) {
     const int most = static_cast<int>(render::kKeptReceiverMaps) / layers;
     for (const int lights : each.options.lights) {
       if (lights <= most) continue;
-      throw Error(ErrorKind::kUsage, fmt::format("--lights: {} lights on {} have {} maps ({} each), more than the {} "
-                                                 "that a frame may have; choose {} lights or fewer",
-                                                 lights, each.scene.name, lights * layers, layers,
-                                                 render::kKeptReceiverMaps, most));
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("--lights: {} lights on {} have {} maps ({} each), more than the {} "
+                              "that a frame may have; choose {} lights or fewer",
+                              lights, each.scene.name, lights * layers, layers, render::kKeptReceiverMaps, most));
     }
   }
 }

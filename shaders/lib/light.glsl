@@ -28,9 +28,13 @@ float texel_size_at(vec3 position_ws) {
   return texel_size_ws * (distance_along_light(position_ws) / light_reference_m);
 }
 
-// As scene::Beam::cone_at() computes it.
+// As scene::Beam::cone_at() computes it. NO_BEHIND_TEST shows what a projection makes of what is behind the light: it
+// mirrors the cone.
 float light_cone_at(vec3 position_ws) {
   float cosine = dot(-direction_to_light(position_ws), light_direction_ws);
+#ifdef NO_BEHIND_TEST
+  cosine = abs(cosine);
+#endif
   float ramp = clamp((cosine - light_cone.y) / max(light_cone.x - light_cone.y, 1e-4), 0.0, 1.0);
   return ramp * ramp;
 }

@@ -90,11 +90,10 @@ std::vector<LightFrustum> fit_layers(const Scene& scene, const FitRequest& reque
 }
 
 int count_layers(const Light& light, const FitRule& rule) {
-  return std::visit(Each{[&](const Sun&) {
-                           return rule.mode == FitMode::kCascades && !light.map_window ? rule.cascades.count : 1;
-                         },
-                         [](const Spot&) { return 1; }, [](const PointLight&) { return kCubeFaces; }},
-                    light.kind);
+  return std::visit(
+      Each{[&](const Sun&) { return rule.mode == FitMode::kCascades && !light.map_window ? rule.cascades.count : 1; },
+           [](const Spot&) { return 1; }, [](const PointLight&) { return kCubeFaces; }},
+      light.kind);
 }
 
 }  // namespace shadowbench::scene

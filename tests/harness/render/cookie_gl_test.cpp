@@ -51,7 +51,16 @@ scene::Scene make_cookie_scene(const glm::vec3& position, const glm::vec3& targe
 /// The light alone that arrives, without the ambient part; rows top to bottom.
 class CookieLight {
  public:
-  explicit CookieLight(const scene::Scene& scene) : scene_(scene), bench_(shared_context(), scene, 64, kSide, kSide) {}
+  explicit CookieLight(const scene::Scene& scene, const filters::RangeRule& range = {})
+      : scene_(scene), range_(range), bench_(shared_context(), scene, 64, kSide, kSide) {
+    bench_.set_range(range);
+  }
+
+  /// The share of the floor that a filter finds lit.
+  double measure_lit(const std::string& filter) {
+    const std::vector<float> image = bench_.draw(catalogue().parse_requests(filter).front());
+    return static_cast<double>(std::ranges::count(image, 1.0f)) / static_cast<double>(image.size());
+  }
 
   std::vector<glm::dvec3> draw(const std::shared_ptr<const scene::Texture>& cookie) {
     std::get<scene::Spot>(scene_.light.kind).cookie = cookie;
@@ -77,10 +86,11 @@ class CookieLight {
     images::Image image(kSide, kSide, 1);
     for (float& value : image.texels) value = visibility;
     return render::shade(bench_.shaders(), bench_.gbuffer(), render::upload_image(image), scene_,
-                         scene_.cameras.front());
+                         scene_.cameras.front(), range_);
   }
 
   scene::Scene scene_;
+  filters::RangeRule range_;
   Bench bench_;
 };
 
@@ -140,6 +150,19 @@ TEST(Cookie, LightsNothingBehindTheLamp) {
   };
   EXPECT_FALSE(is_dark(ahead.draw(make_cookie(white_code))));
   EXPECT_TRUE(is_dark(behind.draw(make_cookie(white_code)))) << "the floor faces the lamp, which shines upwards";
+}
+
+TEST(BackProjection, MirrorsConeAndMapThroughTheLamp) {
+  const scene::Scene shines_up = make_cookie_scene({0.0f, 4.0f, 0.0f}, {0.0f, 8.0f, 0.0f});
+  CookieLight right(shines_up), wrong(shines_up, {filters::Border::kBorder, true, false}),
+      ahead(make_cookie_scene({0.0f, 4.0f, 0.0f}, {}));
+  for (const char* filter : {"none", "tent3x3", "pcss", "vsm"}) {
+    EXPECT_EQ(right.measure_lit(filter), 0.0) << filter;
+    EXPECT_NEAR(wrong.measure_lit(filter), ahead.measure_lit(filter), 0.01) << filter;
+  }
+  EXPECT_GT(ahead.measure_lit("none"), 0.2);
+  const auto mirrored = wrong.draw(make_cookie(white_code)), lit = ahead.draw(make_cookie(white_code));
+  for (std::size_t i = 0; i < lit.size(); ++i) EXPECT_NEAR(mirrored[i].g, lit[i].g, 1e-4) << "pixel " << i;
 }
 
 TEST(Cookie, OfWhite_ChangesNoBit_AndIsOneVariantMore) {

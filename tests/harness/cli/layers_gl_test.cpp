@@ -1,0 +1,85 @@
+// Cascades and point lights, as a user of the program meets them.
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tests/harness/cli/program.h"
+
+namespace shadowbench::test {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+constexpr const char* kSmallLayers = "run --out out --size 128x72 --map-size 128 --rounds 2 ";
+
+class LayersRun : public ProgramTest {
+ protected:
+  json all() const { return json::parse(read_text(folder() / "out" / "results.json")); }
+
+  json run_cells(const std::string& arguments) {
+    const Outcome outcome = run(kSmallLayers + arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::string check = "/usr/bin/python3 -m jsonschema -i '" + (folder() / "out" / "results.json").string() +
+                              "' '" + (folder() / "out" / "results.schema.json").string() + "'";
+    EXPECT_EQ(std::system(check.c_str()), 0);
+    return all()["cells"];
+  }
+};
+
+TEST_F(LayersRun, UsersFilters_GetWhatBuiltInOnesGet) {
+  write("mine.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/tent3x3.glsl"));
+  for (const char* scene : {"--scene lantern", "--scene avenue --fit cascades:count=3,split=logarithmic"}) {
+    const json cells =
+        run_cells(std::string(scene) + " --stability --filters none,tent3x3,mine,vsm:bleed_reduction=0 --filter-file " +
+                  (folder() / "mine.glsl").string());
+    ASSERT_EQ(cells.size(), 4u) << scene;
+    const auto find = [&](const char* filter) {
+      return *std::ranges::find_if(cells, [&](const json& cell) { return cell["filter"] == filter; });
+    };
+    for (const char* group : {"error", "attribution", "artefact", "coverage", "excused"})
+      EXPECT_EQ(find("mine")[group], find("tent3x3")[group]) << scene << " " << group;
+    for (const json& cell : cells) {
+      EXPECT_EQ(cell["status"], "ok") << cell["message"];
+      EXPECT_LT(cell["attribution"]["numeric"]["rms"], 2e-3) << "the model follows the receivers to their layers";
+      const int layers = cell["scene"] == "lantern" ? 6 : 3, bytes = cell["filter"] == "vsm" ? 8 : 4;
+      EXPECT_EQ(cell["cost"]["map_bytes"], layers * 128 * 128 * bytes);
+    }
+    EXPECT_EQ(find("none")["cost"]["passes"], find("none")["scene"] == "lantern" ? 12 : 6);
+    EXPECT_EQ(find("vsm")["stability"]["bound_exact_violations"], 0) << scene;
+  }
+}
+
+TEST_F(LayersRun, FitsAreAnAxis) {
+  const json cells = run_cells("--scene avenue --filters none --fit tight --fit view --fit cascades");
+  std::set<std::string> fits, keys;
+  for (const json& cell : cells) {
+    fits.insert(cell["fit"]);
+    keys.insert(cell["key"]);
+    EXPECT_TRUE(std::filesystem::exists(folder() / "out" / cell["images"]["depth_map"].get<std::string>()));
+  }
+  EXPECT_THAT(fits, testing::ElementsAre("cascades:count=4,split=0.5,blend=0.1,depths=all", "tight", "view"));
+  EXPECT_EQ(keys.size(), 3u);
+}
+
+TEST_F(LayersRun, ALampInsideACaster_IsWarnedOf) {
+  std::string scene = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/harness/scenes/teaching/lantern.toml");
+  const std::string place = "position = [0.1, 1.3, 0.05]";
+  ASSERT_NE(scene.find(place), std::string::npos);
+  scene.replace(scene.find(place), place.size(), "position = [-1.5, 0.35, 1.2]");
+  const auto file = write("inside.toml", scene);
+  run_cells("--filters none --scene " + file.string());
+  EXPECT_THAT(all()["warnings"].dump(), HasSubstr("no receiver in view sees the light"));
+}
+
+TEST_F(LayersRun, MoreMapsThanAFrameMayHave_AreRefused) {
+  const Outcome outcome = run(std::string(kSmallLayers) + "--scene lantern --filters none --lights 8");
+  EXPECT_EQ(outcome.exit_code, 2);
+  for (const char* part : {"8 lights on lantern have 48 maps (6 each)", "choose 5 lights or fewer"})
+    EXPECT_THAT(outcome.err, HasSubstr(part));
+}
+
+}  // namespace
+}  // namespace shadowbench::test
