@@ -45,13 +45,17 @@ class EdgeScene {
     return dark / all;
   }
 
-  /// How far the darkest and the lightest of such receivers are from wholly lit.
-  double farthest_from_lit(const std::string& filter, const std::function<bool(const Receiver&)>& belongs) {
-    bench_.set_range({});
+  /// How far the darkest and the lightest of such receivers are from a visibility.
+  double farthest_from(double visibility, const std::string& filter, const RangeRule& rule,
+                       const std::function<bool(const Receiver&)>& belongs) {
+    bench_.set_range(rule);
     const std::vector<float> image = bench_.draw(catalogue().parse_requests(filter).front());
     double farthest = 0.0;
+    int count = 0;
+    for (const Receiver& r : receivers_) count += belongs(r) ? 1 : 0;
+    EXPECT_GT(count, 200) << "the scene shows none of these receivers";
     for (const Receiver& r : receivers_)
-      if (belongs(r)) farthest = std::max(farthest, std::abs(1.0 - static_cast<double>(image[bench_.index(r)])));
+      if (belongs(r)) farthest = std::max(farthest, std::abs(visibility - static_cast<double>(image[bench_.index(r)])));
     return farthest;
   }
 
@@ -82,7 +86,7 @@ TEST_P(MapRange, RightRule_LightsEverythingOutside) {
   EXPECT_EQ(edge.dark(GetParam(), {}, is_outside), 0.0);
   EXPECT_EQ(edge.dark(GetParam(), {}, is_in_streak), 0.0);
   EXPECT_EQ(edge.dark(GetParam(), {}, is_beyond_far), 0.0);
-  EXPECT_LT(edge.farthest_from_lit(GetParam(), is_outside), 1e-3);
+  EXPECT_LT(edge.farthest_from(1.0, GetParam(), {}, is_outside), 1e-3);
 }
 
 TEST_P(MapRange, Repeat_TilesTheShadows) {
@@ -113,6 +117,41 @@ TEST_P(MapRange, NoFarTest_DarkensEverythingBeyond) {
   const RangeRule compared{Border::kBorder, false, true};
   EXPECT_GT(edge.dark(GetParam(), compared, is_beyond_far), 0.99);
   EXPECT_EQ(edge.dark(GetParam(), compared, is_outside_before_far), 0.0);
+}
+
+std::vector<float> full_of_casters(float depth) {
+  return std::vector<float>(std::size_t{kRangeMapSize} * kRangeMapSize, depth);
+}
+
+/// What is read beyond an edge shows where casters stand everywhere.
+TEST_P(MapRange, MapFullOfCasters_DarkensNothingOutside) {
+  EdgeScene edge;
+  edge.bench().map().upload(full_of_casters(0.02f));
+  EXPECT_LT(edge.farthest_from(1.0, GetParam(), {}, is_outside), 1e-3);
+}
+
+/// Series repeat themselves where a receiver lies farther behind its caster than the map is deep.
+TEST_P(MapRange, NoFarTest_DarkensWhatIsBehindACaster_HoweverDeep) {
+  const scene::Scene scene = load_builtin("stack");
+  Bench bench(shared_context(), scene, kRangeMapSize, 160, 90);
+  const filters::FilterRequest request = catalogue().parse_requests(GetParam()).front();
+  render::LightLayers light = bench.light(request);
+  for (int column = 0; column < 4; ++column) light.front().frustum.uv_depth_from_world[column].z *= 1.6f;
+  light.front().range.far_test = false;
+  bench.map().upload(full_of_casters(0.02f));
+  render::FilterPasses passes(bench.shaders(), request, bench.map(), light);
+  render::ImageTarget target("visibility", GL_R32F, 160, 90);
+  passes.prefilter(bench.map());
+  passes.lookup(bench.gbuffer(), bench.map(), target);
+  const std::vector<float> image = target.texture().read_floats(1);
+  int deep = 0;
+  for (const Receiver& r : render::read_receivers(bench.shaders(), bench.gbuffer(), light.front())) {
+    const bool is_inside = glm::all(glm::lessThan(glm::abs(r.uv - 0.5f), glm::vec2(0.5f - kBeyondKernels)));
+    if (!is_inside || r.depth < 1.005f) continue;
+    ++deep;
+    EXPECT_LT(image[bench.index(r)], 0.01f) << "at depth " << r.depth;
+  }
+  EXPECT_GT(deep, 1000);
 }
 
 INSTANTIATE_TEST_SUITE_P(AllFilters, MapRange, ::testing::ValuesIn(filter_ids()),
