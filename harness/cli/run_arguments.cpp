@@ -15,7 +15,8 @@ namespace {
 /// The options that an experiment may set: those that say what is measured, not those that say where.
 const std::vector<std::string>& experiment_keys() {
   static const std::vector<std::string> keys = split_list(
-      "scene,ground,view,filters,filter_file,map_size,size,bias,map_format,reversed_depth,perspective_depth,fit,snap,"
+      "scene,ground,view,light_name,filters,filter_file,map_size,size,bias,map_format,reversed_depth,perspective_depth,"
+      "fit,snap,"
       "light,lights,pad_texels,tuned,border,far_test,behind_test,border_page,phases,rounds,precision,budget,"
       "cell_timeout,seed,truth,attribution,stability,uncertainty,grids");
   return keys;
@@ -32,6 +33,8 @@ void add_map_options(Command& command, RunArguments& a) {
       "texels around the scene in the map (default: what the widest kernel of the run needs); set it where runs "
       "of different filters are compared");
   command.add("--view", &a.views, "a scene's camera by its name; may be repeated (default: all)");
+  command.add("--light-name", &a.light_names,
+              "one of a scene's several lights by its name; may be repeated (default: all, each by itself)");
   command.add("--size", &a.sizes, "picture size in pixels, WIDTHxHEIGHT; several with commas");
   command.add("--map-format", &a.map_format, "how the map stores depth: d16, d24 or d32f")
       .such_as({"d16", "d24", "d32f"});

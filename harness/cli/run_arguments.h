@@ -42,6 +42,7 @@ struct RunArguments : DrawingArguments {
   std::uint32_t seed = 1;
   double cell_timeout_s = 60.0;
   std::vector<std::string> views;
+  std::vector<std::string> light_names;
   bool truth = true;
   bool attribution = true;
   bool stability = false;

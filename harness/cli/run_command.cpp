@@ -134,6 +134,7 @@ options::RunOptions make_run_options(const RunArguments& arguments, std::vector<
   choose_filters(options, arguments);
   options.sizes = parse_sizes(arguments.sizes);
   options.views = arguments.views;
+  options.light_names = arguments.light_names;
   set_map_and_light(options, arguments);
   options.bias = render::parse_bias(arguments.bias);
   options.bias_texts = arguments.bias;

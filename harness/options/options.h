@@ -64,7 +64,8 @@ struct RunOptions {
   std::vector<PictureSize> sizes = {{}};  ///< of all pictures of a run
   int width = 960;                        ///< of the pictures that are drawn at present, in pixels
   int height = 540;
-  std::vector<std::string> views;  ///< names of cameras; none: all that each scene has
+  std::vector<std::string> views;        ///< names of cameras; none: all that each scene has
+  std::vector<std::string> light_names;  ///< of scenes that have several; none: all
   render::MapSettings map;
   std::vector<scene::FitRule> fits = {{}};  ///< of all maps of a run
   scene::FitRule fit;                       ///< of the maps that are drawn at present

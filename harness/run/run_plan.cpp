@@ -16,7 +16,12 @@
 namespace shadowbench::run {
 namespace {
 
-/// Every scene in every picture size, with every fit of its light's map.
+/// Whether a light was asked for; all are where none was named.
+bool is_wanted(const options::RunOptions& options, const scene::Light& light) {
+  return options.light_names.empty() || std::ranges::count(options.light_names, light.name) > 0;
+}
+
+/// Every scene in every picture size, under each of its lights, with every fit of the light's map.
 std::vector<PlannedScene> plan_scenes(const options::RunOptions& options) {
   std::vector<PlannedScene> planned;
   for (const options::PictureSize& size : options.sizes) {
@@ -25,9 +30,12 @@ std::vector<PlannedScene> plan_scenes(const options::RunOptions& options) {
     framed.height = size.height;
     std::vector<scene::Scene> scenes = load_scenes(framed);
     for (std::size_t i = 0; i < scenes.size(); ++i) {
-      for (const scene::FitRule& fit : options.fits) {
-        framed.fit = fit;
-        planned.push_back({framed, options.scenes[i], scenes[i]});
+      for (const scene::Scene& lit : scene::separate_lights(scenes[i])) {
+        if (!is_wanted(options, lit.light)) continue;
+        for (const scene::FitRule& fit : options.fits) {
+          framed.fit = fit;
+          planned.push_back({framed, options.scenes[i], lit});
+        }
       }
     }
   }
@@ -77,6 +85,11 @@ class Planner {
 
   RunPlan plan() {
     plan_.scenes = plan_scenes(options_);
+    if (plan_.scenes.empty()) {
+      throw Error(ErrorKind::kUsage, fmt::format("--light-name: no scene has a light '{}'; the lights of several have "
+                                                 "names in their scene's file",
+                                                 fmt::join(options_.light_names, "', '")));
+    }
     require_views(options_, plan_.scenes);
     require_few_maps(plan_.scenes);
     for (std::size_t i = 0; i < plan_.scenes.size(); ++i) add_scene(i);

@@ -25,7 +25,7 @@ struct PlannedTask {
   std::vector<std::string> contents;  ///< of those still to be measured; see name_cell_content()
 };
 
-/// What a run is to measure, in the order of its records: picture size, scene, fit, view, map size, filter.
+/// What a run is to measure, in the order of its records: picture size, scene, light, fit, view, map size, filter.
 struct RunPlan {
   std::vector<PlannedScene> scenes;
   std::vector<PlannedTask> tasks;

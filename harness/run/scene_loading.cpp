@@ -15,8 +15,11 @@ scene::Scene load_scene(const options::RunOptions& options, const std::string& a
   load.ground = options.ground;
   load.aspect = static_cast<double>(options.width) / options.height;
   scene::Scene scene = scene::load(argument, load);
-  if (options.light)
-    scene.light = scene::place_in_sky(scene.light, options.light->azimuth_deg, options.light->elevation_deg);
+  const auto place = [&](scene::Light& light) {
+    if (options.light) light = scene::place_in_sky(light, options.light->azimuth_deg, options.light->elevation_deg);
+  };
+  place(scene.light);
+  std::ranges::for_each(scene.other_lights, place);
   return scene;
 }
 

@@ -73,6 +73,7 @@ std::vector<std::string> worker_arguments(const options::RunOptions& options, co
   const auto add = [&](std::vector<std::string> more) { std::ranges::move(more, std::back_inserter(arguments)); };
   add(round_arguments(options.rounds));
   if (options.ground) add({"--ground"});
+  if (!task.scene->light.name.empty()) add({"--light-name", task.scene->light.name});
   if (options.stability) add({"--stability"});
   if (options.uncertainty) add({"--uncertainty"});
   if (options.map.curve.reversed) add({"--reversed-depth"});

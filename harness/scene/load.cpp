@@ -81,10 +81,13 @@ Scene load_model(const fs::path& file, const LoadOptions& options) {
   scene.name = file.stem().string();
   scene.title = scene.name;
   scene.cameras = std::move(model.cameras);
-  const std::optional<Light> light = model.light;
+  const std::vector<Light> lights = model.lights;
   scene = validate_geometry(add_mesh_file(std::move(scene), std::move(model)), file.string());
   const Bounds bounds = scene.bounds();
-  scene.light = light ? aim_light(*light, 0.5f * (bounds.min + bounds.max)) : make_default_sun(bounds);
+  for (const Light& light : lights) scene.other_lights.push_back(aim_light(light, 0.5f * (bounds.min + bounds.max)));
+  if (lights.empty()) scene.other_lights.push_back(make_default_sun(bounds));
+  scene.light = scene.other_lights.front();
+  scene.other_lights.erase(scene.other_lights.begin());
   return validate(completed(std::move(scene), options), file.string());
 }
 

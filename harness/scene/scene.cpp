@@ -21,4 +21,19 @@ std::size_t Scene::triangle_count() const {
   return count;
 }
 
+std::vector<Scene> separate_lights(const Scene& scene) {
+  if (scene.other_lights.empty()) return {scene};
+  std::vector<Light> lights = scene.other_lights;
+  lights.insert(lights.begin(), scene.light);
+  std::vector<Scene> scenes;
+  for (Light& light : lights) {
+    Scene& lit = scenes.emplace_back(scene);
+    lit.other_lights.clear();
+    lit.name += "." + light.name;
+    lit.title += ": " + light.name;
+    lit.light = std::move(light);
+  }
+  return scenes;
+}
+
 }  // namespace shadowbench::scene

@@ -71,11 +71,15 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<Camera> cameras;  ///< at least one
   Light light;
+  std::vector<Light> other_lights;  ///< see separate_lights()
   glm::vec3 background{0.62f, 0.71f, 0.82f};  ///< linear
   std::vector<std::string> warnings;          ///< what was changed or ignored while loading, for the user
 
   Bounds bounds() const;
   std::size_t triangle_count() const;
 };
+
+/// A copy of a scene for each of its lights, which alone shines there; called SCENE.LIGHT where there are several.
+std::vector<Scene> separate_lights(const Scene& scene);
 
 }  // namespace shadowbench::scene

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <set>
 #include <utility>
 
 #include "filters/base/nearest_name.h"
@@ -25,9 +26,7 @@ class SceneBuilder {
     scene_.name = file_.stem().string();
     scene_.title = root_.string("title");
     scene_.background = glm::vec3(root_.vec3("background", kColor, glm::dvec3(scene_.background)));
-    const std::optional<TomlTable> light = root_.table("light");
-    if (!light) throw root_.error("light", "the scene has no [light]");
-    scene_.light = read_light(*light);
+    add_lights(root_.tables("light"));
     for (const TomlTable& table : root_.tables("material")) add_material(table);
     for (const TomlTable& table : root_.tables("object")) add_object(table);
     if (root_.has("model")) scene_ = add_mesh_file(std::move(scene_), import_mesh_file(root_.file("model")));
@@ -55,6 +54,20 @@ class SceneBuilder {
     camera.up_ws = glm::vec3(table.vec3("up", kAnyNumber, glm::dvec3(0.0, 1.0, 0.0)));
     camera.vertical_fov_rad = static_cast<float>(glm::radians(table.number("vertical_fov_deg", {1.0, 170.0}, 45.0)));
     scene_.cameras.push_back(camera);
+  }
+
+  void add_lights(const std::vector<TomlTable>& tables) {
+    if (tables.empty()) throw root_.error("light", "the scene has no [light]");
+    std::set<std::string> names;
+    for (const TomlTable& table : tables) {
+      scene_.other_lights.push_back(read_light(table));
+      const std::string& name = scene_.other_lights.back().name;
+      if (tables.size() > 1 && name.empty())
+        throw table.error("name", table.title() + " has no 'name': of several lights each needs one");
+      if (!names.insert(name).second) throw table.error("name", fmt::format("two lights have the name '{}'", name));
+    }
+    scene_.light = std::move(scene_.other_lights.front());
+    scene_.other_lights.erase(scene_.other_lights.begin());
   }
 
   void add_material(const TomlTable& table) {

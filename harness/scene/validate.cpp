@@ -115,16 +115,24 @@ Camera checked_camera(Camera camera, const std::string& where) {
   return camera;
 }
 
-/// Renames cameras of equal name, since names tell their pictures apart.
-std::vector<Camera> with_unique_names(std::vector<Camera> cameras) {
+/// Renames cameras or lights of equal name, since names tell their pictures apart.
+void make_names_unique(const std::vector<std::string*>& names) {
   std::set<std::string> taken;
   std::map<std::string, int> last_number;  // without it, equal names take time with their number squared
-  for (Camera& camera : cameras) {
-    const std::string name = camera.name;
+  for (std::string* each : names) {
+    const std::string name = *each;
     int& number = last_number.try_emplace(name, 1).first->second;
-    while (!taken.insert(camera.name).second) camera.name = fmt::format("{} {}", name, ++number);
+    while (!taken.insert(*each).second) *each = fmt::format("{} {}", name, ++number);
   }
-  return cameras;
+}
+
+void name_lights(Scene& scene) {
+  if (scene.other_lights.empty()) return;
+  std::vector<std::string*> names = {&scene.light.name};
+  for (Light& light : scene.other_lights) names.push_back(&light.name);
+  for (std::string* name : names)
+    if (name->empty()) *name = "light";
+  make_names_unique(names);
 }
 
 void check_material(const Material& material, const Scene& scene, const std::string& where) {
@@ -167,10 +175,14 @@ Scene validate_geometry(Scene scene, const std::string& where) {
 
 Scene validate(Scene scene, const std::string& where) {
   scene.light = checked_light(scene.light, where);
+  for (Light& light : scene.other_lights) light = checked_light(light, where);
   scene = validate_geometry(std::move(scene), where);
   if (scene.cameras.empty()) fail_input("the scene has no camera", where);
   for (Camera& camera : scene.cameras) camera = checked_camera(camera, where);
-  scene.cameras = with_unique_names(std::move(scene.cameras));
+  std::vector<std::string*> names;
+  for (Camera& camera : scene.cameras) names.push_back(&camera.name);
+  make_names_unique(names);
+  name_lights(scene);
   return scene;
 }
 

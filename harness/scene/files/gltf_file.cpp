@@ -234,15 +234,12 @@ class GltfImporter {
       warn(fmt::format("{} lights are not modelled yet; they are left out", source.type));
       return;
     }
-    if (result_.light) {
-      warn("more than one light: only the first is used");
-      return;
-    }
     Light light;
+    light.name = source.name;
     light.kind = *kind;
     if (source.color.size() == 3)
       for (int i = 0; i < 3; ++i) light.color[i] = static_cast<float>(source.color[static_cast<std::size_t>(i)]);
-    result_.light = light;
+    result_.lights.push_back(std::move(light));
   }
 
   const tinygltf::Model& source_;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,14 +8,14 @@
 
 namespace shadowbench::scene {
 
-/// What a .gltf, .glb or .obj file holds: geometry in world space and, in glTF files, perhaps cameras and a light. It
+/// What a .gltf, .glb or .obj file holds: geometry in world space and, in glTF files, perhaps cameras and lights. It
 /// is not checked yet.
 struct MeshFile {
   std::vector<Mesh> meshes;
   std::vector<Material> materials;  ///< at least one where there is a mesh
   std::vector<Texture> textures;
   std::vector<Camera> cameras;
-  std::optional<Light> light;
+  std::vector<Light> lights;  ///< named where there are several
   std::vector<std::string> warnings;
 };
 
@@ -26,7 +25,7 @@ bool is_mesh_file(const std::filesystem::path& file);
 /// Reads a file by its extension. Throws kInput where it is missing, malformed or of another kind.
 MeshFile import_mesh_file(const std::filesystem::path& file);
 
-/// Adds geometry, materials, textures and warnings to a scene, but neither cameras nor the light.
+/// Adds geometry, materials, textures and warnings to a scene, but neither cameras nor lights.
 Scene add_mesh_file(Scene scene, MeshFile file);
 
 /// Decodes a PNG, JPEG, BMP, TGA or GIF picture to 8 bits and four channels.

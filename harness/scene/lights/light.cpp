@@ -105,10 +105,11 @@ std::vector<Light> make_light_ring(const Light& first, int count) {
 Light read_light(const TomlTable& table) {
   const std::string type = table.choice("type", {"directional", "spot", "point"}, "directional");
   std::vector<std::string> keys = type == "spot" ? spot_keys() : type == "point" ? point_keys() : sun_keys();
-  keys.insert(keys.begin(), {"type", "color", "intensity"});
+  keys.insert(keys.begin(), {"type", "name", "color", "intensity"});
   if (type == "directional") keys.insert(keys.end(), {"map_center", "map_width", "map_near", "map_far"});
   table.require_known_keys(keys);
   Light light;
+  light.name = table.string("name", light.name);
   if (type == "spot")
     light.kind = read_spot(table);
   else if (type == "point")

@@ -39,6 +39,7 @@ struct MapWindow {
 };
 
 struct Light {
+  std::string name;  ///< of one of several; else empty
   LightKind kind;
   glm::vec3 color{1.0f};  ///< linear
   float intensity = 1.0f;

@@ -64,6 +64,27 @@ TEST_F(LayersRun, FitsAreAnAxis) {
   EXPECT_EQ(keys.size(), 3u);
 }
 
+TEST_F(LayersRun, EachOfSeveralLights_IsMeasuredByItself_UsersFiltersToo) {
+  write("mine.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/pcf2x2.glsl"));
+  const std::string filters = " --filters pcf2x2,mine --filter-file " + (folder() / "mine.glsl").string();
+  const json cells = run_cells("--scene three_lights" + filters);
+  ASSERT_EQ(cells.size(), 6u);
+  std::set<double> errors;
+  for (std::size_t i = 0; i < cells.size(); i += 2) {
+    EXPECT_EQ(cells[i]["scene"], cells[i + 1]["scene"]);
+    EXPECT_EQ(cells[i]["error"], cells[i + 1]["error"]) << cells[i]["scene"];
+    errors.insert(cells[i]["error"]["rmse"].get<double>());
+  }
+  EXPECT_EQ(errors.size(), 3u) << "each light has its own truth";
+  const json one = run_cells("--fresh --scene three_lights --light-name bulb" + filters);
+  ASSERT_EQ(one.size(), 2u);
+  EXPECT_EQ(one[0]["scene"], "three_lights.bulb");
+  EXPECT_EQ(one[0]["error"], cells[4]["error"]);
+  const Outcome unknown = run(std::string(kSmallLayers) + "--scene three_lights --light-name moon --filters none");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("no scene has a light 'moon'"));
+}
+
 TEST_F(LayersRun, ALampInsideACaster_IsWarnedOf) {
   std::string scene = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/harness/scenes/teaching/lantern.toml");
   const std::string place = "position = [0.1, 1.3, 0.05]";

@@ -303,5 +303,40 @@ TEST(SceneFileTest, ListsInMessages_AreShortAndOnOneLine) {
   EXPECT_THAT(c.message, testing::Not(HasSubstr("\n")));
 }
 
+constexpr const char* kTwoLights = R"(
+title = "two"
+[[light]]
+name = "sun"
+azimuth_deg = 20
+elevation_deg = 50
+[[light]]
+name = "lamp"
+type = "point"
+position = [0, 3, 0]
+[[object]]
+shape = "plane"
+size = [4, 4]
+)";
+
+TEST(SceneFileTest, SeveralLights_AreSeparated_EachUnderItsName) {
+  const Scene scene = load_text(kTwoLights);
+  const std::vector<Scene> lit = separate_lights(scene);
+  ASSERT_EQ(lit.size(), 2u);
+  EXPECT_EQ(lit[0].name, scene.name + ".sun");
+  EXPECT_EQ(lit[1].name, scene.name + ".lamp");
+  EXPECT_TRUE(std::holds_alternative<Sun>(lit[0].light.kind));
+  EXPECT_TRUE(std::holds_alternative<PointLight>(lit[1].light.kind));
+  EXPECT_TRUE(lit[0].other_lights.empty() && lit[1].other_lights.empty());
+}
+
+TEST(SceneFileTest, SeveralLights_NeedNamesOfTheirOwn) {
+  std::string text = kTwoLights;
+  text.replace(text.find("\"lamp\""), 6, "\"sun\"");
+  EXPECT_THAT(complaint_about(text).message, HasSubstr("two lights have the name 'sun'"));
+  text = kTwoLights;
+  text.erase(text.find("name = \"lamp\""), 13);
+  EXPECT_THAT(complaint_about(text).message, HasSubstr("has no 'name': of several lights each needs one"));
+}
+
 }  // namespace
 }  // namespace shadowbench::scene

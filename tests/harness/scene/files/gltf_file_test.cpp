@@ -89,7 +89,7 @@ TEST(GltfFileTest, Quad_HasTwoTrianglesWithFlatNormals) {
   for (const Vertex& v : model.meshes[0].vertices) EXPECT_EQ(v.normal_ws, glm::vec3(0, 0, 1));
   ASSERT_EQ(model.materials.size(), 1U);
   EXPECT_TRUE(model.cameras.empty());
-  EXPECT_FALSE(model.light.has_value());
+  EXPECT_TRUE(model.lights.empty());
   EXPECT_TRUE(model.warnings.empty());
 }
 
@@ -367,10 +367,10 @@ TEST(GltfFileTest, DirectionalLight_ShinesAlongItsNodesMinusZ) {
       {"extensions": {"KHR_lights_punctual": {"light": 1}}, "rotation": [-0.70710678118654752, 0, 0, 0.70710678118654752]}])";
   parts.scenes = R"([{"nodes": [0, 1, 2]}])";
   const MeshFile model = import_parts(parts);
-  ASSERT_TRUE(model.light.has_value());
-  EXPECT_NEAR(glm::distance(to_light(*model.light, {}), glm::vec3(0, 1, 0)), 0.0f, 1e-6f);
-  EXPECT_EQ(model.light->color, glm::vec3(1.0f, 0.5f, 0.25f));
-  EXPECT_FLOAT_EQ(model.light->intensity, 1.0f);
+  ASSERT_FALSE(model.lights.empty());
+  EXPECT_NEAR(glm::distance(to_light(model.lights.front(), {}), glm::vec3(0, 1, 0)), 0.0f, 1e-6f);
+  EXPECT_EQ(model.lights.front().color, glm::vec3(1.0f, 0.5f, 0.25f));
+  EXPECT_FLOAT_EQ(model.lights.front().intensity, 1.0f);
   EXPECT_THAT(model.warnings, testing::ElementsAre(HasSubstr("area lights are not modelled")));
 }
 
@@ -381,8 +381,8 @@ TEST(GltfFileTest, PointLight_ShinesFromItsNode) {
   parts.nodes = R"([{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [1, 5, 2]}])";
   parts.scenes = R"([{"nodes": [0, 1]}])";
   const MeshFile model = import_parts(parts);
-  ASSERT_TRUE(model.light.has_value());
-  const auto point = std::get<PointLight>(aim_light(*model.light, {1.0f, 2.0f, 6.0f}).kind);
+  ASSERT_FALSE(model.lights.empty());
+  const auto point = std::get<PointLight>(aim_light(model.lights.front(), {1.0f, 2.0f, 6.0f}).kind);
   EXPECT_EQ(point.position_ws, glm::vec3(1.0f, 5.0f, 2.0f));
   EXPECT_FLOAT_EQ(point.reference_m, 5.0f) << "as strong as a sun in the scene's middle";
   EXPECT_TRUE(model.warnings.empty());
@@ -397,13 +397,14 @@ TEST(GltfFileTest, SpotLight_ShinesFromItsNode) {
       {"extensions": {"KHR_lights_punctual": {"light": 1}}}])";
   parts.scenes = R"([{"nodes": [0, 1, 2]}])";
   const MeshFile model = import_parts(parts);
-  ASSERT_TRUE(model.light.has_value());
-  const auto spot = std::get<Spot>(aim_light(*model.light, {7.0f, 2.0f, 7.0f}).kind);
+  ASSERT_FALSE(model.lights.empty());
+  const auto spot = std::get<Spot>(aim_light(model.lights.front(), {7.0f, 2.0f, 7.0f}).kind);
   EXPECT_NEAR(glm::distance(spot.position_ws, glm::vec3(1, 5, 2)), 0.0f, 1e-6f);
   EXPECT_NEAR(glm::distance(spot.target_ws, glm::vec3(1, 2, 2)), 0.0f, 1e-5f) << "as far ahead as the scene's middle";
   EXPECT_NEAR(spot.cone_deg, glm::degrees(1.0f), 1e-4f);
   EXPECT_NEAR(spot.inner_cone_deg, glm::degrees(0.5f), 1e-4f);
-  EXPECT_THAT(model.warnings, testing::ElementsAre(HasSubstr("only the first is used")));
+  EXPECT_EQ(model.lights.size(), 2u) << "each is measured by itself";
+  EXPECT_TRUE(model.warnings.empty());
 }
 
 TEST(GltfFileTest, Materials_KeepColourAndAlphaMode) {
