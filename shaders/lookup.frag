@@ -17,7 +17,6 @@ void main() {
 #ifdef LAYERED
   // The layers of a map add up what each makes of its share of a receiver.
   float share = texelFetch(receiver_shares, pixel, 0).x;
-  if (share == 0.0) discard;
 #else
   const float share = 1.0;
 #endif

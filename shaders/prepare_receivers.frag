@@ -62,6 +62,7 @@ void main() {
   out_plane = vec4(0.0);
 #ifdef LAYERED
   out_share = position.w == 0.0 ? float(light_layer == 0) : find_share(position);
+  gl_FragDepth = out_share > 0.0 ? 0.0 : 1.0;  // a depth test leaves the rest out before it is shaded
 #endif
   if (position.w == 0.0) return;
   vec3 normal = texelFetch(gbuffer_normal, pixel, 0).xyz;

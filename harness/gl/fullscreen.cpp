@@ -21,10 +21,23 @@ void FullscreenTriangle::draw() const {
 }
 
 void FullscreenTriangle::draw_added() const {
-  set_state();
+  set_masked();
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void FullscreenTriangle::draw_masked() const {
+  set_masked();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+/// The triangle lies at depth 0.
+void FullscreenTriangle::set_masked() const {
+  set_state();
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_EQUAL);
+  glDepthMask(GL_FALSE);
 }
 
 void FullscreenTriangle::draw_depth() const {

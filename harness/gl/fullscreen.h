@@ -14,8 +14,11 @@ class FullscreenTriangle {
   /// culling and polygon offset, opened the colour mask, and set polygon mode to fill.
   void draw() const;
 
-  /// The same, adding what the program writes to what is there.
+  /// The same where the framebuffer's depth is 0, adding what the program writes to what is there.
   void draw_added() const;
+
+  /// The same without adding.
+  void draw_masked() const;
 
   /// The same for a program that writes gl_FragDepth into a framebuffer's depth, whatever is there.
   void draw_depth() const;
@@ -27,6 +30,7 @@ class FullscreenTriangle {
   VertexArray empty_;
 
   void set_state() const;
+  void set_masked() const;
 };
 
 }  // namespace shadowbench::gl

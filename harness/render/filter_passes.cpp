@@ -142,9 +142,11 @@ void FilterPasses::prefilter(const ShadowMap& map) {
   }
 }
 
-void FilterPasses::bind_lookup(gl::Program& program, const GBuffer& gbuffer, int layer, const ShadowMap& map) {
+const ReceiverBuffer& FilterPasses::bind_lookup(gl::Program& program, const GBuffer& gbuffer, int layer,
+                                                const ShadowMap& map) {
+  const ReceiverBuffer& receivers = gbuffer.receivers(*shaders_, layers_[static_cast<std::size_t>(layer)].light);
   gbuffer.bind();
-  gbuffer.receivers(*shaders_, layers_[static_cast<std::size_t>(layer)].light).bind();
+  receivers.bind();
   map.bind(layer);
   if (prefilter_) prefilter_->bind();
   if (own_) own_->bind();
@@ -153,18 +155,24 @@ void FilterPasses::bind_lookup(gl::Program& program, const GBuffer& gbuffer, int
     blue_noise_->bind(kBlueNoiseUnit);
   }
   program.use();
+  return receivers;
 }
 
 void FilterPasses::lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& target) {
   if (layers() > 1) target.clear(glm::vec4(0.0f));
   for (int layer = 0; layer < layers(); ++layer) {
     select(layer);
-    bind_lookup(lookup_, gbuffer, layer, map);
-    target.bind();
-    if (layers() > 1)
-      triangle_.draw_added();
-    else
+    const ReceiverBuffer& receivers = bind_lookup(lookup_, gbuffer, layer, map);
+    if (layers() == 1) {
+      target.bind();
       triangle_.draw();
+      continue;
+    }
+    gl::Framebuffer masked("visibility of a layer");
+    masked.attach_color(0, target.texture());
+    masked.attach_depth(receivers.mask());
+    masked.bind();
+    triangle_.draw_added();
   }
 }
 
@@ -182,19 +190,23 @@ void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const
       shaders, {{"COUNT_FETCHES", "1"}, {"STORED_REACH_TEXELS", fmt::format("float({})", stored_reach(request_))}});
   const gl::Texture visibility("counted visibility", GL_R32F, gbuffer.width(), gbuffer.height());
   const gl::Texture reads("reads", GL_RG32F, gbuffer.width(), gbuffer.height());
-  gl::Framebuffer framebuffer("fetch count");
-  framebuffer.attach_color(0, visibility);
-  framebuffer.attach_color(1, reads);
   std::vector<double> sums(static_cast<std::size_t>(gbuffer.width()) * static_cast<std::size_t>(gbuffer.height()),
                            -1.0);
   double reach = -1.0;
   for (int layer = 0; layer < layers(); ++layer) {
     select(layer);
     set_uniforms(counting, layers_[static_cast<std::size_t>(layer)].light);
-    bind_lookup(counting, gbuffer, layer, map);
+    const ReceiverBuffer& receivers = bind_lookup(counting, gbuffer, layer, map);
+    gl::Framebuffer framebuffer("fetch count");
+    framebuffer.attach_color(0, visibility);
+    framebuffer.attach_color(1, reads);
+    if (layers() > 1) framebuffer.attach_depth(receivers.mask());
     framebuffer.bind();
     framebuffer.clear_color(1, glm::vec4(-1.0f));
-    triangle_.draw();
+    if (layers() > 1)
+      triangle_.draw_masked();
+    else
+      triangle_.draw();
     const std::vector<float> counted = reads.read_floats(2);
     for (std::size_t i = 0; i < sums.size(); ++i) {
       if (counted[2 * i] < 0.0f) continue;

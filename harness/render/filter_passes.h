@@ -123,7 +123,7 @@ class FilterPasses {
   std::int64_t count_map_bytes(const ShadowMap& map) const;
   void set_uniforms(gl::Program& lookup, const LightSetup& light) const;
   gl::Program compile_lookup(ShaderLibrary& shaders, Defines defines) const;
-  void bind_lookup(gl::Program& program, const GBuffer& gbuffer, int layer, const ShadowMap& map);
+  const ReceiverBuffer& bind_lookup(gl::Program& program, const GBuffer& gbuffer, int layer, const ShadowMap& map);
   void count_fetches(FilterCost& cost, ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
 };
 

@@ -26,15 +26,20 @@ ReceiverBuffer::ReceiverBuffer(gl::Program& prepare, const GBuffer& gbuffer, con
   framebuffer.attach_color(0, places_);
   framebuffer.attach_color(1, planes_);
   if (light.frustum.is_layered()) {
-    shares_.emplace("receivers' shares", GL_R32F, gbuffer.width(), gbuffer.height());
-    framebuffer.attach_color(2, *shares_);
+    layer_.emplace(Layer{{"receivers' shares", GL_R32F, gbuffer.width(), gbuffer.height()},
+                         {"receivers of a layer", GL_DEPTH_COMPONENT32F, gbuffer.width(), gbuffer.height()}});
+    framebuffer.attach_color(2, layer_->shares);
+    framebuffer.attach_depth(layer_->mask);
   }
   set_light(prepare, light);
   set_share(prepare, light.frustum.share);
   framebuffer.bind();
   gbuffer.bind();
   prepare.use();
-  gl::FullscreenTriangle().draw();
+  if (layer_)
+    gl::FullscreenTriangle().draw_depth();
+  else
+    gl::FullscreenTriangle().draw();
 }
 
 bool ReceiverBuffer::is_of(const LightSetup& light) const {
@@ -52,9 +57,9 @@ void ReceiverBuffer::bind() const {
   for (const GLuint unit : {kPlacesUnit, kPlanesUnit}) gl::Sampler::unbind(unit);
   places_.bind(kPlacesUnit);
   planes_.bind(kPlanesUnit);
-  if (!shares_) return;
+  if (!layer_) return;
   gl::Sampler::unbind(kSharesUnit);
-  shares_->bind(kSharesUnit);
+  layer_->shares.bind(kSharesUnit);
 }
 
 }  // namespace shadowbench::render

@@ -21,11 +21,19 @@ class ReceiverBuffer {
 
   void bind() const;
 
+  /// Of a map with layers: depth 0 where this layer serves a receiver, and 1 elsewhere.
+  const gl::Texture& mask() const { return layer_->mask; }
+
  private:
   LightSetup light_;
   gl::Texture places_;
   gl::Texture planes_;
-  std::optional<gl::Texture> shares_;  ///< only where the light's map has layers
+
+  struct Layer {
+    gl::Texture shares;
+    gl::Texture mask;
+  };
+  std::optional<Layer> layer_;  ///< only where the light's map has layers
 };
 
 }  // namespace shadowbench::render
