@@ -71,7 +71,7 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<Camera> cameras;  ///< at least one
   Light light;
-  std::vector<Light> other_lights;  ///< see separate_lights()
+  std::vector<Light> other_lights;            ///< see separate_lights()
   glm::vec3 background{0.62f, 0.71f, 0.82f};  ///< linear
   std::vector<std::string> warnings;          ///< what was changed or ignored while loading, for the user
 
