@@ -51,6 +51,7 @@ class BiasSweep {
         target_("visibility", GL_R32F, options.width, options.height) {}
 
   void run() {
+    measure::require_one_layer(light_, "bias", scene_.name);
     const files::FolderLock lock(options_.out);  // a folder that cannot be written is better found now
     progress_.begin(static_cast<int>(render::swept_modes().size() * options_.filters.size()), 0);
     progress_.show(0, "truth");

@@ -32,6 +32,7 @@ FlickerBench::FlickerBench(measure::Renderer& renderer, const options::RunOption
       map_(assets_.make_light_map(scene.light, scene.cameras.front(), options.map_sizes.front())),
       target_("visibility", GL_R32F, options.width, options.height),
       receivers_(measure::read_view_receivers(assets_.gbuffer(camera()), scene.light)) {
+  measure::require_one_layer(map_, "flicker", scene.name);
   if (!receivers_.any_counts())
     throw Error(ErrorKind::kInput,
                 fmt::format("{}: no surface in view faces the light; choose another scene", scene.name));

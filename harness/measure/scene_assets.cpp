@@ -63,6 +63,13 @@ void SceneAssets::redraw(LightMap& light, const render::MapBias& bias) {
   for (const scene::LightFrustum& layer : light.layers) light.map.draw(renderer_.shaders, geometry_, layer, bias);
 }
 
+void require_one_layer(const LightMap& light, const std::string& command, const std::string& scene) {
+  if (light.layers.size() == 1) return;
+  throw Error(ErrorKind::kUsage, fmt::format("{}: the light of the scene '{}' has a map of {} layers, and this command "
+                                             "follows one; choose a scene with a sun or a spot light",
+                                             command, scene, light.layers.size()));
+}
+
 images::Image read_linear_depth(const render::ShadowMap& map) {
   images::Image picture = map.read_picture();
   for (float& depth : picture.texels) depth = map.settings().curve.linear(depth);

@@ -72,6 +72,9 @@ class SceneAssets {
   SceneTruth make_truth(const scene::Camera& camera);
 };
 
+/// Throws Error(kUsage), with the name of the command, for a light whose map has layers.
+void require_one_layer(const LightMap& light, const std::string& command, const std::string& scene);
+
 /// Reads a map back as a picture of linear depth, rows top to bottom.
 images::Image read_linear_depth(const render::ShadowMap& map);
 

@@ -95,6 +95,14 @@ TEST_F(LayersRun, ALampInsideACaster_IsWarnedOf) {
   EXPECT_THAT(all()["warnings"].dump(), HasSubstr("no receiver in view sees the light"));
 }
 
+TEST_F(LayersRun, CommandsThatFollowOneMap_SayTheyDoNotTakeMore) {
+  for (const char* command : {"bias --scene lantern", "flicker --scene lantern --motion light --frames 2"}) {
+    const Outcome outcome = run(std::string(command) + " --filters none --size 64x36 --out out");
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("'lantern' has a map of 6 layers"));
+  }
+}
+
 TEST_F(LayersRun, MoreMapsThanAFrameMayHave_AreRefused) {
   const Outcome outcome = run(std::string(kSmallLayers) + "--scene lantern --filters none --lights 8");
   EXPECT_EQ(outcome.exit_code, 2);
