@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <glm/gtx/rotate_vector.hpp>
@@ -34,20 +36,31 @@ std::optional<MapWindow> read_map_window(const TomlTable& table) {
   return window;
 }
 
-std::string write_vector(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
+/// How a kind is read from a scene file.
+struct KindReader {
+  std::string_view type;
+  const std::vector<std::string>& (*keys)();
+  LightKind (*read)(const TomlTable& table);
+};
+
+const std::array<KindReader, 3>& list_readers() {
+  static const std::array<KindReader, 3> readers = {
+      {{"directional", sun_keys, [](const TomlTable& table) -> LightKind { return read_sun(table); }},
+       {"spot", spot_keys, [](const TomlTable& table) -> LightKind { return read_spot(table); }},
+       {"point", point_keys, [](const TomlTable& table) -> LightKind { return read_point(table); }}}};
+  return readers;
+}
 
 }  // namespace
 
+std::string write_vector(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
+
 glm::vec3 to_light(const Light& light, const glm::vec3& point_ws) {
-  return std::visit(Each{[](const Sun& sun) { return -sun.direction_ws; },
-                         [&](const auto& lamp) { return glm::normalize(lamp.position_ws - point_ws); }},
-                    light.kind);
+  return std::visit([&](const auto& kind) { return to_light(kind, point_ws); }, light.kind);
 }
 
 std::optional<Beam> find_beam(const Light& light) {
-  return std::visit(Each{[](const Sun&) -> std::optional<Beam> { return std::nullopt; },
-                         [](const auto& lamp) -> std::optional<Beam> { return make_beam(lamp); }},
-                    light.kind);
+  return std::visit([](const auto& kind) { return find_beam(kind); }, light.kind);
 }
 
 const Texture* find_cookie(const Light& light) {
@@ -61,29 +74,15 @@ bool shines_on(const Light& light, const glm::vec3& point_ws) {
 }
 
 double light_size(const Light& light) {
-  return std::visit(Each{[](const Sun& sun) {
-                           return 2.0 * std::tan(0.5 * glm::radians(static_cast<double>(sun.angular_diameter_deg)));
-                         },
-                         [](const Spot& spot) { return diameter_of(spot); },
-                         [](const PointLight& point) { return 2.0 * static_cast<double>(point.radius_m); }},
-                    light.kind);
+  return std::visit([](const auto& kind) { return light_size(kind); }, light.kind);
 }
 
 truth::AreaLight make_area_light(const Light& light) {
   return std::visit([](const auto& kind) { return make_area_light(kind); }, light.kind);
 }
 
-Light turn_light(Light light, const std::function<glm::vec3(const glm::vec3&)>& turn) {
-  std::visit(Each{[&](Sun& sun) { sun.direction_ws = turn(sun.direction_ws); },
-                  [&](Spot& spot) {
-                    const glm::vec3 way = spot.target_ws - spot.position_ws;
-                    spot.position_ws = spot.target_ws - glm::length(way) * turn(glm::normalize(way));
-                  },
-                  [&](PointLight& point) {
-                    const float distance = glm::length(point.position_ws);
-                    if (distance > 0.0f) point.position_ws = -distance * turn(-point.position_ws / distance);
-                  }},
-             light.kind);
+Light turn_light(Light light, const LightTurn& turn) {
+  std::visit([&](auto& kind) { turn_light(kind, turn); }, light.kind);
   return light;
 }
 
@@ -103,19 +102,16 @@ std::vector<Light> make_light_ring(const Light& first, int count) {
 }
 
 Light read_light(const TomlTable& table) {
-  const std::string type = table.choice("type", {"directional", "spot", "point"}, "directional");
-  std::vector<std::string> keys = type == "spot" ? spot_keys() : type == "point" ? point_keys() : sun_keys();
+  std::vector<std::string> types;
+  for (const KindReader& each : list_readers()) types.emplace_back(each.type);
+  const std::string type = table.choice("type", types, types.front());
+  const KindReader& reader = *std::ranges::find(list_readers(), type, &KindReader::type);
+  std::vector<std::string> keys = reader.keys();
   keys.insert(keys.begin(), {"type", "name", "color", "intensity"});
-  if (type == "directional") keys.insert(keys.end(), {"map_center", "map_width", "map_near", "map_far"});
   table.require_known_keys(keys);
   Light light;
   light.name = table.string("name", light.name);
-  if (type == "spot")
-    light.kind = read_spot(table);
-  else if (type == "point")
-    light.kind = read_point(table);
-  else
-    light.kind = read_sun(table);
+  light.kind = reader.read(table);
   light.color = glm::vec3(table.vec3("color", kColor, glm::dvec3(1.0)));
   light.intensity = table.number_f("intensity", {0.0, 1000.0}, 1.0);
   light.map_window = read_map_window(table);
@@ -136,23 +132,12 @@ std::optional<LightKind> make_gltf_light(std::string_view type, const glm::dmat4
 }
 
 Light aim_light(Light light, const glm::vec3& center_ws) {
-  if (auto* spot = std::get_if<Spot>(&light.kind)) {
-    const glm::vec3 ahead = spot->target_ws - spot->position_ws;
-    const float distance = glm::dot(center_ws - spot->position_ws, ahead);
-    if (distance > 0.0f) spot->target_ws = spot->position_ws + distance * ahead;
-  }
-  if (auto* point = std::get_if<PointLight>(&light.kind)) {
-    const float distance = glm::distance(center_ws, point->position_ws);
-    if (distance > 0.0f) point->reference_m = distance;
-  }
+  std::visit([&](auto& kind) { aim_light(kind, center_ws); }, light.kind);
   return light;
 }
 
 Light checked_light(Light light, const std::string& where) {
-  light.kind = std::visit(Each{[&](const Sun& sun) -> LightKind { return checked_sun(sun, where); },
-                               [&](const Spot& spot) -> LightKind { return checked_spot(spot, where); },
-                               [&](const PointLight& point) -> LightKind { return checked_point(point, where); }},
-                          light.kind);
+  light.kind = std::visit([&](const auto& kind) -> LightKind { return checked_light(kind, where); }, light.kind);
   const bool shines = std::isfinite(light.color.r + light.color.g + light.color.b) &&
                       glm::all(glm::greaterThanEqual(light.color, glm::vec3(0.0f))) && std::isfinite(light.intensity) &&
                       light.intensity >= 0.0f;
@@ -163,63 +148,17 @@ Light checked_light(Light light, const std::string& where) {
 }
 
 std::string describe_light(const Light& light) {
-  return std::visit(
-      Each{[](const Sun& sun) { return fmt::format("a sun of {:.3g} degrees", sun.angular_diameter_deg); },
-           [](const Spot& spot) {
-             const std::string size = spot.size_m.x > 0.0f
-                                          ? fmt::format("{:.3g} x {:.3g}", spot.size_m.x, spot.size_m.y)
-                                          : fmt::format("{:.3g}", 2.0f * spot.radius_m);
-             return fmt::format("a spot light of {} m, {:.3g} m from its target", size,
-                                glm::distance(spot.position_ws, spot.target_ws));
-           },
-           [](const PointLight& point) {
-             return fmt::format("a point light, a sphere of {:.3g} m", 2.0f * point.radius_m);
-           }},
-      light.kind);
+  return std::visit([](const auto& kind) { return describe_light(kind); }, light.kind);
 }
 
-std::map<std::string, std::variant<double, std::string>> light_metadata(const Light& light) {
-  using Metadata = std::map<std::string, std::variant<double, std::string>>;
-  return std::visit(Each{[](const Sun& sun) {
-                           return Metadata{
-                               {"light_direction_ws", write_vector(sun.direction_ws)},
-                               {"light_angular_diameter_deg", static_cast<double>(sun.angular_diameter_deg)}};
-                         },
-                         [](const Spot& spot) {
-                           return Metadata{{"light_position_ws", write_vector(spot.position_ws)},
-                                           {"light_target_ws", write_vector(spot.target_ws)},
-                                           {"light_cone_deg", static_cast<double>(spot.cone_deg)},
-                                           {"light_inner_cone_deg", static_cast<double>(spot.inner_cone_deg)},
-                                           {"light_radius_m", static_cast<double>(spot.radius_m)},
-                                           {"light_size_m", fmt::format("{} {}", spot.size_m.x, spot.size_m.y)}};
-                         },
-                         [](const PointLight& point) {
-                           return Metadata{{"light_position_ws", write_vector(point.position_ws)},
-                                           {"light_reference_m", static_cast<double>(point.reference_m)},
-                                           {"light_radius_m", static_cast<double>(point.radius_m)}};
-                         }},
-                    light.kind);
+LightMetadata light_metadata(const Light& light) {
+  return std::visit([](const auto& kind) { return light_metadata(kind); }, light.kind);
 }
 
 std::vector<std::string> list_light_content(const Light& light) {
-  const glm::vec3& c = light.color;
-  std::vector<std::string> content = {std::visit(
-      Each{[&](const Sun& sun) {
-             const glm::vec3& d = sun.direction_ws;
-             return fmt::format("{} {} {} {} {} {} {} {} {}", light.kind.index(), d.x, d.y, d.z, c.r, c.g, c.b,
-                                light.intensity, sun.angular_diameter_deg);
-           },
-           [&](const Spot& spot) {
-             return fmt::format(
-                 "{} {} {} {} {} {} {} {} {}", light.kind.index(), write_vector(spot.position_ws),
-                 write_vector(spot.target_ws), c.r, c.g, c.b, light.intensity, spot.radius_m,
-                 fmt::format("{} {} {} {}", spot.cone_deg, spot.inner_cone_deg, spot.size_m.x, spot.size_m.y));
-           },
-           [&](const PointLight& point) {
-             return fmt::format("{} {} {} {} {} {} {} {}", light.kind.index(), write_vector(point.position_ws), c.r,
-                                c.g, c.b, light.intensity, point.radius_m, point.reference_m);
-           }},
-      light.kind)};
+  std::vector<std::string> content = {
+      fmt::format("{} {} {} {}", light.kind.index(), write_vector(light.color), light.intensity,
+                  std::visit([](const auto& kind) { return light_content(kind); }, light.kind))};
   if (const Texture* cookie = find_cookie(light)) {
     ContentHash texels;
     texels.add_values(std::span<const std::uint8_t>(cookie->rgba));

@@ -16,14 +16,8 @@
 
 namespace shadowbench::scene {
 
-/// The kinds of light: each has a file of its own, and is chosen from in light.cpp alone.
+/// The kinds of light: each has a file of its own, with the functions that light_kind.h names.
 using LightKind = std::variant<Sun, Spot, PointLight>;
-
-/// Asks each kind of light by a function of its own.
-template <class... Functions>
-struct Each : Functions... {
-  using Functions::operator()...;
-};
 
 /// A light's map that is not fitted to the scene: it may leave receivers outside.
 struct MapWindow {
@@ -59,14 +53,14 @@ const Texture* find_cookie(const Light& light);
 bool shines_on(const Light& light, const glm::vec3& point_ws);
 
 /// The light's size: of one at infinity the width of a penumbra for each metre between a receiver and its occluder, of
-/// one in the scene its diameter in metres.
+/// one in the scene its diameter in metres, of a rectangle that of the disk of its area.
 double light_size(const Light& light);
 
 /// The light as the truth traces it.
 truth::AreaLight make_area_light(const Light& light);
 
 /// The light with its direction mapped by `turn`; one in the scene goes round its target, or the world's origin.
-Light turn_light(Light light, const std::function<glm::vec3(const glm::vec3&)>& turn);
+Light turn_light(Light light, const LightTurn& turn);
 
 /// The light moved to a place in the sky, see light_direction(); one in the scene as seen from what it goes round.
 Light place_in_sky(Light light, double azimuth_deg, double elevation_deg);
@@ -93,8 +87,8 @@ Light checked_light(Light light, const std::string& where);
 /// The light in words, for the caption of a picture: "a sun of 0.53 degrees".
 std::string describe_light(const Light& light);
 
-/// What a picture's metadata say of the light, by name.
-std::map<std::string, std::variant<double, std::string>> light_metadata(const Light& light);
+/// What a picture's metadata say of the light.
+LightMetadata light_metadata(const Light& light);
 
 /// All that a result depends on, as text for the name of a cell.
 std::vector<std::string> list_light_content(const Light& light);

@@ -5,7 +5,6 @@
 #include <cassert>
 
 #include "filters/base/error.h"
-#include "harness/scene/lights/cascades.h"
 #include "harness/scene/mesh_tools.h"
 
 namespace shadowbench::scene {
@@ -76,24 +75,19 @@ LightFrustum fit_light(const Scene& scene, const FitRequest& request) {
   return std::move(layers.front());
 }
 
+namespace {
+
+const MapWindow* find_window(const Light& light) { return light.map_window ? &*light.map_window : nullptr; }
+
+}  // namespace
+
 std::vector<LightFrustum> fit_layers(const Scene& scene, const FitRequest& request) {
-  using Layers = std::vector<LightFrustum>;
   const Light& light = request.light ? *request.light : scene.light;
-  const MapWindow* window = light.map_window ? &*light.map_window : nullptr;
-  return std::visit(Each{[&](const Sun& sun) {
-                           if (request.mode == FitMode::kCascades && !window) return fit_cascades(sun, scene, request);
-                           return Layers{fit_sun(sun, window, scene, request)};
-                         },
-                         [&](const Spot& spot) { return Layers{fit_spot(spot, scene, request)}; },
-                         [&](const PointLight& point) { return fit_point(point, scene, request); }},
-                    light.kind);
+  return std::visit([&](const auto& kind) { return fit_layers(kind, find_window(light), scene, request); }, light.kind);
 }
 
 int count_layers(const Light& light, const FitRule& rule) {
-  return std::visit(
-      Each{[&](const Sun&) { return rule.mode == FitMode::kCascades && !light.map_window ? rule.cascades.count : 1; },
-           [](const Spot&) { return 1; }, [](const PointLight&) { return kCubeFaces; }},
-      light.kind);
+  return std::visit([&](const auto& kind) { return count_layers(kind, find_window(light), rule); }, light.kind);
 }
 
 }  // namespace shadowbench::scene

@@ -33,7 +33,7 @@ PointLight read_point(const TomlTable& table) {
   return point;
 }
 
-PointLight checked_point(const PointLight& point, const std::string& where) {
+PointLight checked_light(const PointLight& point, const std::string& where) {
   const glm::vec3& p = point.position_ws;
   if (std::isfinite(p.x + p.y + p.z) && std::isfinite(point.radius_m) && point.radius_m >= 0.0f &&
       std::isfinite(point.reference_m) && point.reference_m > 0.0f)
@@ -58,7 +58,42 @@ truth::AreaLight make_area_light(const PointLight& point) {
                                      static_cast<double>(point.radius_m));
 }
 
-std::vector<LightFrustum> fit_point(const PointLight& point, const Scene& scene, const FitRequest& request) {
+glm::vec3 to_light(const PointLight& point, const glm::vec3& point_ws) {
+  return glm::normalize(point.position_ws - point_ws);
+}
+
+std::optional<Beam> find_beam(const PointLight& point) { return make_beam(point); }
+
+double light_size(const PointLight& point) { return 2.0 * static_cast<double>(point.radius_m); }
+
+void turn_light(PointLight& point, const LightTurn& turn) {
+  const float distance = glm::length(point.position_ws);
+  if (distance > 0.0f) point.position_ws = -distance * turn(-point.position_ws / distance);
+}
+
+void aim_light(PointLight& point, const glm::vec3& center_ws) {
+  const float distance = glm::distance(center_ws, point.position_ws);
+  if (distance > 0.0f) point.reference_m = distance;
+}
+
+std::string describe_light(const PointLight& point) {
+  return fmt::format("a point light, a sphere of {:.3g} m", 2.0f * point.radius_m);
+}
+
+LightMetadata light_metadata(const PointLight& point) {
+  return {{"light_position_ws", write_vector(point.position_ws)},
+          {"light_reference_m", static_cast<double>(point.reference_m)},
+          {"light_radius_m", static_cast<double>(point.radius_m)}};
+}
+
+std::string light_content(const PointLight& point) {
+  return fmt::format("{} {} {}", write_vector(point.position_ws), point.radius_m, point.reference_m);
+}
+
+int count_layers(const PointLight&, const MapWindow*, const FitRule&) { return kCubeFaces; }
+
+std::vector<LightFrustum> fit_layers(const PointLight& point, const MapWindow*, const Scene& scene,
+                                     const FitRequest& request) {
   const double tangent = pad_tangent(1.0, request);
   AxisExtent extent;
   for (int face = 0; face < kCubeFaces; ++face)

@@ -1,18 +1,8 @@
 #pragma once
 
-#include <glm/glm.hpp>
-#include <string>
-#include <vector>
-
-#include "harness/scene/lights/beam.h"
-#include "reference/truth/area_light.h"
+#include "harness/scene/lights/light_kind.h"
 
 namespace shadowbench::scene {
-
-class TomlTable;
-struct FitRequest;
-struct LightFrustum;
-struct Scene;
 
 /// A sphere in the scene that shines all around.
 struct PointLight {
@@ -25,17 +15,22 @@ struct PointLight {
 const std::vector<std::string>& point_keys();
 PointLight read_point(const TomlTable& table);
 
-/// Throws kInput, with `where`, for a light that cannot be.
-PointLight checked_point(const PointLight& point, const std::string& where);
-
 /// A beam without an edge; its axis says nothing.
 Beam make_beam(const PointLight& point);
 
-/// Rays to the sphere.
+/// What light.h asks of every kind.
+glm::vec3 to_light(const PointLight& point, const glm::vec3& point_ws);
+std::optional<Beam> find_beam(const PointLight& point);
+double light_size(const PointLight& point);
 truth::AreaLight make_area_light(const PointLight& point);
-
-/// The faces of a cube around the light, each a perspective map of 90 degrees and its padding: a kernel at the edge of
-/// a face reads on in the same map, so that no filter needs to know of the seam. All six have the same depths.
-std::vector<LightFrustum> fit_point(const PointLight& point, const Scene& scene, const FitRequest& request);
+void turn_light(PointLight& point, const LightTurn& turn);
+void aim_light(PointLight& point, const glm::vec3& center_ws);
+PointLight checked_light(const PointLight& point, const std::string& where);
+std::string describe_light(const PointLight& point);
+LightMetadata light_metadata(const PointLight& point);
+std::string light_content(const PointLight& point);
+int count_layers(const PointLight& point, const MapWindow* window, const FitRule& rule);
+std::vector<LightFrustum> fit_layers(const PointLight& point, const MapWindow* window, const Scene& scene,
+                                     const FitRequest& request);
 
 }  // namespace shadowbench::scene

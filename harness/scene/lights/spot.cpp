@@ -66,19 +66,6 @@ Spot read_spot(const TomlTable& table) {
   return spot;
 }
 
-Spot checked_spot(const Spot& spot, const std::string& where) {
-  unit_direction(spot.target_ws - spot.position_ws, "the light", where);
-  const double cone = static_cast<double>(spot.cone_deg);
-  if (cone >= kLeastCone_deg && cone <= double{kWidestCone_deg} && spot.inner_cone_deg >= 0.0f &&
-      spot.inner_cone_deg <= spot.cone_deg && spot.radius_m >= 0.0f && std::isfinite(spot.radius_m) &&
-      glm::all(glm::greaterThanEqual(spot.size_m, glm::vec2(0.0f))) && std::isfinite(spot.size_m.x + spot.size_m.y))
-    return spot;
-  fail_input(fmt::format("the spot light has a cone of {} degrees, {} within, and a radius of {} m: the cone must lie "
-                         "within {} .. {}, and the inner one within it",
-                         spot.cone_deg, spot.inner_cone_deg, spot.radius_m, kLeastCone_deg, kWidestCone_deg),
-             where);
-}
-
 Beam make_beam(const Spot& spot) {
   const glm::dvec3 way = glm::dvec3(spot.target_ws) - glm::dvec3(spot.position_ws);
   const auto half_cosine = [](float degrees) { return std::cos(0.5 * glm::radians(static_cast<double>(degrees))); };
@@ -86,7 +73,7 @@ Beam make_beam(const Spot& spot) {
           half_cosine(spot.cone_deg), glm::length(way)};
 }
 
-double diameter_of(const Spot& spot) {
+double light_size(const Spot& spot) {
   if (!is_rectangle(spot)) return 2.0 * static_cast<double>(spot.radius_m);
   return 2.0 * std::sqrt(static_cast<double>(spot.size_m.x) * static_cast<double>(spot.size_m.y) / std::numbers::pi);
 }
@@ -101,10 +88,62 @@ truth::AreaLight make_area_light(const Spot& spot) {
   return truth::AreaLight::make_disk(beam.position_ws, beam.axis_ws, static_cast<double>(spot.radius_m));
 }
 
-LightFrustum fit_spot(const Spot& spot, const Scene& scene, const FitRequest& request) {
+glm::vec3 to_light(const Spot& spot, const glm::vec3& point_ws) { return glm::normalize(spot.position_ws - point_ws); }
+
+std::optional<Beam> find_beam(const Spot& spot) { return make_beam(spot); }
+
+void turn_light(Spot& spot, const LightTurn& turn) {
+  const glm::vec3 way = spot.target_ws - spot.position_ws;
+  spot.position_ws = spot.target_ws - glm::length(way) * turn(glm::normalize(way));
+}
+
+void aim_light(Spot& spot, const glm::vec3& center_ws) {
+  const glm::vec3 ahead = spot.target_ws - spot.position_ws;
+  const float distance = glm::dot(center_ws - spot.position_ws, ahead);
+  if (distance > 0.0f) spot.target_ws = spot.position_ws + distance * ahead;
+}
+
+Spot checked_light(const Spot& spot, const std::string& where) {
+  unit_direction(spot.target_ws - spot.position_ws, "the light", where);
+  const double cone = static_cast<double>(spot.cone_deg);
+  if (cone >= kLeastCone_deg && cone <= double{kWidestCone_deg} && spot.inner_cone_deg >= 0.0f &&
+      spot.inner_cone_deg <= spot.cone_deg && spot.radius_m >= 0.0f && std::isfinite(spot.radius_m) &&
+      glm::all(glm::greaterThanEqual(spot.size_m, glm::vec2(0.0f))) && std::isfinite(spot.size_m.x + spot.size_m.y))
+    return spot;
+  fail_input(fmt::format("the spot light has a cone of {} degrees, {} within, and a radius of {} m: the cone must lie "
+                         "within {} .. {}, and the inner one within it",
+                         spot.cone_deg, spot.inner_cone_deg, spot.radius_m, kLeastCone_deg, kWidestCone_deg),
+             where);
+}
+
+std::string describe_light(const Spot& spot) {
+  const std::string size = is_rectangle(spot) ? fmt::format("{:.3g} x {:.3g}", spot.size_m.x, spot.size_m.y)
+                                              : fmt::format("{:.3g}", 2.0f * spot.radius_m);
+  return fmt::format("a spot light of {} m, {:.3g} m from its target", size,
+                     glm::distance(spot.position_ws, spot.target_ws));
+}
+
+LightMetadata light_metadata(const Spot& spot) {
+  return {{"light_position_ws", write_vector(spot.position_ws)},
+          {"light_target_ws", write_vector(spot.target_ws)},
+          {"light_cone_deg", static_cast<double>(spot.cone_deg)},
+          {"light_inner_cone_deg", static_cast<double>(spot.inner_cone_deg)},
+          {"light_radius_m", static_cast<double>(spot.radius_m)},
+          {"light_size_m", fmt::format("{} {}", spot.size_m.x, spot.size_m.y)}};
+}
+
+std::string light_content(const Spot& spot) {
+  return fmt::format("{} {} {} {} {} {} {}", write_vector(spot.position_ws), write_vector(spot.target_ws),
+                     spot.radius_m, spot.cone_deg, spot.inner_cone_deg, spot.size_m.x, spot.size_m.y);
+}
+
+int count_layers(const Spot&, const MapWindow*, const FitRule&) { return 1; }
+
+std::vector<LightFrustum> fit_layers(const Spot& spot, const MapWindow*, const Scene& scene,
+                                     const FitRequest& request) {
   const Beam beam = make_beam(spot);
   const double tangent = pad_tangent(std::tan(0.5 * glm::radians(static_cast<double>(spot.cone_deg))), request);
-  return fit_perspective(beam, tangent, find_extent(scene, look_along(beam), tangent), request);
+  return {fit_perspective(beam, tangent, find_extent(scene, look_along(beam), tangent), request)};
 }
 
 }  // namespace shadowbench::scene

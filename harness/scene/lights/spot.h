@@ -1,20 +1,10 @@
 #pragma once
 
-#include <glm/glm.hpp>
 #include <memory>
-#include <string>
-#include <vector>
 
-#include "harness/scene/lights/beam.h"
-#include "reference/truth/area_light.h"
+#include "harness/scene/lights/light_kind.h"
 
 namespace shadowbench::scene {
-
-class TomlTable;
-struct FitRequest;
-struct LightFrustum;
-struct Scene;
-struct Texture;
 
 /// A lamp that stands in the scene: a disk or a rectangle that faces its target, whose light fills a cone with a soft
 /// edge.
@@ -36,19 +26,22 @@ inline constexpr float kWidestCone_deg = 170.0f;
 const std::vector<std::string>& spot_keys();
 Spot read_spot(const TomlTable& table);
 
-/// Throws kInput, with `where`, for a spot that cannot be.
-Spot checked_spot(const Spot& spot, const std::string& where);
-
 /// Its cone.
 Beam make_beam(const Spot& spot);
 
-/// The diameter of the lamp's disk, metres; of a rectangle that of the disk of its area.
-double diameter_of(const Spot& spot);
-
-/// Rays to the lamp's disk or rectangle.
+/// What light.h asks of every kind.
+glm::vec3 to_light(const Spot& spot, const glm::vec3& point_ws);
+std::optional<Beam> find_beam(const Spot& spot);
+double light_size(const Spot& spot);
 truth::AreaLight make_area_light(const Spot& spot);
-
-/// The frustum around the cone, whose depth runs from the nearest to the farthest vertex in it; see fit_light().
-LightFrustum fit_spot(const Spot& spot, const Scene& scene, const FitRequest& request);
+void turn_light(Spot& spot, const LightTurn& turn);
+void aim_light(Spot& spot, const glm::vec3& center_ws);
+Spot checked_light(const Spot& spot, const std::string& where);
+std::string describe_light(const Spot& spot);
+LightMetadata light_metadata(const Spot& spot);
+std::string light_content(const Spot& spot);
+int count_layers(const Spot& spot, const MapWindow* window, const FitRule& rule);
+std::vector<LightFrustum> fit_layers(const Spot& spot, const MapWindow* window, const Scene& scene,
+                                     const FitRequest& request);
 
 }  // namespace shadowbench::scene

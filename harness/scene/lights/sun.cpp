@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "harness/scene/lights/cascades.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/toml_reader.h"
@@ -197,7 +198,8 @@ glm::dvec3 light_direction(double azimuth_deg, double elevation_deg) {
 }
 
 const std::vector<std::string>& sun_keys() {
-  static const std::vector<std::string> keys = {"direction", "azimuth_deg", "elevation_deg", "angular_diameter_deg"};
+  static const std::vector<std::string> keys = {"direction",  "azimuth_deg", "elevation_deg", "angular_diameter_deg",
+                                                "map_center", "map_width",   "map_near",      "map_far"};
   return keys;
 }
 
@@ -206,15 +208,41 @@ Sun read_sun(const TomlTable& table) {
   return {direction, table.number_f("angular_diameter_deg", {0.0, 90.0}, 0.53)};
 }
 
-Sun checked_sun(Sun sun, const std::string& where) {
-  sun.direction_ws = unit_direction(sun.direction_ws, "the light", where);
-  if (sun.angular_diameter_deg >= 0.0f && sun.angular_diameter_deg < 180.0f) return sun;
-  fail_input(fmt::format("the light's angular diameter is {} degrees", sun.angular_diameter_deg), where);
+glm::vec3 to_light(const Sun& sun, const glm::vec3&) { return -sun.direction_ws; }
+
+std::optional<Beam> find_beam(const Sun&) { return std::nullopt; }
+
+double light_size(const Sun& sun) {
+  return 2.0 * std::tan(0.5 * glm::radians(static_cast<double>(sun.angular_diameter_deg)));
 }
 
 truth::AreaLight make_area_light(const Sun& sun) {
   return truth::AreaLight::make_sun(-glm::dvec3(sun.direction_ws), static_cast<double>(sun.angular_diameter_deg));
 }
+
+void turn_light(Sun& sun, const LightTurn& turn) { sun.direction_ws = turn(sun.direction_ws); }
+
+void aim_light(Sun&, const glm::vec3&) {}
+
+Sun checked_light(const Sun& given, const std::string& where) {
+  Sun sun = given;
+  sun.direction_ws = unit_direction(sun.direction_ws, "the light", where);
+  if (sun.angular_diameter_deg >= 0.0f && sun.angular_diameter_deg < 180.0f) return sun;
+  fail_input(fmt::format("the light's angular diameter is {} degrees", sun.angular_diameter_deg), where);
+}
+
+std::string describe_light(const Sun& sun) { return fmt::format("a sun of {:.3g} degrees", sun.angular_diameter_deg); }
+
+LightMetadata light_metadata(const Sun& sun) {
+  return {{"light_direction_ws", write_vector(sun.direction_ws)},
+          {"light_angular_diameter_deg", static_cast<double>(sun.angular_diameter_deg)}};
+}
+
+std::string light_content(const Sun& sun) {
+  return fmt::format("{} {}", write_vector(sun.direction_ws), sun.angular_diameter_deg);
+}
+
+namespace {
 
 LightFrustum fit_sun(const Sun& sun, const MapWindow* window, const Scene& scene, const FitRequest& request) {
   const SunView view(sun, scene, request);
@@ -230,10 +258,22 @@ LightFrustum fit_sun(const Sun& sun, const MapWindow* window, const Scene& scene
   return fit_box(view, tight_box(scene, view.rotation, view.center), window, request);
 }
 
+}  // namespace
+
 LightFrustum fit_sun_over(const Sun& sun, const Scene& scene, const FitRequest& request,
                           const std::vector<glm::dvec3>& receivers) {
   const SunView view(sun, scene, request);
   return fit_box(view, box_over(receivers, scene, request, view), nullptr, request);
+}
+
+int count_layers(const Sun&, const MapWindow* window, const FitRule& rule) {
+  return rule.mode == FitMode::kCascades && !window ? rule.cascades.count : 1;
+}
+
+std::vector<LightFrustum> fit_layers(const Sun& sun, const MapWindow* window, const Scene& scene,
+                                     const FitRequest& request) {
+  if (request.mode == FitMode::kCascades && !window) return fit_cascades(sun, scene, request);
+  return {fit_sun(sun, window, scene, request)};
 }
 
 }  // namespace shadowbench::scene

@@ -1,18 +1,8 @@
 #pragma once
 
-#include <glm/glm.hpp>
-#include <string>
-#include <vector>
-
-#include "reference/truth/area_light.h"
+#include "harness/scene/lights/light_kind.h"
 
 namespace shadowbench::scene {
-
-class TomlTable;
-struct FitRequest;
-struct LightFrustum;
-struct MapWindow;
-struct Scene;
 
 /// A directional light: a disk at infinity.
 struct Sun {
@@ -23,22 +13,28 @@ struct Sun {
 /// The way light travels that comes from a place in the sky: azimuth 0 is +z, 90 is +x; degrees.
 glm::dvec3 light_direction(double azimuth_deg, double elevation_deg);
 
-/// The keys of a sun in a scene file, and the sun that they describe. Throws kInput.
+/// The keys of a sun in a scene file, those of its map window included, and the sun that they describe. Throws kInput.
 const std::vector<std::string>& sun_keys();
 Sun read_sun(const TomlTable& table);
 
-/// Makes the direction unit length. Throws kInput, with `where`, for a sun that cannot be.
-Sun checked_sun(Sun sun, const std::string& where);
-
-/// Rays to the sun's disk.
-truth::AreaLight make_area_light(const Sun& sun);
-
-/// An orthographic frustum, fitted to the scene or, where `window` is not null, to that; see fit_light().
-LightFrustum fit_sun(const Sun& sun, const MapWindow* window, const Scene& scene, const FitRequest& request);
-
-/// The same over these receivers, in world space, with the casters between them and the light; without any, over the
-/// whole scene.
+/// An orthographic frustum over these receivers, in world space, with the casters between them and the light; without
+/// any, over the whole scene.
 LightFrustum fit_sun_over(const Sun& sun, const Scene& scene, const FitRequest& request,
                           const std::vector<glm::dvec3>& receivers);
+
+/// What light.h asks of every kind.
+glm::vec3 to_light(const Sun& sun, const glm::vec3& point_ws);
+std::optional<Beam> find_beam(const Sun& sun);
+double light_size(const Sun& sun);
+truth::AreaLight make_area_light(const Sun& sun);
+void turn_light(Sun& sun, const LightTurn& turn);
+void aim_light(Sun& sun, const glm::vec3& center_ws);
+Sun checked_light(const Sun& sun, const std::string& where);
+std::string describe_light(const Sun& sun);
+LightMetadata light_metadata(const Sun& sun);
+std::string light_content(const Sun& sun);
+int count_layers(const Sun& sun, const MapWindow* window, const FitRule& rule);
+std::vector<LightFrustum> fit_layers(const Sun& sun, const MapWindow* window, const Scene& scene,
+                                     const FitRequest& request);
 
 }  // namespace shadowbench::scene

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <glm/glm.hpp>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "harness/scene/lights/beam.h"
+#include "reference/truth/area_light.h"
+
+namespace shadowbench::scene {
+
+class TomlTable;
+struct FitRequest;
+struct FitRule;
+struct LightFrustum;
+struct MapWindow;
+struct Scene;
+struct Texture;
+
+/// Maps unit vectors.
+using LightTurn = std::function<glm::vec3(const glm::vec3&)>;
+
+/// What a picture's metadata say of a light, by name.
+using LightMetadata = std::map<std::string, std::variant<double, std::string>>;
+
+/// "1 2 3", for texts that name a light.
+std::string write_vector(const glm::vec3& v);
+
+}  // namespace shadowbench::scene
