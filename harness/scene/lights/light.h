@@ -1,8 +1,6 @@
 #pragma once
 
-#include <functional>
 #include <glm/glm.hpp>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>

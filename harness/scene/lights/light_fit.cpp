@@ -8,6 +8,7 @@
 #include "harness/scene/mesh_tools.h"
 
 namespace shadowbench::scene {
+
 glm::dvec3 LightFrustum::to_light(const glm::dvec3& point_ws) const {
   return perspective ? glm::normalize(perspective->beam.position_ws - point_ws) : -glm::dvec3(direction_ws);
 }
