@@ -54,8 +54,7 @@ Beam make_beam(const PointLight& point) {
 }
 
 truth::AreaLight make_area_light(const PointLight& point) {
-  return truth::AreaLight::make_disk(glm::dvec3(point.position_ws), {0.0, 1.0, 0.0},
-                                     static_cast<double>(point.radius_m));
+  return truth::AreaLight::make_sphere(glm::dvec3(point.position_ws), static_cast<double>(point.radius_m));
 }
 
 glm::vec3 to_light(const PointLight& point, const glm::vec3& point_ws) {

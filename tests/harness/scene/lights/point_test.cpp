@@ -57,6 +57,24 @@ TEST(PointLight, ShinesAllAround_AndFallsOffWithTheSquareOfItsDistance) {
   EXPECT_EQ(light_size(scene.light), 2.0 * static_cast<double>(std::get<PointLight>(scene.light.kind).radius_m));
 }
 
+/// A sphere's rays leave every receiver around its own way to the centre; a disk's only where it faces the receiver.
+TEST(PointLight, IsTracedAsASphere_FromEverySide) {
+  Light light;
+  light.kind = PointLight{.position_ws = {1.0f, 2.0f, 3.0f}, .radius_m = 0.25f};
+  const truth::AreaLight area = make_area_light(light);
+  for (int face = 0; face < kCubeFaces; ++face) {
+    glm::dvec3 from(1.0, 2.0, 3.0);
+    from[face / 2] += face % 2 == 0 ? 4.0 : -4.0;
+    const truth::AreaLight::Aim aim = area.aim(from);
+    const glm::dvec3 way = area.centre_direction(from);
+    EXPECT_NEAR(glm::length(way), 4.0, 1e-6);
+    for (const glm::dvec3& half : {aim.u, aim.v}) {
+      EXPECT_NEAR(glm::dot(half, way), 0.0, 1e-9) << face;
+      EXPECT_NEAR(glm::length(half), 0.25, 1e-3) << face;
+    }
+  }
+}
+
 TEST(PointLight, GoesRoundTheOrigin) {
   Light light;
   light.kind = PointLight{.position_ws = {3.0f, 4.0f, 0.0f}};
