@@ -12,6 +12,9 @@ const float faces_light = 1e-5;
 
 // A plane may be steep, but not parallel to the light: its bias would have no bound.
 vec2 plane_depth_per_texel(vec3 position_ws, vec3 normal_ws, float n_dot_l) {
+#ifdef CURVED_MAP
+  return plane_along_texels(position_ws, normal_ws);
+#else
   vec2 along_map = vec2(dot(normal_ws, light_right_ws), dot(normal_ws, light_up_ws));
 #ifdef PERSPECTIVE_LIGHT
   // A step of a texel slides along the receiver's own ray, which is as long as the axis is to there.
@@ -19,6 +22,7 @@ vec2 plane_depth_per_texel(vec3 position_ws, vec3 normal_ws, float n_dot_l) {
 #endif
   vec2 tangent = along_map / max(n_dot_l, 1e-4);
   return tangent * (texel_size_at(position_ws) / depth_range_ws);
+#endif
 }
 
 // Whether the map says anything about a receiver. The NO_ variants show what goes wrong without these tests: see
@@ -42,6 +46,13 @@ float ramp(float view_depth, float from, float to) {
 
 float find_share(vec4 position) {
   return ramp(position.w, layer_slice.x, layer_slice.y) - ramp(position.w, layer_slice.z, layer_slice.w);
+}
+#endif
+
+#ifdef HALF_SPHERE
+float find_share(vec4 position) {
+  float ahead = dot(position.xyz - light_position_ws, light_direction_ws);
+  return float(light_layer == 0 ? ahead >= 0.0 : ahead > 0.0);
 }
 #endif
 
@@ -69,15 +80,8 @@ void main() {
   float n_dot_l = dot(normal, direction_to_light(position.xyz));
   float sin_theta = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0));
   precise vec3 offset_ws = position.xyz + normal * (bias_normal_texels * texel_size_at(position.xyz) * sin_theta);
-  precise vec4 lookup_point = uv_depth_from_world * vec4(offset_ws, 1.0);
-  precise vec4 own_point = uv_depth_from_world * vec4(position.xyz, 1.0);
-#ifdef PERSPECTIVE_LIGHT
-  // Behind the light, where w < 0, this mirrors the map: see map_reaches().
-  lookup_point.xy /= lookup_point.w;
-#elif defined(PROJECTIVE_MAP)
-  lookup_point.xyz /= lookup_point.w;
-  own_point.xyz /= own_point.w;
-#endif
+  vec4 lookup_point = find_in_map(offset_ws);
+  vec4 own_point = find_in_map(position.xyz);
   vec2 depth_per_texel = plane_depth_per_texel(position.xyz, normal, n_dot_l);
   vec2 steepness = min(abs(depth_per_texel), vec2(bias_max_tangent * texel_size_at(position.xyz) / depth_range_ws));
   out_plane = vec4(depth_per_texel, n_dot_l, position.w);

@@ -62,9 +62,10 @@ std::string_view get_base_name(std::string_view name) { return name.substr(0, na
 }  // namespace
 
 Program::Program(std::string_view label, const ShaderSource& vertex, const ShaderSource& fragment,
-                 std::optional<ErrorKind> blame)
+                 std::optional<ErrorKind> blame, const std::optional<ShaderSource>& geometry)
     : label_(label), handle_(label) {
-  const std::array stages = {Stage{GL_VERTEX_SHADER, &vertex}, Stage{GL_FRAGMENT_SHADER, &fragment}};
+  std::vector<Stage> stages = {Stage{GL_VERTEX_SHADER, &vertex}, Stage{GL_FRAGMENT_SHADER, &fragment}};
+  if (geometry) stages.insert(stages.begin() + 1, Stage{GL_GEOMETRY_SHADER, &*geometry});
   link(stages, blame);
 }
 

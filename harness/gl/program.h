@@ -18,11 +18,11 @@ namespace shadowbench::gl {
 /// Owns a linked program. Uniforms are set by name, at any time, without `use()`.
 class Program {
  public:
-  /// Compiles and links a vertex and a fragment shader.
+  /// Compiles and links a vertex and a fragment shader, with a geometry shader between them where there is one.
   /// Throws on errors: with `blame` (kFilter where a user's file is part of it) Error of that kind, its `where` the
   /// first error's file and line; without, std::logic_error: a shader of ours that does not compile is a bug.
   Program(std::string_view label, const ShaderSource& vertex, const ShaderSource& fragment,
-          std::optional<ErrorKind> blame = std::nullopt);
+          std::optional<ErrorKind> blame = std::nullopt, const std::optional<ShaderSource>& geometry = std::nullopt);
 
   /// Compiles and links a compute shader; throws likewise.
   Program(std::string_view label, const ShaderSource& compute, std::optional<ErrorKind> blame = std::nullopt);

@@ -36,10 +36,10 @@ class PixelProjector {
     // A plane seen edge on would have a footprint without bound.
     constexpr double kGrazing = 1e-6;
     const double facing = std::min(glm::dot(normal, ray), -kGrazing);
+    const truth::TexelGradients along = scene::find_gradients(frustum_, position);
     const auto edge = [&](const glm::dvec3& across) {
-      glm::dvec3 on_plane = side * (across - ray * (glm::dot(normal, across) / facing));
-      if (frustum_.perspective) on_plane += slide_along_light(position, on_plane);
-      return glm::dvec2(glm::dmat3(frustum_.light_from_world) * on_plane) / frustum_.texel_size_at(position);
+      const glm::dvec3 on_plane = side * (across - ray * (glm::dot(normal, across) / facing));
+      return glm::dvec2(glm::dot(along.u, on_plane), glm::dot(along.v, on_plane));
     };
     return {glm::dvec2(frustum_.place(position, map_size_)), edge(right_), edge(up_)};
   }
@@ -55,12 +55,6 @@ class PixelProjector {
   double pixel_;  ///< side of a pixel: per metre ahead, or in metres where the camera is orthographic
   const scene::LightFrustum& frustum_;
   int map_size_;
-
-  /// Under a lamp a step's image in the map is that of the step moved along the ray, to the distance where it began.
-  glm::dvec3 slide_along_light(const glm::dvec3& position, const glm::dvec3& step) const {
-    const scene::PerspectiveMap& map = *frustum_.perspective;
-    return (map.beam.position_ws - position) * (glm::dot(step, map.beam.axis_ws) / map.distance(position));
-  }
 };
 
 /// The map's area in cells, marked where footprints fall.

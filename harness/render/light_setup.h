@@ -38,6 +38,12 @@ void set_beam(gl::Program& program, const scene::Beam& beam);
 /// Sets the uniforms of lib/light.glsl.
 void set_light(gl::Program& program, const LightSetup& light);
 
+/// Sets those of them that say where a point lies in the map.
+void set_shape(gl::Program& program, const scene::LightFrustum& frustum);
+
+/// The defines that say how it lies there.
+Defines shape_defines(const scene::LightFrustum& frustum);
+
 /// The define for a light that stands in the scene.
 inline const Defines::value_type kPerspectiveLight = {"PERSPECTIVE_LIGHT", "1"};
 

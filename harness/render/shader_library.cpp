@@ -84,8 +84,10 @@ gl::Program& ShaderLibrary::geometry(const std::string& shader, const Defines& d
   const auto found = programs_.find(key);
   if (found != programs_.end()) return found->second;
   ++compiled_;
+  const bool has_third = std::ranges::find(defines, kExactEdges) != defines.end();
+  const auto third = has_third ? std::optional(source(shader + ".geom", defines, {})) : std::nullopt;
   gl::Program program(variant_name(shader, defines), source(shader + ".vert", defines, {}),
-                      source(shader + ".frag", defines, {}));
+                      source(shader + ".frag", defines, {}), std::nullopt, third);
   return programs_.emplace(key, std::move(program)).first->second;
 }
 

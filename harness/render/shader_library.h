@@ -12,6 +12,9 @@ namespace shadowbench::render {
 
 using Defines = std::vector<std::pair<std::string, std::string>>;
 
+/// The define for triangles that the fragment shader bounds.
+inline const Defines::value_type kExactEdges = {"EXACT_EDGES", "1"};
+
 /// Compiles the project's own shaders, each variant when it is first asked for, and counts them.
 class ShaderLibrary {
  public:
@@ -20,7 +23,7 @@ class ShaderLibrary {
   /// A fragment program over the full-screen triangle.
   gl::Program& fullscreen(const std::string& fragment_file, const Defines& defines = {});
 
-  /// A program that draws geometry: `<name>.vert` and `<name>.frag`.
+  /// A program that draws geometry: `<name>.vert` and `<name>.frag`, and with kExactEdges `<name>.geom`.
   gl::Program& geometry(const std::string& name, const Defines& defines = {});
 
   /// Compiles a full-screen program that contains a filter's GLSL as the include "filter".

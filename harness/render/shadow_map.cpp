@@ -10,6 +10,7 @@
 #include "harness/gl/pixel_format.h"
 #include "harness/render/gbuffer.h"
 #include "harness/render/image_target.h"
+#include "harness/render/light_setup.h"
 
 namespace shadowbench::render {
 namespace {
@@ -24,7 +25,7 @@ glm::dmat4 reverse_depth(glm::dmat4 clip) {
 }  // namespace
 
 MapSettings fit_settings(MapSettings settings, const scene::LightFrustum& frustum) {
-  if (!frustum.perspective) return settings;
+  if (!frustum.perspective || is_curved(frustum.shape)) return settings;
   if (!settings.curve.is_linear()) {
     throw Error(ErrorKind::kUsage,
                 "--perspective-depth: this light stands in the scene, and its map holds the depth of its own "
@@ -105,18 +106,30 @@ void ShadowMap::draw_casters(ShaderLibrary& shaders, const Geometry& geometry, c
   framebuffer.clear_depth(settings_.curve.far_plane());
   const filters::DepthCurve& curve = settings_.curve;
   for (auto& define : curve_defines(curve)) defines.push_back(std::move(define));
-  if (!curve.is_linear() && !frustum.perspective) defines.emplace_back("BEND_DEPTH", "1");
+  const bool is_plane = !is_curved(frustum.shape), bends = !curve.is_linear() && !frustum.perspective;
+  if (is_plane && bends) defines.emplace_back("BEND_DEPTH", "1");
+  for (auto& define : shape_defines(frustum)) defines.push_back(std::move(define));
+  if (frustum.shape == scene::MapShape::kLogarithmic) defines.push_back(kExactEdges);
   const float away = curve.reversed ? -1.0f : 1.0f;
   if (curve.reversed) glDepthFunc(GL_GREATER);
   if (bias.polygon_factor != 0.0 || bias.polygon_units != 0.0) {
+    if (!is_plane) {
+      throw Error(ErrorKind::kUsage,
+                  "--bias polygon-offset cannot be drawn into a warped map or a paraboloid: the GL would add it before "
+                  "the shader writes the depth; use another bias, or another --fit");
+    }
     assert(curve.is_linear() || frustum.perspective);
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(away * static_cast<float>(bias.polygon_factor), away * static_cast<float>(bias.polygon_units));
   }
-  const glm::mat4 clip_from_world = curve.reversed && (curve.is_linear() || frustum.perspective)
+  const glm::mat4 clip_from_world = curve.reversed && is_plane && !bends
                                         ? glm::mat4(reverse_depth(frustum.clip_from_light) * frustum.light_from_world)
                                         : frustum.clip_from_world;
-  const auto prepare = [&](gl::Program& program) { program.set("clip_from_world", clip_from_world); };
+  const auto prepare = [&](gl::Program& program) {
+    program.set("clip_from_world", clip_from_world);
+    if (!is_plane) set_shape(program, frustum);
+  };
+  if (frustum.shape == scene::MapShape::kParaboloid) glEnable(GL_CLIP_DISTANCE0);
   if (bias.cull_front) {
     geometry.draw(shaders, "depth", DrawSet::kUncullableCasters, prepare, defines);
     glEnable(GL_CULL_FACE);
@@ -125,6 +138,7 @@ void ShadowMap::draw_casters(ShaderLibrary& shaders, const Geometry& geometry, c
   } else {
     geometry.draw(shaders, "depth", DrawSet::kCasters, prepare, defines);
   }
+  glDisable(GL_CLIP_DISTANCE0);
   set_geometry_state();
 }
 

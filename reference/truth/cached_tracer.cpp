@@ -29,10 +29,11 @@ std::string name_geometry(const std::vector<OccluderMesh>& meshes) {
 std::string name_vector(const glm::dvec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
 std::string name_grid(const MapGrid& grid) {
-  const std::string name = fmt::format("texel {} light {} right {} up {}", grid.texel_size_ws,
-                                       name_vector(grid.to_light), name_vector(grid.right), name_vector(grid.up));
-  return grid.lamp ? fmt::format("{} lamp {} {}", name, name_vector(grid.lamp->position_ws), grid.lamp->reference_m)
-                   : name;
+  std::string name = fmt::format("texel {} light {} right {} up {}", grid.texel_size_ws, name_vector(grid.to_light),
+                                 name_vector(grid.right), name_vector(grid.up));
+  if (grid.lamp) name += fmt::format(" lamp {} {}", name_vector(grid.lamp->position_ws), grid.lamp->reference_m);
+  if (grid.curved) name += " " + grid.curved->name;
+  return name;
 }
 
 Layers to_layers(const TracedVisibility& traced) {

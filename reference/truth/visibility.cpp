@@ -13,6 +13,17 @@
 namespace shadowbench::truth {
 namespace {
 
+/// Steps of one texel on a receiver's plane.
+struct Steps {
+  glm::dvec3 right;
+  glm::dvec3 up;
+};
+
+Steps step_along_texels(const TexelGradients& along, const glm::dvec3& normal) {
+  const double area = glm::dot(normal, glm::cross(along.u, along.v));
+  return {glm::cross(along.v, normal) / area, glm::cross(normal, along.u) / area};
+}
+
 /// A kernel's fan: rays to the light's centre that start on the receiver's tangent plane, below the texels that they
 /// stand for.
 RayFan make_kernel_fan(const Occluders& occluders, const ReceiverPoint& point, const MapGrid& grid, double half_width) {
@@ -25,7 +36,8 @@ RayFan make_kernel_fan(const Occluders& occluders, const ReceiverPoint& point, c
   const auto slide = [&](const glm::dvec3& axis) {
     return texel_ws * (axis - to_light * (glm::dot(normal, axis) / n_dot_l));
   };
-  const glm::dvec3 right = slide(grid.right), up = slide(grid.up);
+  const auto [right, up] = grid.curved ? step_along_texels(grid.curved->gradients(position), normal)
+                                       : Steps{slide(grid.right), slide(grid.up)};
   RayFan fan;
   fan.origin = occluders.offset_origin(point.position_ws, point.normal_ws,
                                        static_cast<float>(half_width * (glm::length(right) + glm::length(up))));

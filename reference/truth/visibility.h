@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "filters/kernel.h"
@@ -43,6 +44,12 @@ inline constexpr std::uint32_t kRaysOfSettledPixel = 64;
 TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
                             const TraceSettings& settings);
 
+/// How a point's place in a map changes with its place in the world: texels for each metre.
+struct TexelGradients {
+  glm::dvec3 u;
+  glm::dvec3 v;
+};
+
 /// The texel grid of a light's map, which says where a kernel lies in the world.
 struct MapGrid {
   glm::dvec3 to_light{0.0, 1.0, 0.0};  ///< unit length
@@ -56,11 +63,18 @@ struct MapGrid {
     double reference_m = 1.0;
   };
   std::optional<Lamp> lamp = {};  ///< none: rays are parallel to `to_light`
+
+  /// Of a map whose texels differ in shape: these, at a point, in place of `right`, `up` and `texel_size_ws`.
+  struct Curved {
+    std::function<TexelGradients(const glm::dvec3& point_ws)> gradients;
+    std::string name;  ///< tells it from all others
+  };
+  std::optional<Curved> curved = {};
 };
 
 /// Traces the fraction of a kernel, centred on each receiver and projected along the light onto its tangent plane, from
-/// which the light's centre is seen: the filter with an ideal map and an ideal receiver-plane bias. Under a lamp the
-/// kernel's texels on that plane are taken to be as large as at the receiver.
+/// which the light's centre is seen: the filter with an ideal map and an ideal receiver-plane bias. The kernel's
+/// texels on that plane are taken to be as large as at the receiver, and of the same shape.
 /// Adaptive like trace_area(), at the same cost.
 TracedVisibility trace_kernel(const Occluders& occluders, const ReceiverImage& receivers, const filters::Kernel& kernel,
                               const MapGrid& grid, const TraceSettings& settings);

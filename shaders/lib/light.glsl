@@ -13,6 +13,10 @@ uniform float bias_plane_kernels;   // the share of that per texel of a filter's
 uniform float bias_normal_texels;
 uniform float bias_max_tangent;    // steeper planes are treated as this steep
 uniform int light_layer;           // of the map: a cascade, a face of a cube; 0 where there is one
+#ifdef LOG_MAP
+uniform float log_scale;           // v is this times the logarithm of w, plus the next
+uniform float log_offset;
+#endif
 
 #ifdef PERSPECTIVE_LIGHT
 // A light that stands in the scene, with a map drawn through a perspective. light_size is its diameter in metres.
@@ -22,11 +26,15 @@ uniform float light_reference_m;  // where a texel has texel_size_ws, and the li
 
 vec3 direction_to_light(vec3 position_ws) { return normalize(light_position_ws - position_ws); }
 
+#ifdef PARABOLOID_MAP
+float distance_along_light(vec3 position_ws) { return length(position_ws - light_position_ws); }
+#else
 float distance_along_light(vec3 position_ws) { return dot(position_ws - light_position_ws, light_direction_ws); }
 
 float texel_size_at(vec3 position_ws) {
   return texel_size_ws * (distance_along_light(position_ws) / light_reference_m);
 }
+#endif
 
 // As scene::Beam::cone_at() computes it. NO_BEHIND_TEST shows what a projection makes of what is behind the light: it
 // mirrors the cone.
@@ -47,8 +55,12 @@ float light_strength(vec3 position_ws) {
 // The direction from a point to the light's centre, unit length.
 vec3 direction_to_light(vec3 position_ws) { return -light_direction_ws; }
 
+#ifndef WARPED_MAP
 float texel_size_at(vec3 position_ws) { return texel_size_ws; }
+#endif
 
 // Of what arrives where nothing is in the way.
 float light_strength(vec3 position_ws) { return 1.0; }
 #endif
+
+#include "lib/map_shape.glsl"

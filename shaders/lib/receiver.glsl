@@ -52,11 +52,7 @@ Receiver make_receiver(ivec2 pixel, vec4 place) {
   // `precise`: the pass that hands these values to the models must get the very same bits.
   precise float biased = place.z - (flat_part + bias_plane_texels * place.w);
   r.depth = biased;
-  precise vec4 own_point = uv_depth_from_world * vec4(r.position_ws, 1.0);
-#if defined(PROJECTIVE_MAP) && !defined(PERSPECTIVE_LIGHT)
-  own_point.z /= own_point.w;
-#endif
-  r.depth_unbiased = own_point.z;
+  r.depth_unbiased = find_in_map(r.position_ws).z;
   r.depth_range_ws = depth_range_ws;
 #ifdef PERSPECTIVE_LIGHT
   r.light_nearness = 1.0 / distance_along_light(r.position_ws);

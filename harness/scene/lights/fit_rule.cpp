@@ -13,7 +13,8 @@
 namespace shadowbench::scene {
 namespace {
 
-constexpr std::array<std::string_view, 4> kFitNames = {"sphere", "tight", "view", "cascades"};  // as FitMode
+constexpr std::array<std::string_view, 10> kFitNames = {"sphere", "tight", "view",   "cascades",  "focused", "lispsm",
+                                                        "psm",    "tsm",   "logpsm", "paraboloid"};  // as FitMode
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorKind::kUsage, "--fit: " + message); }
 

@@ -11,7 +11,16 @@ enum class FitMode {
   kTight,     ///< casters and receivers, as the light sees them
   kView,      ///< what the camera sees of the scene, with the casters between that and the light
   kCascades,  ///< slices of that, each with a layer of the map for itself
+  kFocused,   ///< what the camera sees, its width and its length by themselves; see warp.h for this and the next four
+  kLispsm,
+  kPsm,
+  kTsm,
+  kLogpsm,
+  kParaboloid,  ///< of a point light: two halves in place of a cube's six faces
 };
+
+/// Whether the sun's map goes through a projection that follows the camera.
+constexpr bool is_warped(FitMode mode) { return mode >= FitMode::kFocused && mode <= FitMode::kLogpsm; }
 
 /// How cascades share what the camera sees.
 struct CascadeRule {
@@ -29,7 +38,7 @@ struct FitRule {
   CascadeRule cascades;  ///< FitMode::kCascades only
 
   /// Whether each camera has a map of its own.
-  bool follows_view() const { return mode == FitMode::kView || mode == FitMode::kCascades; }
+  bool follows_view() const { return mode == FitMode::kView || mode == FitMode::kCascades || is_warped(mode); }
 };
 
 /// The fit's name on the command line and in records.

@@ -26,7 +26,12 @@ struct CubeFace {
 
 inline constexpr int kCubeFaces = 6;
 
+/// The directions before a paraboloid's light, or, in the second layer, those behind it.
+struct HalfSphere {
+  bool operator==(const HalfSphere&) const = default;
+};
+
 /// What a layer of a light's map serves of the receivers: all of them, or a share.
-using LayerShare = std::variant<std::monostate, ViewSlice, CubeFace>;
+using LayerShare = std::variant<std::monostate, ViewSlice, CubeFace, HalfSphere>;
 
 }  // namespace shadowbench::scene

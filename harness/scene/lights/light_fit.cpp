@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <cmath>
 
 #include "filters/base/error.h"
 #include "harness/scene/mesh_tools.h"
@@ -14,10 +15,15 @@ glm::dvec3 LightFrustum::to_light(const glm::dvec3& point_ws) const {
 }
 
 double LightFrustum::texel_size_at(const glm::dvec3& point_ws) const {
+  if (is_curved(shape)) {
+    const truth::TexelGradients along = find_gradients(*this, point_ws);
+    return 1.0 / std::sqrt(glm::length(glm::cross(along.u, along.v)));
+  }
   return perspective ? texel_size_ws * perspective->distance(point_ws) / perspective->beam.reference_m : texel_size_ws;
 }
 
 glm::dvec3 LightFrustum::place(const glm::dvec3& point_ws, int map_size) const {
+  if (is_curved(shape)) return find_in_curved_map(*this, point_ws) * glm::dvec3(map_size, map_size, 1.0);
   const glm::dvec4 seen = light_from_world * glm::dvec4(point_ws, 1.0);
   if (!perspective)
     return {seen.x / texel_size_ws + 0.5 * map_size, seen.y / texel_size_ws + 0.5 * map_size, -seen.z / depth_range_ws};
@@ -60,9 +66,13 @@ void set_perspective(LightFrustum& frustum, double tangent, const glm::dvec2& sh
 truth::MapGrid make_map_grid(const LightFrustum& frustum) {
   const glm::dmat4 rows = glm::transpose(frustum.light_from_world);
   truth::MapGrid grid{
-      -glm::dvec3(frustum.direction_ws), glm::dvec3(rows[0]), glm::dvec3(rows[1]), frustum.texel_size_ws, {}};
+      -glm::dvec3(frustum.direction_ws), glm::dvec3(rows[0]), glm::dvec3(rows[1]), frustum.texel_size_ws, {}, {}};
   if (frustum.perspective)
     grid.lamp = truth::MapGrid::Lamp{frustum.perspective->beam.position_ws, frustum.perspective->beam.reference_m};
+  if (is_curved(frustum.shape)) {
+    grid.curved = truth::MapGrid::Curved{[frustum](const glm::dvec3& p) { return find_gradients(frustum, p); },
+                                         name_shape(frustum)};
+  }
   return grid;
 }
 

@@ -6,6 +6,7 @@
 
 #include "harness/scene/lights/fit_rule.h"
 #include "harness/scene/lights/layer_share.h"
+#include "harness/scene/lights/map_shape.h"
 #include "harness/scene/scene.h"
 #include "harness/scene/view_clip.h"
 #include "reference/truth/visibility.h"
@@ -49,12 +50,16 @@ struct LightFrustum {
   bool projective = false;  ///< uv_depth_from_world ends with a division by w, which is negative behind the light
   glm::vec3 direction_ws{0.0f, 0.0f, 1.0f};   ///< the way the light travels, unit length
   std::optional<PerspectiveMap> perspective;  ///< then u and v end with the division, and depth does not
-  int layer = 0;                              ///< of the light's map
-  LayerShare share;                           ///< the receivers that this layer serves
+  MapShape shape = MapShape::kPlane;
+  LogCurve log_curve;             ///< MapShape::kLogarithmic only
+  double paraboloid_scale = 0.5;  ///< MapShape::kParaboloid: half the side of a map without padding is 0.5
+  int layer = 0;                  ///< of the light's map
+  LayerShare share;               ///< the receivers that this layer serves
 
   bool is_layered() const { return !std::holds_alternative<std::monostate>(share); }
   glm::dvec3 to_light(const glm::dvec3& point_ws) const;   ///< unit length
-  double texel_size_at(const glm::dvec3& point_ws) const;  ///< metres
+  double texel_size_at(const glm::dvec3& point_ws) const;  ///< metres; where texels are not square, of their area
+  double map_texels() const { return width_ws / texel_size_ws; }
 
   /// Where a point lies in the map: texels from its corner, and depth.
   glm::dvec3 place(const glm::dvec3& point_ws, int map_size) const;

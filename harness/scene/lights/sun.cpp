@@ -9,6 +9,7 @@
 
 #include "harness/scene/lights/cascades.h"
 #include "harness/scene/lights/light_fit.h"
+#include "harness/scene/lights/warp.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/toml_reader.h"
 #include "harness/scene/validate.h"
@@ -248,12 +249,11 @@ LightFrustum fit_sun(const Sun& sun, const MapWindow* window, const Scene& scene
   const SunView view(sun, scene, request);
   switch (request.mode) {
     case FitMode::kSphere: return fit_box(view, sphere_box(scene, view.center), window, request);
-    case FitMode::kTight: break;
     case FitMode::kView:
-    case FitMode::kCascades:
       assert(request.camera);
       return fit_box(view, box_over(list_visible_corners(scene, *request.camera, request.aspect), scene, request, view),
                      window, request);
+    default: break;
   }
   return fit_box(view, tight_box(scene, view.rotation, view.center), window, request);
 }
@@ -273,6 +273,7 @@ int count_layers(const Sun&, const MapWindow* window, const FitRule& rule) {
 std::vector<LightFrustum> fit_layers(const Sun& sun, const MapWindow* window, const Scene& scene,
                                      const FitRequest& request) {
   if (request.mode == FitMode::kCascades && !window) return fit_cascades(sun, scene, request);
+  if (is_warped(request.mode) && !window) return {fit_warped(sun, scene, request)};
   return {fit_sun(sun, window, scene, request)};
 }
 
