@@ -33,7 +33,8 @@ void set_shape(gl::Program& program, const scene::LightFrustum& frustum) {
     program.set("log_offset", static_cast<float>(frustum.log_curve.offset));
   }
   if (frustum.shape != scene::MapShape::kParaboloid) return;
-  program.set("paraboloid_scale", static_cast<float>(frustum.paraboloid_scale));
+  program.set("paraboloid_radius", static_cast<float>(frustum.paraboloid.radius));
+  program.set("paraboloid_center", glm::vec2(frustum.paraboloid.center));
   program.set("light_near_m", static_cast<float>(frustum.perspective->near_m));
 }
 

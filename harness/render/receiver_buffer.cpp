@@ -47,9 +47,9 @@ bool ReceiverBuffer::is_of(const LightSetup& light) const {
   return own.uv_depth_from_world == other.uv_depth_from_world && own.light_from_world == other.light_from_world &&
          own.direction_ws == other.direction_ws && own.texel_size_ws == other.texel_size_ws &&
          own.depth_range_ws == other.depth_range_ws && own.projective == other.projective && own.shape == other.shape &&
-         own.log_curve == other.log_curve && own.perspective.has_value() == other.perspective.has_value() &&
-         own.layer == other.layer && own.share == other.share &&
-         light_.bias.normal_offset_texels == light.bias.normal_offset_texels &&
+         own.log_curve == other.log_curve && own.paraboloid == other.paraboloid &&
+         own.perspective.has_value() == other.perspective.has_value() && own.layer == other.layer &&
+         own.share == other.share && light_.bias.normal_offset_texels == light.bias.normal_offset_texels &&
          light_.bias.max_tangent == light.bias.max_tangent && light_.range.far_test == light.range.far_test &&
          light_.range.behind_test == light.range.behind_test;
 }

@@ -29,6 +29,7 @@ std::string name_layer(const scene::LayerShare& share) {
   constexpr std::array<const char*, 6> kFaces = {"+x", "-x", "+y", "-y", "+z", "-z"};
   if (const auto* face = std::get_if<scene::CubeFace>(&share))
     return fmt::format("face {}", kFaces[static_cast<std::size_t>(face->index)]);
+  if (const auto* half = std::get_if<scene::HalfSphere>(&share)) return half->is_upper ? "upper half" : "lower half";
   if (const auto* slice = std::get_if<scene::ViewSlice>(&share))
     return fmt::format("to {} m", records::format_number(slice->end_m));
   return {};

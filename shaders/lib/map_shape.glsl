@@ -4,15 +4,16 @@
 // Half of all directions in one square, as a paraboloid reflects them: u and v are those of the direction, divided by 1
 // plus its part along the axis. Depth is the distance.
 // Source: Brabec, Annen and Seidel 2002, Shadow Mapping for Hemispherical and Omnidirectional Light Sources, CGI.
-uniform float paraboloid_scale;  // half the map's side; 0.5 without padding
-uniform float light_near_m;      // the distance of depth 0
+uniform vec2 paraboloid_center;
+uniform float paraboloid_radius;  // of the circle that holds half of all directions
+uniform float light_near_m;       // the distance of depth 0
 
 vec4 find_in_map(vec3 position_ws) {
   vec3 way = position_ws - light_position_ws;
   precise float distance_m = length(way);
   precise vec3 direction = way / distance_m;
   precise float w = 1.0 + dot(direction, light_direction_ws);
-  precise vec2 uv = 0.5 + paraboloid_scale * vec2(dot(direction, light_right_ws), dot(direction, light_up_ws)) / w;
+  precise vec2 uv = paraboloid_center + paraboloid_radius * vec2(dot(direction, light_right_ws), dot(direction, light_up_ws)) / w;
   precise float depth = (distance_m - light_near_m) / depth_range_ws;
   return vec4(uv, depth, w);
 }
@@ -51,7 +52,7 @@ MapGradients find_gradients(vec3 position_ws) {
   vec3 direction = way / distance_m;
   float along = dot(direction, light_direction_ws), x = dot(direction, light_right_ws), y = dot(direction, light_up_ws);
   vec3 towards_axis = (light_direction_ws - along * direction) / (1.0 + along);
-  float scale = map_texels * paraboloid_scale / ((1.0 + along) * distance_m);
+  float scale = map_texels * paraboloid_radius / ((1.0 + along) * distance_m);
   return MapGradients(scale * (light_right_ws - x * direction - x * towards_axis),
                       scale * (light_up_ws - y * direction - y * towards_axis), direction / depth_range_ws);
 }

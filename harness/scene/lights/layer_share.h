@@ -25,9 +25,12 @@ struct CubeFace {
 };
 
 inline constexpr int kCubeFaces = 6;
+inline constexpr int kHalfSpheres = 2;
 
-/// The directions before a paraboloid's light, or, in the second layer, those behind it.
+/// The directions that one of two paraboloids serves. One that is level is the first's.
 struct HalfSphere {
+  bool is_upper = false;  ///< the second; the first is the lower
+
   bool operator==(const HalfSphere&) const = default;
 };
 

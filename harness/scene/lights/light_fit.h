@@ -51,10 +51,10 @@ struct LightFrustum {
   glm::vec3 direction_ws{0.0f, 0.0f, 1.0f};   ///< the way the light travels, unit length
   std::optional<PerspectiveMap> perspective;  ///< then u and v end with the division, and depth does not
   MapShape shape = MapShape::kPlane;
-  LogCurve log_curve;             ///< MapShape::kLogarithmic only
-  double paraboloid_scale = 0.5;  ///< MapShape::kParaboloid: half the side of a map without padding is 0.5
-  int layer = 0;                  ///< of the light's map
-  LayerShare share;               ///< the receivers that this layer serves
+  LogCurve log_curve;     ///< MapShape::kLogarithmic only
+  Paraboloid paraboloid;  ///< MapShape::kParaboloid only
+  int layer = 0;          ///< of the light's map
+  LayerShare share;       ///< the receivers that this layer serves
 
   bool is_layered() const { return !std::holds_alternative<std::monostate>(share); }
   glm::dvec3 to_light(const glm::dvec3& point_ws) const;   ///< unit length

@@ -37,7 +37,7 @@ Ray find_ray(const LightFrustum& frustum, const glm::dvec3& point_ws) {
 truth::TexelGradients find_paraboloid_gradients(const LightFrustum& frustum, const glm::dvec3& point_ws) {
   const Ray ray = find_ray(frustum, point_ws);
   const glm::dvec3 towards_axis = (ray.axis_ws - ray.along * ray.direction_ws) / (1.0 + ray.along);
-  const double scale = frustum.map_texels() * frustum.paraboloid_scale / ((1.0 + ray.along) * ray.distance_m);
+  const double scale = frustum.map_texels() * frustum.paraboloid.radius / ((1.0 + ray.along) * ray.distance_m);
   return {scale * (ray.right_ws - ray.x * ray.direction_ws - ray.x * towards_axis),
           scale * (ray.up_ws - ray.y * ray.direction_ws - ray.y * towards_axis)};
 }
@@ -47,8 +47,9 @@ truth::TexelGradients find_paraboloid_gradients(const LightFrustum& frustum, con
 glm::dvec3 find_in_curved_map(const LightFrustum& frustum, const glm::dvec3& point_ws) {
   if (frustum.shape == MapShape::kParaboloid) {
     const Ray ray = find_ray(frustum, point_ws);
-    const double scale = frustum.paraboloid_scale / (1.0 + ray.along);
-    return {0.5 + scale * ray.x, 0.5 + scale * ray.y,
+    const double scale = frustum.paraboloid.radius / (1.0 + ray.along);
+    const glm::dvec2& center = frustum.paraboloid.center;
+    return {center.x + scale * ray.x, center.y + scale * ray.y,
             (ray.distance_m - frustum.perspective->near_m) / frustum.depth_range_ws};
   }
   const glm::dvec4 seen = frustum.light_from_world * glm::dvec4(point_ws, 1.0), clip = frustum.clip_from_light * seen;
@@ -73,7 +74,7 @@ truth::TexelGradients find_gradients(const LightFrustum& frustum, const glm::dve
 std::string name_shape(const LightFrustum& frustum) {
   const glm::dmat4 clip_from_world = frustum.clip_from_light * frustum.light_from_world;
   return fmt::format("shape {} {} {} {} {} {}", static_cast<int>(frustum.shape), frustum.map_texels(),
-                     frustum.paraboloid_scale, frustum.log_curve.scale, frustum.layer,
+                     frustum.paraboloid.radius, frustum.log_curve.scale, frustum.layer,
                      fmt::join(std::span(&clip_from_world[0][0], 16), " "));
 }
 

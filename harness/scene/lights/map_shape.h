@@ -28,6 +28,14 @@ struct LogCurve {
   bool operator==(const LogCurve&) const = default;
 };
 
+/// Where the directions of half a sphere lie in the map: in a circle.
+struct Paraboloid {
+  glm::dvec2 center{0.5};
+  double radius = 0.5;
+
+  bool operator==(const Paraboloid&) const = default;
+};
+
 /// Where a point lies in a curved map: u and v in [0,1], and depth.
 glm::dvec3 find_in_curved_map(const LightFrustum& frustum, const glm::dvec3& point_ws);
 

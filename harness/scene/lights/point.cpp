@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "harness/scene/lights/perspective_fit.h"
@@ -16,6 +17,41 @@ Beam make_face_beam(const PointLight& point, int face) {
   beam.axis_ws = glm::dvec3(0.0);
   beam.axis_ws[face / 2] = face % 2 == 0 ? 1.0 : -1.0;
   return beam;
+}
+
+AxisExtent find_extent_of_faces(const PointLight& point, const Scene& scene, double tangent) {
+  AxisExtent extent;
+  for (int face = 0; face < kCubeFaces; ++face)
+    extent = extent.joined(find_extent(scene, look_along(make_face_beam(point, face)), tangent));
+  return extent;
+}
+
+/// Depth is the distance: what is nearest along an axis is at least as far away, and no point is farther than a corner.
+AxisExtent find_distances(const PointLight& point, const Scene& scene) {
+  AxisExtent extent = find_extent_of_faces(point, scene, 1.0);
+  for (const Mesh& mesh : scene.meshes)
+    for (const Vertex& vertex : mesh.vertices)
+      extent.farthest =
+          std::max(extent.farthest, static_cast<double>(glm::distance(vertex.position_ws, point.position_ws)));
+  return extent;
+}
+
+std::vector<LightFrustum> fit_paraboloids(const PointLight& point, const Scene& scene, const FitRequest& request) {
+  const AxisExtent distances = find_distances(point, scene);
+  std::vector<LightFrustum> halves;
+  for (int half = 0; half < kHalfSpheres; ++half) {
+    constexpr int kUp = 2, kDown = 3;
+    LightFrustum fit = fit_perspective(make_face_beam(point, half == 0 ? kDown : kUp), 1.0, distances, request);
+    fit.shape = MapShape::kParaboloid;
+    fit.paraboloid.radius = 0.5 * count_used_texels(request) / request.map_size;
+    fit.paraboloid.center += request.shift_texels / static_cast<double>(request.map_size);
+    fit.texel_size_ws = 2.0 * static_cast<double>(point.reference_m) / (fit.paraboloid.radius * request.map_size);
+    fit.width_ws = fit.texel_size_ws * request.map_size;
+    fit.layer = half;
+    fit.share = HalfSphere{half == 1};
+    halves.push_back(std::move(fit));
+  }
+  return halves;
 }
 
 }  // namespace
@@ -89,14 +125,15 @@ std::string light_content(const PointLight& point) {
   return fmt::format("{} {} {}", write_vector(point.position_ws), point.radius_m, point.reference_m);
 }
 
-int count_layers(const PointLight&, const MapWindow*, const FitRule&) { return kCubeFaces; }
+int count_layers(const PointLight&, const MapWindow*, const FitRule& rule) {
+  return rule.mode == FitMode::kParaboloid ? kHalfSpheres : kCubeFaces;
+}
 
 std::vector<LightFrustum> fit_layers(const PointLight& point, const MapWindow*, const Scene& scene,
                                      const FitRequest& request) {
+  if (request.mode == FitMode::kParaboloid) return fit_paraboloids(point, scene, request);
   const double tangent = pad_tangent(1.0, request);
-  AxisExtent extent;
-  for (int face = 0; face < kCubeFaces; ++face)
-    extent = extent.joined(find_extent(scene, look_along(make_face_beam(point, face)), tangent));
+  const AxisExtent extent = find_extent_of_faces(point, scene, tangent);
   std::vector<LightFrustum> faces;
   for (int face = 0; face < kCubeFaces; ++face) {
     faces.push_back(fit_perspective(make_face_beam(point, face), tangent, extent, request));
