@@ -41,7 +41,7 @@ struct PerspectiveMap {
 /// The frustum of a light's square map: orthographic, over casters and receivers, or a perspective one around a cone.
 struct LightFrustum {
   glm::dmat4 light_from_world{1.0};     ///< rigid; looks along -z
-  glm::dmat4 clip_from_light{1.0};      ///< depth in [0,1], 0 near
+  glm::dmat4 clip_from_light{1.0};      ///< depth in [0,1], 0 near; of a warped map z is not divided by w
   glm::mat4 clip_from_world{1.0f};      ///< the product of both
   glm::mat4 uv_depth_from_world{1.0f};  ///< to (u, v, depth) in [0,1]; v = 0 is the map's first row, as in GL
   double width_ws = 0.0;                ///< side of the map, padding included; of a perspective one at its reference

@@ -83,6 +83,12 @@ Span find_span(const std::vector<glm::dvec3>& points, const glm::dvec4& row) {
   return span;
 }
 
+glm::dvec3 find_middle(const std::vector<glm::dvec3>& points) {
+  glm::dvec3 sum(0.0);
+  for (const glm::dvec3& p : points) sum += p / static_cast<double>(points.size());
+  return sum;
+}
+
 /// The camera's projection, its eye moved back, and then that of the lamp which the sun has become: of a point q behind
 /// the camera's projection the lamp sees the part across its axis m. Written in (x, y, z, w) of the camera's clip space
 /// with the sun at L = (l, L_w), u and v are q's parts across l, and w is q_w - (L_w / l.l) (l . q).
@@ -102,13 +108,14 @@ Rows project_from_camera(const View& view, double back_m) {
   const glm::dmat3 axes = light_rotation(-glm::normalize(sun));
   const auto combine = [&](const glm::dvec3& axis) { return axis.x * clip[0] + axis.y * clip[1] + axis.z * clip[2]; };
   const glm::dmat3 rows = glm::transpose(axes);
-  return {combine(rows[0]), combine(rows[1]), clip[3] - of_sun(3) / glm::dot(sun, sun) * combine(sun)};
-}
-
-glm::dvec3 find_middle(const std::vector<glm::dvec3>& points) {
-  glm::dvec3 sum(0.0);
-  for (const glm::dvec3& p : points) sum += p / static_cast<double>(points.size());
-  return sum;
+  Rows found{combine(rows[0]), combine(rows[1]), clip[3] - of_sun(3) / glm::dot(sun, sun) * combine(sun)};
+  // A camera that the sun shines at sees the map's plane from behind.
+  const glm::dvec3 middle = find_middle(view.points);
+  const auto slope = [&](const glm::dvec4& row) {
+    return glm::dvec3(row - apply(row, middle) / apply(found.w, middle) * found.w);
+  };
+  if (glm::dot(glm::cross(slope(found.u), slope(found.v)), view.to_light) < 0.0) found.u = -found.u;
+  return found;
 }
 
 Rows project_psm(const View& view) {
@@ -175,9 +182,9 @@ std::vector<glm::dvec3> list_corners(const View& view, const Rows& rows, const s
 
 void set_rows(LightFrustum& fit, const Rows& rows) {
   const glm::dvec4 depth = -glm::transpose(fit.light_from_world)[2] / fit.depth_range_ws;
-  const glm::dmat4 clip = glm::transpose(glm::dmat4(2.0 * rows.u - rows.w, 2.0 * rows.v - rows.w, {}, rows.w));
-  fit.clip_from_light = clip * glm::inverse(fit.light_from_world);
-  fit.clip_from_world = glm::mat4(clip);
+  const glm::dvec4 x = 2.0 * rows.u - rows.w, y = 2.0 * rows.v - rows.w;
+  fit.clip_from_light = glm::transpose(glm::dmat4(x, y, depth, rows.w)) * glm::inverse(fit.light_from_world);
+  fit.clip_from_world = glm::mat4(glm::transpose(glm::dmat4(x, y, glm::dvec4(0.0), rows.w)));  // never cut by depth
   fit.uv_depth_from_world = glm::mat4(glm::transpose(glm::dmat4(rows.u, rows.v, depth, rows.w)));
   fit.projective = true;
 }
@@ -217,13 +224,7 @@ LightFrustum fit_warped(const Sun& sun, const Scene& scene, const FitRequest& re
   set_rows(fit, rows);
   fit.texel_size_ws = 1.0;
   fit.width_ws = request.map_size;
-  const glm::dvec3 middle = find_middle(view.points);
-  const truth::TexelGradients along = find_gradients(fit, middle);
-  if (glm::dot(glm::cross(along.u, along.v), view.to_light) < 0.0) {  // a camera's projection may mirror the map
-    rows.u = rows.w - rows.u;
-    set_rows(fit, rows);
-  }
-  fit.texel_size_ws = fit.texel_size_at(middle);
+  fit.texel_size_ws = fit.texel_size_at(find_middle(view.points));
   fit.width_ws = fit.texel_size_ws * request.map_size;
   return fit;
 }

@@ -17,8 +17,13 @@
 
 namespace shadowbench::test {
 
-/// What the scene's light is fitted by: cascades are for the deep one.
+/// What stands between a scene's name and a fit's: "avenue_by_lispsm".
+inline constexpr std::string_view kBy = "_by_";
+
+/// What the scene's light is fitted by: cascades are for the deep one, unless its name says another.
 inline scene::FitMode fit_of(const scene::Scene& scene) {
+  const std::size_t by = scene.name.find(kBy);
+  if (by != std::string::npos) return scene::parse_fit_rule(scene.name.substr(by + kBy.size())).mode;
   return scene.name == "avenue" ? scene::FitMode::kCascades : scene::FitMode::kTight;
 }
 
@@ -113,7 +118,9 @@ inline gl::Context& shared_context() {
 }
 
 inline scene::Scene load_builtin(const std::string& name) {
-  return scene::load(name, {.scenes_folder = options::find_resources().scenes});
+  scene::Scene scene = scene::load(name.substr(0, name.find(kBy)), {.scenes_folder = options::find_resources().scenes});
+  scene.name = name;
+  return scene;
 }
 
 inline std::vector<std::string> builtin_scenes() {
@@ -129,10 +136,10 @@ inline std::vector<std::string> scenes_of_all_lights() {
   return names;
 }
 
-/// With cascades, too.
+/// With cascades, a warped map, one of logarithms and paraboloids, too.
 inline std::vector<std::string> scenes_of_all_maps() {
   std::vector<std::string> names = scenes_of_all_lights();
-  names.push_back("avenue");
+  names.insert(names.end(), {"avenue", "avenue_by_lispsm", "avenue_by_logpsm", "lantern_by_paraboloid"});
   return names;
 }
 

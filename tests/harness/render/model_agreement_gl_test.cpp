@@ -14,7 +14,8 @@ namespace shadowbench::test {
 namespace {
 
 struct Agreement {
-  bool is_linear = true;  ///< the map's depth
+  bool is_even = true;    ///< the map's depth
+  double allowed = 2e-3;  ///< |GL - float model| of a filter that encodes
   std::size_t compared = 0;
   std::size_t excused = 0;
   double worst_float = 0.0;        ///< |GL - float model|
@@ -105,7 +106,9 @@ class ModelAgreement : public ::testing::TestWithParam<std::tuple<std::string, s
     const scene::Scene scene = load_builtin(scene_name);
     Bench bench(shared_context(), scene);
     Agreement a = compare(bench, catalogue().parse_requests(filter + parameters).front());
-    a.is_linear = bench.map().settings().curve.is_linear();
+    const bool curved = is_curved(bench.frustum().shape);
+    a.is_even = bench.map().settings().curve.is_linear() && !curved;
+    if (curved) a.allowed = 1e-2;
     std::printf(
         "%s %s%s: %zu receivers, %.3f %% excused, float %.2g, double %.2g (%.2f of its bound, median bound %.2g)\n",
         scene_name.c_str(), filter.c_str(), parameters.c_str(), a.compared,
@@ -114,11 +117,13 @@ class ModelAgreement : public ::testing::TestWithParam<std::tuple<std::string, s
     EXPECT_GT(a.compared, 20000u);
     EXPECT_GT(a.shadowed, 0.01);
     // Filters that choose their kernel are excused by that choice, too.
-    const double most_excused = catalogue().find(filter).claims.empty() ? 0.005 : 0.01;
+    const double by_choice = fit_of(scene) == scene::FitMode::kParaboloid ? 0.05 : 0.01;
+    const double most_excused = catalogue().find(filter).claims.empty() ? 0.005 : by_choice;
     EXPECT_LT(static_cast<double>(a.excused), most_excused * static_cast<double>(a.compared));
     // Across a silhouette the position's rounding alone can exceed the minimum variance, and light-bleeding reduction
-    // widens every bound. So does reading depth back from a perspective map.
-    if (a.is_linear) EXPECT_LT(static_cast<double>(a.unbounded), 0.06 * static_cast<double>(a.compared));
+    // widens every bound. So does reading depth back from a perspective map, and texels that are small beside the
+    // range of depth, as a warped map has them near the camera.
+    if (a.is_even) EXPECT_LT(static_cast<double>(a.unbounded), 0.06 * static_cast<double>(a.compared));
     return a;
   }
 
@@ -134,9 +139,9 @@ class ModelAgreement : public ::testing::TestWithParam<std::tuple<std::string, s
 TEST_P(ModelAgreement, GlImageEqualsModel) {
   const Agreement a = run();
   if (is_encoded()) {
-    EXPECT_LE(a.worst_float, 2e-3);
+    EXPECT_LE(a.worst_float, a.allowed);
     EXPECT_LE(a.worst_bound_ratio, 1.0);
-    if (a.is_linear) EXPECT_LE(a.median_bound, in_half_floats() ? 0.03 : 0.01) << "a bound this wide says nothing";
+    if (a.is_even) EXPECT_LE(a.median_bound, in_half_floats() ? 0.03 : 0.01) << "a bound this wide says nothing";
   } else {
     EXPECT_LE(a.worst_float, pcf_tolerance());
     EXPECT_LE(a.worst_double, pcf_tolerance());

@@ -29,11 +29,43 @@ TEST_P(Geometry, HasTheSameTrianglesAndBounds) {
   EXPECT_EQ(occluders.bounds().max, bounds.max);
 }
 
+/// Of a projection, depth included.
+glm::dvec3 find_by_plane(const scene::LightFrustum& frustum, const glm::dvec2& clip, double depth) {
+  const glm::dmat4 world_from_clip = glm::inverse(frustum.clip_from_light * frustum.light_from_world);
+  const glm::dvec4 point = world_from_clip * glm::dvec4(clip, depth, 1.0);
+  return glm::dvec3(point) / point.w;
+}
+
+/// Of a projection of u and v alone: (u w, v w, depth, w) is a point for the w that makes it one.
+glm::dvec3 find_by_warp(const scene::LightFrustum& frustum, const glm::dvec2& clip, double depth) {
+  const glm::dmat4 world_from_map = glm::inverse(frustum.clip_from_light * frustum.light_from_world);
+  const glm::dvec4 by_w = world_from_map * glm::dvec4(clip, 0.0, 1.0), by_depth = world_from_map[2] * depth;
+  return glm::dvec3(by_w * ((1.0 - by_depth.w) / by_w.w) + by_depth);
+}
+
+/// Where v is known as w, any v of the projection will do: the point slides along it to where w is right.
+glm::dvec3 find_by_logarithm(const scene::LightFrustum& frustum, const glm::dvec2& clip, double depth) {
+  const auto w_of = [&](const glm::dvec3& p) {
+    return (frustum.clip_from_light * frustum.light_from_world * glm::dvec4(p, 1.0)).w;
+  };
+  const double w = std::exp((0.5 + 0.5 * clip.y - frustum.log_curve.offset) / frustum.log_curve.scale);
+  const glm::dvec3 a = find_by_warp(frustum, {clip.x, 0.0}, depth), b = find_by_warp(frustum, {clip.x, 0.5}, depth);
+  return a + (b - a) * ((w - w_of(a)) / (w_of(b) - w_of(a)));
+}
+
+glm::dvec3 find_by_paraboloid(const scene::LightFrustum& frustum, const glm::dvec2& clip, double depth) {
+  const glm::dvec2 q = (0.5 + 0.5 * clip - frustum.paraboloid.center) / frustum.paraboloid.radius;
+  const glm::dvec3 seen = glm::dvec3(2.0 * q, glm::dot(q, q) - 1.0) / (1.0 + glm::dot(q, q));
+  const glm::dvec3 way = glm::transpose(glm::dmat3(frustum.light_from_world)) * seen;
+  const scene::PerspectiveMap& map = *frustum.perspective;
+  return map.beam.position_ws + way * (map.near_m + depth * frustum.depth_range_ws);
+}
+
 /// Depth along the light through a point of the map, in [0,1]; infinity where nothing is hit.
 class DepthRays {
  public:
   DepthRays(const truth::Occluders& occluders, const scene::LightFrustum& frustum)
-      : occluders_(occluders), world_from_clip_(glm::inverse(frustum.clip_from_light * frustum.light_from_world)) {}
+      : occluders_(occluders), frustum_(frustum) {}
 
   double at(double x, double y) const {
     const glm::dvec3 start = find_point(x, y, 0.0);
@@ -54,12 +86,17 @@ class DepthRays {
 
  private:
   const truth::Occluders& occluders_;
-  glm::dmat4 world_from_clip_;
+  const scene::LightFrustum& frustum_;
 
   glm::dvec3 find_point(double x, double y, double depth) const {
-    const glm::dvec4 point =
-        world_from_clip_ * glm::dvec4(2.0 * x / kMapTexels - 1.0, 2.0 * y / kMapTexels - 1.0, depth, 1.0);
-    return glm::dvec3(point) / point.w;
+    const glm::dvec2 clip(2.0 * x / kMapTexels - 1.0, 2.0 * y / kMapTexels - 1.0);
+    switch (frustum_.shape) {
+      case scene::MapShape::kPlane: return find_by_plane(frustum_, clip, depth);
+      case scene::MapShape::kWarped: return find_by_warp(frustum_, clip, depth);
+      case scene::MapShape::kLogarithmic: return find_by_logarithm(frustum_, clip, depth);
+      case scene::MapShape::kParaboloid: return find_by_paraboloid(frustum_, clip, depth);
+    }
+    return {};
   }
 };
 
@@ -68,6 +105,9 @@ TEST_P(Geometry, RaysHitWhatTheDepthMapSees) {
   const scene::Scene scene = load_builtin(GetParam());
   Bench bench(shared_context(), scene, kSize, 64, 36);
   const truth::Occluders occluders(measure::list_occluders(scene));
+  // Between the corners of a triangle a paraboloid's edges are straight and its depth is linear, where neither should
+  // be.
+  const bool is_exact = fit_of(scene) != scene::FitMode::kParaboloid;
   int seen = 0, different = 0;
   for (const scene::LightFrustum& layer : bench.layers()) {
     const filters::DepthMap map = bench.map().read(layer.layer);
@@ -76,16 +116,23 @@ TEST_P(Geometry, RaysHitWhatTheDepthMapSees) {
       const double depth = map.curve.linear(static_cast<double>(map.stored[static_cast<std::size_t>(i)]));
       seen += depth < 1.0 ? 1 : 0;
       // Steep faces gain this depth within a hundredth of a texel; rasterisers snap vertices to fractions of one.
-      if (!rays.matches_nearby(i % kSize + 0.5, i / kSize + 0.5, depth, 5e-5)) ++different;
+      if (!rays.matches_nearby(i % kSize + 0.5, i / kSize + 0.5, depth, is_exact ? 5e-5 : 2e-3)) ++different;
     }
   }
   std::printf("%s: %d of %zu x %d texels see a caster, %d differ\n", GetParam().c_str(), seen, bench.layers().size(),
               kSize * kSize, different);
   EXPECT_GT(seen, 5000);
-  EXPECT_EQ(different, 0);
+  // A map through the camera's own perspective stretches one far texel beyond what single precision places.
+  EXPECT_LE(different, !is_exact ? seen / 40 : fit_of(scene) == scene::FitMode::kPsm ? 2 : 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(BuiltIn, Geometry, ::testing::ValuesIn(scenes_of_all_maps()),
+std::vector<std::string> list_fits() {
+  std::vector<std::string> names = scenes_of_all_maps();
+  names.insert(names.end(), {"avenue_by_focused", "avenue_by_psm", "avenue_by_tsm"});
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(BuiltIn, Geometry, ::testing::ValuesIn(list_fits()),
                          [](const auto& test) { return test.param; });
 
 }  // namespace
