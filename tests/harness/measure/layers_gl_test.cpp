@@ -62,7 +62,7 @@ TEST_P(Layers, ShareEveryReceiver) {
   for (const int count : of_layer) EXPECT_GT(count, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Layers, ::testing::Values("lantern", "avenue"),
+INSTANTIATE_TEST_SUITE_P(Scenes, Layers, ::testing::Values("lantern", "avenue", "lantern_by_paraboloid"),
                          [](const auto& each) { return each.param; });
 
 /// A box that casts a shadow on the floor.
@@ -129,6 +129,28 @@ TEST(CubeFaces, ShowNoLineWhereTheyMeetOnALitFloor) {
     const std::vector<float> image = draw_rows(bench, filter);
     float darkest = 1.0f;
     for (const float v : image) darkest = std::min(darkest, v);
+    EXPECT_GE(darkest, 0.999f) << filter;
+  }
+}
+
+/// The same floor stood up before the lamp: two paraboloids meet in it along a level line.
+TEST(Paraboloids, ShowNoLineWhereTheyMeetOnALitWall) {
+  scene::Scene scene = make_floor({});
+  scene.name = "wall_by_paraboloid";
+  scene.meshes.front() = scene::transform_mesh(
+      scene.meshes.front(), glm::rotate(glm::dmat4(1.0), glm::radians(90.0), glm::dvec3(1.0, 0.0, 0.0)));
+  scene.light.kind = scene::PointLight{{0.0f, 0.0f, 0.5f}, 0.02f, 0.5f};
+  scene.cameras.front().position_ws = {0.0f, 0.0f, 2.0f};
+  scene.cameras.front().forward_ws = {0.0f, 0.0f, -1.0f};
+  scene.cameras.front().up_ws = {0.0f, 1.0f, 0.0f};
+  Bench bench(shared_context(), scene, kLayersMap, kLayersWidth, kLayersHeight);
+  const auto borders = mark_borders(list_shares(bench), 1);
+  ASSERT_GT(std::ranges::count(borders, std::uint8_t{1}), 300);
+  for (const std::string& filter : filter_ids()) {
+    const std::vector<float> image = draw_rows(bench, filter);
+    float darkest = 1.0f;
+    for (std::size_t i = 0; i < image.size(); ++i)
+      if (borders[i] == 1) darkest = std::min(darkest, image[i]);
     EXPECT_GE(darkest, 0.999f) << filter;
   }
 }

@@ -87,6 +87,33 @@ TEST(KernelTruth, OfATent_UnderALamp) {
                   image, [&](const glm::dvec3& p) { return tent_below((p.x - edge) / texel); }));
 }
 
+/// Texels that are sheared, and grow along z: a step along v goes half a texel back along u.
+TEST(KernelTruth, OfATent_InAWarpedMap) {
+  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight),
+                                            make_sheet(-40.0, 40.0, -40.0, 40.0, 0.0)};
+  const Occluders occluders(meshes);
+  MapGrid grid = tilted_grid();
+  const auto texel_at = [](const glm::dvec3& p) { return kTexel * (1.0 + 0.2 * p.z); };
+  grid.curved = MapGrid::Curved{[&texel_at, right = grid.right, up = grid.up](const glm::dvec3& p) {
+                                  return TexelGradients{(right + 0.5 * up) / texel_at(p), up / texel_at(p)};
+                                },
+                                "sheared"};
+  const ReceiverImage image = make_receivers(1.0);
+  const Kernel kernel = Kernel::make_point(Reconstruction::kBilinear);
+  const auto exact = [&](const glm::dvec3& p) {
+    const double t = texels_from_edge(p) * kTexel / texel_at(p);
+    constexpr int kSteps = 400;
+    double sum = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+      const double along_v = 2.0 * (i + 0.5) / kSteps - 1.0;
+      sum += (1.0 - std::abs(along_v)) * (2.0 / kSteps) * tent_below(t + 0.5 * along_v);
+    }
+    return sum;
+  };
+  expect_agreement(score_seeds(
+      [&](std::uint32_t seed) { return trace_kernel(occluders, image, kernel, grid, {.seed = seed}); }, image, exact));
+}
+
 /// A disk's share below an edge: its chords, each blurred by the tent.
 double disk_below(double radius, double t) {
   double sum = 0.0;
