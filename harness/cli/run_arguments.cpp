@@ -43,13 +43,12 @@ void add_map_options(Command& command, RunArguments& a) {
               "store depth as a perspective projection would whose far plane is this many times as far away as its "
               "near plane; filters read linear depth all the same");
   command
-      .add(
-          "--fit", &a.fits,
-          "light frustum: 'tight' around casters and receivers; 'sphere', which is stable under rotation; 'view', "
-          "around what the camera sees and the casters before it; or 'cascades', which give slices of that a map each: "
-          "cascades:count=2..4,split=uniform|practical|logarithmic,blend=0.1,depths=all|seen; may be repeated "
-          "(default: tight)")
-      .such_as({"tight", "sphere", "view", "cascades"});
+      .add("--fit", &a.fits,
+           "light frustum: 'tight' around casters and receivers; 'sphere', which is stable under rotation; 'view', "
+           "around what the camera sees and the casters before it; 'cascades', which give slices of that a map each: "
+           "cascades:count=2..4,split=uniform|practical|logarithmic,blend=0.1,depths=all|seen; 'focused', 'lispsm', "
+           "'psm', 'tsm' or 'logpsm', which warp it; of a point light 'paraboloid'; may be repeated (default: tight)")
+      .such_as(scene::list_fit_names());
   command
       .add("--snap", &a.snap,
            "keep the map's texels fixed in the world while the frusta of --fit view and cascades move: on or off")

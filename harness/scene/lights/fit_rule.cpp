@@ -67,6 +67,8 @@ CascadeRule parse_cascades(std::string_view text) {
 
 }  // namespace
 
+std::vector<std::string> list_fit_names() { return {kFitNames.begin(), kFitNames.end()}; }
+
 std::string_view name_of(FitMode mode) { return kFitNames[static_cast<std::size_t>(mode)]; }
 
 std::string describe_fit(const FitRule& rule) {

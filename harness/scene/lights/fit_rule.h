@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace shadowbench::scene {
 
@@ -40,6 +41,9 @@ struct FitRule {
   /// Whether each camera has a map of its own.
   bool follows_view() const { return mode == FitMode::kView || mode == FitMode::kCascades || is_warped(mode); }
 };
+
+/// Every fit's name, as FitMode has them.
+std::vector<std::string> list_fit_names();
 
 /// The fit's name on the command line and in records.
 std::string_view name_of(FitMode mode);

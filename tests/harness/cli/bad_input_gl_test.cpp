@@ -67,6 +67,16 @@ TEST_F(BadInput, UnknownMapFormat) { expect_refusal(small("--map-format d32"), 2
 TEST_F(BadInput, ColourFormatForTheMap) {
   expect_refusal(small("--map-format r32f"), 2, {"unknown depth format 'r32f'"});
 }
+TEST_F(BadInput, WarpedMapThatShallBeSnapped) {
+  expect_refusal(small("--fit lispsm --snap on"), 2, {"--snap on", "--fit view or cascades"});
+}
+
+TEST_F(BadInput, WarpedMapWithAPolygonOffset) {
+  expect_refusal(small("--fit tsm --bias polygon-offset:factor=1"), 2, {"polygon-offset", "--fit"});
+}
+
+TEST_F(BadInput, WarpedMapWithValues) { expect_refusal(small("--fit psm:near=1"), 2, {"'psm' takes no values"}); }
+
 TEST_F(BadInput, UnknownFit) { expect_refusal(small("--fit box"), 2, {"'box'", "sphere, tight, view"}); }
 TEST_F(BadInput, SnapWithNothing) { expect_refusal(small("--snap"), 2, {"--snap"}); }
 TEST_F(BadInput, SnapUnknown) { expect_refusal(small("--snap perhaps"), 2, {"--snap", "perhaps"}); }
