@@ -37,6 +37,7 @@ struct SceneMeasurement {
   std::vector<MeasuredCell> cells;
   images::Image stored_map;                     ///< [0,1], row 0 is v = 1
   images::Image depth_map;                      ///< the same, linearised
+  images::Image ambient;                        ///< linear RGB without the light; only of one of several
   std::optional<metrics::ArtefactMasks> masks;  ///< where artefacts can occur; nothing without truth
   double timed_ms = 0.0;                        ///< of the passes that were timed
   double attribution_s = 0.0;                   ///< that taking the errors apart took

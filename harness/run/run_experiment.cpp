@@ -11,6 +11,7 @@
 #include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
 #include "harness/measure/scene_assets.h"
+#include "harness/run/all_lights.h"
 #include "harness/run/provenance.h"
 #include "harness/run/run_plan.h"
 #include "harness/run/task_run.h"
@@ -108,6 +109,7 @@ class Experiment {
     run_.work.truths_traced = cache_.traced();
     run_.work.truths_cached = cache_.loaded();
     cache_.prune(kMaxCacheBytes);
+    if (options_.grids && !options_.worker) draw_all_lights(options_, plan, run_.gl);
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
     progress_.show(done_, "writing the report");
     if (!options_.worker) pages::write_report(options_.out, run_, list_keys(plan));

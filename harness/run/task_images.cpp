@@ -134,7 +134,7 @@ void add_truth_parts(std::vector<images::Part>& parts, const measure::SceneTruth
   parts.push_back({"truth.area", {"Y"}, truth.area, false});
   parts.push_back(make_part("truth.standard_error", truth, truth.rays.area.standard_error));
   parts.push_back(make_part("truth.mask", truth, truth.mask));
-  parts.push_back({"truth.picture", {"R", "G", "B"}, truth.area_picture, true});
+  parts.push_back({kTruthPicturePart, {"R", "G", "B"}, truth.area_picture, true});
   if (!masks) return;
   parts.push_back(make_part("truth.mask.acne", truth, masks->acne));
   parts.push_back(make_part("truth.mask.leak", truth, masks->leak));
@@ -282,6 +282,7 @@ void write_float_images(const options::RunOptions& options, const measure::Scene
   }
   if (truth.absent.empty()) add_truth_parts(parts, truth, measured.masks);
   parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});
+  if (!measured.ambient.empty()) parts.push_back({kAmbientPart, {"R", "G", "B"}, measured.ambient, true});
   images::write_exr(options.out / exr_name(options, task), parts, describe(options, task, info));
 }
 

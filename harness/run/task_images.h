@@ -16,6 +16,8 @@ std::string task_stem(const options::RunOptions& options, const measure::SceneTa
 std::string exr_name(const options::RunOptions& options, const measure::SceneTask& task);
 
 /// Give the names of a cell's parts in that file.
+inline constexpr const char* kAmbientPart = "ambient";  ///< of a scene with several lights
+inline constexpr const char* kTruthPicturePart = "truth.picture";
 std::string visibility_part(const std::string& label);
 std::string picture_part(const std::string& label);
 std::string unbiased_part(const std::string& label);  ///< a worker's alone: visibility without bias

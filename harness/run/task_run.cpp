@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "harness/measure/suspects.h"
+#include "harness/render/shade_pass.h"
 #include "harness/run/border_page.h"
 #include "harness/run/map_pictures.h"
 #include "harness/run/task_images.h"
@@ -65,6 +66,7 @@ void TaskRun::run_group(const Requests& built_in, const Requests& of_users) {
   const measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
   measured.stored_map = light.map.read_picture();
   measured.depth_map = measure::read_linear_depth(light.map);
+  if (!task_.scene->light.name.empty()) measured.ambient = draw_ambient();
   for (measure::MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
   Requests all = built_in;
   all.insert(all.end(), of_users.begin(), of_users.end());
@@ -75,6 +77,13 @@ void TaskRun::run_group(const Requests& built_in, const Requests& of_users) {
   show("pictures");
   write_images(task_of(all), measured);
   write_cells(measured);
+}
+
+images::Image TaskRun::draw_ambient() {
+  render::ImageTarget dark("no light", GL_R32F, options_.width, options_.height);
+  dark.clear(glm::vec4(0.0f));
+  return render::shade(renderer_.shaders, assets_.gbuffer(*task_.camera), dark.texture(), *task_.scene, *task_.camera,
+                       options_.range);
 }
 
 measure::MeasuredCell TaskRun::measure_user_cell(const filters::FilterRequest& request) {

@@ -49,6 +49,7 @@ class TaskRun {
 
   void run_group(const Requests& built_in, const Requests& of_users);
   measure::SceneTask task_of(const Requests& requests) const;
+  images::Image draw_ambient();
   measure::MeasuredCell measure_user_cell(const filters::FilterRequest& request);
   void score(measure::SceneMeasurement& measured);
   std::vector<measure::CoveredLayer> list_covered(const measure::LightMap& light);

@@ -234,9 +234,9 @@ class Builder {
   }
 
   std::string legend() const {
-    const bool shows_more_than_errors = std::any_of(layout_.panels.begin(), layout_.panels.end(),
-                                                    [](const Panel& p) { return p.kind != PanelKind::kError; });
-    if (!shows_more_than_errors) return {};
+    const bool shows_visibility = std::any_of(layout_.panels.begin(), layout_.panels.end(),
+                                              [](const Panel& p) { return p.kind == PanelKind::kVisibility; });
+    if (!shows_visibility) return {};
     std::string text = "Top: shaded picture. Below it: visibility (white lit, black blocked)";
     text += layout_.color_bar ? ", then its error" : "";
     text += layout_.bar_scale ? ", then the parts of the error." : ".";

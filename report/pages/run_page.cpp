@@ -52,6 +52,13 @@ page::Gallery make_stability_gallery(const analysis::CellGroup& group) {
   return gallery;
 }
 
+page::Gallery make_lights_gallery(const analysis::CellGroup& group) {
+  page::Gallery gallery{"All lights of the scene at once", {}};
+  if (const auto path = find_path(group, &records::ImagesRecord::all_lights))
+    gallery.pictures.push_back({*path, "the truth and each filter, with what a frame costs whose lights all move"});
+  return gallery;
+}
+
 page::Gallery make_map_gallery(const analysis::CellGroup& group) {
   page::Gallery gallery{"The shadow map: its depths, and where its texels fall", {}};
   const std::pair<ImageMember, const char*> pictures[] = {
@@ -114,6 +121,7 @@ page::Details make_group_details(const records::RunRecord& run, const std::vecto
   if (auto bars = make_bars(group)) blocks.emplace_back(std::move(*bars));
   if (const auto grid = find_path(group, &records::ImagesRecord::grid))
     blocks.emplace_back(page::Gallery{{}, {{*grid, "all filters on " + group.scene + ", full size behind the link"}}});
+  blocks.emplace_back(make_lights_gallery(group));
   blocks.emplace_back(make_stability_gallery(group));
   blocks.emplace_back(make_map_gallery(group));
   if (const auto exr = find_path(group, &records::ImagesRecord::exr))

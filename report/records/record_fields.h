@@ -87,6 +87,7 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("images.parts", cell.images.parts);
   visit("images.texel_density", cell.images.texel_density);
   visit("images.texel_grid", cell.images.texel_grid);
+  visit("images.all_lights", cell.images.all_lights);
   visit("images.stability", cell.images.stability);
   visit("images.values", cell.images.values);
   visit("images.truth_picture", cell.images.truth_picture);

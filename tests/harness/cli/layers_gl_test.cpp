@@ -31,7 +31,12 @@ class LayersRun : public ProgramTest {
 
 TEST_F(LayersRun, UsersFilters_GetWhatBuiltInOnesGet) {
   write("mine.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/tent3x3.glsl"));
-  for (const char* scene : {"--scene lantern", "--scene avenue --fit cascades:count=3,split=logarithmic"}) {
+  const std::pair<const char*, int> maps[] = {{"--scene lantern", 6},
+                                              {"--scene lantern --fit paraboloid", 2},
+                                              {"--scene avenue --fit cascades:count=3,split=logarithmic", 3},
+                                              {"--scene avenue --fit lispsm", 1},
+                                              {"--scene avenue --fit logpsm", 1}};
+  for (const auto& [scene, layers] : maps) {
     const json cells =
         run_cells(std::string(scene) + " --stability --filters none,tent3x3,mine,vsm:bleed_reduction=0 --filter-file " +
                   (folder() / "mine.glsl").string());
@@ -44,10 +49,10 @@ TEST_F(LayersRun, UsersFilters_GetWhatBuiltInOnesGet) {
     for (const json& cell : cells) {
       EXPECT_EQ(cell["status"], "ok") << cell["message"];
       EXPECT_LT(cell["attribution"]["numeric"]["rms"], 2e-3) << "the model follows the receivers to their layers";
-      const int layers = cell["scene"] == "lantern" ? 6 : 3, bytes = cell["filter"] == "vsm" ? 8 : 4;
+      const int bytes = cell["filter"] == "vsm" ? 8 : 4;
       EXPECT_EQ(cell["cost"]["map_bytes"], layers * 128 * 128 * bytes);
     }
-    EXPECT_EQ(find("none")["cost"]["passes"], find("none")["scene"] == "lantern" ? 12 : 6);
+    EXPECT_EQ(find("none")["cost"]["passes"], 2 * layers);
     EXPECT_EQ(find("vsm")["stability"]["bound_exact_violations"], 0) << scene;
   }
 }
@@ -83,6 +88,17 @@ TEST_F(LayersRun, EachOfSeveralLights_IsMeasuredByItself_UsersFiltersToo) {
   const Outcome unknown = run(std::string(kSmallLayers) + "--scene three_lights --light-name moon --filters none");
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_THAT(unknown.err, HasSubstr("no scene has a light 'moon'"));
+}
+
+TEST_F(LayersRun, AllLightsAtOnce_AreDrawnWhereAllAreMeasured) {
+  const std::string settings =
+      "run --out out --size 160x90 --map-size 128 --rounds 1 --scene three_lights --filters none";
+  ASSERT_EQ(run(settings + " --light-name bulb").exit_code, 0);
+  EXPECT_EQ(all()["cells"][0]["images"]["all_lights"], nullptr);
+  ASSERT_EQ(run(settings).exit_code, 0) << "two lights more";
+  for (const json& cell : all()["cells"]) EXPECT_EQ(cell["images"]["all_lights"], "three_lights.all_lights.grid.png");
+  EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "three_lights.all_lights.grid.png"));
+  EXPECT_THAT(read_text(folder() / "out" / "index.html"), HasSubstr("three_lights.all_lights.grid.png"));
 }
 
 TEST_F(LayersRun, ALampInsideACaster_IsWarnedOf) {
