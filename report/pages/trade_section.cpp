@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "report/analysis/front_words.h"
 #include "report/analysis/growth.h"
 #include "report/pages/column_list.h"
@@ -28,7 +30,14 @@ constexpr const char* kLightsNote =
     "the reference under as many lights, times its median (quartiles where the run does not hold the reference); "
     "cheaper is said where these do not overlap. Growth is fitted to each filter's own medians, in brackets what its "
     "quartiles allow: each number of lights is timed in rounds of its own, and drift of the machine between them is in "
-    "the growth, not in the order.";
+    "the growth, not in the order. Linear: no median is more than 10 % off the line.";
+constexpr const char* kMapsNote =
+    "A map that is fitted to the scene (tight, sphere) serves every camera, and can be kept while light and casters "
+    "stand still; every other fit follows a camera, and is drawn anew for each and whenever it moves. Cost: map, "
+    "prefilter and whole lookup, medians; each map is timed in rounds of its own. Cheaper is said where the sums of "
+    "the "
+    "passes' quartiles do not overlap, as accurate where the RMSE is not clearly larger. Other views are taken to have "
+    "the error and the cost of the one that was measured.";
 
 void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                 const Trade& trade) {
@@ -71,6 +80,21 @@ void add_lights(Blocks& blocks, const records::RunRecord& run, const std::vector
   }
 }
 
+void add_maps(Blocks& blocks, const records::RunRecord& run, const std::vector<analysis::MapFamily>& families) {
+  const page::Sentences findings[] = {
+      {"Layers against one map of as many bytes, drawn in every frame:", analysis::describe_layers(families)},
+      {"One map for all views against one for each, drawn in every frame:",
+       analysis::describe_sharing(families, run.gl)},
+      {"Light and casters stand still, and the camera moves:", analysis::describe_caching(families, run.gl)}};
+  if (std::ranges::all_of(findings, [](const page::Sentences& each) { return each.items.empty(); })) return;
+  blocks.emplace_back(page::Heading{"Which map: one for all, one for each view, or layers"});
+  for (std::string& warning : analysis::describe_drift(families))
+    blocks.emplace_back(page::Paragraph{std::move(warning)});
+  for (const page::Sentences& each : findings)
+    if (!each.items.empty()) blocks.emplace_back(each);
+  blocks.emplace_back(page::Paragraph{kMapsNote, true});
+}
+
 }  // namespace
 
 std::optional<Trade> make_trade(const std::vector<records::CellRecord>& cells) {
@@ -78,7 +102,8 @@ std::optional<Trade> make_trade(const std::vector<records::CellRecord>& cells) {
   trade.scopes = analysis::make_trade_scopes(cells);
   trade.has_fronts = analysis::has_trade(trade.scopes);
   trade.light_charts = analysis::make_light_charts(cells, trade.scopes);
-  if (!trade.has_fronts && trade.light_charts.empty()) return std::nullopt;
+  trade.map_families = analysis::list_map_families(cells);
+  if (!trade.has_fronts && trade.light_charts.empty() && trade.map_families.empty()) return std::nullopt;
   if (trade.has_fronts) trade.width_charts = analysis::make_width_charts(cells, trade.scopes);
   return trade;
 }
@@ -91,6 +116,7 @@ page::Section make_trade_section(const records::RunRecord& run, const std::vecto
     add_widths(section.blocks, run, cells, trade);
   }
   add_lights(section.blocks, run, cells, trade.light_charts);
+  add_maps(section.blocks, run, trade.map_families);
   return section;
 }
 
