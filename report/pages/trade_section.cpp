@@ -33,11 +33,10 @@ constexpr const char* kLightsNote =
     "the growth, not in the order. Linear: no median is more than 10 % off the line.";
 constexpr const char* kMapsNote =
     "A map that is fitted to the scene (tight, sphere) serves every camera, and can be kept while light and casters "
-    "stand still; every other fit follows a camera, and is drawn anew for each and whenever it moves. Cost: map, "
-    "prefilter and whole lookup, medians; each map is timed in rounds of its own. Cheaper is said where the sums of "
-    "the "
-    "passes' quartiles do not overlap, as accurate where the RMSE is not clearly larger. Other views are taken to have "
-    "the error and the cost of the one that was measured.";
+    "stand still; every other fit follows a camera, and is drawn anew for each and whenever it moves. Cost: medians of "
+    "map, prefilter and whole lookup, added. Each map is timed in rounds of its own: cheaper is said where the sums of "
+    "the passes' quartiles do not overlap although empty lookups differ as much as they do. As accurate: the RMSE is "
+    "not clearly larger. Other views are taken to have the error and the cost of the one that was measured.";
 
 void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                 const Trade& trade) {

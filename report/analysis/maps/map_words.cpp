@@ -20,12 +20,12 @@ std::string name_map(const MapUse& map) { return fmt::format("{} of {}", map.fit
 std::string count_views(int views) { return fmt::format("{} view{}", views, views == 1 ? "" : "s"); }
 
 std::string name_winner(const LayerComparison& found) {
-  const bool no_worse = found.error_sign <= 0 && found.cost_sign <= 0;
-  const bool no_better = found.error_sign >= 0 && found.cost_sign >= 0;
-  if (no_worse && no_better) return "cannot be told apart";
-  if (no_worse) return found.error_sign * found.cost_sign != 0 ? "the layers win both" : "the layers win";
-  if (no_better) return found.error_sign * found.cost_sign != 0 ? "the one map wins both" : "the one map wins";
-  return found.error_sign < 0 ? "less error costs time" : "less time costs error";
+  const int error = found.error_sign, cost = found.cost_sign;
+  if (error == 0 && cost == 0) return "cannot be told apart";
+  if (cost == 0) return fmt::format("{} error, costs cannot be told apart", error < 0 ? "less" : "more");
+  if (error == 0) return fmt::format("{} cost, errors cannot be told apart", cost < 0 ? "less" : "more");
+  if (error == cost) return error < 0 ? "the layers win both" : "the one map wins both";
+  return error < 0 ? "less error costs time" : "less time costs error";
 }
 
 std::string describe_layers_of(const MapFamily& family, const std::vector<LayerComparison>& found) {
@@ -91,7 +91,9 @@ std::string describe_caching_of(const MapFamily& family, const std::vector<Cachi
   const auto [least, most] = std::ranges::minmax(errors);
   return fmt::format("{}; no kept map measured (RMSE {} at best) is as accurate as {} (RMSE {}).", text,
                      records::format_number(std::ranges::min(shared_errors)),
-                     parts.empty() ? "any of them" : fmt::format("the other {}", errors.size()),
+                     parts.empty()        ? "any of them"
+                     : errors.size() == 1 ? "the other"
+                                          : fmt::format("the other {}", errors.size()),
                      errors.size() > 1
                          ? fmt::format("{} to {}", records::format_number(least), records::format_number(most))
                          : records::format_number(least));
