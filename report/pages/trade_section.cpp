@@ -34,9 +34,9 @@ constexpr const char* kLightsNote =
 constexpr const char* kMapsNote =
     "A map that is fitted to the scene (tight, sphere) serves every camera, and can be kept while light and casters "
     "stand still; every other fit follows a camera, and is drawn anew for each and whenever it moves. Cost: medians of "
-    "map, prefilter and whole lookup, added. Each map is timed in rounds of its own: cheaper is said where the sums of "
-    "the passes' quartiles do not overlap although empty lookups differ as much as they do. As accurate: the RMSE is "
-    "not clearly larger. Other views are taken to have the error and the cost of the one that was measured.";
+    "map, prefilter and whole lookup, added. Each map is timed in rounds of its own: cheaper is said where costs "
+    "differ by more than the passes' quartiles do, and than empty lookups do between the maps. As accurate: the RMSE "
+    "is not clearly larger. Other views are taken to have the error and the cost of the one that was measured.";
 
 void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                 const Trade& trade) {
@@ -65,9 +65,8 @@ void add_widths(Blocks& blocks, const records::RunRecord& run, const std::vector
 void add_lights(Blocks& blocks, const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                 const std::vector<analysis::LightChart>& charts) {
   if (charts.empty()) return;
-  page::Sentences sentences{{}, analysis::describe_light_order(charts)};
-  for (std::string& sentence : analysis::describe_light_growth(charts, run.gl))
-    sentences.items.push_back(std::move(sentence));
+  page::Sentences sentences{{}, analysis::describe_light_growth(charts, run.gl)};
+  for (std::string& sentence : analysis::describe_light_order(charts)) sentences.items.push_back(std::move(sentence));
   blocks.emplace_back(page::Heading{"How a frame's cost grows with its lights"});
   blocks.emplace_back(std::move(sentences));
   blocks.emplace_back(page::Paragraph{kLightsNote, true});

@@ -15,7 +15,7 @@ constexpr double kSteady = 1.25;  // a drift that is not worth a warning
 
 std::string name_head(const MapFamily& family) { return fmt::format("{} on {}", family.name, family.place); }
 
-std::string name_map(const MapUse& map) { return fmt::format("{} of {}", map.fit, map.size); }
+std::string name_map(const MapUse& map) { return fmt::format("{} map of {}", map.fit, map.size); }
 
 std::string count_views(int views) { return fmt::format("{} view{}", views, views == 1 ? "" : "s"); }
 
@@ -46,13 +46,13 @@ std::string describe_layers_of(const MapFamily& family, const std::vector<LayerC
 std::string describe_sharing_of(const MapFamily& family, const Sharing& found, const std::string& unit) {
   const MapUse& shared = family.maps[found.shared];
   const std::string head =
-      fmt::format("{} for all views costs {} {} and {} for each view", name_map(shared),
+      fmt::format("a {} for all views costs {} {} and {} for each view", name_map(shared),
                   records::format_number(shared.redraw.value), unit, records::format_number(shared.lookup.value));
   const std::string rmse = records::format_number(shared.rmse.value);
   if (!found.own) return fmt::format("{}; no map of a view's own is as accurate (RMSE {})", head, rmse);
   const MapUse& own = family.maps[*found.own];
-  return fmt::format("{}, the cheapest own maps as accurate ({}, RMSE {} against {}) {} for each: sharing is {}", head,
-                     name_map(own), records::format_number(own.rmse.value), rmse,
+  return fmt::format("{}, and the cheapest own map as accurate ({}, RMSE {} against {}) {} for each: sharing is {}",
+                     head, name_map(own), records::format_number(own.rmse.value), rmse,
                      records::format_number(own.frame().value),
                      found.from_views ? fmt::format("cheaper from {} on", count_views(*found.from_views))
                                       : "clearly cheaper for no number of views");
@@ -79,7 +79,8 @@ std::string describe_caching_of(const MapFamily& family, const std::vector<Cachi
     if (!each.cached)
       errors.push_back(own.rmse.value);
     else
-      parts.push_back(fmt::format("as {} from {} on, and saves {}", name_map(own), name_map(family.maps[*each.cached]),
+      parts.push_back(fmt::format("as the {} from the {} on, and saves {}", name_map(own),
+                                  name_map(family.maps[*each.cached]),
                                   each.pays ? fmt::format("{} of {} {} a frame", records::format_number(each.saved_ms),
                                                           records::format_number(own.frame().value), unit)
                                             : "nothing that can be told"));

@@ -148,9 +148,10 @@ TEST(MapSharing, IsCheaperFromTheViewsThatPayForItsMap) {
   EXPECT_EQ(found[0].from_views, 2);
   EXPECT_EQ(found[1].own, 4u) << "as accurate is the view's map of 2048, which is cheaper than the cascades";
   EXPECT_EQ(found[1].from_views, 2);
-  EXPECT_EQ(describe_sharing({family}, make_run().gl)[1],
-            "vsm on avenue: tight of 2048 for all views costs 12 ms (CPU) and 1.5 for each view, the cheapest own maps "
-            "as accurate (view of 2048, RMSE 0.0992 against 0.1) 12.5 for each: sharing is cheaper from 2 views on.");
+  EXPECT_EQ(
+      describe_sharing({family}, make_run().gl)[1],
+      "vsm on avenue: a tight map of 2048 for all views costs 12 ms (CPU) and 1.5 for each view, and the cheapest own "
+      "map as accurate (view map of 2048, RMSE 0.0992 against 0.1) 12.5 for each: sharing is cheaper from 2 views on.");
 }
 
 /// A dear shared map of 100 ms against 11 less 1: from 11 views on, by what the quartiles allow.
@@ -179,11 +180,12 @@ TEST(MapCaching, SavesTheMap_WhereTheKeptOneIsAsAccurate) {
   EXPECT_NEAR(found[0].saved_ms, 5.0 - 1.5, 1e-12);
   EXPECT_EQ(found[1].cached, std::nullopt) << "cascades";
   EXPECT_EQ(found[2].cached, 3u) << "0.0992 is not clearly less than 0.1";
-  EXPECT_THAT(describe_caching({family}, make_run().gl),
-              ElementsAre("vsm on avenue: map and prefilter are 80 to 88 % of a frame in which the view's own map is "
-                          "drawn; a kept map is as accurate as view of 1024 from tight of 2048 on, and saves 3.5 of 5 "
-                          "ms (CPU) a frame; as view of 2048 from tight of 2048 on, and saves 11 of 12.5 ms (CPU) a "
-                          "frame; no kept map measured (RMSE 0.1 at best) is as accurate as the other (RMSE 0.04)."));
+  EXPECT_THAT(
+      describe_caching({family}, make_run().gl),
+      ElementsAre("vsm on avenue: map and prefilter are 80 to 88 % of a frame in which the view's own map is drawn; a "
+                  "kept map is as accurate as the view map of 1024 from the tight map of 2048 on, and saves 3.5 of 5 "
+                  "ms (CPU) a frame; as the view map of 2048 from the tight map of 2048 on, and saves 11 of 12.5 ms "
+                  "(CPU) a frame; no kept map measured (RMSE 0.1 at best) is as accurate as the other (RMSE 0.04)."));
 }
 
 TEST(MapCaching, ThatCannotBeTold_IsNoSaving) {
