@@ -28,19 +28,24 @@ std::string name_winner(const LayerComparison& found) {
   return error < 0 ? "less error costs time" : "less time costs error";
 }
 
+// The single maps with their ratios, those of one verdict together.
 std::string describe_layers_of(const MapFamily& family, const std::vector<LayerComparison>& found) {
   const MapUse &layered = family.maps[found.front().layered], &first = family.maps[found.front().single];
-  std::vector<std::string> parts;
+  std::vector<std::pair<std::string, std::vector<std::string>>> verdicts;
   for (const LayerComparison& each : found) {
-    const std::string error = records::format_number(each.error), cost = records::format_number(each.cost);
-    const std::string ratios =
-        parts.empty() ? fmt::format("{} times the RMSE and {} times the cost of one map of {}", error, cost, first.size)
-                      : fmt::format("{} and {} times those", error, cost);
-    parts.push_back(fmt::format("{} with fit {} ({})", ratios, family.maps[each.single].fit, name_winner(each)));
+    const std::string verdict = name_winner(each);
+    auto of = std::ranges::find(verdicts, verdict, &decltype(verdicts)::value_type::first);
+    if (of == verdicts.end()) of = verdicts.insert(of, {verdict, {}});
+    const bool leads = &each == &found.front();  // says what the two numbers are
+    of->second.push_back(fmt::format("{} ({}{}, {}{})", family.maps[each.single].fit, leads ? "RMSE × " : "",
+                                     records::format_number(each.error), leads ? "cost × " : "",
+                                     records::format_number(each.cost)));
   }
-  return fmt::format("{}, {}: {} layers of {} ({}) have {}.", name_head(family),
+  std::vector<std::string> parts;
+  for (const auto& [verdict, maps] : verdicts) parts.push_back(fmt::format("{}: {}", verdict, fmt::join(maps, ", ")));
+  return fmt::format("{}, {}: {} layers of {} ({}) against one map of {}; {}.", name_head(family),
                      records::format_bytes(static_cast<double>(layered.bytes)), layered.layers, layered.size,
-                     layered.fit, fmt::join(parts, ", "));
+                     layered.fit, first.size, fmt::join(parts, "; "));
 }
 
 std::string describe_sharing_of(const MapFamily& family, const Sharing& found, const std::string& unit) {

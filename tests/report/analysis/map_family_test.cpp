@@ -119,10 +119,13 @@ TEST(MapLayers, AreComparedAtAsManyBytes_MapPrefilterAndLookupCounted) {
 TEST(MapLayers, OfSeveralTheMostAccurateIsCompared) {
   std::vector<CellRecord> cells = make_deep_cells();
   cells.push_back(make_map_cell({"cascades:count=4,split=0,blend=0.1,depths=all", 1024, 4, 0.06, 1.0, 1.0}));
-  EXPECT_THAT(describe_layers(list_map_families(cells)),
-              ElementsAre("vsm on avenue, 16 MiB: 4 layers of 1024 (cascades:count=4,split=1,blend=0.1,depths=all) "
-                          "have 0.4 times the RMSE and 1.85 times the cost of one map of 2048 with fit tight (less "
-                          "error costs time), 0.403 and 2 times those with fit view (less error costs time)."));
+  EXPECT_THAT(
+      describe_layers(list_map_families(cells)),
+      ElementsAre("vsm on avenue, 16 MiB: 4 layers of 1024 (cascades:count=4,split=1,blend=0.1,depths=all) against one "
+                  "map of 2048; less error costs time: tight (RMSE × 0.4, cost × 1.85), view (0.403, 2)."));
+  cells.push_back(make_map_cell({"psm", 2048, 1, 0.03, 2.0, 1.0}));
+  EXPECT_THAT(describe_layers(list_map_families(cells))[0],
+              HasSubstr("view (0.403, 2); the one map wins both: psm (1.33, 8.33)."));
 }
 
 TEST(MapLayers, WhoWinsIsSaid) {
@@ -130,13 +133,13 @@ TEST(MapLayers, WhoWinsIsSaid) {
     return describe_layers(list_map_families(
         make_map_cells({{"tight", 2048, 1, 0.1, 6.0, 2.0}, {kCascades, 1024, 4, rmse, ms - 2.0, 2.0}})))[0];
   };
-  EXPECT_THAT(say(0.05, 4.0), HasSubstr("(the layers win both)"));
-  EXPECT_THAT(say(0.05, 8.0), HasSubstr("(less error, costs cannot be told apart)"));
-  EXPECT_THAT(say(0.1005, 4.0), HasSubstr("(less cost, errors cannot be told apart)"));
-  EXPECT_THAT(say(0.1005, 8.0), HasSubstr("(cannot be told apart)"));
-  EXPECT_THAT(say(0.2, 8.0), HasSubstr("(more error, costs cannot be told apart)"));
-  EXPECT_THAT(say(0.2, 9.0), HasSubstr("(the one map wins both)"));
-  EXPECT_THAT(say(0.2, 4.0), HasSubstr("(less time costs error)"));
+  EXPECT_THAT(say(0.05, 4.0), HasSubstr("; the layers win both: tight"));
+  EXPECT_THAT(say(0.05, 8.0), HasSubstr("; less error, costs cannot be told apart: tight"));
+  EXPECT_THAT(say(0.1005, 4.0), HasSubstr("; less cost, errors cannot be told apart: tight"));
+  EXPECT_THAT(say(0.1005, 8.0), HasSubstr("; cannot be told apart: tight"));
+  EXPECT_THAT(say(0.2, 8.0), HasSubstr("; more error, costs cannot be told apart: tight"));
+  EXPECT_THAT(say(0.2, 9.0), HasSubstr("; the one map wins both: tight"));
+  EXPECT_THAT(say(0.2, 4.0), HasSubstr("; less time costs error: tight"));
 }
 
 /// 4.04 + 1.01 V < V (3.96 + 0.99) from V = 2 on; 12.12 + 1.515 V < V 12.375 likewise.
