@@ -138,6 +138,20 @@ Estimate fit_with_spread(const LightCurve& curve, LightState light, double (*fit
   return {fit(medians), fit(flattest), fit(steepest)};
 }
 
+// How far medians are from the line of least squares, which goes through their mean.
+std::optional<double> find_off_line(const LightCurve& curve, LightState light, double slope) {
+  if (curve.points.size() < 3) return std::nullopt;
+  const double points = static_cast<double>(curve.points.size());
+  const auto time_of = [&](const LightPoint& point) {
+    return light == LightState::kStill ? point.still_spread.value : point.moving_spread.value;
+  };
+  double offset = 0.0, farthest = 0.0;
+  for (const LightPoint& point : curve.points) offset += (time_of(point) - slope * point.count) / points;
+  for (const LightPoint& point : curve.points)
+    farthest = std::max(farthest, std::abs(offset + slope * point.count - time_of(point)) / time_of(point));
+  return farthest;
+}
+
 std::vector<std::string> make_row(const LightChart& chart, const LightCurve& curve, LightState light) {
   std::vector<std::string> row{curve.label, light == LightState::kStill ? "still" : "moving"};
   for (const int count : chart.counts) {
@@ -190,8 +204,10 @@ const Estimate& frame_time(const LightPoint& point, LightState light) {
 
 LightGrowth find_light_growth(const LightCurve& curve, LightState light) {
   assert(curve.points.size() > 1);
-  return {fit_with_spread(curve, light, fit_slope, [](double count) { return count; }),
-          fit_with_spread(curve, light, fit_exponent, [](double count) { return std::log(count); })};
+  const Estimate slope = fit_with_spread(
+      curve, light, fit_slope, [](double count) { return count; });
+  return {slope, fit_with_spread(curve, light, fit_exponent, [](double count) { return std::log(count); }),
+          find_off_line(curve, light, slope.value)};
 }
 
 std::vector<LightComparison> compare_light_curves(const LightChart& chart) {

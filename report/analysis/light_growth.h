@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,8 @@ struct LightChart {
 struct LightGrowth {
   Estimate per_light_ms;  ///< slope of the time over the count, by least squares
   Estimate exponent;      ///< p of time ~ count^p; see fit_exponent()
+  std::optional<double>
+      off_line;  ///< the largest distance of a median from that line, as its share; of 3 counts or more
 };
 
 /// Compares two curves at the counts that both have. Signs: -1 `a` is cheaper, 1 it is dearer, 0 their intervals
@@ -85,8 +88,8 @@ std::string format_exponent(const Estimate& exponent);
 /// Makes the table of a chart, two rows per curve, for casters that stand still and that move.
 records::TextTable make_light_table(const LightChart& chart);
 
-/// How the times of each chart grow: per added light, and to which power of the count; nothing for charts of one
-/// count.
+/// What each further light costs every filter, in every scene and under each of its lights, and how near to linear that
+/// is; nothing for charts of one count.
 std::vector<std::string> describe_light_growth(const std::vector<LightChart>& charts, const records::GlRecord& gl);
 
 /// Which filters overtake another between numbers of lights, or between casters that stand still and that move,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "report/analysis/light_growth.h"
 #include "report/analysis/summary.h"
@@ -13,28 +14,60 @@
 namespace shadowbench::analysis {
 namespace {
 
-std::vector<const LightCurve*> list_growing(const LightChart& chart) {
-  std::vector<const LightCurve*> curves;
-  for (const LightCurve& curve : chart.curves)
-    if (curve.points.size() > 1) curves.push_back(&curve);
-  return curves;
+constexpr double kLinear = 0.1;  // medians are at most so far from a line, as a share
+
+// One filter's growth in one chart.
+struct Grown {
+  const LightChart* chart;
+  std::string place;
+  LightGrowth growth;
+};
+
+// Filter, state of the casters, picture and map: what one sentence is about.
+using GrowthKey = std::tuple<std::string, LightState, std::string, int>;
+
+std::string name_place(const std::map<std::string, std::set<std::string>>& views, const LightChart& chart) {
+  return views.at(chart.scene).size() > 1 ? chart.scene + " (" + chart.view + ")" : chart.scene;
 }
 
-std::string describe_growth_of(const LightChart& chart, const std::vector<const LightCurve*>& curves, LightState light,
-                               const records::GlRecord& gl) {
-  std::vector<std::string> slopes, exponents;
-  for (const LightCurve* curve : curves) {
-    const LightGrowth growth = find_light_growth(*curve, light);
-    slopes.push_back(fmt::format("{} {}", curve->label, format_time(growth.per_light_ms)));
-    exponents.push_back(fmt::format("{} {}", curve->label, format_exponent(growth.exponent)));
+std::map<std::string, std::set<std::string>> list_views(const std::vector<LightChart>& charts) {
+  std::map<std::string, std::set<std::string>> views;
+  for (const LightChart& chart : charts) views[chart.scene].insert(chart.view);
+  return views;
+}
+
+// "linear within 2 %", "linear within 2 % on a; not linear on b (12 % off a line)"; empty where two counts show
+// nothing.
+std::string describe_linearity(const std::vector<Grown>& all) {
+  double within = 0.0;
+  std::vector<std::string> linear, bent;
+  for (const Grown& each : all) {
+    if (!each.growth.off_line) continue;
+    const double off = *each.growth.off_line;
+    if (off <= kLinear) {
+      within = std::max(within, off);
+      linear.push_back(each.place);
+    } else {
+      bent.push_back(fmt::format("{} ({:.1f} % off a line)", each.place, 100.0 * off));
+    }
   }
-  return fmt::format(
-      "{}, {} to {} lights, casters {}: each added light costs, in {}: {}; a frame's time grows with the lights to the "
-      "power of (1 would be in "
-      "proportion): {}.",
-      chart.title, chart.counts.front(), chart.counts.back(),
-      light == LightState::kStill ? "still (a lookup per light)" : "moving (a map, a prefilter and a lookup per light)",
-      records::time_unit(gl), fmt::join(slopes, "; "), fmt::join(exponents, "; "));
+  std::string text;
+  if (!linear.empty()) text += fmt::format(": linear within {:.1f} %", 100.0 * within);
+  if (!linear.empty() && linear.size() < all.size()) text += fmt::format(" on {}", fmt::join(linear, ", "));
+  if (!bent.empty()) text += fmt::format("{} not linear on {}", text.empty() ? ":" : ";", fmt::join(bent, ", "));
+  return text;
+}
+
+std::string describe_growth_of(const GrowthKey& key, const std::vector<Grown>& all, const records::GlRecord& gl) {
+  const auto& [label, light, picture, map_size] = key;
+  std::vector<std::string> slopes;
+  for (const Grown& each : all)
+    slopes.push_back(fmt::format("{}{} on {}", records::format_number(each.growth.per_light_ms.value),
+                                 slopes.empty() ? " " + records::time_unit(gl) : "", each.place));
+  return fmt::format("Each further light costs {} with {}, casters {}{} ({} to {} lights, picture {}, map {}).",
+                     fmt::join(slopes, ", "), label, light == LightState::kStill ? "still" : "moving",
+                     describe_linearity(all), all.front().chart->counts.front(), all.front().chart->counts.back(),
+                     picture, map_size);
 }
 
 std::vector<int> list_counts_with(const LightComparison& comparison, const std::vector<int>& signs, int sign) {
@@ -105,22 +138,33 @@ std::string describe_rest(const std::vector<LightComparison>& comparisons) {
 }  // namespace
 
 std::vector<std::string> describe_light_growth(const std::vector<LightChart>& charts, const records::GlRecord& gl) {
-  std::vector<std::string> sentences;
-  for (const LightChart& chart : charts) {
-    const auto curves = list_growing(chart);
-    if (curves.empty()) continue;
-    for (const LightState light : {LightState::kStill, LightState::kMoving})
-      sentences.push_back(describe_growth_of(chart, curves, light, gl));
+  const auto views = list_views(charts);
+  std::vector<GrowthKey> keys;
+  std::map<GrowthKey, std::vector<Grown>> grown;
+  for (const LightState light : {LightState::kStill, LightState::kMoving}) {
+    for (const LightChart& chart : charts) {
+      for (const LightCurve& curve : chart.curves) {
+        if (curve.points.size() < 2) continue;
+        const GrowthKey key(curve.label, light, fmt::format("{} × {}", chart.width, chart.height), chart.map_size);
+        std::vector<Grown>& all = grown[key];
+        if (all.empty()) keys.push_back(key);
+        // Charts of one place that differ in other settings are told apart by their titles.
+        const std::string place = name_place(views, chart);
+        const bool known = std::ranges::count(all, place, &Grown::place) > 0;
+        all.push_back({&chart, known ? chart.title : place, find_light_growth(curve, light)});
+      }
+    }
   }
+  std::vector<std::string> sentences;
+  for (const GrowthKey& key : keys) sentences.push_back(describe_growth_of(key, grown.at(key), gl));
   return sentences;
 }
 
 std::vector<std::string> describe_light_order(const std::vector<LightChart>& charts) {
-  std::map<std::string, std::set<std::string>> views;
-  for (const LightChart& chart : charts) views[chart.scene].insert(chart.view);
+  const auto views = list_views(charts);
   std::map<std::string, VerdictPlaces> changes, rests;
   for (const LightChart& chart : charts) {
-    const std::string place = views[chart.scene].size() > 1 ? chart.scene + " (" + chart.view + ")" : chart.scene;
+    const std::string place = name_place(views, chart);
     const std::pair key(fmt::format("{} × {}", chart.width, chart.height), chart.map_size);
     const auto comparisons = compare_light_curves(chart);
     for (const LightComparison& each : comparisons)

@@ -23,16 +23,19 @@ namespace {
 using OptionalPath = std::optional<std::string>;
 using ImageMember = OptionalPath records::ImagesRecord::*;
 
-/// Names the scene, and the map where the run has the scene with several.
+/// Names the scene, and the map and its fit where the run has the scene with several.
 std::string head_group(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                        const records::CellRecord& cell) {
   const auto found = std::ranges::find(run.scenes, cell.scene, &records::SceneRecord::name);
-  const std::string name =
-      found == run.scenes.end() || found->title.empty() ? cell.scene : cell.scene + ": " + found->title;
-  const bool one_map = std::ranges::all_of(cells, [&](const records::CellRecord& other) {
-    return other.scene != cell.scene || other.map_size == cell.map_size;
-  });
-  return one_map ? name : fmt::format("{}, map {}", name, cell.map_size);
+  std::string head = found == run.scenes.end() || found->title.empty() ? cell.scene : cell.scene + ": " + found->title;
+  const auto varies = [&](auto member) {
+    return std::ranges::any_of(cells, [&](const records::CellRecord& other) {
+      return other.scene == cell.scene && other.*member != cell.*member;
+    });
+  };
+  if (varies(&records::CellRecord::map_size)) head += fmt::format(", map {}", cell.map_size);
+  if (varies(&records::CellRecord::fit)) head += fmt::format(", fit {}", cell.fit);
+  return head;
 }
 
 /// The first path that a cell of the group names: cells of one group share it.

@@ -5,6 +5,7 @@
 
 #include "report/analysis/crossover.h"
 #include "report/analysis/light_growth.h"
+#include "report/analysis/maps/map_family.h"
 #include "report/analysis/trade.h"
 #include "report/page/blocks.h"
 
@@ -13,15 +14,17 @@ namespace shadowbench::pages {
 /// The trade of a run: everything that is said and drawn of it.
 struct Trade {
   std::vector<analysis::TradeScope> scopes;
-  bool has_fronts = false;  ///< has_trade(); without it there is only what several lights cost
+  bool has_fronts = false;  ///< has_trade(); without it there is only what lights and maps cost
   std::vector<analysis::WidthChart> width_charts;
   std::vector<analysis::LightChart> light_charts;
+  std::vector<analysis::MapFamily> map_families;
 };
 
-/// Finds the trade of a run's cells; nothing where has_trade() is false and no frame of several lights was timed.
+/// Finds the trade of a run's cells; nothing where has_trade() is false, no frame of several lights was timed, and
+/// no filter has maps of several fits.
 std::optional<Trade> make_trade(const std::vector<records::CellRecord>& cells);
 
-/// Makes the section that shows the trade: fronts, crossovers, growth with sizes and with lights.
+/// Makes the section that shows the trade: fronts, crossovers, growth with sizes and with lights, and maps.
 page::Section make_trade_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                                  const Trade& trade);
 

@@ -158,7 +158,7 @@ TEST(RunPage, WithoutErrorsOrTimes_SaysWhatCanBeSaid) {
   EXPECT_THAT(make_summary(make_run(), {untimed}), HasSubstr("filters for teaching alone"));
 }
 
-TEST(RunPage, SceneWithSeveralMaps_IsNamedWithEach) {
+TEST(RunPage, SceneWithSeveralMapsAndFits_IsNamedWithEach) {
   std::vector<records::CellRecord> cells = {make_cell("cubes", "vsm", 4.0), make_cell("cubes", "vsm", 4.0),
                                             make_cell("ball", "vsm", 4.0)};
   cells[1].map_size = 512;
@@ -166,6 +166,8 @@ TEST(RunPage, SceneWithSeveralMaps_IsNamedWithEach) {
   for (const char* link : {"<summary>cubes: Three cubes on a floor, map 1024<",
                            "<summary>cubes: Three cubes on a floor, map 512<", "<summary>ball<"})
     EXPECT_THAT(page, HasSubstr(link));
+  cells[1].fit = "view";
+  EXPECT_THAT(make_html(make_run(), cells), HasSubstr("<summary>cubes: Three cubes on a floor, map 512, fit view<"));
 }
 
 TEST(RunPage, Page_LoadsNothingFromElsewhere) {
