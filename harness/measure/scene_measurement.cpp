@@ -87,6 +87,7 @@ class SceneBench {
     cell.record.map_scale = {light_.frustum().texel_size_ws, light_.frustum().depth_range_ws};
     cell.request = filter.request();
     cell.label = filter.request().label();
+    cell.light = filter.light();
     drawn_ms_ += time_once(filter, light_.map, gbuffer_, target_, renderer_.timer);
     cell.visibility = render::read_image(target_.texture(), 1);
     cell.picture =
