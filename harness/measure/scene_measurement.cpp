@@ -97,7 +97,7 @@ class SceneBench {
     cell.record.receivers = receivers_;
     const render::FilterCost cost = filter.measure_cost(renderer_.shaders, gbuffer_, light_.map);
     set_cost(cell.record, cost);
-    check_drawing(cell, cost);
+    check_drawing(cell, cost, *renderer_.context);
     return cell;
   }
 
