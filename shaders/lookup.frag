@@ -9,7 +9,7 @@
 
 layout(location = 0) out float out_visibility;
 #ifdef COUNT_FETCHES
-layout(location = 1) out vec2 out_reads;  // number of fetches, and their reach in texels; -1: there was no lookup
+layout(location = 1) out vec4 out_reads;  // fetches, their reach in texels, turns of a loop; -1: there was no lookup
 #endif
 
 void main() {
@@ -24,15 +24,16 @@ void main() {
   if (place.w < 0.0) {
     out_visibility = place.w == mark_away ? 0.0 : share;
 #ifdef COUNT_FETCHES
-    out_reads = vec2(place.w == mark_beyond ? 0.0 : -1.0, -1.0);
+    out_reads = vec4(place.w == mark_beyond ? 0.0 : -1.0, -1.0, 0.0, 0.0);
 #endif
     return;
   }
 #ifdef COUNT_FETCHES
   counted_uv = place.xy;
+  for (int i = 0; i < LOOPS; ++i) turns_of[i] = 0;
 #endif
   out_visibility = share * visibility(make_receiver(pixel, place));
 #ifdef COUNT_FETCHES
-  out_reads = vec2(float(fetch_count), fetch_reach);
+  out_reads = vec4(float(fetch_count), fetch_reach, float(most_turns), 0.0);
 #endif
 }

@@ -10,7 +10,8 @@ constexpr std::string_view kBlank = " \t\r\n\v\f";
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_word_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; }
 
-/// The next place, from `start` on, where the word stands by itself.
+}  // namespace
+
 std::size_t find_word(std::string_view code, std::string_view word, std::size_t start) {
   for (std::size_t at = code.find(word, start); at != std::string_view::npos; at = code.find(word, at + 1)) {
     const std::size_t end = at + word.size();
@@ -20,7 +21,19 @@ std::size_t find_word(std::string_view code, std::string_view word, std::size_t 
   return std::string_view::npos;
 }
 
-}  // namespace
+std::string blank_comments(const std::string& glsl) {
+  std::string code = glsl;
+  for (std::size_t i = 0; i < code.size(); ++i) {
+    const bool line = glsl.compare(i, 2, "//") == 0;
+    if (!line && glsl.compare(i, 2, "/*") != 0) continue;
+    const std::size_t close = line ? glsl.find('\n', i) : glsl.find("*/", i + 2);
+    const std::size_t end = close == std::string::npos ? code.size() : line ? close : close + 2;
+    for (; i < end; ++i)
+      if (code[i] != '\n') code[i] = ' ';
+    --i;
+  }
+  return code;
+}
 
 std::string strip_comments(const std::string& glsl) {
   std::string code;

@@ -11,6 +11,12 @@ namespace shadowbench::filters {
 /// The text with every comment turned into a blank.
 std::string strip_comments(const std::string& glsl);
 
+/// The same with as many blanks as the comment has characters, and its line ends.
+std::string blank_comments(const std::string& glsl);
+
+/// Where the word stands by itself next, from `start` on; npos where it does not.
+std::size_t find_word(std::string_view code, std::string_view word, std::size_t start);
+
 /// The text with every run of blanks between other characters as one: a line's end where it holds one, or a space.
 std::string squeeze_blanks(std::string_view text);
 

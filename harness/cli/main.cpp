@@ -1,11 +1,15 @@
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <new>
+#include <string_view>
 #include <system_error>
 
 #include "filters/base/error.h"
@@ -31,6 +35,43 @@ std::string make_visible(const std::string& message) {
 
 /// Prints one message for one failure; nothing else in the program prints errors.
 void print_error(const std::string& message) { fmt::print(stderr, "shadowbench: {}\n", make_visible(message)); }
+
+int fail_memory() {
+  print_error(
+      "memory ran out; raise the limit (ulimit -v), or choose a smaller --size, a smaller --map-size or fewer filters "
+      "at once");
+  return kInputError;
+}
+
+/// Libraries that find no memory while they start crash, or throw where nobody can catch: this comes before them, and
+/// uses none.
+void require_address_space() {
+  constexpr rlim_t kLeast = rlim_t{900} << 20;
+  constexpr std::string_view kMessage =
+      "shadowbench: the address space of this process is limited (ulimit -v), and 900 MB is the least that it starts "
+      "with; raise the limit\n";
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur >= kLeast) return;
+  if (write(STDERR_FILENO, kMessage.data(), kMessage.size()) < 0) std::_Exit(kOutputError);
+  std::_Exit(kInputError);
+}
+
+[[gnu::section(".preinit_array"), gnu::used]] void (*const kBeforeLibraries)() = require_address_space;
+
+/// What a thread of a library throws, and nobody catches: no memory, or no further thread.
+[[noreturn]] void end_uncaught() {
+  try {
+    if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::bad_alloc&) {
+    std::_Exit(fail_memory());
+  } catch (const std::system_error& error) {
+    print_error(fmt::format("{}; raise the limits on memory and threads (ulimit -v, ulimit -u)", error.what()));
+    std::_Exit(kInputError);
+  } catch (const std::exception& error) {
+    print_error(fmt::format("bug: {}", error.what()));
+  }
+  std::abort();
+}
 
 /// Does what the command line asks for. Throws what main() turns into messages.
 int run(int argc, char** argv) {
@@ -64,16 +105,14 @@ int finish_output(int exit_code) {
 int main(int argc, char** argv) {
   using namespace shadowbench::cli;
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes becomes an error of the write, as a full disk is
+  std::set_terminate(end_uncaught);
   try {
     return finish_output(run(argc, argv));
   } catch (const shadowbench::Error& error) {
     print_error(error.what());
     return static_cast<int>(error.kind());
   } catch (const std::bad_alloc&) {
-    print_error(
-        "memory ran out; raise the limit (ulimit -v), or choose a smaller --size, a smaller --map-size or fewer "
-        "filters at once");
-    return kInputError;
+    return fail_memory();
   } catch (const std::system_error& error) {
     if (std::ferror(stdout) != 0) return fail_output(error.code().value());
     print_error(fmt::format("{}; check that the folder is there, its rights and its free space", error.what()));

@@ -35,7 +35,7 @@ void require_allocated(std::string_view what) {
   const auto errors = drain_gl_errors();
   for (const GLenum error : errors)
     if (error == GL_OUT_OF_MEMORY)
-      throw Error(ErrorKind::kContext, fmt::format("{}: the GL has not enough memory; choose smaller sizes", what));
+      throw Error(ErrorKind::kInput, fmt::format("{}: the GL has not enough memory; choose smaller sizes", what));
   if (!errors.empty())
     throw std::logic_error(fmt::format("{}: {} in making it, or before", what, gl_error_name(errors.front())));
 }

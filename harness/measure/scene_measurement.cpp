@@ -87,6 +87,7 @@ class SceneBench {
     cell.record.map_scale = {light_.frustum().texel_size_ws, light_.frustum().depth_range_ws};
     cell.request = filter.request();
     cell.label = filter.request().label();
+    cell.light = filter.light();
     drawn_ms_ += time_once(filter, light_.map, gbuffer_, target_, renderer_.timer);
     cell.visibility = render::read_image(target_.texture(), 1);
     cell.picture =
@@ -96,7 +97,7 @@ class SceneBench {
     cell.record.receivers = receivers_;
     const render::FilterCost cost = filter.measure_cost(renderer_.shaders, gbuffer_, light_.map);
     set_cost(cell.record, cost);
-    check_drawing(cell, cost);
+    check_drawing(cell, cost, *renderer_.context);
     return cell;
   }
 

@@ -20,6 +20,7 @@ struct MeasuredCell {
   records::CellRecord record;
   filters::FilterRequest request;
   std::string label;                  ///< filter and the parameters that were asked for
+  render::LightLayers light;          ///< what it was drawn with
   images::Image picture;              ///< linear RGB
   images::Image visibility;           ///< 1 lit .. 0 blocked
   std::vector<images::Image> phases;  ///< the same, with the map's grid moved to each of the other phases

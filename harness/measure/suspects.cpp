@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "harness/gl/survey/survey.h"
 #include "report/records/format.h"
 
 namespace shadowbench::measure {
@@ -73,11 +74,23 @@ void check_reads(MeasuredCell& cell, const render::FilterCost& cost) {
                       records::format_number(*cost.reach_texels), records::format_number(declared)));
 }
 
+/// A GL that ends a loop too early says nothing, and the image is wrong.
+void check_loops(MeasuredCell& cell, const render::FilterCost& cost, gl::Context& context) {
+  constexpr int kFewestOfAnyLimit = 10'000;
+  if (cost.most_turns < kFewestOfAnyLimit) return;
+  const int limit = gl::measure_loop_turns(context);
+  if (limit == 0 || cost.most_turns < limit) return;
+  suspect(cell, fmt::format("one of its loops goes on after {} turns, where this GL ends it without a word; write one "
+                            "that ends sooner",
+                            limit));
+}
+
 }  // namespace
 
-void check_drawing(MeasuredCell& cell, const render::FilterCost& cost) {
+void check_drawing(MeasuredCell& cell, const render::FilterCost& cost, gl::Context& context) {
   check_values(cell);
   check_reads(cell, cost);
+  check_loops(cell, cost, context);
 }
 
 void check_against_truth(MeasuredCell& cell, const SceneTruth& truth) {

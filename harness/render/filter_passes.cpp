@@ -8,6 +8,7 @@
 #include <regex>
 
 #include "filters/base/error.h"
+#include "filters/format/loops.h"
 #include "filters/noise/blue_noise.h"
 #include "harness/render/filter_glsl.h"
 
@@ -61,12 +62,14 @@ FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest&
   turn_to(prepare(light, make_encoded_targets()));
 }
 
-gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, Defines defines) const {
+gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, Defines defines,
+                                         const std::optional<std::string>& body) const {
   for (const Defines& more : {map_defines_, receiver_defines(layers_.front().light)})
     defines.insert(defines.end(), more.begin(), more.end());
   if (layers_.front().light.bias.receiver_plane) defines.emplace_back("RECEIVER_PLANE", "1");
-  gl::Program program =
-      shaders.compile_filter(request_.spec.id + " lookup", "lookup.frag", defines, filter_pieces(request_));
+  std::vector<gl::Piece> pieces = filter_pieces(request_);
+  if (body) pieces.back().text = *body;
+  gl::Program program = shaders.compile_filter(request_.spec.id + " lookup", "lookup.frag", defines, pieces);
   set_uniforms(program, layers_.front().light);
   return program;
 }
@@ -186,10 +189,14 @@ ReceiverReads FilterPasses::receiver_reads() const {
 
 void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const GBuffer& gbuffer,
                                  const ShadowMap& map) {
-  gl::Program counting = compile_lookup(
-      shaders, {{"COUNT_FETCHES", "1"}, {"STORED_REACH_TEXELS", fmt::format("float({})", stored_reach(request_))}});
+  filters::CountedLoops counted_loops = filters::count_loops(request_.spec.body);
+  gl::Program counting = compile_lookup(shaders,
+                                        {{"COUNT_FETCHES", "1"},
+                                         {"LOOPS", fmt::format("{}", std::max(counted_loops.loops, 1))},
+                                         {"STORED_REACH_TEXELS", fmt::format("float({})", stored_reach(request_))}},
+                                        counted_loops.body);
   const gl::Texture visibility("counted visibility", GL_R32F, gbuffer.width(), gbuffer.height());
-  const gl::Texture reads("reads", GL_RG32F, gbuffer.width(), gbuffer.height());
+  const gl::Texture reads("reads", GL_RGBA32F, gbuffer.width(), gbuffer.height());
   std::vector<double> sums(static_cast<std::size_t>(gbuffer.width()) * static_cast<std::size_t>(gbuffer.height()),
                            -1.0);
   double reach = -1.0;
@@ -207,11 +214,12 @@ void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const
       triangle_.draw_masked();
     else
       triangle_.draw();
-    const std::vector<float> counted = reads.read_floats(2);
+    const std::vector<float> counted = reads.read_floats(4);
     for (std::size_t i = 0; i < sums.size(); ++i) {
-      if (counted[2 * i] < 0.0f) continue;
-      sums[i] = std::max(sums[i], 0.0) + static_cast<double>(counted[2 * i]);
-      reach = std::max(reach, static_cast<double>(counted[2 * i + 1]));
+      if (counted[4 * i] < 0.0f) continue;
+      sums[i] = std::max(sums[i], 0.0) + static_cast<double>(counted[4 * i]);
+      reach = std::max(reach, static_cast<double>(counted[4 * i + 1]));
+      cost.most_turns = std::max(cost.most_turns, static_cast<int>(counted[4 * i + 2]));
     }
   }
   std::erase_if(sums, [](double sum) { return sum < 0.0; });

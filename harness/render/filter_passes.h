@@ -17,6 +17,7 @@ struct FilterCost {
   /// From a receiver to the centre of the farthest texel that counts, on either axis, the prefilter included; empty:
   /// the filter reads samplers itself, or the map reaches no receiver.
   std::optional<double> reach_texels;
+  int most_turns = 0;                 ///< of one of the lookup's loops, at any receiver
   std::int64_t bytes_per_texel = 0;   ///< of the maps that the lookup reads
   std::int64_t passes = 0;            ///< depth map, encode, blur, the filter's own, lookup
   std::int64_t map_bytes = 0;         ///< of the maps that the lookup reads
@@ -122,7 +123,9 @@ class FilterPasses {
   void select(int layer);
   std::int64_t count_map_bytes(const ShadowMap& map) const;
   void set_uniforms(gl::Program& lookup, const LightSetup& light) const;
-  gl::Program compile_lookup(ShaderLibrary& shaders, Defines defines) const;
+  /// `body` takes the place of the filter's own.
+  gl::Program compile_lookup(ShaderLibrary& shaders, Defines defines,
+                             const std::optional<std::string>& body = std::nullopt) const;
   const ReceiverBuffer& bind_lookup(gl::Program& program, const GBuffer& gbuffer, int layer, const ShadowMap& map);
   void count_fetches(FilterCost& cost, ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
 };

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "harness/measure/stability_meter.h"
-#include "harness/run/provenance.h"
+#include "harness/run/exr_metadata.h"
 #include "report/analysis/summary.h"
 #include "report/files/file_name.h"
 #include "report/images/color_values.h"
@@ -19,27 +19,6 @@
 
 namespace shadowbench::run {
 namespace {
-
-images::Metadata describe(const options::RunOptions& options, const measure::SceneTask& task, const gl::GlInfo& info) {
-  const scene::Camera& camera = *task.camera;
-  const scene::Light& light = task.scene->light;
-  const auto text = [](const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
-  images::Metadata metadata;
-  metadata["shadowbench:command"] = fmt::format("{}", fmt::join(options.command, " "));
-  metadata["shadowbench:commit"] = build_commit();
-  metadata["shadowbench:scene"] = task.scene->name;
-  metadata["shadowbench:view"] = camera.name;
-  metadata["shadowbench:map_size"] = static_cast<double>(task.map_size);
-  metadata["shadowbench:border"] = filters::to_string(options.range.border);
-  metadata["shadowbench:far_test"] = options.range.far_test ? "on" : "off";
-  metadata["shadowbench:behind_test"] = options.range.behind_test ? "on" : "off";
-  metadata["shadowbench:seed"] = static_cast<double>(options.seed);
-  metadata["shadowbench:renderer"] = info.renderer;
-  metadata["shadowbench:camera_position_ws"] = text(camera.position_ws);
-  metadata["shadowbench:camera_forward_ws"] = text(camera.forward_ws);
-  for (const auto& [name, value] : scene::light_metadata(light)) metadata["shadowbench:" + name] = value;
-  return metadata;
-}
 
 std::string caption(const records::CellRecord& cell, const records::GlRecord& gl) {
   std::string text = records::describe_params(cell.params);
@@ -127,6 +106,19 @@ images::Part make_part(const std::string& name, const measure::SceneTruth& truth
   return {name, {"Y"}, make_image(truth, values), false};
 }
 
+/// Where every pixel's surface is, metres, and its geometric normal: what filters and truth share.
+void add_receiver_parts(std::vector<images::Part>& parts, const truth::ReceiverImage& receivers) {
+  images::Image position(receivers.width, receivers.height, 3), normal = position;
+  for (std::size_t i = 0; i < receivers.points.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      position.texels[3 * i + static_cast<std::size_t>(axis)] = receivers.points[i].position_ws[axis];
+      normal.texels[3 * i + static_cast<std::size_t>(axis)] = receivers.points[i].normal_ws[axis];
+    }
+  }
+  parts.push_back({"receiver.position", {"X", "Y", "Z"}, std::move(position), false});
+  parts.push_back({"receiver.normal", {"X", "Y", "Z"}, std::move(normal), false});
+}
+
 /// The truth, how sure it is, and which pixels count for what.
 void add_truth_parts(std::vector<images::Part>& parts, const measure::SceneTruth& truth,
                      const std::optional<metrics::ArtefactMasks>& masks) {
@@ -135,6 +127,7 @@ void add_truth_parts(std::vector<images::Part>& parts, const measure::SceneTruth
   parts.push_back(make_part("truth.standard_error", truth, truth.rays.area.standard_error));
   parts.push_back(make_part("truth.mask", truth, truth.mask));
   parts.push_back({kTruthPicturePart, {"R", "G", "B"}, truth.area_picture, true});
+  add_receiver_parts(parts, truth.receivers.image);
   if (!masks) return;
   parts.push_back(make_part("truth.mask.acne", truth, masks->acne));
   parts.push_back(make_part("truth.mask.leak", truth, masks->leak));
@@ -283,7 +276,7 @@ void write_float_images(const options::RunOptions& options, const measure::Scene
   if (truth.absent.empty()) add_truth_parts(parts, truth, measured.masks);
   parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});
   if (!measured.ambient.empty()) parts.push_back({kAmbientPart, {"R", "G", "B"}, measured.ambient, true});
-  images::write_exr(options.out / exr_name(options, task), parts, describe(options, task, info));
+  images::write_exr(options.out / exr_name(options, task), parts, describe_task(options, task, measured, info));
 }
 
 void write_single_pictures(const options::RunOptions& options, const measure::SceneTask& task,

@@ -12,6 +12,15 @@ int fetch_count = 0;
 float fetch_reach = 0.0;  // texels on either axis from the receiver to the centre of the farthest texel that was read
 vec2 counted_uv;          // the receiver's own: a filter may move the uv of its copy
 
+int turns_of[LOOPS];
+int most_turns = 0;  // of a loop in one go; one that is left by break goes on counting when it begins again
+
+bool count_turn(int loop, bool goes_on) {
+  turns_of[loop] = goes_on ? turns_of[loop] + 1 : 0;
+  most_turns = max(most_turns, turns_of[loop]);
+  return goes_on;
+}
+
 void count_fetch(vec2 uv, vec2 offset_texels, float to_centre_texels) {
   ++fetch_count;
   vec2 offset = abs((uv - counted_uv) / map_texel_uv + offset_texels);

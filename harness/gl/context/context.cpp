@@ -10,6 +10,7 @@
 
 #include "filters/base/error.h"
 #include "harness/gl/context/context_backends.h"
+#include "harness/gl/context/shader_cache.h"
 #include "harness/gl/gl_error.h"
 
 namespace shadowbench::gl {
@@ -66,6 +67,7 @@ std::string_view backend_name(Backend backend) {
 
 ContextChoice create_context(Backend backend) {
   ContextChoice choice;
+  if (std::string full = disable_shader_cache_on_full_disk(); !full.empty()) choice.refused.push_back(std::move(full));
   for (const Attempt& attempt : list_attempts(backend)) {
     try {
       choice.context = attempt.create();

@@ -75,7 +75,7 @@ class Context {
 /// The context that was made, and the reasons why those tried before it were not taken.
 struct ContextChoice {
   std::unique_ptr<Context> context;  ///< never null; current on the calling thread
-  std::vector<std::string> refused;  ///< "egl: why", in the order tried; empty where the first one served
+  std::vector<std::string> refused;  ///< "egl: why", in the order tried; what else is not used, and why, comes first
 };
 
 /// Makes a context with `backend`, or for `kAuto` the first that works of: EGL on a GPU, OSMesa, EGL in software, GLFW.

@@ -63,6 +63,7 @@ GlSurvey survey_gl(Context& context) {
   measured.timer = check_timer(context);
   measure_functions(measured);
   measured.texel_border_error = measure_texel_border_error();
+  measured.loop_turns = measure_loop_turns(context);
   return measured;
 }
 
@@ -84,6 +85,10 @@ std::string describe_survey(const GlInfo& info, const GlSurvey& measured) {
   text += fmt::format("  sin, cos, [0, 2 pi]   within {:.2g}, {:.2g}\n", measured.sin_error, measured.cos_error);
   text += fmt::format("  nearest, 1024 map     wrong texel up to {:.2g} texel from a border\n",
                       measured.texel_border_error);
+  text += measured.loop_turns == 0
+              ? "  loops                 not ended by the GL in a million turns\n"
+              : fmt::format("  loops                 ended by the GL after {} turns, without a word\n",
+                            measured.loop_turns);
   return text;
 }
 

@@ -41,6 +41,7 @@ struct GlSurvey {
   double cos_error = 0.0;    ///< worst absolute error of cos() over [0, 2 pi]
   double texel_border_error = 0.0;  ///< farthest from a texel border that nearest sampling of a 1024 map takes the
                                     ///< wrong texel, in texels
+  int loop_turns = 0;  ///< after so many turns this GL ends a loop of a shader; 0: it let the longest one go on
 };
 
 /// Finds out what this GL does. Requires: `context` is current. Cost: under 2 s on a software rasteriser.
@@ -49,6 +50,9 @@ GlSurvey survey_gl(Context& context);
 /// Returns the weight bits of hardware PCF for one depth format: the cheap part of `survey_gl`.
 /// Shape: GL_DEPTH_COMPONENT16, 24 or 32F. Returns at most WeightPrecision::kMaxBits.
 int measure_pcf_weight_bits(Context& context, GLenum depth_format);
+
+/// Returns GlSurvey::loop_turns. Cost: a few milliseconds.
+int measure_loop_turns(Context& context);
 
 /// Writes the context and its measurement as lines of text for people; ends with a newline.
 std::string describe_survey(const GlInfo& info, const GlSurvey& measured);

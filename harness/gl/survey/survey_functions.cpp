@@ -91,4 +91,12 @@ double measure_texel_border_error() {
   return worst;
 }
 
+int measure_loop_turns(Context&) {
+  constexpr int kTurns = 1 << 20;
+  SurveyShader shader("survey_loop.frag", {1, 1});
+  shader.program().set("u_turns", kTurns);
+  const int turns = static_cast<int>(shader.run().front());
+  return turns < kTurns ? turns : 0;
+}
+
 }  // namespace shadowbench::gl

@@ -43,6 +43,7 @@ std::vector<LightFrustum> fit_paraboloids(const PointLight& point, const Scene& 
     constexpr int kUp = 2, kDown = 3;
     LightFrustum fit = fit_perspective(make_face_beam(point, half == 0 ? kDown : kUp), 1.0, distances, request);
     fit.shape = MapShape::kParaboloid;
+    fit.uv_depth_from_world = glm::mat4(fit.light_from_world);
     fit.paraboloid.radius = 0.5 * count_used_texels(request) / request.map_size;
     fit.paraboloid.center += request.shift_texels / static_cast<double>(request.map_size);
     fit.texel_size_ws = 2.0 * static_cast<double>(point.reference_m) / (fit.paraboloid.radius * request.map_size);

@@ -133,6 +133,15 @@ TEST_F(Command, EndlessUserFilter_TimesOutAndTheRunGoesOn) {
   EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "cubes.grid.png"));
 }
 
+TEST_F(Command, FilterWhoseLoopTheGlEnds_IsSuspect) {
+  run("run --out out --size 160x90 --map-size 64 --rounds 1 --scene cubes --filters none,many_turns --filter-file " +
+      user_filter("many_turns.glsl"));
+  const nlohmann::json document = results(folder());
+  EXPECT_EQ(document["cells"][0]["status"], "ok");
+  EXPECT_EQ(document["cells"][1]["status"], "suspect");
+  EXPECT_THAT(document["cells"][1]["message"].get<std::string>(), testing::HasSubstr("this GL ends it without a word"));
+}
+
 TEST_F(Command, WhatAKilledRunLeft_IsRemovedByTheNext) {
   std::filesystem::create_directories(folder() / "out" / ".worker-99999999" / "cells");
   ASSERT_EQ(run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none").exit_code, 0);
