@@ -1,0 +1,336 @@
+#!/usr/bin/env python3
+"""Hostile cases, made afresh from a seed, and what the program makes of them.
+
+    python3 tests/hostile/run.py --program build/tests/shadowbench --cases 2000 --seed 1
+
+A case is a command line, the files that it reads and the environment that it runs in. Kinds of cases take turns:
+`option` (values that an option cannot have), `words` (commands put together at random), `mutant` (a real file of a
+format that is read, with bytes flipped, cut, doubled or replaced), `filter` (GLSL that misbehaves), `environment`
+(limits, closed files, folders that cannot be written) and `kill` (a run that is killed, and run again).
+
+Each case knows the exit codes that are right for it. What counts against the program:
+
+- crash: it ended by a signal, or with 70, which is what it says of its own bugs
+- hang: it took longer than --timeout
+- code: another exit code than those that are right, or a failure without a message
+- leftover: files besides those that it was asked to write
+
+A case that went wrong is printed with the command that repeats it alone (--only N). Nothing but Python's standard
+library is used; runs are small, and several go on at once.
+"""
+
+import argparse
+import concurrent.futures
+import os
+import random
+import resource
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+SMALL = ["--size", "16x9", "--map-size", "16", "--rounds", "1", "--no-truth", "--no-grids", "--gl", "osmesa"]
+RUN = ["run", "--out", "out", "--scene", "cubes", "--filters", "none", *SMALL]
+DONE = {0}
+ANY_ANSWER = {0, 1, 2, 3, 5, 6}  # whatever it is, it is an answer
+
+# What an option cannot be: the exit code is 2 for every one of them.
+NOT_NUMBERS = ["", " ", "nan", "inf", "-inf", "1e999", "1,5", "1;2", "--", "ten", "1e", "½", "1 2", "\t",
+               "999999999999999999999999", "-1e300"]
+NUMBERS = ["--pad-texels", "--perspective-depth", "--precision", "--budget", "--cell-timeout", "--seed", "--phases"]
+WORDS = {"--map-format": ["d32", "", "D16 ", "r32f", "d16,d24"], "--fit": ["box", "", "cascades:count=9", "lispsm:x=1",
+         "cascades:", "cascades:count=2,count=3"], "--snap": ["maybe", ""], "--border": ["wrap", ""],
+         "--far-test": ["1", ""], "--gl": ["vulkan", ""], "--size": ["0x0", "16", "16x", "x9", "-1x9", "1e3x9", "16x9x2",
+         ""], "--map-size": ["0", "-1", "1.5", "64,64", "", "99999999", ","], "--light": ["1", "1,2,3", "a,b", "", "0,91",
+         "nan,0"], "--shard": ["0/2", "3/2", "1", "1/0", "", "a/b"], "--rounds": ["0", "-1", "many", ""],
+         "--filters": ["nosuch", "none,none", "vsm:radius", "vsm:radius=-1", "vsm:nosuch=1", "vsm:radius=nan", ",", ":"],
+         "--bias": ["nosuch", "constant", "constant:depth", "constant:depth=x", "constant:nosuch=1"],
+         "--lights": ["0", "-1", "a", ""], "--light-name": ["nobody"], "--view": ["nowhere"]}
+COMMANDS = ["run", "list", "diff", "bias", "merge", "advise", "tune", "stress", "regress", "flicker", "manual", "nosuch", ""]
+PIECES = ["--help", "--out", "out", "--scene", "cubes", "--filters", "none", "--fresh", "--json", "--yes", "-1", "..", "/",
+          "/dev/null", "/nonexistent/x", "a\nb", "\x1b[31m", "%s%n", "$(id)", "; id", "'", '"', "../" * 40, "x" * 5000,
+          "--nosuch", "--nosuch=1", "-z", "=", "golden", "*", "~", "--shard", "1/2", "--no-cache", "\udcff"]
+
+GLSL_HEAD = "/*+++\ntitle = \"Hostile\"\nsource = \"a test\"\nkind = \"other\"\nradius_texels = 1\n+++*/\n"
+GLSL = ["float visibility(Receiver r) { return 0.0 / 0.0; }", "float visibility(Receiver r) { return 1.0 / 0.0; }",
+        "float visibility(Receiver r) { return visibility(r); }", "float visibility(Receiver r) { return", "}", "",
+        "float visibility(Receiver r) { float x[100000]; x[int(r.uv.x * 1e9)] = 1.0; return x[3]; }",
+        "float visibility(Receiver r) { int n = 0; while (r.depth > -1.0 && n < 70000) ++n; return float(n); }",
+        "#include \"../../../../etc/passwd\"\nfloat visibility(Receiver r) { return 1.0; }",
+        "#version 110\nfloat visibility(Receiver r) { return 1.0; }", "#error no\n", "void main() {}",
+        "float visibility(Receiver r) { return compare_nearest(r, vec2(1e30), r.depth); }",
+        "float visibility(Receiver r) { discard; return 1.0; }", "layout(binding = 99) uniform sampler2D t;\n"
+        "float visibility(Receiver r) { return texture(t, r.uv).r; }", "uniform float u[9999999];\n"
+        "float visibility(Receiver r) { return u[5]; }", "float visibility(Receiver r) { return " + "(" * 3000 + "1.0"
+        + ")" * 3000 + "; }", "/* never closed", "float visibility(int r) { return 1.0; }",
+        "float visibility(Receiver r) { r.uv = vec2(0.0 / 0.0); return fetch_depth(r, vec2(0.0)); }"]
+
+
+class Case:
+    """A command in a folder of its own."""
+
+    def __init__(self, number, kind, words, right, before=None, environment=None, kill=False):
+        self.number, self.kind, self.words, self.right = number, kind, words, right
+        self.before, self.environment, self.kill = before, environment or {}, kill
+
+
+def mutate(data, rng):
+    data = bytearray(data)
+    for _ in range(rng.choice([1, 1, 2, 8, 40])):
+        if not data:
+            break
+        at, kind = rng.randrange(len(data)), rng.randrange(7)
+        end = min(len(data), at + rng.choice([1, 4, 30, 300]))
+        if kind == 0:
+            data[at] ^= 1 << rng.randrange(8)
+        elif kind == 1:
+            del data[at:end]
+        elif kind == 2:
+            data[at:at] = data[at:end]
+        elif kind == 3:
+            data[at:end] = bytes(rng.randrange(256) for _ in range(end - at))
+        elif kind == 4:
+            data[at:at] = rng.choice([b"-1", b"1e999", b"nan", b"99999999999999999999", b"\0", b"[[[[", b"{", b"\xff\xfe"])
+        elif kind == 5:
+            del data[at:]
+        else:
+            data[at:end] = data[rng.randrange(len(data)):][:end - at]
+    return bytes(data)
+
+
+class Maker:
+    """Makes the cases; `samples` has a real file, or a folder of them, for every format that is read."""
+
+    def __init__(self, samples):
+        self.samples = samples
+        self.formats = [
+            ("toml", samples / "cubes.toml", ["run", "--scene", "{}"], {0, 3}),
+            ("gltf", samples / "small.gltf", ["run", "--scene", "{}"], {0, 3}),
+            ("obj", samples / "small.obj", ["run", "--scene", "{}"], {0, 3}),
+            ("glsl", ROOT / "filters" / "vsm.glsl", ["run", "--scene", "cubes", "--filters", "mutant", "--filter-file",
+                                                     "{}"], {0, 2, 5}),
+            ("glsl", ROOT / "filters" / "pcss.glsl", ["run", "--scene", "cubes", "--filters", "mutant", "--filter-file",
+                                                      "{}"], {0, 2, 5}),
+            ("toml", ROOT / "harness" / "experiments" / "quick.toml", ["run", "{}", "--scene", "cubes", "--filters",
+                                                                       "none"], {0, 2, 3}),
+            ("exr", samples / "run" / "cubes.exr", ["diff", "{}#none.visibility", str(samples / "run" / "cubes.exr")
+                                                    + "#none.visibility"], {0, 1, 2, 3}),
+            ("png", samples / "run" / "cubes.grid.png", ["diff", "{}", str(samples / "run" / "cubes.grid.png")],
+             {0, 1, 2, 3}),
+            ("json", samples / "run" / "results.json", ["advise", "folder", "--max-rmse", "1"], {0, 1, 3}),
+        ]
+
+    def make(self, number, seed):
+        rng = random.Random(f"{seed} {number}")
+        kinds = [self.option, self.option, self.words, self.mutant, self.mutant, self.mutant, self.filter,
+                 self.environment, self.mutant, self.kill if number % 40 == 9 else self.words]
+        return kinds[number % len(kinds)](number, rng)
+
+    def option(self, number, rng):
+        if rng.random() < 0.5:
+            name = rng.choice(NUMBERS)
+            value = rng.choice(NOT_NUMBERS)
+        else:
+            name = rng.choice(sorted(WORDS))
+            value = rng.choice(WORDS[name])
+        base = [word for word in RUN]
+        if name in base:
+            at = base.index(name)
+            del base[at:at + 2]
+        return Case(number, f"option {name}", [*base, f"{name}={value}" if rng.random() < 0.3 else name, value]
+                    if not value.startswith("-") and rng.random() < 0.7 else [*base, f"{name}={value}"], {2})
+
+    def words(self, number, rng):
+        pieces = [rng.choice(PIECES) for _ in range(rng.randrange(1, 7))]
+        command = rng.choice(COMMANDS)
+        words = [command, *(SMALL if command == "run" else []), *pieces]
+        return Case(number, "words", [word.encode("utf-8", "surrogateescape") for word in words], ANY_ANSWER)
+
+    def mutant(self, number, rng):
+        ending, source, words, right = rng.choice(self.formats)
+
+        def write(folder):
+            data = mutate(source.read_bytes(), rng)
+            name = "mutant." + ending
+            if ending == "json":
+                (folder / "folder").mkdir()
+                name = "folder/results.json"
+            (folder / name).write_bytes(data)
+            if ending in ("gltf", "obj"):
+                for extra in ("small.bin", "small.mtl"):
+                    if (self.samples / extra).exists():
+                        shutil.copy(self.samples / extra, folder)
+
+        filled = [word.replace("{}", "mutant." + ending) for word in words]
+        extra = ["--out", "out", *SMALL, *([] if "--filters" in filled else ["--filters", "none"])]
+        return Case(number, f"mutant {source.name}", [*filled, *(extra if filled[0] == "run" else [])], right, write)
+
+    def filter(self, number, rng):
+        body = rng.choice(GLSL)
+        head = GLSL_HEAD if rng.random() < 0.8 else mutate(GLSL_HEAD.encode(), rng).decode("latin-1")
+        return Case(number, "filter",
+                    ["run", "--out", "out", "--scene", "cubes", "--filters", "none,hostile", "--filter-file",
+                     "hostile.glsl", "--cell-timeout", "10", *SMALL], {0, 2, 5},
+                    lambda folder: (folder / "hostile.glsl").write_text(head + body, encoding="latin-1"))
+
+    def environment(self, number, rng):
+        def limit(kind, amount):
+            return lambda: resource.setrlimit(kind, (amount, amount))
+
+        def spoil(folder):
+            (folder / "file").write_text("")
+
+        megabyte = 1 << 20
+        name, change, right = rng.choice([
+            ("memory", {"preexec": limit(resource.RLIMIT_AS, rng.randrange(640, 2500) * megabyte)}, {0, 3}),
+            ("file size", {"preexec": limit(resource.RLIMIT_FSIZE, rng.choice([0, 512, 4096, 100000]))}, {0, 6}),
+            ("files", {"preexec": limit(resource.RLIMIT_NOFILE, rng.randrange(8, 40))}, {0, 3, 4, 6}),
+            ("no home", {"HOME": None, "XDG_CACHE_HOME": None}, DONE),
+            ("home is a file", {"HOME": "file", "XDG_CACHE_HOME": "file"}, DONE),
+            ("cache is no folder", {"XDG_CACHE_HOME": "/dev/null"}, DONE),
+            ("locale", {"LC_ALL": rng.choice(["de_DE.UTF-8", "tr_TR.UTF-8", "C", "nosuch", "\udcff"])}, DONE),
+            ("no folder for temporary files", {"TMPDIR": "/nonexistent"}, DONE),
+            ("no output", {"stdout": "closed"}, {0, 6}),
+            ("no input", {"stdin": "closed"}, DONE),
+            ("narrow", {"COLUMNS": "1", "LINES": "0", "TERM": "nosuch"}, DONE),
+            ("no display", {"DISPLAY": ":77777", "WAYLAND_DISPLAY": "x"}, DONE),
+            ("no shaders", {"SHADOWBENCH_RESOURCES": "/nonexistent"}, {0, 3}),
+        ])
+        return Case(number, f"environment: {name}", RUN, right, spoil, change)
+
+    def kill(self, number, rng):
+        words = [{"none": "none,tent3x3,vsm,pcss", "1": "3"}.get(word, word) for word in RUN]
+        return Case(number, "kill", words, DONE, None, {"after": rng.uniform(0.05, 1.5)}, kill=True)
+
+
+def start(program, case, folder):
+    environment = {**os.environ, "XDG_CACHE_HOME": str(folder / ".cache"), "HOME": str(folder)}
+    for key, value in case.environment.items():
+        if key in ("preexec", "stdout", "stdin", "after"):
+            continue
+        environment.pop(key, None)
+        if value is not None:
+            environment[key] = value
+    preexec = case.environment.get("preexec")
+    closed = {"stdin": 0, "stdout": 1}.get(next((k for k in ("stdin", "stdout") if k in case.environment), ""), None)
+
+    def prepare():
+        if preexec:
+            preexec()
+        if closed is not None:
+            os.close(closed)
+
+    return subprocess.Popen([program, *case.words], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=prepare, start_new_session=True)
+
+
+def wait(process, timeout):
+    """Exit code, and what was said; nothing where it hangs."""
+    try:
+        out, err = process.communicate(timeout=timeout)
+        return process.returncode, (out + err).decode("utf-8", "replace")
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+        return None, ""
+
+
+def list_leftovers(folder, known):
+    """Files in places where nothing was asked for, and what a run leaves while it goes on."""
+    found = []
+    for path in folder.rglob("*"):
+        inside = path.relative_to(folder)
+        if inside.parts[0] in (".cache", *known):
+            continue
+        temporary = path.name.startswith(".worker") or path.name.endswith((".part", ".tmp"))
+        if inside.parts[0] != "out" or temporary:
+            found.append(str(inside))
+    return found
+
+
+def try_case(program, case, timeout):
+    """What went wrong: kind and words; nothing where all is right."""
+    with tempfile.TemporaryDirectory(prefix="hostile-") as name:
+        folder = Path(name)
+        if case.before:
+            case.before(folder)
+        known = [path.name for path in folder.iterdir()]
+        process = start(program, case, folder)
+        if case.kill:
+            time.sleep(case.environment["after"])
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+            process.communicate()
+            process = start(program, case, folder)
+        code, said = wait(process, timeout)
+        if code is None:
+            return "hang", f"more than {timeout} s"
+        if code < 0 or code == 70 or code >= 126:
+            return "crash", f"{code}: {said[-300:]}"
+        if code not in case.right:
+            return "code", f"{code}, right were {sorted(case.right)}: {said[-300:]}"
+        if code not in (0, 1) and "stdout" not in case.environment and "shadowbench: " not in said:
+            return "code", f"{code} without a message: {said[-300:]}"
+        if case.kill and not (folder / "out" / "results.json").exists():
+            return "leftover", "the second run wrote no report"
+        # Words at random may name any folder as one to write to.
+        leftovers = [] if case.kind == "words" else list_leftovers(folder, known)
+        return ("leftover", ", ".join(leftovers[:5])) if leftovers else None
+
+
+def make_samples(program, folder):
+    """A real file of each format."""
+    shutil.copy(ROOT / "harness" / "scenes" / "cubes.toml", folder / "cubes.toml")
+    subprocess.run([program, "run", "--out", str(folder / "run"), "--scene", "cubes", "--filters", "none", "--size", "64x36",
+                    "--map-size", "32", "--rounds", "1"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    (folder / "small.obj").write_text("mtllib small.mtl\nv 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0.5 1 0.5\nvt 0 0\nvn 0 1 0\n"
+                                      "usemtl a\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf 1 2 5\nf -1 -2 -3\n")
+    (folder / "small.mtl").write_text("newmtl a\nKd 0.5 0.5 0.5\nmap_Kd none.png\n")
+    import struct
+    points = [0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 1, 0]
+    (folder / "small.bin").write_bytes(struct.pack("<12f", *points) + struct.pack("<6H", 0, 1, 2, 0, 2, 3))
+    (folder / "small.gltf").write_text(
+        '{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"translation":[0,1,0]}],'
+        '"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],"materials":[{"name":"a",'
+        '"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.5,1]}}],"buffers":[{"uri":"small.bin","byteLength":60}],'
+        '"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],"accessors":[{'
+        '"bufferView":0,"componentType":5126,"type":"VEC3","count":4,"min":[0,0,0],"max":[1,1,1]},{"bufferView":1,'
+        '"componentType":5123,"type":"SCALAR","count":6}]}')
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", required=True, type=Path)
+    parser.add_argument("--cases", type=int, default=2000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", type=int, help="the case of this number alone")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--timeout", type=float, default=60.0)
+    arguments = parser.parse_args()
+    program = str(arguments.program.resolve())
+    with tempfile.TemporaryDirectory(prefix="hostile-samples-") as samples:
+        make_samples(program, Path(samples))
+        maker = Maker(Path(samples))
+        numbers = range(arguments.cases) if arguments.only is None else [arguments.only]
+        cases = [maker.make(number, arguments.seed) for number in numbers]
+        wrong, started = {}, time.monotonic()
+        with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+            for case, found in zip(cases, pool.map(lambda c: try_case(program, c, arguments.timeout), cases)):
+                if not found:
+                    continue
+                wrong.setdefault(found[0], []).append(case.number)
+                words = shlex.join(w if isinstance(w, str) else w.decode("utf-8", "backslashreplace") for w in case.words)
+                print(f"{found[0]}: case {case.number} ({case.kind}): {found[1]}\n  shadowbench {words[:400]}\n"
+                      f"  again: --seed {arguments.seed} --only {case.number}", flush=True)
+        counts = ", ".join(f"{len(wrong.get(kind, []))} {kind}" for kind in ("crash", "hang", "code", "leftover"))
+        print(f"{len(cases)} cases in {time.monotonic() - started:.0f} s: {counts}")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
