@@ -139,7 +139,8 @@ class BiasSweep {
     record_.slope_depth = steep.slope_per_texel;
     record_.angle_deg = glm::degrees(std::acos(steep.n_dot_l));
     record_.percentile = kPercentile;
-    record_.texel_m = light_.frustum().texel_size_ws;
+    const auto [least, most] = std::ranges::minmax(lit_, {}, &filters::Receiver::texel_size_ws);
+    record_.texel_m = {static_cast<double>(least.texel_size_ws), static_cast<double>(most.texel_size_ws)};
     record_.depth_range_m = light_.frustum().depth_range_ws;
     record_.gap_above = metrics::kArtefactLimits.contact_gap_above;
     record_.acne_below = metrics::kArtefactLimits.acne_below;
@@ -197,7 +198,7 @@ class BiasSweep {
     curve.theory_setting = mode.amount(theory);
     curve.lift_depth = mode.lift_depth(theory);
     curve.lift_m = curve.lift_depth * light_.frustum().depth_range_ws;
-    curve.lift_texels = curve.lift_m / light_.frustum().texel_size_ws;
+    curve.lift_texels = curve.lift_m / theory.texel_m;
     for (const double factor : kFactors) shots.push_back(shoot(mode, request, factor, factor * curve.theory_setting));
     return shots;
   }

@@ -183,11 +183,18 @@ page::Section make_mode_section(const records::BiasModeRecord& mode, const recor
   return section;
 }
 
+/// Under a lamp a texel is as large as it is far away.
+std::string describe_texels(const records::BiasSweepRecord& sweep) {
+  const std::string least = fmt::format("{:.3g}", sweep.texel_m.least),
+                    most = fmt::format("{:.3g}", sweep.texel_m.most);
+  return least == most ? least : least + " to " + most;
+}
+
 std::vector<std::pair<std::string, std::string>> list_bias_facts(const records::BiasSweepRecord& sweep) {
   return {{"scene", sweep.title.empty() ? sweep.scene : sweep.scene + ": " + sweep.title},
           {"view", fmt::format("{}, {} x {} pixels", sweep.view, sweep.width, sweep.height)},
-          {"shadow map", fmt::format("{0} x {0} texels of {1:.3g} m, depth range {2:.3g} m", sweep.map_size,
-                                     sweep.texel_m, sweep.depth_range_m)},
+          {"shadow map", fmt::format("{0} x {0} texels of {1} m, depth range {2:.3g} m", sweep.map_size,
+                                     describe_texels(sweep), sweep.depth_range_m)},
           {"steepest lit surfaces",
            fmt::format(
                "{:.3g}th percentile of slope: |dz/du| + |dz/dv| = {:.3g} of depth per texel, {:.3g} degrees between "

@@ -19,7 +19,7 @@ struct BiasCurve {
   std::string filter;             ///< label: id and the parameters that were asked for
   double theory_setting = 0.0;    ///< value that theory gives the mode's key
   double lift_depth = 0.0;        ///< how far that moves the receiver towards the light, depth in [0,1]
-  double lift_texels = 0.0;       ///< the same, in widths of a texel
+  double lift_texels = 0.0;       ///< the same, in widths of a texel at the receiver that theory is taken from
   double lift_m = 0.0;            ///< the same, in metres
   std::vector<BiasPoint> points;  ///< by ascending factor
 };
@@ -37,6 +37,9 @@ struct BiasModeRecord {
 
 /// Everything that a page about bias says.
 struct BiasSweepRecord {
+  struct Span {
+    double least = 0.0, most = 0.0;
+  };
   std::string scene;
   std::string title;
   std::string view;
@@ -48,7 +51,7 @@ struct BiasSweepRecord {
   double percentile = 0.0;           ///< [0,1]: the theoretical amount is enough for this share of the lit receivers
   double slope_depth = 0.0;  ///< |dz/du| + |dz/dv| of the lit receiver at that percentile of slope, depth per texel
   double angle_deg = 0.0;    ///< between that receiver's normal and the light
-  double texel_m = 0.0;
+  Span texel_m;              ///< at lit receivers: under a lamp it grows with the distance
   double depth_range_m = 0.0;
   double gap_above = 0.0;      ///< what bias adds to the visibility of a lit contact, at least
   double acne_below = 0.0;     ///< visibility below which a lit receiver is dark

@@ -16,6 +16,7 @@ struct BiasTheory {
   double slope_per_texel = 0.0;  ///< |dz/du| + |dz/dv|, in depth
   double larger_slope = 0.0;     ///< the larger of the two
   double n_dot_l = 1.0;
+  double texel_m = 0.0;  ///< at the receiver: under a lamp it grows with the distance
 
   /// How far the plane's depth changes within the kernel; what an offset along the light has to cover.
   double depth() const { return reach_texels * slope_per_texel; }

@@ -111,10 +111,10 @@ TEST_F(GlTest, Texture_OfNoSize_IsAUsageError) {
   EXPECT_EQ(catch_error([] { Texture("none", GL_R8, 4, -1); }).kind(), ErrorKind::kUsage);
 }
 
-TEST_F(GlTest, Texture_BeyondMemory_IsAContextError) {
+TEST_F(GlTest, Texture_BeyondMemory_IsAnInputError) {
   const int limit = context().info().max_texture_size;
   const Error error = catch_error([&] { Texture("huge", GL_RGBA32F, limit, limit); });
-  EXPECT_EQ(error.kind(), ErrorKind::kContext);
+  EXPECT_EQ(error.kind(), ErrorKind::kInput);
   EXPECT_THAT(error.message(), HasSubstr("huge"));
   context().take_gl_errors();
 }
