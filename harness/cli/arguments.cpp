@@ -38,9 +38,10 @@ void add_drawing_options(Command& command, DrawingArguments& arguments, const st
 
 void add_builtin_filters_option(Command& command, std::string& filters) {
   command
-      .add("--filters", &filters,
+      .add(kFiltersOption, &filters,
            "built-in filters with parameters (default: all but those for teaching; see 'list filters')")
-      .names(ValueKind::kFilters);
+      .names(ValueKind::kFilters)
+      .also_called(kFilterOption);
 }
 
 void add_scene_option(Command& command, std::string& scene) {

@@ -22,7 +22,6 @@ const std::vector<std::string>& experiment_keys() {
   return keys;
 }
 
-constexpr const char* kFiltersOption = "--filters";
 const std::vector<std::string> kSwitch = {"on", "off"};
 
 void add_map_options(Command& command, RunArguments& a) {
@@ -87,7 +86,8 @@ void add_filter_options(Command& command, RunArguments& a) {
            "filters with parameters, such as none,vsm:radius=6,min_variance=1e-4,esm:width=medium; width, a class of "
            "'list filters' or texels, sets the radius; 'all' is every filter but those for teaching (default: those of "
            "the experiment 'default')")
-      .names(ValueKind::kFilters);
+      .names(ValueKind::kFilters)
+      .also_called(kFilterOption);
   command.add("--filter-file", &a.filter_files, "a filter of your own, one GLSL file; may be repeated")
       .names(ValueKind::kFile);
   command

@@ -188,6 +188,10 @@ int run(const CommandLine& line, RunArguments& arguments) {
     end_with_parent();
     return run_as_worker(make_run_options(arguments, line.words()));
   }
+  if (!arguments.truth && arguments.attribution && line.has("--attribution"))
+    fail(
+        "--attribution takes apart the errors against traced truth, which --no-truth leaves out: leave one of them "
+        "out");
   const std::string title = apply_experiment(line, arguments);
   options::RunOptions options = make_run_options(arguments, line.words());
   options.title = title;

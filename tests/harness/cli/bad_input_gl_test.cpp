@@ -13,7 +13,45 @@ std::string small(const std::string& rest) { return kSmall + rest; }
 
 TEST_F(BadInput, UnknownOption) { expect_refusal("run --colour red", 2, {"--colour"}); }
 TEST_F(BadInput, NoCommand) { expect_refusal("", 2, {"subcommand"}); }
+TEST_F(BadInput, UnknownCommand) {
+  expect_refusal("rn", 2, {"'shadowbench rn'", "did you mean 'run'"});
+  expect_refusal("nosuch", 2, {"'shadowbench nosuch'", "run, list, diff"});
+  expect_refusal("list filter", 2, {"'shadowbench list filter'", "did you mean 'filters'"});
+}
+TEST_F(BadInput, EmptyValues) {
+  for (const char* option : {"--filters", "--filter", "--seed", "--tuned", "--pad-texels", "--cache", "--view"}) {
+    expect_refusal(small(option + std::string(" ''")), 2, {"--", "a value is missing"});
+    expect_refusal(small(option + std::string("=")), 2, {"--"});
+  }
+  expect_refusal("stress --out out --axes ''", 2, {"--axes", "a value is missing"});
+  expect_refusal("diff '' out", 2, {"a value is missing"});
+}
+TEST_F(BadInput, FlagWithAValue) {
+  expect_refusal("advise out --json=5", 2, {"--json", "takes no value", "'5'"});
+  expect_refusal(small("--grids=7"), 2, {"--grids", "takes no value", "'7'"});
+}
+TEST_F(BadInput, AttributionWithoutTruth) {
+  expect_refusal(small("--no-truth --attribution"), 2, {"--attribution", "--no-truth"});
+}
+TEST_F(BadInput, SameParameterTwice) {
+  expect_refusal(small("--filters vsm:radius=1,radius=2"), 2, {"vsm", "'radius' is given twice"});
+  expect_refusal(small("--filters vsm:width=soft,width=sharp"), 2, {"vsm", "'width' is given twice"});
+}
+TEST_F(BadInput, SameAmountOfABiasTwice) {
+  expect_refusal(small("--bias constant:depth=1,depth=2"), 2, {"--bias constant", "'depth' is given twice"});
+}
 TEST_F(BadInput, UnknownFilter) { expect_refusal(small("--filters pcf2x3"), 2, {"pcf2x3", "did you mean 'pcf2x2'"}); }
+TEST_F(BadInput, OtherSpellingOfFilters) {
+  expect_refusal(small("--filter pcf2x3"), 2, {"'pcf2x3'"});
+  expect_refusal(small("--filter=pcf2x3"), 2, {"'pcf2x3'"});
+  expect_refusal("tune --filter pcf2x3", 2, {"'pcf2x3'"});
+  for (const char* command : {"run", "tune", "stress", "bias", "flicker"}) {
+    const std::string help = run(command + std::string(" --help")).out;
+    EXPECT_NE(help.find("--filters "), std::string::npos) << command;
+    EXPECT_EQ(help.find("--filter "), std::string::npos) << command;
+    EXPECT_EQ(help.find("--filter,"), std::string::npos) << command;
+  }
+}
 TEST_F(BadInput, UnknownParameter) {
   expect_refusal(small("--filters vsm:min_varianc=1"), 2, {"min_varianc", "did you mean 'min_variance'"});
 }
