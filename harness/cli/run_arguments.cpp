@@ -166,6 +166,9 @@ void add_run_options(Command& command, RunArguments& a) {
   command.add("--fresh", &a.fresh,
               "measure every cell again, even those that an earlier run finished in the report folder");
   command.add("--yes", &a.yes, "start even where there are very many cells");
+  command.add("--strict", &a.strict,
+              "exit code 1 where the finished run has a warning, or a cell that failed; the report is written all the "
+              "same");
   add_drawing_options(command, a, "shadowbench in $XDG_CACHE_HOME or ~/.cache");
   command.add("--worker", &a.worker, "").hide();
 }

@@ -66,6 +66,15 @@ TEST_F(BadInput, SameFilterTwice) { expect_refusal(small("--filters none,none"),
 TEST_F(BadInput, SameParametersInOtherWords) { expect_refusal(small("--filters vsm,vsm:radius=4"), 2, {"twice"}); }
 TEST_F(BadInput, UnknownScene) { expect_refusal("run --out out --scene cube", 2, {"cube", "cubes"}); }
 TEST_F(BadInput, MissingScene) { expect_refusal("run --out out --scene no/such.gltf", 3, {"no/such.gltf"}); }
+TEST_F(BadInput, FolderWithoutOneScene) {
+  std::filesystem::create_directories(folder() / "models" / "inner.obj");
+  write("models/readme.txt", "none here");
+  expect_refusal("run --out out --scene models", 3, {"models", "no scene", ".glb"});
+  write("models/b.obj", "");
+  write("models/a.toml", "");
+  for (const char* name : {"models", "models/", "./models"})
+    expect_refusal(std::string("run --out out --scene ") + name, 3, {"models", "2 scenes: a.toml, b.obj"});
+}
 TEST_F(BadInput, MalformedSceneNamesTheLine) {
   write("bad.toml", "title = \"x\"\n[camera\n");
   expect_refusal("run --out out --scene bad.toml", 3, {"bad.toml:2"});
@@ -198,6 +207,15 @@ TEST_F(BadInput, OutputFolderCannotBeWritten) {
   EXPECT_EQ(outcome.exit_code, 6) << outcome.err;
   EXPECT_NE(outcome.err.find("out"), std::string::npos);
   EXPECT_EQ(read_text(folder() / "out"), "a file, not a folder");
+}
+TEST_F(BadInput, PathThatCannotBeUsed) {
+  const std::string path(300, 'x');  // a folder without rights would do, but for root
+  expect_refusal("run --size 64x36 --map-size 64 --scene cubes --filters none --out " + path, 6,
+                 {path, "choose another"});
+  for (const std::string command : {"advise ", "regress --baseline out ", "merge --out out "})
+    expect_refusal(command + path, 3, {path});
+  expect_refusal("diff " + path + " " + path, 3, {path});
+  expect_refusal("manual " + path, 6, {path + ": this path cannot be used (File name too long)", "choose another"});
 }
 TEST_F(BadInput, MissingFilterFile) { expect_refusal(small("--filter-file no/such.glsl"), 5, {"no/such.glsl"}); }
 TEST_F(BadInput, FrontMatterMistakeNamesFileAndLine) {
