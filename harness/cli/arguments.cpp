@@ -128,10 +128,10 @@ std::filesystem::path find_results(const std::filesystem::path& run) {
   const std::filesystem::file_status status = std::filesystem::status(run, error);
   if (std::filesystem::is_directory(status)) return run / "results.json";
   if (std::filesystem::exists(status)) return run;
-  throw Error(
-      ErrorKind::kInput,
-      fmt::format("this cannot be read ({}); give a run's folder (its --out), or its results.json", error.message()),
-      run.string());
+  throw Error(ErrorKind::kInput,
+              fmt::format("there is no such folder or file ({}); give a run's folder (its --out), or its results.json",
+                          error.message()),
+              run.string());
 }
 
 }  // namespace shadowbench::cli

@@ -20,7 +20,7 @@ using testing::HasSubstr;
 
 using Polygon = std::vector<glm::dvec3>;
 
-constexpr int kMany = 100000;
+constexpr int kMany = 300000;  // what takes the square of that takes minutes
 
 Polygon make_star(int corners, double inner) {
   Polygon polygon;
@@ -101,7 +101,7 @@ double seconds_of(const std::function<void()>& work) {
 }
 
 TEST(Triangulate, ShapesOfEveryKind_AreCoveredOnce) {
-  for (const int corners : {4, 8, 100, 1000, kMany}) {
+  for (const int corners : {4, 8, 100, 1000, kMany / 3}) {
     expect_covered(make_star(corners, 1.0), "a circle");
     expect_covered(make_star(corners, 0.5), "a star");
     expect_covered(make_comb(corners, 0.0), "a comb");
