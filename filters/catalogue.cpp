@@ -58,13 +58,16 @@ void assign_value(FilterRequest& request, const std::string& assignment) {
   if (equals == std::string::npos)
     fail(fmt::format("'{}' after '{}:' must be PARAM=VALUE", assignment, request.spec.id));
   const std::string name = assignment.substr(0, equals);
+  const auto is_given = [&](const std::string& given) { return given == name; };
+  if (std::ranges::any_of(request.set_by_user, is_given) ||
+      (asks_for_width(request.spec, name) && !request.width.empty()))
+    fail(fmt::format("{}: '{}' is given twice", request.spec.id, name));
   if (asks_for_width(request.spec, name)) {
     request.width = assignment.substr(equals + 1);
     return;
   }
   request.values[name] = parse_value(request.spec, name, assignment.substr(equals + 1));
-  if (std::find(request.set_by_user.begin(), request.set_by_user.end(), name) == request.set_by_user.end())
-    request.set_by_user.push_back(name);
+  request.set_by_user.push_back(name);
 }
 
 /// Puts the radius in place of the width that was asked for.

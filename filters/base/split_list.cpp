@@ -1,5 +1,11 @@
 #include "filters/base/split_list.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "filters/base/error.h"
+
 namespace shadowbench {
 
 std::vector<std::string> split_list(std::string_view list, std::string_view separator) {
@@ -11,6 +17,19 @@ std::vector<std::string> split_list(std::string_view list, std::string_view sepa
   }
   parts.emplace_back(list);
   return parts;
+}
+
+std::vector<std::pair<std::string, std::string>> split_assignments(std::string_view list, std::string_view option) {
+  std::vector<std::pair<std::string, std::string>> assignments;
+  if (list.empty()) return assignments;
+  for (const std::string& part : split_list(list)) {
+    const std::size_t equals = std::min(part.find('='), part.size());
+    const std::string key = part.substr(0, equals);
+    for (const auto& known : assignments)
+      if (known.first == key) throw Error(ErrorKind::kUsage, fmt::format("{}: '{}' is given twice", option, key));
+    assignments.emplace_back(key, part.substr(std::min(equals + 1, part.size())));
+  }
+  return assignments;
 }
 
 }  // namespace shadowbench

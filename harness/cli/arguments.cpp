@@ -38,19 +38,23 @@ void add_drawing_options(Command& command, DrawingArguments& arguments, const st
 
 void add_builtin_filters_option(Command& command, std::string& filters) {
   command
-      .add("--filters", &filters,
+      .add(kFiltersOption, &filters,
            "built-in filters with parameters (default: all but those for teaching; see 'list filters')")
-      .names(ValueKind::kFilters);
+      .names(ValueKind::kFilters)
+      .also_called(kFilterOption);
 }
 
 void add_scene_option(Command& command, std::string& scene) {
-  command.add("--scene", &scene, "a built-in scene, or a .toml, .gltf, .glb or .obj file").names(ValueKind::kScene);
+  command
+      .add("--scene", &scene, "a built-in scene, or a .toml, .gltf, .glb or .obj file, or a folder with one of these")
+      .names(ValueKind::kScene);
 }
 
 void add_scenes_options(Command& command, std::vector<std::string>& scenes, bool& ground) {
   command
       .add("--scene", &scenes,
-           "a built-in scene, or a .toml, .gltf, .glb or .obj file; may be repeated (default: all built-in scenes)")
+           "a built-in scene, or a .toml, .gltf, .glb or .obj file, or a folder with one of these; may be repeated "
+           "(default: all built-in scenes)")
       .names(ValueKind::kScene);
   command.add("--ground", &ground, "put a floor under a bare model");
 }
@@ -120,10 +124,14 @@ std::vector<std::string> list_builtin_scenes(const options::Resources& resources
 }
 
 std::filesystem::path find_results(const std::filesystem::path& run) {
-  if (std::filesystem::is_directory(run)) return run / "results.json";
-  if (std::filesystem::exists(run)) return run;
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(run, error);
+  if (std::filesystem::is_directory(status)) return run / "results.json";
+  if (std::filesystem::exists(status)) return run;
   throw Error(ErrorKind::kInput,
-              "there is no such folder or file; give a run's folder (its --out), or its results.json", run.string());
+              fmt::format("there is no such folder or file ({}); give a run's folder (its --out), or its results.json",
+                          error.message()),
+              run.string());
 }
 
 }  // namespace shadowbench::cli

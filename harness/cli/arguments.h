@@ -15,6 +15,9 @@ namespace shadowbench::cli {
 // What commands share: options of the same name and help, and the reading of their values. All functions but
 // find_results() throw Error(kUsage) with the option's name.
 
+/// The option that names filters, and how else it may be spelt.
+inline constexpr const char *kFiltersOption = "--filters", *kFilterOption = "--filter";
+
 /// The options of every command that draws, as text.
 struct DrawingArguments {
   std::string filters;

@@ -5,10 +5,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iterator>
 #include <sstream>
 #include <type_traits>
 
 #include "filters/base/error.h"
+#include "filters/base/nearest_name.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -37,7 +39,12 @@ std::string wrap_all(const std::string& about) {
 }
 
 std::string check_value(const Option& option, const std::string& value) {
-  if (value.empty() && !option.not_empty.empty()) return fmt::format("a value is missing: give {}", option.not_empty);
+  if (value.empty())
+    return "a value is missing: give " + (!option.not_empty.empty() ? option.not_empty
+                                          : option.required         ? "one"
+                                                                    : "one, or leave the option out");
+  if (option.is_flag())
+    return value == "true" || value == "false" ? "" : fmt::format("takes no value, not '{}'", value);
   if (option.only_choices && std::ranges::find(option.choices, value) == option.choices.end())
     return fmt::format("'{}' must be one of {}", value, fmt::join(option.choices, ", "));
   return {};
@@ -55,12 +62,11 @@ void add_option(CLI::App& app, const Option& option) {
   CLI::Option* parsed = std::visit(add, option.variable);
   if (option.required) parsed->required();
   if (option.hidden) parsed->group("");
+  parsed->check([&option](const std::string& value) { return check_value(option, value); },
+                option.only_choices ? fmt::format("{{{}}}", fmt::join(option.choices, ",")) : std::string());
   if (option.is_flag()) return;
   if (option.is_repeatable() && !option.is_argument()) parsed->allow_extra_args(false);
   if (!option.default_value().empty()) parsed->default_str(option.default_value());
-  if (option.only_choices || !option.not_empty.empty())
-    parsed->check([&option](const std::string& value) { return check_value(option, value); },
-                  option.only_choices ? fmt::format("{{{}}}", fmt::join(option.choices, ",")) : std::string());
 }
 
 struct Chosen {
@@ -75,6 +81,36 @@ void add_command(CLI::App& app, const Command& command, Chosen& chosen) {
   for (const Command& sub : command.commands) add_command(*app.add_subcommand(sub.name, sub.title), sub, chosen);
   if (!command.commands.empty()) app.require_subcommand(1);
   if (command.action) app.callback([&] { chosen = {&command, &app}; });
+}
+
+/// Finds the command that the words name. Throws Error(kUsage) for a word that is none, where a command must come.
+const Command& find_command(const Command& program, const std::vector<std::string>& words) {
+  const Command* command = &program;
+  std::string path = program.name;
+  for (std::size_t i = 1; i < words.size() && !command->commands.empty() && !words[i].starts_with('-'); ++i) {
+    const auto found = std::ranges::find(command->commands, words[i], &Command::name);
+    if (found == command->commands.end()) {
+      std::vector<std::string> known;
+      for (const Command& each : command->commands)
+        if (!each.hidden) known.push_back(each.name);
+      throw Error(ErrorKind::kUsage, fmt::format("there is no command '{} {}'{}; see '{} --help'", path, words[i],
+                                                 did_you_mean_or_known(words[i], known), path));
+    }
+    command = &*found;
+    path += " " + command->name;
+  }
+  return *command;
+}
+
+/// Puts the options' own names in place of their other spellings, so that nothing else knows of these. The parser takes
+/// the words in reverse order, without the program's name.
+std::vector<std::string> list_parser_words(const Command& command, const std::vector<std::string>& words) {
+  std::vector<std::string> own(words.rbegin(), std::prev(words.rend()));
+  for (std::string& word : own)
+    for (const Option& option : command.options)
+      if (!option.other_name.empty() && word.substr(0, word.find('=')) == option.other_name)
+        word.replace(0, option.other_name.size(), option.name);
+  return own;
 }
 
 }  // namespace
@@ -116,17 +152,20 @@ void CommandLine::set(const std::string& option, const std::vector<std::string>&
 }
 
 int run_command_line(const Command& program, int argc, char** argv) {
+  const std::vector<std::string> words(argv, argv + argc);
   CLI::App app(program.title, program.name);
   Chosen chosen;
   add_command(app, program, chosen);
+  app.set_version_flag("--version", program.name + " " SHADOWBENCH_VERSION, "Print the version and exit");
+  const Command& command = find_command(program, words);
   try {
-    app.parse(argc, argv);
+    app.parse(list_parser_words(command, words));
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
     throw Error(ErrorKind::kUsage, fmt::format("{}; see 'shadowbench --help'", error.what()));
   }
-  return chosen.command->action(CommandLine({argv, argv + argc}, chosen.parsed));
+  return chosen.command->action(CommandLine(words, chosen.parsed));
 }
 
 }  // namespace shadowbench::cli

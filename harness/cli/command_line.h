@@ -29,9 +29,10 @@ struct Option {
   std::vector<std::string> choices = {};  ///< what the value may be, as far as that can be listed
   bool only_choices = false;              ///< any other value is refused
   bool required = false;
-  bool hidden = false;         ///< the help does not show it
-  bool opposite = false;       ///< the flag can be taken back with --no-FLAG
-  std::string not_empty = {};  ///< what to give in place of an empty value; empty: such a value is allowed
+  bool hidden = false;          ///< the help does not show it
+  bool opposite = false;        ///< the flag can be taken back with --no-FLAG
+  std::string not_empty = {};   ///< what to give in place of an empty value, which no option takes
+  std::string other_name = {};  ///< a spelling that is understood, and that the help does not show
 
   Option& names(ValueKind what) { return kind = what, *this; }
   /// Refuses all values but these.
@@ -41,6 +42,7 @@ struct Option {
   Option& require() { return required = true, *this; }
   Option& hide() { return hidden = true, *this; }
   Option& with_opposite() { return opposite = true, *this; }
+  Option& also_called(std::string what) { return other_name = std::move(what), *this; }
   Option& never_empty(std::string what) { return not_empty = std::move(what), *this; }
 
   bool is_flag() const { return variable.index() < 2; }

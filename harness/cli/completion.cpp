@@ -115,7 +115,7 @@ std::string make_bash_completion(const Command& program, const KnownNames& names
   return fmt::format(R"(# Completion of {0} for bash, made from the description of its options.
 _{0}() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} path=${{COMP_WORDS[1]}}
-  local options='--help' values='{1}' folders='' value='' place=1
+  local options='--help --version' values='{1}' folders='' value='' place=1
   [[ $word == '=' ]] && word=''
   [[ $before == '=' ]] && before=${{COMP_WORDS[COMP_CWORD-2]}}
   if ((COMP_CWORD > 1)); then

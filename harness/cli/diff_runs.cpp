@@ -77,7 +77,8 @@ void warn_of_differences(const records::RunRecord& a, const records::RunRecord& 
 }  // namespace
 
 bool is_run(const std::filesystem::path& argument) {
-  return std::filesystem::is_directory(argument) || argument.extension() == ".json";
+  std::error_code ignored;
+  return std::filesystem::is_directory(argument, ignored) || argument.extension() == ".json";
 }
 
 int diff_runs(const std::filesystem::path& a, const std::filesystem::path& b, bool json) {

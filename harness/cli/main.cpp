@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string_view>
 #include <system_error>
@@ -78,7 +79,8 @@ int run(int argc, char** argv) {
   Command program{"shadowbench",
                   "Compares soft-shadow filters: pictures, cost and error of each, over the same scenes."};
   program.about =
-      "Exit codes: 0 done; 1 a limit or a baseline was not met; 2 usage, such as an unknown name or a value out of "
+      "Exit codes: 0 done; 1 a limit or a baseline was not met, or --strict found a warning; 2 usage, such as an "
+      "unknown name or a value out of "
       "range; 3 an input file is missing, malformed or not finite; 4 there is no OpenGL context; 5 a filter's file; 6 "
       "output cannot be written; 70 a bug in the program.";
   program.commands = {make_run_command(),     make_list_command(),   make_diff_command(), make_bias_command(),
@@ -113,6 +115,11 @@ int main(int argc, char** argv) {
     return static_cast<int>(error.kind());
   } catch (const std::bad_alloc&) {
     return fail_memory();
+  } catch (const std::filesystem::filesystem_error& error) {
+    print_error(fmt::format(
+        "{}: this path cannot be used ({}); check that it is there and its folders' rights, or choose another",
+        error.path1().string(), error.code().message()));
+    return kOutputError;
   } catch (const std::system_error& error) {
     if (std::ferror(stdout) != 0) return fail_output(error.code().value());
     print_error(fmt::format("{}; check that the folder is there, its rights and its free space", error.what()));

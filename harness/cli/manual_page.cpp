@@ -86,6 +86,7 @@ std::string make_program_page(const Command& program) {
     if (!command.hidden)
       page += fmt::format(".TP\n.BR {} (1)\n{}\n", escape(program.name + "-" + command.name), escape(command.title));
   page +=
+      ".SH OPTIONS\n.TP\n.B \\-\\-version\nPrint the version and end.\n"
       ".SH ENVIRONMENT\n.TP\n.B SHADOWBENCH_ROOT\nThe folder whose filters, shaders, scenes and experiments are used "
       "in "
       "place of the program's own.\n.TP\n.B XDG_CACHE_HOME\nTraced images are kept in the folder shadowbench below it, "

@@ -22,7 +22,6 @@ const std::vector<std::string>& experiment_keys() {
   return keys;
 }
 
-constexpr const char* kFiltersOption = "--filters";
 const std::vector<std::string> kSwitch = {"on", "off"};
 
 void add_map_options(Command& command, RunArguments& a) {
@@ -87,7 +86,8 @@ void add_filter_options(Command& command, RunArguments& a) {
            "filters with parameters, such as none,vsm:radius=6,min_variance=1e-4,esm:width=medium; width, a class of "
            "'list filters' or texels, sets the radius; 'all' is every filter but those for teaching (default: those of "
            "the experiment 'default')")
-      .names(ValueKind::kFilters);
+      .names(ValueKind::kFilters)
+      .also_called(kFilterOption);
   command.add("--filter-file", &a.filter_files, "a filter of your own, one GLSL file; may be repeated")
       .names(ValueKind::kFile);
   command
@@ -166,6 +166,9 @@ void add_run_options(Command& command, RunArguments& a) {
   command.add("--fresh", &a.fresh,
               "measure every cell again, even those that an earlier run finished in the report folder");
   command.add("--yes", &a.yes, "start even where there are very many cells");
+  command.add("--strict", &a.strict,
+              "exit code 1 where the finished run has a warning, or a cell that failed; the report is written all the "
+              "same");
   add_drawing_options(command, a, "shadowbench in $XDG_CACHE_HOME or ~/.cache");
   command.add("--worker", &a.worker, "").hide();
 }

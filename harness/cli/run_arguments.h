@@ -51,6 +51,7 @@ struct RunArguments : DrawingArguments {
   std::string shard;
   bool fresh = false;
   bool yes = false;
+  bool strict = false;
   std::string tuned;
   bool worker = false;
   std::optional<double> pad_texels;

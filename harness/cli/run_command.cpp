@@ -14,6 +14,7 @@
 #include "harness/options/light_counts.h"
 #include "harness/run/run_experiment.h"
 #include "harness/tune/tuned_parameters.h"
+#include "report/records/json_io.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -183,11 +184,27 @@ int run_as_worker(const options::RunOptions& options) {
   return 0;
 }
 
+/// What --strict asks of a report, whether it was written now or before. Throws Error(kLimit).
+void require_no_warnings(const std::filesystem::path& out) {
+  const records::Results results = records::read_results(out / "results.json");
+  std::vector<std::string> complaints = results.run.warnings;
+  for (const records::CellRecord& cell : results.cells)
+    if (cell.status != records::CellStatus::kOk && cell.warnings.empty())
+      complaints.push_back(fmt::format("{}: {}: {}", cell.scene, cell.filter, cell.message));
+  if (complaints.empty()) return;
+  throw Error(ErrorKind::kLimit, fmt::format("--strict: the report has {} warning{}: {}", complaints.size(),
+                                             complaints.size() == 1 ? "" : "s, the first", complaints.front()));
+}
+
 int run(const CommandLine& line, RunArguments& arguments) {
   if (arguments.worker) {
     end_with_parent();
     return run_as_worker(make_run_options(arguments, line.words()));
   }
+  if (!arguments.truth && arguments.attribution && line.has("--attribution"))
+    fail(
+        "--attribution takes apart the errors against traced truth, which --no-truth leaves out: leave one of them "
+        "out");
   const std::string title = apply_experiment(line, arguments);
   options::RunOptions options = make_run_options(arguments, line.words());
   options.title = title;
@@ -195,6 +212,7 @@ int run(const CommandLine& line, RunArguments& arguments) {
       options.out, [&](options::Progress& progress) { run_with_notes(options, progress); },
       "what was finished stays, and the same command goes on from there");
   fmt::print("report: {}\n", (options.out / "index.html").string());
+  if (arguments.strict) require_no_warnings(options.out);
   return 0;
 }
 

@@ -41,7 +41,6 @@ void choose_tuned_filters(options::RunOptions& options, const TuneArguments& arg
                     "endless loop ends all; add it as CONTRIBUTING says",
                     arguments.filter_files.front()));
   }
-  if (arguments.filters.empty()) fail("--filter: name at least one filter to tune, such as vsm (see 'list filters')");
   options.filters = filters::Catalogue(options.resources.filters).parse_requests(arguments.filters);
   for (const filters::FilterRequest& request : options.filters) render::require_usable(options.bias, request.spec);
 }
@@ -75,7 +74,8 @@ int tune(const TuneArguments& arguments) {
 
 std::string describe_tuning() {
   return fmt::format(
-      "Searches every numeric parameter with a range (but those that --filter sets, and const ones) for the least mean "
+      "Searches every numeric parameter with a range (but those that --filters sets, and const ones) for the least "
+      "mean "
       "of the metric over the training views of all scenes, then scores default and found parameters on views that the "
       "search has not seen. The views are made of each scene's first camera, turned about the vertical axis through "
       "the point it looks at (the point of its central ray that is nearest to the middle of the scene's bounds), and "
@@ -98,8 +98,10 @@ Command make_tune_command() {
   auto a = std::make_shared<TuneArguments>();
   a->size = "480x270";
   a->out = "report/out/tune";
-  command.add("--filter", &a->filters, "filters with the parameters that stay fixed, such as vsm:store=rg16f,esm")
+  command.add(kFiltersOption, &a->filters, "filters with the parameters that stay fixed, such as vsm:store=rg16f,esm")
       .names(ValueKind::kFilters)
+      .also_called(kFilterOption)
+      .never_empty("at least one filter to tune, such as vsm (see 'list filters')")
       .require();
   command.add("--filter-file", &a->filter_files, "").hide();
   const std::vector<std::string> metrics = tune::list_tune_metrics();

@@ -91,6 +91,11 @@ void check_drawing(MeasuredCell& cell, const render::FilterCost& cost, gl::Conte
   check_values(cell);
   check_reads(cell, cost);
   check_loops(cell, cost, context);
+  if (cell.record.receivers == 0)
+    cell.record.warnings.push_back(
+        fmt::format("{}: no surface in the view '{}' faces the light, so that nothing is compared; move the camera or "
+                    "the light",
+                    cell.record.scene, cell.record.view));
 }
 
 void check_against_truth(MeasuredCell& cell, const SceneTruth& truth) {

@@ -241,6 +241,20 @@ class Experiment {
     }
   }
 
+  void warn_of_light_below(const scene::Scene& scene) {
+    const scene::Bounds bounds = scene.bounds();
+    const glm::vec3 middle = 0.5f * (bounds.min + bounds.max);
+    const float up = scene::to_light(scene.light, {middle.x, bounds.min.y, middle.z}).y;
+    if (up >= 0.0f) return;
+    const std::string name = scene.light.name.empty() ? "the light" : fmt::format("the light '{}'", scene.light.name);
+    const std::string warning(
+        fmt::format("{}: {} shines from below, {} degrees under the horizon, where no floor faces it; give it an "
+                    "elevation above 0, "
+                    "in the scene or with --light",
+                    scene.name, name, records::format_number(glm::degrees(std::asin(-static_cast<double>(up))))));
+    if (told_.insert(warning).second) warn(warning);
+  }
+
   void warn_of_tests_without_effect(const scene::Scene& scene) {
     if (options_.range.behind_test || options_.worker) return;
     warn(scene.name +
@@ -250,6 +264,7 @@ class Experiment {
 
   void note_scene(const PlannedScene& planned) {
     const scene::Scene& scene = planned.scene;
+    if (!options_.worker) warn_of_light_below(scene);  // of each light, where a scene has several
     const auto is_it = [&](const records::SceneRecord& known) { return known.name == scene.name; };
     if (std::any_of(run_.scenes.begin(), run_.scenes.end(), is_it)) return;
     run_.scenes.push_back({scene.name, scene.title});

@@ -144,7 +144,8 @@ class Planner {
 
   /// A file that cannot be read, or was made from something else, is measured anew.
   bool is_finished(const std::string& key, const std::string& content) const {
-    if (options_.worker || options_.fresh || !std::filesystem::exists(records::cell_path(options_.out, key)))
+    std::error_code ignored;
+    if (options_.worker || options_.fresh || !std::filesystem::exists(records::cell_path(options_.out, key), ignored))
       return false;
     try {
       return records::read_cell(options_.out, key).content == content;

@@ -38,7 +38,29 @@ std::vector<fs::path> teaching_files(const fs::path& folder) {
   return fs::is_directory(teaching, ignored) ? scene_files(teaching) : std::vector<fs::path>();
 }
 
-fs::path find_built_in(const std::string& name, const fs::path& folder) {
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+bool is_scene_file(const fs::path& file) { return is_mesh_file(file) || file.extension() == ".toml"; }
+
+/// Finds the one scene that lies in a folder.
+fs::path find_scene_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code failure;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, failure))
+    if (is_scene_file(entry.path()) && !is_folder(entry.path())) names.push_back(entry.path().filename().string());
+  if (failure) fail_input("this folder cannot be read: " + failure.message(), folder.string());
+  if (names.size() == 1) return folder / names.front();
+  std::ranges::sort(names);
+  const std::string found =
+      names.empty() ? "no scene" : fmt::format("{} scenes: {}", names.size(), fmt::join(names, ", "));
+  fail_input(fmt::format("this folder has {}; name a .toml, .gltf, .glb or .obj file", found), folder.string());
+}
+
+/// Finds a scene by its name, or in the folder of that name.
+fs::path find_named(const std::string& name, const fs::path& folder) {
   std::vector<std::string> names;
   std::vector<fs::path> files = scene_files(folder);
   for (fs::path& file : teaching_files(folder)) files.push_back(std::move(file));
@@ -46,6 +68,7 @@ fs::path find_built_in(const std::string& name, const fs::path& folder) {
     if (file.stem() == name) return file;
     names.push_back(file.stem().string());
   }
+  if (is_folder(name)) return find_scene_in(name);
   const std::optional<std::string> nearest = nearest_name(name, names);
   const std::string hint = nearest ? fmt::format("did you mean '{}'?", *nearest)
                                    : fmt::format("built-in scenes: {}", fmt::join(names, ", "));
@@ -125,8 +148,8 @@ std::vector<SceneInfo> list_scenes(const fs::path& folder) { return with_titles(
 std::vector<SceneInfo> list_teaching_scenes(const fs::path& folder) { return with_titles(teaching_files(folder)); }
 
 Scene load(const std::string& name_or_path, const LoadOptions& options) {
-  if (is_path(name_or_path)) return load_file(name_or_path, options);
-  return load_file(find_built_in(name_or_path, options.scenes_folder), options);
+  if (!is_path(name_or_path)) return load_file(find_named(name_or_path, options.scenes_folder), options);
+  return load_file(is_folder(name_or_path) ? find_scene_in(name_or_path) : fs::path(name_or_path), options);
 }
 
 }  // namespace shadowbench::scene

@@ -2,8 +2,11 @@
 
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <utility>
+
+#include "harness/scene/normal_tree.h"
 
 namespace shadowbench::scene {
 namespace {
@@ -18,14 +21,11 @@ glm::vec3 normalize_or_keep_zero(const glm::dvec3& v) {
   return length > 0.0 ? glm::vec3(v / length) : glm::vec3(0.0f);
 }
 
-/// A triangle and, where the triangle has an area, its unit normal.
-struct Face {
-  glm::dvec3 area_normal;
-  glm::dvec3 normal;
-};
+/// Where more faces meet, a tree sums their normals, since to compare each with each would take their square.
+constexpr std::size_t kFewFaces = 64;
 
-std::vector<Face> face_normals(const Mesh& mesh) {
-  std::vector<Face> faces;
+std::vector<FaceNormal> face_normals(const Mesh& mesh) {
+  std::vector<FaceNormal> faces;
   faces.reserve(mesh.indices.size() / 3);
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const glm::dvec3 area =
@@ -35,6 +35,24 @@ std::vector<Face> face_normals(const Mesh& mesh) {
   }
   return faces;
 }
+
+/// The faces that meet at a point.
+struct Meeting {
+  std::vector<std::size_t> faces;
+  std::optional<NormalTree> tree;
+
+  /// The sum of the area normals of those that turn little from `normal`.
+  glm::dvec3 sum(const std::vector<FaceNormal>& all, const glm::dvec3& normal, double least_cosine) {
+    if (faces.size() > kFewFaces) {
+      if (!tree) tree.emplace(all, faces);
+      return tree->sum(normal, least_cosine);
+    }
+    glm::dvec3 sum(0.0);
+    for (const std::size_t face : faces)
+      if (glm::dot(all[face].normal, normal) >= least_cosine) sum += all[face].area_normal;
+    return sum;
+  }
+};
 
 Mesh without_geometry(const Mesh& mesh) {
   Mesh copy;
@@ -71,7 +89,7 @@ Mesh join_meshes(Mesh first, const Mesh& second) {
 }
 
 Mesh with_flat_normals(const Mesh& mesh) {
-  const std::vector<Face> faces = face_normals(mesh);
+  const std::vector<FaceNormal> faces = face_normals(mesh);
   Mesh flat = without_geometry(mesh);
   flat.vertices.reserve(mesh.indices.size());
   flat.indices.reserve(mesh.indices.size());
@@ -86,19 +104,17 @@ Mesh with_flat_normals(const Mesh& mesh) {
 
 Mesh with_smooth_normals(const Mesh& mesh, double crease_deg) {
   const double least_cosine = std::cos(glm::radians(crease_deg));
-  const std::vector<Face> faces = face_normals(mesh);
+  const std::vector<FaceNormal> faces = face_normals(mesh);
   const auto position_of = [&](std::size_t corner) {
     const glm::vec3& p = mesh.vertices[mesh.indices[corner]].position_ws;
     return std::tuple(p.x, p.y, p.z);
   };
-  std::map<std::tuple<float, float, float>, std::vector<std::size_t>> faces_at;
-  for (std::size_t i = 0; i < mesh.indices.size(); ++i) faces_at[position_of(i)].push_back(i / 3);
+  std::map<std::tuple<float, float, float>, Meeting> meetings;
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) meetings[position_of(i)].faces.push_back(i / 3);
 
   Mesh smooth = with_flat_normals(mesh);
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
-    glm::dvec3 sum(0.0);
-    for (const std::size_t neighbour : faces_at[position_of(i)])
-      if (glm::dot(faces[neighbour].normal, faces[i / 3].normal) >= least_cosine) sum += faces[neighbour].area_normal;
+    const glm::dvec3 sum = meetings[position_of(i)].sum(faces, faces[i / 3].normal, least_cosine);
     if (glm::length(sum) > 0.0) smooth.vertices[i].normal_ws = glm::vec3(glm::normalize(sum));
   }
   return smooth;

@@ -102,7 +102,7 @@ class Tuner {
     for (const filters::FilterRequest& request : requests) {
       const auto is_same = [&](const TunedFilter& known) { return known.request.spec.id == request.spec.id; };
       if (std::ranges::any_of(tuned, is_same)) {
-        throw Error(ErrorKind::kUsage, fmt::format("--filter names '{}' twice, and tuned.json holds one setting of "
+        throw Error(ErrorKind::kUsage, fmt::format("--filters names '{}' twice, and tuned.json holds one setting of "
                                                    "each: tune them apart, with another --out",
                                                    request.spec.id));
       }

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <sstream>
 
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
+#include "filters/base/split_list.h"
 
 namespace shadowbench::render {
 namespace {
@@ -101,14 +101,12 @@ void add(BiasRule& rule, const std::string& text) {
   if (found == modes().end()) fail_unknown("mode", name, modes());
   const Mode& mode = found->second;
   mode.begin(rule);
-  std::stringstream assignments(colon == std::string::npos ? std::string() : text.substr(colon + 1));
-  bool any = false;
-  for (std::string item; std::getline(assignments, item, ','); any = true) {
-    const std::size_t equals = item.find('=');
-    const std::string key = item.substr(0, equals);
+  const auto amounts = split_assignments(colon == std::string::npos ? "" : text.substr(colon + 1), "--bias " + name);
+  const bool any = !amounts.empty();
+  for (const auto& [key, amount] : amounts) {
     const auto target = mode.keys.find(key);
-    if (target == mode.keys.end() || equals == std::string::npos) fail_unknown("amount", key, mode.keys);
-    target->second(rule) += parse_amount(item.substr(equals + 1));
+    if (target == mode.keys.end()) fail_unknown("amount", key, mode.keys);
+    target->second(rule) += parse_amount(amount);
   }
   if (!any && mode.needs_amount) {
     throw Error(ErrorKind::kUsage,

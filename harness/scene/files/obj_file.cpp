@@ -5,11 +5,14 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <sstream>
 #include <utility>
 
 #include "filters/base/error.h"
+#include "filters/base/split_list.h"
+#include "harness/scene/files/big_faces.h"
 #include "harness/scene/files/file_bytes.h"
 #include "harness/scene/mesh_tools.h"
 
@@ -54,7 +57,20 @@ void require_number(const std::string& word, std::size_t line, const std::string
   fail_input(fmt::format("'{}' is not a finite number", word), fmt::format("{}:{}", where, line));
 }
 
-/// Checks the coordinates of all v, vn and vt lines.
+/// Throws unless each part of a corner, as in 1/2/3 or 1//3, is empty or an index; the parser would read it as another.
+void require_indices(const std::string& corner, std::size_t line, const std::string& where) {
+  for (const std::string& part : split_list(corner, "/")) {
+    int index = 0;
+    const char* start = part.data() + (part.starts_with('+') ? 1 : 0);
+    const char* end = part.data() + part.size();
+    const auto [stop, problem] = std::from_chars(start, end, index);
+    if (part.empty() || (problem == std::errc() && stop == end)) continue;
+    fail_input(fmt::format("'{}' is not an index: whole numbers are, up to {}", part, std::numeric_limits<int>::max()),
+               fmt::format("{}:{}", where, line));
+  }
+}
+
+/// Checks the coordinates of all v, vn and vt lines, and the indices of all f, l and p lines.
 void require_numbers(const std::string& text, const std::string& where) {
   std::istringstream lines(text);
   std::string line;
@@ -62,6 +78,8 @@ void require_numbers(const std::string& text, const std::string& where) {
     std::istringstream words(line.substr(0, line.find('#')));
     std::string word;
     words >> word;
+    if (word == "f" || word == "l" || word == "p")
+      while (words >> word) require_indices(word, number, where);
     if (word != "v" && word != "vn" && word != "vt") continue;
     const std::size_t least = word == "vt" ? 1 : 3;
     std::size_t count = 0;
@@ -70,6 +88,17 @@ void require_numbers(const std::string& text, const std::string& where) {
     fail_input(fmt::format("expected at least {} numbers, found {}", least, count),
                fmt::format("{}:{}", where, number));
   }
+}
+
+/// Ends each line as the checks and the parser expect it, whatever system wrote the file.
+std::string with_newlines(const std::string& text) {
+  std::string lines;
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if (text[i] != '\r')
+      lines += text[i];
+    else if (i + 1 == text.size() || text[i + 1] != '\n')
+      lines += '\n';
+  return lines;
 }
 
 /// A parsed file: attributes, shapes and materials as the parser names them.
@@ -83,8 +112,9 @@ struct ObjData {
 ObjData parse_obj(const std::filesystem::path& file) {
   const std::string where = file.string();
   const std::vector<unsigned char> bytes = read_file_bytes(file);
-  const std::string text(bytes.begin(), bytes.end());
+  std::string text = with_newlines({bytes.begin(), bytes.end()});
   require_numbers(text, where);
+  text = split_big_faces(std::move(text), where);
   LibraryReader libraries(file.parent_path(), where);
   ObjData data;
   std::string failure;

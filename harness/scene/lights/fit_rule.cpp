@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <set>
 
 #include "filters/base/error.h"
+#include "filters/base/split_list.h"
 
 namespace shadowbench::scene {
 namespace {
@@ -54,14 +54,7 @@ void set_key(CascadeRule& rule, std::string_view key, std::string_view value) {
 
 CascadeRule parse_cascades(std::string_view text) {
   CascadeRule rule;
-  std::set<std::string_view> given;
-  while (!text.empty()) {
-    const std::string_view each = text.substr(0, text.find(','));
-    text.remove_prefix(std::min(each.size() + 1, text.size()));
-    const std::string_view key = each.substr(0, each.find('='));
-    if (!given.insert(key).second) refuse(fmt::format("'{}' is given twice", key));
-    set_key(rule, key, key.size() < each.size() ? each.substr(key.size() + 1) : std::string_view());
-  }
+  for (const auto& [key, value] : split_assignments(text, "--fit")) set_key(rule, key, value);
   return rule;
 }
 

@@ -13,7 +13,45 @@ std::string small(const std::string& rest) { return kSmall + rest; }
 
 TEST_F(BadInput, UnknownOption) { expect_refusal("run --colour red", 2, {"--colour"}); }
 TEST_F(BadInput, NoCommand) { expect_refusal("", 2, {"subcommand"}); }
+TEST_F(BadInput, UnknownCommand) {
+  expect_refusal("rn", 2, {"'shadowbench rn'", "did you mean 'run'"});
+  expect_refusal("nosuch", 2, {"'shadowbench nosuch'", "run, list, diff"});
+  expect_refusal("list filter", 2, {"'shadowbench list filter'", "did you mean 'filters'"});
+}
+TEST_F(BadInput, EmptyValues) {
+  for (const char* option : {"--filters", "--filter", "--seed", "--tuned", "--pad-texels", "--cache", "--view"}) {
+    expect_refusal(small(option + std::string(" ''")), 2, {"--", "a value is missing"});
+    expect_refusal(small(option + std::string("=")), 2, {"--"});
+  }
+  expect_refusal("stress --out out --axes ''", 2, {"--axes", "a value is missing"});
+  expect_refusal("diff '' out", 2, {"a value is missing"});
+}
+TEST_F(BadInput, FlagWithAValue) {
+  expect_refusal("advise out --json=5", 2, {"--json", "takes no value", "'5'"});
+  expect_refusal(small("--grids=7"), 2, {"--grids", "takes no value", "'7'"});
+}
+TEST_F(BadInput, AttributionWithoutTruth) {
+  expect_refusal(small("--no-truth --attribution"), 2, {"--attribution", "--no-truth"});
+}
+TEST_F(BadInput, SameParameterTwice) {
+  expect_refusal(small("--filters vsm:radius=1,radius=2"), 2, {"vsm", "'radius' is given twice"});
+  expect_refusal(small("--filters vsm:width=soft,width=sharp"), 2, {"vsm", "'width' is given twice"});
+}
+TEST_F(BadInput, SameAmountOfABiasTwice) {
+  expect_refusal(small("--bias constant:depth=1,depth=2"), 2, {"--bias constant", "'depth' is given twice"});
+}
 TEST_F(BadInput, UnknownFilter) { expect_refusal(small("--filters pcf2x3"), 2, {"pcf2x3", "did you mean 'pcf2x2'"}); }
+TEST_F(BadInput, OtherSpellingOfFilters) {
+  expect_refusal(small("--filter pcf2x3"), 2, {"'pcf2x3'"});
+  expect_refusal(small("--filter=pcf2x3"), 2, {"'pcf2x3'"});
+  expect_refusal("tune --filter pcf2x3", 2, {"'pcf2x3'"});
+  for (const char* command : {"run", "tune", "stress", "bias", "flicker"}) {
+    const std::string help = run(command + std::string(" --help")).out;
+    EXPECT_NE(help.find("--filters "), std::string::npos) << command;
+    EXPECT_EQ(help.find("--filter "), std::string::npos) << command;
+    EXPECT_EQ(help.find("--filter,"), std::string::npos) << command;
+  }
+}
 TEST_F(BadInput, UnknownParameter) {
   expect_refusal(small("--filters vsm:min_varianc=1"), 2, {"min_varianc", "did you mean 'min_variance'"});
 }
@@ -28,6 +66,15 @@ TEST_F(BadInput, SameFilterTwice) { expect_refusal(small("--filters none,none"),
 TEST_F(BadInput, SameParametersInOtherWords) { expect_refusal(small("--filters vsm,vsm:radius=4"), 2, {"twice"}); }
 TEST_F(BadInput, UnknownScene) { expect_refusal("run --out out --scene cube", 2, {"cube", "cubes"}); }
 TEST_F(BadInput, MissingScene) { expect_refusal("run --out out --scene no/such.gltf", 3, {"no/such.gltf"}); }
+TEST_F(BadInput, FolderWithoutOneScene) {
+  std::filesystem::create_directories(folder() / "models" / "inner.obj");
+  write("models/readme.txt", "none here");
+  expect_refusal("run --out out --scene models", 3, {"models", "no scene", ".glb"});
+  write("models/b.obj", "");
+  write("models/a.toml", "");
+  for (const char* name : {"models", "models/", "./models"})
+    expect_refusal(std::string("run --out out --scene ") + name, 3, {"models", "2 scenes: a.toml, b.obj"});
+}
 TEST_F(BadInput, MalformedSceneNamesTheLine) {
   write("bad.toml", "title = \"x\"\n[camera\n");
   expect_refusal("run --out out --scene bad.toml", 3, {"bad.toml:2"});
@@ -160,6 +207,15 @@ TEST_F(BadInput, OutputFolderCannotBeWritten) {
   EXPECT_EQ(outcome.exit_code, 6) << outcome.err;
   EXPECT_NE(outcome.err.find("out"), std::string::npos);
   EXPECT_EQ(read_text(folder() / "out"), "a file, not a folder");
+}
+TEST_F(BadInput, PathThatCannotBeUsed) {
+  const std::string path(300, 'x');  // a folder without rights would do, but for root
+  expect_refusal("run --size 64x36 --map-size 64 --scene cubes --filters none --out " + path, 6,
+                 {path, "choose another"});
+  for (const std::string command : {"advise ", "regress --baseline out ", "merge --out out "})
+    expect_refusal(command + path, 3, {path});
+  expect_refusal("diff " + path + " " + path, 3, {path});
+  expect_refusal("manual " + path, 6, {path + ": this path cannot be used (File name too long)", "choose another"});
 }
 TEST_F(BadInput, MissingFilterFile) { expect_refusal(small("--filter-file no/such.glsl"), 5, {"no/such.glsl"}); }
 TEST_F(BadInput, FrontMatterMistakeNamesFileAndLine) {

@@ -129,7 +129,7 @@ TEST_F(Diff, BadPictures_AreInputErrors) {
   expect_refusal("diff a.exr no/such.exr#part", 3, {"no/such.exr", "no such file"});
   expect_refusal("diff a.exr text.png", 3, {"text.png", "cannot be read"});
   expect_refusal("diff a.exr .", 3, {"folder"});
-  expect_refusal("diff a.exr ''", 3, {"no such file"});
+  expect_refusal("diff a.exr ''", 2, {"a value is missing"});
   expect_refusal("diff a.exr 'a.exr#trut'", 3, {"'trut'", "did you mean 'truth'", "parts: image, truth, broken"});
   expect_refusal("diff a.exr 'a.exr#short'", 3, {"4 x 1", "2 x 1"});
   expect_refusal("diff a.exr 'a.exr#rgb'", 3, {"has 1 channels", "has 3"});
@@ -141,7 +141,7 @@ TEST_F(Diff, BadMasks_AreInputErrors) {
   expect_refusal(pair + "'a.exr#rgb'", 3, {"the mask", "3 channels"});
   expect_refusal(pair + "'a.exr#nanmask'", 3, {"the mask", "NaN"});
   expect_refusal(pair + "no/such.exr", 3, {"no/such.exr", "no such file"});
-  expect_refusal(pair + "''", 3, {"no such file"});
+  expect_refusal(pair + "''", 2, {"--mask", "a value is missing"});
 }
 
 TEST_F(Diff, BadOptions_AreUsageErrors) {

@@ -67,6 +67,14 @@ TEST_F(Manual, EveryCommandHasAPage_ThatNamesEveryOptionOfItsHelp) {
   }
 }
 
+TEST_F(Manual, VersionIsPrinted_AsOnThePages) {
+  const Outcome outcome = run("--version");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_TRUE(std::regex_match(outcome.out, std::regex("shadowbench [0-9]+\\.[0-9]+\\.[0-9]+\n"))) << outcome.out;
+  EXPECT_NE(read_text(folder() / "pages/shadowbench.1").find(outcome.out.substr(0, outcome.out.size() - 1)),
+            std::string::npos);
+}
+
 TEST_F(Manual, BashCompletesCommandsAndOptions) {
   EXPECT_EQ(complete("''"), commands());
   EXPECT_THAT(complete("re"), ElementsAre("regress"));

@@ -23,7 +23,7 @@ class TuneCommand : public ProgramTest {
 
   /// What the filter at its default scores in the view that is the scene's own.
   double default_score(const std::string& metric) const {
-    EXPECT_EQ(tune("--filter poisson --budget 1 --metric " + metric).exit_code, 0);
+    EXPECT_EQ(tune("--filters poisson --budget 1 --metric " + metric).exit_code, 0);
     const nlohmann::json tuned = read_tuned();
     for (const auto& view : tuned["filters"][0]["views"])
       if (view["view"] == "as it is") return view["score"]["default"].get<double>();
@@ -32,7 +32,7 @@ class TuneCommand : public ProgramTest {
 };
 
 TEST_F(TuneCommand, FindsParametersThatAreBetterOnUnseenViews) {
-  const Outcome outcome = tune("--filter vsm:bleed_reduction=0,slope_variance=0,esm --budget 30");
+  const Outcome outcome = tune("--filters vsm:bleed_reduction=0,slope_variance=0,esm --budget 30");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   for (const char* part :
        {"## vsm", "## esm", "Gain on unseen views", "within 10 % of the best", "out/tuned.json", "padded by 4"})
@@ -52,7 +52,7 @@ TEST_F(TuneCommand, FindsParametersThatAreBetterOnUnseenViews) {
 
 /// exp(c) of the cleared depth 1 is infinite in r32f above c = 88.72, wherever the image shows it or not.
 TEST_F(TuneCommand, SettingsThatOverflowTheMap_CountAsWhollyWrong) {
-  ASSERT_EQ(tune("--filter esm:radius=0 --budget 3").exit_code, 0);
+  ASSERT_EQ(tune("--filters esm:radius=0 --budget 3").exit_code, 0);
   std::stringstream csv(read_text(folder() / "out" / "evaluations.csv"));
   int overflown = 0;
   for (std::string line; std::getline(csv, line);) {
@@ -65,17 +65,17 @@ TEST_F(TuneCommand, SettingsThatOverflowTheMap_CountAsWhollyWrong) {
 }
 
 TEST_F(TuneCommand, Evaluations_AreAllInTheTable) {
-  ASSERT_EQ(tune("--filter esm --budget 12").exit_code, 0);
+  ASSERT_EQ(tune("--filters esm --budget 12").exit_code, 0);
   const std::string csv = read_text(folder() / "out" / "evaluations.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + read_tuned()["filters"][0]["evaluations"].get<int>());
   EXPECT_THAT(csv, HasSubstr("esm,1,default,radius=4 c=80,"));
 }
 
 TEST_F(TuneCommand, IsTheSameTwice) {
-  ASSERT_EQ(tune("--filter poisson --budget 10").exit_code, 0);
+  ASSERT_EQ(tune("--filters poisson --budget 10").exit_code, 0);
   const std::string first = read_text(folder() / "out" / "tuned.json"),
                     table = read_text(folder() / "out" / "evaluations.csv");
-  ASSERT_EQ(tune("--filter poisson --budget 10 --no-cache").exit_code, 0);
+  ASSERT_EQ(tune("--filters poisson --budget 10 --no-cache").exit_code, 0);
   EXPECT_EQ(read_text(folder() / "out" / "tuned.json"), first);
   EXPECT_EQ(read_text(folder() / "out" / "evaluations.csv"), table);
 }
@@ -92,18 +92,19 @@ TEST_F(TuneCommand, Scores_AreThoseOfRun) {
 }
 
 TEST_F(TuneCommand, Acne_IsTunedOverItsMask) {
-  const Outcome outcome = tune("--filter poisson --metric acne --budget 4 --bias none");
+  const Outcome outcome = tune("--filters poisson --metric acne --budget 4 --bias none");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json filter = read_tuned()["filters"][0];
   EXPECT_GT(filter["training"]["default"], 0.1);  // without bias
   EXPECT_TRUE(filter["unseen_truth_se"].is_null());
-  ASSERT_EQ(tune("--filter poisson --metric acne --budget 1").exit_code, 0);
+  ASSERT_EQ(tune("--filters poisson --metric acne --budget 1").exit_code, 0);
   EXPECT_LT(read_tuned()["filters"][0]["training"]["default"], 0.02);
 }
 
 /// Nobody asked for 'fence' by name: its bars are too thin for a leak.
 TEST_F(TuneCommand, ScenesWithoutTheMetric_AreSkipped_WhereNoneIsNamed) {
-  const Outcome outcome = run("tune --out out --map-size 256 --size 240x135 --metric leak --filter poisson --budget 2");
+  const Outcome outcome =
+      run("tune --out out --map-size 256 --size 240x135 --metric leak --filters poisson --budget 2");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json scenes = read_tuned()["scenes"];
   EXPECT_GE(scenes.size(), 1u);
@@ -113,7 +114,7 @@ TEST_F(TuneCommand, ScenesWithoutTheMetric_AreSkipped_WhereNoneIsNamed) {
 }
 
 TEST_F(TuneCommand, Run_TakesTheParameters_AndTheCommandLineGoesFirst) {
-  ASSERT_EQ(tune("--filter vsm:bleed_reduction=0,slope_variance=0 --budget 20").exit_code, 0);
+  ASSERT_EQ(tune("--filters vsm:bleed_reduction=0,slope_variance=0 --budget 20").exit_code, 0);
   const nlohmann::json params = read_tuned()["filters"][0]["params"];
   const Outcome outcome =
       run("run --out report --scene cubes --map-size 64 --size 96x54 --rounds 1 --no-truth --tuned out/tuned.json "
@@ -132,24 +133,24 @@ TEST_F(TuneCommand, Run_TakesTheParameters_AndTheCommandLineGoesFirst) {
 
 TEST_F(TuneCommand, BadInput_IsRefused) {
   expect_refusal("tune --out out", 2, {"--filter", "required"});
-  expect_refusal("tune --out out --filter ''", 2, {"--filter", "at least one"});
-  expect_refusal("tune --out out --filter vsn", 2, {"'vsn'", "vsm"});
-  expect_refusal("tune --out out --filter none", 2, {"nothing to tune", "'none'"});
-  expect_refusal("tune --out out --filter poisson:radius=2", 2, {"nothing to tune", "poisson (radius=2)"});
-  expect_refusal("tune --out out --filter vsm,vsm:store=rg16f", 2, {"names 'vsm' twice", "--out"});
-  expect_refusal("tune --out out --filter nine_compares --filter-file " + user_filter("nine_compares.glsl"), 2,
+  expect_refusal("tune --out out --filters ''", 2, {"--filters", "at least one"});
+  expect_refusal("tune --out out --filters vsn", 2, {"'vsn'", "vsm"});
+  expect_refusal("tune --out out --filters none", 2, {"nothing to tune", "'none'"});
+  expect_refusal("tune --out out --filters poisson:radius=2", 2, {"nothing to tune", "poisson (radius=2)"});
+  expect_refusal("tune --out out --filters vsm,vsm:store=rg16f", 2, {"names 'vsm' twice", "--out"});
+  expect_refusal("tune --out out --filters nine_compares --filter-file " + user_filter("nine_compares.glsl"), 2,
                  {"--filter-file", "built-in"});
-  expect_refusal("tune --out out --filter vsm --metric ssim", 2, {"'ssim'", "rmse, mae, p95, flip, leak, acne"});
-  expect_refusal("tune --out out --filter vsm --budget 0", 2, {"--budget", "'0'"});
-  expect_refusal("tune --out out --filter vsm --budget 10001", 2, {"--budget", "10001", "1 .. 10000"});
-  expect_refusal("tune --out out --filter vsm --light noon", 2, {"--light", "'noon'"});
-  expect_refusal("tune --out out --filter vsm --bias receiver-plane", 2, {"vsm"});
-  expect_refusal("tune --out out --filter vsm --scene stepz", 2, {"'stepz'", "steps"});
-  expect_refusal("tune --out out --filter vsm --scene cubes --scene cubes", 2, {"two scenes", "'cubes'"});
-  expect_refusal("tune --filter vsm --metric leak" + std::string(kSmall), 3,
+  expect_refusal("tune --out out --filters vsm --metric ssim", 2, {"'ssim'", "rmse, mae, p95, flip, leak, acne"});
+  expect_refusal("tune --out out --filters vsm --budget 0", 2, {"--budget", "'0'"});
+  expect_refusal("tune --out out --filters vsm --budget 10001", 2, {"--budget", "10001", "1 .. 10000"});
+  expect_refusal("tune --out out --filters vsm --light noon", 2, {"--light", "'noon'"});
+  expect_refusal("tune --out out --filters vsm --bias receiver-plane", 2, {"vsm"});
+  expect_refusal("tune --out out --filters vsm --scene stepz", 2, {"'stepz'", "steps"});
+  expect_refusal("tune --out out --filters vsm --scene cubes --scene cubes", 2, {"two scenes", "'cubes'"});
+  expect_refusal("tune --filters vsm --metric leak" + std::string(kSmall), 3,
                  {"'cubes'", "leak", "needs 100", "--scene"});
   write("file", "");
-  expect_refusal("tune --filter vsm --scene cubes --map-size 64 --size 32x18 --budget 1 --out file/out", 6, {"file"});
+  expect_refusal("tune --filters vsm --scene cubes --map-size 64 --size 32x18 --budget 1 --out file/out", 6, {"file"});
   EXPECT_FALSE(std::filesystem::exists(folder() / "out" / "tuned.json"));
 }
 

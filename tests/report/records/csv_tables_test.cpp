@@ -53,6 +53,14 @@ TEST(TimingsCsv, EveryRow_HasEveryColumn) {
   EXPECT_EQ(field(rows, 2, "lookup_median_ms"), "");
 }
 
+TEST(TimingsCsv, Formulas_AreDefused_AndNumbersAreNot) {
+  for (const std::string text : {"=cmd", "=1+1", "+cmd", "+1+1", "-cmd", "-1+1", "@SUM(A1)", "\tx"})
+    EXPECT_EQ(quote_csv(text), "'" + text);
+  EXPECT_EQ(quote_csv("=a,b"), "\"'=a,b\"");
+  EXPECT_EQ(quote_csv("\r=a"), "\"'\r=a\"");
+  for (const std::string text : {"-1", "-0.5", "-1e-05", "-inf", "1", "a=b", ""}) EXPECT_EQ(quote_csv(text), text);
+}
+
 TEST(TimingsCsv, OnlyFieldsThatNeedIt_AreQuoted) {
   EXPECT_EQ(quote_csv("a b; c"), "a b; c");
   EXPECT_EQ(quote_csv("a,b"), "\"a,b\"");

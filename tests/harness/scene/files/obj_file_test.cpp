@@ -73,6 +73,23 @@ TEST(ObjFileTest, CoordinateThatIsNoFiniteNumber_NamesItsLine) {
   EXPECT_THAT(error_of([] { import_text("v 0 0\n"); }).message(), HasSubstr("at least 3 numbers"));
 }
 
+TEST(ObjFileTest, IndexThatIsNone_NamesItsLine) {
+  for (const std::string bad : {"999999999999999999999", "2147483648", "-2147483649", "2x", "1.5"}) {
+    for (const std::string& corner : {bad, "1/" + bad, "1//" + bad}) {
+      const Error error = error_of([&] { import_text(kObjQuad + ("f 1 2 " + corner + "\n")); });
+      EXPECT_EQ(error.kind(), ErrorKind::kInput);
+      EXPECT_THAT(error.message(), HasSubstr("'" + bad + "' is not an index"));
+      EXPECT_THAT(error.where(), testing::EndsWith("test.obj:5"));
+    }
+  }
+}
+
+TEST(ObjFileTest, LinesOfOldMacintosh_AreRead) {
+  EXPECT_EQ(import_text("# made long ago\rv 0 0 0\rv 1 0 0\rv 1 1 0\rf 1 2 3\r").meshes.at(0).indices.size(), 3U);
+  EXPECT_THAT(error_of([] { import_text("# comment\rv 0 0 0\rv 1 nan 0\rf 1 2 3\r"); }).where(),
+              testing::EndsWith("test.obj:3"));
+}
+
 TEST(ObjFileTest, NumbersInEverySpelling_Read) {
   const MeshFile model = import_text("v +1 -.5 1e-1 # corner\r\nv 1 0 0\r\nv 1 1 0 1.0\r\nf 1 2 3\r\n");
   EXPECT_EQ(model.meshes[0].vertices[0].position_ws, glm::vec3(1.0f, -0.5f, 0.1f));
