@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "filters/base/error.h"
+#include "filters/base/input_file.h"
 #include "filters/base/toml_depth.h"
 #include "filters/disk_points.h"
 #include "filters/format/front_matter_reader.h"
@@ -316,6 +317,7 @@ FilterSpec parse_filter(const std::string& text, const std::filesystem::path& pa
 }
 
 FilterSpec load_filter(const std::filesystem::path& path) {
+  require_plain_file(path, 4 * kMebibyte, ErrorKind::kFilter);
   std::ifstream file(path, std::ios::binary);
   std::stringstream text;
   if (file) text << file.rdbuf();

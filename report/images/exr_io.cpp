@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "filters/base/error.h"
+#include "filters/base/input_file.h"
 #include "report/images/image_file.h"
 #include "report/images/picture_io.h"
 
@@ -122,6 +123,7 @@ void write_exr(const std::filesystem::path& path, const std::vector<Part>& parts
 }
 
 ExrFile read_exr(const std::filesystem::path& path) {
+  require_plain_file(path, 16384 * kMebibyte);
   const auto input = OIIO::ImageInput::open(path.string());
   if (!input)
     throw Error(ErrorKind::kInput, fmt::format("the EXR file cannot be read ({})", OIIO::geterror()), path.string());

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "filters/base/error.h"
+#include "filters/base/input_file.h"
 #include "filters/base/nearest_name.h"
 
 namespace shadowbench::images {
@@ -49,6 +50,7 @@ PictureName parse_name(const std::string& name) {
 
 std::unique_ptr<OIIO::ImageInput> open_file(const std::string& file) {
   if (std::filesystem::is_directory(file)) fail(file, "this is a folder: name a picture in it");
+  require_plain_file(file, 16384 * kMebibyte);
   OIIO::ImageSpec wishes;
   wishes.attribute("oiio:UnassociatedAlpha", 1);
   auto input = OIIO::ImageInput::open(file, &wishes);

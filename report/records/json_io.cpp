@@ -10,6 +10,7 @@
 
 #include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
+#include "filters/base/input_file.h"
 #include "report/records/cell_key.h"
 #include "report/records/json_values.h"
 #include "report/records/record_fields.h"
@@ -153,6 +154,7 @@ std::map<std::string, std::string> explain_nulls(const json& root, std::map<std:
 }
 
 json parse_file(const std::filesystem::path& file) {
+  require_plain_file(file, 4096 * kMebibyte);
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw Error(ErrorKind::kInput, "the file cannot be opened; was the run finished?", file.string());
   try {

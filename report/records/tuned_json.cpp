@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "filters/base/error.h"
+#include "filters/base/input_file.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::records {
@@ -125,6 +126,7 @@ class Field {
 };
 
 json parse(const std::filesystem::path& file) {
+  require_plain_file(file, 64 * kMebibyte);
   std::ifstream stream(file, std::ios::binary);
   if (!stream)
     throw Error(ErrorKind::kInput, "this file of tuned parameters cannot be read: check --tuned", file.string());

@@ -11,6 +11,7 @@
 
 #include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
+#include "filters/base/input_file.h"
 
 namespace shadowbench::regress {
 namespace {
@@ -22,6 +23,7 @@ CellImages keep_images(const CellImages& images) {
 }
 
 std::string read_log(const std::filesystem::path& file) {
+  require_plain_file(file, 64 * kMebibyte);
   std::ifstream stream(file, std::ios::binary);
   std::stringstream text;
   text << stream.rdbuf();

@@ -8,6 +8,7 @@
 
 #include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
+#include "filters/base/input_file.h"
 #include "filters/base/temporary_files.h"
 #include "report/files/file_name.h"
 #include "report/images/picture_io.h"
@@ -67,6 +68,7 @@ BaselineCell from_json(const json& read) {
 }
 
 std::vector<BaselineCell> read_cell_list(const std::filesystem::path& file) {
+  require_plain_file(file, 1024 * kMebibyte);
   try {
     std::ifstream stream(file, std::ios::binary);
     if (!stream)

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "filters/base/error.h"
+#include "filters/base/input_file.h"
 #include "filters/base/nearest_name.h"
 #include "report/regress/compared_metrics.h"
 
@@ -59,6 +60,7 @@ class ToleranceReader {
   toml::table root_;
 
   toml::table parse() const {
+    require_plain_file(file_, 16 * kMebibyte);
     try {
       return toml::parse_file(file_);
     } catch (const toml::parse_error& error) {

@@ -1,5 +1,7 @@
 // Each kind of bad input gets one clear message and its exit code.
 
+#include <sys/stat.h>
+
 #include "tests/harness/cli/program.h"
 
 namespace shadowbench::test {
@@ -123,6 +125,29 @@ TEST_F(BadInput, WarpedMapWithAPolygonOffset) {
 }
 
 TEST_F(BadInput, WarpedMapWithValues) { expect_refusal(small("--fit psm:near=1"), 2, {"'psm' takes no values"}); }
+
+TEST_F(BadInput, FilterThatIsADevice) {
+  expect_refusal(small("--filter-file /dev/zero"), 5, {"/dev/zero", "a device, a pipe or a socket"});
+}
+
+TEST_F(BadInput, FilterThatIsAPipe) {
+  ASSERT_EQ(mkfifo((folder() / "pipe.glsl").c_str(), 0600), 0);
+  expect_refusal(small("--filter-file " + (folder() / "pipe.glsl").string()), 5, {"pipe.glsl", "a device, a pipe"});
+}
+
+TEST_F(BadInput, FilterThatIsTooLarge) {
+  write("large.glsl", "");
+  std::filesystem::resize_file(folder() / "large.glsl", 5u << 20);
+  expect_refusal(small("--filter-file " + (folder() / "large.glsl").string()), 5, {"it has 5 MiB, and 4 MiB are"});
+}
+
+TEST_F(BadInput, PicturesThatAreDevices) { expect_refusal("diff /dev/zero /dev/zero", 3, {"/dev/zero", "a device"}); }
+
+TEST_F(BadInput, RunThatIsAPipe) {
+  std::filesystem::create_directory(folder() / "piped");
+  ASSERT_EQ(mkfifo((folder() / "piped" / "results.json").c_str(), 0600), 0);
+  expect_refusal("advise piped --max-rmse 1", 3, {"results.json", "a device, a pipe"});
+}
 
 TEST_F(BadInput, UnknownFit) { expect_refusal(small("--fit box"), 2, {"'box'", "sphere, tight, view"}); }
 TEST_F(BadInput, SnapWithNothing) { expect_refusal(small("--snap"), 2, {"--snap"}); }
