@@ -39,7 +39,7 @@ def check_files(prefix):
     folders = sorted(folder.name for folder in (prefix / "share/shadowbench").iterdir())
     expect(folders == ["experiments", "filters", "scenes", "shaders"], f"share/shadowbench/ holds {folders}")
     suffixes = {file.suffix for file in (prefix / "share/shadowbench").rglob("*") if file.is_file()}
-    expect(suffixes == {".frag", ".glsl", ".toml", ".vert"}, f"share/shadowbench/ holds files {suffixes}")
+    expect(suffixes == {".frag", ".geom", ".glsl", ".toml", ".vert"}, f"share/shadowbench/ holds files {suffixes}")
     help_text = call(prefix / "bin/shadowbench", "--help")
     commands = re.findall(r"^  ([a-z]+) {2,}\S", help_text, re.MULTILINE)
     expect("run" in commands, f"no commands in {help_text}")

@@ -42,6 +42,20 @@ truth::TexelGradients find_paraboloid_gradients(const LightFrustum& frustum, con
           scale * (ray.up_ws - ray.y * ray.direction_ws - ray.y * towards_axis)};
 }
 
+/// A step along the light's axis changes nothing under the sun; under a lamp it moves a place towards the map's middle.
+truth::TexelGradients find_plane_gradients(const LightFrustum& frustum, const glm::dvec3& point_ws) {
+  const glm::dmat4 rows = glm::transpose(frustum.light_from_world);
+  const double texel = frustum.texel_size_at(point_ws);
+  truth::TexelGradients along{glm::dvec3(rows[0]) / texel, glm::dvec3(rows[1]) / texel};
+  if (!frustum.perspective) return along;
+  const Beam& beam = frustum.perspective->beam;
+  const glm::dvec3 way = point_ws - beam.position_ws,
+                   per_metre = beam.axis_ws / frustum.perspective->distance(point_ws);
+  along.u -= glm::dot(along.u, way) * per_metre;
+  along.v -= glm::dot(along.v, way) * per_metre;
+  return along;
+}
+
 }  // namespace
 
 glm::dvec3 find_in_curved_map(const LightFrustum& frustum, const glm::dvec3& point_ws) {
@@ -61,6 +75,7 @@ glm::dvec3 find_in_curved_map(const LightFrustum& frustum, const glm::dvec3& poi
 
 truth::TexelGradients find_gradients(const LightFrustum& frustum, const glm::dvec3& point_ws) {
   if (frustum.shape == MapShape::kParaboloid) return find_paraboloid_gradients(frustum, point_ws);
+  if (frustum.shape == MapShape::kPlane) return find_plane_gradients(frustum, point_ws);
   const glm::dmat4 clip_from_world = frustum.clip_from_light * frustum.light_from_world;
   const glm::dmat4 rows = glm::transpose(clip_from_world);
   const glm::dvec4 clip = clip_from_world * glm::dvec4(point_ws, 1.0);
