@@ -10,6 +10,16 @@ constexpr std::string_view kBlank = " \t\r\n\v\f";
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_word_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; }
 
+/// Where the comment that begins at `start` ends: at its line's break, or after its closing mark, or with the code.
+/// `start` itself where no comment begins there.
+std::size_t end_of_comment(const std::string& glsl, std::size_t start) {
+  const bool line = glsl.compare(start, 2, "//") == 0;
+  if (!line && glsl.compare(start, 2, "/*") != 0) return start;
+  const std::size_t close = line ? glsl.find('\n', start) : glsl.find("*/", start + 2);
+  if (close == std::string::npos) return glsl.size();
+  return line ? close : close + 2;
+}
+
 }  // namespace
 
 std::size_t find_word(std::string_view code, std::string_view word, std::size_t start) {
@@ -24,10 +34,8 @@ std::size_t find_word(std::string_view code, std::string_view word, std::size_t 
 std::string blank_comments(const std::string& glsl) {
   std::string code = glsl;
   for (std::size_t i = 0; i < code.size(); ++i) {
-    const bool line = glsl.compare(i, 2, "//") == 0;
-    if (!line && glsl.compare(i, 2, "/*") != 0) continue;
-    const std::size_t close = line ? glsl.find('\n', i) : glsl.find("*/", i + 2);
-    const std::size_t end = close == std::string::npos ? code.size() : line ? close : close + 2;
+    const std::size_t end = end_of_comment(glsl, i);
+    if (end == i) continue;
     for (; i < end; ++i)
       if (code[i] != '\n') code[i] = ' ';
     --i;
@@ -38,16 +46,9 @@ std::string blank_comments(const std::string& glsl) {
 std::string strip_comments(const std::string& glsl) {
   std::string code;
   for (std::size_t i = 0; i < glsl.size();) {
-    const bool line = glsl.compare(i, 2, "//") == 0;
-    const bool block = glsl.compare(i, 2, "/*") == 0;
-    if (!line && !block) {
-      code += glsl[i++];
-      continue;
-    }
-    const std::size_t end = line ? glsl.find('\n', i) : glsl.find("*/", i + 2);
-    code += ' ';
-    if (end == std::string::npos) break;
-    i = line ? end : end + 2;
+    const std::size_t end = end_of_comment(glsl, i);
+    code += end == i ? glsl[i++] : ' ';
+    i = std::max(i, end);
   }
   return code;
 }

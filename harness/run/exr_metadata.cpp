@@ -22,8 +22,6 @@ constexpr const char* kConvention =
     "two along the receiver's plane for each texel, at most max_tangent * texel / range; before that, the receiver is "
     "moved along its normal by normal_texels * texel * sin(n, l).";
 
-std::string write(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
-
 std::string write_rows(const glm::mat4& matrix) {
   const glm::mat4 rows = glm::transpose(matrix);
   return fmt::format("{}", fmt::join(std::span(&rows[0][0], 16), " "));
@@ -82,8 +80,8 @@ images::Metadata describe_task(const options::RunOptions& options, const measure
   metadata["shadowbench:behind_test"] = options.range.behind_test ? "on" : "off";
   metadata["shadowbench:seed"] = static_cast<double>(options.seed);
   metadata["shadowbench:renderer"] = info.renderer;
-  metadata["shadowbench:camera_position_ws"] = write(camera.position_ws);
-  metadata["shadowbench:camera_forward_ws"] = write(camera.forward_ws);
+  metadata["shadowbench:camera_position_ws"] = scene::write_vector(camera.position_ws);
+  metadata["shadowbench:camera_forward_ws"] = scene::write_vector(camera.forward_ws);
   for (const auto& [name, value] : scene::light_metadata(task.scene->light)) metadata["shadowbench:" + name] = value;
   if (measured.cells.empty()) return metadata;
   metadata["shadowbench:map.convention"] = kConvention;
