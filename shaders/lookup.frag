@@ -10,6 +10,7 @@
 layout(location = 0) out float out_visibility;
 #ifdef COUNT_FETCHES
 layout(location = 1) out vec4 out_reads;  // fetches, their reach in texels, turns of a loop; -1: there was no lookup
+layout(location = 2) out vec2 out_wide_reads;  // of the fetches those of texels of 64 and of 128 bits
 #endif
 
 void main() {
@@ -25,6 +26,7 @@ void main() {
     out_visibility = place.w == mark_away ? 0.0 : share;
 #ifdef COUNT_FETCHES
     out_reads = vec4(place.w == mark_beyond ? 0.0 : -1.0, -1.0, 0.0, 0.0);
+    out_wide_reads = vec2(0.0);
 #endif
     return;
   }
@@ -35,5 +37,6 @@ void main() {
   out_visibility = share * visibility(make_receiver(pixel, place));
 #ifdef COUNT_FETCHES
   out_reads = vec4(float(fetch_count), fetch_reach, float(most_turns), 0.0);
+  out_wide_reads = wide_fetches;
 #endif
 }

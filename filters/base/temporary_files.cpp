@@ -75,6 +75,11 @@ fs::path make_temporary_folder_path(const fs::path& folder, std::string_view wha
   return folder / fmt::format(".{}-{}", what, getpid());
 }
 
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
 bool is_temporary(const fs::path& path) { return owner_of_file(path) || owner_of_folder(path); }
 
 void remove_temporary_files(const fs::path& folder, const std::function<bool(pid_t)>& is_stale) {

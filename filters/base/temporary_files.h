@@ -14,6 +14,19 @@ std::filesystem::path make_temporary_path(const std::filesystem::path& path);
 /// The path of a hidden folder of this process, for work that is renamed out of it. `what` is "worker".
 std::filesystem::path make_temporary_folder_path(const std::filesystem::path& folder, std::string_view what);
 
+/// A folder that goes with its object.
+class TemporaryFolder {
+ public:
+  explicit TemporaryFolder(std::filesystem::path path) : path_(std::move(path)) {}
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
 /// Whether a path is one of the two.
 bool is_temporary(const std::filesystem::path& path);
 

@@ -17,6 +17,10 @@ Command make_stress_command();
 Command make_regress_command();
 Command make_flicker_command();
 
+/// Makes the command that compiles passes for a GPU, in a process that a crash of the driver may end. Only a run needs
+/// it, so that help does not show it.
+Command make_gpu_facts_command();
+
 /// Makes the command that writes manual pages and completions for all commands of `program`, itself included, which
 /// must outlive it. Only the build of the package needs it, so that help does not show it.
 Command make_manual_command(const Command& program);

@@ -36,7 +36,7 @@ install(TARGETS shadowbench RUNTIME COMPONENT program)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/filters/ DESTINATION ${_share}/filters COMPONENT program FILES_MATCHING PATTERN "*.glsl"
         PATTERN "base" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders/ DESTINATION ${_share}/shaders COMPONENT program PATTERN "*.md" EXCLUDE)
-foreach(_folder IN ITEMS scenes experiments)
+foreach(_folder IN ITEMS scenes experiments gpus)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/harness/${_folder}/ DESTINATION ${_share}/${_folder} COMPONENT program PATTERN "*.md" EXCLUDE)
 endforeach()
 install(DIRECTORY ${_manual}/pages/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program FILES_MATCHING PATTERN "*.1.gz")

@@ -18,7 +18,7 @@ const std::vector<std::string>& experiment_keys() {
       "scene,ground,view,light_name,filters,filter_file,map_size,size,bias,map_format,reversed_depth,perspective_depth,"
       "fit,snap,"
       "light,lights,pad_texels,tuned,border,far_test,behind_test,border_page,phases,rounds,precision,budget,"
-      "cell_timeout,seed,truth,attribution,stability,uncertainty,grids");
+      "cell_timeout,seed,gpu,truth,attribution,stability,uncertainty,grids");
   return keys;
 }
 
@@ -124,6 +124,11 @@ void add_timing_options(Command& command, RunArguments& a) {
                        "counts of 1 .. {} with commas (default: none)",
                        options::kMostLights))
       .never_empty("counts of lights, such as 1,2,4,8");
+  command
+      .add("--gpu", &a.gpus,
+           "also say what filters cost on these GPUs, which need not be there: names of 'list gpus' with commas, or "
+           "'none'")
+      .never_empty("names of 'list gpus', or none");
   command.add("--seed", &a.seed, "seed of random rotations and of the order in which filters are timed");
   command.add("--cell-timeout", &a.cell_timeout_s, "seconds that a filter of your own may take on one scene");
 }

@@ -37,6 +37,7 @@ struct RunArguments : DrawingArguments {
   std::string rounds = "auto";
   std::uint32_t phases = 4;
   std::string lights;
+  std::string gpus = "navi21,vega10";
   double precision = 0.05;
   double budget_s = 0.4;
   std::uint32_t seed = 1;

@@ -146,6 +146,7 @@ options::RunOptions make_run_options(const RunArguments& arguments, std::vector<
   options.rounds = parse_rounds(arguments);
   options.phases = static_cast<int>(arguments.phases);
   options.lights = parse_lights(arguments.lights);
+  options.gpus = gpu::choose_gpus(gpu::load_gpus(options.resources.gpus), split_list(arguments.gpus));
   options::require_light_maps_fit(options);
   options.reference = filters::Catalogue(options.resources.filters).parse_requests(kReferenceFilter).front();
   options.seed = arguments.seed;

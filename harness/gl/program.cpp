@@ -80,7 +80,7 @@ void Program::link(std::span<const Stage> stages, std::optional<ErrorKind> blame
   for (const Stage& stage : stages) {
     shaders.push_back(compile(label_, stage.type, *stage.source, blame));
     glAttachShader(id(), shaders.back().id());
-    texts_.push_back(stage.source->text);
+    sources_.push_back(*stage.source);
   }
   glLinkProgram(id());
   for (const Shader& shader : shaders) glDetachShader(id(), shader.id());
@@ -104,7 +104,7 @@ GLint Program::location(std::string_view name) {
   const GLint found = glGetUniformLocation(id(), std::string(name).c_str());
   if (found < 0) {
     bool declared = false;
-    for (const auto& text : texts_) declared = declared || contains_word(text, get_base_name(name));
+    for (const ShaderSource& source : sources_) declared = declared || contains_word(source.text, get_base_name(name));
     if (!declared) throw std::logic_error(fmt::format("program '{}' has no uniform '{}'", label_, name));
   }
   locations_.emplace(name, found);

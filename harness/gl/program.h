@@ -49,6 +49,9 @@ class Program {
   bool has(std::string_view name) const;
 
   const std::string& label() const { return label_; }
+
+  /// The last stage as it was compiled: the fragment shader of what draws.
+  const ShaderSource& last_stage() const { return sources_.back(); }
   GLuint id() const { return handle_.id(); }
 
  private:
@@ -62,7 +65,7 @@ class Program {
 
   std::string label_;
   Handle<GL_PROGRAM> handle_;
-  std::vector<std::string> texts_;
+  std::vector<ShaderSource> sources_;
   std::map<std::string, GLint, std::less<>> locations_;
 };
 

@@ -95,9 +95,10 @@ class SceneBench {
     cell.record.nan = count_not_finite(cell.visibility);
     if (receivers_ < 0) receivers_ = render::count_receivers(renderer_.shaders, gbuffer_, filter.light());
     cell.record.receivers = receivers_;
-    const render::FilterCost cost = filter.measure_cost(renderer_.shaders, gbuffer_, light_.map);
-    set_cost(cell.record, cost);
-    check_drawing(cell, cost, *renderer_.context);
+    cell.cost = filter.measure_cost(renderer_.shaders, gbuffer_, light_.map);
+    cell.passes = filter.list_passes(gl::pixel_format(options_.map.format).bytes_per_texel);
+    set_cost(cell.record, cell.cost);
+    check_drawing(cell, cell.cost, *renderer_.context);
     return cell;
   }
 
@@ -166,8 +167,11 @@ class SceneBench {
         pointers, reference, empty.passes, [&] { assets_.redraw(light_); }, light_.map, gbuffer_, renderer_.timer,
         options_.rounds, options_.seed, drawn_ms_);
     result.timed_ms = times.spent_ms;
-    for (std::size_t i = 0; i < filters.size(); ++i)
+    for (std::size_t i = 0; i < filters.size(); ++i) {
       set_times(result.cells[i].record, times, i, reference, times.empties[empty.of_filter[i]]);
+      result.cells[i].empty_lookup = empty.passes[empty.of_filter[i]]->list_passes(0).front();
+      result.cells[i].empty_lookup.name = "empty";
+    }
     time_lights(result, pointers, reference);
   }
 

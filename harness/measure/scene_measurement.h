@@ -6,6 +6,7 @@
 
 #include "harness/measure/renderer.h"
 #include "harness/measure/scene_assets.h"
+#include "harness/render/filter_passes.h"
 #include "harness/scene/scene.h"
 #include "reference/metrics/artefacts.h"
 #include "report/images/figures/stability_picture.h"
@@ -19,13 +20,16 @@ namespace shadowbench::measure {
 struct MeasuredCell {
   records::CellRecord record;
   filters::FilterRequest request;
-  std::string label;                  ///< filter and the parameters that were asked for
-  render::LightLayers light;          ///< what it was drawn with
-  images::Image picture;              ///< linear RGB
-  images::Image visibility;           ///< 1 lit .. 0 blocked
-  std::vector<images::Image> phases;  ///< the same, with the map's grid moved to each of the other phases
-  images::Image unbiased;             ///< visibility without any depth bias; empty where no truth is wanted
-  images::StabilityImages stability;  ///< where its numbers break; empty unless the run asks for it
+  std::string label;          ///< filter and the parameters that were asked for
+  render::LightLayers light;  ///< what it was drawn with
+  render::FilterCost cost;
+  std::vector<render::DrawnPass> passes;  ///< the lookup first; none of a user's filter, whose process has them
+  render::DrawnPass empty_lookup;         ///< reads what the lookup does of its receivers, and nothing of the map
+  images::Image picture;                  ///< linear RGB
+  images::Image visibility;               ///< 1 lit .. 0 blocked
+  std::vector<images::Image> phases;      ///< the same, with the map's grid moved to each of the other phases
+  images::Image unbiased;                 ///< visibility without any depth bias; empty where no truth is wanted
+  images::StabilityImages stability;      ///< where its numbers break; empty unless the run asks for it
   images::UncertaintyImages
       uncertainty;     ///< how far rounding and other seeds can move its pixels; empty unless the run asks for it
   images::Image flip;  ///< of the picture to the truth's; empty where there is no truth

@@ -9,6 +9,7 @@
 #include "filters/catalogue.h"
 #include "filters/map_range.h"
 #include "harness/gl/context/context.h"
+#include "harness/gpu/gpu.h"
 #include "harness/options/round_limits.h"
 #include "harness/render/bias/bias_rule.h"
 #include "harness/render/map_settings.h"
@@ -22,6 +23,7 @@ struct Resources {
   std::filesystem::path shaders;
   std::filesystem::path scenes;
   std::filesystem::path experiments;
+  std::filesystem::path gpus;
 };
 
 /// Finds the program's folders: below $SHADOWBENCH_ROOT where that is set, else in ../share/shadowbench beside the
@@ -77,6 +79,7 @@ struct RunOptions {
   std::optional<double> pad_texels;  ///< around the scene in the map; empty: as many as the widest kernel needs
   RoundLimits rounds;
   int phases = 4;                    ///< places of the map's grid over which errors are averaged
+  std::vector<gpu::Gpu> gpus;        ///< also estimate costs on these, which need not be there
   std::vector<int> lights;           ///< also time frames with these numbers of lights
   filters::FilterRequest reference;  ///< the filter that the others' times are ratios to
   std::uint32_t seed = 1;

@@ -28,8 +28,9 @@ Resources find_resources() {
     const std::filesystem::path folder = root / "harness" / name;
     return std::filesystem::is_directory(folder) ? folder : root / name;
   };
-  Resources resources{root / "filters", root / "shaders", find("scenes"), find("experiments")};
-  for (const auto& folder : {resources.filters, resources.shaders, resources.scenes, resources.experiments}) {
+  Resources resources{root / "filters", root / "shaders", find("scenes"), find("experiments"), find("gpus")};
+  for (const auto& folder :
+       {resources.filters, resources.shaders, resources.scenes, resources.experiments, resources.gpus}) {
     if (std::filesystem::is_directory(folder)) continue;
     throw Error(ErrorKind::kUsage,
                 "this folder of the program is missing: set SHADOWBENCH_ROOT to a checkout of the project",

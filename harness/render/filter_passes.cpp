@@ -193,10 +193,12 @@ void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const
   gl::Program counting = compile_lookup(shaders,
                                         {{"COUNT_FETCHES", "1"},
                                          {"LOOPS", fmt::format("{}", std::max(counted_loops.loops, 1))},
-                                         {"STORED_REACH_TEXELS", fmt::format("float({})", stored_reach(request_))}},
+                                         {"STORED_REACH_TEXELS", fmt::format("float({})", stored_reach(request_))},
+                                         {"STORED_BITS", fmt::format("{}", 8 * stored_bytes())}},
                                         counted_loops.body);
   const gl::Texture visibility("counted visibility", GL_R32F, gbuffer.width(), gbuffer.height());
   const gl::Texture reads("reads", GL_RGBA32F, gbuffer.width(), gbuffer.height());
+  const gl::Texture wide_reads("wide reads", GL_RG32F, gbuffer.width(), gbuffer.height());
   std::vector<double> sums(static_cast<std::size_t>(gbuffer.width()) * static_cast<std::size_t>(gbuffer.height()),
                            -1.0);
   double reach = -1.0;
@@ -207,6 +209,7 @@ void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const
     gl::Framebuffer framebuffer("fetch count");
     framebuffer.attach_color(0, visibility);
     framebuffer.attach_color(1, reads);
+    framebuffer.attach_color(2, wide_reads);
     if (layers() > 1) framebuffer.attach_depth(receivers.mask());
     framebuffer.bind();
     framebuffer.clear_color(1, glm::vec4(-1.0f));
@@ -214,17 +217,38 @@ void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const
       triangle_.draw_masked();
     else
       triangle_.draw();
-    const std::vector<float> counted = reads.read_floats(4);
+    const std::vector<float> counted = reads.read_floats(4), wide = wide_reads.read_floats(2);
     for (std::size_t i = 0; i < sums.size(); ++i) {
       if (counted[4 * i] < 0.0f) continue;
       sums[i] = std::max(sums[i], 0.0) + static_cast<double>(counted[4 * i]);
       reach = std::max(reach, static_cast<double>(counted[4 * i + 1]));
+      cost.fetches_64 += static_cast<double>(wide[2 * i]);
+      cost.fetches_128 += static_cast<double>(wide[2 * i + 1]);
       cost.most_turns = std::max(cost.most_turns, static_cast<int>(counted[4 * i + 2]));
     }
   }
   std::erase_if(sums, [](double sum) { return sum < 0.0; });
-  cost.fetches = sums.empty() ? 0.0 : std::accumulate(sums.begin(), sums.end(), 0.0) / static_cast<double>(sums.size());
+  const double receivers = std::max(static_cast<double>(sums.size()), 1.0);
+  cost.fetches = std::accumulate(sums.begin(), sums.end(), 0.0) / receivers;
+  cost.fetches_64 /= receivers;
+  cost.fetches_128 /= receivers;
   if (reach >= 0.0) cost.reach_texels = reach;
+}
+
+int FilterPasses::stored_bytes() const {
+  return encoded_format() ? gl::pixel_format(*encoded_format()).bytes_per_texel : 0;
+}
+
+std::vector<DrawnPass> FilterPasses::list_passes(int depth_bytes) const {
+  std::vector<DrawnPass> passes = {{"lookup", lookup_.last_stage(), gl::pixel_format(GL_R32F), 1, 0, 0}};
+  const auto add = [&](std::vector<DrawnPass> more) { std::ranges::move(more, std::back_inserter(passes)); };
+  if (prefilter_) add(prefilter_->list_passes(depth_bytes));
+  if (own_) add(own_->list_passes());
+  for (DrawnPass& pass : passes) {
+    pass.draws *= layers();
+    pass.texels *= layers();
+  }
+  return passes;
 }
 
 /// Of a filter without passes of its own the map that it stores counts, or else the depth map; of others what the

@@ -14,6 +14,8 @@ namespace shadowbench::render {
 /// What a filter costs, and how far it reads, on any machine.
 struct FilterCost {
   std::optional<double> fetches;  ///< mean texture fetches per receiver; empty: the filter reads samplers itself
+  double fetches_64 = 0.0;        ///< of them those of texels of 64 bits
+  double fetches_128 = 0.0;       ///< and of 128
   /// From a receiver to the centre of the farthest texel that counts, on either axis, the prefilter included; empty:
   /// the filter reads samplers itself, or the map reaches no receiver.
   std::optional<double> reach_texels;
@@ -92,6 +94,10 @@ class FilterPasses {
   /// What encodes and blurs, turned to a layer of the map; null for filters that read depth.
   Prefilter* encoded_map(int layer = 0);
 
+  /// The lookup, then what makes the maps that it reads, in all layers of the light's map; `depth_bytes` are those of a
+  /// texel of the depth map.
+  std::vector<DrawnPass> list_passes(int depth_bytes) const;
+
   /// Looks every receiver up; `target` is R32F, of the G-buffer's size. Background is 1. Of a map with layers each is
   /// looked up in a pass of its own, for the receivers that it serves, and what they make of their shares is added.
   void lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& target);
@@ -122,6 +128,7 @@ class FilterPasses {
   void turn(const PreparedLayer& layer);
   void select(int layer);
   std::int64_t count_map_bytes(const ShadowMap& map) const;
+  int stored_bytes() const;  ///< of a texel of the encoded map; 0 where there is none
   void set_uniforms(gl::Program& lookup, const LightSetup& light) const;
   /// `body` takes the place of the filter's own.
   gl::Program compile_lookup(ShaderLibrary& shaders, Defines defines,

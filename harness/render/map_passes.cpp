@@ -175,13 +175,25 @@ int MapPasses::passes() const {
   return steps;
 }
 
+std::int64_t MapPasses::texels_written(const Pass& pass) const {
+  const std::int64_t all = std::int64_t{1} * side(pass.spec) * side(pass.spec);
+  return pass.spec.steps == PassSteps::kLevels ? (4 * all - 1) / 3 : all * pass.steps;
+}
+
 std::int64_t MapPasses::texels_written() const {
   std::int64_t texels = 0;
-  for (const Pass& pass : passes_) {
-    const std::int64_t all = std::int64_t{1} * side(pass.spec) * side(pass.spec);
-    texels += pass.spec.steps == PassSteps::kLevels ? (4 * all - 1) / 3 : all * pass.steps;
-  }
+  for (const Pass& pass : passes_) texels += texels_written(pass);
   return texels;
+}
+
+std::vector<DrawnPass> MapPasses::list_passes() const {
+  std::vector<DrawnPass> passes;
+  for (const Pass& pass : passes_) {
+    const gl::PixelFormat& format = gl::parse_pixel_format(pass.spec.store);
+    passes.push_back(
+        {pass.spec.name, pass.program.last_stage(), format, pass.steps, texels_written(pass), format.bytes_per_texel});
+  }
+  return passes;
 }
 
 std::int64_t MapPasses::bytes(const gl::Program& reader) const {

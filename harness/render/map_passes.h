@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "harness/render/drawn_pass.h"
 #include "harness/render/image_target.h"
 #include "harness/render/light_setup.h"
 #include "harness/render/prefilter.h"
@@ -51,6 +52,7 @@ class MapPasses {
 
   int passes() const;                                   ///< of all steps
   std::int64_t texels_written() const;                  ///< by all steps
+  std::vector<DrawnPass> list_passes() const;           ///< in their order; each reads as many bytes as it writes
   std::int64_t bytes(const gl::Program& reader) const;  ///< of the maps that a program reads
 
  private:
@@ -69,6 +71,7 @@ class MapPasses {
 
   int side(const filters::PassSpec& spec) const { return spec.half ? map_size_ / 2 : map_size_; }
   int count_steps(const filters::PassSpec& spec) const;
+  std::int64_t texels_written(const Pass& pass) const;
   void check_reads(std::size_t pass) const;
   PassMap make_map(const filters::PassSpec& spec) const;
   [[noreturn]] void fail(const filters::PassSpec& spec, const std::string& message) const;

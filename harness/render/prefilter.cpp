@@ -160,4 +160,12 @@ std::int64_t Prefilter::texels_written() const {
   return (passes() + (samples_ ? samples_->count - 1 : 0)) * side * side;
 }
 
+std::vector<DrawnPass> Prefilter::list_passes(int depth_bytes) const {
+  const gl::PixelFormat& format = stored_->texture().format();
+  const std::int64_t texels = std::int64_t{1} * stored_->texture().width() * stored_->texture().width();
+  std::vector<DrawnPass> passes = {{"encode", encode_.last_stage(), format, 1, texels, depth_bytes}};
+  if (radius_ > 0) passes.push_back({"blur", blur_->last_stage(), format, 2, 2 * texels, format.bytes_per_texel});
+  return passes;
+}
+
 }  // namespace shadowbench::render

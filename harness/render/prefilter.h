@@ -8,6 +8,7 @@
 #include "filters/catalogue.h"
 #include "harness/gl/fullscreen.h"
 #include "harness/gl/objects.h"
+#include "harness/render/drawn_pass.h"
 #include "harness/render/image_target.h"
 #include "harness/render/light_setup.h"
 #include "harness/render/shader_library.h"
@@ -64,6 +65,9 @@ class Prefilter {
   std::int64_t bytes() const { return static_cast<std::int64_t>(stored_->texture().bytes()); }
   GLenum format() const { return stored_->texture().format().internal_format; }
   std::int64_t texels_written() const;
+
+  /// Encode, and blur where there is one; `depth_bytes` are those of a texel of the depth map.
+  std::vector<DrawnPass> list_passes(int depth_bytes) const;
 
  private:
   /// The depth map once more, with several samples a texel.

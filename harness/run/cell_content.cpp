@@ -21,6 +21,12 @@ void add_options(ContentHash& hash, const options::RunOptions& options) {
   hash.add(fmt::format("radius {} reference {} border page {}", measure::widest_kernel_texels(options),
                        options.reference.label(), options.border_page));
   hash.add(fmt::format("lights {} phases {}", fmt::join(options.lights, " "), options.phases));
+  for (const gpu::Gpu& gpu : options.gpus) {
+    hash.add(gpu.name + " " + gpu.driver);
+    gpu::visit_constants(gpu, [&](const char*, const gpu::Constant& constant) {
+      hash.add_values(std::span<const double>(&constant.value, 1));
+    });
+  }
 }
 
 void add_material(ContentHash& hash, const scene::Material& m) {

@@ -97,6 +97,7 @@ class Experiment {
   TaskListener listener_{[this](const std::string& what) { progress_.show(done_, what); },
                          [this](const std::string& message) { progress_.note(message); },
                          [this](const measure::SceneMeasurement& measured) { count(measured); }};
+  GpuCosts gpus_{options_, listener_.note};
 
   void measure(const RunPlan& plan) {
     const std::vector<records::CellRecord> replaced = read_replaced();
@@ -281,7 +282,7 @@ class Experiment {
     for (const PlannedTask& each : plan.tasks) {
       if (each.scene != index || each.task.filters.empty()) continue;
       if (!assets) assets.emplace(renderer_, planned.options, planned.scene, cache_, measure::padding_texels(options_));
-      TaskRun(renderer_, planned, each, *assets, run_.gl, listener_).run();
+      TaskRun(renderer_, planned, each, *assets, run_.gl, listener_, gpus_).run();
     }
   }
 };

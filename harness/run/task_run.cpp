@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "harness/measure/filter_setup.h"
+#include "harness/measure/layer_truth.h"
 #include "harness/measure/suspects.h"
 #include "harness/render/shade_pass.h"
 #include "harness/run/border_page.h"
@@ -23,14 +25,16 @@ constexpr std::size_t kFiltersAtOnce = 8;
 }  // namespace
 
 TaskRun::TaskRun(measure::Renderer& renderer, const PlannedScene& planned, const PlannedTask& task,
-                 measure::SceneAssets& assets, const records::GlRecord& gl, const TaskListener& listener)
+                 measure::SceneAssets& assets, const records::GlRecord& gl, const TaskListener& listener,
+                 GpuCosts& gpus)
     : renderer_(renderer),
       options_(planned.options),
       planned_(planned),
       task_(task.task),
       assets_(assets),
       gl_(gl),
-      listener_(listener) {
+      listener_(listener),
+      gpus_(gpus) {
   for (std::size_t i = 0; i < task_.filters.size(); ++i)
     contents_[measure::make_record(options_, task_, task_.filters[i]).key] = task.contents[i];
 }
@@ -74,6 +78,8 @@ void TaskRun::run_group(const Requests& built_in, const Requests& of_users) {
     score(measured);
     measure_coverage(measured);
   }
+  show("GPUs");
+  gpus_.add_to(measured.cells);
   show("pictures");
   write_images(task_of(all), measured);
   write_cells(measured);

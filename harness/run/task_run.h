@@ -9,6 +9,7 @@
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/map_coverage.h"
 #include "harness/measure/scene_assets.h"
+#include "harness/run/gpu_costs.h"
 #include "harness/run/run_plan.h"
 #include "report/records/records.h"
 
@@ -26,7 +27,7 @@ class TaskRun {
  public:
   /// Everything must outlive this object.
   TaskRun(measure::Renderer& renderer, const PlannedScene& planned, const PlannedTask& task,
-          measure::SceneAssets& assets, const records::GlRecord& gl, const TaskListener& listener);
+          measure::SceneAssets& assets, const records::GlRecord& gl, const TaskListener& listener, GpuCosts& gpus);
 
   /// With grids all cells are measured, drawn and written together; without, a few at a time, each written as soon as
   /// it is finished. Users' filters come first, so that a mistake in one is heard of at once. Throws Error; cells
@@ -43,6 +44,7 @@ class TaskRun {
   measure::SceneAssets& assets_;
   const records::GlRecord& gl_;
   const TaskListener& listener_;
+  GpuCosts& gpus_;
   std::map<std::string, std::string> contents_;  ///< by key
   std::optional<measure::CellAnalyser> analyser_;
   std::optional<measure::MapCoverage> coverage_;

@@ -19,22 +19,6 @@
 namespace shadowbench::run {
 namespace {
 
-/// A folder that goes with its object.
-class TemporaryFolder {
- public:
-  explicit TemporaryFolder(std::filesystem::path path) : path_(std::move(path)) {}
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 std::string request_text(const filters::FilterRequest& request) {
   std::string text = request.spec.id;
   char separator = ':';
@@ -72,6 +56,9 @@ std::vector<std::string> worker_arguments(const options::RunOptions& options, co
                                         "--out",         folder.string()};
   const auto add = [&](std::vector<std::string> more) { std::ranges::move(more, std::back_inserter(arguments)); };
   add(round_arguments(options.rounds));
+  std::vector<std::string> gpus;
+  for (const gpu::Gpu& gpu : options.gpus) gpus.push_back(gpu.name);
+  add({"--gpu", gpus.empty() ? "none" : fmt::format("{}", fmt::join(gpus, ","))});
   if (options.ground) add({"--ground"});
   if (!task.scene->light.name.empty()) add({"--light-name", task.scene->light.name});
   if (options.stability) add({"--stability"});
@@ -82,15 +69,6 @@ std::vector<std::string> worker_arguments(const options::RunOptions& options, co
   if (!options.lights.empty()) add({"--lights", fmt::format("{}", fmt::join(options.lights, ","))});
   for (const std::string& bias : options.bias_texts) add({"--bias", bias});
   return arguments;
-}
-
-/// The worker's message without the program's name in front.
-std::string clean(const std::string& text) {
-  const std::string prefix = "shadowbench: ";
-  const std::size_t begin = text.find(prefix);
-  std::string message = begin == std::string::npos ? text : text.substr(begin + prefix.size());
-  while (!message.empty() && message.back() == '\n') message.pop_back();
-  return message.empty() ? "no message" : message;
 }
 
 measure::MeasuredCell failed_cell(const options::RunOptions& options, const measure::SceneTask& task,
@@ -105,10 +83,12 @@ measure::MeasuredCell failed_cell(const options::RunOptions& options, const meas
   } else {
     cell.record.status = records::CellStatus::kCrashed;
     cell.record.message =
-        outcome.signal ? fmt::format("killed by signal {} ({})", outcome.signal, strsignal(outcome.signal))
-                       : fmt::format("ended with exit code {}: {}", *outcome.exit_code, clean(outcome.error_text));
+        outcome.signal
+            ? fmt::format("killed by signal {} ({})", outcome.signal, strsignal(outcome.signal))
+            : fmt::format("ended with exit code {}: {}", *outcome.exit_code, clean_message(outcome.error_text));
   }
-  for (const char* group : {"time_ms", "ratio_to_none", "lights", "cost", "receivers", "nan", "stability", "images"})
+  for (const char* group :
+       {"time_ms", "ratio_to_none", "lights", "cost", "receivers", "nan", "stability", "images", "gpu"})
     cell.record.absent[group] = cell.record.message;
   return cell;
 }
@@ -151,7 +131,7 @@ measure::MeasuredCell measure_user_filter(const options::RunOptions& options, co
   if (outcome.exit_code == 0) return read_cell(options, task, request, folder.path());
   const int code = outcome.exit_code.value_or(0);
   if (code >= static_cast<int>(ErrorKind::kUsage) && code <= static_cast<int>(ErrorKind::kOutput))
-    throw Error(static_cast<ErrorKind>(code), clean(outcome.error_text));
+    throw Error(static_cast<ErrorKind>(code), clean_message(outcome.error_text));
   return failed_cell(options, task, request, outcome);
 }
 

@@ -41,10 +41,7 @@ pid_t spawn_self(const std::vector<std::string>& arguments, int error_write_end)
   const int error = posix_spawn(&pid, "/proc/self/exe", &files, &attributes, argv.data(), environ);
   posix_spawn_file_actions_destroy(&files);
   posix_spawnattr_destroy(&attributes);
-  if (error != 0) {
-    throw Error(ErrorKind::kOutput,
-                fmt::format("cannot start a process for a user's filter: {}", std::strerror(error)));
-  }
+  if (error != 0) throw Error(ErrorKind::kOutput, fmt::format("cannot start a process: {}", std::strerror(error)));
   return pid;
 }
 
@@ -71,10 +68,18 @@ WorkerText read_until(int fd, Clock::time_point deadline) {
 
 }  // namespace
 
+std::string clean_message(const std::string& text) {
+  const std::string prefix = "shadowbench: ";
+  const std::size_t begin = text.find(prefix);
+  std::string message = begin == std::string::npos ? text : text.substr(begin + prefix.size());
+  while (!message.empty() && message.back() == '\n') message.pop_back();
+  return message.empty() ? "no message" : message;
+}
+
 WorkerOutcome run_worker(const std::vector<std::string>& arguments, double timeout_s) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
-    throw Error(ErrorKind::kOutput, fmt::format("cannot make a pipe for a user's filter: {}", std::strerror(errno)));
+    throw Error(ErrorKind::kOutput, fmt::format("cannot make a pipe for a process: {}", std::strerror(errno)));
   const auto deadline = Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(timeout_s * 1000.0));
   const pid_t pid = spawn_self(arguments, ends[1]);
   close(ends[1]);

@@ -14,6 +14,9 @@ struct WorkerOutcome {
   std::string error_text = {};  ///< what it wrote to standard error
 };
 
+/// A worker's message without the program's name in front.
+std::string clean_message(const std::string& text);
+
 /// Runs this same program with other arguments in a process group of its own, and kills it after `timeout_s` seconds.
 /// Its standard output is thrown away.
 /// Throws Error(kOutput) when no process can be started.

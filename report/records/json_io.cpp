@@ -51,6 +51,15 @@ bool is_finite(const std::vector<LightCountRecord>& value) {
       });
 }
 
+bool is_finite(const GpuRecords& value) {
+  return std::ranges::all_of(
+      value,
+      [](const auto& each) {
+        const auto& estimate = each.second.estimate;
+        return !estimate || (std::isfinite(estimate->total_us) && std::isfinite(estimate->memory_us.value_or(0.0)));
+      });
+}
+
 // Writes each visited field into one JSON object and notes the nulls.
 struct FieldWriter {
   json& root;

@@ -82,6 +82,38 @@ json value_json(const std::vector<LightCountRecord>& value) {
   return result;
 }
 
+json value_json(const GpuEstimateRecord& value) {
+  json parts = {{"lookup", value.lookup_us},
+                {"prefilter", value.prefilter_us},
+                {"arithmetic", value.arithmetic_us},
+                {"sampling", value.sampling_us},
+                {"memory", nullptr}};
+  if (value.memory_us) parts["memory"] = *value.memory_us;
+  return parts;
+}
+
+json value_json(const GpuRecords& value) {
+  json result = json::object();
+  for (const auto& [name, gpu] : value) {
+    json& written = result[name] = {{"facts", json::array()},
+                                    {"estimate_us", nullptr},
+                                    {"parts_us", nullptr},
+                                    {"bound_by", nullptr},
+                                    {"refused", nullptr}};
+    for (const GpuPassRecord& pass : gpu.facts) {
+      json facts = {{"pass", pass.pass}, {"draws", pass.draws}};
+      visit_facts(pass.facts, [&](const char* key, int count) { facts[key] = count; });
+      written["facts"].push_back(std::move(facts));
+    }
+    if (!gpu.refused.empty()) written["refused"] = gpu.refused;
+    if (!gpu.estimate) continue;
+    written["estimate_us"] = gpu.estimate->total_us;
+    written["parts_us"] = value_json(*gpu.estimate);
+    written["bound_by"] = gpu.estimate->bound_by;
+  }
+  return result;
+}
+
 json value_json(const ParamMap& value) {
   json result = json::object();
   for (const auto& [name, param] : value)
@@ -185,6 +217,37 @@ std::vector<LightCountRecord> read_value(const json& json) {
                       read_value<Ratio>(ratio.at("moving")), read_value<std::int64_t>(each.at("maps_bytes"))});
   }
   return lights;
+}
+
+GpuEstimateRecord read_estimate(const json& gpu) {
+  const json& parts = gpu.at("parts_us");
+  GpuEstimateRecord estimate;
+  estimate.total_us = read_value<double>(gpu.at("estimate_us"));
+  estimate.lookup_us = read_value<double>(parts.at("lookup"));
+  estimate.prefilter_us = read_value<double>(parts.at("prefilter"));
+  estimate.arithmetic_us = read_value<double>(parts.at("arithmetic"));
+  estimate.sampling_us = read_value<double>(parts.at("sampling"));
+  if (!parts.at("memory").is_null()) estimate.memory_us = read_value<double>(parts.at("memory"));
+  estimate.bound_by = read_value<std::string>(gpu.at("bound_by"));
+  return estimate;
+}
+
+template <>
+GpuRecords read_value(const json& json) {
+  require(json.is_object(), "an object");
+  GpuRecords records;
+  for (const auto& [name, gpu] : json.items()) {
+    GpuRecord& record = records[name];
+    require(gpu.at("facts").is_array(), "an array");
+    for (const auto& each : gpu.at("facts")) {
+      GpuPassRecord pass{read_value<std::string>(each.at("pass")), read_value<int>(each.at("draws")), {}};
+      visit_facts(pass.facts, [&](const char* key, int& count) { count = read_value<int>(each.at(key)); });
+      record.facts.push_back(std::move(pass));
+    }
+    if (!gpu.at("refused").is_null()) record.refused = read_value<std::string>(gpu.at("refused"));
+    if (!gpu.at("estimate_us").is_null()) record.estimate = read_estimate(gpu);
+  }
+  return records;
 }
 
 template <>

@@ -41,6 +41,7 @@ nlohmann::json value_json(const Interval& value);
 nlohmann::json value_json(const OwnTime& value);
 nlohmann::json value_json(const Ratio& value);
 nlohmann::json value_json(const std::vector<LightCountRecord>& value);
+nlohmann::json value_json(const GpuRecords& value);
 nlohmann::json value_json(const ParamMap& value);
 nlohmann::json value_json(const BiasRecord& value);
 nlohmann::json value_json(const std::map<std::string, std::string>& value);

@@ -9,12 +9,12 @@
 namespace shadowbench::records {
 
 /// Names the fields that older files of this schema version lack; they are read as null or empty there.
-inline constexpr std::array<std::string_view, 19> kLaterFields = {
+inline constexpr std::array<std::string_view, 20> kLaterFields = {
     "time_ms.empty",       "error.rmse_ci95",    "phases",        "time_ms.filter",
     "time_ms.moving",      "images.parts",       "images.values", "images.truth_picture",
     "images.truth_values", "work.attribution_s", "claims",        "lights",
     "repeat.cells",        "repeat.overlapping", "repeat.of",     "suspect_of",
-    "kernel.sigma_texels", "kernel.class",       "teaching"};
+    "kernel.sigma_texels", "kernel.class",       "teaching",      "gpu"};
 
 /// Calls `visit(name, value)` for every field of a bias.
 template <class Bias, class Visitor>
@@ -79,6 +79,7 @@ void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("ratio_to_none.static", cell.ratio_to_none.static_map);
   visit("ratio_to_none.moving", cell.ratio_to_none.moving);
   visit("lights", cell.lights);
+  visit("gpu", cell.gpu);
   visit("images.picture", cell.images.picture);
   visit("images.visibility", cell.images.visibility);
   visit("images.depth_map", cell.images.depth_map);

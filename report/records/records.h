@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "reference/metrics/metric_values.h"
+#include "report/records/gpu_record.h"
 
 namespace shadowbench::records {
 
@@ -164,6 +165,7 @@ struct CellRecord : metrics::MetricValues {
   TimeRecord time_ms;
   RatioRecord ratio_to_none;
   std::optional<std::vector<LightCountRecord>> lights;  ///< by ascending count
+  std::optional<GpuRecords> gpu;                        ///< what the cell costs on GPUs that were not there
   ImagesRecord images;
   std::vector<std::string> warnings;  ///< for people: what makes this cell's numbers doubtful
   std::map<std::string, std::string> absent;

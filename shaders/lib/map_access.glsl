@@ -9,6 +9,7 @@ uniform float map_texel_uv;                                      // 1 / map size
 
 #ifdef COUNT_FETCHES
 int fetch_count = 0;
+vec2 wide_fetches = vec2(0.0);  // of fetch_count, those of texels of 64 and of 128 bits
 float fetch_reach = 0.0;  // texels on either axis from the receiver to the centre of the farthest texel that was read
 vec2 counted_uv;          // the receiver's own: a filter may move the uv of its copy
 
@@ -21,20 +22,22 @@ bool count_turn(int loop, bool goes_on) {
   return goes_on;
 }
 
-void count_fetch(vec2 uv, vec2 offset_texels, float to_centre_texels) {
+void count_fetch(vec2 uv, vec2 offset_texels, float to_centre_texels, int texel_bits) {
   ++fetch_count;
+  wide_fetches += vec2(texel_bits == 64, texel_bits == 128);
   vec2 offset = abs((uv - counted_uv) / map_texel_uv + offset_texels);
   fetch_reach = max(fetch_reach, max(offset.x, offset.y) + to_centre_texels);
 }
-#define COUNT_FETCH(r, offset_texels, to_centre_texels) count_fetch(r.uv, offset_texels, to_centre_texels)
+#define COUNT_FETCH(r, offset_texels, to_centre_texels, texel_bits) \
+  count_fetch(r.uv, offset_texels, to_centre_texels, texel_bits)
 #define COUNT_GATHER(r, offset_texels) \
-  count_fetch(r.uv, floor(r.uv / map_texel_uv + offset_texels - 0.5) + 1.0 - r.uv / map_texel_uv, 0.5)
-#define COUNT_LOAD(place_texels, to_centre_texels) \
-  count_fetch(vec2(0.0), place_texels, to_centre_texels)
+  count_fetch(r.uv, floor(r.uv / map_texel_uv + offset_texels - 0.5) + 1.0 - r.uv / map_texel_uv, 0.5, 32)
+#define COUNT_LOAD(place_texels, to_centre_texels, texel_bits) \
+  count_fetch(vec2(0.0), place_texels, to_centre_texels, texel_bits)
 #else
-#define COUNT_FETCH(r, offset_texels, to_centre_texels)
+#define COUNT_FETCH(r, offset_texels, to_centre_texels, texel_bits)
 #define COUNT_GATHER(r, offset_texels)
-#define COUNT_LOAD(place_texels, to_centre_texels)
+#define COUNT_LOAD(place_texels, to_centre_texels, texel_bits)
 #endif
 
 #ifdef RECEIVER_PLANE
@@ -91,19 +94,19 @@ mat2 texels_per_pixel(Receiver r) {
 }
 
 float compare_nearest(Receiver r, vec2 offset_texels, float z) {
-  COUNT_FETCH(r, offset_texels, 0.5);
+  COUNT_FETCH(r, offset_texels, 0.5, 32);
   float reference = store_depth(nearest_depth(r, offset_texels, z));
   return texture(map_compare_nearest, vec3(r.uv + offset_texels * map_texel_uv, reference));
 }
 
 float compare_2x2(Receiver r, vec2 offset_texels, float z) {
-  COUNT_FETCH(r, offset_texels, 1.0);
+  COUNT_FETCH(r, offset_texels, 1.0, 32);
   float reference = store_depth(corner_depth(r, offset_texels, z));
   return texture(map_compare, vec3(r.uv + offset_texels * map_texel_uv, reference));
 }
 
 float fetch_depth(Receiver r, vec2 offset_texels) {
-  COUNT_FETCH(r, offset_texels, 0.5);
+  COUNT_FETCH(r, offset_texels, 0.5, 32);
   return linear_depth(texture(map_depth, r.uv + offset_texels * map_texel_uv).r);
 }
 
@@ -122,18 +125,18 @@ vec4 gather_depth(Receiver r, vec2 offset_texels) {
 }
 
 vec4 fetch_map(Receiver r, vec2 offset_texels) {
-  COUNT_FETCH(r, offset_texels, STORED_REACH_TEXELS);
+  COUNT_FETCH(r, offset_texels, STORED_REACH_TEXELS, STORED_BITS);
   return texture(map_stored, r.uv + offset_texels * map_texel_uv);
 }
 
 // A texel of the depth map, linear in [0,1], and one of the encoded map; (0, 0) is the lower left, and outside the map
 // its edge is repeated. For passes.
 float load_depth(ivec2 texel) {
-  COUNT_LOAD(vec2(texel) + 0.5, 0.0);
+  COUNT_LOAD(vec2(texel) + 0.5, 0.0, 32);
   return linear_depth(texelFetch(map_depth, clamp(texel, ivec2(0), textureSize(map_depth, 0) - 1), 0).r);
 }
 
 vec4 load_map(ivec2 texel) {
-  COUNT_LOAD(vec2(texel) + 0.5, STORED_REACH_TEXELS - 1.0);
+  COUNT_LOAD(vec2(texel) + 0.5, STORED_REACH_TEXELS - 1.0, STORED_BITS);
   return texelFetch(map_stored, clamp(texel, ivec2(0), textureSize(map_stored, 0) - 1), 0);
 }

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "harness/gl/shader_source.h"
+#include "report/records/gpu_record.h"
+
+namespace shadowbench::gpu {
+
+/// A full-screen pass to compile: its fragment shader, and the OpenGL format that it draws into.
+struct PassSource {
+  gl::ShaderSource fragment;
+  std::string format;  ///< "r32f"
+};
+
+/// What a process is to compile for one GPU.
+struct FactsRequest {
+  std::string family;           ///< what RADV calls the GPU's family
+  std::filesystem::path cache;  ///< folder that keeps facts between runs; empty: none does
+  std::vector<PassSource> passes;
+};
+
+/// The facts of one pass, or why there are none: Vulkan refuses its GLSL, or the driver does.
+struct FactsAnswer {
+  records::ShaderFacts facts;
+  std::string refused;  ///< empty where there are facts
+};
+
+void write_request(const std::filesystem::path& file, const FactsRequest& request);
+
+/// Compiles what a file asks for, or takes it from the cache, and appends one line per pass to `answers`, so that those
+/// before a crash of the driver are kept.
+/// Throws Error(kContext) where there is no compiler for the family, Error(kInput) for a file that is no request.
+void answer_request(const std::filesystem::path& request, const std::filesystem::path& answers);
+
+/// Reads what a process wrote until it ended, be it in the middle; in the order of the request's passes.
+std::vector<FactsAnswer> read_answers(const std::filesystem::path& answers);
+
+}  // namespace shadowbench::gpu

@@ -1,0 +1,61 @@
+#include "harness/gpu/gpu.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "filters/base/nearest_name.h"
+#include "harness/scene/toml_reader.h"
+
+namespace shadowbench::gpu {
+namespace {
+
+Constant read_constant(const scene::TomlTable& file, const char* key) {
+  const auto table = file.table(key);
+  if (!table) throw file.error(key, fmt::format("the table [{}] is missing; it holds a value and its source", key));
+  table->require_known_keys({"value", "source"});
+  return {table->number("value", scene::kPositive), table->string("source")};
+}
+
+}  // namespace
+
+Gpu load_gpu(const std::filesystem::path& file) {
+  const toml::table root = scene::parse_toml_file(file);
+  const scene::TomlTable table(root, "the GPU's file", file.string());
+  Gpu gpu;
+  std::vector<std::string> keys = {"title", "driver"};
+  visit_constants(gpu, [&](const char* key, const Constant&) { keys.emplace_back(key); });
+  table.require_known_keys(keys);
+  gpu.name = file.stem().string();
+  gpu.title = table.string("title");
+  gpu.driver = table.string("driver");
+  visit_constants(gpu, [&](const char* key, Constant& constant) { constant = read_constant(table, key); });
+  return gpu;
+}
+
+std::vector<Gpu> load_gpus(const std::filesystem::path& folder) {
+  std::vector<Gpu> gpus;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().extension() == ".toml") gpus.push_back(load_gpu(entry.path()));
+  std::ranges::sort(gpus, {}, &Gpu::name);
+  return gpus;
+}
+
+std::vector<Gpu> choose_gpus(const std::vector<Gpu>& all, const std::vector<std::string>& names) {
+  if (names == std::vector<std::string>{"none"}) return {};
+  std::vector<std::string> known = {"none"};
+  for (const Gpu& gpu : all) known.push_back(gpu.name);
+  std::vector<Gpu> chosen;
+  for (const std::string& name : names) {
+    const auto found = std::ranges::find(all, name, &Gpu::name);
+    if (found == all.end())
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("--gpu: '{}' is no GPU that is described{}", name, did_you_mean_or_known(name, known)));
+    if (std::ranges::find(chosen, name, &Gpu::name) != chosen.end())
+      throw Error(ErrorKind::kUsage, fmt::format("--gpu: '{}' is named twice; name each GPU once", name));
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+}  // namespace shadowbench::gpu

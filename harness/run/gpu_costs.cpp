@@ -1,0 +1,120 @@
+#include "harness/run/gpu_costs.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "filters/base/error.h"
+#include "filters/base/temporary_files.h"
+#include "harness/gpu/estimate.h"
+#include "harness/run/worker_process.h"
+
+namespace shadowbench::run {
+namespace {
+
+/// How long one process may compile.
+constexpr double kTimeout_s = 60.0;
+
+std::string name_pass(const render::DrawnPass& pass) {
+  return std::string(pass.target.name) + "\n" + pass.fragment.text;
+}
+
+std::vector<const render::DrawnPass*> list_passes(const measure::MeasuredCell& cell) {
+  std::vector<const render::DrawnPass*> passes = {&cell.empty_lookup};
+  for (const render::DrawnPass& pass : cell.passes) passes.push_back(&pass);
+  return passes;
+}
+
+std::string describe_end(const WorkerOutcome& outcome) {
+  if (outcome.timed_out) return fmt::format("the driver did not finish in {:g} s", kTimeout_s);
+  return fmt::format("the driver crashed: signal {} ({})", outcome.signal, strsignal(outcome.signal));
+}
+
+gpu::Reads find_reads(const render::FilterCost& cost, const records::ShaderFacts& lookup,
+                      const records::ShaderFacts& empty) {
+  if (cost.fetches) return {*cost.fetches - cost.fetches_64 - cost.fetches_128, cost.fetches_64, cost.fetches_128};
+  // A filter that reads samplers itself is not counted while it draws: what stands in its code is what there is.
+  const auto count = [](const records::ShaderFacts& facts) {
+    return facts.samples + facts.compares + facts.gathers + facts.loads;
+  };
+  return {static_cast<double>(std::max(0, count(lookup) - count(empty))), 0.0, 0.0};
+}
+
+}  // namespace
+
+void GpuCosts::add_to(std::vector<measure::MeasuredCell>& cells) {
+  for (const gpu::Gpu& gpu : options_.gpus) {
+    if (!refused_.contains(gpu.name)) compile(gpu, cells);
+    for (measure::MeasuredCell& cell : cells) {
+      if (cell.passes.empty()) continue;
+      if (!cell.record.gpu) cell.record.gpu.emplace();
+      (*cell.record.gpu)[gpu.name] = make_record(gpu, cell);
+    }
+  }
+  if (!options_.gpus.empty()) return;
+  for (measure::MeasuredCell& cell : cells) cell.record.absent["gpu"] = "the run was made with --gpu none";
+}
+
+/// After a crash the passes behind the one that crashed are given to a new process.
+void GpuCosts::compile(const gpu::Gpu& gpu, const std::vector<measure::MeasuredCell>& cells) {
+  Answers& known = answers_[gpu.name];
+  std::map<std::string, const render::DrawnPass*> wanted;
+  for (const measure::MeasuredCell& cell : cells) {
+    if (cell.passes.empty()) continue;
+    for (const render::DrawnPass* pass : list_passes(cell))
+      if (const std::string name = name_pass(*pass); !known.contains(name)) wanted.emplace(name, pass);
+  }
+  const TemporaryFolder folder(make_temporary_folder_path(options_.out, "gpu"));
+  while (!wanted.empty()) {
+    const auto request = folder.path() / fmt::format("{}.request.json", wanted.size());
+    const auto answers = folder.path() / fmt::format("{}.answers.json", wanted.size());
+    gpu::FactsRequest asked{gpu.driver, options_.cache, {}};
+    for (const auto& [name, pass] : wanted) asked.passes.push_back({pass->fragment, std::string(pass->target.name)});
+    gpu::write_request(request, asked);
+    const WorkerOutcome outcome = run_worker({"gpu-facts", request.string(), answers.string()}, kTimeout_s);
+    const bool has_ended = outcome.exit_code.has_value();
+    if (has_ended && *outcome.exit_code != 0) {
+      refused_[gpu.name] = clean_message(outcome.error_text);
+      note_(fmt::format("note: no costs on {}: {}", gpu.name, refused_[gpu.name]));
+      return;
+    }
+    for (gpu::FactsAnswer& answer : gpu::read_answers(answers)) {
+      if (wanted.empty()) break;
+      known.emplace(wanted.begin()->first, std::move(answer));
+      wanted.erase(wanted.begin());
+    }
+    if (wanted.empty()) return;
+    known.emplace(wanted.begin()->first, gpu::FactsAnswer{{}, describe_end(outcome)});
+    wanted.erase(wanted.begin());
+  }
+}
+
+records::GpuRecord GpuCosts::make_record(const gpu::Gpu& gpu, const measure::MeasuredCell& cell) const {
+  records::GpuRecord record;
+  if (const auto refused = refused_.find(gpu.name); refused != refused_.end()) {
+    record.refused = refused->second;
+    return record;
+  }
+  gpu::FilterWork work;
+  for (const render::DrawnPass* pass : list_passes(cell)) {
+    const gpu::FactsAnswer& answer = answers_.at(gpu.name).at(name_pass(*pass));
+    if (!answer.refused.empty()) {
+      record.facts.clear();
+      record.refused = fmt::format("{}: {}", pass->name, answer.refused);
+      return record;
+    }
+    record.facts.push_back({pass->name, pass->draws, answer.facts});
+    if (pass == &cell.empty_lookup)
+      work.empty = answer.facts;
+    else if (pass == &cell.passes.front())
+      work.lookup = answer.facts;
+    else
+      work.prefilter.push_back(
+          {answer.facts, static_cast<double>(pass->texels), pass->target.bytes_per_texel, pass->read_bytes});
+  }
+  work.reads = find_reads(cell.cost, work.lookup, work.empty);
+  record.estimate = gpu::estimate(gpu, work);
+  return record;
+}
+
+}  // namespace shadowbench::run

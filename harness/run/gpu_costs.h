@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "harness/gpu/facts_request.h"
+#include "harness/measure/scene_measurement.h"
+#include "harness/options/options.h"
+
+namespace shadowbench::run {
+
+/// What a run's filters cost on the GPUs that it names, by compiling their passes in a process of its own: a driver
+/// that crashes costs the facts of one pass.
+class GpuCosts {
+ public:
+  /// `note` hears, once, why a GPU has no facts. Both must outlive this object.
+  GpuCosts(const options::RunOptions& options, const std::function<void(const std::string&)>& note)
+      : options_(options), note_(note) {}
+
+  /// Fills the records' `gpu`. Cells that have no passes keep what they have: a user's filter brings its own.
+  void add_to(std::vector<measure::MeasuredCell>& cells);
+
+ private:
+  using Answers = std::map<std::string, gpu::FactsAnswer>;  ///< by what the pass is made of
+
+  const options::RunOptions& options_;
+  const std::function<void(const std::string&)>& note_;
+  std::map<std::string, Answers> answers_;      ///< by GPU
+  std::map<std::string, std::string> refused_;  ///< by GPU: why it compiles nothing
+
+  void compile(const gpu::Gpu& gpu, const std::vector<measure::MeasuredCell>& cells);
+  records::GpuRecord make_record(const gpu::Gpu& gpu, const measure::MeasuredCell& cell) const;
+};
+
+}  // namespace shadowbench::run
