@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -45,9 +46,17 @@ double parse_limit(const std::string& text, const char* option) {
 
 const std::map<std::string, analysis::LightMotion> kLights = {{"moving", analysis::LightMotion::kMoving},
                                                               {"static", analysis::LightMotion::kStatic}};
-const std::map<std::string, analysis::CostKind> kCosts = {{"time", analysis::CostKind::kTime},
-                                                          {"bytes", analysis::CostKind::kBytes},
-                                                          {"fetches", analysis::CostKind::kFetches}};
+constexpr const char* kGpuPrefix = "gpu:";
+
+analysis::CostKind parse_cost(const std::string& text) {
+  using Cost = analysis::CostKind;
+  static const std::map<std::string, Cost::Kind> kCosts = {
+      {"time", Cost::kTime}, {"bytes", Cost::kBytes}, {"fetches", Cost::kFetches}};
+  if (text.starts_with(kGpuPrefix)) return {Cost::kGpu, text.substr(std::strlen(kGpuPrefix))};
+  const auto found = kCosts.find(text);
+  if (found == kCosts.end()) fail(fmt::format("--cheapest: '{}' is not one of time, bytes, fetches, gpu:NAME", text));
+  return found->second;
+}
 
 std::map<std::string, std::vector<std::string>> list_claims() {
   std::map<std::string, std::vector<std::string>> claims;
@@ -65,7 +74,7 @@ AdviceRequest make_request(const AdviseArguments& arguments) {
   }
   for (const std::string& claim : arguments.claims) request.demands.push_back({nullptr, 0.0, claim});
   request.light = kLights.at(arguments.light);
-  request.cheapest = kCosts.at(arguments.cheapest);
+  request.cheapest = parse_cost(arguments.cheapest);
   request.scenes = arguments.scenes;
   request.width_class = arguments.width_class;
   if (!arguments.size.empty()) request.size = parse_picture_size(arguments.size);
@@ -118,8 +127,10 @@ Command make_advise_command() {
   command.add("--class", &a->width_class, "judge kernels of this class of width [any]").one_of(classes);
   command.add("--light", &a->light, "moving or static: whether every frame pays for map and prefilter")
       .one_of({"moving", "static"});
-  command.add("--cheapest", &a->cheapest, "the cost that is to be small: time, bytes or fetches")
-      .one_of({"time", "bytes", "fetches"});
+  command
+      .add("--cheapest", &a->cheapest,
+           "the cost that is to be small: time, bytes, fetches, or gpu:NAME, the estimate for a GPU of the run")
+      .such_as({"time", "bytes", "fetches"});
   add_json_option(command, a->json);
   command.action = [a](const CommandLine&) { return advise(*a); };
   return command;

@@ -11,6 +11,7 @@
 #include "harness/cli/commands.h"
 #include "harness/gl/survey/survey.h"
 #include "harness/gl/timer/timer.h"
+#include "harness/gpu/gpu.h"
 #include "harness/options/options.h"
 #include "harness/scene/load.h"
 #include "report/records/format.h"
@@ -146,6 +147,21 @@ int list_metrics(const ListArguments& arguments) {
   return 0;
 }
 
+int list_gpus(const ListArguments& arguments) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const gpu::Gpu& gpu : gpu::load_gpus(options::find_resources().gpus)) {
+    nlohmann::json& each =
+        json.emplace_back(nlohmann::json{{"name", gpu.name}, {"title", gpu.title}, {"driver", gpu.driver}});
+    if (!arguments.json) fmt::print("{}  {}\n", gpu.name, gpu.title);
+    gpu::visit_constants(gpu, [&](const char* key, const gpu::Constant& constant) {
+      each[key] = {{"value", constant.value}, {"source", constant.source}};
+      if (!arguments.json) fmt::print("  {:<14} {:<6} {}\n", key, constant.value, constant.source);
+    });
+  }
+  if (arguments.json) fmt::print("{}\n", json.dump(2));
+  return 0;
+}
+
 int list_gl(const ListArguments& arguments) {
   const gl::ContextChoice choice = gl::create_context(gl::parse_backend(arguments.backend));
   for (const std::string& reason : choice.refused) fmt::print("not used: {}\n", reason);
@@ -162,7 +178,7 @@ int list_gl(const ListArguments& arguments) {
 }  // namespace
 
 Command make_list_command() {
-  Command command{"list", "Show what there is: filters, scenes, metrics, or the OpenGL underneath"};
+  Command command{"list", "Show what there is: filters, scenes, metrics, GPUs, or the OpenGL underneath"};
   auto a = std::make_shared<ListArguments>();
   const auto add = [&](const char* name, const char* title, int (*show)(const ListArguments&)) {
     Command& sub = command.commands.emplace_back(Command{name, title});
@@ -172,6 +188,7 @@ Command make_list_command() {
   add("filters", "Filters with parameters, ranges, units and source", list_filters);
   add("scenes", "Built-in scenes", list_scenes);
   add("metrics", "Numbers that a run reports, with unit, range and definition", list_metrics);
+  add("gpus", "GPUs whose costs a run estimates, with the source of every number", list_gpus);
   add("gl", "The OpenGL context that a run would use", list_gl);
   command.commands.back().add("--measure", &a->measure, "what this GL really does, by experiment");
   add_backend_option(command.commands.back(), a->backend);

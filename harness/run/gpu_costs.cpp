@@ -48,7 +48,8 @@ void GpuCosts::add_to(std::vector<measure::MeasuredCell>& cells) {
     for (measure::MeasuredCell& cell : cells) {
       if (cell.passes.empty()) continue;
       if (!cell.record.gpu) cell.record.gpu.emplace();
-      (*cell.record.gpu)[gpu.name] = make_record(gpu, cell);
+      records::GpuRecord& record = (*cell.record.gpu)[gpu.name] = make_record(gpu, cell);
+      if (!record.refused.empty()) cell.record.absent["gpu." + gpu.name] = record.refused;
     }
   }
   if (!options_.gpus.empty()) return;

@@ -13,6 +13,7 @@
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
 #include "report/analysis/summary.h"
+#include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
 
@@ -269,9 +270,17 @@ void add_relaxations(Advice& advice, std::size_t demand) {
   }
 }
 
+void require_gpu(const std::vector<records::CellRecord>& cells, const std::string& gpu) {
+  const std::vector<std::string> known = list_gpus(cells);
+  if (known.empty()) throw Error(ErrorKind::kUsage, "the run has no costs on GPUs: run it again, with --gpu");
+  if (std::ranges::find(known, gpu) == known.end())
+    throw Error(ErrorKind::kUsage,
+                fmt::format("the run has no costs on '{}'{}", gpu, did_you_mean_or_known(gpu, known)));
+}
+
 }  // namespace
 
-std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& cells, CostKind kind,
+std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& cells, const CostKind& kind,
                                  LightMotion light) {
   const bool timed = kind == CostKind::kTime;
   double sum = 0.0;
@@ -292,7 +301,7 @@ std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& 
               ci95.size() == values.size() ? std::optional(combine(mean, values, ci95)) : std::nullopt};
 }
 
-CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, CostKind kind) {
+CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind) {
   const Cost &a = cheaper.cost, &b = dearer.cost;
   CostGap gap{b.mean - a.mean, a.mean > 0.0 ? (b.mean - a.mean) / a.mean : 0.0, b.mean <= a.mean, Basis::kExact};
   if (kind != CostKind::kTime) return gap;
@@ -305,6 +314,7 @@ CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, CostKin
 Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest& request) {
   for (const Demand& demand : request.demands)
     if (!demand.spec) require_claim(cells, request, demand.claim);
+  if (request.cheapest.kind == CostKind::kGpu) require_gpu(cells, request.cheapest.gpu);
   Advice advice;
   advice.request = request;
   const std::vector<const records::CellRecord*> chosen = choose_cells(cells, request, advice.teaching);

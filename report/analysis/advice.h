@@ -40,12 +40,12 @@ struct Verdict {
 /// frame_interval() gives it) adds up in quadrature, for the places are measured independently.
 struct Cost {
   double mean = 0.0;                      ///< arithmetic
-  records::Interval quartiles;            ///< of bytes and fetches: the mean twice
+  records::Interval quartiles;            ///< of all but times: the mean twice
   std::optional<records::Interval> ci95;  ///< of times alone; empty where a place has none
 };
 
 /// Measures what a configuration costs over `cells`, which are one or more; nothing where a cell has no value.
-std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& cells, CostKind kind,
+std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& cells, const CostKind& kind,
                                  LightMotion light);
 
 /// A configuration that was judged.
@@ -64,7 +64,7 @@ struct Unjudged {
 
 /// Which spread decided whether two costs differ.
 enum class Basis {
-  kExact,      ///< bytes and fetches have none
+  kExact,      ///< all but times have none
   kInterval,   ///< 95 % intervals, measured under the same circumstances
   kQuartiles,  ///< of the times, where circumstances differ or there is no interval
 };
@@ -78,7 +78,7 @@ struct CostGap {
 };
 
 /// Compares two costs. Requires that the mean of `cheaper` is not above that of `dearer`.
-CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, CostKind kind);
+CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind);
 
 /// How far one demand is in the way.
 struct Obstacle {
@@ -114,8 +114,8 @@ struct Advice {
 /// Filters for teaching are left out, and with a class of width those of others. A configuration that was not measured
 /// in a place, did not finish there, or lacks a value there is not judged. A value that has nothing to be measured on
 /// in some places, as is_nothing_to_see() says, is judged on the others, if there are any. Requires that `cells`
-/// outlive what is returned. Throws Error(kUsage) for a scene, class or picture size that the run does not have, or a
-/// claim that no filter makes; Error(kInput) where there is no cell.
+/// outlive what is returned. Throws Error(kUsage) for a scene, class, picture size or GPU that the run does not have,
+/// or a claim that no filter makes; Error(kInput) where there is no cell.
 Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest& request);
 
 }  // namespace shadowbench::analysis

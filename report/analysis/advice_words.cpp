@@ -147,13 +147,15 @@ void add_notes_of_nothing_to_see(std::vector<std::string>& notes, const Advice& 
 
 }  // namespace
 
-std::string format_cost(double value, CostKind kind, const records::GlRecord& gl) {
-  switch (kind) {
+std::string format_cost(double value, const CostKind& cost, const records::GlRecord& gl) {
+  switch (cost.kind) {
     case CostKind::kTime: return fmt::format("{} {}", records::format_number(value), records::time_unit(gl));
     case CostKind::kBytes: return fmt::format("{} bytes", records::format_number(value));
-    case CostKind::kFetches: break;
+    case CostKind::kFetches:
+      return fmt::format("{} {}", records::format_number(value), value == 1.0 ? "fetch" : "fetches");
+    case CostKind::kGpu: break;
   }
-  return fmt::format("{} {}", records::format_number(value), value == 1.0 ? "fetch" : "fetches");
+  return fmt::format("{} us estimated on {}", records::format_number(value), cost.gpu);
 }
 
 std::string format_limit(double value) {

@@ -8,7 +8,7 @@
 namespace shadowbench::analysis {
 
 /// Writes a cost for people, with its unit: "4.39 ms (CPU)", "4194304 bytes", "4 fetches".
-std::string format_cost(double value, CostKind kind, const records::GlRecord& gl);
+std::string format_cost(double value, const CostKind& cost, const records::GlRecord& gl);
 
 /// Writes a number that is no smaller than the value, with three significant digits: as a limit it lets the value pass.
 std::string format_limit(double value);

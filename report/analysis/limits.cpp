@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <vector>
 
 namespace shadowbench::analysis {
@@ -19,6 +20,13 @@ void add(records::Quartiles& sum, const records::Quartiles& pass) {
   sum.n = std::min(sum.n, pass.n);
 }
 
+std::optional<double> read_estimate(const records::CellRecord& cell, const std::string& gpu) {
+  if (!cell.gpu) return std::nullopt;
+  const auto found = cell.gpu->find(gpu);
+  if (found == cell.gpu->end() || !found->second.estimate) return std::nullopt;
+  return found->second.estimate->total_us;
+}
+
 const std::optional<records::OwnTime>& own_time(const records::CellRecord& cell, LightMotion light) {
   return light == LightMotion::kStatic ? cell.time_ms.filter : cell.time_ms.moving;
 }
@@ -27,6 +35,7 @@ const std::optional<records::OwnTime>& own_time(const records::CellRecord& cell,
 
 std::optional<double> LimitSpec::read(const records::CellRecord& cell, LightMotion light) const {
   if (metric) return metric->read(cell);
+  if (!gpu.empty()) return read_estimate(cell, gpu);
   const auto time = frame_time(cell, light);
   return time ? std::optional(time->median) : std::nullopt;
 }
@@ -46,13 +55,18 @@ std::span<const LimitSpec> limit_table() {
   return table;
 }
 
-const LimitSpec& cost_spec(CostKind kind) {
-  switch (kind) {
+const LimitSpec& cost_spec(const CostKind& cost) {
+  switch (cost.kind) {
     case CostKind::kTime: return find_spec("time_ms");
     case CostKind::kBytes: return find_spec("cost.map_bytes");
-    case CostKind::kFetches: break;
+    case CostKind::kFetches: return find_spec("cost.fetches");
+    case CostKind::kGpu: break;
   }
-  return find_spec("cost.fetches");
+  static std::map<std::string, LimitSpec> specs;
+  return specs
+      .try_emplace(cost.gpu, LimitSpec{"", fmt::format("gpu.{}.estimate_us", cost.gpu),
+                                       "estimated microseconds of a million receivers", nullptr, cost.gpu})
+      .first->second;
 }
 
 std::optional<records::Quartiles> frame_time(const records::CellRecord& cell, LightMotion light) {

@@ -12,15 +12,26 @@ namespace shadowbench::analysis {
 /// Which passes a frame pays for: map, prefilter and the filter's own lookup (moving), or that lookup alone (static).
 enum class LightMotion { kMoving, kStatic };
 
-/// What is to be cheap.
-enum class CostKind { kTime, kBytes, kFetches };
+/// What is to be cheap: the time of a frame, the maps' bytes, fetches, or the estimate for a GPU.
+struct CostKind {
+  enum Kind { kTime, kBytes, kFetches, kGpu };
+
+  // NOLINTNEXTLINE(google-explicit-constructor): a kind alone is a cost, but for GPUs
+  CostKind(Kind of = kTime, std::string on = {}) : kind(of), gpu(std::move(on)) {}
+
+  Kind kind;
+  std::string gpu;  ///< its name; empty but for kGpu
+
+  bool operator==(const CostKind&) const = default;
+};
 
 /// One number of a cell that may be limited; less is better.
 struct LimitSpec {
   std::string option;             ///< "--max-rmse"
   std::string field;              ///< of the record: "error.rmse"; "time_ms" for a sum over passes
   std::string text;               ///< for help
-  const metrics::Metric* metric;  ///< null: the time of a frame
+  const metrics::Metric* metric;  ///< null: the time of a frame, or an estimate
+  std::string gpu = {};           ///< of an estimate: the GPU that it is for
 
   std::optional<double> read(const records::CellRecord& cell, LightMotion light) const;
 };
@@ -29,7 +40,7 @@ struct LimitSpec {
 std::span<const LimitSpec> limit_table();
 
 /// Returns the entry of the table that a cost is read by.
-const LimitSpec& cost_spec(CostKind kind);
+const LimitSpec& cost_spec(const CostKind& cost);
 
 /// Returns what a filter costs in one frame, without what every lookup pays. For cells of runs that did not time empty
 /// lookups, the sums of the passes' medians and quartiles, which makes the quartiles of several passes wider than those

@@ -54,28 +54,31 @@ std::vector<std::vector<std::size_t>> group_indices(const std::vector<records::C
 // Reads cells' errors and costs; those of several scenes are combined.
 class CellReader {
  public:
-  explicit CellReader(const std::vector<records::CellRecord>& cells) : cells_(cells) {}
+  explicit CellReader(const std::vector<records::CellRecord>& cells)
+      : cells_(cells), costs_(list_cost_measures(cells)) {}
+
+  const std::vector<Measure>& costs() const { return costs_; }
 
   TradeConfiguration read(const std::vector<std::size_t>& indices) const {
     const records::CellRecord& first = cells_[indices.front()];
     TradeConfiguration result{
         first.filter, first.params, first.map_size, first.kernel.sigma_texels, find_class(first), {}, indices, {}, {}};
     for (std::size_t i = 0; i < kErrorMeasures; ++i)
-      result.errors[i] = combine(indices, i, read_error, list_error_measures()[i]);
-    for (std::size_t i = 0; i < kCostMeasures; ++i)
-      result.costs[i] = combine(indices, i, read_cost, list_cost_measures()[i]);
+      result.errors[i] = combine(indices, read_error, list_error_measures()[i]);
+    for (const Measure& cost : costs_) result.costs.push_back(combine(indices, read_cost, cost));
     return result;
   }
 
  private:
   const std::vector<records::CellRecord>& cells_;
+  std::vector<Measure> costs_;
 
-  Measured combine(const std::vector<std::size_t>& indices, std::size_t index,
-                   Measured (*read_one)(const records::CellRecord&, std::size_t), const Measure& measure) const {
+  Measured combine(const std::vector<std::size_t>& indices,
+                   Measured (*read_one)(const records::CellRecord&, const Measure&), const Measure& measure) const {
     std::vector<Estimate> estimates;
     for (const std::size_t i : indices) {
       const bool is_suspect = cells_[i].status == records::CellStatus::kSuspect;
-      Measured one = is_suspect ? Measured{std::nullopt, "suspect: see the warnings"} : read_one(cells_[i], index);
+      Measured one = is_suspect ? Measured{std::nullopt, "suspect: see the warnings"} : read_one(cells_[i], measure);
       if (!one.estimate || indices.size() == 1) return one;
       estimates.push_back(*one.estimate);
     }
@@ -191,6 +194,7 @@ std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>
         scope.configurations.empty() ? nullptr : &cells[scope.configurations[0].cells[0]];
     scope.width = first ? first->width : 0;
     scope.height = first ? first->height : 0;
+    scope.costs = reader.costs();
     label_configurations(scope.configurations);
   }
   std::erase_if(scopes, [](const TradeScope& scope) { return scope.configurations.empty(); });

@@ -22,7 +22,7 @@ struct TradeConfiguration {
   std::string label;                       ///< tells it apart in its scope: "vsm (radius 4) · map 512"
   std::vector<std::size_t> cells;          ///< indices into the run's cells: one, or one per scene and view
   std::array<Measured, kErrorMeasures> errors;
-  std::array<Measured, kCostMeasures> costs;
+  std::vector<Measured> costs;  ///< one for each of the scope's
 };
 
 /// What may be compared on one front: all cells of one scene, view and picture size, or all scenes and views
@@ -34,6 +34,7 @@ struct TradeScope {
   std::string view;
   int width = 0;
   int height = 0;
+  std::vector<Measure> costs;  ///< those that the run has: list_cost_measures() of its cells
   std::vector<TradeConfiguration> configurations;
   std::size_t incomplete = 0;  ///< configurations left out because not every scene and view has a cell of them
 };
@@ -62,7 +63,7 @@ std::vector<WidthSeries> list_width_series(const std::vector<TradeConfiguration>
 /// The front of a scope for one error and one cost.
 struct TradeFront {
   std::size_t error = 0;                    ///< index into list_error_measures()
-  std::size_t cost = 0;                     ///< index into list_cost_measures()
+  std::size_t cost = 0;                     ///< index into the scope's costs
   std::vector<std::size_t> configurations;  ///< those that have both, indices into the scope's
   std::vector<FrontPoint> points;           ///< entry i is of configurations[i]
   std::vector<Placement> placements;        ///< likewise; `by` is an index into `points`

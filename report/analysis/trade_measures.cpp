@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "report/analysis/accuracy.h"
 #include "report/analysis/limits.h"
@@ -105,21 +106,33 @@ const std::array<Measure, kErrorMeasures>& list_error_measures() {
   return kMeasures;
 }
 
-const std::array<Measure, kCostMeasures>& list_cost_measures() {
-  static const std::array<Measure, kCostMeasures> kMeasures = [] {
-    Measure bytes = make_measure("cost.map_bytes", "exact", "the largest of the scenes", worst_of);
-    bytes.id = "bytes";
-    bytes.is_bytes = true;
-    return std::array{
-        make_time_measure("moving", "time of map, prefilter and filter, moving light",
-                          "what the filter costs while light or casters move: map, prefilter and lookup, less a lookup "
-                          "that reads nothing, per round; interval: 95 % of the median"),
-        make_time_measure("filter", "time of the filter alone, still light",
-                          "what the filter costs while they stand still: its lookup, less a lookup that reads nothing, "
-                          "per round; interval: 95 % of the median"),
-        make_measure("cost.fetches", "no interval", "mean over the scenes", mean_of), bytes};
-  }();
-  return kMeasures;
+std::vector<std::string> list_gpus(const std::vector<records::CellRecord>& cells) {
+  std::set<std::string> gpus;
+  for (const records::CellRecord& cell : cells)
+    if (cell.gpu)
+      for (const auto& [name, record] : *cell.gpu) gpus.insert(name);
+  return {gpus.begin(), gpus.end()};
+}
+
+std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& cells) {
+  Measure bytes = make_measure("cost.map_bytes", "exact", "the largest of the scenes", worst_of);
+  bytes.id = "bytes";
+  bytes.is_bytes = true;
+  std::vector<Measure> measures = {
+      make_time_measure("moving", "time of map, prefilter and filter, moving light",
+                        "what the filter costs while light or casters move: map, prefilter and lookup, less a lookup "
+                        "that reads nothing, per round; interval: 95 % of the median"),
+      make_time_measure("filter", "time of the filter alone, still light",
+                        "what the filter costs while they stand still: its lookup, less a lookup that reads nothing, "
+                        "per round; interval: 95 % of the median"),
+      make_measure("cost.fetches", "no interval", "mean over the scenes", mean_of), bytes};
+  for (const std::string& gpu : list_gpus(cells)) {
+    measures.push_back({"gpu_" + gpu, fmt::format("estimate on {}, us", gpu),
+                        "microseconds of the prefilter and of a million receivers' lookups on that GPU, which was not "
+                        "there: made of its compiler's facts; no interval",
+                        "mean over the scenes", mean_of, nullptr, false, false, gpu});
+  }
+  return measures;
 }
 
 std::string name_axis(const Measure& measure, const records::GlRecord& gl) {
@@ -136,8 +149,8 @@ std::string format_estimate(const Measure& measure, const Estimate& estimate) {
   return fmt::format("{} [{}, {}]", value, format_value(measure, estimate.low), format_value(measure, estimate.high));
 }
 
-Measured read_error(const records::CellRecord& cell, std::size_t measure) {
-  const metrics::Metric& metric = *list_error_measures()[measure].metric;
+Measured read_error(const records::CellRecord& cell, const Measure& measure) {
+  const metrics::Metric& metric = *measure.metric;
   Measured error = read_metric(cell, metric);
   if (error.estimate && metric.path == kRmse) {
     const double value = error.estimate->value, reach = find_rmse_reach(cell);
@@ -146,9 +159,13 @@ Measured read_error(const records::CellRecord& cell, std::size_t measure) {
   return error;
 }
 
-Measured read_cost(const records::CellRecord& cell, std::size_t measure) {
-  const Measure& cost = list_cost_measures()[measure];
+Measured read_cost(const records::CellRecord& cell, const Measure& cost) {
   if (cost.metric) return read_metric(cell, *cost.metric);
+  if (!cost.gpu.empty()) {
+    const LimitSpec& spec = cost_spec({CostKind::kGpu, cost.gpu});
+    const auto value = spec.read(cell, LightMotion::kMoving);
+    return value ? Measured{exact(*value), {}} : miss(cell, spec.field);
+  }
   return read_time(cell, cost.id == "moving" ? LightMotion::kMoving : LightMotion::kStatic);
 }
 

@@ -13,7 +13,6 @@
 namespace shadowbench::analysis {
 
 inline constexpr std::size_t kErrorMeasures = 4;
-inline constexpr std::size_t kCostMeasures = 4;
 inline constexpr std::size_t kMovingCost = 0, kStillCost = 1;  ///< of the costs: times, the light moving or still
 
 /// One axis of the trade.
@@ -26,13 +25,18 @@ struct Measure {
   const metrics::Metric* metric;  ///< where it is read from; null for milliseconds of the run's clock
   bool is_time;                   ///< milliseconds of the run's clock
   bool is_bytes;
+  std::string gpu = {};  ///< of an estimate: the GPU that it is for
 };
 
 /// Lists the errors: rmse, kernel_rmse, leak, flip.
 const std::array<Measure, kErrorMeasures>& list_error_measures();
 
-/// Lists the costs: moving, filter, fetches, bytes. The first is what is compared unless something else is asked for.
-const std::array<Measure, kCostMeasures>& list_cost_measures();
+/// Lists the costs: moving, filter, fetches, bytes, and an estimate for each GPU that a cell names. The first is what
+/// is compared unless something else is asked for.
+std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& cells = {});
+
+/// Names the GPUs that cells have costs on.
+std::vector<std::string> list_gpus(const std::vector<records::CellRecord>& cells);
 
 /// Names a measure with its unit: "time of the lookup, ms: CPU time (software rasteriser)".
 std::string name_axis(const Measure& measure, const records::GlRecord& gl);
@@ -49,13 +53,13 @@ struct Measured {
   std::string absent;
 };
 
-/// Reads an error from a cell; `measure` is an index into list_error_measures().
+/// Reads an error from a cell; `measure` is of list_error_measures().
 /// RMSE to the area truth: its 95 % interval; see find_rmse_reach(). The others have no interval in the record.
-Measured read_error(const records::CellRecord& cell, std::size_t measure);
+Measured read_error(const records::CellRecord& cell, const Measure& measure);
 
-/// Reads a cost from a cell; `measure` is an index into list_cost_measures(). Times: frame_time() with
+/// Reads a cost from a cell; `measure` is of list_cost_measures(). Times: frame_time() with
 /// frame_interval(), or where that is missing with the quartiles.
-Measured read_cost(const records::CellRecord& cell, std::size_t measure);
+Measured read_cost(const records::CellRecord& cell, const Measure& measure);
 
 /// Whether a cell is the one that ratios refer to: its own ratio is exactly 1 [1, 1].
 bool is_reference(const records::CellRecord& cell);

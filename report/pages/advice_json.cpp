@@ -14,13 +14,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* name_of(analysis::CostKind kind) {
-  switch (kind) {
+std::string name_of(const analysis::CostKind& cost) {
+  switch (cost.kind) {
     case analysis::CostKind::kTime: return "time";
     case analysis::CostKind::kBytes: return "bytes";
-    case analysis::CostKind::kFetches: break;
+    case analysis::CostKind::kFetches: return "fetches";
+    case analysis::CostKind::kGpu: break;
   }
-  return "fetches";
+  return "gpu:" + cost.gpu;
 }
 
 const char* name_of(analysis::Basis basis) {

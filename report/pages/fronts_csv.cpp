@@ -56,7 +56,7 @@ std::string make_row(const std::vector<records::CellRecord>& cells, const analys
                                      fmt::format("{}", scope.width),
                                      fmt::format("{}", scope.height),
                                      analysis::list_error_measures()[front.error].id,
-                                     analysis::list_cost_measures()[front.cost].id,
+                                     scope.costs[front.cost].id,
                                      join_keys(cells, each),
                                      each.filter,
                                      records::dump_line(records::value_json(each.params)),
@@ -79,7 +79,7 @@ std::vector<records::CsvColumn> list_front_columns() {
           {"width", "picture, pixels"},
           {"height", "picture, pixels"},
           {"error", "which error: rmse, kernel_rmse, leak, flip"},
-          {"cost", "which cost: moving and filter in ms of the run's clock, fetches, bytes"},
+          {"cost", "which cost: moving and filter in ms of the run's clock, fetches, bytes, gpu_NAME in us"},
           {"cell", "the cell's key; of all scenes: the keys of its cells, joined by +"},
           {"filter", "the filter's id"},
           {"params", "the filter's parameters as JSON"},
@@ -105,7 +105,7 @@ std::string make_fronts_csv(const std::vector<records::CellRecord>& cells,
   std::string csv = join_front_row(names);
   for (const analysis::TradeScope& scope : scopes) {
     for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error) {
-      for (std::size_t cost = 0; cost < analysis::kCostMeasures; ++cost) {
+      for (std::size_t cost = 0; cost < scope.costs.size(); ++cost) {
         const analysis::TradeFront front = analysis::make_trade_front(scope, error, cost);
         for (std::size_t i = 0; i < scope.configurations.size(); ++i) csv += make_row(cells, scope, front, i);
       }

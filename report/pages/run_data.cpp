@@ -9,6 +9,7 @@
 #include "report/analysis/cell_group.h"
 #include "report/analysis/summary.h"
 #include "report/analysis/trade.h"
+#include "report/analysis/trade_measures.h"
 #include "report/files/file_name.h"
 #include "report/page/chart_style.h"
 #include "report/records/absence.h"
@@ -40,7 +41,7 @@ json make_measure(std::string_view id, std::string_view title, std::string_view 
 }
 
 /// Everything that the table can show, and that limits can be set on.
-json list_measures(const records::RunRecord& run) {
+json list_measures(const records::RunRecord& run, const std::vector<std::string>& gpus) {
   const std::string unit = records::time_unit(run.gl);
   json measures = json::array();
   measures.push_back(make_measure(kMoving, "time, moving light",
@@ -57,10 +58,14 @@ json list_measures(const records::RunRecord& run) {
     if (metric.tabled || !metric.limit.empty())
       measures.push_back(make_measure(metric.path, metric.title, metric.definition, metric.unit, metric.limit,
                                       metric.group(), metric.direction));
+  for (const std::string& gpu : gpus)
+    measures.push_back(make_measure("gpu." + gpu, "estimate, " + gpu,
+                                    "prefilter and a million receivers' lookups on that GPU, which was not there", "us",
+                                    "", "cost"));
   return measures;
 }
 
-json list_values(const records::CellRecord& cell) {
+json list_values(const records::CellRecord& cell, const std::vector<std::string>& gpus) {
   json values;
   const auto time = [&](analysis::LightMotion light) {
     const auto quartiles = analysis::frame_time(cell, light);
@@ -70,6 +75,9 @@ json list_values(const records::CellRecord& cell) {
   values[kStill] = time(analysis::LightMotion::kStatic);
   for (const metrics::Metric& metric : metrics::metric_table())
     if (metric.tabled || !metric.limit.empty()) values[std::string(metric.path)] = value_of(metric.read(cell));
+  for (const std::string& gpu : gpus)
+    values["gpu." + gpu] =
+        value_of(analysis::cost_spec({analysis::CostKind::kGpu, gpu}).read(cell, analysis::LightMotion::kMoving));
   return values;
 }
 
@@ -108,12 +116,13 @@ std::string find_cause(const records::CellRecord& cell) {
   return std::string(own.id) + ": " + own.meaning;
 }
 
-json make_cell(const records::CellRecord& cell, std::size_t configuration, std::size_t place) {
+json make_cell(const records::CellRecord& cell, std::size_t configuration, std::size_t place,
+               const std::vector<std::string>& gpus) {
   return {{"key", cell.key},
           {"configuration", configuration},
           {"place", place},
           {"status", cell.status == records::CellStatus::kOk ? "ok" : records::describe_status(cell)},
-          {"values_of", list_values(cell)},
+          {"values_of", list_values(cell, gpus)},
           {"nothing", list_nothing(cell)},
           {"reach", analysis::find_rmse_reach(cell)},
           {"intervals", list_intervals(cell)},
@@ -158,9 +167,15 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
   for (const records::CellRecord& cell : cells) all.push_back(&cell);
   const std::vector<analysis::Place> places = analysis::list_places(all);
   const std::vector<std::string> filters = analysis::list_filters(cells);
-  json data{{"unit", records::time_unit(run.gl)}, {"measures", list_measures(run)}, {"classes", json::array()},
-            {"limits", json::object()},           {"places", json::array()},        {"truths", json::array()},
-            {"configurations", json::array()},    {"cells", json::array()}};
+  const std::vector<std::string> gpus = analysis::list_gpus(cells);
+  json data{{"unit", records::time_unit(run.gl)},
+            {"measures", list_measures(run, gpus)},
+            {"classes", json::array()},
+            {"limits", json::object()},
+            {"places", json::array()},
+            {"truths", json::array()},
+            {"configurations", json::array()},
+            {"cells", json::array()}};
   for (const auto& each : filters::width_classes())
     if (std::ranges::any_of(cells, [&](const records::CellRecord& cell) {
           return !cell.teaching.value_or(false) && cell.kernel.width_class == each.name;
@@ -178,7 +193,7 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
   for (const analysis::Configuration& configuration : analysis::list_configurations(all)) {
     for (const records::CellRecord* cell : configuration.cells) {
       const auto place = std::ranges::find(places, analysis::place_of(*cell)) - places.begin();
-      data["cells"].push_back(make_cell(*cell, data["configurations"].size(), static_cast<std::size_t>(place)));
+      data["cells"].push_back(make_cell(*cell, data["configurations"].size(), static_cast<std::size_t>(place), gpus));
     }
     data["configurations"].push_back(make_configuration(configuration, filters));
   }

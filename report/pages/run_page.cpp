@@ -6,9 +6,11 @@
 #include <cmath>
 
 #include "report/analysis/cell_group.h"
+#include "report/analysis/gpu_costs.h"
 #include "report/analysis/stability_words.h"
 #include "report/analysis/summary.h"
 #include "report/analysis/surprises.h"
+#include "report/analysis/trade_measures.h"
 #include "report/images/attribution_bar.h"
 #include "report/pages/answer.h"
 #include "report/pages/column_list.h"
@@ -22,6 +24,12 @@ namespace {
 
 using OptionalPath = std::optional<std::string>;
 using ImageMember = OptionalPath records::ImagesRecord::*;
+
+constexpr const char* kGpuNote =
+    "Facts are counted by the GPU's own compiler (Mesa's RADV) in the code that is drawn here: own instructions and "
+    "reads are the lookup's less those of a lookup that reads nothing of the map. Estimates are made of them and of "
+    "data sheets: the largest of arithmetic, sampling and memory, as if each were alone. They rank filters; they are "
+    "no measurement.";
 
 /// Names the scene, and the map and its fit where the run has the scene with several.
 std::string head_group(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
@@ -152,6 +160,30 @@ page::Section make_table_section(const std::vector<records::CellRecord>& cells) 
   return {"table", "All numbers", {page::Mount{"numbers", {page::Table{"RMSE to the area truth", std::move(table)}}}}};
 }
 
+/// Facts and estimates for each GPU that the run names; nothing where it names none.
+std::optional<page::Section> make_gpu_section(const records::RunRecord& run,
+                                              const std::vector<records::CellRecord>& cells) {
+  const std::vector<std::string> gpus = analysis::list_gpus(cells);
+  if (gpus.empty()) return std::nullopt;
+  std::vector<const records::CellRecord*> all;
+  for (const records::CellRecord& cell : cells) all.push_back(&cell);
+  const std::vector<analysis::Configuration> configurations = analysis::list_configurations(all);
+  page::Section section{"gpus", "What filters cost on GPUs that are not in this machine", {}};
+  page::Sentences sentences;
+  std::vector<page::Table> tables;
+  for (const std::string& gpu : gpus) {
+    const auto costs = analysis::list_gpu_costs(configurations, gpu);
+    for (std::string& each : analysis::describe_gpu(gpu, costs, run.gl)) sentences.items.push_back(std::move(each));
+    if (records::TextTable table = analysis::make_gpu_table(costs); !table.rows.empty())
+      tables.push_back(
+          {gpu + ": estimates for a million receivers and one map, and facts of the lookup", std::move(table)});
+  }
+  if (!sentences.items.empty()) section.blocks.emplace_back(std::move(sentences));
+  section.blocks.emplace_back(page::Paragraph{kGpuNote, true});
+  for (page::Table& table : tables) section.blocks.emplace_back(std::move(table));
+  return section;
+}
+
 page::Section make_evidence_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
   page::Section section{"evidence", "Behind the numbers", {}};
   for (const analysis::CellGroup& group : analysis::group_cells(cells))
@@ -191,6 +223,7 @@ page::Page make_run_page(const records::RunRecord& run, const std::vector<record
     page.data = make_run_data(run, cells, request);
   }
   if (trade) add(make_trade_section(run, cells, *trade));
+  if (auto gpus = make_gpu_section(run, cells)) add(std::move(*gpus));
   add(make_evidence_section(run, cells));
   return page;
 }

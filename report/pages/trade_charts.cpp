@@ -176,7 +176,7 @@ class FrontChart {
   const std::vector<records::CellRecord>& cells_;
   const records::GlRecord& gl_;
   const analysis::Measure& error_ = analysis::list_error_measures()[front_.error];
-  const analysis::Measure& cost_ = analysis::list_cost_measures()[front_.cost];
+  const analysis::Measure& cost_ = scope_.costs[front_.cost];
   const std::vector<analysis::WidthSeries> widths_ =
       analysis::list_width_series(scope_.configurations, front_.configurations);
 };
@@ -227,7 +227,7 @@ ChartSeries make_crossings(const analysis::WidthChart& chart, analysis::LightSta
 page::Chart make_width_chart(const analysis::WidthChart& chart, analysis::LightState light,
                              const std::vector<std::string>& filters, const records::GlRecord& gl) {
   const bool still = light == analysis::LightState::kStill;
-  const analysis::Measure& cost = analysis::list_cost_measures()[still ? 1 : 0];
+  const analysis::Measure cost = analysis::list_cost_measures()[still ? 1 : 0];
   page::Chart made;
   made.id = fmt::format("{}.map{}.width.{}", chart.scope_id, chart.map_size, still ? "still" : "moving");
   made.title = chart.title;
@@ -289,11 +289,12 @@ page::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& sco
   page::ChartChoice choice{"front", {{"scene", {}}, {"error", {}}, {"cost", {}}}, {}};
   for (const analysis::Measure& error : analysis::list_error_measures())
     choice.selectors[1].options.push_back(error.name);
-  for (const analysis::Measure& cost : analysis::list_cost_measures()) choice.selectors[2].options.push_back(cost.name);
+  for (const analysis::Measure& cost : analysis::list_cost_measures(cells))
+    choice.selectors[2].options.push_back(cost.name);
   for (const analysis::TradeScope& scope : scopes) {
     choice.selectors[0].options.push_back(scope.title);
     for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error) {
-      for (std::size_t cost = 0; cost < analysis::kCostMeasures; ++cost) {
+      for (std::size_t cost = 0; cost < scope.costs.size(); ++cost) {
         const analysis::TradeFront front = analysis::make_trade_front(scope, error, cost);
         choice.charts.push_back(FrontChart(scope, front, cells, gl).make(filters));
       }

@@ -1,0 +1,147 @@
+#include "report/analysis/gpu_costs.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gsl/gsl_statistics_double.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/analysis/limits.h"
+#include "report/records/format.h"
+
+namespace shadowbench::analysis {
+namespace {
+
+std::optional<double> mean_over(const Configuration& configuration, const LimitSpec& spec) {
+  double sum = 0.0;
+  for (const records::CellRecord* cell : configuration.cells) {
+    const auto value = spec.read(*cell, LightMotion::kMoving);
+    if (!value) return std::nullopt;
+    sum += *value;
+  }
+  return sum / static_cast<double>(configuration.cells.size());
+}
+
+/// The costs that were estimated and measured.
+struct Pairs {
+  std::vector<const GpuCost*> costs;
+  std::vector<double> estimated, measured;
+};
+
+Pairs list_pairs(const std::vector<GpuCost>& costs) {
+  Pairs pairs;
+  for (const GpuCost& cost : costs) {
+    if (!cost.estimate_us || !cost.measured_ms) continue;
+    pairs.costs.push_back(&cost);
+    pairs.estimated.push_back(*cost.estimate_us);
+    pairs.measured.push_back(*cost.measured_ms);
+  }
+  return pairs;
+}
+
+/// The place of a value among values, the smallest first, counted from 1.
+std::ptrdiff_t find_rank(const std::vector<double>& values, double value) {
+  return 1 + std::ranges::count_if(
+                 values, [&](double other) { return other < value; });
+}
+
+const records::ShaderFacts* find_facts(const records::GpuRecord& record, const char* pass) {
+  const auto found = std::ranges::find(record.facts, pass, &records::GpuPassRecord::pass);
+  return found == record.facts.end() ? nullptr : &found->facts;
+}
+
+int count_loops(const records::GpuRecord& record) {
+  int loops = 0;
+  for (const records::GpuPassRecord& pass : record.facts) loops += pass.facts.loops;
+  return loops;
+}
+
+/// The filter that stands farthest apart in the two orders.
+std::string describe_farthest(const Pairs& pairs, const std::string& gpu) {
+  std::size_t farthest = 0;
+  std::ptrdiff_t most = 0;
+  for (std::size_t i = 0; i < pairs.costs.size(); ++i) {
+    const std::ptrdiff_t apart =
+        std::abs(find_rank(pairs.estimated, pairs.estimated[i]) - find_rank(pairs.measured, pairs.measured[i]));
+    if (apart <= most) continue;
+    most = apart;
+    farthest = i;
+  }
+  if (most == 0) return "";
+  return fmt::format(" Farthest apart is {}: cheapest but {} in the measured times, but {} on {}.",
+                     pairs.costs[farthest]->configuration->name,
+                     find_rank(pairs.measured, pairs.measured[farthest]) - 1,
+                     find_rank(pairs.estimated, pairs.estimated[farthest]) - 1, gpu);
+}
+
+}  // namespace
+
+std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurations, const std::string& gpu) {
+  std::vector<GpuCost> costs;
+  for (const Configuration& configuration : configurations) {
+    const auto& records = configuration.cells.front()->gpu;
+    if (!records || !records->contains(gpu)) continue;
+    costs.push_back({&configuration, &records->at(gpu), mean_over(configuration, cost_spec({CostKind::kGpu, gpu})),
+                     mean_over(configuration, cost_spec(CostKind::kTime))});
+  }
+  return costs;
+}
+
+std::optional<double> correlate_ranks(const std::vector<GpuCost>& costs) {
+  const Pairs pairs = list_pairs(costs);
+  const std::size_t count = pairs.costs.size();
+  if (count < 3) return std::nullopt;
+  std::vector<double> work(2 * count);
+  const double correlation =
+      gsl_stats_spearman(pairs.estimated.data(), 1, pairs.measured.data(), 1, count, work.data());
+  return std::isfinite(correlation) ? std::optional(correlation) : std::nullopt;
+}
+
+std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<GpuCost>& costs,
+                                      const records::GlRecord& gl) {
+  std::vector<std::string> sentences;
+  const Pairs pairs = list_pairs(costs);
+  if (const auto correlation = correlate_ranks(costs)) {
+    sentences.push_back(fmt::format(
+        "{}: the order of the estimates and that of the times measured here ({}, moving light) have a rank correlation "
+        "of {:.2f} over {} configurations; 1 is the same order, 0 none.{}",
+        gpu, records::describe_clock(gl), *correlation, pairs.costs.size(), describe_farthest(pairs, gpu)));
+  }
+  std::vector<std::string> looped, spilled;
+  for (const GpuCost& cost : costs) {
+    const std::string& name = cost.configuration->name;
+    if (!cost.record->refused.empty()) sentences.push_back(fmt::format("{}: {}: {}", gpu, name, cost.record->refused));
+    if (count_loops(*cost.record) > 0) looped.push_back(name);
+    const auto spills = [](const records::GpuPassRecord& pass) { return pass.facts.spilled_registers > 0; };
+    if (std::ranges::any_of(cost.record->facts, spills)) spilled.push_back(name);
+  }
+  if (!looped.empty())
+    sentences.push_back(
+        fmt::format("{}: the compiler guesses how often loops turn: {}.", gpu, fmt::join(looped, ", ")));
+  if (!spilled.empty())
+    sentences.push_back(
+        fmt::format("{}: registers spill to memory, which is slow: {}.", gpu, fmt::join(spilled, ", ")));
+  return sentences;
+}
+
+records::TextTable make_gpu_table(const std::vector<GpuCost>& costs) {
+  records::TextTable table;
+  table.header = {"filter",           "estimate, us", "lookup, us", "prefilter, us", "bound by",
+                  "own instructions", "own reads",    "registers",  "waves"};
+  for (const GpuCost& cost : costs) {
+    const records::ShaderFacts* lookup = find_facts(*cost.record, "lookup");
+    const records::ShaderFacts* empty = find_facts(*cost.record, "empty");
+    if (!lookup || !empty || !cost.record->estimate) continue;
+    const auto reads = [](const records::ShaderFacts& f) { return f.samples + f.compares + f.gathers + f.loads; };
+    const records::GpuEstimateRecord& estimate = *cost.record->estimate;
+    table.rows.push_back({cost.configuration->name, records::format_number(cost.estimate_us),
+                          records::format_number(estimate.lookup_us), records::format_number(estimate.prefilter_us),
+                          estimate.bound_by, fmt::format("{}", lookup->instructions - empty->instructions),
+                          fmt::format("{}", reads(*lookup) - reads(*empty)),
+                          fmt::format("{}", lookup->vector_registers), fmt::format("{}", lookup->waves_per_simd)});
+  }
+  return table;
+}
+
+}  // namespace shadowbench::analysis

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/analysis/configuration.h"
+#include "report/records/records.h"
+#include "report/records/text_table.h"
+
+namespace shadowbench::analysis {
+
+/// What one configuration costs on one GPU: facts of its first cell, and the mean of the estimates over its cells.
+struct GpuCost {
+  const Configuration* configuration = nullptr;
+  const records::GpuRecord* record = nullptr;
+  std::optional<double> estimate_us;  ///< nothing where a cell has none
+  std::optional<double> measured_ms;  ///< with a moving light, in the run's clock; nothing where a cell has none
+};
+
+/// The costs of all configurations that have a record of the GPU.
+std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurations, const std::string& gpu);
+
+/// How alike two orders of the same filters are: Spearman's rank correlation of estimated and measured costs, 1 for the
+/// same order, -1 for the opposite; nothing for fewer than three that have both.
+std::optional<double> correlate_ranks(const std::vector<GpuCost>& costs);
+
+/// Says how alike the orders are, which filter's place differs most, and what was refused or guessed.
+std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<GpuCost>& costs,
+                                      const records::GlRecord& gl);
+
+/// One row for each configuration that the GPU's compiler took: facts of its lookup, less those of the empty one, and
+/// the estimate.
+records::TextTable make_gpu_table(const std::vector<GpuCost>& costs);
+
+}  // namespace shadowbench::analysis
