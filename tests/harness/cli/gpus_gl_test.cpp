@@ -1,0 +1,144 @@
+// Costs on GPUs that are not there, as a user sees them: in the record, in advice, and where the driver fails.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/harness/cli/program.h"
+
+namespace shadowbench::test {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+constexpr const char* kGpuRun =
+    "run --out out --fresh --scene cubes --size 96x54 --map-size 128 --rounds 1 --phases 1 --no-attribution ";
+
+/// A filter without weights: the mean of so many hardware fetches along a side.
+std::string plain_pcf(int side) {
+  return fmt::format(
+      "/*+++\ntitle = \"Plain\"\nsource = \"a test\"\nkind = \"other\"\nradius_texels = {0}\n+++*/\n"
+      "float visibility(Receiver r) {{\n  float sum = 0.0;\n"
+      "  for (int y = 0; y < {1}; ++y)\n    for (int x = 0; x < {1}; ++x)\n"
+      "      sum += compare_2x2(r, vec2(x, y) - {2:.1f}, r.depth);\n  return sum / {3:.1f};\n}}\n",
+      side, side, 0.5 * (side - 1), 1.0 * side * side);
+}
+
+class Gpus : public ProgramTest {
+ protected:
+  /// The cells of a run by filter; skips the test where there is no compiler.
+  std::map<std::string, json> measure(const std::string& arguments, const std::string& environment = "") {
+    const Outcome outcome = run(kGpuRun + arguments, environment);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    messages_ = outcome.err;
+    std::map<std::string, json> cells;
+    const json results = json::parse(read_text(folder() / "out" / "results.json"), nullptr, false);
+    if (results.is_object())
+      for (const json& cell : results["cells"]) cells[cell["filter"]] = cell;
+    return cells;
+  }
+
+  bool has_no_compiler() const { return messages_.find("no costs on") != std::string::npos; }
+
+  /// A loader's list of one driver.
+  std::string use_driver(const std::string& library) const {
+    const auto file = write(
+        "driver.json",
+        json{{"file_format_version", "1.0.0"}, {"ICD", {{"library_path", library}, {"api_version", "1.3.0"}}}}.dump());
+    return "VK_DRIVER_FILES='" + file.string() + "' VK_ICD_FILENAMES='" + file.string() + "'";
+  }
+
+  std::string messages_;
+};
+
+const json& lookup_of(const json& cell, const char* pass = "lookup") {
+  for (const json& facts : cell["gpu"]["navi21"]["facts"])
+    if (facts["pass"] == pass) return facts;
+  static const json kNone;
+  ADD_FAILURE() << "no pass " << pass;
+  return kNone;
+}
+
+TEST_F(Gpus, EveryPassHasFacts_AndFiltersTheirOrder) {
+  for (const int side : {3, 5, 7}) write(fmt::format("plain{}.glsl", side), plain_pcf(side));
+  const auto cells = measure(
+      "--gpu navi21 --filters none,pcf2x2,castano3,castano5,castano7,vsm,plain3,plain5,plain7 --filter-file "
+      "plain3.glsl "
+      "--filter-file plain5.glsl --filter-file plain7.glsl");
+  if (has_no_compiler()) GTEST_SKIP() << messages_;
+  ASSERT_EQ(cells.size(), 9u);
+  const auto estimate = [&](const char* filter) {
+    return cells.at(filter)["gpu"]["navi21"]["estimate_us"].get<double>();
+  };
+  // Castano's kernels of 3x3, 5x5 and 7x7 texels take 4, 9 and 16 fetches where plain ones take as many as texels
+  // (Castano 2013; Pettineau 2013 finds the same order): dearer the wider, and each cheaper than the plain one.
+  EXPECT_LT(estimate("castano3"), estimate("castano5"));
+  EXPECT_LT(estimate("castano5"), estimate("castano7"));
+  EXPECT_LT(estimate("castano3"), estimate("plain3"));
+  EXPECT_LT(estimate("castano5"), estimate("plain5"));
+  EXPECT_LT(estimate("castano7"), estimate("plain7"));
+  EXPECT_EQ(estimate("none"), estimate("pcf2x2"));
+  EXPECT_EQ(lookup_of(cells.at("plain5"))["compares"], 25);
+  EXPECT_EQ(lookup_of(cells.at("castano5"))["compares"], 9);
+  EXPECT_EQ(lookup_of(cells.at("none"), "empty")["compares"], 0);
+  EXPECT_EQ(lookup_of(cells.at("vsm"), "blur")["draws"], 2);
+  EXPECT_EQ(lookup_of(cells.at("vsm"), "encode")["loads"], 5);
+  const std::string check = "/usr/bin/python3 -m jsonschema -i '" + (folder() / "out" / "results.json").string() +
+                            "' '" + (folder() / "out" / "results.schema.json").string() + "'";
+  EXPECT_EQ(std::system(check.c_str()), 0);
+  EXPECT_THAT(read_text(folder() / "out" / "index.html"), HasSubstr("navi21: estimates"));
+  EXPECT_THAT(read_text(folder() / "out" / "fronts.csv"), HasSubstr(",gpu_navi21,"));
+  const Outcome advice = run("advise out --cheapest gpu:navi21 --max-rmse 1");
+  EXPECT_EQ(advice.exit_code, 0) << advice.err;
+  EXPECT_THAT(advice.out, HasSubstr("us estimated on navi21"));
+  EXPECT_EQ(run("advise out --cheapest gpu:navi22").exit_code, 2);
+  EXPECT_EQ(run("advise out --cheapest gpus").exit_code, 2);
+}
+
+TEST_F(Gpus, WithNone_NothingIsCompiled) {
+  const auto cells = measure("--gpu none --filters none,vsm");
+  EXPECT_TRUE(cells.at("vsm")["gpu"].is_null());
+  EXPECT_EQ(cells.at("vsm")["absent"]["gpu"], "the run was made with --gpu none");
+  EXPECT_FALSE(std::filesystem::exists(cache_folder() / "shadowbench" / "gpu"));
+  const Outcome advice = run("advise out --cheapest gpu:navi21");
+  EXPECT_EQ(advice.exit_code, 2);
+  EXPECT_THAT(advice.err, HasSubstr("run it again, with --gpu"));
+}
+
+TEST_F(Gpus, AreRefusedByName) {
+  expect_refusal(kGpuRun + std::string("--gpu navi22"), 2, {"--gpu", "'navi22'", "did you mean 'navi2"});
+  expect_refusal(kGpuRun + std::string("--gpu ''"), 2, {"--gpu"});
+}
+
+TEST_F(Gpus, WhatVulkanRefuses_IsSaid_AndTheRunGoesOn) {
+  write("window.glsl",
+        "/*+++\ntitle = \"Window\"\nsource = \"a test\"\nkind = \"other\"\nradius_texels = 0\n+++*/\n"
+        "float visibility(Receiver r) {\n  return compare_nearest(r, vec2(gl_DepthRange.near), r.depth);\n}\n");
+  const auto cells = measure("--gpu navi21 --filters none,window --filter-file window.glsl");
+  if (has_no_compiler()) GTEST_SKIP() << messages_;
+  const json& cell = cells.at("window");
+  EXPECT_EQ(cell["status"], "ok");
+  EXPECT_TRUE(cell["gpu"]["navi21"]["estimate_us"].is_null());
+  EXPECT_THAT(cell["gpu"]["navi21"]["refused"].get<std::string>(), HasSubstr("window.glsl:8: Vulkan refuses"));
+  EXPECT_TRUE(cells.at("none")["gpu"]["navi21"]["estimate_us"].is_number());
+}
+
+TEST_F(Gpus, WithoutADriver_TheRunGoesOn) {
+  const auto cells = measure("--gpu navi21 --filters none", use_driver("/nowhere/driver.so"));
+  EXPECT_THAT(messages_, HasSubstr("no costs on navi21: "));
+  EXPECT_THAT(messages_, HasSubstr("install"));
+  EXPECT_EQ(cells.at("none")["status"], "ok");
+  EXPECT_TRUE(cells.at("none")["gpu"]["navi21"]["refused"].is_string());
+}
+
+TEST_F(Gpus, ADriverThatCrashes_CostsItsFactsAlone) {
+  const auto cells = measure("--gpu navi21 --filters none", use_driver(SHADOWBENCH_CRASHING_DRIVER));
+  EXPECT_EQ(cells.at("none")["status"], "ok");
+  EXPECT_THAT(cells.at("none")["gpu"]["navi21"]["refused"].get<std::string>(), HasSubstr("signal 11"));
+  EXPECT_TRUE(cells.at("none")["time_ms"]["lookup"].is_object());
+}
+
+}  // namespace
+}  // namespace shadowbench::test

@@ -1,0 +1,100 @@
+// The model that makes microseconds of a compiler's facts, against its arithmetic by hand.
+
+#include "harness/gpu/estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace shadowbench::gpu {
+namespace {
+
+/// 64 invocations take a cycle a SIMD: 10 SIMDs at 100 MHz do 64 000 a microsecond for each cycle.
+Gpu make_gpu() {
+  Gpu gpu;
+  gpu.simds.value = 10.0;
+  gpu.clock_mhz.value = 100.0;
+  gpu.texture_units.value = 50.0;
+  gpu.rate_64.value = 0.5;
+  gpu.rate_128.value = 0.25;
+  gpu.memory_gb_s.value = 2.0;
+  return gpu;
+}
+
+FilterWork make_work(int busy, int empty, const Reads& reads) {
+  FilterWork work;
+  work.lookup.busy_cycles = busy;
+  work.empty.busy_cycles = empty;
+  work.reads = reads;
+  return work;
+}
+
+TEST(GpuEstimate, EachResourceByItself) {
+  FilterWork work = make_work(70, 30, {2.0, 1.0, 1.0});
+  work.memory_bytes = 3.0;
+  const records::GpuEstimateRecord made = estimate(make_gpu(), work);
+  EXPECT_DOUBLE_EQ(made.arithmetic_us, 40.0 * 1e6 / 64.0 / (10.0 * 100.0));      // 625
+  EXPECT_DOUBLE_EQ(made.sampling_us, (2.0 + 2.0 + 4.0) * 1e6 / (50.0 * 100.0));  // 1600
+  EXPECT_DOUBLE_EQ(*made.memory_us, 3e6 / 2e3);                                  // 1500
+  EXPECT_DOUBLE_EQ(made.lookup_us, 1600.0);
+  EXPECT_DOUBLE_EQ(made.total_us, 1600.0);
+  EXPECT_EQ(made.bound_by, "sampling");
+  work.memory_bytes = 4.0;
+  EXPECT_EQ(estimate(make_gpu(), work).bound_by, "memory");
+  work.lookup.busy_cycles = 1000;
+  EXPECT_EQ(estimate(make_gpu(), work).bound_by, "arithmetic");
+}
+
+TEST(GpuEstimate, APassOfThePrefilterCountsEveryTexel) {
+  FilterWork work = make_work(30, 30, {1.0, 0.0, 0.0});
+  PrefilterWork pass;
+  pass.facts.busy_cycles = 64;
+  pass.facts.samples = 3;
+  pass.texels = 1e6;
+  pass.written_bytes = 8;
+  pass.read_bytes = 8;
+  work.prefilter = {pass};
+  const records::GpuEstimateRecord made = estimate(make_gpu(), work);
+  EXPECT_DOUBLE_EQ(made.lookup_us, 200.0);
+  EXPECT_DOUBLE_EQ(made.prefilter_us, 16e6 / 2e3);  // memory: 8000; sampling is 1200, arithmetic 1000
+  EXPECT_DOUBLE_EQ(made.total_us, 8200.0);
+  EXPECT_EQ(made.bound_by, "memory");
+  work.prefilter = {pass, pass};
+  EXPECT_DOUBLE_EQ(estimate(make_gpu(), work).prefilter_us, 16'000.0);
+}
+
+TEST(GpuEstimate, ALookupThatIsCheaperThanTheEmptyOne_CostsItsReads) {
+  const records::GpuEstimateRecord made = estimate(make_gpu(), make_work(29, 30, {1.0, 0.0, 0.0}));
+  EXPECT_EQ(made.arithmetic_us, 0.0);
+  EXPECT_DOUBLE_EQ(made.lookup_us, 200.0);
+}
+
+TEST(GpuEstimate, MoreOfEverythingIsNeverCheaper) {
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> some(0, 50);
+  const auto more = [&](auto value) { return value + static_cast<decltype(value)>(some(random)); };
+  for (int i = 0; i < 1000; ++i) {
+    FilterWork less = make_work(some(random), 20, {});
+    less.reads = {more(0.0), more(0.0), more(0.0)};
+    less.memory_bytes = more(0.0);
+    PrefilterWork pass;
+    pass.facts.busy_cycles = some(random);
+    pass.facts.loads = some(random);
+    pass.texels = 1e3 * some(random);
+    pass.written_bytes = pass.read_bytes = 4;
+    less.prefilter = {pass};
+    FilterWork all = less;
+    all.lookup.busy_cycles = more(less.lookup.busy_cycles);
+    all.reads = {more(less.reads.of_32), more(less.reads.of_64), more(less.reads.of_128)};
+    all.memory_bytes = more(*less.memory_bytes);
+    all.prefilter[0].facts.busy_cycles = more(pass.facts.busy_cycles);
+    all.prefilter[0].facts.loads = more(pass.facts.loads);
+    all.prefilter[0].texels = more(pass.texels);
+    all.prefilter[0].written_bytes = 8;
+    all.prefilter[0].read_bytes = 16;
+    EXPECT_GE(estimate(make_gpu(), all).total_us, estimate(make_gpu(), less).total_us);
+  }
+}
+
+}  // namespace
+}  // namespace shadowbench::gpu

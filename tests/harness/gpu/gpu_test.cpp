@@ -1,0 +1,80 @@
+// The descriptions of GPUs: what comes with the program, and what is refused.
+
+#include "harness/gpu/gpu.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "filters/base/error.h"
+
+namespace shadowbench::gpu {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::filesystem::path kShipped = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "harness" / "gpus";
+
+std::string read(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// The message of the error that loading `text` ends in.
+std::string load_error(const std::string& text) {
+  const auto file = std::filesystem::temp_directory_path() / ("shadowbench." + std::to_string(getpid()) + ".toml");
+  std::ofstream(file) << text;
+  std::string message = "loaded";
+  try {
+    load_gpu(file);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kInput);
+    message = error.what();
+  }
+  std::filesystem::remove(file);
+  return message;
+}
+
+std::string replace(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(Gpus, EveryShippedOneNamesASourceForEveryNumber) {
+  const std::vector<Gpu> gpus = load_gpus(kShipped);
+  EXPECT_GE(gpus.size(), 2u);
+  for (const Gpu& gpu : gpus)
+    visit_constants(gpu, [&](const char* key, const Constant& constant) {
+      EXPECT_GE(constant.source.size(), 20u) << gpu.name << " " << key;
+    });
+}
+
+TEST(Gpus, AFileIsRefusedWithItsLine) {
+  const std::string good = read(kShipped / "navi21.toml");
+  EXPECT_EQ(load_error(good), "loaded");
+  EXPECT_THAT(load_error(replace(good, "[simds]", "[simd]")), HasSubstr("unknown key 'simd'"));
+  EXPECT_THAT(load_error(replace(good, "value = 2015", "value = 0")), HasSubstr(":9: "));
+  EXPECT_THAT(load_error(replace(good, "value = 2015", "")), HasSubstr("value"));
+  EXPECT_THAT(load_error(good.substr(0, good.find("[memory_gb_s]"))), HasSubstr("the table [memory_gb_s] is missing"));
+}
+
+TEST(Gpus, AreChosenByName) {
+  const std::vector<Gpu> all = load_gpus(kShipped);
+  const auto refusal = [&](const std::vector<std::string>& names) {
+    try {
+      choose_gpus(all, names);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+      return std::string(error.what());
+    }
+    return std::string("chosen");
+  };
+  EXPECT_TRUE(choose_gpus(all, {"none"}).empty());
+  EXPECT_EQ(choose_gpus(all, {"vega10", "navi21"}).front().name, "vega10");
+  EXPECT_THAT(refusal({"navi12"}), HasSubstr("'navi12' is no GPU that is described; did you mean 'navi"));
+  EXPECT_THAT(refusal({"navi21", "navi21"}), HasSubstr("named twice"));
+  EXPECT_THAT(refusal({"navi21", "none"}), HasSubstr("'none'"));
+}
+
+}  // namespace
+}  // namespace shadowbench::gpu
