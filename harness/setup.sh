@@ -4,7 +4,7 @@
 set -eu
 
 packages="
-  cmake dpkg-dev file g++ git ninja-build pkg-config python3-glad
+  cmake dpkg-dev file g++ git glslang-dev libvulkan-dev mesa-vulkan-drivers ninja-build pkg-config python3-glad spirv-tools
   libcli11-dev libegl-dev libembree-dev libfmt-dev libfreetype-dev libgl-dev libglfw3-dev libglm-dev libgsl-dev
   libnlopt-cxx-dev libopenimageio-dev libosmesa6-dev libpugixml-dev libtbb-dev libtinygltf-dev libtinyobjloader-dev
   libtomlplusplus-dev nlohmann-json3-dev openimageio-tools zlib1g-dev fonts-dejavu-core libegl1 libegl-mesa0 libgl1-mesa-dri

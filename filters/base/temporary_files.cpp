@@ -75,7 +75,7 @@ fs::path make_temporary_folder_path(const fs::path& folder, std::string_view wha
   return folder / fmt::format(".{}-{}", what, getpid());
 }
 
-TemporaryFolder::~TemporaryFolder() {
+ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
 }

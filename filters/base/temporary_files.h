@@ -15,12 +15,12 @@ std::filesystem::path make_temporary_path(const std::filesystem::path& path);
 std::filesystem::path make_temporary_folder_path(const std::filesystem::path& folder, std::string_view what);
 
 /// A folder that goes with its object.
-class TemporaryFolder {
+class ScratchFolder {
  public:
-  explicit TemporaryFolder(std::filesystem::path path) : path_(std::move(path)) {}
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  explicit ScratchFolder(std::filesystem::path path) : path_(std::move(path)) {}
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
 
  private:

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "harness/gl/shader_source.h"
-#include "report/records/gpu_record.h"
+#include "report/records/records.h"
 
 namespace shadowbench::gpu {
 

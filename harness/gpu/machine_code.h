@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "report/records/gpu_record.h"
+#include "report/records/records.h"
 
 namespace shadowbench::gpu {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "harness/gpu/spirv.h"
-#include "report/records/gpu_record.h"
+#include "report/records/records.h"
 
 namespace shadowbench::gpu {
 

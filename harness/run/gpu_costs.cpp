@@ -65,7 +65,7 @@ void GpuCosts::compile(const gpu::Gpu& gpu, const std::vector<measure::MeasuredC
     for (const render::DrawnPass* pass : list_passes(cell))
       if (const std::string name = name_pass(*pass); !known.contains(name)) wanted.emplace(name, pass);
   }
-  const TemporaryFolder folder(make_temporary_folder_path(options_.out, "gpu"));
+  const ScratchFolder folder(make_temporary_folder_path(options_.out, "gpu"));
   while (!wanted.empty()) {
     const auto request = folder.path() / fmt::format("{}.request.json", wanted.size());
     const auto answers = folder.path() / fmt::format("{}.answers.json", wanted.size());

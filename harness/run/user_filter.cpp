@@ -125,7 +125,7 @@ measure::MeasuredCell read_cell(const options::RunOptions& options, const measur
 measure::MeasuredCell measure_user_filter(const options::RunOptions& options, const measure::SceneTask& task,
                                           const filters::FilterRequest& request, const std::string& scene_argument,
                                           const std::string& backend) {
-  const TemporaryFolder folder(make_temporary_folder_path(options.out, "worker"));
+  const ScratchFolder folder(make_temporary_folder_path(options.out, "worker"));
   const WorkerOutcome outcome = run_worker(
       worker_arguments(options, task, request, scene_argument, backend, folder.path()), options.cell_timeout_s);
   if (outcome.exit_code == 0) return read_cell(options, task, request, folder.path());

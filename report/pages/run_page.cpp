@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "report/analysis/cell_group.h"
-#include "report/analysis/gpu_costs.h"
+#include "report/analysis/gpu/gpu_costs.h"
 #include "report/analysis/stability_words.h"
 #include "report/analysis/summary.h"
 #include "report/analysis/surprises.h"
@@ -168,7 +168,7 @@ std::optional<page::Section> make_gpu_section(const records::RunRecord& run,
   std::vector<const records::CellRecord*> all;
   for (const records::CellRecord& cell : cells) all.push_back(&cell);
   const std::vector<analysis::Configuration> configurations = analysis::list_configurations(all);
-  page::Section section{"gpus", "What filters cost on GPUs that are not in this machine", {}};
+  page::Section section{"gpus", "Costs on GPUs that are not here", {}};
   page::Sentences sentences;
   std::vector<page::Table> tables;
   for (const std::string& gpu : gpus) {

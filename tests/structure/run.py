@@ -12,13 +12,14 @@ import sys
 # From the ground up. What stands inside a room's folder and is not named here belongs to the room.
 ROOMS = [
     "filters/base", "filters", "reference/metrics", "reference/truth", "report/files", "report/records", "report/images",
-    "report/analysis", "report/page", "report/pages", "report/regress", "harness/gl", "harness/scene", "harness/render",
+    "report/analysis", "report/page", "report/pages", "report/regress", "harness/gl", "harness/scene", "harness/gpu", "harness/render",
     "harness/options", "harness/measure", "harness/run", "harness/bias", "harness/tune", "harness/stress", "harness/flicker",
     "harness/cli"]
 # What a room may not use, although it stands before it.
 FORBIDDEN = {
     "reference/metrics": ["filters"], "report/files": ["reference/"], "harness/gl": ["reference/", "report/"],
-    "harness/scene": ["reference/metrics", "report/", "harness/gl"], "harness/tune": ["harness/bias"],
+    "harness/scene": ["reference/metrics", "report/", "harness/gl"],
+    "harness/gpu": ["reference/"], "harness/tune": ["harness/bias"],
     "harness/stress": ["harness/bias", "harness/tune"], "harness/flicker": ["harness/bias", "harness/tune", "harness/stress"]}
 NAMESPACES = {"filters/base": "shadowbench"}
 MOST_FILES = 40

@@ -38,7 +38,7 @@ class FactsRequests : public ::testing::Test {
     return read_answers(file("answers"));
   }
 
-  TemporaryFolder folder_{std::filesystem::temp_directory_path() / ("shadowbench.facts." + std::to_string(getpid()))};
+  ScratchFolder folder_{std::filesystem::temp_directory_path() / ("shadowbench.facts." + std::to_string(getpid()))};
 };
 
 TEST_F(FactsRequests, AreAnsweredInTheirOrder_AndKept) {

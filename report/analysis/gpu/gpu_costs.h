@@ -18,7 +18,7 @@ struct GpuCost {
   std::optional<double> measured_ms;  ///< with a moving light, in the run's clock; nothing where a cell has none
 };
 
-/// The costs of all configurations that have a record of the GPU.
+/// The costs of all configurations that have a record of the GPU and are right everywhere.
 std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurations, const std::string& gpu);
 
 /// How alike two orders of the same filters are: Spearman's rank correlation of estimated and measured costs, 1 for the

@@ -1,4 +1,4 @@
-#include "report/analysis/gpu_costs.h"
+#include "report/analysis/gpu/gpu_costs.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -69,10 +69,9 @@ std::string describe_farthest(const Pairs& pairs, const std::string& gpu) {
     farthest = i;
   }
   if (most == 0) return "";
-  return fmt::format(" Farthest apart is {}: cheapest but {} in the measured times, but {} on {}.",
-                     pairs.costs[farthest]->configuration->name,
-                     find_rank(pairs.measured, pairs.measured[farthest]) - 1,
-                     find_rank(pairs.estimated, pairs.estimated[farthest]) - 1, gpu);
+  return fmt::format(" Farthest apart is {}: number {} of the measured times, cheapest first, and number {} on {}.",
+                     pairs.costs[farthest]->configuration->name, find_rank(pairs.measured, pairs.measured[farthest]),
+                     find_rank(pairs.estimated, pairs.estimated[farthest]), gpu);
 }
 
 }  // namespace
@@ -81,7 +80,8 @@ std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurat
   std::vector<GpuCost> costs;
   for (const Configuration& configuration : configurations) {
     const auto& records = configuration.cells.front()->gpu;
-    if (!records || !records->contains(gpu)) continue;
+    const auto is_ok = [](const records::CellRecord* cell) { return cell->status == records::CellStatus::kOk; };
+    if (!records || !records->contains(gpu) || !std::ranges::all_of(configuration.cells, is_ok)) continue;
     costs.push_back({&configuration, &records->at(gpu), mean_over(configuration, cost_spec({CostKind::kGpu, gpu})),
                      mean_over(configuration, cost_spec(CostKind::kTime))});
   }
@@ -129,7 +129,9 @@ records::TextTable make_gpu_table(const std::vector<GpuCost>& costs) {
   records::TextTable table;
   table.header = {"filter",           "estimate, us", "lookup, us", "prefilter, us", "bound by",
                   "own instructions", "own reads",    "registers",  "waves"};
-  for (const GpuCost& cost : costs) {
+  std::vector<GpuCost> sorted = costs;
+  std::ranges::stable_sort(sorted, {}, &GpuCost::estimate_us);
+  for (const GpuCost& cost : sorted) {
     const records::ShaderFacts* lookup = find_facts(*cost.record, "lookup");
     const records::ShaderFacts* empty = find_facts(*cost.record, "empty");
     if (!lookup || !empty || !cost.record->estimate) continue;

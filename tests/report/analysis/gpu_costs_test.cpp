@@ -1,0 +1,94 @@
+// What the report says of GPUs, on cells made by hand.
+
+#include "report/analysis/gpu/gpu_costs.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/report/records/synthetic.h"
+
+namespace shadowbench::analysis {
+namespace {
+
+using records::CellRecord;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// A cell whose frame takes `ms` here, and `us` on a GPU.
+CellRecord make_gpu_cell(const std::string& filter, double ms, double us) {
+  CellRecord cell = records::make_cell("cubes", filter, 4.0);
+  cell.time_ms.moving = records::OwnTime{{ms, ms, ms, 3}, {ms, ms}};
+  records::ShaderFacts lookup, empty;
+  lookup.instructions = 50;
+  lookup.compares = 4;
+  lookup.loads = 2;
+  lookup.vector_registers = 24;
+  empty.instructions = 27;
+  empty.loads = 1;
+  cell.gpu = {{"one", {{{"empty", 1, empty}, {"lookup", 1, lookup}}, records::GpuEstimateRecord{us, us, 0.0}, ""}}};
+  return cell;
+}
+
+struct Costs {
+  explicit Costs(std::vector<CellRecord> made) : cells(std::move(made)) {
+    std::vector<const CellRecord*> all;
+    for (const CellRecord& cell : cells) all.push_back(&cell);
+    configurations = list_configurations(all);
+    costs = list_gpu_costs(configurations, "one");
+  }
+
+  std::vector<CellRecord> cells;
+  std::vector<Configuration> configurations;
+  std::vector<GpuCost> costs;
+};
+
+TEST(GpuCosts, OrdersAreComparedByRank) {
+  EXPECT_DOUBLE_EQ(
+      *correlate_ranks(
+          Costs({make_gpu_cell("a", 1, 10), make_gpu_cell("b", 2, 1000), make_gpu_cell("c", 30, 1001)}).costs),
+      1.0);
+  EXPECT_DOUBLE_EQ(
+      *correlate_ranks(Costs({make_gpu_cell("a", 3, 10), make_gpu_cell("b", 2, 20), make_gpu_cell("c", 1, 30)}).costs),
+      -1.0);
+  // Ranks 1 2 3 4 against 2 1 4 3: 1 - 6 * 4 / (4 * 15).
+  EXPECT_NEAR(*correlate_ranks(Costs({make_gpu_cell("a", 1, 20), make_gpu_cell("b", 2, 10), make_gpu_cell("c", 3, 40),
+                                      make_gpu_cell("d", 4, 30)})
+                                   .costs),
+              0.6, 1e-12);
+  EXPECT_FALSE(correlate_ranks(Costs({make_gpu_cell("a", 1, 10), make_gpu_cell("b", 2, 20)}).costs));
+  EXPECT_FALSE(
+      correlate_ranks(Costs({make_gpu_cell("a", 1, 5), make_gpu_cell("b", 2, 5), make_gpu_cell("c", 3, 5)}).costs));
+}
+
+TEST(GpuCosts, TheFarthestFilterIsNamed_AndWhatIsGuessedOrRefused) {
+  std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 30), make_gpu_cell("b", 2, 10), make_gpu_cell("c", 3, 20)};
+  cells.push_back(make_gpu_cell("d", 4, 40));
+  cells[1].gpu->at("one").facts[1].facts.loops = 1;
+  cells[2].gpu->at("one").facts[1].facts.spilled_registers = 7;
+  cells[3].gpu->at("one") = {{}, std::nullopt, "mine.glsl:8: Vulkan refuses"};
+  const Costs costs(cells);
+  const auto sentences = describe_gpu("one", costs.costs, {});
+  ASSERT_EQ(sentences.size(), 4u);
+  EXPECT_THAT(sentences[0], HasSubstr("over 3 configurations"));
+  EXPECT_THAT(sentences[0],
+              HasSubstr("Farthest apart is a: number 1 of the measured times, cheapest first, and number 3"));
+  EXPECT_THAT(sentences[1], HasSubstr("d: mine.glsl:8: Vulkan refuses"));
+  EXPECT_THAT(sentences[2], HasSubstr("how often loops turn: b."));
+  EXPECT_THAT(sentences[3], HasSubstr("spill to memory, which is slow: c."));
+}
+
+TEST(GpuCosts, TheTableIsCheapestFirst_LessTheEmptyLookup) {
+  std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 30), make_gpu_cell("b", 2, 10)};
+  cells.push_back(make_gpu_cell("wrong", 1, 1));
+  cells.back().status = records::CellStatus::kSuspect;
+  const records::TextTable table = make_gpu_table(Costs(cells).costs);
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.rows[0].front(), "b");
+  EXPECT_EQ(table.rows[1].front(), "a");
+  EXPECT_EQ(table.rows[1].size(), table.header.size());
+  EXPECT_EQ(table.rows[1][1], "30");
+  EXPECT_EQ(table.rows[1][5], "23");
+  EXPECT_EQ(table.rows[1][6], "5");
+}
+
+}  // namespace
+}  // namespace shadowbench::analysis
