@@ -23,16 +23,20 @@ struct Span {
   std::size_t size = 0;
 };
 
-Span checked_view(const tinygltf::Model& model, int index, const std::string& owner, const std::string& where) {
-  const tinygltf::BufferView& view = find_element(model.bufferViews, index, owner + ": there is no buffer view", where);
+Span checked_span(const tinygltf::Model& model, const tinygltf::BufferView& view, const std::string& owner,
+                  const std::string& where) {
   const std::vector<unsigned char>& bytes =
-      find_element(model.buffers, view.buffer, fmt::format("{}: buffer view {} names buffer", owner, index), where)
-          .data;
+      find_element(model.buffers, view.buffer, owner + " names buffer", where).data;
   if (view.byteOffset <= bytes.size() && view.byteLength <= bytes.size() - view.byteOffset)
     return {bytes.data() + view.byteOffset, view.byteLength};
-  fail_input(fmt::format("{}: buffer view {} runs past its buffer: offset {} + {} bytes of {}", owner, index,
-                         view.byteOffset, view.byteLength, bytes.size()),
+  fail_input(fmt::format("{} runs past its buffer: offset {} + {} bytes of {}", owner, view.byteOffset, view.byteLength,
+                         bytes.size()),
              where);
+}
+
+Span checked_view(const tinygltf::Model& model, int index, const std::string& owner, const std::string& where) {
+  const tinygltf::BufferView& view = find_element(model.bufferViews, index, owner + ": there is no buffer view", where);
+  return checked_span(model, view, fmt::format("{}: buffer view {}", owner, index), where);
 }
 
 /// How elements lie in a checked span; all of them lie inside it.
@@ -205,8 +209,15 @@ std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int access
   return indices;
 }
 
-std::vector<unsigned char> read_buffer_view(const tinygltf::Model& model, int view, const std::string& where) {
-  const Span span = checked_view(model, view, "image", where);
+std::vector<unsigned char> read_span(const tinygltf::Model& model, const tinygltf::BufferView& view,
+                                     const std::string& owner, const std::string& where) {
+  const Span span = checked_span(model, view, owner, where);
+  return {span.data, span.data + span.size};
+}
+
+std::vector<unsigned char> read_buffer_view(const tinygltf::Model& model, int view, const std::string& owner,
+                                            const std::string& where) {
+  const Span span = checked_view(model, view, owner, where);
   return {span.data, span.data + span.size};
 }
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
@@ -32,6 +32,41 @@ std::vector<std::uint32_t> to_triangles(const std::vector<std::uint32_t>& corner
   return triangles;
 }
 
+/// Which of a vertex's texture coordinates a material uses, and what makes the texture's own of them.
+struct Texcoords {
+  int set = 0;
+  glm::dmat3 texture_from_mesh{1.0};
+};
+
+/// The two numbers of a member of KHR_texture_transform.
+glm::dvec2 read_pair(const tinygltf::Value& transform, const std::string& key, const glm::dvec2& otherwise,
+                     const std::string& where) {
+  if (!transform.Has(key)) return otherwise;
+  const tinygltf::Value& pair = transform.Get(key);
+  if (pair.ArrayLen() == 2 && pair.Get(0).IsNumber() && pair.Get(1).IsNumber())
+    return {pair.Get(0).GetNumberAsDouble(), pair.Get(1).GetNumberAsDouble()};
+  fail_input(fmt::format("the {} of a KHR_texture_transform must be two numbers", key), where);
+}
+
+/// The transform moves, turns and scales, the scaling first; an angle turns counter-clockwise as a picture is seen,
+/// whose rows go down.
+Texcoords read_texcoords(const tinygltf::TextureInfo& texture, const std::string& where) {
+  const auto extension = texture.extensions.find("KHR_texture_transform");
+  if (extension == texture.extensions.end()) return {texture.texCoord};
+  const tinygltf::Value& transform = extension->second;
+  const glm::dvec2 offset = read_pair(transform, "offset", {0.0, 0.0}, where);
+  const glm::dvec2 scale = read_pair(transform, "scale", {1.0, 1.0}, where);
+  const bool turns = transform.Has("rotation");
+  if (turns && !transform.Get("rotation").IsNumber())
+    fail_input("the rotation of a KHR_texture_transform must be a number", where);
+  const double angle = turns ? transform.Get("rotation").GetNumberAsDouble() : 0.0;
+  const bool has_set = transform.Has("texCoord") && transform.Get("texCoord").IsInt();
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  return {has_set ? transform.Get("texCoord").GetNumberAsInt() : texture.texCoord,
+          {scale.x * c, -scale.x * s, 0.0, scale.y * s, scale.y * c, 0.0, offset.x, offset.y, 1.0}};
+}
+
 /// Builds a model from a parsed file, part by part.
 class GltfImporter {
  public:
@@ -58,11 +93,8 @@ class GltfImporter {
   }
 
   void warn_of_extensions() {
-    for (const std::string& extension : source_.extensionsUsed) {
-      const bool harmless = extension.starts_with("KHR_materials_") || extension == "KHR_lights_punctual" ||
-                            extension == "KHR_mesh_quantization";
-      if (!harmless) warn(fmt::format("the extension {} is ignored", extension));
-    }
+    for (const std::string& extension : source_.extensionsUsed)
+      if (!is_known_extension(extension)) warn(fmt::format("the extension {} is ignored", extension));
   }
 
   void add_material(const tinygltf::Material& source) {
@@ -83,7 +115,7 @@ class GltfImporter {
                        source.alphaMode));
     }
     result_.materials.push_back(material);
-    texcoord_set_.push_back(texture.texCoord);
+    texcoords_.push_back(read_texcoords(texture, where_));
   }
 
   int add_texture(int index) {
@@ -100,7 +132,8 @@ class GltfImporter {
     const std::string fallback_name = image.uri.empty() ? fmt::format("image {}", index) : image.uri;
     const std::string name = image.name.empty() ? fallback_name : image.name;
     if (image.bufferView >= 0)
-      return decode_texture(read_buffer_view(source_, image.bufferView, where_), name, where_, result_.textures);
+      return decode_texture(read_buffer_view(source_, image.bufferView, "image", where_), name, where_,
+                            result_.textures);
     if (image.image.empty()) fail(fmt::format("the image '{}' is missing or empty", fallback_name));
     return decode_texture(image.image, name, where_, result_.textures);
   }
@@ -162,7 +195,7 @@ class GltfImporter {
     if (primitive.material >= 0) fail(fmt::format("there is no material {} (of {})", primitive.material, count));
     if (result_.materials.size() == count) {
       result_.materials.push_back({.name = "default"});
-      texcoord_set_.push_back(0);
+      texcoords_.emplace_back();
     }
     return static_cast<int>(count);
   }
@@ -191,10 +224,10 @@ class GltfImporter {
   }
 
   std::vector<Vertex> read_vertices(const tinygltf::Primitive& primitive, const Mesh& mesh) const {
-    const std::string texcoord = fmt::format("TEXCOORD_{}", texcoord_set_[static_cast<std::size_t>(mesh.material)]);
+    const Texcoords& texcoords = texcoords_[static_cast<std::size_t>(mesh.material)];
     const std::vector<float> positions = read_attribute(primitive, "POSITION", 3);
     const std::vector<float> normals = read_attribute(primitive, "NORMAL", 3);
-    const std::vector<float> uvs = read_attribute(primitive, texcoord, 2);
+    const std::vector<float> uvs = read_attribute(primitive, fmt::format("TEXCOORD_{}", texcoords.set), 2);
     const std::size_t count = positions.size() / 3;
     const bool same_count =
         (normals.empty() || normals.size() == 3 * count) && (uvs.empty() || uvs.size() == 2 * count);
@@ -203,7 +236,7 @@ class GltfImporter {
     for (std::size_t i = 0; i < count; ++i) {
       vertices[i].position_ws = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
       if (!normals.empty()) vertices[i].normal_ws = {normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]};
-      if (!uvs.empty()) vertices[i].uv = {uvs[2 * i], uvs[2 * i + 1]};
+      if (!uvs.empty()) vertices[i].uv = texcoords.texture_from_mesh * glm::dvec3(uvs[2 * i], uvs[2 * i + 1], 1.0);
     }
     return vertices;
   }
@@ -248,7 +281,7 @@ class GltfImporter {
   std::set<std::string> warned_;
   std::map<int, int> texture_of_image_;
   std::map<int, std::vector<Mesh>> local_meshes_;
-  std::vector<int> texcoord_set_;  ///< per material
+  std::vector<Texcoords> texcoords_;  ///< per material
   std::size_t corner_count_ = 0;
 };
 

@@ -7,11 +7,12 @@
 #include <cstring>
 #include <limits>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <optional>
-#include <string_view>
 
 #include "filters/base/error.h"
 #include "harness/scene/files/file_bytes.h"
+#include "harness/scene/files/gltf_unpack.h"
 
 namespace shadowbench::scene {
 namespace {
@@ -73,6 +74,59 @@ std::string_view json_of(const std::vector<unsigned char>& bytes) {
   return all.substr(20, length);
 }
 
+/// EXT_meshopt_compression leaves buffers without bytes, for readers that do not know it, and the parser refuses those:
+/// each gets one byte. The first buffer of a .glb has its bytes in the file.
+void fill_fallbacks(nlohmann::json& buffers, bool glb) {
+  const nlohmann::json::json_pointer fallback("/extensions/EXT_meshopt_compression/fallback");
+  bool is_first = true;
+  for (nlohmann::json& buffer : buffers) {
+    const bool has_bytes = buffer.contains("uri") || (glb && is_first);
+    const bool is_fallback = buffer.contains(fallback) && buffer[fallback] == true;
+    is_first = false;
+    if (!buffer.is_object() || (has_bytes && !is_fallback)) continue;
+    buffer["uri"] = "data:application/octet-stream;base64,AA==";
+    buffer["byteLength"] = 1;
+  }
+}
+
+/// KHR_draco_mesh_compression leaves indices without a buffer view, which the parser refuses too: the primitive gets
+/// its indices when it is unpacked.
+void drop_packed_indices(nlohmann::json& mesh) {
+  const nlohmann::json::json_pointer packed("/extensions/KHR_draco_mesh_compression");
+  if (!mesh.contains("primitives")) return;
+  for (nlohmann::json& primitive : mesh["primitives"])
+    if (primitive.contains(packed)) primitive.erase("indices");
+}
+
+/// The JSON with what the parser refuses of compressed files taken out; as it is where it is none.
+std::string without_gaps(std::string_view json, bool glb) {
+  nlohmann::json document = nlohmann::json::parse(json, nullptr, false);
+  if (!document.is_object()) return std::string(json);
+  if (document.contains("buffers")) fill_fallbacks(document["buffers"], glb);
+  if (document.contains("meshes")) std::ranges::for_each(document["meshes"], drop_packed_indices);
+  return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+bool may_be_compressed(std::string_view json) {
+  return json.find("EXT_meshopt_compression") != json.npos || json.find("KHR_draco_mesh_compression") != json.npos;
+}
+
+/// A file's bytes with the JSON replaced.
+std::vector<unsigned char> with_json(const std::vector<unsigned char>& bytes, std::string json) {
+  if (!is_glb(bytes)) return {json.begin(), json.end()};
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const std::size_t json_end = 20 + json_of(bytes).size();
+  std::vector<unsigned char> file(bytes.begin(), bytes.begin() + 20);
+  file.insert(file.end(), json.begin(), json.end());
+  file.insert(file.end(), bytes.begin() + static_cast<std::ptrdiff_t>(json_end), bytes.end());
+  const std::array lengths{std::pair(8, file.size()), std::pair(12, json.size())};
+  for (const auto& [at, length] : lengths) {
+    const auto length_32 = static_cast<std::uint32_t>(length);
+    std::memcpy(file.data() + at, &length_32, sizeof length_32);
+  }
+  return file;
+}
+
 /// The parser recurses; JSON nested without limit would end the program.
 int nesting_depth(std::string_view json) {
   int depth = 0;
@@ -96,10 +150,8 @@ std::string one_line(std::string text) {
 }
 
 void require_readable_extensions(const tinygltf::Model& model, const std::string& where) {
-  constexpr std::array<std::string_view, 2> kRead{"KHR_lights_punctual", "KHR_mesh_quantization"};
   for (const std::string& extension : model.extensionsRequired) {
-    const bool only_looks = extension.starts_with("KHR_materials_");
-    if (only_looks || std::ranges::find(kRead, extension) != kRead.end()) continue;
+    if (is_known_extension(extension)) continue;
     fail_input(fmt::format("the file requires the extension {}, which is not supported; save it "
                            "without",
                            extension),
@@ -132,13 +184,29 @@ bool parse_bytes(tinygltf::TinyGLTF& parser, tinygltf::Model* model, std::string
 
 }  // namespace
 
+bool is_known_extension(std::string_view extension) {
+  constexpr std::array<std::string_view, 5> kRead{"EXT_meshopt_compression", "KHR_draco_mesh_compression",
+                                                  "KHR_lights_punctual", "KHR_mesh_quantization",
+                                                  "KHR_texture_transform"};
+  return extension.starts_with("KHR_materials_") || std::ranges::find(kRead, extension) != kRead.end();
+}
+
+std::size_t read_whole_number(const tinygltf::Value& object, const std::string& key, const std::string& owner,
+                              const std::string& where) {
+  if (object.Has(key) && object.Get(key).IsInt() && object.Get(key).GetNumberAsInt() >= 0)
+    return static_cast<std::size_t>(object.Get(key).GetNumberAsInt());
+  fail_input(fmt::format("{} is compressed, but its extension has no whole number '{}' of 0 or more", owner, key),
+             where);
+}
+
 tinygltf::Model parse_gltf(const fs::path& file) {
   constexpr int kDeepestJson = 200;
   const std::string where = file.string();
-  const std::vector<unsigned char> bytes = read_file_bytes(file);
+  std::vector<unsigned char> bytes = read_file_bytes(file);
   if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) fail_input("the file is larger than 4 GiB", where);
   if (nesting_depth(json_of(bytes)) > kDeepestJson)
     fail_input(fmt::format("its JSON is nested more than {} deep", kDeepestJson), where);
+  if (may_be_compressed(json_of(bytes))) bytes = with_json(bytes, without_gaps(json_of(bytes), is_glb(bytes)));
   FolderGuard guard{fs::absolute(file).lexically_normal().parent_path().string(), {}};
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(&keep_encoded, nullptr);
@@ -153,7 +221,7 @@ tinygltf::Model parse_gltf(const fs::path& file) {
   require_readable_extensions(model, where);
   if (!parsed || !failure.empty()) fail_input("not valid glTF: " + one_line(failure), where);
   require_version_2(model, where);
-  return model;
+  return unpack_draco(unpack_meshopt(std::move(model), where), where);
 }
 
 }  // namespace shadowbench::scene

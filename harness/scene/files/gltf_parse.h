@@ -3,16 +3,22 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include <cstddef>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "filters/base/error.h"
 
 namespace shadowbench::scene {
 
-/// Parses a .gltf or .glb file and its buffers; images stay encoded, in `image`, or in their buffer view.
+/// Whether a file may require the extension: it is read, or says only how surfaces look beside their base colour.
+bool is_known_extension(std::string_view extension);
+
+/// Parses a .gltf or .glb file and its buffers, and unpacks those that are compressed; images stay encoded, in
+/// `image`, or in their buffer view.
 /// Reads nothing outside the file's folder. Throws kInput where the file is malformed, refers outside its folder or
 /// requires an extension that is not read.
 tinygltf::Model parse_gltf(const std::filesystem::path& file);
@@ -24,6 +30,11 @@ const T& find_element(const std::vector<T>& list, int index, const std::string& 
   if (index >= 0 && static_cast<std::size_t>(index) < list.size()) return list[static_cast<std::size_t>(index)];
   fail_input(fmt::format("{} {} (of {})", complaint, index, list.size()), where);
 }
+
+/// A whole number, 0 or more, that an extension's object must have.
+/// Throws kInput, about `owner`, at `where`, where it has none.
+std::size_t read_whole_number(const tinygltf::Value& object, const std::string& key, const std::string& owner,
+                              const std::string& where);
 
 /// A node and the product of the transforms on its way from the root.
 struct PlacedNode {
