@@ -89,7 +89,7 @@ std::string decode_with(draco::DecoderBuffer buffer, std::uint64_t most_bytes, d
 
 std::unique_ptr<draco::Mesh> decode_mesh(const std::vector<unsigned char>& bytes, const std::string& owner,
                                          const std::string& where) {
-  constexpr std::uint64_t kAlwaysAllowed = std::uint64_t{1} << 26;
+  constexpr std::uint64_t kAlwaysAllowed = std::uint64_t{1} << 28;
   constexpr std::uint64_t kMostExpansion = 1024;
   const std::uint64_t most_bytes =
       std::clamp<std::uint64_t>(kMostExpansion * bytes.size(), kAlwaysAllowed, kMostUnpackedBytes);

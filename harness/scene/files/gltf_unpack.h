@@ -17,7 +17,7 @@ tinygltf::Model unpack_meshopt(tinygltf::Model model, const std::string& where);
 
 /// Gives every primitive that KHR_draco_mesh_compression compresses accessors of its own, with the indices, positions,
 /// normals and texture coordinates that the compressed data hold; it then is a list of triangles.
-/// Data may claim 64 MiB, or 1024 times their compressed size where that is more.
+/// Data may claim 256 MiB, or 1024 times their compressed size where that is more.
 /// Throws kInput, at `where`, for data that are damaged or claim too much, before anything is allocated for the claim.
 tinygltf::Model unpack_draco(tinygltf::Model model, const std::string& where);
 

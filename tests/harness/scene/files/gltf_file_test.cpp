@@ -128,6 +128,71 @@ TEST(GltfFileTest, StridedAndNormalizedAttributes_Read) {
   EXPECT_EQ(bounds_of(import_parts(parts)).max, glm::vec3(1, 1, 0));
 }
 
+/// A triangle whose positions, normals and texture coordinates are of the given type of component.
+template <class T>
+Mesh quantized_triangle(const std::vector<T>& positions, const std::vector<T>& normals, const std::vector<T>& uvs,
+                        int type, bool normalized) {
+  GltfParts parts;
+  parts.buffer.clear();
+  parts.views = parts.accessors = "[";
+  for (const auto& [values, components, is_normalized] :
+       {std::tuple(positions, 3, normalized), std::tuple(normals, 3, true), std::tuple(uvs, 2, normalized)}) {
+    const std::size_t stride = (static_cast<std::size_t>(components) * sizeof(T) + 3) / 4 * 4;
+    parts.views += fmt::format(R"({}{{"buffer": 0, "byteOffset": {}, "byteLength": {}, "byteStride": {}}})",
+                               parts.buffer.empty() ? "" : ", ", parts.buffer.size(), 3 * stride, stride);
+    parts.accessors +=
+        fmt::format(R"({}{{"bufferView": {}, "componentType": {}, "normalized": {}, "count": 3, "type": "VEC{}"}})",
+                    parts.buffer.empty() ? "" : ", ", std::count(parts.views.begin(), parts.views.end(), '{') - 1, type,
+                    is_normalized, components);
+    for (std::size_t i = 0; i < values.size(); i += static_cast<std::size_t>(components)) {
+      std::string element = bytes_of(std::vector<T>(&values[i], &values[i] + components));
+      element.resize(stride, '\x55');
+      parts.buffer += element;
+    }
+  }
+  parts.views += "]";
+  parts.accessors += "]";
+  parts.primitive = R"({"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}})";
+  parts.more = R"(, "extensionsUsed": ["KHR_mesh_quantization"], "extensionsRequired": ["KHR_mesh_quantization"])";
+  const MeshFile model = import_parts(parts);
+  EXPECT_TRUE(model.warnings.empty());
+  return model.meshes.at(0);
+}
+
+void expect_triangle(const Mesh& mesh, const glm::vec3& second, const glm::vec3& third, const glm::vec2& second_uv,
+                     const glm::vec2& third_uv) {
+  ASSERT_EQ(mesh.vertices.size(), 3U);
+  EXPECT_LT(glm::distance(mesh.vertices[1].position_ws, second), 1e-6f) << mesh.vertices[1].position_ws.x;
+  EXPECT_LT(glm::distance(mesh.vertices[2].position_ws, third), 1e-6f) << mesh.vertices[2].position_ws.y;
+  EXPECT_LT(glm::distance(mesh.vertices[1].uv, second_uv), 1e-6f) << mesh.vertices[1].uv.x;
+  EXPECT_LT(glm::distance(mesh.vertices[2].uv, third_uv), 1e-6f) << mesh.vertices[2].uv.y;
+  for (const Vertex& vertex : mesh.vertices) EXPECT_EQ(vertex.normal_ws, glm::vec3(0, 0, 1));
+}
+
+/// KHR_mesh_quantization: b/255, max(b/127, -1), s/65535 and max(s/32767, -1) where normalized, else the number itself.
+TEST(GltfFileTest, QuantizedAttributes_AreTheNumbersThatTheyStandFor) {
+  const std::vector<std::int8_t> up8{0, 0, 127, 0, 0, 127, 0, 0, 127};
+  const std::vector<std::int16_t> up16{0, 0, 32767, 0, 0, 32767, 0, 0, 32767};
+  const std::vector<std::int8_t> positions8{0, 0, 0, 127, -128, 0, -3, 64, 0};
+  expect_triangle(quantized_triangle<std::int8_t>(positions8, up8, {0, 0, -127, 127, 64, -128}, 5120, true), {1, -1, 0},
+                  {-3.0f / 127, 64.0f / 127, 0}, {-1, 1}, {64.0f / 127, -1});
+  expect_triangle(quantized_triangle<std::int8_t>(positions8, up8, {0, 0, -127, 127, 64, -128}, 5120, false),
+                  {127, -128, 0}, {-3, 64, 0}, {-127, 127}, {64, -128});
+  const std::vector<std::int16_t> positions16{0, 0, 0, 32767, -32768, 0, -3, 8192, 0};
+  expect_triangle(quantized_triangle<std::int16_t>(positions16, up16, {0, 0, -32767, 1, 2, 3}, 5122, true), {1, -1, 0},
+                  {-3.0f / 32767, 8192.0f / 32767, 0}, {-1, 1.0f / 32767}, {2.0f / 32767, 3.0f / 32767});
+  expect_triangle(quantized_triangle<std::int16_t>(positions16, up16, {0, 0, -32767, 1, 2, 3}, 5122, false),
+                  {32767, -32768, 0}, {-3, 8192, 0}, {-32767, 1}, {2, 3});
+  const std::vector<std::uint8_t> up_u8{0, 0, 255, 0, 0, 255, 0, 0, 255};
+  expect_triangle(
+      quantized_triangle<std::uint8_t>({0, 0, 0, 255, 51, 0, 0, 200, 0}, up_u8, {0, 0, 255, 51, 1, 254}, 5121, true),
+      {1, 0.2f, 0}, {0, 200.0f / 255, 0}, {1, 0.2f}, {1.0f / 255, 254.0f / 255});
+  const std::vector<std::uint16_t> up_u16{0, 0, 65535, 0, 0, 65535, 0, 0, 65535};
+  expect_triangle(quantized_triangle<std::uint16_t>({0, 0, 0, 65535, 13107, 0, 0, 40000, 0}, up_u16,
+                                                    {0, 0, 65535, 13107, 1, 65534}, 5123, false),
+                  {65535, 13107, 0}, {0, 40000, 0}, {65535, 13107}, {1, 65534});
+}
+
 TEST(GltfFileTest, SparseAccessor_ReplacesItsElements) {
   GltfParts parts;
   parts.accessors = R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "sparse": {"count": 1,
@@ -363,35 +428,6 @@ TEST(GltfFileTest, Materials_KeepColourAndAlphaMode) {
   EXPECT_FLOAT_EQ(model.materials[0].alpha_cutoff, 0.25f);
   EXPECT_EQ(model.materials[1].alpha_mode, AlphaMode::kOpaque);
   EXPECT_THAT(model.warnings, testing::ElementsAre(AllOf(HasSubstr("'glass'"), HasSubstr("opaque"))));
-}
-
-void expect_textured(const MeshFile& model) {
-  ASSERT_EQ(model.textures.size(), 1U);
-  EXPECT_EQ(model.textures[0].width, 2);
-  EXPECT_EQ(model.textures[0].rgba, (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 0, 255, 128}));
-  EXPECT_EQ(model.materials[0].base_color_texture, 0);
-  EXPECT_EQ(model.meshes[0].vertices[0].uv, glm::vec2(0, 1));
-}
-
-TEST(GltfFileTest, TextureInAFile_IsDecoded) {
-  const TestFolder folder;
-  const GltfParts parts = textured_parts(R"({"uri": "a%20picture.tga"})");
-  folder.write("data.bin", parts.buffer);
-  folder.write("a picture.tga", tga_bytes());
-  expect_textured(import_gltf(folder.write("test.gltf", gltf_of(parts))));
-}
-
-TEST(GltfFileTest, TextureInABufferView_IsDecoded) {
-  expect_textured(import_parts(textured_parts(R"({"bufferView": 3, "mimeType": "image/png"})")));
-}
-
-TEST(GltfFileTest, MissingUnreadableOrOutsideTexture_IsAnError) {
-  EXPECT_THAT(complaint_about_gltf(textured_parts(R"({"uri": "absent.png"})")), HasSubstr("'absent.png' is missing"));
-  EXPECT_THAT(complaint_about_gltf(textured_parts(R"({"uri": "data.bin"})")), HasSubstr("cannot be decoded"));
-  EXPECT_THAT(complaint_about_gltf(textured_parts(R"({"uri": "../x.png"})")), HasSubstr("outside its folder"));
-  GltfParts parts = textured_parts(R"({"bufferView": 3, "mimeType": "image/png"})");
-  parts.views.replace(parts.views.find("\"byteLength\": 26"), 16, "\"byteLength\": 99");
-  EXPECT_THAT(complaint_about_gltf(parts), HasSubstr("runs past its buffer"));
 }
 
 /// Damages single bytes at random; a sanitizer build makes this a fuzz test.
