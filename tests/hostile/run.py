@@ -111,6 +111,8 @@ class Maker:
         self.formats = [
             ("toml", samples / "cubes.toml", ["run", "--scene", "{}"], {0, 3}),
             ("gltf", samples / "small.gltf", ["run", "--scene", "{}"], {0, 3}),
+            *[("glb", ROOT / "tests" / "fuzz" / "corpus" / "gltf" / name, ["run", "--scene", "{}"], {0, 3})
+              for name in ("draco.glb", "meshopt.glb")],
             ("obj", samples / "small.obj", ["run", "--scene", "{}"], {0, 3}),
             ("glsl", ROOT / "filters" / "vsm.glsl", ["run", "--scene", "cubes", "--filters", "mutant", "--filter-file",
                                                      "{}"], {0, 2, 5}),

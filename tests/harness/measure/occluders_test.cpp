@@ -8,6 +8,7 @@
 
 #include "harness/scene/lights/light_fit.h"
 #include "reference/truth/visibility.h"
+#include "tests/harness/scene/gltf_parts.h"
 
 namespace shadowbench::measure {
 namespace {
@@ -63,6 +64,29 @@ TEST(Occluders, HolesOfAMaterial_LetRaysThrough) {
   EXPECT_NEAR(static_cast<double>(std::count(hard.begin(), hard.begin() + 16, 1.0f)), 8.0, 2.0)
       << "the transparent texel";
   EXPECT_EQ(hard[15], 0.0f) << "an opaque one";
+}
+
+/// Whether light falls through a roof over the receivers' left and right half. The roof is a picture whose right half
+/// is a hole, under a KHR_texture_transform.
+std::pair<bool, bool> lit_halves(const std::string& transform) {
+  scene::GltfParts parts = scene::textured_parts(R"({"bufferView": 3, "mimeType": "image/png"})");
+  parts.nodes = R"([{"mesh": 0, "translation": [-1, 1, 1], "scale": [2, 2, 2],
+      "rotation": [-0.70710678118654752, 0, 0, 0.70710678118654752]}])";
+  parts.more = fmt::format(R"(, "images": [{{"bufferView": 3, "mimeType": "image/png"}}], "textures": [{{"source": 0}}],
+      "materials": [{{"alphaMode": "MASK", "alphaCutoff": 0.75, "pbrMetallicRoughness": {{"baseColorTexture":
+      {{"index": 0, "extensions": {{"KHR_texture_transform": {}}}}}}}}}])",
+                           transform);
+  const std::vector<float> hard = trace_hard(scene::add_mesh_file({}, scene::import_parts(parts)));
+  const auto lit = [&](std::ptrdiff_t first) { return std::count(&hard[0] + first, &hard[0] + first + 16, 1.0f); };
+  EXPECT_EQ(lit(0) + lit(16), 16) << "half of them";
+  return {lit(0) == 16, lit(16) == 16};
+}
+
+TEST(Occluders, HoleOfATransformedTexture_IsWhereTheTransformPutsIt) {
+  EXPECT_EQ(lit_halves("{}"), std::pair(false, true));
+  EXPECT_EQ(lit_halves(R"({"offset": [0.5, 0]})"), std::pair(true, false));
+  EXPECT_EQ(lit_halves(R"({"scale": [-1, 1]})"), std::pair(true, false));
+  EXPECT_EQ(lit_halves(R"({"rotation": 3.14159265358979})"), std::pair(true, false));
 }
 
 TEST(MapGrid, IsThatOfTheLightsMap) {
