@@ -106,7 +106,9 @@ std::unique_ptr<draco::Mesh> decode_mesh(const std::vector<unsigned char>& bytes
     failure = decode_with<draco::MeshEdgebreakerDecoder>(buffer, most_bytes, mesh.get());
   else if (has_header && header.encoder_method == draco::MESH_SEQUENTIAL_ENCODING)
     failure = decode_with<draco::MeshSequentialDecoder>(buffer, most_bytes, mesh.get());
-  if (!failure.empty()) fail_input(fmt::format("the Draco data of {} cannot be decoded: {}", owner, failure), where);
+  if (!failure.empty())
+    fail_input(fmt::format("the Draco data of {} cannot be decoded ({}); export the model again", owner, failure),
+               where);
   return mesh;
 }
 

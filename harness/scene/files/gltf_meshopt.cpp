@@ -72,7 +72,8 @@ std::vector<unsigned char> unpack(const Packing& p, const std::vector<unsigned c
   }
   std::vector<unsigned char> bytes(p.count * p.stride);
   if (const int failure = decode(bytes, p, packed); failure != 0)
-    fail_input(fmt::format("the meshopt data of {} are damaged (code {})", owner, failure), where);
+    fail_input(fmt::format("the meshopt data of {} are damaged (code {}); export the model again", owner, failure),
+               where);
   if (p.filter == "OCTAHEDRAL") meshopt_decodeFilterOct(bytes.data(), p.count, p.stride);
   if (p.filter == "QUATERNION") meshopt_decodeFilterQuat(bytes.data(), p.count, p.stride);
   if (p.filter == "EXPONENTIAL") meshopt_decodeFilterExp(bytes.data(), p.count, p.stride);
