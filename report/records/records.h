@@ -185,7 +185,7 @@ struct GpuEstimateRecord {
   double prefilter_us = 0.0;                       ///< of the map, each of its passes
   double arithmetic_us = 0.0, sampling_us = 0.0;   ///< of the lookup: the largest of these three is its time
   std::optional<double> memory_us = std::nullopt;  ///< nothing where the reads of the filter are not known
-  std::string bound_by;                            ///< what takes longest: "arithmetic", "sampling" or "memory"
+  std::string bound_by = {};                       ///< what takes longest: "arithmetic", "sampling" or "memory"
 };
 
 /// What one filter costs on one GPU that need not be there.

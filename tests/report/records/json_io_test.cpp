@@ -64,6 +64,9 @@ CellRecord make_timed_out_cell() {
   return cell;
 }
 
+// No two fields alike.
+constexpr ShaderFacts kFacts{31, 168, 8, 128, 1, 2, 16, 779, 49, 3, 4, 5, 6, 7};
+
 // A cell in which everything that later issues bring exists.
 CellRecord make_full_cell() {
   CellRecord cell = make_cell("cubes", "full", 4.0);
@@ -94,10 +97,9 @@ CellRecord make_full_cell() {
   cell.time_ms.empty = Quartiles{1.0, 0.5, 1.5, 3};
   cell.time_ms.filter = OwnTime{{-0.25, -0.5, 0.5, 3}, {-0.5, 0.5}};
   cell.time_ms.moving = OwnTime{{4.0, 3.5, 4.5, 3}, {3.5, 4.5}};
-  const ShaderFacts facts{31, 168, 8, 128, 1, 2, 16, 779, 49, 3, 4, 5, 6, 7};
   cell.gpu = {
       {"navi21",
-       {{{"lookup", 1, facts}, {"blur", 2, {}}}, GpuEstimateRecord{9.5, 6.5, 3.0, 1.0, 6.5, 2.0, "memory"}, ""}},
+       {{{"lookup", 1, kFacts}, {"blur", 2, {}}}, GpuEstimateRecord{9.5, 6.5, 3.0, 1.0, 6.5, 2.0, "memory"}, ""}},
       {"vega10", {{}, std::nullopt, "no driver"}}};
   cell.lights = {{1, {1.5, 1.25, 1.75, 9}, {2.5, 2.25, 2.75, 9}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 1024},
                  {16, {24.0, 20.0, 28.0, 5}, {40.0, 36.0, 44.0, 5}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 16384}};
@@ -159,7 +161,7 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   EXPECT_EQ(back.gpu->at("vega10").refused, "no driver");
   EXPECT_FALSE(back.gpu->at("vega10").estimate);
   const GpuRecord& gpu = back.gpu->at("navi21");
-  EXPECT_EQ(gpu.facts.at(0).facts, facts);
+  EXPECT_EQ(gpu.facts.at(0).facts, kFacts);
   EXPECT_EQ(gpu.facts.at(1).pass, "blur");
   EXPECT_EQ(gpu.facts.at(1).draws, 2);
   EXPECT_EQ(gpu.estimate->total_us, 9.5);
