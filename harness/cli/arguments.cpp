@@ -110,7 +110,7 @@ std::vector<filters::FilterRequest> parse_builtin_filters(const std::string& tex
   return requests;
 }
 
-options::LightAngles parse_light(const std::string& text) {
+scene::SkyAngles parse_light(const std::string& text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string::npos)
     fail(fmt::format("--light: '{}' must be AZIMUTH,ELEVATION in degrees, such as 120,35", text));

@@ -79,7 +79,7 @@ int parse_count(const std::string& text, const char* option);
 std::pair<int, int> parse_picture_size(const std::string& text);
 
 /// Parses the AZIMUTH,ELEVATION of `--light`, in degrees.
-options::LightAngles parse_light(const std::string& text);
+scene::SkyAngles parse_light(const std::string& text);
 
 /// Names the built-in scenes.
 std::vector<std::string> list_builtin_scenes(const options::Resources& resources);

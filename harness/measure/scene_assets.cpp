@@ -8,8 +8,8 @@
 
 #include "filters/base/error.h"
 #include "harness/measure/mean_flip.h"
-#include "harness/measure/occluders.h"
 #include "harness/render/shade_pass.h"
+#include "harness/scene/occluders.h"
 #include "report/images/picture_io.h"
 
 namespace shadowbench::measure {
@@ -21,7 +21,7 @@ SceneAssets::SceneAssets(Renderer& renderer, const options::RunOptions& options,
       scene_(scene),
       pad_texels_(pad_texels),
       geometry_(scene),
-      tracer_([&scene] { return list_occluders(scene); }, cache, options.seed) {}
+      tracer_([&scene] { return scene::list_occluders(scene); }, cache, options.seed) {}
 
 LightMap& SceneAssets::light_map(const scene::Camera& camera, int map_size) {
   const std::pair key(options_.fit.follows_view() ? &camera : nullptr, map_size);

@@ -247,7 +247,7 @@ records::ParamMap record_params(const filters::ParamValues& values) {
   return params;
 }
 
-std::string describe_light(const options::LightAngles& light) {
+std::string describe_light(const scene::SkyAngles& light) {
   return fmt::format("{},{}", light.azimuth_deg, light.elevation_deg);
 }
 

@@ -64,7 +64,7 @@ SceneMeasurement measure_scene(Renderer& renderer, const options::RunOptions& op
                                SceneAssets& assets, const std::function<void(const std::string&)>& on_cell);
 
 /// Writes a light's place as the command line reads it.
-std::string describe_light(const options::LightAngles& light);
+std::string describe_light(const scene::SkyAngles& light);
 
 /// A filter's parameters as records hold them.
 records::ParamMap record_params(const filters::ParamValues& values);

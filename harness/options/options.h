@@ -47,12 +47,6 @@ struct Shard {
   int count = 1;
 };
 
-/// Where a light stands in the sky: azimuth 0 is +z, 90 is +x; degrees.
-struct LightAngles {
-  double azimuth_deg = 0.0;
-  double elevation_deg = 0.0;
-};
-
 /// The most places of the map's grid that a run may average errors over.
 inline constexpr int kMostPhases = 64;
 
@@ -72,7 +66,7 @@ struct RunOptions {
   std::vector<scene::FitRule> fits = {{}};  ///< of all maps of a run
   scene::FitRule fit;                       ///< of the maps that are drawn at present
   bool snap = false;                        ///< keep the map's texel grid fixed in the world
-  std::optional<LightAngles> light;         ///< in place of the light of every scene
+  std::optional<scene::SkyAngles> light;    ///< in place of the light of every scene
   render::BiasRule bias;
   filters::RangeRule range;          ///< outside the map, beyond its far plane, behind the light
   bool border_page = false;          ///< also draw every rule for what lies outside the map, side by side

@@ -269,6 +269,8 @@ class Experiment {
     const auto is_it = [&](const records::SceneRecord& known) { return known.name == scene.name; };
     if (std::any_of(run_.scenes.begin(), run_.scenes.end(), is_it)) return;
     run_.scenes.push_back({scene.name, scene.title});
+    if (!options_.worker)
+      for (const std::string& note : scene.notes) progress_.note(scene.name + ": " + note);
     for (const std::string& warning : scene.warnings) warn(scene.name + ": " + warning);
     warn_of_open_meshes(scene);
     if (options_.truth && !options_.worker) warn_of_distance(scene);

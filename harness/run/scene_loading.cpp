@@ -14,13 +14,8 @@ scene::Scene load_scene(const options::RunOptions& options, const std::string& a
   load.scenes_folder = options.resources.scenes;
   load.ground = options.ground;
   load.aspect = static_cast<double>(options.width) / options.height;
-  scene::Scene scene = scene::load(argument, load);
-  const auto place = [&](scene::Light& light) {
-    if (options.light) light = scene::place_in_sky(light, options.light->azimuth_deg, options.light->elevation_deg);
-  };
-  place(scene.light);
-  std::ranges::for_each(scene.other_lights, place);
-  return scene;
+  load.light = options.light;
+  return scene::load(argument, load);
 }
 
 std::vector<scene::Scene> load_scenes(const options::RunOptions& options) {

@@ -21,13 +21,19 @@ constexpr double kMargin = 1.04;
 constexpr double kSunFromCameraDeg = 80.0;
 constexpr double kSunElevationDeg = 50.0;
 
-/// The camera looks from three quarters; a scene much longer than wide is seen from near one of its ends, since it
-/// would be a thin line otherwise.
-double camera_azimuth_deg(const Bounds& bounds) {
+/// The azimuth of the long axis of a scene that is much longer than wide; others have none.
+std::optional<double> long_axis_deg(const Bounds& bounds) {
   constexpr float kElongated = 3.0f;
   const glm::vec3 size = bounds.max - bounds.min;
-  if (size.x > kElongated * size.z) return 90.0 - kCameraOffLongAxisDeg;
-  return size.z > kElongated * size.x ? kCameraOffLongAxisDeg : kCameraAzimuthDeg;
+  if (size.x > kElongated * size.z) return 90.0;
+  return size.z > kElongated * size.x ? std::optional(0.0) : std::nullopt;
+}
+
+/// The camera looks from three quarters, or from near the end of a long scene.
+double camera_azimuth_deg(const Bounds& bounds) {
+  const std::optional<double> axis_deg = long_axis_deg(bounds);
+  if (!axis_deg) return kCameraAzimuthDeg;
+  return std::abs(*axis_deg - kCameraOffLongAxisDeg);
 }
 
 /// Where the light throws a point on the plane y = ground_y; nothing for a light that does not come from above.
@@ -66,9 +72,9 @@ struct Slab {
 
 }  // namespace
 
-Camera frame_camera(const Scene& scene, double aspect, std::optional<float> ground_y) {
+Camera frame_camera(const Scene& scene, const SkyAngles& from, double aspect, std::optional<float> ground_y) {
   const Bounds bounds = scene.bounds();
-  const glm::dvec3 forward = light_direction(camera_azimuth_deg(bounds), kCameraElevationDeg);
+  const glm::dvec3 forward = light_direction(from.azimuth_deg, from.elevation_deg);
   const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0.0, 1.0, 0.0)));
   const glm::dvec3 up = glm::cross(right, forward);
   const double tangent = std::tan(0.5 * glm::radians(kVerticalFovDeg)) / kMargin;
@@ -90,8 +96,16 @@ Camera frame_camera(const Scene& scene, double aspect, std::optional<float> grou
   return camera;
 }
 
-Light make_default_sun(const Bounds& bounds) {
-  return place_in_sky({}, camera_azimuth_deg(bounds) + kSunFromCameraDeg, kSunElevationDeg);
+bool is_seen_lengthwise(const Bounds& bounds, const SkyAngles& from) {
+  constexpr double kFarthestOffDeg = 35.0;
+  const std::optional<double> axis_deg = long_axis_deg(bounds);
+  return !axis_deg ||
+         std::abs(std::cos(glm::radians(from.azimuth_deg - *axis_deg))) > std::cos(glm::radians(kFarthestOffDeg));
+}
+
+ViewAngles usual_view(const Bounds& bounds) {
+  const double azimuth_deg = camera_azimuth_deg(bounds);
+  return {{azimuth_deg, kCameraElevationDeg}, {azimuth_deg + kSunFromCameraDeg, kSunElevationDeg}};
 }
 
 float ground_height(const Scene& scene) {

@@ -6,15 +6,26 @@
 
 namespace shadowbench::scene {
 
-/// Returns a camera that looks at the scene's meshes from three quarters (along a scene much longer than wide) and
-/// slightly from above, as near as it can while every vertex stays inside a picture of the given width / height.
-/// Where `ground_y` is given, the shadows that the meshes throw on that plane are inside as well.
-/// Requires at least one vertex. Reads the meshes and the light of `scene` only.
-Camera frame_camera(const Scene& scene, double aspect, std::optional<float> ground_y);
+/// Where a scene is seen from, and where its sun stands.
+struct ViewAngles {
+  SkyAngles camera;
+  SkyAngles sun;
+};
 
-/// Returns the sun of a scene of these bounds that has none: 50 degrees high, from the right of frame_camera's view and
-/// a little from the front, so that shadows fall to the left.
-Light make_default_sun(const Bounds& bounds);
+/// Returns the first view to try of a scene of these bounds: from three quarters (along a scene much longer than wide)
+/// and 24 degrees above. The sun is 50 degrees high, to the right of the view and a little to the front, so that
+/// shadows fall to the left.
+ViewAngles usual_view(const Bounds& bounds);
+
+/// Whether a scene that is much longer than wide is seen from near one of its ends: from elsewhere it is a thin line.
+/// True of any other scene.
+bool is_seen_lengthwise(const Bounds& bounds, const SkyAngles& from);
+
+/// Returns a camera that looks at the scene's meshes from a place around them, as near as it can while every vertex
+/// stays inside a picture of the given width / height. Where `ground_y` is given, the shadows that the meshes throw on
+/// that plane are inside as well.
+/// Requires at least one vertex. Reads the meshes and the light of `scene` only.
+Camera frame_camera(const Scene& scene, const SkyAngles& from, double aspect, std::optional<float> ground_y);
 
 /// Returns the height of a floor just below the meshes: near enough to look like contact, far enough not to coincide.
 float ground_height(const Scene& scene);

@@ -10,8 +10,8 @@
 
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
+#include "harness/scene/complete.h"
 #include "harness/scene/files/mesh_file.h"
-#include "harness/scene/framing.h"
 #include "harness/scene/scene_file.h"
 #include "harness/scene/validate.h"
 
@@ -80,24 +80,6 @@ bool is_path(const std::string& name_or_path) {
   return name_or_path.find('/') != std::string::npos || fs::path(name_or_path).has_extension();
 }
 
-Scene with_floor(Scene scene, float ground_y) {
-  Material material;
-  material.name = "ground";
-  material.base_color = {0.42f, 0.40f, 0.37f, 1.0f};
-  Mesh floor = make_ground(scene, ground_y);
-  floor.material = static_cast<int>(scene.materials.size());
-  scene.materials.push_back(material);
-  scene.meshes.push_back(std::move(floor));
-  return scene;
-}
-
-/// Adds what a bare model lacks; its geometry must have been validated.
-Scene completed(Scene scene, const LoadOptions& options) {
-  const std::optional<float> ground_y = options.ground ? std::optional(ground_height(scene)) : std::nullopt;
-  if (scene.cameras.empty()) scene.cameras.push_back(frame_camera(scene, options.aspect, ground_y));
-  return ground_y ? with_floor(std::move(scene), *ground_y) : scene;
-}
-
 Scene load_model(const fs::path& file, const LoadOptions& options) {
   MeshFile model = import_mesh_file(file);
   Scene scene;
@@ -108,17 +90,18 @@ Scene load_model(const fs::path& file, const LoadOptions& options) {
   scene = validate_geometry(add_mesh_file(std::move(scene), std::move(model)), file.string());
   const Bounds bounds = scene.bounds();
   for (const Light& light : lights) scene.other_lights.push_back(aim_light(light, 0.5f * (bounds.min + bounds.max)));
-  if (lights.empty()) scene.other_lights.push_back(make_default_sun(bounds));
-  scene.light = scene.other_lights.front();
-  scene.other_lights.erase(scene.other_lights.begin());
-  return validate(completed(std::move(scene), options), file.string());
+  if (!lights.empty()) {
+    scene.light = scene.other_lights.front();
+    scene.other_lights.erase(scene.other_lights.begin());
+  }
+  return complete(std::move(scene), {lights.empty(), options.ground, options.aspect, options.light}, file.string());
 }
 
 Scene load_kind(const fs::path& file, const LoadOptions& options) {
   if (is_mesh_file(file)) return load_model(file, options);
   if (file.extension() != ".toml")
     throw Error(ErrorKind::kUsage, "this kind of file is no scene: use .toml, .gltf, .glb or .obj", file.string());
-  Scene scene = load_scene(file);
+  Scene scene = load_scene(file, options.aspect, options.light);
   if (options.ground)
     scene.warnings.push_back("a floor is added to bare models only; this scene file has its own objects");
   return scene;

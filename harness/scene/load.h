@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct LoadOptions {
   std::filesystem::path scenes_folder;  ///< where the built-in scenes are
   bool ground = false;                  ///< put a floor under a bare model
   double aspect = 16.0 / 9.0;           ///< width / height of the picture that an automatic camera fills
+  std::optional<SkyAngles> light{};     ///< put every light of the scene there
 };
 
 /// A built-in scene as it is listed.
@@ -32,8 +34,8 @@ std::vector<SceneInfo> list_teaching_scenes(const std::filesystem::path& folder)
 /// Loads a built-in scene, or a teaching scene, by its name, or a .toml, .gltf, .glb or .obj file by its path, and
 /// validates it.
 ///
-/// A bare model uses its own cameras and its first directional light; what it lacks is completed by frame_camera and
-/// make_default_sun. `ground` adds a floor in a material of its own; scene files have their own objects, and ignore it
+/// A bare model uses its own cameras and lights; what it lacks is completed, as a scene file is that has no camera: see
+/// complete(). `ground` adds a floor in a material of its own; scene files have their own objects, and ignore it
 /// with a warning.
 /// Throws kUsage for a name that is no scene, with the nearest one, or for another kind of file; kInput for a file that
 /// is missing or does not hold what it must.

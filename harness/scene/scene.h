@@ -74,6 +74,7 @@ struct Scene {
   std::vector<Light> other_lights;            ///< see separate_lights()
   glm::vec3 background{0.62f, 0.71f, 0.82f};  ///< linear
   std::vector<std::string> warnings;          ///< what was changed or ignored while loading, for the user
+  std::vector<std::string> notes;             ///< what was chosen while loading, for the user
 
   Bounds bounds() const;
   std::size_t triangle_count() const;

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "filters/base/nearest_name.h"
+#include "harness/scene/complete.h"
 #include "harness/scene/files/mesh_file.h"
-#include "harness/scene/framing.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/scene_object.h"
 #include "harness/scene/toml_reader.h"
@@ -21,7 +21,7 @@ class SceneBuilder {
  public:
   SceneBuilder(const TomlTable& root, std::filesystem::path file) : root_(root), file_(std::move(file)) {}
 
-  Scene build() {
+  Scene build(const Completion& completion) {
     root_.require_known_keys({"title", "background", "model", "camera", "light", "material", "object"});
     scene_.name = file_.stem().string();
     scene_.title = root_.string("title");
@@ -32,13 +32,10 @@ class SceneBuilder {
     if (root_.has("model")) scene_ = add_mesh_file(std::move(scene_), import_mesh_file(root_.file("model")));
     for (const TomlTable& table : root_.tables("camera")) add_camera(table);
     scene_ = validate_geometry(std::move(scene_), file_.string());
-    if (scene_.cameras.empty()) scene_.cameras.push_back(frame_camera(scene_, kPictureAspect, std::nullopt));
-    return validate(std::move(scene_), file_.string());
+    return complete(std::move(scene_), completion, file_.string());
   }
 
  private:
-  static constexpr double kPictureAspect = 16.0 / 9.0;
-
   void add_camera(const TomlTable& table) {
     table.require_known_keys({"name", "position", "target", "up", "vertical_fov_deg"});
     Camera camera;
@@ -150,10 +147,10 @@ class SceneBuilder {
 
 }  // namespace
 
-Scene load_scene(const std::filesystem::path& file) {
+Scene load_scene(const std::filesystem::path& file, double aspect, const std::optional<SkyAngles>& light) {
   const toml::table document = parse_toml_file(file);
   const TomlTable root(document, "the scene", file.string());
-  return SceneBuilder(root, file).build();
+  return SceneBuilder(root, file).build({.aspect = aspect, .light = light});
 }
 
 std::string read_scene_title(const std::filesystem::path& file) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "harness/scene/scene.h"
@@ -31,7 +32,8 @@ namespace shadowbench::scene {
 ///
 /// A model may be anywhere ("../models/tree.gltf"), but all that it refers to must lie in its own folder. Throws kInput
 /// with "file:line" for anything missing, unknown, out of range or malformed.
-Scene load_scene(const std::filesystem::path& file);
+Scene load_scene(const std::filesystem::path& file, double aspect = 16.0 / 9.0,
+                 const std::optional<SkyAngles>& light = std::nullopt);
 
 /// Reads a scene file's title alone. Throws as load_scene does.
 std::string read_scene_title(const std::filesystem::path& file);

@@ -119,19 +119,23 @@ void Occluders::find_blocked(RayPacket& packet) const {
   rtcOccluded16(packet.active.data(), impl_->scene, &context, reinterpret_cast<RTCRay16*>(&packet));
 }
 
-RayPacket::Lanes Occluders::find_nearest(const RayPacket& packet) const {
+PacketHits Occluders::find_nearest(const RayPacket& packet) const {
   RTCRayHit16 hits;
   std::memcpy(&hits.ray, &packet, sizeof(hits.ray));
   std::fill(std::begin(hits.hit.geomID), std::end(hits.hit.geomID), RTC_INVALID_GEOMETRY_ID);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect16(packet.active.data(), impl_->scene, &context, &hits);
-  RayPacket::Lanes distances;
-  for (std::size_t i = 0; i < distances.size(); ++i) {
+  PacketHits result;
+  for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
     const bool is_hit = packet.active[i] != 0 && hits.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
-    distances[i] = is_hit ? hits.ray.tfar[i] : std::numeric_limits<float>::infinity();
+    result.distances[i] = is_hit ? hits.ray.tfar[i] : std::numeric_limits<float>::infinity();
+    if (!is_hit) continue;
+    result.normals[0][i] = hits.hit.Ng_x[i];
+    result.normals[1][i] = hits.hit.Ng_y[i];
+    result.normals[2][i] = hits.hit.Ng_z[i];
   }
-  return distances;
+  return result;
 }
 
 glm::vec3 Occluders::offset_origin(const glm::vec3& position, const glm::vec3& normal, float extent) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -40,6 +41,14 @@ struct Box {
 /// coordinates of the point and of its scene. All in metres.
 float origin_offset(float largest_coordinate, float largest_of_scene);
 
+/// What the rays of a packet meet first.
+struct PacketHits {
+  RayPacket::Lanes distances{};               ///< in units of a direction's length; infinity where nothing is hit
+  std::array<RayPacket::Lanes, 3> normals{};  ///< x, y, z of the triangle's normal: of any length, to either side
+
+  glm::vec3 normal(std::size_t lane) const { return {normals[0][lane], normals[1][lane], normals[2][lane]}; }
+};
+
 /// A scene to trace shadow rays in.
 class Occluders {
  public:
@@ -54,8 +63,8 @@ class Occluders {
   /// Sets `reach` of each active ray that anything blocks to minus infinity. Safe to call from many threads.
   void find_blocked(RayPacket& packet) const;
 
-  /// For each active ray how far it gets, in units of its direction's length; infinity where nothing is hit.
-  RayPacket::Lanes find_nearest(const RayPacket& packet) const;
+  /// For each active ray how far it gets, and what it meets there. Safe to call from many threads.
+  PacketHits find_nearest(const RayPacket& packet) const;
 
   /// Moves a point off its surface, along the geometric normal towards the viewer, by a bound on its rounding error.
   /// The bound grows with the point's coordinates, with the largest ones of the scene, and with `extent`: the length in

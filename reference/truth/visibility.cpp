@@ -173,7 +173,7 @@ std::vector<float> trace_first_blockers(const Occluders& occluders, const Receiv
       const glm::vec3 way = is_lamp ? to_light : to_light * lengths[lane];
       packet.set(lane, origin + way, -way, 1.0f);
     }
-    const RayPacket::Lanes hits = occluders.find_nearest(packet);
+    const RayPacket::Lanes hits = occluders.find_nearest(packet).distances;
     for (std::size_t lane = 0; lane < group.size(); ++lane)
       if (std::isfinite(hits[lane])) distances[group[lane]] = lengths[lane] * (1.0f - hits[lane]);
   });

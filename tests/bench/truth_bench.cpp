@@ -15,12 +15,12 @@
 #include <vector>
 
 #include "harness/gl/context/context.h"
-#include "harness/measure/occluders.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/options/options.h"
 #include "harness/render/gbuffer.h"
 #include "harness/render/shader_library.h"
 #include "harness/scene/load.h"
+#include "harness/scene/occluders.h"
 #include "reference/truth/cached_tracer.h"
 
 namespace shadowbench::bench {
@@ -116,7 +116,7 @@ struct Recording {
 /// The same rays, traced by the truth and by a bare loop in turns: few enough of them to stay near the cores.
 void occlusion_rays(benchmark::State& state, const char* scene) {
   const View view(scene, 160, 90);
-  const truth::Occluders occluders(measure::list_occluders(view.scene));
+  const truth::Occluders occluders(scene::list_occluders(view.scene));
   const BareEmbree bare(view.scene);
   const auto light = scene::make_area_light(view.scene.light);
   truth::TraceSettings settings;
@@ -151,7 +151,7 @@ BENCHMARK_CAPTURE(occlusion_rays, ball, "ball")->Iterations(1);
 BENCHMARK_CAPTURE(occlusion_rays, steps, "steps")->Iterations(1);
 
 void trace_view(const View& view, truth::TruthCache& cache) {
-  truth::CachedTracer tracer([&] { return measure::list_occluders(view.scene); }, cache, 1);
+  truth::CachedTracer tracer([&] { return scene::list_occluders(view.scene); }, cache, 1);
   tracer.trace_view(view.receivers.image, scene::make_area_light(view.scene.light));
 }
 

@@ -86,8 +86,8 @@ Light turn_light(Light light, const LightTurn& turn) {
   return light;
 }
 
-Light place_in_sky(Light light, double azimuth_deg, double elevation_deg) {
-  const glm::vec3 direction(light_direction(azimuth_deg, elevation_deg));
+Light place_in_sky(Light light, const SkyAngles& place) {
+  const glm::vec3 direction(light_direction(place.azimuth_deg, place.elevation_deg));
   return turn_light(std::move(light), [&](const glm::vec3&) { return direction; });
 }
 

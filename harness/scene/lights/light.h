@@ -60,8 +60,8 @@ truth::AreaLight make_area_light(const Light& light);
 /// The light with its direction mapped by `turn`; one in the scene goes round its target, or the world's origin.
 Light turn_light(Light light, const LightTurn& turn);
 
-/// The light moved to a place in the sky, see light_direction(); one in the scene as seen from what it goes round.
-Light place_in_sky(Light light, double azimuth_deg, double elevation_deg);
+/// The light moved to a place in the sky; one in the scene as seen from what it goes round.
+Light place_in_sky(Light light, const SkyAngles& place);
 
 /// Turns a light about the vertical (+y): light i of `count` is `first`, turned by i * 360 / count degrees. A light
 /// straight overhead stays where it is. Requires `count` of 1 or more.

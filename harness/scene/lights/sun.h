@@ -10,7 +10,13 @@ struct Sun {
   float angular_diameter_deg = 0.53f;         ///< seen from the scene; 0: a point at infinity
 };
 
-/// The way light travels that comes from a place in the sky: azimuth 0 is +z, 90 is +x; degrees.
+/// A place in the sky, or where something is seen from: azimuth 0 is +z, 90 is +x; degrees.
+struct SkyAngles {
+  double azimuth_deg = 0.0;
+  double elevation_deg = 0.0;
+};
+
+/// The way light travels that comes from a place in the sky, see SkyAngles.
 glm::dvec3 light_direction(double azimuth_deg, double elevation_deg);
 
 /// The keys of a sun in a scene file, those of its map window included, and the sun that they describe. Throws kInput.

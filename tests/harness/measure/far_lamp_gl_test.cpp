@@ -1,7 +1,7 @@
 // A lamp so far away that its rays are parallel is a sun.
 
-#include "harness/measure/occluders.h"
 #include "harness/measure/view_receivers.h"
+#include "harness/scene/occluders.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {
@@ -28,7 +28,7 @@ TEST(FarLamp, HasTheSunsTruth) {
   const scene::Scene scene = load_builtin("stack");
   Bench bench(shared_context(), scene, 64, 160, 90);
   const scene::Light lamp = move_away(scene.light, 2000.0), near_lamp = move_away(scene.light, 10.0);
-  const truth::Occluders occluders(measure::list_occluders(scene));
+  const truth::Occluders occluders(scene::list_occluders(scene));
   const auto trace = [&](const scene::Light& light) {
     const auto receivers = measure::read_view_receivers(bench.gbuffer(), light);
     return truth::trace_area(occluders, receivers.image, scene::make_area_light(light), {}).visibility;

@@ -4,10 +4,10 @@
 
 #include "filters/model.h"
 #include "harness/measure/layer_truth.h"
-#include "harness/measure/occluders.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/scene/mesh_tools.h"
+#include "harness/scene/occluders.h"
 #include "harness/scene/primitives.h"
 #include "tests/harness/render/bench_fixture.h"
 
@@ -209,7 +209,7 @@ MeanError find_mean_error(const std::vector<float>& image, const truth::TracedVi
 void expect_no_seam(const scene::Scene& scene, Bench& bench, const std::vector<std::uint8_t>& at_border,
                     const std::vector<std::uint8_t>& around) {
   const auto receivers = measure::read_view_receivers(bench.gbuffer(), scene.light);
-  const truth::Occluders occluders(measure::list_occluders(scene));
+  const truth::Occluders occluders(scene::list_occluders(scene));
   for (const char* filter : {"pcf2x2", "tent3x3", "tent5x5", "castano5", "tent7x7"}) {
     const filters::FilterRequest request = catalogue().parse_requests(filter).front();
     const auto kernel = filters::find_kernel(request.spec, request.values);

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "harness/measure/occluders.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/render/bias/bias_theory.h"
 #include "harness/scene/mesh_tools.h"
+#include "harness/scene/occluders.h"
 #include "harness/scene/primitives.h"
 #include "reference/truth/visibility.h"
 #include "tests/harness/render/bench_fixture.h"
@@ -100,7 +100,7 @@ void expect_edge(Kind kind, const Stage& stage) {
   Bench bench(shared_context(), scene, kShadowMap, 320, 180);
   const std::vector<float> drawn = bench.draw(catalogue().parse_requests("none").front());
   const auto receivers = measure::read_view_receivers(bench.gbuffer(), scene.light);
-  const truth::Occluders occluders(measure::list_occluders(scene));
+  const truth::Occluders occluders(scene::list_occluders(scene));
   const std::vector<float> traced = truth::trace_hard(occluders, receivers.image, scene::make_area_light(scene.light));
   const auto points = flip_rows(receivers.image);
   const double edge = edge_on_floor(kind, stage);
@@ -173,7 +173,7 @@ TEST_P(Shadow, HasThePenumbraOfItsLight_FromEverySide) {
     const scene::Scene scene = make_stage(GetParam(), stage);
     Bench bench(shared_context(), scene, 256, 80, 45);
     const auto receivers = measure::read_view_receivers(bench.gbuffer(), scene.light);
-    const truth::Occluders occluders(measure::list_occluders(scene));
+    const truth::Occluders occluders(scene::list_occluders(scene));
     const truth::TracedVisibility traced =
         truth::trace_area(occluders, receivers.image, scene::make_area_light(scene.light), {.standard_error = 0.002});
     int partial = 0;

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "harness/measure/occluders.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/render/shade_pass.h"
+#include "harness/scene/occluders.h"
 #include "harness/scene/scene_file.h"
 #include "tests/harness/render/contract_fixture.h"
 #include "tests/harness/scene/test_files.h"
@@ -75,7 +75,7 @@ void expect_numbers(const scene::Scene& scene) {
     EXPECT_TRUE(std::ranges::all_of(picture.texels, [](float v) { return std::isfinite(v) && v >= 0.0f; })) << id;
   }
   const auto receivers = measure::read_view_receivers(bench.gbuffer(), scene.light).image;
-  const truth::Occluders occluders(measure::list_occluders(scene));
+  const truth::Occluders occluders(scene::list_occluders(scene));
   const truth::AreaLight light = scene::make_area_light(scene.light);
   const truth::TracedVisibility truth = truth::trace_area(occluders, receivers, light, {.max_points = 64});
   EXPECT_TRUE(std::ranges::all_of(truth.visibility, is_share));

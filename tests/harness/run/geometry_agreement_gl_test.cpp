@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "harness/measure/occluders.h"
+#include "harness/scene/occluders.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {
@@ -15,7 +15,7 @@ class Geometry : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Geometry, HasTheSameTrianglesAndBounds) {
   const scene::Scene scene = load_builtin(GetParam());
-  const truth::Occluders occluders(measure::list_occluders(scene));
+  const truth::Occluders occluders(scene::list_occluders(scene));
   std::int64_t casting = 0;
   scene::Bounds bounds;
   for (const scene::Mesh& mesh : scene.meshes) {
@@ -71,7 +71,7 @@ class DepthRays {
     const glm::dvec3 start = find_point(x, y, 0.0);
     truth::RayPacket packet;
     packet.set(0, glm::vec3(start), glm::vec3(find_point(x, y, 1.0) - start));
-    const double hit = static_cast<double>(occluders_.find_nearest(packet)[0]);
+    const double hit = static_cast<double>(occluders_.find_nearest(packet).distances[0]);
     return hit <= 1.0 ? hit : std::numeric_limits<double>::infinity();
   }
 
@@ -104,7 +104,7 @@ TEST_P(Geometry, RaysHitWhatTheDepthMapSees) {
   constexpr int kSize = kMapTexels;
   const scene::Scene scene = load_builtin(GetParam());
   Bench bench(shared_context(), scene, kSize, 64, 36);
-  const truth::Occluders occluders(measure::list_occluders(scene));
+  const truth::Occluders occluders(scene::list_occluders(scene));
   // Between the corners of a triangle a paraboloid's edges are straight and its depth is linear, where neither should
   // be.
   const bool is_exact = fit_of(scene) != scene::FitMode::kParaboloid;

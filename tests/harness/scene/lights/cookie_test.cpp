@@ -38,7 +38,7 @@ TEST(Cookie, IsReadBesideTheScene) {
   EXPECT_EQ(cookie->width, 1);
   EXPECT_EQ(cookie->height, 2);
   EXPECT_EQ(cookie->rgba, (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 0, 255, 128}));
-  EXPECT_EQ(find_cookie(place_in_sky(scene.light, 10.0, 40.0)), cookie) << "the light keeps it when it is turned";
+  EXPECT_EQ(find_cookie(place_in_sky(scene.light, {10.0, 40.0})), cookie) << "the light keeps it when it is turned";
   EXPECT_TRUE(scene.textures.empty());
 }
 

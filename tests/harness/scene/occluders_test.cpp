@@ -1,6 +1,6 @@
 // What rays hit of a scene: what casts a shadow, but for the holes of its material; and where kernels lie in a map.
 
-#include "harness/measure/occluders.h"
+#include "harness/scene/occluders.h"
 
 #include <gtest/gtest.h>
 
@@ -10,14 +10,14 @@
 #include "reference/truth/visibility.h"
 #include "tests/harness/scene/gltf_parts.h"
 
-namespace shadowbench::measure {
+namespace shadowbench::scene {
 namespace {
 
 /// A roof over the left half of a floor that is seen from above.
-scene::Scene make_scene() {
-  scene::Scene scene;
+Scene make_roofed_scene() {
+  Scene scene;
   scene.materials.emplace_back();
-  scene::Mesh roof;
+  Mesh roof;
   for (const glm::vec3 p : {glm::vec3(-2, 1, -2), glm::vec3(0, 1, -2), glm::vec3(-2, 1, 2), glm::vec3(0, 1, 2)})
     roof.vertices.push_back({p, {0.0f, 1.0f, 0.0f}, {0.5f * p.x, 0.5f * p.z}});
   roof.indices = {0, 1, 2, 2, 1, 3};
@@ -34,12 +34,12 @@ truth::ReceiverImage make_receivers() {
   return receivers;
 }
 
-std::vector<float> trace_hard(const scene::Scene& scene) {
+std::vector<float> trace_hard(const Scene& scene) {
   return truth::trace_hard(truth::Occluders(list_occluders(scene)), make_receivers(), make_area_light(scene.light));
 }
 
 TEST(Occluders, MeshesThatCastNoShadow_BlockNothing) {
-  scene::Scene scene = make_scene();
+  Scene scene = make_roofed_scene();
   EXPECT_EQ(trace_hard(scene).front(), 0.0f);
   EXPECT_EQ(trace_hard(scene).back(), 1.0f);
   scene.meshes[0].casts_shadow = false;
@@ -48,8 +48,8 @@ TEST(Occluders, MeshesThatCastNoShadow_BlockNothing) {
 }
 
 TEST(Occluders, HolesOfAMaterial_LetRaysThrough) {
-  scene::Scene scene = make_scene();
-  scene.materials[0].alpha_mode = scene::AlphaMode::kMask;
+  Scene scene = make_roofed_scene();
+  scene.materials[0].alpha_mode = AlphaMode::kMask;
   scene.materials[0].base_color.a = 0.2f;
   EXPECT_EQ(trace_hard(scene), std::vector<float>(32, 1.0f));
   scene.materials[0].alpha_cutoff = 0.1f;
@@ -90,10 +90,10 @@ TEST(Occluders, HoleOfATransformedTexture_IsWhereTheTransformPutsIt) {
 }
 
 TEST(MapGrid, IsThatOfTheLightsMap) {
-  scene::Scene scene = make_scene();
-  scene.light.kind = scene::Sun{glm::normalize(glm::vec3(-0.5f, -1.0f, -0.25f))};
-  const scene::LightFrustum frustum = scene::fit_light(scene, scene::FitMode::kTight, 64, 2.0);
-  const truth::MapGrid grid = scene::make_map_grid(frustum);
+  Scene scene = make_roofed_scene();
+  scene.light.kind = Sun{glm::normalize(glm::vec3(-0.5f, -1.0f, -0.25f))};
+  const LightFrustum frustum = fit_light(scene, FitMode::kTight, 64, 2.0);
+  const truth::MapGrid grid = make_map_grid(frustum);
   const auto texel_of = [&](const glm::dvec3& p) {
     return 64.0 * glm::dvec3(glm::dmat4(frustum.uv_depth_from_world) * glm::dvec4(p, 1.0));
   };
@@ -108,4 +108,4 @@ TEST(MapGrid, IsThatOfTheLightsMap) {
 }
 
 }  // namespace
-}  // namespace shadowbench::measure
+}  // namespace shadowbench::scene

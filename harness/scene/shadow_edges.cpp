@@ -1,0 +1,149 @@
+#include "harness/scene/shadow_edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "harness/scene/occluders.h"
+#include "reference/truth/visibility.h"
+
+namespace shadowbench::scene {
+namespace {
+
+constexpr int kWidth = 96;
+constexpr double kFewestSurfaces = 0.5;  ///< of the pixels
+
+/// A ray of a pixel; its direction is not of unit length.
+struct PixelRay {
+  glm::dvec3 origin;
+  glm::dvec3 direction;
+};
+
+/// The rays of a camera's pixels, row by row from the top.
+std::vector<PixelRay> make_rays(const Camera& camera, int width, int height) {
+  const bool is_flat = camera.orthographic_height_m > 0.0f;
+  const double half_height = is_flat ? 0.5 * static_cast<double>(camera.orthographic_height_m)
+                                     : std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad));
+  const glm::dvec3 origin(camera.position_ws), forward(camera.forward_ws);
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(camera.up_ws)));
+  const glm::dvec3 up = glm::cross(right, forward);
+  const double step = 2.0 * half_height / height;
+  std::vector<PixelRay> rays;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const glm::dvec3 across = step * ((x + 0.5 - 0.5 * width) * right + (0.5 * height - y - 0.5) * up);
+      rays.push_back(is_flat ? PixelRay{origin + across, forward} : PixelRay{origin, forward + across});
+    }
+  }
+  return rays;
+}
+
+/// What a ray meets, with the normal turned against the ray.
+truth::ReceiverPoint make_receiver(const PixelRay& ray, float distance, const glm::dvec3& normal) {
+  const glm::dvec3 towards_viewer = glm::normalize(glm::dot(normal, ray.direction) > 0.0 ? -normal : normal);
+  return {ray.origin + ray.direction * static_cast<double>(distance), towards_viewer, true};
+}
+
+/// Whether two receivers lie on one smooth surface.
+bool is_same_surface(const truth::ReceiverPoint& a, const truth::ReceiverPoint& b) {
+  constexpr float kLeastCosine = 0.9f;
+  constexpr float kSteepest = 0.25f;
+  if (!a.counts || !b.counts || glm::dot(a.normal_ws, b.normal_ws) < kLeastCosine) return false;
+  const glm::vec3 between = b.position_ws - a.position_ws;
+  const float rise = std::max(std::abs(glm::dot(a.normal_ws, between)), std::abs(glm::dot(b.normal_ws, between)));
+  return rise <= kSteepest * glm::length(between);
+}
+
+}  // namespace
+
+double EdgeCount::share() const {
+  return pixels > 0 ? at_edge / std::max<double>(surfaces, kFewestSurfaces * pixels) : 0.0;
+}
+
+EdgeCount& EdgeCount::operator+=(const EdgeCount& other) {
+  pixels += other.pixels;
+  surfaces += other.surfaces;
+  at_edge += other.at_edge;
+  return *this;
+}
+
+EdgeMeter::EdgeMeter(const Scene& scene) {
+  for (const bool casts_shadow : {true, false}) {
+    const std::vector<truth::OccluderMesh> meshes = casts_shadow ? list_occluders(scene) : list_non_casters(scene);
+    if (!meshes.empty()) parts_.push_back({truth::Occluders(meshes), casts_shadow});
+  }
+}
+
+void EdgeMeter::set_floor(const Mesh* floor) {
+  floor_.reset();
+  if (!floor) return;
+  truth::OccluderMesh mesh;
+  for (const Vertex& vertex : floor->vertices) mesh.positions.push_back(vertex.position_ws);
+  mesh.indices = floor->indices;
+  floor_.emplace(Part{truth::Occluders(std::span(&mesh, 1)), true});
+}
+
+std::vector<const EdgeMeter::Part*> EdgeMeter::parts() const {
+  std::vector<const Part*> all;
+  for (const Part& part : parts_) all.push_back(&part);
+  if (floor_) all.push_back(&*floor_);
+  return all;
+}
+
+truth::ReceiverImage EdgeMeter::look(const Camera& camera, double aspect) const {
+  const int height = std::clamp(static_cast<int>(std::lround(kWidth / aspect)), 1, 8 * kWidth);
+  const std::vector<PixelRay> rays = make_rays(camera, kWidth, height);
+  truth::ReceiverImage image{kWidth, height, std::vector<truth::ReceiverPoint>(rays.size())};
+  for (std::size_t first = 0; first < rays.size(); first += truth::RayPacket::kSize) {
+    const std::size_t lanes = std::min<std::size_t>(truth::RayPacket::kSize, rays.size() - first);
+    truth::RayPacket packet;
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      packet.set(lane, rays[first + lane].origin, rays[first + lane].direction);
+    for (const Part* part : parts()) {
+      const truth::PacketHits hits = part->surfaces.find_nearest(packet);
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        if (!(hits.distances[lane] < packet.reach[lane])) continue;
+        packet.reach[lane] = hits.distances[lane];
+        image.points[first + lane] = make_receiver(rays[first + lane], hits.distances[lane], hits.normal(lane));
+      }
+    }
+  }
+  return image;
+}
+
+EdgeCount EdgeMeter::count(truth::ReceiverImage seen, const Light& light) const {
+  EdgeCount result;
+  result.pixels = static_cast<int>(seen.points.size());
+  result.surfaces = static_cast<int>(std::ranges::count(seen.points, true, &truth::ReceiverPoint::counts));
+  for (truth::ReceiverPoint& point : seen.points) {
+    point.counts = point.counts && glm::dot(point.normal_ws, to_light(light, point.position_ws)) > 0.0f &&
+                   shines_on(light, point.position_ws);
+  }
+  std::vector<float> visibility(seen.points.size(), 1.0f);
+  for (const Part* part : parts()) {
+    if (!part->casts_shadow) continue;
+    const std::vector<float> unblocked = truth::trace_hard(part->surfaces, seen, make_area_light(light));
+    std::ranges::transform(visibility, unblocked, visibility.begin(), [](float a, float b) { return std::min(a, b); });
+  }
+  std::vector<bool> at_edge(seen.points.size());
+  const auto compare = [&](std::size_t a, std::size_t b) {
+    if (visibility[a] == visibility[b] || !is_same_surface(seen.points[a], seen.points[b])) return;
+    at_edge[a] = at_edge[b] = true;
+  };
+  const auto width = static_cast<std::size_t>(seen.width);
+  for (std::size_t i = 0; i < seen.points.size(); ++i) {
+    if ((i + 1) % width != 0) compare(i, i + 1);
+    if (i + width < seen.points.size()) compare(i, i + width);
+  }
+  result.at_edge = static_cast<int>(std::ranges::count(at_edge, true));
+  return result;
+}
+
+EdgeCount EdgeMeter::count(const Camera& camera, std::span<const Light> lights, double aspect) const {
+  const truth::ReceiverImage seen = look(camera, aspect);
+  EdgeCount sum;
+  for (const Light& light : lights) sum += count(seen, light);
+  return sum;
+}
+
+}  // namespace shadowbench::scene

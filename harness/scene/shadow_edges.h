@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "harness/scene/scene.h"
+#include "reference/truth/occluders.h"
+#include "reference/truth/receiver_image.h"
+
+namespace shadowbench::scene {
+
+/// How many pixels of a view show a surface, and how many of these touch the edge of a shadow.
+struct EdgeCount {
+  int pixels = 0;
+  int surfaces = 0;  ///< lit, in a shadow, or turned away from the light
+  int at_edge = 0;
+
+  /// The share of the surfaces that touch an edge, in [0,1]. They are taken for half the picture where they are fewer:
+  /// a view that shows little does not win by a few pixels, and neither does one of sides that face away from the
+  /// light.
+  double share() const;
+
+  EdgeCount& operator+=(const EdgeCount& other);
+};
+
+/// Finds the edges of shadows in coarse views of a scene, by one ray for each pixel and one to the light's centre.
+class EdgeMeter {
+ public:
+  /// Cost: see truth::Occluders.
+  explicit EdgeMeter(const Scene& scene);
+
+  /// Takes a floor in place of the last one, or takes that away.
+  void set_floor(const Mesh* floor);
+
+  /// Counts in a picture of the given width / height. Two pixels beside each other touch an edge where one is lit and
+  /// the other is not, and both are receivers on the same smooth surface: their normals differ by less than about 25
+  /// degrees, and each lies near the other's plane. Safe to call from many threads.
+  EdgeCount count(const Camera& camera, std::span<const Light> lights, double aspect) const;
+
+ private:
+  /// Surfaces that are traced together.
+  struct Part {
+    truth::Occluders surfaces;
+    bool casts_shadow;
+  };
+
+  std::vector<Part> parts_;
+  std::optional<Part> floor_;
+
+  std::vector<const Part*> parts() const;
+  truth::ReceiverImage look(const Camera& camera, double aspect) const;
+  EdgeCount count(truth::ReceiverImage receivers, const Light& light) const;
+};
+
+}  // namespace shadowbench::scene
