@@ -9,6 +9,7 @@
 namespace shadowbench::test {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -32,7 +33,7 @@ TEST_F(OddInput, SceneNamedAsAFormula_IsDefusedInCsv_AndKeepsItsNameInJson) {
   for (const char* table : {"timings.csv", "accuracy.csv"}) {
     const std::string csv = read_text(folder() / "out" / table);
     EXPECT_THAT(csv, HasSubstr("'=cmd,"));
-    EXPECT_THAT(csv, Not(::testing::ContainsRegex("(^|[\n,\"])=cmd")));
+    EXPECT_THAT(csv, Not(ContainsRegex("(^|[\n,\"])=cmd")));
   }
   EXPECT_EQ(nlohmann::json::parse(results())["cells"][0]["scene"], "=cmd");
 }
@@ -46,6 +47,23 @@ TEST_F(OddInput, FolderWithOneModel_IsTaken) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_EQ(nlohmann::json::parse(results())["cells"][0]["scene"], "model");
   }
+}
+
+TEST_F(OddInput, BareModel_IsNotedWithTheViewThatWasChosenForIt) {
+  write("block.obj", kBlock);
+  const Outcome chosen = draw("--ground --strict --scene block.obj");
+  EXPECT_EQ(chosen.exit_code, 0) << chosen.err;
+  EXPECT_THAT(chosen.err,
+              ContainsRegex("block: camera from azimuth [0-9]+, elevation [0-9]+; sun from azimuth [0-9]+, "
+                            "elevation [0-9]+: edges of shadows touch [0-9.]+ % of the picture's surfaces"));
+  const Outcome lit = draw("--ground --scene block.obj --light 10,30");
+  EXPECT_THAT(lit.err, HasSubstr("block: camera from azimuth "));
+  EXPECT_THAT(lit.err, Not(HasSubstr("sun from")));
+  const Outcome convex = draw("--scene block.obj");
+  EXPECT_EQ(convex.exit_code, 0) << convex.err;
+  EXPECT_THAT(convex.err, HasSubstr("warning: block: camera from azimuth 30, elevation 24; sun from azimuth 110, "
+                                    "elevation 50: the usual view, since none of"));
+  EXPECT_THAT(draw("--scene cubes").err, Not(HasSubstr("camera from")));
 }
 
 TEST_F(OddInput, LightFromBelow_IsWarnedOf) {

@@ -19,7 +19,7 @@ constexpr int kWarpMap = 1024;
 constexpr double kWarpPad = 6.0, kWarpAspect = 16.0 / 9.0;
 constexpr FitMode kWarps[] = {FitMode::kFocused, FitMode::kLispsm, FitMode::kPsm, FitMode::kTsm, FitMode::kLogpsm};
 
-Scene load_warp_scene() {
+Scene load_deep_scene() {
   return load("avenue", {.scenes_folder = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "harness" / "scenes"});
 }
 
@@ -52,7 +52,7 @@ Scene make_runway() {
 glm::dvec3 ahead(double depth) { return {0.0, 0.0, 101.0 - depth}; }
 
 TEST(WarpedMap, HoldsAllThatIsSeen_WithItsPadding_AndItsCasters) {
-  const Scene scene = load_warp_scene();
+  const Scene scene = load_deep_scene();
   const auto seen = list_visible_corners(scene, scene.cameras.front(), kWarpAspect);
   for (const FitMode mode : kWarps) {
     const LightFrustum fit = fit_warp(scene, mode);
@@ -81,7 +81,7 @@ TEST(WarpedMap, HoldsAllThatIsSeen_WithItsPadding_AndItsCasters) {
 
 /// Central differences of place().
 TEST(WarpedMap, GradientsAreThoseOfItsPlaces_AndTheSunsWayChangesNone) {
-  const Scene scene = load_warp_scene();
+  const Scene scene = load_deep_scene();
   for (const FitMode mode : kWarps) {
     const LightFrustum fit = fit_warp(scene, mode);
     for (const glm::dvec3 p : {glm::dvec3(0.5, 0.0, -3.0), glm::dvec3(-2.0, 1.0, -40.0)}) {
@@ -145,7 +145,7 @@ TEST(WarpedMap, EachMethodSpendsItsTexelsAsItsPaperSays) {
 }
 
 TEST(WarpedMap, MovesByTexels_AsItIsAsked) {
-  const Scene scene = load_warp_scene();
+  const Scene scene = load_deep_scene();
   for (const FitMode mode : kWarps) {
     const LightFrustum still = fit_warp(scene, mode), moved = fit_warp(scene, mode, {0.25, -0.5});
     const glm::dvec3 p(0.5, 0.0, -3.0);
@@ -187,7 +187,7 @@ TEST(WarpedMap, StaysFiniteWhereThereIsNothingToWarp) {
 }
 
 TEST(WarpedMap, CannotBeSnapped) {
-  const Scene scene = load_warp_scene();
+  const Scene scene = load_deep_scene();
   for (const FitMode mode : kWarps) {
     try {
       fit_light(scene, {.mode = mode, .snap = true, .camera = &scene.cameras.front()});

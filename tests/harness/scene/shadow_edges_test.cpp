@@ -1,0 +1,115 @@
+// The edges of shadows in coarse views: whose they are, and how a view is scored.
+
+#include "harness/scene/shadow_edges.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "harness/scene/mesh_tools.h"
+#include "harness/scene/primitives.h"
+
+namespace shadowbench::scene {
+namespace {
+
+/// A square sheet high over the middle of a floor. The camera looks straight down; the sun stands so low that the
+/// sheet's shadow lies beside it.
+Scene make_sheet_over_floor() {
+  Scene scene;
+  scene.materials.resize(2);
+  scene.meshes = {
+      make_plane({8.0f, 8.0f}, 1),
+      transform_mesh(make_plane({1.0f, 1.0f}, 1), glm::translate(glm::dmat4(1.0), glm::dvec3(-2.0, 2.0, 0.0)))};
+  scene.meshes[1].material = 1;
+  Camera camera;
+  camera.position_ws = {0.0f, 10.0f, 0.0f};
+  camera.forward_ws = {0.0f, -1.0f, 0.0f};
+  camera.up_ws = {0.0f, 0.0f, -1.0f};
+  camera.orthographic_height_m = 6.0f;
+  scene.cameras = {camera};
+  scene.light = place_in_sky({}, {-90.0, 40.0});
+  return scene;
+}
+
+EdgeCount count(const Scene& scene) { return EdgeMeter(scene).count(scene.cameras[0], std::vector{scene.light}, 1.0); }
+
+TEST(EdgeMeter, CountsThePixelsAlongAShadowsEdge) {
+  // 96 pixels to 6 m: the outline of a shadow of 1 m x 1 m is 64 pixels long, and has a pixel on either side. Its four
+  // corner pixels touch an edge twice.
+  const EdgeCount edges = count(make_sheet_over_floor());
+  EXPECT_EQ(edges.pixels, 96 * 96);
+  EXPECT_EQ(edges.surfaces, 96 * 96);
+  EXPECT_NEAR(edges.at_edge, 2 * 64 - 4, 8);
+}
+
+TEST(EdgeMeter, PerspectiveAndOrthographicCamerasSeeTheSameEdges) {
+  Scene scene = make_sheet_over_floor();
+  scene.meshes[1] = transform_mesh(scene.meshes[1], glm::translate(glm::dmat4(1.0), glm::dvec3(0.0, -1.5, 0.0)));
+  const int flat = count(scene).at_edge;
+  scene.cameras[0].position_ws.y = 1000.0f;
+  scene.cameras[0].orthographic_height_m = 0.0f;
+  scene.cameras[0].vertical_fov_rad = 2.0f * std::atan(0.003f);
+  EXPECT_GT(flat, 40);
+  EXPECT_NEAR(count(scene).at_edge, flat, 12);
+}
+
+TEST(EdgeMeter, SilhouettesAreNoEdgesOfShadows) {
+  Scene scene = make_sheet_over_floor();
+  scene.light = place_in_sky({}, {-90.0, 90.0});
+  EXPECT_LT(count(scene).at_edge, 8) << "the sheet hides its shadow, and is lit as the floor around it";
+}
+
+TEST(EdgeMeter, WhatCastsNoShadow_IsStillSeenAndShadowed) {
+  Scene scene = make_sheet_over_floor();
+  const EdgeCount all = count(scene);
+  scene.meshes[0].casts_shadow = false;
+  EXPECT_EQ(count(scene).at_edge, all.at_edge);
+  EXPECT_EQ(count(scene).surfaces, all.surfaces);
+  scene.meshes[1].casts_shadow = false;
+  EXPECT_EQ(count(scene).at_edge, 0);
+  EXPECT_EQ(count(scene).surfaces, all.surfaces);
+}
+
+TEST(EdgeMeter, HolesOfAMaterialLetTheLightThrough) {
+  Scene scene = make_sheet_over_floor();
+  scene.materials[1].alpha_mode = AlphaMode::kMask;
+  scene.materials[1].base_color.a = 0.2f;
+  EXPECT_EQ(count(scene).at_edge, 0);
+}
+
+TEST(EdgeMeter, SidesThatFaceAwayFromTheLight_AreSurfacesWithoutEdges) {
+  Scene scene = make_sheet_over_floor();
+  scene.light = place_in_sky({}, {-90.0, -40.0});
+  EXPECT_EQ(count(scene).at_edge, 0);
+  EXPECT_EQ(count(scene).surfaces, 96 * 96);
+}
+
+TEST(EdgeMeter, OutsideTheConeOfASpot_NothingIsCounted) {
+  Scene scene = make_sheet_over_floor();
+  scene.light.kind = Spot{.position_ws = {-6.0f, 6.0f, 0.0f}, .target_ws = {2.0f, 0.0f, 0.0f}};
+  EXPECT_GT(count(scene).at_edge, 0);
+  scene.light.kind = Spot{.position_ws = {-6.0f, 6.0f, 0.0f}, .target_ws = {-6.0f, 0.0f, 0.0f}, .cone_deg = 10.0f};
+  EXPECT_EQ(count(scene).at_edge, 0);
+}
+
+TEST(EdgeMeter, FloorIsSeenAndShadowed_AndCanBeTakenAway) {
+  Scene scene = make_sheet_over_floor();
+  const EdgeCount on_mesh = count(scene);
+  const Mesh floor = scene.meshes[0];
+  scene.meshes.erase(scene.meshes.begin());
+  EdgeMeter meter(scene);
+  meter.set_floor(&floor);
+  EXPECT_EQ(meter.count(scene.cameras[0], std::vector{scene.light}, 1.0).at_edge, on_mesh.at_edge);
+  meter.set_floor(nullptr);
+  EXPECT_EQ(meter.count(scene.cameras[0], std::vector{scene.light}, 1.0).at_edge, 0);
+}
+
+TEST(EdgeCount, ViewThatShowsLittle_DoesNotWinByAFewPixels) {
+  EXPECT_DOUBLE_EQ((EdgeCount{1000, 800, 80}.share()), 0.1);
+  EXPECT_DOUBLE_EQ((EdgeCount{1000, 100, 50}.share()), 0.1);
+  EXPECT_DOUBLE_EQ((EdgeCount{1000, 0, 0}.share()), 0.0);
+  EXPECT_DOUBLE_EQ((EdgeCount{}.share()), 0.0);
+}
+
+}  // namespace
+}  // namespace shadowbench::scene
