@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
@@ -30,15 +31,18 @@ struct alignas(64) RayPacket {
     return lanes;
   }
 
-  /// Sets a ray and makes it active.
+  /// Sets a ray and makes it active, unless it is not finite or beyond 1e18 m, which Embree does not take.
   void set(std::size_t lane, const glm::vec3& from, const glm::vec3& towards,
            float length = std::numeric_limits<float>::infinity()) {
+    constexpr float kFarthest = 1e18f;
+    bool is_taken = true;
     for (int axis = 0; axis < 3; ++axis) {
+      is_taken = is_taken && std::abs(from[axis]) < kFarthest && std::abs(towards[axis]) < kFarthest;
       origin[static_cast<std::size_t>(axis)][lane] = from[axis];
       direction[static_cast<std::size_t>(axis)][lane] = towards[axis];
     }
     reach[lane] = length;
-    active[lane] = -1;
+    active[lane] = is_taken ? -1 : 0;
   }
 };
 

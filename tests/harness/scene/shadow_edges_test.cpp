@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "harness/scene/mesh_tools.h"
@@ -55,8 +57,35 @@ TEST(EdgeMeter, PerspectiveAndOrthographicCamerasSeeTheSameEdges) {
 
 TEST(EdgeMeter, SilhouettesAreNoEdgesOfShadows) {
   Scene scene = make_sheet_over_floor();
-  scene.light = place_in_sky({}, {-90.0, 90.0});
-  EXPECT_LT(count(scene).at_edge, 8) << "the sheet hides its shadow, and is lit as the floor around it";
+  // 0.3 m high, the sheet leaves 0.36 m of its shadow to be seen. Where the lit sheet hides the rest is no edge.
+  scene.meshes[1] = transform_mesh(scene.meshes[1], glm::translate(glm::dmat4(1.0), glm::dvec3(0.0, -1.7, 0.0)));
+  EXPECT_NEAR(count(scene).at_edge, 2 * 16 * (0.36 + 1.0 + 0.36) - 2, 6);
+}
+
+TEST(EdgeMeter, FloorThatIsWoundTheOtherWay_IsTheSame) {
+  Scene scene = make_sheet_over_floor();
+  const EdgeCount edges = count(scene);
+  std::swap_ranges(scene.meshes[0].indices.begin(), scene.meshes[0].indices.begin() + 1,
+                   scene.meshes[0].indices.begin() + 1);
+  std::swap_ranges(scene.meshes[0].indices.begin() + 3, scene.meshes[0].indices.begin() + 4,
+                   scene.meshes[0].indices.begin() + 4);
+  EXPECT_EQ(count(scene).at_edge, edges.at_edge);
+}
+
+TEST(EdgeMeter, SphereAlone_HasNone) {
+  Scene scene = make_sheet_over_floor();
+  scene.meshes = {make_sphere(2.5f, 96)};
+  EXPECT_GT(count(scene).surfaces, 1000);
+  EXPECT_EQ(count(scene).at_edge, 0) << "where it turns away from the light";
+}
+
+TEST(EdgeMeter, CameraFartherThanRaysReach_SeesNothing) {
+  Scene scene = make_sheet_over_floor();
+  scene.cameras[0].orthographic_height_m = 1e30f;
+  EXPECT_EQ(count(scene).surfaces, 0);
+  scene.cameras[0].orthographic_height_m = 0.0f;
+  scene.cameras[0].position_ws.x = 1e30f;
+  EXPECT_EQ(count(scene).surfaces, 0);
 }
 
 TEST(EdgeMeter, WhatCastsNoShadow_IsStillSeenAndShadowed) {

@@ -87,8 +87,8 @@ TEST(ViewChoice, IsTheSameAgain) {
 }
 
 TEST(ViewChoice, RowOfBoxes_IsSeenFromAnEnd) {
-  std::vector<Mesh> meshes = {make_plane({40.0f, 4.0f}, 1)};
-  for (int i = -9; i <= 9; ++i) meshes.push_back(moved(make_box({0.5f, 1.5f, 0.5f}, 1), {2.0 * i, 0.75, 0.0}));
+  std::vector<Mesh> meshes = {make_plane({80.0f, 20.0f}, 1)};
+  for (int i = -24; i <= 24; ++i) meshes.push_back(moved(make_box({0.5f, 4.0f, 0.5f}, 1), {1.6 * i, 2.0, 0.0}));
   const ViewChoice choice = choose_view(make_bare(meshes), kAllFree);
   EXPECT_GT(choice.edges.share(), 0.0);
   EXPECT_GT(std::abs(std::sin(glm::radians(choice.angles.camera.azimuth_deg))), 0.8);
