@@ -21,9 +21,10 @@ constexpr double kMargin = 1.04;
 constexpr double kSunFromCameraDeg = 80.0;
 constexpr double kSunElevationDeg = 50.0;
 
+constexpr float kElongated = 3.0f;
+
 /// The azimuth of the long axis of a scene that is much longer than wide; others have none.
 std::optional<double> long_axis_deg(const Bounds& bounds) {
-  constexpr float kElongated = 3.0f;
   const glm::vec3 size = bounds.max - bounds.min;
   if (size.x > kElongated * size.z) return 90.0;
   return size.z > kElongated * size.x ? std::optional(0.0) : std::nullopt;
@@ -96,11 +97,12 @@ Camera frame_camera(const Scene& scene, const SkyAngles& from, double aspect, st
   return camera;
 }
 
-bool is_seen_lengthwise(const Bounds& bounds, const SkyAngles& from) {
+bool would_be_thin(const Bounds& bounds, const SkyAngles& from) {
   constexpr double kFarthestOffDeg = 35.0;
+  const glm::vec3 size = bounds.max - bounds.min;
   const std::optional<double> axis_deg = long_axis_deg(bounds);
-  return !axis_deg ||
-         std::abs(std::cos(glm::radians(from.azimuth_deg - *axis_deg))) > std::cos(glm::radians(kFarthestOffDeg));
+  if (!axis_deg || std::max(size.x, size.z) <= kElongated * size.y) return false;
+  return std::abs(std::cos(glm::radians(from.azimuth_deg - *axis_deg))) <= std::cos(glm::radians(kFarthestOffDeg));
 }
 
 ViewAngles usual_view(const Bounds& bounds) {

@@ -17,9 +17,8 @@ struct ViewAngles {
 /// shadows fall to the left.
 ViewAngles usual_view(const Bounds& bounds);
 
-/// Whether a scene that is much longer than wide is seen from near one of its ends: from elsewhere it is a thin line.
-/// True of any other scene.
-bool is_seen_lengthwise(const Bounds& bounds, const SkyAngles& from);
+/// Whether a scene that is much longer than wide and high is seen from its long side, where it is a thin line.
+bool would_be_thin(const Bounds& bounds, const SkyAngles& from);
 
 /// Returns a camera that looks at the scene's meshes from a place around them, as near as it can while every vertex
 /// stays inside a picture of the given width / height. Where `ground_y` is given, the shadows that the meshes throw on

@@ -104,7 +104,7 @@ std::vector<Attempt> list_attempts(const Scene& scene, const ViewFreedom& free, 
          free.camera ? look_around(usual.camera, kHighCameraDeg) : std::vector{usual.camera}) {
       const glm::dvec3 forward = light_direction(camera.azimuth_deg, camera.elevation_deg);
       const bool is_usual = attempts.size() == 1 && attempt.cameras.empty();
-      if (is_usual || !free.camera || (!is_against_light(forward, light) && is_seen_lengthwise(bounds, camera)))
+      if (is_usual || !free.camera || (!is_against_light(forward, light) && !would_be_thin(bounds, camera)))
         attempt.cameras.push_back(camera);
     }
   }

@@ -86,10 +86,14 @@ TEST(ViewChoice, IsTheSameAgain) {
   EXPECT_EQ(first.edges.at_edge, second.edges.at_edge);
 }
 
-TEST(ViewChoice, RowOfBoxes_IsSeenFromAnEnd) {
-  std::vector<Mesh> meshes = {make_plane({80.0f, 20.0f}, 1)};
-  for (int i = -24; i <= 24; ++i) meshes.push_back(moved(make_box({0.5f, 4.0f, 0.5f}, 1), {1.6 * i, 2.0, 0.0}));
-  const ViewChoice choice = choose_view(make_bare(meshes), kAllFree);
+TEST(ViewChoice, LongWallWithBoxesBefore_IsSeenFromAnEnd_UnlessItIsHigh) {
+  const auto choose = [](float height_m) {
+    std::vector<Mesh> meshes = {make_box({20.0f, height_m, 0.2f}, 1)};
+    for (int i = -4; i <= 4; ++i) meshes.push_back(moved(make_box({0.8f, 0.8f, 0.8f}, 1), {2.0 * i, 0.5 * i, 1.0}));
+    return choose_view(make_bare(meshes), kAllFree);
+  };
+  EXPECT_LT(std::abs(std::sin(glm::radians(choose(8.0f).angles.camera.azimuth_deg))), 0.8);
+  const ViewChoice choice = choose(6.0f);
   EXPECT_GT(choice.edges.share(), 0.0);
   EXPECT_GT(std::abs(std::sin(glm::radians(choice.angles.camera.azimuth_deg))), 0.8);
 }
