@@ -17,8 +17,8 @@ namespace shadowbench::scene {
 ///   - `map_width` and `map_center` = [x, y, z]: the square that the light's map shows, instead of the whole scene;
 ///     `map_near` and `map_far`: where depth is 0 and 1, metres from that centre along the light (negative: before it).
 ///     For scenes that show what happens outside a map
-/// - `[camera]`, or several `[[camera]]`: `name`, `position`, `target`, `up`, `vertical_fov_deg`; without one, the
-///   scene is framed by frame_camera
+/// - `[camera]`, or several `[[camera]]`: `name`, `position`, `target`, `up`, `vertical_fov_deg`; without one, a
+///   camera is chosen: see complete()
 /// - `[[material]]`: `name`, `color`
 /// - `[[object]]`: `shape`, `name`, `material`, `casts_shadow`, `center`, `rotation_deg` (about x, then y, then z),
 ///   `scale` (a number or three), and by shape
@@ -31,7 +31,8 @@ namespace shadowbench::scene {
 ///   - `model`: `file`, relative to the scene file; keeps its own materials unless `material` is given
 ///
 /// A model may be anywhere ("../models/tree.gltf"), but all that it refers to must lie in its own folder. Throws kInput
-/// with "file:line" for anything missing, unknown, out of range or malformed.
+/// with "file:line" for anything missing, unknown, out of range or malformed. `aspect` is the width / height of the
+/// picture that a chosen camera fills; `light` is where every light is put, if it is given.
 Scene load_scene(const std::filesystem::path& file, double aspect = 16.0 / 9.0,
                  const std::optional<SkyAngles>& light = std::nullopt);
 

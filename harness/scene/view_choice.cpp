@@ -10,7 +10,7 @@ namespace shadowbench::scene {
 namespace {
 
 constexpr double kPictureAspect = 16.0 / 9.0;
-constexpr std::size_t kMostTriangles = std::size_t{2} << 20;
+constexpr std::size_t kMostTriangles = std::size_t{1} << 20;
 constexpr double kHighCameraDeg = 40.0;
 constexpr double kLowSunDeg = 35.0;
 

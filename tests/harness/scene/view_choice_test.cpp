@@ -168,6 +168,12 @@ TEST(Completion, NoEdgeAnywhere_IsTheUsualViewAndAWarning) {
   }
 }
 
+TEST(Completion, MoreThanAMillionTriangles_GetTheUsualView) {
+  const Scene scene = complete(make_bare({make_plane({2.0f, 2.0f}, 730)}), {.needs_sun = true}, "x");
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_THAT(scene.notes, ElementsAre(AllOf(HasSubstr("azimuth 30, elevation 24"), HasSubstr("1048576 triangles"))));
+}
+
 TEST(Completion, FloorUnderATriangle_ShowsItsShadow) {
   const Scene scene = complete(make_bare({make_triangle()}), {.needs_sun = true, .ground = true}, "x");
   EXPECT_THAT(scene.warnings, IsEmpty());
