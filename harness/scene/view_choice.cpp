@@ -152,7 +152,7 @@ std::string describe_choice(const ViewChoice& choice, const ViewFreedom& free) {
   if (!choice.shows_edges())
     return fmt::format(
         "{}: the usual view, since none of {} that were tried shows the edge of a shadow: all filters will look alike; "
-        "{}give it a camera and a light of its own",
+        "{}set camera and light in its file",
         text, choice.tried, free.ground_y ? "" : "add a floor (--ground), or ");
   const auto percent = [](const EdgeCount& edges) { return fmt::format("{:.1f} %", 100.0 * edges.share()); };
   return fmt::format("{}: edges of shadows touch {} of the picture's surfaces ({})", text, percent(choice.edges),
