@@ -141,6 +141,13 @@ TEST(Completion, PlaceThatWasAskedFor_IsWhereTheSunStands) {
     const Scene scene = complete(make_wall(), {.needs_sun = needs_sun, .ground = true, .light = asked}, "x");
     EXPECT_EQ(to_light(scene.light, {}), to_light(place_in_sky({}, asked), {}));
     EXPECT_THAT(scene.notes, ElementsAre(Not(HasSubstr("sun"))));
+    Bounds floor;
+    for (const Vertex& vertex : scene.meshes.back().vertices) floor.add(vertex.position_ws);
+    const glm::vec3 way = to_light(scene.light, {});
+    for (const Vertex& vertex : scene.meshes.front().vertices) {
+      const glm::vec3 shadow = vertex.position_ws - way * ((vertex.position_ws.y - floor.min.y) / way.y);
+      EXPECT_TRUE(shadow.x > floor.min.x && shadow.x < floor.max.x && shadow.z > floor.min.z && shadow.z < floor.max.z);
+    }
   }
 }
 
