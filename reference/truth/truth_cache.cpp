@@ -16,6 +16,8 @@
 namespace shadowbench::truth {
 namespace {
 
+constexpr std::uintmax_t kMostHeaderBytes = 65536;
+
 /// A file is this line, then all layers as floats, compressed with zlib.
 std::string make_header(const std::string& name, const std::vector<float>& values, std::size_t layers) {
   ContentHash checksum;
@@ -23,7 +25,11 @@ std::string make_header(const std::string& name, const std::vector<float>& value
   return fmt::format("shadowbench truth 1 {} {}x{} {}\n", name, layers, values.size(), checksum.name());
 }
 
-std::optional<std::string> read_whole_file(const std::filesystem::path& path) {
+/// Gives nothing for what is no file, or one of more bytes than that.
+std::optional<std::string> read_whole_file(const std::filesystem::path& path, std::uintmax_t most_bytes) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) > most_bytes)
+    return std::nullopt;
   std::ifstream file(path, std::ios::binary);
   if (!file) return std::nullopt;
   return std::string(std::istreambuf_iterator<char>(file), {});
@@ -32,7 +38,8 @@ std::optional<std::string> read_whole_file(const std::filesystem::path& path) {
 /// Returns all layers one after the other; nothing if the file is damaged or holds something else.
 std::optional<std::vector<float>> read_values(const std::filesystem::path& path, const std::string& name,
                                               std::size_t layers, std::size_t values) {
-  const std::optional<std::string> file = read_whole_file(path);
+  const std::uintmax_t packed_bytes = compressBound(layers * values * sizeof(float));
+  const std::optional<std::string> file = read_whole_file(path, packed_bytes + kMostHeaderBytes);
   if (!file) return std::nullopt;
   const std::size_t begin = std::min(file->find('\n'), file->size() - 1) + 1;
   std::vector<float> all(layers * values);
@@ -67,8 +74,7 @@ TruthCache::TruthCache(std::filesystem::path folder, std::function<void(const st
 std::optional<Layers> TruthCache::load(const std::string& name, std::size_t layers, std::size_t values) {
   std::error_code error;
   std::optional<std::vector<float>> all;
-  if (!folder_.empty() && std::filesystem::is_regular_file(path_of(name), error))
-    all = read_values(path_of(name), name, layers, values);
+  if (!folder_.empty()) all = read_values(path_of(name), name, layers, values);
   if (!all) {
     ++traced_;
     return std::nullopt;

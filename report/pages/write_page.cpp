@@ -25,7 +25,7 @@ std::optional<std::filesystem::path> find_sibling(const std::filesystem::path& d
     places.push_back(".." / in_report);
   const auto exists = [&](const std::filesystem::path& place) {
     std::error_code ignored;
-    return std::filesystem::exists((dir / place).lexically_normal(), ignored);
+    return std::filesystem::is_regular_file((dir / place).lexically_normal(), ignored);
   };
   const auto found = std::ranges::find_if(places, exists);
   return found == places.end() ? std::nullopt : std::optional(*found);

@@ -111,8 +111,10 @@ void Accepter::log(Comparison& comparison, const std::string& what) {
 }
 
 std::vector<std::string> Accepter::write(const Origin& origin) {
-  // Tolerances and log come first: a folder that is written only in part is then known to be a baseline, and why.
+  // Tolerances and log come first: a folder that is written only in part is then known to be a baseline, and why. The
+  // checksums come last: such a folder is not taken for a whole one.
   if (!baseline_.exists()) write_text_file(baseline_.tolerance_file(), write_tolerances(tolerances_));
+  for (const auto& [path, what] : baseline_.damage()) lines_.push_back(fmt::format("damaged: {} {}", path, what));
   if (lines_.empty()) return lines_;
   std::string entry =
       fmt::format("## {:%Y-%m-%d %H:%M} UTC, program {}, {}, seed {}\n\n",
@@ -123,6 +125,7 @@ std::vector<std::string> Accepter::write(const Origin& origin) {
                   (before.empty() ? "# What was accepted into this baseline\n" : before) + "\n" + entry);
   for (const auto& [name, own] : files_) baseline_.write_cells(name.first, name.second, own);
   for (const auto& [scene, truths] : truths_) baseline_.write_truths(scene, truths);
+  baseline_.seal();
   return lines_;
 }
 

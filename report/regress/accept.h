@@ -11,7 +11,7 @@ namespace shadowbench::regress {
 /// Takes what differs over into the baseline; cells that did not change keep their files' content.
 class Accepter {
  public:
-  Accepter(const Baseline& baseline, const Tolerances& tolerances) : baseline_(baseline), tolerances_(tolerances) {}
+  Accepter(Baseline& baseline, const Tolerances& tolerances) : baseline_(baseline), tolerances_(tolerances) {}
 
   /// Takes a cell over, and notes it. Does nothing for a cell that is the same, or that the run could not measure.
   void take(Comparison& comparison, const ActualCell& cell);
@@ -20,12 +20,12 @@ class Accepter {
   /// Removes a cell or a truth that the run lacks.
   void drop(Comparison& comparison);
 
-  /// Writes what was taken over, and one entry of the log. Gives the entry's lines.
+  /// Writes what was taken over, one entry of the log, and the checksums of all. Gives the entry's lines.
   /// Throws Error(kOutput).
   std::vector<std::string> write(const Origin& origin);
 
  private:
-  const Baseline& baseline_;
+  Baseline& baseline_;
   const Tolerances& tolerances_;
   std::map<std::pair<std::string, std::string>, CellFile> files_;     ///< by scene and filter
   std::map<std::string, std::map<std::string, TruthImages>> truths_;  ///< by scene

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "report/regress/checksums.h"
 #include "report/regress/compared_metrics.h"
 #include "report/regress/pixel_change.h"
 #include "report/regress/tolerances.h"
@@ -61,6 +62,7 @@ struct CellFile {
 ///   SCENE/FILTER.json, .exr  numbers and images of a filter's cells, one part per cell and image
 ///   SCENE/truth.area.exr     truths of the scene's views
 ///   accepted.md              what was accepted when
+///   checksums.txt            SHA-256 of all of these
 class Baseline {
  public:
   explicit Baseline(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -70,6 +72,16 @@ class Baseline {
   std::filesystem::path log_file() const { return folder_ / "accepted.md"; }
   /// Throws Error(kInput) where the path is no folder.
   bool exists() const;
+
+  /// Compares all files with the list of checksums. Damaged cells and truths cannot be read from then on.
+  const Damage& check() { return damage_ = find_damage(folder_); }
+
+  /// What check() found and nothing has been written in place of.
+  const Damage& damage() const { return damage_; }
+
+  /// Lists the checksums of what was written, and of what is not damaged: a damaged file stays one. Tolerances and log
+  /// are taken as they are. Throws Error(kOutput).
+  void seal();
 
   /// Lists the cells of all filters, and files that cannot be read, with the reason.
   /// Throws Error(kInput) where a folder cannot be listed.
@@ -89,16 +101,19 @@ class Baseline {
 
   /// Writes the cells of a filter, those without images too; removes the files where there are none left. Throws
   /// Error(kOutput).
-  void write_cells(const std::string& scene, const std::string& filter, const CellFile& cells) const;
+  void write_cells(const std::string& scene, const std::string& filter, const CellFile& cells);
 
   /// Reads and writes the truths of a scene in the same way, by truth_key().
   std::map<std::string, TruthImages> read_truths(const std::string& scene) const;
-  void write_truths(const std::string& scene, const std::map<std::string, TruthImages>& truths) const;
+  void write_truths(const std::string& scene, const std::map<std::string, TruthImages>& truths);
 
  private:
   std::filesystem::path folder_;
+  Damage damage_;
 
   std::filesystem::path stem(const std::string& scene, const std::string& filter) const;
+  std::string name_below(const std::filesystem::path& file) const;
+  void require_sound(const std::filesystem::path& file) const;
 };
 
 }  // namespace shadowbench::regress

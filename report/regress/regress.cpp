@@ -11,6 +11,7 @@
 
 #include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
+#include "filters/base/input_file.h"
 #include "filters/base/nearest_name.h"
 #include "report/files/file_name.h"
 #include "report/files/folder_lock.h"
@@ -43,6 +44,8 @@ class Regression {
         accepter_(baseline_, tolerances_) {
     const bool known = baseline_.exists();
     if (options.accept) lock_.emplace(options.baseline);
+    report_.damaged = baseline_.check();
+    if (known && !options.accept) require_sound();
     if (known)
       tolerances_ = read_tolerances(baseline_.tolerance_file());
     else if (!options.accept)
@@ -92,6 +95,17 @@ class Regression {
     throw Error(
         ErrorKind::kInput,
         fmt::format("there is no baseline here (no baseline.toml); make one: {}", make_accept_command(options_)),
+        options_.baseline.string());
+  }
+
+  /// What a damaged file says is no expectation, and a limit that it has lost would pass anything.
+  void require_sound() const {
+    if (report_.damaged.empty()) return;
+    throw Error(
+        ErrorKind::kInput,
+        fmt::format("this baseline is not as it was accepted: {}; restore it, or, if that was meant or accepting "
+                    "was stopped: {}",
+                    describe_damage(report_.damaged), make_accept_command(options_)),
         options_.baseline.string());
   }
 
@@ -254,11 +268,13 @@ class Regression {
   void accept() {
     const records::RunRecord& run = run_.run();
     report_.accepted = accepter_.write({run.seed, run.gl.renderer, "", run.commit});
+    report_.left = baseline_.damage();
   }
 };
 
 /// Removes the pictures of an earlier comparison, which would be taken for this one's.
 void remove_old_pictures(const std::filesystem::path& out) {
+  require_plain_file(out / "regress.json", 1024 * kMebibyte);
   std::ifstream stream(out / "regress.json", std::ios::binary);
   const auto old = nlohmann::json::parse(stream, nullptr, false);
   if (!old.is_object() || !old.contains("cells")) return;
@@ -272,6 +288,11 @@ void remove_old_pictures(const std::filesystem::path& out) {
 
 /// Sums a comparison up. A difference that was accepted is no failure; one that could not be accepted is.
 std::string describe_failure(const RegressReport& report) {
+  if (!report.left.empty())
+    return fmt::format(
+        "{} stays damaged, and the run has nothing to put there: {}; restore it, or remove it and "
+        "accept again",
+        report.options.baseline.string(), describe_damage(report.left));
   if (report.failed() == 0) return "";
   if (report.options.accept)
     return fmt::format("{} could not be accepted; {}", report.failed(), describe_worst(report));

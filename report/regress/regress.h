@@ -26,6 +26,8 @@ struct RegressOptions {
 struct RegressReport {
   std::vector<Comparison> comparisons;
   std::vector<std::string> accepted;  ///< what became of the baseline, one line each
+  Damage damaged;                     ///< files of the baseline that were not as they had been accepted
+  Damage left;                        ///< those that accepting could not replace
   std::string accept_command;         ///< what would accept the differences
   RegressOptions options;
 
@@ -41,10 +43,10 @@ struct RegressOutcome {
 };
 
 /// Compares a run with its baseline, and writes regress.html, .md, .json, a picture of each cell that moved, and
-/// what else was asked for. Throws Error(kInput) where run or tolerances cannot be read, where there is no baseline and
-/// nothing is to be accepted, or for a name that is chosen and nowhere found; Error(kOutput), also where another
-/// process accepts into the same baseline. Cost: memory of one image file of the run, of one of the baseline, and of
-/// all that is accepted.
+/// what else was asked for. Throws Error(kInput) where run or tolerances cannot be read, where nothing is to be
+/// accepted and there is no baseline or one that is not as it was accepted, or for a name that is chosen and nowhere
+/// found; Error(kOutput), also where another process accepts into the same baseline. Cost: memory of one image file of
+/// the run, of one of the baseline, and of all that is accepted.
 RegressOutcome run_regress(const RegressOptions& options);
 
 }  // namespace shadowbench::regress

@@ -34,6 +34,7 @@ std::string describe_excess(const Comparison& comparison) {
 page::Section make_answer(const RegressReport& report) {
   std::string text = describe_counts(report) + ".";
   if (report.failed() > 0) text += " Worst: " + describe_worst(report) + ".";
+  if (!report.damaged.empty()) text += " Damaged in the baseline: " + describe_damage(report.damaged) + ".";
   page::Table table{"The worst cell of each scene and filter", {{"scene"}, {}}};
   for (const Comparison& each : report.comparisons)  // the worst first
     table.judge(each.scene, each.filter, name_of(each.outcome) + (each.accepted ? ", accepted" : describe_excess(each)),

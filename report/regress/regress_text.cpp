@@ -1,6 +1,7 @@
 #include "report/regress/regress_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -112,8 +113,17 @@ std::string describe_worst(const RegressReport& report) {
   return fmt::format("{} is {}: {}", name_cell(worst), name_of(worst.outcome), worst.findings.front().text);
 }
 
+std::string describe_damage(const Damage& damage) {
+  std::vector<std::string> named;
+  for (const auto& [path, what] : damage)
+    if (named.size() < kMostFindings) named.push_back(path + " " + what);
+  if (damage.size() > named.size()) named.push_back(fmt::format("{} more files", damage.size() - named.size()));
+  return fmt::format("{}", fmt::join(named, ", "));
+}
+
 std::string make_regress_text(const RegressReport& report) {
   std::string text;
+  for (const auto& [path, what] : report.damaged) text += fmt::format("damaged: {} {}\n", path, what);
   std::size_t listed = 0;
   for (const Comparison& comparison : report.comparisons) {
     if (!comparison.differs()) continue;
@@ -135,6 +145,7 @@ std::string make_regress_json(const RegressReport& report) {
                            {"compared", report.comparisons.size()}, {"failed", report.failed()},
                            {"summary", describe_counts(report)},    {"accept_command", report.accept_command}};
   document["accepted"] = report.accepted;
+  document["damaged"] = report.damaged;
   document["cells"] = ordered_json::array();
   for (const Comparison& comparison : report.comparisons) document["cells"].push_back(to_json(comparison));
   return document.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";

@@ -28,6 +28,9 @@ std::string describe_counts(const RegressReport& report);
 /// Names the worst cell and what is wrong with it, in a line. Requires one that failed.
 std::string describe_worst(const RegressReport& report);
 
+/// Names damaged files and what is wrong with them, in a line.
+std::string describe_damage(const Damage& damage);
+
 /// Says for people what differs, the worst first, and how to accept it.
 std::string make_regress_text(const RegressReport& report);
 

@@ -60,6 +60,8 @@ class ToleranceReader {
   toml::table root_;
 
   toml::table parse() const {
+    if (std::filesystem::is_directory(file_))
+      throw Error(ErrorKind::kInput, "this is a folder, and should be the file of the tolerances; remove it", file_);
     require_plain_file(file_, 16 * kMebibyte);
     try {
       return toml::parse_file(file_);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "filters/base/error.h"
+#include "filters/base/input_file.h"
 
 namespace shadowbench::scene {
 
@@ -26,7 +27,8 @@ std::vector<unsigned char> read_file_bytes(const fs::path& file) {
   std::error_code failure;
   const fs::file_status status = fs::status(file, failure);
   if (!fs::exists(status)) fail_input("there is no such file", file.string());
-  if (!fs::is_regular_file(status)) fail_input("this is not a file", file.string());
+  if (fs::is_directory(status)) fail_input("this is not a file", file.string());
+  require_plain_file(file, 4096 * kMebibyte);
   std::ifstream stream(file, std::ios::binary);
   if (!stream) fail_input(std::string("cannot be opened: ") + std::strerror(errno), file.string());
   std::vector<unsigned char> bytes(static_cast<std::size_t>(fs::file_size(file)));

@@ -141,6 +141,14 @@ TEST_F(BadInput, FilterThatIsTooLarge) {
   expect_refusal(small("--filter-file " + (folder() / "large.glsl").string()), 5, {"it has 5 MiB, and 4 MiB are"});
 }
 
+TEST_F(BadInput, SceneThatIsAPipeOrTooLarge) {
+  ASSERT_EQ(mkfifo((folder() / "pipe.toml").c_str(), 0600), 0);
+  expect_refusal(small("--scene pipe.toml"), 3, {"pipe.toml", "a device, a pipe"});
+  write("large.toml", "");
+  std::filesystem::resize_file(folder() / "large.toml", std::uintmax_t{5} << 30);
+  expect_refusal(small("--scene large.toml"), 3, {"large.toml", "it has 5120 MiB, and 4096 MiB are"});
+}
+
 TEST_F(BadInput, PicturesThatAreDevices) { expect_refusal("diff /dev/zero /dev/zero", 3, {"/dev/zero", "a device"}); }
 
 TEST_F(BadInput, RunThatIsAPipe) {

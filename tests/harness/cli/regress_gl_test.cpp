@@ -1,6 +1,7 @@
 // The command `regress`, from a run to its exit code.
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <map>
@@ -13,6 +14,7 @@ namespace shadowbench::test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class Regress : public ProgramTest {
  protected:
@@ -36,6 +38,20 @@ class Regress : public ProgramTest {
 
   nlohmann::json report(const std::string& out) const {
     return nlohmann::json::parse(read_text(folder() / out / "regress" / "regress.json"));
+  }
+
+  /// Lists the checksums of a baseline that was changed as if it had been accepted so.
+  void seal() const {
+    const std::string list = "cd '" + (folder() / "base").string() +
+                             "' && ls baseline.toml accepted.md */*.json */*.exr | LC_ALL=C sort | xargs sha256sum";
+    ASSERT_EQ(std::system((list + " > checksums.txt").c_str()), 0);
+  }
+
+  /// Expects exit code 3, a message that names the damaged file, and one that is accepted afterwards.
+  void expect_damage(const std::string& file, const std::string& what) const {
+    expect_refusal("regress a --baseline base", 3, {"base: ", "not as it was accepted", file + " " + what, "--accept"});
+    EXPECT_EQ(compare("a", "--accept").exit_code, 0) << file << " " << what;
+    EXPECT_EQ(compare("a").exit_code, 0) << file << " " << what;
   }
 
   void cut(const std::string& file) const {
@@ -103,6 +119,7 @@ TEST_F(Regress, Accept_ChangesWhatMovedAlone_AndLogsIt) {
   nlohmann::json wrong = nlohmann::json::parse(before.at("pcf2x2.json"));
   wrong["cells"][0]["values"]["error.rmse"] = 0.0;
   write("base/cubes/pcf2x2.json", wrong.dump());
+  seal();
   EXPECT_EQ(compare("a").exit_code, 1);
   const Outcome accepted = compare("a", "--accept");
   EXPECT_EQ(accepted.exit_code, 0) << accepted.err;
@@ -112,7 +129,7 @@ TEST_F(Regress, Accept_ChangesWhatMovedAlone_AndLogsIt) {
   EXPECT_THAT(log.substr(before.at("accepted.md").size()),
               ::testing::AllOf(HasSubstr("replaced: cubes pcf2x2"), HasSubstr("error.rmse")));
   // The image holds the time at which it was written; the numbers are what they were.
-  EXPECT_EQ(list_changes(before), (std::vector<std::string>{"accepted.md", "pcf2x2.exr"}));
+  EXPECT_EQ(list_changes(before), (std::vector<std::string>{"accepted.md", "checksums.txt", "pcf2x2.exr"}));
 }
 
 TEST_F(Regress, MissingCell_Fails_AndLeavesOnRequestAlone) {
@@ -138,20 +155,80 @@ TEST_F(Regress, UnreadableBaseline_Fails_AndCanBeReplaced) {
   make_baseline();
   for (const char* file : {"base/cubes/pcf2x2.exr", "base/cubes/pcf2x2.json", "base/cubes/truth.area.exr"}) {
     cut(file);
+    seal();
     expect_failure("a", "unreadable");
     EXPECT_EQ(compare("a", "--accept").exit_code, 0) << file;
     EXPECT_EQ(compare("a").exit_code, 0) << file;
     write(file, "");
+    seal();
     expect_failure("a", "unreadable");
     EXPECT_EQ(compare("a", "--accept").exit_code, 0) << file;
   }
   std::filesystem::remove(folder() / "base/cubes/pcf2x2.exr");
+  seal();
   expect_failure("a", "unreadable");
   // Of a filter that the run lacks, too.
   write("base/cubes/gone.json", "{");
+  seal();
   draw("b", "--filters none");
   EXPECT_THAT(compare("b").out, HasSubstr("unreadable: cubes gone"));
   EXPECT_EQ(compare("b", "--filters none").exit_code, 0);
+}
+
+TEST_F(Regress, DamagedBaseline_IsRefused_AndMendedByAccept) {
+  make_baseline();
+  const auto flip = [&](const std::string& file, std::size_t at) {
+    std::string bytes = read_text(folder() / file);
+    bytes.at(at) ^= 1;
+    write(file, bytes);
+  };
+  for (const char* file :
+       {"baseline.toml", "accepted.md", "cubes/pcf2x2.json", "cubes/none.exr", "cubes/truth.area.exr"}) {
+    flip(std::string("base/") + file, 10);
+    expect_damage(file, "has changed");
+    std::filesystem::remove(folder() / "base" / file);
+    if (file != std::string("baseline.toml")) expect_damage(file, "is missing");
+    EXPECT_EQ(compare("a", "--accept").exit_code, 0);
+  }
+  write("base/baseline.toml", "");
+  expect_damage("baseline.toml", "has changed");
+  flip("base/checksums.txt", 70);
+  EXPECT_EQ(compare("a").exit_code, 3);
+  EXPECT_EQ(compare("a", "--accept").exit_code, 0);
+  std::filesystem::remove(folder() / "base/checksums.txt");
+  expect_damage("checksums.txt", "is missing");
+  std::filesystem::remove(folder() / "base/baseline.toml");
+  std::filesystem::create_directory(folder() / "base/baseline.toml");
+  EXPECT_EQ(compare("a").exit_code, 3);
+  expect_refusal("regress a --baseline base --accept", 3, {"baseline.toml: this is a folder"});
+}
+
+TEST_F(Regress, LimitThatWasEdited_HoldsOnceItIsAccepted) {
+  make_baseline();
+  draw("b", "--filters none,pcf2x2 --bias constant:depth=0.02");
+  EXPECT_EQ(compare("b").exit_code, 1);
+  std::string limits;
+  for (const char* metric : {"visibility.share", "visibility.max", "visibility.mean", "visibility.excused_changed"})
+    limits += std::string("[all.\"") + metric + "\"]\nlimit = 1\nreason = \"a test\"\n";
+  write("base/baseline.toml", limits);
+  const Outcome accepted = compare("a", "--accept");
+  EXPECT_EQ(accepted.exit_code, 0) << accepted.err;
+  EXPECT_THAT(accepted.out, HasSubstr("damaged: baseline.toml has changed since it was accepted"));
+  EXPECT_THAT(read_text(folder() / "base/accepted.md"), HasSubstr("baseline.toml has changed"));
+  EXPECT_EQ(read_text(folder() / "base/baseline.toml"), limits);
+  EXPECT_THAT(compare("b").out, Not(HasSubstr("pixels differ by more than")));
+}
+
+TEST_F(Regress, DamagedCells_ThatTheRunLacks_AreNotTakenForSound) {
+  make_baseline();
+  draw("b", "--filters none");
+  for (const char* file : {"base/cubes/pcf2x2.exr", "base/cubes/pcf2x2.json"}) {
+    write(file, read_text(folder() / file) + "\n");
+    const Outcome accepted = compare("b", "--accept --filters none");
+    EXPECT_EQ(accepted.exit_code, 1) << accepted.out;
+    EXPECT_THAT(accepted.err, HasSubstr("stays damaged"));
+    expect_damage(std::string(file).substr(5), "has changed");
+  }
 }
 
 /// What an accept that was killed leaves behind must not keep the next one from its work.
@@ -186,6 +263,7 @@ TEST_F(Regress, UnreadableFile_KeepsTheCellsThatWereNotCompared_Unreadable) {
   draw("a", "--filters none,pcf2x2 --map-size 64,128");
   ASSERT_EQ(compare("a", "--accept").exit_code, 0);
   cut("base/cubes/pcf2x2.exr");
+  seal();
   draw("b", "--filters none,pcf2x2 --map-size 128");
   EXPECT_EQ(compare("b", "--accept").exit_code, 1);
   const Outcome later = compare("a");
@@ -269,10 +347,16 @@ TEST_F(Regress, BadInput_IsRefused) {
   expect_refusal("regress a --baseline stdout.txt", 3, {"stdout.txt: this is a file"});
   expect_refusal("regress a --baseline stdout.txt --accept", 3, {"stdout.txt: this is a file"});
   write("base/baseline.toml", "[all.\"error.rms\"]\nlimit = 1\nreason = \"r\"\n");
+  seal();
   expect_refusal("regress a --baseline base", 3, {"baseline.toml:1", "did you mean 'error.rmse'?"});
   write("base/baseline.toml", "");
+  seal();
   write("file", "");
   expect_refusal("regress a --baseline base --out file/sub", 6, {"file/sub"});
+  const std::string old = (folder() / "old").string();
+  std::filesystem::create_directory(old);
+  ASSERT_EQ(mkfifo((old + "/regress.json").c_str(), 0600), 0);
+  expect_refusal("regress a --baseline base --out old", 3, {"old/regress.json", "a device, a pipe"});
   expect_refusal("run --pad-texels -1 --out out", 2, {"--pad-texels", "-1"});
 }
 

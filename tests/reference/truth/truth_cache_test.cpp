@@ -92,6 +92,13 @@ TEST_F(Cache, DamagedFiles_AreNotTaken_AndCanBeReplaced) {
   ASSERT_TRUE(load(cache, "a"));
 }
 
+TEST_F(Cache, AFileThatIsFarTooLong_IsNotRead) {
+  TruthCache cache = open();
+  cache.store("a", make_layers(0.5f));
+  std::filesystem::resize_file(file("a"), std::uintmax_t{1} << 27);
+  EXPECT_FALSE(load(cache, "a"));
+}
+
 TEST_F(Cache, AFlippedBit_IsNoticed) {
   TruthCache cache = open();
   int noticed = 0, tried = 0;

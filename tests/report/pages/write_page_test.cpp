@@ -1,6 +1,7 @@
 #include "report/pages/write_page.h"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <sstream>
@@ -59,6 +60,12 @@ TEST_F(WritePage, LinksPagesThatWereWrittenEarlier_WithTheNewOne) {
 TEST_F(WritePage, LinksPagesOfOneFolder) {
   write("all", "flicker");
   EXPECT_THAT(write("all", "stress"), HasSubstr("href=\"flicker.html\""));
+}
+
+TEST_F(WritePage, LinksNoPipe) {
+  std::filesystem::create_directories(report_ / "stress");
+  ASSERT_EQ(mkfifo((report_ / "stress" / "stress.html").c_str(), 0600), 0);
+  EXPECT_THAT(write("flicker", "flicker"), Not(HasSubstr("stress.html")));
 }
 
 /// A folder of the user's choice may lie beside somebody else's index.html.
