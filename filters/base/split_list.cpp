@@ -21,7 +21,9 @@ std::vector<std::string> split_list(std::string_view list, std::string_view sepa
 
 std::vector<std::pair<std::string, std::string>> split_assignments(std::string_view list, std::string_view option) {
   std::vector<std::pair<std::string, std::string>> assignments;
-  if (list.empty()) return assignments;
+  if (list.empty())
+    throw Error(ErrorKind::kUsage,
+                fmt::format("{}: nothing follows the ':'; write KEY=VALUE there, or leave it out", option));
   for (const std::string& part : split_list(list)) {
     const std::size_t equals = std::min(part.find('='), part.size());
     const std::string key = part.substr(0, equals);

@@ -51,6 +51,11 @@ WORDS = {"--map-format": ["d32", "", "D16 ", "r32f", "d16,d24"], "--fit": ["box"
          "--filters": ["nosuch", "none,none", "vsm:radius", "vsm:radius=-1", "vsm:nosuch=1", "vsm:radius=nan", ",", ":"],
          "--bias": ["nosuch", "constant", "constant:depth", "constant:depth=x", "constant:nosuch=1"],
          "--lights": ["0", "-1", "a", ""], "--light-name": ["nobody"], "--view": ["nowhere"]}
+# Commands that work without a further word take minutes: these words, which may be overruled, keep them short.
+SHORT = {"run": SMALL, "bias": ["--filters", "none", "--size", "96x54", "--map-size", "128", "--gl", "osmesa"],
+         "stress": ["--filters", "esm", "--axes", "esm-exponent", "--gl", "osmesa"],
+         "flicker": ["--filters", "none", "--frames", "2", "--size", "16x9", "--map-size", "16", "--gl", "osmesa"],
+         "tune": ["--scene", "cubes", "--budget", "1", "--size", "16x9", "--map-size", "16", "--gl", "osmesa"]}
 COMMANDS = ["run", "list", "diff", "bias", "merge", "advise", "tune", "stress", "regress", "flicker", "manual", "nosuch", ""]
 PIECES = ["--help", "--out", "out", "--scene", "cubes", "--filters", "none", "--fresh", "--json", "--yes", "-1", "..", "/",
           "/dev/null", "/nonexistent/x", "a\nb", "\x1b[31m", "%s%n", "$(id)", "; id", "'", '"', "../" * 40, "x" * 5000,
@@ -150,7 +155,7 @@ class Maker:
     def words(self, number, rng):
         pieces = [rng.choice(PIECES) for _ in range(rng.randrange(1, 7))]
         command = rng.choice(COMMANDS)
-        words = [command, *(SMALL if command == "run" else []), *pieces]
+        words = [command, *SHORT.get(command, []), *pieces]
         return Case(number, "words", [word.encode("utf-8", "surrogateescape") for word in words], ANY_ANSWER)
 
     def mutant(self, number, rng):

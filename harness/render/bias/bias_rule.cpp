@@ -101,7 +101,8 @@ void add(BiasRule& rule, const std::string& text) {
   if (found == modes().end()) fail_unknown("mode", name, modes());
   const Mode& mode = found->second;
   mode.begin(rule);
-  const auto amounts = split_assignments(colon == std::string::npos ? "" : text.substr(colon + 1), "--bias " + name);
+  std::vector<std::pair<std::string, std::string>> amounts;
+  if (colon != std::string::npos) amounts = split_assignments(text.substr(colon + 1), "--bias " + name);
   const bool any = !amounts.empty();
   for (const auto& [key, amount] : amounts) {
     const auto target = mode.keys.find(key);

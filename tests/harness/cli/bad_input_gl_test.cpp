@@ -157,6 +157,12 @@ TEST_F(BadInput, RunThatIsAPipe) {
   expect_refusal("advise piped --max-rmse 1", 3, {"results.json", "a device, a pipe"});
 }
 
+TEST_F(BadInput, ColonWithNothingBehind) {
+  expect_refusal(small("--fit cascades:"), 2, {"--fit", "nothing follows the ':'"});
+  expect_refusal(small("--bias front-cull:"), 2, {"--bias front-cull", "nothing follows the ':'"});
+  expect_refusal(small("--filters none:"), 2, {"none:", "PARAM=VALUE"});
+}
+
 TEST_F(BadInput, UnknownFit) { expect_refusal(small("--fit box"), 2, {"'box'", "sphere, tight, view"}); }
 TEST_F(BadInput, SnapWithNothing) { expect_refusal(small("--snap"), 2, {"--snap"}); }
 TEST_F(BadInput, SnapUnknown) { expect_refusal(small("--snap perhaps"), 2, {"--snap", "perhaps"}); }
