@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
@@ -190,16 +191,18 @@ class Experiment {
     progress_.note(analysis::describe_overlap(run_.repeat) + " those of the run that this one replaces");
   }
 
-  /// Whether the folder has the whole report of this very run already, of the very cells that lie there.
+  /// Whether the folder has the whole report of this very run already, of the very cells that lie there. Their content
+  /// decides, not the times of the files: the clock may have been set in between.
   bool has_report(const RunPlan& plan) const {
     const std::filesystem::path file = options_.out / "results.json";
     if (options_.worker || !std::filesystem::exists(file) || !std::filesystem::exists(options_.out / "index.html"))
       return false;
-    const auto written = std::filesystem::last_write_time(file);
-    for (const std::string& key : list_keys(plan))
-      if (std::filesystem::last_write_time(records::cell_path(options_.out, key)) > written) return false;
     try {
-      return is_same(records::read_results(file).run.experiment);
+      const records::Results results = records::read_results(file);
+      const auto is_current = [&](const std::string& key, const records::CellRecord& cell) {
+        return records::to_json(records::read_cell(options_.out, key)) == records::to_json(cell);
+      };
+      return is_same(results.run.experiment) && std::ranges::equal(list_keys(plan), results.cells, is_current);
     } catch (const Error&) {
       return false;
     }

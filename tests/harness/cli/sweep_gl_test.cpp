@@ -91,6 +91,23 @@ TEST_F(Sweep, MeasuresTheProduct_AndTheCommandLineHasTheLastWord) {
       << "timed beside the reference, which is not in the run";
 }
 
+/// What the files hold decides, not when they were written: the clock may have been set back, or forth.
+TEST_F(Sweep, ReportIsThatOfItsCells_WhateverTheClockSaid) {
+  ASSERT_EQ(run("run e.toml --out out --scene cubes --map-size 32").exit_code, 0);
+  const std::string again = "run e.toml --out out --scene cubes --map-size 32";
+  const std::filesystem::path written = folder() / "out" / "results.json";
+  using std::chrono::hours;
+  std::filesystem::last_write_time(written, std::filesystem::file_time_type::clock::now() - hours(1));
+  EXPECT_THAT(run(again).err, HasSubstr("nothing is left to do"));
+  const std::string cell = "out/cells/" + results()["cells"][0]["key"].get<std::string>() + ".json";
+  json slower = json::parse(read_text(folder() / cell));
+  slower["cell"]["time_ms"]["lookup"]["median"] = 12345.0;
+  write(cell, slower.dump());
+  std::filesystem::last_write_time(written, std::filesystem::file_time_type::clock::now() + hours(1));
+  EXPECT_EQ(run(again).exit_code, 0);
+  EXPECT_EQ(results()["cells"][0]["time_ms"]["lookup"]["median"], 12345.0);
+}
+
 TEST_F(Sweep, Continued_MeasuresNothingTwice_UnlessSomethingChanged) {
   ASSERT_EQ(run("run e.toml --out out").exit_code, 0);
   const auto before = cell_times();
