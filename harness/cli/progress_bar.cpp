@@ -12,7 +12,13 @@
 namespace shadowbench::cli {
 namespace {
 
-constexpr int kBarCells = 24;
+constexpr std::size_t kBarCells = 24;
+
+/// " · 3 min left"
+std::string describe_seconds(double seconds) {
+  const auto left = static_cast<long>(std::ceil(seconds));
+  return left < 100 ? fmt::format(" · {} s left", left) : fmt::format(" · {} min left", (left + 59) / 60);
+}
 
 /// Estimates from the time of the finished cells how long the others will take.
 class TimeLeft {
@@ -27,8 +33,7 @@ class TimeLeft {
   std::string describe(int done) const {
     if (done <= finished_ || done >= cells_) return {};
     const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
-    const auto left = static_cast<long>(std::ceil(spent / (done - finished_) * (cells_ - done)));
-    return left < 100 ? fmt::format(" · {} s left", left) : fmt::format(" · {} min left", (left + 59) / 60);
+    return describe_seconds(spent / (done - finished_) * (cells_ - done));
   }
 
  private:
@@ -45,53 +50,84 @@ std::string cut(const std::string& text, std::size_t room) {
   return text.substr(0, room);
 }
 
+/// Where a run is, in words: "42.0 % · 16/40", or "16/40" where the work is counted, and the time left.
+class Position {
+ public:
+  void begin(int cells, int finished) {
+    cells_ = cells;
+    left_.begin(cells, finished);
+  }
+
+  double share(int done, const std::optional<options::WorkAhead>& ahead) const {
+    return ahead ? ahead->share : static_cast<double>(done) / std::max(cells_, 1);
+  }
+
+  /// Rounds down: what is not done is not 100 %.
+  std::string count(int done, const std::optional<options::WorkAhead>& ahead) const {
+    const std::string cells = fmt::format("{}/{}", done, cells_);
+    return ahead ? fmt::format("{:.1f} % · {}", std::floor(1000.0 * ahead->share) / 10.0, cells) : cells;
+  }
+
+  std::string describe_left(int done, const std::optional<options::WorkAhead>& ahead) const {
+    if (!ahead) return left_.describe(done);
+    return ahead->seconds_left && ahead->share < 1.0 ? describe_seconds(*ahead->seconds_left) : "";
+  }
+
+ private:
+  int cells_ = 0;
+  TimeLeft left_;
+};
+
 /// Redraws one line.
 class TerminalBar final : public options::Progress {
  public:
   ~TerminalBar() override { fmt::print(stderr, "\n"); }
 
-  void begin(int cells, int finished) override {
-    cells_ = std::max(cells, 1);
-    left_.begin(cells, finished);
-  }
+  void begin(int cells, int finished) override { position_.begin(cells, finished); }
 
-  void show(int done, const std::string& what) override {
-    const int filled = std::min(kBarCells, kBarCells * done / cells_);
-    const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
-                            std::string(static_cast<std::size_t>(kBarCells - filled), '.');
-    fmt::print(stderr, "\r\033[K[{}] {}/{}{}", bar, done, cells_, cut(left_.describe(done) + " " + what, room()));
+  void show(int done, const std::string& what, const std::optional<options::WorkAhead>& ahead) override {
+    const double share = std::clamp(position_.share(done, ahead), 0.0, 1.0);
+    const auto filled = static_cast<std::size_t>(static_cast<double>(kBarCells) * share);
+    const std::string bar = std::string(filled, '#') + std::string(kBarCells - filled, '.');
+    const std::string head = position_.count(done, ahead);
+    fmt::print(stderr, "\r\033[K[{}] {}{}", bar, head,
+               cut(position_.describe_left(done, ahead) + " " + what, room(head)));
     std::fflush(stderr);
   }
 
   void note(const std::string& message) override { fmt::print(stderr, "\r\033[K{}\n", message); }
 
  private:
-  int cells_ = 1;
-  TimeLeft left_;
+  Position position_;
 
   /// Columns left beside the bar, so that the line never wraps.
-  static std::size_t room() {
+  static std::size_t room(const std::string& head) {
     winsize size{};
     const int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-    return static_cast<std::size_t>(std::max(columns - kBarCells - 14, 10));
+    return static_cast<std::size_t>(std::max(columns - static_cast<int>(kBarCells + head.size()) - 5, 10));
   }
 };
 
-/// Prints one line for each step, for logs.
+/// Prints one line for each step, for logs, and one now and then while a step goes on.
 class PlainLines final : public options::Progress {
  public:
-  void begin(int cells, int finished) override {
-    cells_ = cells;
-    left_.begin(cells, finished);
+  void begin(int cells, int finished) override { position_.begin(cells, finished); }
+
+  void show(int done, const std::string& what, const std::optional<options::WorkAhead>& ahead) override {
+    const auto now = std::chrono::steady_clock::now();
+    if (ahead && what == what_ && now - shown_ < kPause) return;
+    what_ = what;
+    shown_ = now;
+    fmt::print(stderr, "{} {}{}\n", position_.count(done, ahead), what, position_.describe_left(done, ahead));
   }
-  void show(int done, const std::string& what) override {
-    fmt::print(stderr, "{}/{} {}{}\n", done, cells_, what, left_.describe(done));
-  }
+
   void note(const std::string& message) override { fmt::print(stderr, "{}\n", message); }
 
  private:
-  int cells_ = 0;
-  TimeLeft left_;
+  static constexpr std::chrono::seconds kPause{2};
+  Position position_;
+  std::string what_;
+  std::chrono::steady_clock::time_point shown_;
 };
 
 }  // namespace

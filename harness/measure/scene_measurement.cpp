@@ -35,21 +35,23 @@ std::int64_t count_not_finite(const images::Image& image) {
 /// Everything that one task draws with.
 class SceneBench {
  public:
-  SceneBench(Renderer& renderer, const options::RunOptions& options, const SceneTask& task, SceneAssets& assets)
+  SceneBench(Renderer& renderer, const options::RunOptions& options, const SceneTask& task, SceneAssets& assets,
+             const options::StepListener& listener)
       : renderer_(renderer),
         options_(options),
         task_(task),
         assets_(assets),
+        listener_(listener),
         light_(assets.light_map(*task.camera, task.map_size)),
         gbuffer_(assets.gbuffer(*task.camera)),
         target_("visibility", GL_R32F, options.width, options.height) {}
 
-  SceneMeasurement run(const std::function<void(const std::string&)>& on_cell) {
+  SceneMeasurement run() {
     SceneMeasurement result;
     std::vector<std::unique_ptr<render::FilterPasses>> filters;
     StabilityMeter stability(renderer_, options_, task_, assets_);
     for (const auto& request : task_.filters) {
-      on_cell(request.label());
+      listener_.begin(options::Work::kDrawing, 1, request.label());
       filters.push_back(make_passes(request));
       result.cells.push_back(draw(*filters.back()));
       count_passes(result, *filters.back());
@@ -71,6 +73,7 @@ class SceneBench {
   const options::RunOptions& options_;
   const SceneTask& task_;
   SceneAssets& assets_;
+  const options::StepListener& listener_;
   LightMap& light_;
   render::GBuffer& gbuffer_;
   render::ImageTarget target_;
@@ -162,10 +165,12 @@ class SceneBench {
       pointers.push_back((added = make_passes(options_.reference)).get());
       drawn_ms_ += time_once(*added, light_.map, gbuffer_, target_, renderer_.timer);
     }
+    listener_.begin(options::Work::kTiming, filters.size(), "times");
+    const double timings = 1.0 + static_cast<double>(options_.lights.size());
     const EmptyLookups empty = make_empty_lookups(renderer_, options_, *task_.scene, light_, pointers);
     const RoundTimes times = time_rounds(
         pointers, reference, empty.passes, [&] { assets_.redraw(light_); }, light_.map, gbuffer_, renderer_.timer,
-        options_.rounds, options_.seed, drawn_ms_);
+        options_.rounds, options_.seed, drawn_ms_, [&](double part) { listener_.advance(part / timings); });
     result.timed_ms = times.spent_ms;
     for (std::size_t i = 0; i < filters.size(); ++i) {
       set_times(result.cells[i].record, times, i, reference, times.empties[empty.of_filter[i]]);
@@ -180,8 +185,10 @@ class SceneBench {
       for (MeasuredCell& cell : result.cells) cell.record.absent["lights"] = "the run was made without --lights";
       return;
     }
-    LightMeasurement measured = measure_lights(renderer_, options_, assets_,
-                                               {&task_.scene->light, task_.camera, task_.map_size, filters, reference});
+    const double timings = 1.0 + static_cast<double>(options_.lights.size());
+    LightMeasurement measured = measure_lights(
+        renderer_, options_, assets_, {&task_.scene->light, task_.camera, task_.map_size, filters, reference},
+        [&](double part) { listener_.advance((1.0 + (timings - 1.0) * part) / timings); });
     result.timed_ms += measured.spent_ms;
     for (std::size_t i = 0; i < result.cells.size(); ++i) {
       records::CellRecord& record = result.cells[i].record;
@@ -195,6 +202,7 @@ class SceneBench {
   /// them.
   void draw_phases(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
     const std::vector<glm::dvec2> shifts = list_phase_shifts(options_.phases);
+    if (shifts.size() > 1) listener_.begin(options::Work::kPhases, filters.size(), "phases");
     for (std::size_t phase = 1; phase < shifts.size(); ++phase) {
       const LightMap moved = assets_.make_light_map(task_.scene->light, *task_.camera, task_.map_size, shifts[phase]);
       for (std::size_t i = 0; i < filters.size(); ++i) {
@@ -204,6 +212,7 @@ class SceneBench {
             filter.prepare(make_filter_light(options_, task_.scene->light, moved.layers, filter.request()), encoded));
         result.cells[i].phases.push_back(draw_visibility(filter, moved.map, gbuffer_, target_));
       }
+      listener_.advance(static_cast<double>(phase) / static_cast<double>(shifts.size() - 1));
     }
   }
 
@@ -280,8 +289,8 @@ records::CellRecord make_record(const options::RunOptions& options, const SceneT
 }
 
 SceneMeasurement measure_scene(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
-                               SceneAssets& assets, const std::function<void(const std::string&)>& on_cell) {
-  return SceneBench(renderer, options, task, assets).run(on_cell);
+                               SceneAssets& assets, const options::StepListener& listener) {
+  return SceneBench(renderer, options, task, assets, listener).run();
 }
 
 }  // namespace shadowbench::measure

@@ -6,6 +6,7 @@
 
 #include "harness/measure/renderer.h"
 #include "harness/measure/scene_assets.h"
+#include "harness/options/progress.h"
 #include "harness/render/filter_passes.h"
 #include "harness/scene/scene.h"
 #include "reference/metrics/artefacts.h"
@@ -58,10 +59,10 @@ struct SceneTask {
   std::vector<filters::FilterRequest> filters;
 };
 
-/// Draws and times every filter of a task. `on_cell` hears of each filter before it is drawn.
+/// Draws and times every filter of a task.
 /// Throws Error(kFilter) for a filter's GLSL, Error(kUsage) for a map size that the GL cannot give.
 SceneMeasurement measure_scene(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
-                               SceneAssets& assets, const std::function<void(const std::string&)>& on_cell);
+                               SceneAssets& assets, const options::StepListener& listener = {});
 
 /// Writes a light's place as the command line reads it.
 std::string describe_light(const scene::SkyAngles& light);

@@ -15,6 +15,7 @@
 #include "harness/run/all_lights.h"
 #include "harness/run/provenance.h"
 #include "harness/run/run_plan.h"
+#include "harness/run/run_progress.h"
 #include "harness/run/task_run.h"
 #include "harness/run/time_floor.h"
 #include "harness/scene/closed_mesh.h"
@@ -58,6 +59,7 @@ class Experiment {
   Experiment(const options::RunOptions& options, options::Progress& progress)
       : options_(options),
         progress_(progress),
+        steps_(progress),
         renderer_(measure::make_renderer(options.backend, options.resources)),
         cache_(options.cache, [this](const std::string& message) { warn(message); }) {
     run_.commit = build_commit();
@@ -89,21 +91,19 @@ class Experiment {
  private:
   const options::RunOptions& options_;
   options::Progress& progress_;
+  RunProgress steps_;
   measure::Renderer renderer_;
   truth::TruthCache cache_;
   records::RunRecord run_;
   std::optional<files::FolderLock> lock_;
-  int done_ = 0;
   std::set<std::string> told_;  ///< warnings that the user has seen
-  TaskListener listener_{[this](const std::string& what) { progress_.show(done_, what); },
-                         [this](const std::string& message) { progress_.note(message); },
-                         [this](const measure::SceneMeasurement& measured) { count(measured); }};
-  GpuCosts gpus_{options_, listener_.note};
+  TaskListener listener_{&steps_, [this](const measure::SceneMeasurement& measured) { count(measured); }};
+  std::function<void(const std::string&)> note_ = [this](const std::string& message) { progress_.note(message); };
+  GpuCosts gpus_{options_, note_};
 
   void measure(const RunPlan& plan) {
     const std::vector<records::CellRecord> replaced = read_replaced();
-    done_ = plan.finished;
-    progress_.begin(plan.own_cells, plan.finished);
+    steps_.plan(plan);
     const auto start = std::chrono::steady_clock::now();
     for (std::size_t scene = 0; scene < plan.scenes.size(); ++scene) run_scene(plan, scene);
     run_.work.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -111,16 +111,16 @@ class Experiment {
     run_.work.truths_traced = cache_.traced();
     run_.work.truths_cached = cache_.loaded();
     cache_.prune(kMaxCacheBytes);
+    steps_.begin_report();
     if (options_.grids && !options_.worker) draw_all_lights(options_, plan, run_.gl);
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
-    progress_.show(done_, "writing the report");
     if (!options_.worker) pages::write_report(options_.out, run_, list_keys(plan));
-    progress_.show(done_, "done");
+    steps_.finish();
   }
 
   void count(const measure::SceneMeasurement& measured) {
     lock_->require_in_place();
-    done_ += static_cast<int>(measured.cells.size());
+    steps_.count(static_cast<int>(measured.cells.size()));
     run_.work.timed_s += 1e-3 * measured.timed_ms;
     if (options_.truth && options_.attribution)
       run_.work.attribution_s = run_.work.attribution_s.value_or(0.0) + measured.attribution_s;

@@ -5,6 +5,7 @@
 #include <tbb/parallel_for_each.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "harness/measure/stability_meter.h"
@@ -215,10 +216,13 @@ void write_truth_pictures(const options::RunOptions& options, const std::string&
 
 /// Writes what is shown of each cell by itself, and of the truth.
 void write_shown(const options::RunOptions& options, const std::string& stem, measure::SceneMeasurement& measured,
-                 const measure::SceneTruth& truth) {
+                 const measure::SceneTruth& truth, const std::function<void(double part)>& on_part) {
   write_truth_pictures(options, stem, measured, truth);
-  tbb::parallel_for_each(measured.cells,
-                         [&](measure::MeasuredCell& cell) { write_cell_pictures(options, stem, cell); });
+  std::atomic<std::size_t> written = 0;
+  tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
+    write_cell_pictures(options, stem, cell);
+    on_part(static_cast<double>(++written) / static_cast<double>(measured.cells.size()));
+  });
   for (measure::MeasuredCell& cell : measured.cells) measure::write_stability(options, stem, cell);
 }
 
@@ -281,17 +285,18 @@ void write_float_images(const options::RunOptions& options, const measure::Scene
 
 void write_single_pictures(const options::RunOptions& options, const measure::SceneTask& task,
                            measure::SceneMeasurement& measured, const measure::SceneTruth& truth) {
-  write_shown(options, task_stem(options, task), measured, truth);
+  write_shown(options, task_stem(options, task), measured, truth, [](double) {});
   for (measure::MeasuredCell& cell : measured.cells) cell.record.absent["images"] = "the run was made with --no-grids";
 }
 
 void write_pictures(const options::RunOptions& options, const measure::SceneTask& task,
-                    measure::SceneMeasurement& measured, const measure::SceneTruth& truth,
-                    const records::GlRecord& gl) {
+                    measure::SceneMeasurement& measured, const measure::SceneTruth& truth, const records::GlRecord& gl,
+                    const std::function<void(double part)>& on_part) {
   const std::string stem = task_stem(options, task);
   const std::string grid_name = stem + ".grid.png";
   images::write_grid(options.out / grid_name, make_grid(options, task, measured, truth, gl));
-  write_shown(options, stem, measured, truth);
+  on_part(0.5);
+  write_shown(options, stem, measured, truth, [&](double part) { on_part(0.5 + 0.5 * part); });
   for (measure::MeasuredCell& cell : measured.cells) {
     cell.record.images.grid = grid_name;
     cell.record.images.exr = exr_name(options, task);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "harness/measure/scene_measurement.h"
@@ -36,9 +37,11 @@ void write_float_images(const options::RunOptions& options, const measure::Scene
 void write_single_pictures(const options::RunOptions& options, const measure::SceneTask& task,
                            measure::SceneMeasurement& measured, const measure::SceneTruth& truth);
 
-/// Writes what people look at: grid and single pictures; notes their paths in the records.
+/// Writes what people look at: grid and single pictures; notes their paths in the records. `on_part` hears how much of
+/// it is done, 0 .. 1, from many threads.
 /// Throws Error(kOutput).
 void write_pictures(const options::RunOptions& options, const measure::SceneTask& task,
-                    measure::SceneMeasurement& measured, const measure::SceneTruth& truth, const records::GlRecord& gl);
+                    measure::SceneMeasurement& measured, const measure::SceneTruth& truth, const records::GlRecord& gl,
+                    const std::function<void(double part)>& on_part);
 
 }  // namespace shadowbench::run

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for_each.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 
 #include "harness/measure/filter_setup.h"
@@ -35,6 +36,9 @@ TaskRun::TaskRun(measure::Renderer& renderer, const PlannedScene& planned, const
       gl_(gl),
       listener_(listener),
       gpus_(gpus) {
+  steps_.begin = [this](options::Work kind, std::size_t cells, const std::string& what) { begin(kind, cells, what); };
+  steps_.advance = [this](double part) { listener_.progress->advance(part); };
+  assets_.tracer().listen([progress = listener.progress](double part) { progress->advance_tracing(part); });
   for (std::size_t i = 0; i < task_.filters.size(); ++i)
     contents_[measure::make_record(options_, task_, task_.filters[i]).key] = task.contents[i];
 }
@@ -64,9 +68,7 @@ void TaskRun::run_group(const Requests& built_in, const Requests& of_users) {
   std::vector<measure::MeasuredCell> user_cells;
   for (const filters::FilterRequest& request : of_users) user_cells.push_back(measure_user_cell(request));
   measure::SceneMeasurement measured;
-  if (!built_in.empty())
-    measured = measure::measure_scene(renderer_, options_, task_of(built_in), assets_,
-                                      [&](const std::string& label) { show(label); });
+  if (!built_in.empty()) measured = measure::measure_scene(renderer_, options_, task_of(built_in), assets_, steps_);
   const measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
   measured.stored_map = light.map.read_picture();
   measured.depth_map = measure::read_linear_depth(light.map);
@@ -78,9 +80,8 @@ void TaskRun::run_group(const Requests& built_in, const Requests& of_users) {
     score(measured);
     measure_coverage(measured);
   }
-  show("GPUs");
+  begin(options::Work::kPictures, measured.cells.size(), "pictures");
   gpus_.add_to(measured.cells);
-  show("pictures");
   write_images(task_of(all), measured);
   write_cells(measured);
 }
@@ -93,23 +94,30 @@ images::Image TaskRun::draw_ambient() {
 }
 
 measure::MeasuredCell TaskRun::measure_user_cell(const filters::FilterRequest& request) {
-  show(request.label());
+  begin(options::Work::kTiming, 1, request.label());
   return measure_user_filter(options_, task_, request, planned_.argument, renderer_.context->info().backend);
 }
 
 /// Scores each cell against the truth, and takes its error apart.
 void TaskRun::score(measure::SceneMeasurement& measured) {
-  show("truth");
+  const std::size_t cells = measured.cells.size();
+  begin(options::Work::kTruth, cells, "truth");
   const measure::SceneTruth& truth = assets_.truth(*task_.camera);
+  begin(options::Work::kScores, cells, "errors");
+  std::atomic<std::size_t> scored = 0;
   tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
     cell.flip = measure::score(cell.record, cell.visibility, cell.phases, cell.picture, truth);
     cell.phases.clear();
     measure::check_against_truth(cell, truth);
+    steps_.advance(static_cast<double>(++scored) / static_cast<double>(cells));
   });
-  show("attribution");
+  begin(options::Work::kSurroundings, cells, "artefacts");
   if (!analyser_) analyser_.emplace(renderer_, options_, task_, assets_, truth);
   const auto start = std::chrono::steady_clock::now();
-  for (measure::MeasuredCell& cell : measured.cells) analyser_->analyse(cell);
+  for (measure::MeasuredCell& cell : measured.cells) {
+    begin(options::Work::kAttribution, 1, "attribution of " + cell.label);
+    analyser_->analyse(cell);
+  }
   measured.attribution_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   measured.masks = analyser_->masks();
 }
@@ -148,7 +156,8 @@ void TaskRun::write_images(const measure::SceneTask& task, measure::SceneMeasure
   }
   if (!options_.worker) {
     write_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size));
-    write_pictures(options_, task, measured, truth, gl_);
+    steps_.advance(0.2);
+    write_pictures(options_, task, measured, truth, gl_, [this](double part) { steps_.advance(0.2 + 0.5 * part); });
   }
   if (options_.border_page) draw_border_page(task);
   write_float_images(options_, task, measured, truth, renderer_.context->info());
@@ -159,7 +168,7 @@ void TaskRun::draw_border_page(const measure::SceneTask& task) {
   measure::SceneTask built_in = task;
   std::erase_if(built_in.filters, [&](const auto& request) { return request.user_file && !options_.worker; });
   write_border_page(file, renderer_, options_, built_in, assets_);
-  listener_.note("border page: " + file.string());
+  listener_.progress->shown().note("border page: " + file.string());
 }
 
 void TaskRun::write_cells(measure::SceneMeasurement& measured) {
@@ -170,8 +179,9 @@ void TaskRun::write_cells(measure::SceneMeasurement& measured) {
   listener_.finished(measured);
 }
 
-void TaskRun::show(const std::string& what) const {
-  listener_.show(fmt::format("{} · {} · {}", task_.scene->name, task_.map_size, what));
+void TaskRun::begin(options::Work kind, std::size_t cells, const std::string& what) const {
+  listener_.progress->begin(options_, kind, cells,
+                            fmt::format("{} · {} · {}", task_.scene->name, task_.map_size, what));
 }
 
 }  // namespace shadowbench::run

@@ -11,14 +11,14 @@
 #include "harness/measure/scene_assets.h"
 #include "harness/run/gpu_costs.h"
 #include "harness/run/run_plan.h"
+#include "harness/run/run_progress.h"
 #include "report/records/records.h"
 
 namespace shadowbench::run {
 
 /// Hears how a task proceeds.
 struct TaskListener {
-  std::function<void(const std::string& what)> show;                        ///< what is under way
-  std::function<void(const std::string& message)> note;                     ///< something the user should know, once
+  RunProgress* progress = nullptr;
   std::function<void(const measure::SceneMeasurement& measured)> finished;  ///< cells that were written
 };
 
@@ -46,6 +46,7 @@ class TaskRun {
   const TaskListener& listener_;
   GpuCosts& gpus_;
   std::map<std::string, std::string> contents_;  ///< by key
+  options::StepListener steps_;
   std::optional<measure::CellAnalyser> analyser_;
   std::optional<measure::MapCoverage> coverage_;
 
@@ -59,7 +60,7 @@ class TaskRun {
   void write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured);
   void draw_border_page(const measure::SceneTask& task);
   void write_cells(measure::SceneMeasurement& measured);
-  void show(const std::string& what) const;
+  void begin(options::Work kind, std::size_t cells, const std::string& what) const;
 };
 
 }  // namespace shadowbench::run

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -23,6 +24,9 @@ constexpr int kEdgePoints = 16;
 /// edge. Where it is something else, pixels stop earlier or later; the standard errors that are stored do not depend on
 /// it.
 constexpr double kGainOfDoubling = 0.5946;
+
+/// What the first points of all pixels take of a whole image's time, roughly.
+constexpr double kFirstPart = 0.3;
 
 using Counts = std::array<int, kScrambles>;
 
@@ -110,9 +114,9 @@ class AdaptiveTracer {
     truth_.standard_error.assign(pixels, 0.0f);
     truth_.unanimous.assign(pixels, 1);
     truth_.rays.assign(pixels, 0);
-    for_each_receiver([this](std::size_t i) { trace(i, kFirstPoints, kFirstPoints); });
+    for_each_receiver(0.0, kFirstPart, [this](std::size_t i) { trace(i, kFirstPoints, kFirstPoints); });
     const std::vector<float> first = truth_.visibility;
-    for_each_receiver([&](std::size_t i) {
+    for_each_receiver(kFirstPart, 1.0, [&](std::size_t i) {
       if (!is_settled(first, static_cast<int>(i))) trace(i, kEdgePoints, samples_.max_points());
     });
     return std::move(truth_);
@@ -129,7 +133,8 @@ class AdaptiveTracer {
 
   /// Pixels are traced in tiles, because rays of neighbouring pixels visit the same parts of the scene.
   template <class Work>
-  void for_each_receiver(Work work) {
+  void for_each_receiver(double from, double to, Work work) {
+    std::atomic<std::size_t> visited = 0;
     const tbb::blocked_range2d<int> all(0, receivers_.height, 16, 0, receivers_.width, 16);
     tbb::parallel_for(all, [&](const tbb::blocked_range2d<int>& tile) {
       for (int y = tile.rows().begin(); y < tile.rows().end(); ++y) {
@@ -139,6 +144,9 @@ class AdaptiveTracer {
           if (receivers_.points[i].counts) work(i);
         }
       }
+      const std::size_t so_far = visited += tile.rows().size() * tile.cols().size();
+      const double share = static_cast<double>(so_far) / static_cast<double>(receivers_.points.size());
+      if (settings_.on_part) settings_.on_part(from + (to - from) * share);
     });
   }
 

@@ -26,6 +26,9 @@ class CachedTracer {
   /// `cache`, and what `list_meshes` refers to, must outlive this object.
   CachedTracer(MeshList list_meshes, TruthCache& cache, std::uint32_t seed);
 
+  /// Says from now on how much of an image is traced, 0 .. 1, from many threads.
+  void listen(std::function<void(double part)> on_part) { settings_.on_part = std::move(on_part); }
+
   /// Cost: 64 rays for most pixels, up to 16384 at the edges of shadows.
   ViewRays trace_view(const ReceiverImage& receivers, const AreaLight& light);
 

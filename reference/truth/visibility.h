@@ -20,6 +20,7 @@ struct TraceSettings {
   double standard_error = 0.005;  ///< wanted for every pixel that is not unanimous; some get a little more or less
   int max_points = 1024;          ///< per scramble; a power of two, at least 16
   std::uint32_t seed = 1;
+  std::function<void(double part)> on_part = {};         ///< hears how much is traced, 0 .. 1, from many threads
   std::function<void(const RayPacket&)> on_packet = {};  ///< hears of every packet, from many threads; for measurement
 };
 

@@ -84,7 +84,7 @@ void LightFrameBench::look_up(std::size_t filter) {
   }
 }
 
-RoundTimes LightFrameBench::time() {
+RoundTimes LightFrameBench::time(const std::function<void(double part)>& on_part) {
   const gl::TimerKind timer = renderer_.timer;
   std::vector<TimedFilter> timed;
   for (std::size_t i = 0; i < frame_.filters.size(); ++i) {
@@ -93,8 +93,8 @@ RoundTimes LightFrameBench::time() {
     timed.push_back(make_timed(timer, prefilters, [this, i] { look_up(i); }));
   }
   return run_rounds(
-      timed, frame_.reference, [&] { return gl::time_ms(timer, [&] { draw_maps(); }); }, options_.rounds,
-      options_.seed);
+      timed, frame_.reference, [&] { return gl::time_ms(timer, [&] { draw_maps(); }); }, options_.rounds, options_.seed,
+      0.0, {}, on_part);
 }
 
 std::vector<std::vector<float>> LightFrameBench::draw(std::size_t filter) {
@@ -106,10 +106,15 @@ std::vector<std::vector<float>> LightFrameBench::draw(std::size_t filter) {
 }
 
 LightMeasurement measure_lights(Renderer& renderer, const options::RunOptions& options, SceneAssets& assets,
-                                const LightFrame& frame) {
+                                const LightFrame& frame, const std::function<void(double part)>& on_part) {
   LightMeasurement result{std::vector<std::vector<records::LightCountRecord>>(frame.filters.size()), 0.0};
+  double timed = 0.0;
   for (const int count : options.lights) {
-    const RoundTimes times = LightFrameBench(renderer, options, assets, frame, count).time();
+    const auto on_rounds = [&](double part) {
+      if (on_part) on_part((timed + part) / static_cast<double>(options.lights.size()));
+    };
+    const RoundTimes times = LightFrameBench(renderer, options, assets, frame, count).time(on_rounds);
+    timed += 1.0;
     result.spent_ms += times.spent_ms;
     for (std::size_t i = 0; i < frame.filters.size(); ++i)
       result.filters[i].push_back(make_record(count, times, i, frame, options.seed));

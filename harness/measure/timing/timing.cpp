@@ -24,9 +24,10 @@ class Rounds {
  public:
   Rounds(const std::vector<TimedFilter>& filters, std::size_t reference, const std::function<double()>& draw_map,
          const options::RoundLimits& limits, std::uint64_t seed, double drawn_ms,
-         const std::vector<std::function<double()>>& empties)
+         const std::vector<std::function<double()>>& empties, const std::function<void(double)>& on_part)
       : filters_(filters),
         empties_(empties),
+        on_part_(on_part),
         reference_(reference),
         draw_map_(draw_map),
         limits_(limits),
@@ -44,6 +45,7 @@ class Rounds {
     if (!is_spent()) run_round(false);  // slower passes are warm
     for (int round = 1; round <= limits_.most; ++round) {
       run_round(true);
+      if (on_part_) on_part_(find_part(round));
       if (is_enough(round)) break;
     }
     return std::move(times_);
@@ -52,6 +54,7 @@ class Rounds {
  private:
   const std::vector<TimedFilter>& filters_;
   const std::vector<std::function<double()>>& empties_;
+  const std::function<void(double)>& on_part_;
   std::size_t reference_;
   const std::function<double()>& draw_map_;
   options::RoundLimits limits_;
@@ -93,6 +96,11 @@ class Rounds {
     const double ms = empties_[which]();
     times_.spent_ms += ms;
     if (counted) times_.empties[which].push_back(ms);
+  }
+
+  double find_part(int rounds) const {
+    if (limits_.is_fixed()) return static_cast<double>(rounds) / limits_.most;
+    return std::min(times_.spent_ms / (limits_.budget_ms * static_cast<double>(filters_.size())), 1.0);
   }
 
   bool is_spent() const {
@@ -163,8 +171,9 @@ TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std
 
 RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference,
                       const std::function<double()>& draw_map, const options::RoundLimits& limits, std::uint64_t seed,
-                      double drawn_ms, const std::vector<std::function<double()>>& empties) {
-  return Rounds(filters, reference, draw_map, limits, seed, drawn_ms, empties).run();
+                      double drawn_ms, const std::vector<std::function<double()>>& empties,
+                      const std::function<void(double part)>& on_part) {
+  return Rounds(filters, reference, draw_map, limits, seed, drawn_ms, empties, on_part).run();
 }
 
 double time_once(render::FilterPasses& filter, const render::ShadowMap& map, const render::GBuffer& gbuffer,
@@ -181,7 +190,7 @@ RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::s
                        const std::vector<std::unique_ptr<render::FilterPasses>>& empties,
                        const std::function<void()>& draw_map, const render::ShadowMap& map,
                        const render::GBuffer& gbuffer, gl::TimerKind timer, const options::RoundLimits& limits,
-                       std::uint64_t seed, double drawn_ms) {
+                       std::uint64_t seed, double drawn_ms, const std::function<void(double part)>& on_part) {
   render::ImageTarget target("timed visibility", GL_R32F, gbuffer.width(), gbuffer.height());
   std::vector<TimedFilter> timed;
   for (render::FilterPasses* filter : filters) {
@@ -195,7 +204,7 @@ RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::s
                                 timer, {}, [&, lookup = empty.get()] { lookup->lookup(gbuffer, map, target); })
                                 .lookup);
   return run_rounds(
-      timed, reference, [&] { return gl::time_ms(timer, draw_map); }, limits, seed, drawn_ms, timed_empties);
+      timed, reference, [&] { return gl::time_ms(timer, draw_map); }, limits, seed, drawn_ms, timed_empties, on_part);
 }
 
 }  // namespace shadowbench::measure

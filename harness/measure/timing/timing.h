@@ -53,11 +53,13 @@ TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std
 /// spends the budget already. A filter drops out when its ratios to the filter `reference`, of the lookup and of map,
 /// prefilter and lookup, are precise enough; `reference` stays as long as any other. When the budget is spent, all
 /// stop, but not before three rounds, or one where no more may be. Each of `empties` takes part in every round.
+/// `on_part` hears after every round how much of rounds or budget is behind, 0 .. 1.
 /// Requires at least one filter. Cost: (rounds + 1) times the sum of all passes, lookups of prefiltered maps four
 /// times.
 RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference,
                       const std::function<double()>& draw_map, const options::RoundLimits& limits, std::uint64_t seed,
-                      double drawn_ms = 0.0, const std::vector<std::function<double()>>& empties = {});
+                      double drawn_ms = 0.0, const std::vector<std::function<double()>>& empties = {},
+                      const std::function<void(double part)>& on_part = {});
 
 /// Runs a filter's passes once, into `target`, and gives their time in milliseconds.
 double time_once(render::FilterPasses& filter, const render::ShadowMap& map, const render::GBuffer& gbuffer,
@@ -68,7 +70,7 @@ RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::s
                        const std::vector<std::unique_ptr<render::FilterPasses>>& empties,
                        const std::function<void()>& draw_map, const render::ShadowMap& map,
                        const render::GBuffer& gbuffer, gl::TimerKind timer, const options::RoundLimits& limits,
-                       std::uint64_t seed, double drawn_ms = 0.0);
+                       std::uint64_t seed, double drawn_ms = 0.0, const std::function<void(double part)>& on_part = {});
 
 /// Adds what a filter costs in a frame in which light or casters move: map, prefilter and lookup, round by round.
 std::vector<double> add_moving(const std::vector<double>& map, const FilterTimes& times);

@@ -17,7 +17,7 @@ namespace {
 
 class Silent final : public options::Progress {
   void begin(int, int) override {}
-  void show(int, const std::string&) override {}
+  void show(int, const std::string&, const std::optional<options::WorkAhead>&) override {}
   void note(const std::string&) override {}
 };
 

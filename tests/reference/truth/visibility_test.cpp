@@ -50,6 +50,22 @@ TEST(OccludersDeathTest, MemoryThatIsTooSmall_IsBadAlloc) {
   EXPECT_EXIT(build_in_little_memory(), ::testing::ExitedWithCode(0), "");
 }
 
+TEST(AreaTruth, SaysHowMuchIsTraced_AndSeesTheSame) {
+  const Occluders occluders(half_plane_at_height());
+  const AreaLight light = AreaLight::make_sun({0.0, 1.0, 0.0}, 3.0);
+  const ReceiverImage image = make_line(-0.06, 0.06, 400);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  std::vector<double> parts;
+  TraceSettings settings;
+  settings.on_part = [&](double part) { parts.push_back(part); };
+  EXPECT_EQ(trace_area(occluders, image, light, settings).visibility,
+            trace_area(occluders, image, light, {}).visibility);
+  EXPECT_GT(parts.size(), 10u);
+  EXPECT_TRUE(std::ranges::is_sorted(parts));
+  EXPECT_GT(parts.front(), 0.0);
+  EXPECT_EQ(parts.back(), 1.0);
+}
+
 TEST(AreaTruth, DoesNotDependOnThreads) {
   const Occluders occluders(half_plane_at_height());
   const AreaLight light = AreaLight::make_sun({0.0, 1.0, 0.0}, 3.0);
