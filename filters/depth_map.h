@@ -19,6 +19,7 @@ struct DepthMap {
   /// Fixed-point formats clamp the reference of a comparison to [0,1], float formats do not (OpenGL 4.5, section 8.23).
   bool clamps_reference = false;
   Border border = Border::kBorder;  ///< what lookups read outside
+  int texel_bytes = 4;              ///< of the map in the GL
 
   /// What a comparison with depth `z` compares with.
   float reference(float z) const {

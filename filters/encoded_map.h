@@ -31,7 +31,7 @@ class EncodedMap {
   /// `encode` maps an EncodeInput<T> to a Texel. Reads `store`, `combine` and `sample` from the parameter values.
   template <class Encode>
   EncodedMap(const ModelInput& input, int radius_texels, Encode encode)
-      : grid_(input.map.size, input.map.border),
+      : grid_(input.map.size, input.map.border, store_bytes(text_or(input.values, "store", "r32f"))),
         accuracy_(input.accuracy),
         store_(store_precision(text_or(input.values, "store", "r32f"))),
         log_(combines_logs(input.values)),
@@ -57,15 +57,12 @@ class EncodedMap {
                                  is_nearest(values) ? Reconstruction::kNearest : Reconstruction::kBilinear);
   }
 
-  const Texel& texel(int x, int y) const {
-    const std::optional<std::size_t> found = grid_.find(x, y);
-    return found ? texels_[*found] : border_;
-  }
+  const Texel& texel(int x, int y) const { return texel_at(grid_.find(x, y)); }
 
   Texel fetch(const Receiver& r, Tally& tally) const {
     if (nearest_) {
       const int x = grid_.nearest(grid_.position(r.uv.x, 0), tally);
-      return texel(x, grid_.nearest(grid_.position(r.uv.y, 0), tally));
+      return read(x, grid_.nearest(grid_.position(r.uv.y, 0), tally));
     }
     const Position<T> half(0.5);
     const Position<T> px = grid_.position(r.uv.x, 0) - half, py = grid_.position(r.uv.y, 0) - half;
@@ -73,8 +70,8 @@ class EncodedMap {
     const int x = grid_.nearest(px, tally), y = grid_.nearest(py, tally);
     const T sx = sampler_weight<T>(px, std::floor(px), accuracy_, grid_.size());
     const T sy = sampler_weight<T>(py, std::floor(py), accuracy_, grid_.size());
-    const Texel low = mix(texel(x, y), texel(x + 1, y), sx);
-    const Texel high = mix(texel(x, y + 1), texel(x + 1, y + 1), sx);
+    const Texel low = mix(read(x, y), read(x + 1, y), sx);
+    const Texel high = mix(read(x, y + 1), read(x + 1, y + 1), sx);
     return mix(low, high, sy);
   }
 
@@ -93,7 +90,7 @@ class EncodedMap {
 
  private:
   EncodedMap(const ModelInput& input, const std::string& store)
-      : grid_(input.map.size, Border::kEdge),
+      : grid_(input.map.size, Border::kEdge, store_bytes(store)),
         accuracy_(input.accuracy),
         store_(store_precision(store)),
         log_(false),
@@ -153,6 +150,11 @@ class EncodedMap {
   Position<T> divisor_ = Position<T>(1);  ///< of the sums of a blur whose weights do not sum to 1
   Texel border_{};
   std::vector<Texel> texels_;
+
+  const Texel& texel_at(const std::optional<std::size_t>& place) const { return place ? texels_[*place] : border_; }
+
+  /// A texel for a lookup, whose read is noted.
+  const Texel& read(int x, int y) const { return texel_at(grid_.read(x, y)); }
 
   static bool is_nearest(const ParamValues& values) {
     return combines_logs(values) || text_or(values, "sample", "linear") == "nearest";

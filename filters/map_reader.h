@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "filters/model_input.h"
@@ -27,28 +28,76 @@ struct Offset {
   Position<T> y{};
 };
 
+/// A map that lookups read, as it lies in a GPU's memory; its address tells it from others.
+struct MapMemory {
+  int size = 0;  ///< texels per side
+  int texel_bytes = 0;
+};
+
+/// A read of a texel that lies in a map.
+struct TexelRead {
+  const MapMemory* map = nullptr;
+  std::size_t texel = 0;  ///< row by row
+};
+
+/// Notes which texels lookups in single precision read, on the thread that made it and while it lives. Other precisions
+/// tell nothing, and cost no more for it. Requires that a thread has one at a time.
+class ReadLog {
+ public:
+  ReadLog() { current_ = &reads_; }
+  ~ReadLog() { current_ = nullptr; }
+  ReadLog(const ReadLog&) = delete;
+  ReadLog& operator=(const ReadLog&) = delete;
+
+  /// In the order in which they were made, repetitions included.
+  const std::vector<TexelRead>& reads() const { return reads_; }
+  void clear() { reads_.clear(); }
+
+  /// Whether it hears of the reads of lookups of this arithmetic.
+  template <class T>
+  static constexpr bool hears = std::is_same_v<T, float>;
+
+  /// For what reads maps.
+  static void note(const TexelRead& read) {
+    if (current_) current_->push_back(read);
+  }
+
+ private:
+  inline static constinit thread_local std::vector<TexelRead>* current_ = nullptr;
+  std::vector<TexelRead> reads_;
+};
+
 /// Turns a receiver's uv and an offset into texel coordinates, rounded as the shaders do it.
 template <class T>
 class TexelGrid {
  public:
   using P = Position<T>;
-  explicit TexelGrid(int size, Border border = Border::kBorder) : size_(size), border_(border) {}
+  explicit TexelGrid(int size, Border border = Border::kBorder, int texel_bytes = 0)
+      : memory_{size, texel_bytes}, border_(border) {}
 
-  int size() const { return size_; }
+  int size() const { return memory_.size; }
 
   /// The index of the texel that a lookup at (x, y) reads; nothing where it reads the border's value.
   std::optional<std::size_t> find(int x, int y) const {
     if (inside(x, y)) return index(x, y);
     switch (border_) {
       case Border::kBorder: return std::nullopt;
-      case Border::kEdge: return index(std::clamp(x, 0, size_ - 1), std::clamp(y, 0, size_ - 1));
+      case Border::kEdge: return index(std::clamp(x, 0, size() - 1), std::clamp(y, 0, size() - 1));
       case Border::kRepeat: return index(wrap(x), wrap(y));
     }
     return std::nullopt;
   }
 
+  /// The same for a lookup, whose read is noted.
+  std::optional<std::size_t> read(int x, int y) const {
+    if constexpr (!ReadLog::hears<T>) return find(x, y);
+    const std::optional<std::size_t> found = find(x, y);
+    if (found) ReadLog::note({&memory_, *found});
+    return found;
+  }
+
   P position(float uv, P offset) const {
-    const P size = static_cast<P>(size_);
+    const P size = static_cast<P>(memory_.size);
     return (static_cast<P>(uv) + offset / size) * size;
   }
 
@@ -66,18 +115,18 @@ class TexelGrid {
 
   /// Four ULP of a coordinate at the far end of the map.
   double border_tolerance() const {
-    return 4.0 * static_cast<double>(std::numeric_limits<float>::epsilon()) * 0.5 * static_cast<double>(size_);
+    return 4.0 * static_cast<double>(std::numeric_limits<float>::epsilon()) * 0.5 * static_cast<double>(size());
   }
 
  private:
-  int size_;
+  MapMemory memory_;
   Border border_;
 
-  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < size_ && y < size_; }
+  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < size() && y < size(); }
   std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(size()) + static_cast<std::size_t>(x);
   }
-  int wrap(int i) const { return ((i % size_) + size_) % size_; }
+  int wrap(int i) const { return ((i % size()) + size()) % size(); }
 };
 
 /// Receiver-plane bias: the receiver plane's depth where texels are read, instead of at the receiver. The same in
@@ -112,7 +161,7 @@ class DepthReader {
  public:
   using P = Position<T>;
   explicit DepthReader(const ModelInput& input)
-      : grid_(input.map.size, input.map.border),
+      : grid_(input.map.size, input.map.border, input.map.texel_bytes),
         map_(&input.map),
         accuracy_(input.accuracy),
         plane_(input.plane_max_tangent) {}
@@ -143,7 +192,7 @@ class DepthReader {
   float fetch_depth(const Receiver& r, Offset<T> offset, Tally& tally) const {
     const int x = grid_.nearest(grid_.position(r.uv.x, offset.x), tally);
     const int y = grid_.nearest(grid_.position(r.uv.y, offset.y), tally);
-    return map_->curve.linear(map_->at(grid_.find(x, y)));
+    return map_->curve.linear(map_->at(grid_.read(x, y)));
   }
 
   /// The texels that `compare_2x2` reads: upper left, upper right, lower right, lower left. Which ones they are is
@@ -161,7 +210,7 @@ class DepthReader {
     const glm::ivec2 low = lower_left(r, offset, tally);
     std::array<float, 4> depths;
     for (std::size_t i = 0; i < 4; ++i)
-      depths[i] = map_->curve.linear(map_->at(grid_.find(low.x + kGathered[i].x, low.y + kGathered[i].y)));
+      depths[i] = map_->curve.linear(map_->at(grid_.read(low.x + kGathered[i].x, low.y + kGathered[i].y)));
     return depths;
   }
 
@@ -193,7 +242,7 @@ class DepthReader {
   }
 
   int compare(int x, int y, float z, Tally& tally) const {
-    const float stored = map_->at(grid_.find(x, y));
+    const float stored = map_->at(grid_.read(x, y));
     if (map_->is_tie(z, stored)) tally.excused = true;
     return map_->is_lit(z, stored) ? 1 : 0;
   }

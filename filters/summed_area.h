@@ -17,7 +17,10 @@ class SummedMoments {
 
   template <class Encode>
   SummedMoments(const ModelInput& input, int side, Encode encode)
-      : size_(input.map.size), steps_(find_steps(side)), table_(static_cast<std::size_t>(size_ * size_)) {
+      : size_(input.map.size),
+        memory_{size_, store_bytes(input.spec.passes.back().store)},
+        steps_(find_steps(side)),
+        table_(static_cast<std::size_t>(size_ * size_)) {
     const EncodedMap<T, 2> map(input, 0, encode);
     for (int y = 0; y < size_; ++y)
       for (int x = 0; x < size_; ++x) table_[index(x, y)] = add(map.texel(x, y), x, y);
@@ -44,6 +47,7 @@ class SummedMoments {
   };
 
   int size_;
+  MapMemory memory_;  ///< of the table
   P steps_;
   std::vector<Sums> table_;
 
@@ -73,7 +77,9 @@ class SummedMoments {
   const Sums& at(int x, int y) const {
     static const Sums none;
     if (x < 0 || y < 0) return none;
-    return table_[index(std::min(x, size_ - 1), std::min(y, size_ - 1))];
+    const std::size_t texel = index(std::min(x, size_ - 1), std::min(y, size_ - 1));
+    if constexpr (ReadLog::hears<T>) ReadLog::note({&memory_, texel});
+    return table_[texel];
   }
 
   /// Sums of whole texels with both ends, and what of them lies outside the map, where depth is 1.

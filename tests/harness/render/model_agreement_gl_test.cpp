@@ -202,6 +202,7 @@ TEST(FixedPointMap, ReferenceBeyondOne_IsLitInFixedPointAlone_InModelAndGl) {
       const filters::FilterRequest request = filters.parse_requests("beyond_far").front();
       const std::vector<float> image = bench.draw(request);
       const filters::DepthMap map = bench.map().read();
+      EXPECT_EQ(map.texel_bytes, format == GL_DEPTH_COMPONENT16 ? 2 : 4);
       const float in_model = map.is_lit(1.5f, map.curve.far_plane()) ? 1.0f : 0.0f;
       const filters::Receiver r = bench.receivers(request).front();
       EXPECT_EQ(image[bench.index(r)], in_model) << render::describe_map({format, {reversed}});

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "filters/catalogue.h"
+#include "harness/measure/model_images.h"
+
+namespace shadowbench::measure {
+
+/// A GPU's last-level cache, as far as reads of maps go through it.
+struct CacheShape {
+  std::int64_t bytes = 0;
+  int line_bytes = 0;  ///< a power of two, and no less than a texel has: 16 at most
+};
+
+/// Counts the bytes that a filter's lookups fetch through each cache: the mean over the receivers.
+///
+/// A line of L bytes holds L / (bytes of a texel) texels of one map, in a block as near to a square as powers of two
+/// allow, the wider side along u. A texel has the bytes of its map's format. Receivers are asked in tiles of 8x8
+/// pixels, row by row of tiles from the top; a tile reads each of its lines once. The cache is empty at first,
+/// associates fully, and drops the line that was not read for the longest time; every line that it does not hold is
+/// fetched. Not counted: reads outside a map, which are none; what the passes before the lookup read and write.
+///
+/// `plane_max_tangent` as in ModelInput; of the layers' receivers those of the filter are asked.
+/// Nothing where the filter has no scalar model, or no layer a receiver.
+/// Cost: the model's prefilter in single precision, and some of its lookups. The receivers of a tile are asked in an
+/// order that spreads them over it, until 16 in a row, with 256 reads, bring no new line: all of them where a filter
+/// reads no more than four texels. The README says how little that misses.
+std::optional<std::vector<double>> count_map_traffic(const filters::FilterRequest& request,
+                                                     const std::vector<ModelLayer>& layers, double plane_max_tangent,
+                                                     std::uint32_t seed, int width, int height,
+                                                     std::span<const CacheShape> caches);
+
+}  // namespace shadowbench::measure
