@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 
 #include "filters/base/nearest_name.h"
 #include "harness/scene/toml_reader.h"
@@ -10,11 +12,18 @@
 namespace shadowbench::gpu {
 namespace {
 
+/// The numbers that a constant may be.
+scene::Range find_range(std::string_view key) {
+  if (key.starts_with("rate_")) return {1e-3, 1.0};
+  if (key == "line_bytes") return {16.0, 4096.0};
+  return {1e-3, 1e6};
+}
+
 Constant read_constant(const scene::TomlTable& file, const char* key) {
   const auto table = file.table(key);
   if (!table) throw file.error(key, fmt::format("the table [{}] is missing; it holds a value and its source", key));
   table->require_known_keys({"value", "source"});
-  return {table->number("value", scene::kPositive), table->string("source")};
+  return {table->number("value", find_range(key)), table->string("source")};
 }
 
 }  // namespace
@@ -30,6 +39,9 @@ Gpu load_gpu(const std::filesystem::path& file) {
   gpu.title = table.string("title");
   gpu.driver = table.string("driver");
   visit_constants(gpu, [&](const char* key, Constant& constant) { constant = read_constant(table, key); });
+  const double line = gpu.line_bytes.value;
+  if (line != std::floor(line) || !std::has_single_bit(static_cast<unsigned>(line)))
+    throw table.table("line_bytes")->error("value", fmt::format("'value' is {}; a line has a power of two", line));
   return gpu;
 }
 

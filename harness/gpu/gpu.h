@@ -40,7 +40,8 @@ void visit_constants(G& gpu, Visitor&& visit) {
   visit("memory_gb_s", gpu.memory_gb_s);
 }
 
-/// Reads one description. Throws Error(kInput) with the file's line for what is missing, unknown, or not above 0.
+/// Reads one description. Throws Error(kInput) with the file's line for what is missing, unknown, or out of range:
+/// rates are above 0 and at most 1, a line has a power of two.
 Gpu load_gpu(const std::filesystem::path& file);
 
 /// Reads all of a folder, by name. Throws likewise.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "harness/measure/filter_setup.h"
+#include "harness/measure/map_traffic.h"
 #include "harness/render/receivers.h"
 #include "reference/metrics/attribution.h"
 #include "reference/metrics/error_stats.h"
@@ -48,6 +49,10 @@ metrics::ArtefactMasks make_masks(const Surroundings& around, const std::vector<
   return metrics::make_artefact_masks({truth.mask, truth.rays.area.visibility, find_settled(truth.rays.area),
                                        around.visibility, around.settled, truth.rays.first_blockers_ws,
                                        metrics::kArtefactLimits.contact_texels * layers.front().grid.texel_size_ws});
+}
+
+CacheShape find_cache(const gpu::Gpu& gpu) {
+  return {static_cast<std::int64_t>(gpu.cache_mib.value * 1024.0 * 1024.0), static_cast<int>(gpu.line_bytes.value)};
 }
 
 }  // namespace
@@ -162,11 +167,17 @@ ModelLayer CellAnalyser::read_layer(const filters::FilterRequest& request, const
   return made;
 }
 
-ModelImages CellAnalyser::evaluate(const filters::FilterRequest& request) {
+ModelImages CellAnalyser::evaluate(MeasuredCell& cell) {
   std::vector<ModelLayer> layers;
-  for (const scene::LightFrustum& layer : light_.layers) layers.push_back(read_layer(request, layer));
-  return evaluate_model(request, layers, options_.bias.plane_max_tangent(), options_.seed, options_.width,
-                        options_.height);
+  for (const scene::LightFrustum& layer : light_.layers) layers.push_back(read_layer(cell.request, layer));
+  const double tangent = options_.bias.plane_max_tangent();
+  std::vector<CacheShape> caches;
+  for (const gpu::Gpu& gpu : options_.gpus) caches.push_back(find_cache(gpu));
+  if (!caches.empty())
+    cell.fetched_bytes =
+        count_map_traffic(cell.request, layers, tangent, options_.seed, options_.width, options_.height, caches)
+            .value_or(std::vector<double>());
+  return evaluate_model(cell.request, layers, tangent, options_.seed, options_.width, options_.height);
 }
 
 void CellAnalyser::attribute(MeasuredCell& cell) {
@@ -180,7 +191,7 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
       record.absent[field] = reason;
     return;
   }
-  const ModelImages images = evaluate(request);
+  const ModelImages images = evaluate(cell);
   const std::vector<float> kernel = shape ? kernel_truth(*shape) : disks_truth(images.disk_radii_texels);
   const std::vector<float>& image = cell.visibility.texels;
   metrics::Attribution attribution =

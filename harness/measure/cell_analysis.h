@@ -64,7 +64,7 @@ class CellAnalyser {
   std::vector<float> disks_truth(const std::vector<std::vector<float>>& radii_texels);
   ModelLayer read_layer(const filters::FilterRequest& request, const scene::LightFrustum& layer) const;
   void count_artefacts(MeasuredCell& cell) const;
-  ModelImages evaluate(const filters::FilterRequest& request);
+  ModelImages evaluate(MeasuredCell& cell);
   void attribute(MeasuredCell& cell);
 };
 

@@ -25,6 +25,8 @@ struct MeasuredCell {
   render::LightLayers light;  ///< what it was drawn with
   render::FilterCost cost;
   std::vector<render::DrawnPass> passes;  ///< the lookup first; none of a user's filter, whose process has them
+  std::vector<double> fetched_bytes;      ///< of a receiver's lookup, the mean, by the caches of the run's GPUs; empty
+                                          ///< without a scalar model or an attribution
   render::DrawnPass empty_lookup;         ///< reads what the lookup does of its receivers, and nothing of the map
   images::Image picture;                  ///< linear RGB
   images::Image visibility;               ///< 1 lit .. 0 blocked

@@ -3,7 +3,7 @@
 #include "harness/gl/context/context.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/options/options.h"
-#include "report/images/image.h"
+#include "report/images/picture_io.h"
 
 namespace shadowbench::run {
 

@@ -114,6 +114,8 @@ records::GpuRecord GpuCosts::make_record(const gpu::Gpu& gpu, const measure::Mea
           {answer.facts, static_cast<double>(pass->texels), pass->target.bytes_per_texel, pass->read_bytes});
   }
   work.reads = find_reads(cell.cost, work.lookup, work.empty);
+  const auto place = std::ranges::find(options_.gpus, gpu.name, &gpu::Gpu::name) - options_.gpus.begin();
+  if (!cell.fetched_bytes.empty()) work.memory_bytes = cell.fetched_bytes[static_cast<std::size_t>(place)];
   record.estimate = gpu::estimate(gpu, work);
   return record;
 }

@@ -55,6 +55,9 @@ TEST(Gpus, AFileIsRefusedWithItsLine) {
   EXPECT_THAT(load_error(replace(good, "[simds]", "[simd]")), HasSubstr("unknown key 'simd'"));
   EXPECT_THAT(load_error(replace(good, "value = 2015", "value = 0")), HasSubstr(":9: "));
   EXPECT_THAT(load_error(replace(good, "value = 2015", "")), HasSubstr("value"));
+  EXPECT_THAT(load_error(replace(good, "value = 0.5", "value = 1.5")), HasSubstr("0.001 to 1"));
+  EXPECT_THAT(load_error(replace(good, "value = 128\nsource = \"AMD, RDNA", "value = 96\nsource = \"AMD, RDNA")),
+              HasSubstr("'value' is 96; a line has a power of two"));
   EXPECT_THAT(load_error(good.substr(0, good.find("[memory_gb_s]"))), HasSubstr("the table [memory_gb_s] is missing"));
 }
 
