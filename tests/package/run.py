@@ -37,7 +37,7 @@ def install(build, folder):
 def check_files(prefix):
     expect([file.name for file in (prefix / "bin").iterdir()] == ["shadowbench"], "bin/ holds more than the program")
     folders = sorted(folder.name for folder in (prefix / "share/shadowbench").iterdir())
-    expect(folders == ["experiments", "filters", "scenes", "shaders"], f"share/shadowbench/ holds {folders}")
+    expect(folders == ["experiments", "filters", "gpus", "scenes", "shaders"], f"share/shadowbench/ holds {folders}")
     suffixes = {file.suffix for file in (prefix / "share/shadowbench").rglob("*") if file.is_file()}
     expect(suffixes == {".frag", ".geom", ".glsl", ".toml", ".vert"}, f"share/shadowbench/ holds files {suffixes}")
     help_text = call(prefix / "bin/shadowbench", "--help")
