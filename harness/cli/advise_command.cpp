@@ -54,7 +54,7 @@ analysis::CostKind parse_cost(const std::string& text) {
       {"time", Cost::kTime}, {"bytes", Cost::kBytes}, {"fetches", Cost::kFetches}};
   if (text.starts_with(kGpuPrefix)) return {Cost::kGpu, text.substr(std::strlen(kGpuPrefix))};
   const auto found = kCosts.find(text);
-  if (found == kCosts.end()) fail(fmt::format("--cheapest: '{}' is not one of time, bytes, fetches, gpu:NAME", text));
+  if (found == kCosts.end()) fail(fmt::format("--cheapest: '{}' must be one of time, bytes, fetches, gpu:NAME", text));
   return found->second;
 }
 

@@ -100,7 +100,9 @@ void answer_request(const std::filesystem::path& request_file, const std::filesy
   const FactsRequest request = read_request(request_file);
   NullDevice device(request.family);
   std::ofstream stream(answers, std::ios::app);
-  for (const PassSource& pass : request.passes) stream << dump(answer(device, request, pass)) << std::flush;
+  for (const PassSource& pass : request.passes)
+    if (!(stream << dump(answer(device, request, pass)) << std::flush))
+      throw Error(ErrorKind::kOutput, "the file cannot be written; check the free space", answers.string());
 }
 
 std::vector<FactsAnswer> read_answers(const std::filesystem::path& answers) {

@@ -32,7 +32,8 @@ void write_request(const std::filesystem::path& file, const FactsRequest& reques
 
 /// Compiles what a file asks for, or takes it from the cache, and appends one line per pass to `answers`, so that those
 /// before a crash of the driver are kept.
-/// Throws Error(kContext) where there is no compiler for the family, Error(kInput) for a file that is no request.
+/// Throws Error(kContext) where there is no compiler for the family, Error(kInput) for a file that is no request,
+/// Error(kOutput) where the answers cannot be written.
 void answer_request(const std::filesystem::path& request, const std::filesystem::path& answers);
 
 /// Reads what a process wrote until it ended, be it in the middle; in the order of the request's passes.

@@ -25,9 +25,11 @@ std::vector<const render::DrawnPass*> list_passes(const measure::MeasuredCell& c
   return passes;
 }
 
+/// With what the driver said, if anything.
 std::string describe_end(const WorkerOutcome& outcome) {
   if (outcome.timed_out) return fmt::format("the driver did not finish in {:g} s", kTimeout_s);
-  return fmt::format("the driver crashed: signal {} ({})", outcome.signal, strsignal(outcome.signal));
+  return fmt::format("the driver crashed: signal {} ({}): {}", outcome.signal, strsignal(outcome.signal),
+                     clean_message(outcome.error_text));
 }
 
 gpu::Reads find_reads(const render::FilterCost& cost, const records::ShaderFacts& lookup,
@@ -56,7 +58,8 @@ void GpuCosts::add_to(std::vector<measure::MeasuredCell>& cells) {
   for (measure::MeasuredCell& cell : cells) cell.record.absent["gpu"] = "the run was made with --gpu none";
 }
 
-/// After a crash the passes behind the one that crashed are given to a new process.
+/// After a crash the passes behind the one that crashed are given to a new process; after two that gave no answer at
+/// all, none is.
 void GpuCosts::compile(const gpu::Gpu& gpu, const std::vector<measure::MeasuredCell>& cells) {
   Answers& known = answers_[gpu.name];
   std::map<std::string, const render::DrawnPass*> wanted;
@@ -65,6 +68,11 @@ void GpuCosts::compile(const gpu::Gpu& gpu, const std::vector<measure::MeasuredC
     for (const render::DrawnPass* pass : list_passes(cell))
       if (const std::string name = name_pass(*pass); !known.contains(name)) wanted.emplace(name, pass);
   }
+  const auto refuse = [&](const std::string& why) {
+    refused_[gpu.name] = why;
+    note_(fmt::format("note: no costs on {}: {}", gpu.name, why));
+  };
+  bool was_silent = false;  // the process before gave no answer at all
   const ScratchFolder folder(make_temporary_folder_path(options_.out, "gpu"));
   while (!wanted.empty()) {
     const auto request = folder.path() / fmt::format("{}.request.json", wanted.size());
@@ -73,13 +81,11 @@ void GpuCosts::compile(const gpu::Gpu& gpu, const std::vector<measure::MeasuredC
     for (const auto& [name, pass] : wanted) asked.passes.push_back({pass->fragment, std::string(pass->target.name)});
     gpu::write_request(request, asked);
     const WorkerOutcome outcome = run_worker({"gpu-facts", request.string(), answers.string()}, kTimeout_s);
-    const bool has_ended = outcome.exit_code.has_value();
-    if (has_ended && *outcome.exit_code != 0) {
-      refused_[gpu.name] = clean_message(outcome.error_text);
-      note_(fmt::format("note: no costs on {}: {}", gpu.name, refused_[gpu.name]));
-      return;
-    }
-    for (gpu::FactsAnswer& answer : gpu::read_answers(answers)) {
+    if (outcome.exit_code.value_or(0) != 0) return refuse(clean_message(outcome.error_text));
+    std::vector<gpu::FactsAnswer> given = gpu::read_answers(answers);
+    if (given.empty() && was_silent) return refuse(describe_end(outcome));
+    was_silent = given.empty();
+    for (gpu::FactsAnswer& answer : given) {
       if (wanted.empty()) break;
       known.emplace(wanted.begin()->first, std::move(answer));
       wanted.erase(wanted.begin());

@@ -117,8 +117,14 @@ bool uses_time(const AdviceRequest& request) {
 
 void add_time_notes(std::vector<std::string>& notes, const std::vector<const records::CellRecord*>& cells,
                     const records::GlRecord& gl) {
+  std::set<std::string> gpus;
+  for (const records::CellRecord* cell : cells)
+    if (cell->gpu)
+      for (const auto& [name, gpu] : *cell->gpu) gpus.insert(name);
   if (gl.software)
-    notes.push_back(fmt::format("Times are {}: a GPU ranks filters differently.", records::describe_clock(gl)));
+    notes.push_back(
+        fmt::format("Times are {}: a GPU ranks filters differently{}.", records::describe_clock(gl),
+                    gpus.empty() ? "" : fmt::format("; there are estimates for {}", fmt::join(gpus, ", "))));
   const bool once = std::ranges::any_of(
       cells, [](const records::CellRecord* c) { return c->time_ms.lookup && c->time_ms.lookup->n < 2; });
   if (once) notes.push_back("Times of a single round have no spread, so their order may be chance: raise --rounds.");

@@ -59,7 +59,7 @@ json list_measures(const records::RunRecord& run, const std::vector<std::string>
       measures.push_back(make_measure(metric.path, metric.title, metric.definition, metric.unit, metric.limit,
                                       metric.group(), metric.direction));
   for (const std::string& gpu : gpus)
-    measures.push_back(make_measure("gpu." + gpu, "estimate, " + gpu,
+    measures.push_back(make_measure("gpu." + gpu + ".estimate_us", "estimate, " + gpu,
                                     "prefilter and a million receivers' lookups on that GPU, which was not there", "us",
                                     "", "cost"));
   return measures;
@@ -76,7 +76,7 @@ json list_values(const records::CellRecord& cell, const std::vector<std::string>
   for (const metrics::Metric& metric : metrics::metric_table())
     if (metric.tabled || !metric.limit.empty()) values[std::string(metric.path)] = value_of(metric.read(cell));
   for (const std::string& gpu : gpus)
-    values["gpu." + gpu] =
+    values["gpu." + gpu + ".estimate_us"] =
         value_of(analysis::cost_spec({analysis::CostKind::kGpu, gpu}).read(cell, analysis::LightMotion::kMoving));
   return values;
 }

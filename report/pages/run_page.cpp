@@ -170,17 +170,17 @@ std::optional<page::Section> make_gpu_section(const records::RunRecord& run,
   const std::vector<analysis::Configuration> configurations = analysis::list_configurations(all);
   page::Section section{"gpus", "Costs on GPUs that are not here", {}};
   page::Sentences sentences;
-  std::vector<page::Table> tables;
+  page::Details tables{"Estimates and facts of every filter", {}};
   for (const std::string& gpu : gpus) {
     const auto costs = analysis::list_gpu_costs(configurations, gpu);
     for (std::string& each : analysis::describe_gpu(gpu, costs, run.gl)) sentences.items.push_back(std::move(each));
     if (records::TextTable table = analysis::make_gpu_table(costs); !table.rows.empty())
-      tables.push_back(
-          {gpu + ": estimates for a million receivers and one map, and facts of the lookup", std::move(table)});
+      tables.blocks.emplace_back(page::Table{
+          gpu + ": estimates for a million receivers and one map, and facts of the lookup", std::move(table)});
   }
   if (!sentences.items.empty()) section.blocks.emplace_back(std::move(sentences));
   section.blocks.emplace_back(page::Paragraph{kGpuNote, true});
-  for (page::Table& table : tables) section.blocks.emplace_back(std::move(table));
+  if (!tables.blocks.empty()) section.blocks.emplace_back(std::move(tables));
   return section;
 }
 

@@ -34,7 +34,8 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-SMALL = ["--size", "16x9", "--map-size", "16", "--rounds", "1", "--no-truth", "--no-grids", "--gl", "osmesa"]
+SMALL = ["--size", "16x9", "--map-size", "16", "--rounds", "1", "--no-truth", "--no-grids", "--gl", "osmesa",
+         "--gpu", "none"]
 RUN = ["run", "--out", "out", "--scene", "cubes", "--filters", "none", *SMALL]
 DONE = {0}
 ANY_ANSWER = {0, 1, 2, 3, 5, 6}  # whatever it is, it is an answer
@@ -50,7 +51,8 @@ WORDS = {"--map-format": ["d32", "", "D16 ", "r32f", "d16,d24"], "--fit": ["box"
          "nan,0"], "--shard": ["0/2", "3/2", "1", "1/0", "", "a/b"], "--rounds": ["0", "-1", "many", ""],
          "--filters": ["nosuch", "none,none", "vsm:radius", "vsm:radius=-1", "vsm:nosuch=1", "vsm:radius=nan", ",", ":"],
          "--bias": ["nosuch", "constant", "constant:depth", "constant:depth=x", "constant:nosuch=1"],
-         "--lights": ["0", "-1", "a", ""], "--light-name": ["nobody"], "--view": ["nowhere"]}
+         "--lights": ["0", "-1", "a", ""], "--gpu": ["", "nosuch", "navi21,navi21", "none,navi21", ","],
+         "--light-name": ["nobody"], "--view": ["nowhere"]}
 # Commands that work without a further word take minutes: these words, which may be overruled, keep them short.
 SHORT = {"run": SMALL, "bias": ["--filters", "none", "--size", "96x54", "--map-size", "128", "--gl", "osmesa"],
          "stress": ["--filters", "esm", "--axes", "esm-exponent", "--gl", "osmesa"],

@@ -74,6 +74,23 @@ std::string describe_farthest(const Pairs& pairs, const std::string& gpu) {
                      find_rank(pairs.estimated, pairs.estimated[farthest]), gpu);
 }
 
+/// The configurations whose estimates are within a hundredth of one of them, and that the same resource bounds: of
+/// several such groups the largest, of three at least.
+std::vector<const GpuCost*> find_level_group(const std::vector<GpuCost>& costs) {
+  std::vector<const GpuCost*> largest;
+  for (const GpuCost& first : costs) {
+    std::vector<const GpuCost*> group;
+    for (const GpuCost& other : costs) {
+      const bool is_level = first.estimate_us && other.estimate_us && *other.estimate_us >= *first.estimate_us &&
+                            *other.estimate_us <= 1.01 * *first.estimate_us;
+      if (is_level && other.record->estimate->bound_by == first.record->estimate->bound_by) group.push_back(&other);
+    }
+    if (group.size() > largest.size()) largest = group;
+  }
+  if (largest.size() < 3) largest.clear();
+  return largest;
+}
+
 }  // namespace
 
 std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurations, const std::string& gpu) {
@@ -107,6 +124,13 @@ std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<
         "{}: the order of the estimates and that of the times measured here ({}, moving light) have a rank correlation "
         "of {:.2f} over {} configurations; 1 is the same order, 0 none.{}",
         gpu, records::describe_clock(gl), *correlation, pairs.costs.size(), describe_farthest(pairs, gpu)));
+  }
+  if (const auto level = find_level_group(costs); !level.empty()) {
+    std::vector<std::string> names;
+    for (const GpuCost* cost : level) names.push_back(cost->configuration->name);
+    sentences.push_back(fmt::format("{}: {} cost the same, {} us: what bounds them all is {}.", gpu,
+                                    fmt::join(names, ", "), records::format_number(level.front()->estimate_us),
+                                    level.front()->record->estimate->bound_by));
   }
   std::vector<std::string> looped, spilled;
   for (const GpuCost& cost : costs) {

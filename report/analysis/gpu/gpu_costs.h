@@ -25,7 +25,8 @@ std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurat
 /// same order, -1 for the opposite; nothing for fewer than three that have both.
 std::optional<double> correlate_ranks(const std::vector<GpuCost>& costs);
 
-/// Says how alike the orders are, which filter's place differs most, and what was refused or guessed.
+/// Says how alike the orders are, which filter's place differs most, which filters cost the same, and what was refused
+/// or guessed.
 std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<GpuCost>& costs,
                                       const records::GlRecord& gl);
 

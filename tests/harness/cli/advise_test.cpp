@@ -42,7 +42,7 @@ class Advise : public ProgramTest {
   /// Points the program at filters of our own, of which `soft` claims something.
   std::string with_claims() const {
     const std::filesystem::path root = folder() / "root";
-    for (const char* name : {"filters", "shaders", "harness/scenes", "harness/experiments"})
+    for (const char* name : {"filters", "shaders", "harness/scenes", "harness/experiments", "harness/gpus"})
       std::filesystem::create_directories(root / name);
     const std::string body =
         "kind = \"other\"\nradius_texels = 0\n+++*/\nfloat visibility(Receiver r) { return 1.0; }\n";
@@ -109,7 +109,7 @@ TEST_F(Advise, LimitsThatAreNotNumbers_AreUsageErrors) {
 
 TEST_F(Advise, UnknownNames_AreUsageErrors) {
   expect_refusal("advise run --light fast", 2, {"--light: 'fast' must be one of moving, static"});
-  expect_refusal("advise run --cheapest money", 2, {"--cheapest: 'money' must be one of time, bytes, fetches"});
+  expect_refusal("advise run --cheapest money", 2, {"--cheapest: 'money' must be one of time, bytes, fetches, gpu:NAME"});
   expect_refusal("advise run --scene stick", 2, {"--scene: the run has no 'stick'; it has cubes, stack"});
   expect_refusal("advise run --size 960", 2, {"--size", "'960'"});
   expect_refusal("advise", 2, {"RUN"});

@@ -34,7 +34,7 @@ class FaultTest : public ProgramTest {
   /// Starts `shadowbench ARGUMENTS` in the test's folder and does not wait; its messages go to a file there.
   pid_t start(const std::string& arguments, const std::string& messages = "started.txt") const {
     const std::string command = "exec env XDG_CACHE_HOME='" + cache_folder().string() + "' '" SHADOWBENCH_PROGRAM "' " +
-                                arguments + " >/dev/null 2>'" + messages + "' </dev/null";
+                                without_gpus(arguments) + " >/dev/null 2>'" + messages + "' </dev/null";
     const std::string where = folder().string();
     std::filesystem::remove(folder() / messages);  // a signal may come before the shell makes it anew
     const pid_t pid = fork();
@@ -152,9 +152,11 @@ class FaultTest : public ProgramTest {
 
   /// Runs a script in such a shell, in the test's folder, with `shadowbench` in it; gives its exit code.
   int run_script(const std::string& shell, const std::string& script) const {
-    const std::string text = "cd '" + folder().string() + "' || exit 99\nexport XDG_CACHE_HOME='" +
-                             cache_folder().string() + "'\nshadowbench() { '" SHADOWBENCH_PROGRAM "' \"$@\"; }\n" +
-                             script;
+    const std::string text =
+        "cd '" + folder().string() + "' || exit 99\nexport XDG_CACHE_HOME='" + cache_folder().string() +
+        "'\nshadowbench() { if [ \"$1\" = run ]; then shift; set -- run --gpu none \"$@\"; fi; '" SHADOWBENCH_PROGRAM
+        "' \"$@\"; }\n" +
+        script;
     const int status = std::system((shell + " sh '" + write("script.sh", text).string() + "' >/dev/null 2>'" +
                                     (folder() / "script.txt").string() + "'")
                                        .c_str());

@@ -14,7 +14,7 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 
 constexpr const char* kGpuRun =
-    "run --out out --fresh --scene cubes --size 96x54 --map-size 128 --rounds 1 --phases 1 --no-attribution ";
+    "run --out out --fresh --scene cubes --size 96x54 --map-size 128 --rounds 1 --phases 1 ";
 
 /// A filter without weights: the mean of so many hardware fetches along a side.
 std::string plain_pcf(int side) {
@@ -64,7 +64,8 @@ const json& lookup_of(const json& cell, const char* pass = "lookup") {
 TEST_F(Gpus, EveryPassHasFacts_AndFiltersTheirOrder) {
   for (const int side : {3, 5, 7}) write(fmt::format("plain{}.glsl", side), plain_pcf(side));
   const auto cells = measure(
-      "--gpu navi21 --filters none,pcf2x2,castano3,castano5,castano7,vsm,plain3,plain5,plain7 --filter-file "
+      "--no-attribution --gpu navi21 --filters none,pcf2x2,castano3,castano5,castano7,vsm,plain3,plain5,plain7 "
+      "--filter-file "
       "plain3.glsl "
       "--filter-file plain5.glsl --filter-file plain7.glsl");
   if (has_no_compiler()) GTEST_SKIP() << messages_;
@@ -80,6 +81,7 @@ TEST_F(Gpus, EveryPassHasFacts_AndFiltersTheirOrder) {
   EXPECT_LT(estimate("castano5"), estimate("plain5"));
   EXPECT_LT(estimate("castano7"), estimate("plain7"));
   EXPECT_EQ(estimate("none"), estimate("pcf2x2"));
+  EXPECT_TRUE(cells.at("none")["gpu"]["navi21"]["parts_us"]["memory"].is_null());  // no models were run
   EXPECT_EQ(lookup_of(cells.at("plain5"))["compares"], 25);
   EXPECT_EQ(lookup_of(cells.at("castano5"))["compares"], 9);
   EXPECT_EQ(lookup_of(cells.at("none"), "empty")["compares"], 0);
@@ -95,6 +97,25 @@ TEST_F(Gpus, EveryPassHasFacts_AndFiltersTheirOrder) {
   EXPECT_THAT(advice.out, HasSubstr("us estimated on navi21"));
   EXPECT_EQ(run("advise out --cheapest gpu:navi22").exit_code, 2);
   EXPECT_EQ(run("advise out --cheapest gpus").exit_code, 2);
+}
+
+TEST_F(Gpus, WideTexelsTakeLonger_AndReadsOfModelsAreMemory) {
+  const auto cells = measure("--gpu navi21,vega10 --filters none,vsm,evsm4");
+  if (has_no_compiler()) GTEST_SKIP() << messages_;
+  const auto part = [&](const char* filter, const char* gpu, const char* name) {
+    return cells.at(filter)["gpu"][gpu]["parts_us"][name].get<double>();
+  };
+  // One fetch each, of 32, 64 and 128 bits; harness/gpus has the rates.
+  EXPECT_DOUBLE_EQ(part("vsm", "navi21", "sampling"), part("none", "navi21", "sampling"));
+  EXPECT_DOUBLE_EQ(part("evsm4", "navi21", "sampling"), 2.0 * part("none", "navi21", "sampling"));
+  EXPECT_DOUBLE_EQ(part("vsm", "vega10", "sampling"), 2.0 * part("none", "vega10", "sampling"));
+  EXPECT_DOUBLE_EQ(part("evsm4", "vega10", "sampling"), 4.0 * part("none", "vega10", "sampling"));
+  EXPECT_GT(part("none", "navi21", "memory"), 0.0);
+  EXPECT_GT(part("evsm4", "navi21", "memory"), part("vsm", "navi21", "memory"));
+  for (const char* filter : {"none", "vsm", "evsm4"})
+    EXPECT_DOUBLE_EQ(part(filter, "navi21", "lookup"),
+                     std::max({part(filter, "navi21", "arithmetic"), part(filter, "navi21", "sampling"),
+                               part(filter, "navi21", "memory")}));
 }
 
 TEST_F(Gpus, WithNone_NothingIsCompiled) {

@@ -52,12 +52,16 @@ class ProgramTest : public ::testing::Test {
   /// Where the program keeps traced images: a folder of each test's own.
   std::filesystem::path cache_folder() const { return folder_ / "cache"; }
 
-  /// Runs `shadowbench ARGUMENTS` through the shell; `environment` as in "NAME=value NAME=value". Runs that name no GPUs
-  /// compile for none, which takes long with an empty cache.
-  Outcome run(std::string arguments, const std::string& environment = "") const {
-    if (arguments.starts_with("run ") && arguments.find("--gpu") == std::string::npos) arguments += " --gpu none";
+  /// Runs that name no GPUs compile for none: it would take long with an empty cache.
+  static std::string without_gpus(const std::string& arguments) {
+    const bool adds = arguments.starts_with("run ") && arguments.find("--gpu") == std::string::npos;
+    return adds ? "run --gpu none" + arguments.substr(3) : arguments;
+  }
+
+  /// Runs `shadowbench ARGUMENTS` through the shell; `environment` as in "NAME=value NAME=value".
+  Outcome run(const std::string& arguments, const std::string& environment = "") const {
     const std::string command = "cd '" + folder_.string() + "' && XDG_CACHE_HOME='" + cache_folder().string() + "' " +
-                                environment + " '" SHADOWBENCH_PROGRAM "' " + arguments +
+                                environment + " '" SHADOWBENCH_PROGRAM "' " + without_gpus(arguments) +
                                 " >stdout.txt 2>stderr.txt </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder_ / "stdout.txt"),

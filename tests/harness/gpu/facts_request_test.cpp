@@ -27,7 +27,9 @@ class FactsRequests : public ::testing::Test {
                          {"(program)", "mine.glsl"}},
                         "r32f"};
     };
-    return {"NAVI21", file("cache"), {shader("r = exp(gl_FragCoord.x) * gl_FragCoord.y;"), shader("r = nothing;"), shader("r = 1.0;")}};
+    return {"NAVI21",
+            file("cache"),
+            {shader("r = exp(gl_FragCoord.x) * gl_FragCoord.y;"), shader("r = nothing;"), shader("r = 1.0;")}};
   }
 
   /// What answers the request; skips the test where there is no RADV.

@@ -10,8 +10,10 @@ namespace shadowbench::analysis {
 namespace {
 
 using records::CellRecord;
-using ::testing::ElementsAre;
+using ::testing::Contains;
+using ::testing::Each;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// A cell whose frame takes `ms` here, and `us` on a GPU.
 CellRecord make_gpu_cell(const std::string& filter, double ms, double us) {
@@ -74,6 +76,17 @@ TEST(GpuCosts, TheFarthestFilterIsNamed_AndWhatIsGuessedOrRefused) {
   EXPECT_THAT(sentences[1], HasSubstr("d: mine.glsl:8: Vulkan refuses"));
   EXPECT_THAT(sentences[2], HasSubstr("how often loops turn: b."));
   EXPECT_THAT(sentences[3], HasSubstr("spill to memory, which is slow: c."));
+}
+
+TEST(GpuCosts, FiltersThatCostTheSame_AreNamed) {
+  std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 10), make_gpu_cell("b", 2, 10.05), make_gpu_cell("c", 3, 10.1),
+                                   make_gpu_cell("d", 4, 10.2), make_gpu_cell("e", 5, 10)};
+  for (CellRecord& cell : cells) cell.gpu->at("one").estimate->bound_by = "sampling";
+  cells[4].gpu->at("one").estimate->bound_by = "memory";
+  EXPECT_THAT(describe_gpu("one", Costs(cells).costs, {}),
+              Contains("one: a, b, c cost the same, 10 us: what bounds them all is sampling."));
+  cells.erase(cells.begin());
+  EXPECT_THAT(describe_gpu("one", Costs(cells).costs, {}), Each(Not(HasSubstr("cost the same, 10 us"))));
 }
 
 TEST(GpuCosts, TheTableIsCheapestFirst_LessTheEmptyLookup) {
