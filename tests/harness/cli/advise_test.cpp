@@ -109,7 +109,8 @@ TEST_F(Advise, LimitsThatAreNotNumbers_AreUsageErrors) {
 
 TEST_F(Advise, UnknownNames_AreUsageErrors) {
   expect_refusal("advise run --light fast", 2, {"--light: 'fast' must be one of moving, static"});
-  expect_refusal("advise run --cheapest money", 2, {"--cheapest: 'money' must be one of time, bytes, fetches, gpu:NAME"});
+  expect_refusal("advise run --cheapest money", 2,
+                 {"--cheapest: 'money' must be one of time, bytes, fetches, gpu:NAME"});
   expect_refusal("advise run --scene stick", 2, {"--scene: the run has no 'stick'; it has cubes, stack"});
   expect_refusal("advise run --size 960", 2, {"--size", "'960'"});
   expect_refusal("advise", 2, {"RUN"});
