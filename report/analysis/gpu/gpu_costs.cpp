@@ -99,8 +99,18 @@ std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurat
     const auto& records = configuration.cells.front()->gpu;
     const auto is_ok = [](const records::CellRecord* cell) { return cell->status == records::CellStatus::kOk; };
     if (!records || !records->contains(gpu) || !std::ranges::all_of(configuration.cells, is_ok)) continue;
-    costs.push_back({&configuration, &records->at(gpu), mean_over(configuration, cost_spec({CostKind::kGpu, gpu})),
-                     mean_over(configuration, cost_spec(CostKind::kTime))});
+    GpuCost cost;
+    cost.configuration = &configuration;
+    cost.record = &records->at(gpu);
+    cost.estimate_us = mean_over(configuration, cost_spec({CostKind::kGpu, gpu}));
+    cost.measured_ms = mean_over(configuration, cost_spec(CostKind::kTime));
+    for (const records::CellRecord* cell : configuration.cells) {
+      if (!cost.estimate_us) break;
+      const records::GpuEstimateRecord& estimate = *cell->gpu->at(gpu).estimate;
+      cost.lookup_us += estimate.lookup_us / static_cast<double>(configuration.cells.size());
+      cost.prefilter_us += estimate.prefilter_us / static_cast<double>(configuration.cells.size());
+    }
+    costs.push_back(cost);
   }
   return costs;
 }
@@ -158,12 +168,12 @@ records::TextTable make_gpu_table(const std::vector<GpuCost>& costs) {
   for (const GpuCost& cost : sorted) {
     const records::ShaderFacts* lookup = find_facts(*cost.record, "lookup");
     const records::ShaderFacts* empty = find_facts(*cost.record, "empty");
-    if (!lookup || !empty || !cost.record->estimate) continue;
+    if (!lookup || !empty || !cost.estimate_us) continue;
     const auto reads = [](const records::ShaderFacts& f) { return f.samples + f.compares + f.gathers + f.loads; };
-    const records::GpuEstimateRecord& estimate = *cost.record->estimate;
     table.rows.push_back({cost.configuration->name, records::format_number(cost.estimate_us),
-                          records::format_number(estimate.lookup_us), records::format_number(estimate.prefilter_us),
-                          estimate.bound_by, fmt::format("{}", lookup->instructions - empty->instructions),
+                          records::format_number(cost.lookup_us), records::format_number(cost.prefilter_us),
+                          cost.record->estimate->bound_by,
+                          fmt::format("{}", lookup->instructions - empty->instructions),
                           fmt::format("{}", reads(*lookup) - reads(*empty)),
                           fmt::format("{}", lookup->vector_registers), fmt::format("{}", lookup->waves_per_simd)});
   }

@@ -10,11 +10,13 @@
 
 namespace shadowbench::analysis {
 
-/// What one configuration costs on one GPU: facts of its first cell, and the mean of the estimates over its cells.
+/// What one configuration costs on one GPU: facts and bounds of its first cell, and the means of the estimates over its
+/// cells.
 struct GpuCost {
   const Configuration* configuration = nullptr;
   const records::GpuRecord* record = nullptr;
-  std::optional<double> estimate_us;  ///< nothing where a cell has none
+  std::optional<double> estimate_us;           ///< nothing where a cell has none
+  double lookup_us = 0.0, prefilter_us = 0.0;  ///< the parts of it
   std::optional<double> measured_ms;  ///< with a moving light, in the run's clock; nothing where a cell has none
 };
 

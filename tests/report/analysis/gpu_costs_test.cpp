@@ -89,6 +89,19 @@ TEST(GpuCosts, FiltersThatCostTheSame_AreNamed) {
   EXPECT_THAT(describe_gpu("one", Costs(cells).costs, {}), Each(Not(HasSubstr("cost the same, 10 us"))));
 }
 
+TEST(GpuCosts, OfSeveralScenes_AreMeans) {
+  std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 10), make_gpu_cell("a", 3, 30)};
+  cells[1].scene = "stack";
+  cells[1].gpu->at("one").estimate->prefilter_us = 8.0;
+  cells[1].gpu->at("one").estimate->total_us = 38.0;
+  const Costs costs(cells);
+  ASSERT_EQ(costs.costs.size(), 1u);
+  EXPECT_DOUBLE_EQ(*costs.costs[0].estimate_us, 24.0);
+  EXPECT_DOUBLE_EQ(costs.costs[0].lookup_us, 20.0);
+  EXPECT_DOUBLE_EQ(costs.costs[0].prefilter_us, 4.0);
+  EXPECT_DOUBLE_EQ(*costs.costs[0].measured_ms, 2.0);
+}
+
 TEST(GpuCosts, TheTableIsCheapestFirst_LessTheEmptyLookup) {
   std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 30), make_gpu_cell("b", 2, 10)};
   cells.push_back(make_gpu_cell("wrong", 1, 1));
@@ -99,6 +112,8 @@ TEST(GpuCosts, TheTableIsCheapestFirst_LessTheEmptyLookup) {
   EXPECT_EQ(table.rows[1].front(), "a");
   EXPECT_EQ(table.rows[1].size(), table.header.size());
   EXPECT_EQ(table.rows[1][1], "30");
+  EXPECT_EQ(table.rows[1][2], "30");
+  EXPECT_EQ(table.rows[1][3], "0");
   EXPECT_EQ(table.rows[1][5], "23");
   EXPECT_EQ(table.rows[1][6], "5");
 }
