@@ -59,6 +59,7 @@ std::vector<Gpu> choose_gpus(const std::vector<Gpu>& all, const std::vector<std:
   for (const Gpu& gpu : all) known.push_back(gpu.name);
   std::vector<Gpu> chosen;
   for (const std::string& name : names) {
+    if (name == "none") throw Error(ErrorKind::kUsage, "--gpu: 'none' stands alone; leave it out beside other names");
     const auto found = std::ranges::find(all, name, &Gpu::name);
     if (found == all.end())
       throw Error(ErrorKind::kUsage,

@@ -213,7 +213,8 @@ class Maker:
         return Case(number, f"environment: {name}", RUN, right, spoil, change)
 
     def kill(self, number, rng):
-        words = [{"none": "none,tent3x3,vsm,pcss", "1": "3"}.get(word, word) for word in RUN]
+        longer = {"--filters": "none,tent3x3,vsm,pcss", "--rounds": "3"}
+        words = [longer.get(option, word) for option, word in zip([None, *RUN], RUN)]
         return Case(number, "kill", words, DONE, None, {"after": rng.uniform(0.05, 1.5)}, kill=True)
 
 
