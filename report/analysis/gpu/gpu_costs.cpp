@@ -161,8 +161,8 @@ std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<
 
 records::TextTable make_gpu_table(const std::vector<GpuCost>& costs) {
   records::TextTable table;
-  table.header = {"filter",           "estimate, us", "lookup, us", "prefilter, us", "bound by",
-                  "own instructions", "own reads",    "registers",  "waves"};
+  table.header = {"filter",   "estimate, us",     "measured here, ms", "lookup, us", "prefilter, us",
+                  "bound by", "own instructions", "own reads",         "registers",  "waves"};
   std::vector<GpuCost> sorted = costs;
   std::ranges::stable_sort(sorted, {}, &GpuCost::estimate_us);
   for (const GpuCost& cost : sorted) {
@@ -171,8 +171,8 @@ records::TextTable make_gpu_table(const std::vector<GpuCost>& costs) {
     if (!lookup || !empty || !cost.estimate_us) continue;
     const auto reads = [](const records::ShaderFacts& f) { return f.samples + f.compares + f.gathers + f.loads; };
     table.rows.push_back({cost.configuration->name, records::format_number(cost.estimate_us),
-                          records::format_number(cost.lookup_us), records::format_number(cost.prefilter_us),
-                          cost.record->estimate->bound_by,
+                          records::format_number(cost.measured_ms), records::format_number(cost.lookup_us),
+                          records::format_number(cost.prefilter_us), cost.record->estimate->bound_by,
                           fmt::format("{}", lookup->instructions - empty->instructions),
                           fmt::format("{}", reads(*lookup) - reads(*empty)),
                           fmt::format("{}", lookup->vector_registers), fmt::format("{}", lookup->waves_per_simd)});

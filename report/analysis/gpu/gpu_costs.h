@@ -32,8 +32,8 @@ std::optional<double> correlate_ranks(const std::vector<GpuCost>& costs);
 std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<GpuCost>& costs,
                                       const records::GlRecord& gl);
 
-/// One row for each configuration that the GPU's compiler took: facts of its lookup, less those of the empty one, and
-/// the estimate.
+/// One row for each configuration that the GPU's compiler took: the estimate beside what was measured here, and facts
+/// of its lookup, less those of the empty one.
 records::TextTable make_gpu_table(const std::vector<GpuCost>& costs);
 
 }  // namespace shadowbench::analysis

@@ -112,10 +112,11 @@ TEST(GpuCosts, TheTableIsCheapestFirst_LessTheEmptyLookup) {
   EXPECT_EQ(table.rows[1].front(), "a");
   EXPECT_EQ(table.rows[1].size(), table.header.size());
   EXPECT_EQ(table.rows[1][1], "30");
-  EXPECT_EQ(table.rows[1][2], "30");
-  EXPECT_EQ(table.rows[1][3], "0");
-  EXPECT_EQ(table.rows[1][5], "23");
-  EXPECT_EQ(table.rows[1][6], "5");
+  EXPECT_EQ(table.rows[1][2], "1");
+  EXPECT_EQ(table.rows[1][3], "30");
+  EXPECT_EQ(table.rows[1][4], "0");
+  EXPECT_EQ(table.rows[1][6], "23");
+  EXPECT_EQ(table.rows[1][7], "5");
 }
 
 }  // namespace
