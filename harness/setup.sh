@@ -6,11 +6,12 @@ set -eu
 packages="
   cmake dpkg-dev file g++ git glslang-dev glslang-tools ninja-build pkg-config python3-glad spirv-tools
   libcli11-dev libdraco-dev libegl-dev libembree-dev libfmt-dev libfreetype-dev libgl-dev libglfw3-dev libglm-dev
-  libgsl-dev libmeshoptimizer-dev libnlopt-cxx-dev libopenimageio-dev libosmesa6-dev libpugixml-dev libssl-dev
-  libstb-dev libtbb-dev libtinygltf-dev libtinyobjloader-dev libtomlplusplus-dev libvulkan-dev nlohmann-json3-dev
+  libgsl-dev libimgui-dev libmeshoptimizer-dev libnlopt-cxx-dev libopenimageio-dev libosmesa6-dev libpugixml-dev
+  libssl-dev libstb-dev libtbb-dev libtinygltf-dev libtinyobjloader-dev libtomlplusplus-dev libvulkan-dev nlohmann-json3-dev
   openimageio-tools zlib1g-dev fonts-dejavu-core libegl1 libegl-mesa0 libgl1-mesa-dri mesa-vulkan-drivers
 "
-tests="chromium clang-format gcovr groff-base libbenchmark-dev libgmock-dev libgtest-dev python3-jsonschema xauth xvfb"
+tests="chromium clang-format gcovr groff-base libbenchmark-dev libgmock-dev libgtest-dev python3-jsonschema xauth
+  xdotool xvfb"
 # What runs the tests of the pages may have come from elsewhere, and Debian's packages would then be in its way.
 command -v node >/dev/null || tests="$tests nodejs"
 command -v npm >/dev/null || tests="$tests npm"
