@@ -10,6 +10,7 @@ struct DepthCurve {
   double far_over_near = 1.0;  ///< 1: linear
 
   bool is_linear() const { return far_over_near == 1.0; }
+  bool operator==(const DepthCurve&) const = default;
 
   /// What a map stores for a depth. Depth before the near plane counts as on it where the curve is not linear.
   template <class T>

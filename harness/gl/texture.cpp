@@ -103,6 +103,14 @@ std::vector<float> Texture::read_floats(int channels) const {
   return texels;
 }
 
+std::vector<float> Texture::read_texel(int x, int y, int channels) const {
+  std::vector<float> texel(static_cast<std::size_t>(channels));
+  reset_transfer_state();
+  glGetTextureSubImage(id(), 0, x, y, 0, 1, 1, 1, format_->transfer_format(channels), GL_FLOAT,
+                       static_cast<GLsizei>(texel.size() * sizeof(float)), texel.data());
+  return texel;
+}
+
 int Texture::depth_bits() const {
   GLint bits = 0;
   glGetTextureLevelParameteriv(id(), 0, GL_TEXTURE_DEPTH_SIZE, &bits);

@@ -40,6 +40,9 @@ class Texture {
   /// Waits for the GL and returns level 0 as floats, whatever the storage; depth has one channel.
   std::vector<float> read_floats(int channels) const;
 
+  /// The same for the one texel at (x, y).
+  std::vector<float> read_texel(int x, int y, int channels) const;
+
   /// Binds to texture unit `unit`; a bound Sampler overrides this texture's own filter, wrap, border and compare.
   void bind(GLuint unit) const;
 

@@ -14,6 +14,34 @@
 
 namespace shadowbench::measure {
 
+namespace {
+
+/// The least and the largest depth in a G-buffer.
+std::optional<scene::DepthSpan> find_seen_depths(const render::GBuffer& gbuffer) {
+  const std::vector<float> positions = gbuffer.position().read_floats(4);
+  scene::DepthSpan span{std::numeric_limits<double>::max(), 0.0};
+  for (std::size_t i = 3; i < positions.size(); i += 4) {
+    if (positions[i] == 0.0f) continue;
+    const double depth = static_cast<double>(positions[i]);
+    span = {std::min(span.near_m, depth), std::max(span.far_m, depth)};
+  }
+  return span.far_m > 0.0 ? std::optional(span) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<scene::LightFrustum> fit_map_layers(const options::RunOptions& options, const scene::Scene& scene,
+                                                const scene::Light& light, const scene::Camera& camera, int map_size,
+                                                double pad_texels, const std::function<render::GBuffer&()>& gbuffer,
+                                                const glm::dvec2& shift_texels) {
+  scene::FitRequest request{options.fit.mode, map_size,     limit_padding(pad_texels, map_size),
+                            options.snap,     &camera,      static_cast<double>(options.width) / options.height,
+                            &light,           shift_texels, options.fit.cascades};
+  if (options.fit.mode == scene::FitMode::kCascades && options.fit.cascades.seen)
+    request.seen = find_seen_depths(gbuffer());
+  return scene::fit_layers(scene, request);
+}
+
 SceneAssets::SceneAssets(Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
                          truth::TruthCache& cache, double pad_texels)
     : renderer_(renderer),
@@ -34,29 +62,14 @@ LightMap& SceneAssets::light_map(const scene::Camera& camera, int map_size) {
 
 LightMap SceneAssets::make_light_map(const scene::Light& light, const scene::Camera& camera, int map_size,
                                      const glm::dvec2& shift_texels) {
-  const double pad_texels = limit_padding(pad_texels_, map_size);
-  const double aspect = static_cast<double>(options_.width) / options_.height;
-  std::vector<scene::LightFrustum> layers =
-      scene::fit_layers(scene_, {options_.fit.mode, map_size, pad_texels, options_.snap, &camera, aspect, &light,
-                                 shift_texels, options_.fit.cascades, find_seen_depths(camera)});
+  std::vector<scene::LightFrustum> layers = fit_map_layers(
+      options_, scene_, light, camera, map_size, pad_texels_, [&]() -> render::GBuffer& { return gbuffer(camera); },
+      shift_texels);
   render::ShadowMap map(map_size, render::fit_settings(options_.map, layers.front()), static_cast<int>(layers.size()));
   LightMap made{std::move(layers), std::move(map)};
   made.map.set_border(options_.range.border);
   redraw(made);
   return made;
-}
-
-/// The least and the largest depth in a G-buffer, where cascades ask for them.
-std::optional<scene::DepthSpan> SceneAssets::find_seen_depths(const scene::Camera& camera) {
-  if (options_.fit.mode != scene::FitMode::kCascades || !options_.fit.cascades.seen) return std::nullopt;
-  const std::vector<float> positions = gbuffer(camera).position().read_floats(4);
-  scene::DepthSpan span{std::numeric_limits<double>::max(), 0.0};
-  for (std::size_t i = 3; i < positions.size(); i += 4) {
-    if (positions[i] == 0.0f) continue;
-    const double depth = static_cast<double>(positions[i]);
-    span = {std::min(span.near_m, depth), std::max(span.far_m, depth)};
-  }
-  return span.far_m > 0.0 ? std::optional(span) : std::nullopt;
 }
 
 void SceneAssets::redraw(LightMap& light, const render::MapBias& bias) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <utility>
 #include <vector>
@@ -19,6 +20,13 @@ struct LightMap {
 
   const scene::LightFrustum& frustum() const { return layers.front(); }
 };
+
+/// Fits the layers of a light's map as a run does, which leaves `pad_texels` around the scene, limit_padding() applied.
+/// `gbuffer` is asked for where the depths that it shows decide.
+std::vector<scene::LightFrustum> fit_map_layers(const options::RunOptions& options, const scene::Scene& scene,
+                                                const scene::Light& light, const scene::Camera& camera, int map_size,
+                                                double pad_texels, const std::function<render::GBuffer&()>& gbuffer,
+                                                const glm::dvec2& shift_texels = glm::dvec2(0.0));
 
 /// What all cells of one scene share: its geometry, one G-buffer per view, one depth map per size. Each is drawn when
 /// it is first asked for and kept, since neither light nor casters change during a run.
@@ -64,8 +72,6 @@ class SceneAssets {
   std::map<std::pair<const scene::Camera*, int>, LightMap> maps_;  ///< the camera is null where all share a map
   std::map<const scene::Camera*, render::GBuffer> gbuffers_;
   std::map<const scene::Camera*, SceneTruth> truths_;
-
-  std::optional<scene::DepthSpan> find_seen_depths(const scene::Camera& camera);
 
   /// Throws Error(kUsage) where culling left the map empty.
   void require_casters(const LightMap& light) const;

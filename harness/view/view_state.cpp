@@ -17,25 +17,20 @@ ViewState make_view_state(options::RunOptions options, const std::string& scene_
   for (scene::Light& light : state.scene.other_lights) state.lights.push_back(std::move(light));
   state.scene.other_lights.clear();
   state.sides = std::move(sides);
-  list_filters(state);
+  apply(state, state);
   return state;
 }
 
-void set_light(ViewState& state, const scene::Light& light) { state.scene.light = state.lights[state.light] = light; }
-
-void choose_light(ViewState& state, std::size_t light) {
-  state.light = light;
-  state.scene.light = state.lights[light];
-}
-
-void list_filters(ViewState& state) {
-  std::vector<filters::FilterRequest>& listed = state.options.filters;
+void apply(ViewState& state, ViewSettings settings) {
+  std::vector<filters::FilterRequest>& listed = settings.options.filters;
   listed.clear();
-  for (const Side& side : state.sides) {
+  for (const Side& side : settings.sides) {
     if (side.truth) continue;
     if (listed.empty() || listed.front().spec.id != side.filter.spec.id || listed.front().values != side.filter.values)
       listed.push_back(side.filter);
   }
+  static_cast<ViewSettings&>(state) = std::move(settings);
+  state.scene.light = state.lights[state.light];
 }
 
 }  // namespace shadowbench::view

@@ -19,20 +19,24 @@ struct Side {
   bool truth = false;  ///< ray-traced visibility, in place of the filter's
 };
 
-/// All that decides what is drawn: a run with the same settings measures the same images.
-struct ViewState {
-  options::RunOptions options;  ///< of one picture size, one map size and one fit; `filters` are those of both sides
+/// What can be changed in the window.
+struct ViewSettings {
+  options::RunOptions options;         ///< of one picture size, one map size and one fit; `filters` are of both sides
   std::vector<std::string> fit_texts;  ///< `options.fit` as `--fit` takes it; empty: the default
-  std::string scene_argument;          ///< the name or path that the scene was loaded by
-  scene::Scene scene;                  ///< of its lights, `light` alone shines; `other_lights` is empty
   std::vector<scene::Camera> cameras;  ///< the scene's, as they were moved
   std::vector<scene::Light> lights;    ///< likewise
   std::size_t camera = 0;              ///< index of the one that is looked through
-  std::size_t light = 0;               ///< index of the one that shines; equal to `scene.light`
+  std::size_t light = 0;               ///< index of the one that shines
   std::array<Side, kSides> sides;      ///< left, right
 
   int map_size() const { return options.map_sizes.front(); }
   const scene::Camera& active_camera() const { return cameras[camera]; }
+};
+
+/// All that decides what is drawn: a run with the same settings measures the same images.
+struct ViewState : ViewSettings {
+  std::string scene_argument;  ///< the name or path that the scene was loaded by
+  scene::Scene scene;          ///< `light` is the one that shines, as it was moved; `other_lights` is empty
 };
 
 /// Loads a scene and looks at it as a run would: through its first camera, under its first light. Throws Error as
@@ -40,14 +44,8 @@ struct ViewState {
 ViewState make_view_state(options::RunOptions options, const std::string& scene_argument,
                           std::array<Side, kSides> sides);
 
-/// Changes the light that shines.
-void set_light(ViewState& state, const scene::Light& light);
-
-/// Lets another of the lights shine.
-void choose_light(ViewState& state, std::size_t light);
-
-/// Notes the filters of both sides in the options, each once: their kernels pad the map as a run's do. To be called
-/// when a side has changed.
-void list_filters(ViewState& state);
+/// Takes over other settings: the scene gets its light, and the options the filters of both sides, each once: their
+/// kernels pad the map as a run's do.
+void apply(ViewState& state, ViewSettings settings);
 
 }  // namespace shadowbench::view

@@ -1,0 +1,157 @@
+#include "harness/view/stage.h"
+
+#include <utility>
+
+#include "filters/base/error.h"
+#include "filters/format/front_matter.h"
+#include "harness/measure/filter_setup.h"
+#include "harness/render/shade_pass.h"
+
+namespace shadowbench::view {
+namespace {
+
+/// A lookup whose visibility is the distance to what the map holds for a receiver.
+filters::FilterRequest make_blocker_lookup() {
+  filters::FilterRequest request;
+  request.spec = filters::parse_filter(
+      "/*+++\ntitle = \"Distance to the blocker\"\nsource = \"none\"\nkind = \"other\"\n+++*/\n"
+      "float visibility(Receiver r) {\n"
+      "  return max(r.depth_unbiased - fetch_depth(r, vec2(0.0)), 0.0) * r.depth_range_ws;\n}\n",
+      "blocker.glsl");
+  return request;
+}
+
+}  // namespace
+
+Stage::Stage(measure::Renderer& renderer, const scene::Scene& scene) : renderer_(renderer), geometry_(scene) {}
+
+void Stage::draw(const ViewState& state, const Changes& changes) {
+  const bool resized =
+      !gbuffer_ || gbuffer_->width() != state.options.width || gbuffer_->height() != state.options.height;
+  if (resized || changes.camera) draw_gbuffer(state);
+  const double pad = measure::padding_texels(state.options);
+  const bool follows = (resized || changes.camera) && state.options.fit.follows_view();
+  const bool refit = !light_ || changes.light || changes.map || follows || pad != pad_texels_;
+  const bool other_map = refit && draw_map(state, changes.map);
+  pad_texels_ = pad;
+  if (refit) blocker_passes_.reset();
+  for (std::size_t side = 0; side < kSides; ++side)
+    draw_side(state, side, other_map || changes.filter[side], refit || changes.values[side]);
+  for (std::size_t side = 0; side < kSides; ++side) draw_picture(state, side);
+}
+
+void Stage::draw_gbuffer(const ViewState& state) {
+  const int width = state.options.width, height = state.options.height;
+  if (!gbuffer_ || gbuffer_->width() != width || gbuffer_->height() != height) {
+    gbuffer_ = std::make_unique<render::GBuffer>(width, height);
+    for (SideDrawing& side : sides_) {
+      side.visibility.emplace("visibility", GL_R32F, width, height);
+      side.picture.emplace("picture", GL_RGBA32F, width, height);
+    }
+    unseen_.emplace("timed visibility", GL_R32F, width, height);
+    blockers_.emplace("distance to the blocker", GL_R32F, width, height);
+    truth_.reset();
+  }
+  gbuffer_->draw(renderer_.shaders, geometry_, state.scene, state.active_camera());
+}
+
+/// Fits and draws the light's map. Whether filters must be compiled anew for it.
+bool Stage::draw_map(const ViewState& state, bool map_changed) {
+  const options::RunOptions& options = state.options;
+  std::vector<scene::LightFrustum> layers =
+      measure::fit_map_layers(options, state.scene, state.scene.light, state.active_camera(), state.map_size(),
+                              measure::padding_texels(options), [&]() -> render::GBuffer& { return *gbuffer_; });
+  // The curve of a lamp's map follows its frustum, and is compiled into the filters that read it.
+  const render::MapSettings settings = render::fit_settings(options.map, layers.front());
+  const bool other_map = !light_ || map_changed || light_->map.size() != state.map_size() ||
+                         light_->map.layers() != static_cast<int>(layers.size()) ||
+                         light_->map.settings().format != settings.format ||
+                         !(light_->map.settings().curve == settings.curve);
+  if (other_map) {
+    render::ShadowMap map(state.map_size(), settings, static_cast<int>(layers.size()));
+    map.set_border(options.range.border);
+    light_ = std::make_unique<measure::LightMap>(std::move(layers), std::move(map));
+  } else {
+    light_->layers = std::move(layers);
+  }
+  redraw_map(state);
+  return other_map;
+}
+
+void Stage::redraw_map(const ViewState& state) {
+  for (const scene::LightFrustum& layer : light_->layers)
+    light_->map.draw(renderer_.shaders, geometry_, layer, state.options.bias.map);
+}
+
+void Stage::draw_side(const ViewState& state, std::size_t side, bool compiles, bool retunes) {
+  SideDrawing& drawing = sides_[side];
+  if (state.sides[side].truth) {
+    drawing.passes.reset();
+    drawing.fault.clear();
+    return;
+  }
+  if (compiles || !drawing.passes) compile(state, side);
+  if (!drawing.passes) return;
+  if (retunes && !compiles) {
+    // A filter whose newer code does not compile keeps the values that its older one knows.
+    const filters::FilterRequest& request =
+        drawing.fault.empty() ? state.sides[side].filter : drawing.passes->request();
+    const filters::ParamValues values = request.values;
+    drawing.passes->retune(
+        renderer_.shaders, values,
+        measure::make_filter_light(state.options, state.scene.light, light_->layers, {request.spec, values}));
+  }
+  drawing.passes->prefilter(light_->map);
+  drawing.passes->lookup(*gbuffer_, light_->map, *drawing.visibility);
+}
+
+void Stage::compile(const ViewState& state, std::size_t side) {
+  SideDrawing& drawing = sides_[side];
+  const auto make = [&](const filters::FilterRequest& request) {
+    auto made = measure::make_filter_passes(renderer_, state.options, state.scene, *light_, request);
+    drawing.empty = measure::make_empty_lookups(renderer_, state.options, state.scene, *light_, {made.get()});
+    drawing.passes = std::move(made);
+  };
+  try {
+    make(state.sides[side].filter);
+    drawing.fault.clear();
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::kFilter) throw;
+    drawing.fault = error.what();
+    if (drawing.passes) make(filters::FilterRequest(drawing.passes->request()));
+  }
+}
+
+void Stage::draw_picture(const ViewState& state, std::size_t side) {
+  render::shade_into(*sides_[side].picture, renderer_.shaders, *gbuffer_, visibility(side), state.scene,
+                     state.active_camera(), state.options.range);
+}
+
+void Stage::set_truth(const images::Image& visibility) {
+  truth_.reset();
+  if (!visibility.empty()) truth_.emplace(render::upload_image(visibility));
+}
+
+const gl::Texture& Stage::visibility(std::size_t side) const {
+  const SideDrawing& drawing = sides_[side];
+  return !drawing.passes && truth_ ? *truth_ : drawing.visibility->texture();
+}
+
+const gl::Texture& Stage::picture(std::size_t side) const { return sides_[side].picture->texture(); }
+
+void Stage::look_up(std::size_t side) { sides_[side].passes->lookup(*gbuffer_, light_->map, *unseen_); }
+
+void Stage::look_up_nothing(std::size_t side) {
+  sides_[side].empty.passes.front()->lookup(*gbuffer_, light_->map, *unseen_);
+}
+
+const gl::Texture& Stage::blocker_distance(const ViewState& state) {
+  if (!blocker_passes_) {
+    blocker_passes_ =
+        measure::make_filter_passes(renderer_, state.options, state.scene, *light_, make_blocker_lookup());
+    blocker_passes_->lookup(*gbuffer_, light_->map, *blockers_);
+  }
+  return blockers_->texture();
+}
+
+}  // namespace shadowbench::view
