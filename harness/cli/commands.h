@@ -16,6 +16,7 @@ Command make_tune_command();
 Command make_stress_command();
 Command make_regress_command();
 Command make_flicker_command();
+Command make_view_command();
 
 /// Makes the command that compiles passes for a GPU, in a process that a crash of the driver may end. Only a run needs
 /// it, so that help does not show it.

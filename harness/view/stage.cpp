@@ -23,6 +23,18 @@ filters::FilterRequest make_blocker_lookup() {
 
 }  // namespace
 
+Changes& Changes::operator|=(const Changes& other) {
+  camera |= other.camera;
+  light |= other.light;
+  map |= other.map;
+  truth |= other.truth;
+  for (std::size_t side = 0; side < kSides; ++side) {
+    filter[side] |= other.filter[side];
+    values[side] |= other.values[side];
+  }
+  return *this;
+}
+
 Stage::Stage(measure::Renderer& renderer, const scene::Scene& scene) : renderer_(renderer), geometry_(scene) {}
 
 void Stage::draw(const ViewState& state, const Changes& changes) {
@@ -94,12 +106,9 @@ void Stage::draw_side(const ViewState& state, std::size_t side, bool compiles, b
   if (!drawing.passes) return;
   if (retunes && !compiles) {
     // A filter whose newer code does not compile keeps the values that its older one knows.
-    const filters::FilterRequest& request =
-        drawing.fault.empty() ? state.sides[side].filter : drawing.passes->request();
-    const filters::ParamValues values = request.values;
-    drawing.passes->retune(
-        renderer_.shaders, values,
-        measure::make_filter_light(state.options, state.scene.light, light_->layers, {request.spec, values}));
+    const filters::FilterRequest request = drawing.fault.empty() ? state.sides[side].filter : drawing.passes->request();
+    drawing.passes->retune(renderer_.shaders, request.values,
+                           measure::make_filter_light(state.options, state.scene.light, light_->layers, request));
   }
   drawing.passes->prefilter(light_->map);
   drawing.passes->lookup(*gbuffer_, light_->map, *drawing.visibility);

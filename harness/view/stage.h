@@ -23,6 +23,7 @@ struct Changes {
   std::array<bool, kSides> filter{};  ///< another filter, or its code
   std::array<bool, kSides> values{};  ///< its parameters
 
+  Changes& operator|=(const Changes& other);
   static Changes all() { return {true, true, true, true, {true, true}, {true, true}}; }
   bool any() const { return camera || light || map || truth || filter[0] || filter[1] || values[0] || values[1]; }
 };

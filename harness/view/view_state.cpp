@@ -33,4 +33,21 @@ void apply(ViewState& state, ViewSettings settings) {
   state.scene.light = state.lights[state.light];
 }
 
+void set_fit(ViewSettings& settings, const std::string& text) {
+  settings.options.fit = scene::parse_fit_rule(text);
+  settings.options.fits = {settings.options.fit};
+  settings.fit_texts = {text};
+}
+
+void set_bias(ViewSettings& settings, const std::vector<std::string>& texts) {
+  settings.options.bias = render::parse_bias(texts);
+  settings.options.bias_texts = texts;
+}
+
+void check(const ViewSettings& settings) {
+  render::require_drawable(settings.options.bias, settings.options.map);
+  for (const Side& side : settings.sides)
+    if (!side.truth) render::require_usable(settings.options.bias, side.filter.spec);
+}
+
 }  // namespace shadowbench::view

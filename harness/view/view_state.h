@@ -48,4 +48,11 @@ ViewState make_view_state(options::RunOptions options, const std::string& scene_
 /// kernels pad the map as a run's do.
 void apply(ViewState& state, ViewSettings settings);
 
+/// Take over what `--fit` and `--bias` take. Throw Error(kUsage) as parsing these does.
+void set_fit(ViewSettings& settings, const std::string& text);
+void set_bias(ViewSettings& settings, const std::vector<std::string>& texts);
+
+/// Throws Error(kUsage) for settings that a run would refuse: a bias that a filter or the map cannot have.
+void check(const ViewSettings& settings);
+
 }  // namespace shadowbench::view

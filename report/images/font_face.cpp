@@ -32,21 +32,30 @@ Library open_library() {
   return Library(library);
 }
 
-Face open_face(FT_Library library, const std::string& name) {
-  for (const char* folder : kFontFolders) {
-    const std::filesystem::path file = std::filesystem::path(folder) / name;
-    FT_Face face = nullptr;
-    if (std::filesystem::exists(file) && FT_New_Face(library, file.c_str(), 0, &face) == 0) return Face(face);
-  }
+constexpr const char* kPlainFont = "DejaVuSans.ttf";
+
+[[noreturn]] void refuse_font(const std::string& name) {
   throw Error(
       ErrorKind::kOutput,
       "the font " + name + " is not installed, so no labels can be drawn; install the package fonts-dejavu-core");
 }
 
+std::filesystem::path find_font(const std::string& name) {
+  for (const char* folder : kFontFolders)
+    if (std::filesystem::exists(std::filesystem::path(folder) / name)) return std::filesystem::path(folder) / name;
+  refuse_font(name);
+}
+
+Face open_face(FT_Library library, const std::string& name) {
+  FT_Face face = nullptr;
+  if (FT_New_Face(library, find_font(name).c_str(), 0, &face) == 0) return Face(face);
+  refuse_font(name);
+}
+
 // FreeType's faces belong to one thread each.
 FT_Face face_of(Font font) {
   thread_local const Library library = open_library();
-  thread_local const Face plain = open_face(library.get(), "DejaVuSans.ttf");
+  thread_local const Face plain = open_face(library.get(), kPlainFont);
   thread_local const Face bold = open_face(library.get(), "DejaVuSans-Bold.ttf");
   FT_Face face = font.bold ? bold.get() : plain.get();
   FT_Set_Pixel_Sizes(face, 0, static_cast<FT_UInt>(font.size));
@@ -85,5 +94,7 @@ int visit_glyphs(const std::string& text, Font font, const std::function<void(co
   }
   return pen;
 }
+
+std::filesystem::path font_file() { return find_font(kPlainFont); }
 
 }  // namespace shadowbench::images

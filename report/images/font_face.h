@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -18,5 +19,8 @@ struct GlyphBitmap {
 /// Calls `visit` for every glyph of a line of clean text, left to right, the pen starting at 0.
 /// Returns where the pen ends, in pixels. Throws Error(kOutput) where the font is not installed.
 int visit_glyphs(const std::string& text, Font font, const std::function<void(const GlyphBitmap&)>& visit);
+
+/// The file of the font that is not bold. Throws Error(kOutput) where it is not installed.
+std::filesystem::path font_file();
 
 }  // namespace shadowbench::images

@@ -55,6 +55,16 @@ const std::array<KindReader, 3>& list_readers() {
 
 std::string write_vector(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
+std::vector<LightNumber> list_coordinates(const std::string& name, glm::vec3& place_ws) {
+  return {{name + " x", "m", &place_ws.x, 0.0f, -1.0f},
+          {name + " y", "m", &place_ws.y, 0.0f, -1.0f},
+          {name + " z", "m", &place_ws.z, 0.0f, -1.0f}};
+}
+
+std::vector<LightNumber> list_numbers(Light& light) {
+  return std::visit([](auto& kind) { return list_numbers(kind); }, light.kind);
+}
+
 glm::vec3 to_light(const Light& light, const glm::vec3& point_ws) {
   return std::visit([&](const auto& kind) { return to_light(kind, point_ws); }, light.kind);
 }

@@ -27,6 +27,18 @@ using LightTurn = std::function<glm::vec3(const glm::vec3&)>;
 /// What a picture's metadata say of a light, by name.
 using LightMetadata = std::map<std::string, std::variant<double, std::string>>;
 
+/// A number of a light that may be changed.
+struct LightNumber {
+  std::string name;
+  std::string unit;
+  float* value = nullptr;  ///< of the light that was asked
+  float min = 0.0f;
+  float max = 0.0f;  ///< less than `min`: any number
+};
+
+/// The coordinates of a place, each any number.
+std::vector<LightNumber> list_coordinates(const std::string& name, glm::vec3& place_ws);
+
 /// "1 2 3", for texts that name a light.
 std::string write_vector(const glm::vec3& v);
 

@@ -116,6 +116,12 @@ std::string describe_light(const PointLight& point) {
   return fmt::format("a point light, a sphere of {:.3g} m", 2.0f * point.radius_m);
 }
 
+std::vector<LightNumber> list_numbers(PointLight& point) {
+  std::vector<LightNumber> numbers = {{"radius", "m", &point.radius_m, 0.0f, 1.0f}};
+  for (LightNumber& each : list_coordinates("position", point.position_ws)) numbers.push_back(each);
+  return numbers;
+}
+
 LightMetadata light_metadata(const PointLight& point) {
   return {{"light_position_ws", write_vector(point.position_ws)},
           {"light_reference_m", static_cast<double>(point.reference_m)},

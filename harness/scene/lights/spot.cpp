@@ -123,6 +123,18 @@ std::string describe_light(const Spot& spot) {
                      glm::distance(spot.position_ws, spot.target_ws));
 }
 
+std::vector<LightNumber> list_numbers(Spot& spot) {
+  std::vector<LightNumber> numbers;
+  if (is_rectangle(spot))
+    numbers = {{"size u", "m", &spot.size_m.x, 0.01f, 2.0f}, {"size v", "m", &spot.size_m.y, 0.01f, 2.0f}};
+  else
+    numbers = {{"radius", "m", &spot.radius_m, 0.0f, 1.0f}};
+  numbers.push_back({"cone", "degrees", &spot.cone_deg, 1.0f, kWidestCone_deg});
+  for (LightNumber& each : list_coordinates("position", spot.position_ws)) numbers.push_back(each);
+  for (LightNumber& each : list_coordinates("target", spot.target_ws)) numbers.push_back(each);
+  return numbers;
+}
+
 LightMetadata light_metadata(const Spot& spot) {
   return {{"light_position_ws", write_vector(spot.position_ws)},
           {"light_target_ws", write_vector(spot.target_ws)},

@@ -38,6 +38,7 @@ void turn_light(Spot& spot, const LightTurn& turn);
 void aim_light(Spot& spot, const glm::vec3& center_ws);
 Spot checked_light(const Spot& spot, const std::string& where);
 std::string describe_light(const Spot& spot);
+std::vector<LightNumber> list_numbers(Spot& spot);
 LightMetadata light_metadata(const Spot& spot);
 std::string light_content(const Spot& spot);
 int count_layers(const Spot& spot, const MapWindow* window, const FitRule& rule);

@@ -234,6 +234,10 @@ Sun checked_light(const Sun& given, const std::string& where) {
 
 std::string describe_light(const Sun& sun) { return fmt::format("a sun of {:.3g} degrees", sun.angular_diameter_deg); }
 
+std::vector<LightNumber> list_numbers(Sun& sun) {
+  return {{"angular diameter", "degrees", &sun.angular_diameter_deg, 0.0f, 20.0f}};
+}
+
 LightMetadata light_metadata(const Sun& sun) {
   return {{"light_direction_ws", write_vector(sun.direction_ws)},
           {"light_angular_diameter_deg", static_cast<double>(sun.angular_diameter_deg)}};

@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "harness/cli/commands.h"
+#include "harness/cli/run_arguments.h"
+#include "harness/view/run_view.h"
+
+namespace shadowbench::cli {
+namespace {
+
+constexpr double kLargestScale = 4.0;
+
+struct ViewArguments : DrawingArguments {
+  std::string scene = "cubes";
+  bool ground = false;
+  std::string left, right = view::kTruthName;
+  std::vector<std::string> filter_files;
+  std::string map_size = "1024";
+  std::string size;
+  double scale = 0.0;
+  std::string log;
+};
+
+int view_scene(const ViewArguments& arguments) {
+  view::ViewOptions options;
+  take_drawing_options(arguments, options.run);
+  options.scene = arguments.scene;
+  options.run.ground = arguments.ground;
+  options.run.map_sizes = {parse_count(arguments.map_size, "--map-size")};
+  options.keeps_size = !arguments.size.empty();
+  if (options.keeps_size) std::tie(options.run.width, options.run.height) = parse_picture_size(arguments.size);
+  options.run.sizes = {{options.run.width, options.run.height}};
+  options.run.reference = filters::Catalogue(options.run.resources.filters).parse_requests("none").front();
+  options.filter_files.assign(arguments.filter_files.begin(), arguments.filter_files.end());
+  const std::string usual =
+      options.filter_files.empty() ? std::string("tent3x3") : options.filter_files.front().stem().string();
+  options.sides = {arguments.left.empty() ? usual : arguments.left, arguments.right};
+  if (!(arguments.scale >= 0.0 && arguments.scale <= kLargestScale))
+    fail(fmt::format("--scale: {} is out of range: choose 0 .. {:g}; 0 asks the screen", arguments.scale,
+                     kLargestScale));
+  options.scale = static_cast<float>(arguments.scale);
+  options.log = arguments.log;
+  view::run_view(options);
+  return 0;
+}
+
+}  // namespace
+
+Command make_view_command() {
+  Command command{"view", "Look at a scene through any two filters, or one and the truth, in a window"};
+  command.about =
+      "Opens a window: a divider between two filters, or a filter and ray-traced truth; camera, light, map and every "
+      "parameter by mouse; errors, their causes, times. F1 lists the keys. A filter's file is compiled again when it "
+      "is saved.";
+  auto a = std::make_shared<ViewArguments>();
+  a->out = "report/out/view";
+  command.add("scene", &a->scene, "a built-in scene by name, or a .toml, .gltf, .glb or .obj file")
+      .names(ValueKind::kScene);
+  command.add("--ground", &a->ground, "put a floor under a model that stands by itself");
+  command
+      .add("--left", &a->left,
+           "what is seen on the left: a filter with parameters, or 'truth' (default: tent3x3, or your own filter)")
+      .names(ValueKind::kFilters);
+  command.add("--right", &a->right, "what is seen on the right").names(ValueKind::kFilters);
+  command.add("--filter-file", &a->filter_files, "a filter of your own, one GLSL file; may be repeated")
+      .names(ValueKind::kFile);
+  command.add("--map-size", &a->map_size, "texels along a side of the shadow map");
+  command.add("--size", &a->size, "keep the picture at WIDTHxHEIGHT pixels (default: as large as the window)");
+  command.add("--scale", &a->scale, "enlarge text and widgets so many times (default: as the screen asks for)");
+  command.add("--out", &a->out, "folder for what is saved");
+  command.add("--log", &a->log, "").hide();
+  command.action = [a](const CommandLine&) { return view_scene(*a); };
+  return command;
+}
+
+}  // namespace shadowbench::cli

@@ -1,0 +1,241 @@
+#include "harness/view/gui.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/base/error.h"
+#include "harness/view/times_panel.h"
+
+namespace shadowbench::view {
+namespace {
+
+constexpr float kPanelWidth = 380.0f;
+constexpr float kStatusHeight = 24.0f;
+constexpr ImU32 kDividerColor = IM_COL32(255, 200, 40, 255);
+constexpr ImU32 kCaptionBack = IM_COL32(20, 20, 22, 220);
+constexpr ImU32 kCaptionInk = IM_COL32(240, 240, 240, 255);
+constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
+                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoTitleBar;
+
+ImVec2 to_imgui(const glm::vec2& v) { return {v.x, v.y}; }
+
+std::string name_side(const Workbench& bench, std::size_t side) {
+  const Side& shown = bench.state().sides[side];
+  return shown.truth ? "ray-traced truth" : shown.filter.spec.id;
+}
+
+/// A line of text on a dark ground.
+void draw_caption(const glm::vec2& corner, const std::string& text) {
+  ImDrawList* list = ImGui::GetBackgroundDrawList();
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+  const float edge = 0.3f * ImGui::GetFontSize();
+  list->AddRectFilled({corner.x - edge, corner.y - edge}, {corner.x + size.x + edge, corner.y + size.y + edge},
+                      kCaptionBack, 3.0f);
+  list->AddText(to_imgui(corner), kCaptionInk, text.c_str());
+}
+
+}  // namespace
+
+Gui::Gui(Window& window, Workbench& bench, ViewLog& log, std::filesystem::path out, bool keeps_size)
+    : window_(window),
+      bench_(bench),
+      log_(log),
+      out_(std::move(out)),
+      keeps_size_(keeps_size),
+      first_(bench.state()),
+      layers_(bench),
+      input_(bench),
+      settings_(bench, Widgets(log)),
+      meter_(bench) {}
+
+glm::ivec2 Gui::window_size(const glm::ivec2& picture, float scale) {
+  return picture + glm::ivec2(glm::vec2(kPanelWidth, kStatusHeight) * scale);
+}
+
+glm::vec2 Gui::free_area() const {
+  const glm::vec2 panels = look_.panels ? glm::vec2(kPanelWidth, kStatusHeight) * window_.scale() : glm::vec2(0.0f);
+  return glm::max(glm::vec2(window_.size()) - panels, glm::vec2(16.0f));
+}
+
+PicturePlace Gui::place() const {
+  const glm::ivec2 pixels(bench_.state().options.width, bench_.state().options.height);
+  const glm::vec2 area = free_area(), room = area / glm::vec2(pixels);
+  float magnified = std::min(room.x, room.y);
+  if (magnified >= 1.0f) magnified = std::floor(magnified);  // whole pixels
+  const glm::vec2 corner = glm::floor(0.5f * (area - magnified * glm::vec2(pixels)));
+  return {glm::max(corner, glm::vec2(0.0f)), magnified, pixels};
+}
+
+/// The picture takes the size of the window where it may.
+void Gui::fit_picture() {
+  const glm::ivec2 area(free_area());
+  if (keeps_size_ || (area.x == bench_.state().options.width && area.y == bench_.state().options.height)) return;
+  Changes changes;
+  changes.camera = changes.light = true;
+  bench_.change(changes, [&](ViewSettings& settings) {
+    settings.options.width = area.x;
+    settings.options.height = area.y;
+    settings.options.sizes = {{area.x, area.y}};
+  });
+}
+
+void Gui::lay_out(double now_s) {
+  const double seconds = std::exchange(last_s_, now_s) == 0.0 ? 0.0 : now_s - last_s_;
+  for (const Command command : take_commands()) obey(command);
+  fit_picture();
+  input_.take(place(), look_, seconds);
+  if (look_.panels) {
+    lay_out_panels();
+    lay_out_status();
+  }
+  if (look_.help) lay_out_help();
+}
+
+void Gui::obey(Command command) {
+  const ViewState& state = bench_.state();
+  const std::size_t layers = Layers::list().size();
+  switch (command) {
+    case Command::kHelp: look_.help = !look_.help; break;
+    case Command::kShare:
+      look_.sharing = look_.sharing == Sharing::kDivider ? Sharing::kFlip : Sharing::kDivider;
+      break;
+    case Command::kFlip:
+      look_.sharing = Sharing::kFlip;
+      look_.flipped_to = 1 - look_.flipped_to;
+      break;
+    case Command::kSwapSides:
+      bench_.change(Changes::all(), [](ViewSettings& settings) { std::swap(settings.sides[0], settings.sides[1]); });
+      break;
+    case Command::kNextLayer: look_.layer = (look_.layer + 1) % layers; break;
+    case Command::kPreviousLayer: look_.layer = (look_.layer + layers - 1) % layers; break;
+    case Command::kMagnifier: look_.magnifier = !look_.magnifier; break;
+    case Command::kMap: look_.map = !look_.map; break;
+    case Command::kPanels: look_.panels = !look_.panels; break;
+    case Command::kNextCamera:
+      bench_.change(Changes::all(),
+                    [&](ViewSettings& settings) { settings.camera = (state.camera + 1) % state.cameras.size(); });
+      break;
+    case Command::kNextLight:
+      bench_.change(Changes::all(),
+                    [&](ViewSettings& settings) { settings.light = (state.light + 1) % state.lights.size(); });
+      break;
+    case Command::kResetView:
+      bench_.change(Changes::all(), [&](ViewSettings& settings) {
+        settings.cameras = first_.cameras;
+        settings.lights = first_.lights;
+      });
+      break;
+    case Command::kSavePicture: save_picture(); break;
+    case Command::kSaveScene: break;
+    case Command::kSaveExperiment: break;
+    case Command::kQuit: window_.close(); break;
+  }
+}
+
+void Gui::lay_out_panels() {
+  const glm::vec2 size(window_.size());
+  const float width = kPanelWidth * window_.scale();
+  ImGui::SetNextWindowPos({size.x - width, 0.0f});
+  ImGui::SetNextWindowSize({width, size.y});
+  ImGui::Begin("panels", nullptr, kFixed);
+  settings_.lay_out(look_);
+  show_times(bench_, meter_);
+  ImGui::End();
+}
+
+void Gui::lay_out_status() {
+  const glm::vec2 size(window_.size());
+  const float height = kStatusHeight * window_.scale();
+  ImGui::SetNextWindowPos({0.0f, size.y - height});
+  ImGui::SetNextWindowSize({size.x - kPanelWidth * window_.scale(), height});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8.0f, 0.15f * height});
+  ImGui::Begin("status", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar);
+  ImGui::PopStyleVar();
+  ImGui::TextUnformatted(saved_.empty() ? "F1: keys and mouse" : saved_.c_str());
+  ImGui::End();
+}
+
+void Gui::lay_out_help() {
+  const glm::vec2 size(window_.size());
+  ImGui::SetNextWindowPos({0.5f * size.x, 0.5f * size.y}, ImGuiCond_Appearing, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({36.0f * ImGui::GetFontSize(), 0.0f});
+  ImGui::Begin("Keys and mouse", &look_.help, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse);
+  if (ImGui::BeginTable("keys", 2)) {
+    ImGui::TableSetupColumn("key", ImGuiTableColumnFlags_WidthStretch, 1.0f);
+    ImGui::TableSetupColumn("text", ImGuiTableColumnFlags_WidthStretch, 2.4f);
+    const auto row = [](const std::string& name, const std::string& text) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(name.c_str());
+      ImGui::TableNextColumn();
+      ImGui::TextWrapped("%s", text.c_str());
+    };
+    for (const Key& each : list_keys()) row(each.name, each.text);
+    for (const auto& [gesture, effect] : list_gestures()) row(gesture, effect);
+    ImGui::EndTable();
+  }
+  ImGui::End();
+}
+
+void Gui::draw_picture() {
+  is_timing_ = look_.panels && meter_.step();
+  const Layer& layer = Layers::list()[look_.layer];
+  for (std::size_t side = 0; side < kSides; ++side) shown_[side] = layers_.show(layer, side, look_.error_scale);
+  const PicturePlace at = place();
+  const glm::ivec2 window = window_.size(), size(at.size());
+  render::DisplayPass::clear_window(window, glm::vec3(0.08f));
+  const glm::ivec2 corner(static_cast<int>(at.corner.x), window.y - static_cast<int>(at.corner.y) - size.y);
+  display_.draw(bench_.renderer().shaders, {shown_[0].values, shown_[1].values},
+                {corner, size, glm::vec2(0.0f), at.magnified, at.divider_column(look_)});
+  draw_divider();
+  lay_out_captions();
+  lay_out_faults();
+}
+
+void Gui::draw_divider() {
+  if (look_.sharing != Sharing::kDivider) return;
+  const PicturePlace at = place();
+  const float x = at.corner.x + at.magnified * at.divider_column(look_);
+  ImGui::GetBackgroundDrawList()->AddLine({x, at.corner.y}, {x, at.corner.y + at.size().y}, kDividerColor,
+                                          2.0f * window_.scale());
+  log_.note_widget("divider", {x, at.corner.y}, {x, at.corner.y + at.size().y});
+}
+
+/// Says which side is which, and what keeps a layer from being shown.
+void Gui::lay_out_captions() {
+  const PicturePlace at = place();
+  const float edge = 0.6f * ImGui::GetFontSize();
+  for (std::size_t side = 0; side < kSides; ++side) {
+    if (look_.sharing == Sharing::kFlip && side != look_.flipped_to) continue;
+    std::string text = name_side(bench_, side);
+    if (!shown_[side].absent.empty()) text += ": " + shown_[side].absent;
+    const float width = ImGui::CalcTextSize(text.c_str()).x;
+    const float x = side == 0 ? at.corner.x + edge : at.corner.x + at.size().x - width - edge;
+    draw_caption({x, at.corner.y + edge}, text);
+  }
+}
+
+/// Errors stand over the last good image.
+void Gui::lay_out_faults() {
+  std::string text = bench_.message();
+  for (std::size_t side = 0; side < kSides; ++side)
+    if (const std::string& fault = bench_.stage().fault(side); !fault.empty())
+      text += (text.empty() ? "" : "\n") + fault;
+  if (text.empty()) return;
+  const PicturePlace at = place();
+  ImGui::SetNextWindowPos({at.corner.x + 8.0f, at.corner.y + at.size().y - 8.0f}, ImGuiCond_Always, {0.0f, 1.0f});
+  ImGui::SetNextWindowSize({std::max(0.9f * at.size().x, 200.0f), 0.0f});
+  ImGui::Begin("fault", nullptr, kFixed | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::PushTextWrapPos();
+  ImGui::TextColored({1.0f, 0.75f, 0.3f, 1.0f}, "%s", text.c_str());
+  ImGui::PopTextWrapPos();
+  Widgets(log_).note("fault");
+  ImGui::End();
+}
+
+void Gui::save_picture() { saved_ = "not yet"; }
+
+}  // namespace shadowbench::view

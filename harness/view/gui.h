@@ -1,0 +1,71 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "harness/render/display_pass.h"
+#include "harness/view/keys.h"
+#include "harness/view/layers.h"
+#include "harness/view/look.h"
+#include "harness/view/picture_input.h"
+#include "harness/view/settings_panel.h"
+#include "harness/view/time_meter.h"
+#include "harness/view/view_log.h"
+#include "harness/view/window.h"
+#include "harness/view/workbench.h"
+
+namespace shadowbench::view {
+
+/// The whole window: picture, panels, status line.
+class Gui {
+ public:
+  /// Everything must outlive this object. Saved files go to `out`. With `keeps_size` the picture keeps its size, and
+  /// else it takes that of the window.
+  Gui(Window& window, Workbench& bench, ViewLog& log, std::filesystem::path out, bool keeps_size);
+
+  /// Takes a frame's input and lays out its widgets; between Window::begin_frame() and end_frame().
+  void lay_out(double now_s);
+
+  /// Draws the picture, over which end_frame() draws the widgets.
+  void draw_picture();
+
+  /// Whether the next frame must not wait for an event.
+  bool is_moving() const { return input_.is_flying() || is_timing_; }
+
+  PicturePlace place() const;
+  const Look& look() const { return look_; }
+
+  /// The window's size in pixels that a picture of this size wants, panels included.
+  static glm::ivec2 window_size(const glm::ivec2& picture, float scale);
+
+ private:
+  Window& window_;
+  Workbench& bench_;
+  ViewLog& log_;
+  std::filesystem::path out_;
+  bool keeps_size_;
+  Look look_;
+  ViewSettings first_;  ///< as the scene had them
+  Layers layers_;
+  render::DisplayPass display_;
+  PictureInput input_;
+  SettingsPanel settings_;
+  TimeMeter meter_;
+  std::array<ShownLayer, kSides> shown_;
+  bool is_timing_ = false;
+  double last_s_ = 0.0;
+  std::string saved_;  ///< what was saved last
+
+  glm::vec2 free_area() const;
+  void fit_picture();
+  void obey(Command command);
+  void lay_out_panels();
+  void lay_out_status();
+  void lay_out_help();
+  void lay_out_captions();
+  void lay_out_faults();
+  void draw_divider();
+  void save_picture();
+};
+
+}  // namespace shadowbench::view

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace shadowbench::view {
+
+/// What the keys do, beside those that fly the camera.
+enum class Command {
+  kHelp,
+  kFlip,
+  kShare,
+  kNextLayer,
+  kPreviousLayer,
+  kSwapSides,
+  kMagnifier,
+  kMap,
+  kPanels,
+  kNextCamera,
+  kNextLight,
+  kResetView,
+  kSavePicture,
+  kSaveScene,
+  kSaveExperiment,
+  kQuit,
+};
+
+/// One key with what it does; F1 lists them all.
+struct Key {
+  Command command;
+  int key = 0;           ///< of GLFW
+  bool control = false;  ///< with Ctrl
+  std::string name;      ///< as it is written on the keyboard
+  std::string text;      ///< what it does
+};
+
+/// All keys, in the order of the help; one table.
+const std::vector<Key>& list_keys();
+
+/// What the mouse does, for the help: gesture and effect.
+const std::vector<std::pair<std::string, std::string>>& list_gestures();
+
+/// The commands whose keys went down in this frame; none while a text is typed.
+std::vector<Command> take_commands();
+
+}  // namespace shadowbench::view

@@ -1,0 +1,94 @@
+#include "harness/view/layers.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace shadowbench::view {
+namespace {
+
+using render::Colors;
+using render::DisplayedValues;
+
+/// The ends of an image's colours.
+struct Range {
+  float low;
+  float high;
+};
+
+/// From 0, or below, to the greatest finite value; a range that is not empty.
+Range find_range(const images::Image& image) {
+  Range range{0.0f, 0.0f};
+  for (const float value : image.texels) {
+    if (!std::isfinite(value)) continue;
+    range = {std::min(range.low, value), std::max(range.high, value)};
+  }
+  if (range.high <= range.low) range.high = range.low + 1.0f;
+  return range;
+}
+
+DisplayedValues picture_of(Layers& layers, std::size_t side) { return {&layers.bench().stage().picture(side)}; }
+
+ShownLayer show_picture(Layers& layers, const Layer&, std::size_t side) { return {picture_of(layers, side), {}}; }
+
+ShownLayer show_visibility(Layers& layers, const Layer&, std::size_t side) {
+  return {{&layers.bench().stage().visibility(side), nullptr, 0, Colors::kGrey}, {}};
+}
+
+/// Why the truth is not there.
+std::string explain_no_truth(const Workbench& bench) {
+  return bench.truth_absent().empty() ? "the truth is being traced" : bench.truth_absent();
+}
+
+ShownLayer show_error(Layers& layers, const Layer&, std::size_t side) {
+  Stage& stage = layers.bench().stage();
+  if (!stage.truth()) return {picture_of(layers, side), explain_no_truth(layers.bench())};
+  return {{&stage.visibility(side), stage.truth(), 0, Colors::kDiverging, -layers.scale(), layers.scale()}, {}};
+}
+
+ShownLayer show_blockers(Layers& layers, const Layer& layer, std::size_t side) {
+  Workbench& bench = layers.bench();
+  if (bench.state().sides[side].truth) {
+    if (bench.first_blockers().empty()) return {picture_of(layers, side), explain_no_truth(bench)};
+    return {layers.upload(layer.id + ".truth", bench.drawings(), bench.first_blockers()), {}};
+  }
+  const gl::Texture& distance = bench.stage().blocker_distance(bench.state());
+  return {layers.upload(layer.id, bench.drawings(), render::read_image(distance, 1)), {}};
+}
+
+std::vector<Layer> make_layers() {
+  return {{"picture", "shaded picture", "", "What the eye sees: direct light times visibility, and ambient light.",
+           false, show_picture},
+          {"visibility", "visibility", "of the light", "1 is lit, 0 is in the shadow.", false, show_visibility},
+          {"error", "signed error", "visibility",
+           "Visibility less the ray-traced truth: red is too bright, blue too dark.", false, show_error},
+          {"blocker", "blocker distance", "m",
+           "From a receiver towards the light to what the map, or for the truth the first ray, holds there.", false,
+           show_blockers}};
+}
+
+}  // namespace
+
+const std::vector<Layer>& Layers::list() {
+  static const std::vector<Layer> layers = make_layers();
+  return layers;
+}
+
+ShownLayer Layers::show(const Layer& layer, std::size_t side, float scale) {
+  scale_ = scale;
+  return layer.show(*this, layer, side);
+}
+
+DisplayedValues Layers::upload(const std::string& id, std::uint64_t version, const images::Image& image) {
+  Kept& kept = kept_[id];
+  if (!kept.texture || kept.version != version) {
+    kept.version = version;
+    kept.texture.reset();
+    kept.texture.emplace(render::upload_image(image));
+    const Range range = find_range(image);
+    kept.low = range.low;
+    kept.high = range.high;
+  }
+  return {&*kept.texture, nullptr, 0, Colors::kSequential, kept.low, kept.high};
+}
+
+}  // namespace shadowbench::view

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/render/display_pass.h"
+#include "harness/view/workbench.h"
+
+namespace shadowbench::view {
+
+/// What one side shows of a layer.
+struct ShownLayer {
+  render::DisplayedValues values;  ///< of the picture where the layer is absent
+  std::string absent;              ///< why there is no layer; empty where there is
+};
+
+class Layers;
+
+/// Something that can be seen of every pixel.
+struct Layer {
+  std::string id;
+  std::string title;
+  std::string unit;          ///< of the values; empty: none, or a picture
+  std::string text;          ///< what it shows, one sentence
+  bool is_measured = false;  ///< by a run of its own, which takes seconds
+  ShownLayer (*show)(Layers& layers, const Layer& layer, std::size_t side) = nullptr;
+};
+
+/// The layers of both sides, and the textures that hold those that come from elsewhere than the passes.
+class Layers {
+ public:
+  explicit Layers(Workbench& bench) : bench_(bench) {}
+
+  /// All there are; one row of one table each.
+  static const std::vector<Layer>& list();
+
+  /// `scale` is the error that gets the full colour.
+  ShownLayer show(const Layer& layer, std::size_t side, float scale);
+
+  // For the rows of the table.
+  Workbench& bench() { return bench_; }
+  float scale() const { return scale_; }
+
+  /// An image, rows top to bottom, in the colours of its range from the least finite value, or 0, to the greatest; kept
+  /// until `version` is another.
+  render::DisplayedValues upload(const std::string& id, std::uint64_t version, const images::Image& image);
+
+ private:
+  struct Kept {
+    std::uint64_t version = 0;
+    std::optional<gl::Texture> texture;
+    float low = 0.0f, high = 1.0f;
+  };
+
+  Workbench& bench_;
+  float scale_ = 0.2f;
+  std::map<std::string, Kept> kept_;
+};
+
+}  // namespace shadowbench::view

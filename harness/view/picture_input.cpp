@@ -1,0 +1,128 @@
+#include "harness/view/picture_input.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/gl/gl_api.h"
+#include "harness/view/controls.h"
+
+// After the loader, see gl_api.h.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+namespace shadowbench::view {
+namespace {
+
+constexpr float kDividerGrip = 6.0f;  ///< pixels on either side
+constexpr float kTurnPerPixel_rad = 0.006f;
+constexpr double kLightPerPixel_deg = 0.25;
+constexpr float kApproachPerNotch = 0.88f;
+constexpr float kFlightsPerSecond = 0.25f;  ///< through the whole scene
+constexpr float kFaster = 4.0f;
+
+glm::vec2 to_glm(const ImVec2& v) { return {v.x, v.y}; }
+
+float key_axis(int plus, int minus) {
+  return (ImGui::IsKeyDown(plus) ? 1.0f : 0.0f) - (ImGui::IsKeyDown(minus) ? 1.0f : 0.0f);
+}
+
+Changes camera_changes() {
+  Changes changes;
+  changes.camera = true;
+  return changes;
+}
+
+}  // namespace
+
+void PictureInput::take(const PicturePlace& place, Look& look, double seconds) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const glm::vec2 pointer = to_glm(io.MousePos), by = to_glm(io.MouseDelta);
+  const bool any_down = io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2];
+  if (!any_down) grip_ = Grip::kNone;
+  const bool is_free = !io.WantCaptureMouse && place.holds(pointer);
+  if (is_free && grip_ == Grip::kNone && any_down) {
+    grip_ = find_grip(place, look, pointer);
+    pivot_ws_ = find_pivot(place.to_picture(pointer));
+  }
+  if (is_free && look.sharing == Sharing::kDivider && find_grip(place, look, pointer) == Grip::kDivider)
+    ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+  if (grip_ != Grip::kNone) drag(place, look, pointer, by);
+  if (is_free && io.MouseWheel != 0.0f)
+    set_camera(approach(bench_.state().active_camera(), find_pivot(place.to_picture(pointer)),
+                        std::pow(kApproachPerNotch, io.MouseWheel)));
+  fly_by_keys(seconds);
+}
+
+PictureInput::Grip PictureInput::find_grip(const PicturePlace& place, const Look& look,
+                                           const glm::vec2& pointer) const {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.MouseDown[1]) return Grip::kLook;
+  if (io.MouseDown[2]) return Grip::kShift;
+  if (io.KeyShift) return Grip::kLight;
+  const float divider = place.corner.x + place.magnified * place.divider_column(look);
+  const bool on_divider = look.sharing == Sharing::kDivider && std::abs(pointer.x - divider) <= kDividerGrip;
+  return on_divider ? Grip::kDivider : Grip::kOrbit;
+}
+
+void PictureInput::drag(const PicturePlace& place, Look& look, const glm::vec2& pointer, const glm::vec2& by) {
+  if (grip_ == Grip::kDivider) {
+    look.divider = std::clamp(place.to_picture(pointer).x / static_cast<float>(place.pixels.x), 0.0f, 1.0f);
+    return;
+  }
+  if (by == glm::vec2(0.0f)) return;
+  const scene::Camera& camera = bench_.state().active_camera();
+  const glm::vec2 turn = kTurnPerPixel_rad * by;
+  if (grip_ == Grip::kOrbit) return set_camera(orbit(camera, pivot_ws_, -turn.x, turn.y));
+  if (grip_ == Grip::kLook) return set_camera(look_around(camera, -turn.x, turn.y));
+  if (grip_ == Grip::kShift) {
+    // What was grabbed stays under the pointer.
+    const float height = camera.orthographic_height_m > 0.0f
+                             ? camera.orthographic_height_m
+                             : 2.0f * glm::dot(pivot_ws_ - camera.position_ws, camera.forward_ws) *
+                                   std::tan(0.5f * camera.vertical_fov_rad);
+    const float metres = height / (place.magnified * static_cast<float>(place.pixels.y));
+    return set_camera(fly(camera, {-by.x * metres, by.y * metres, 0.0f}));
+  }
+  Changes changes;
+  changes.light = true;
+  bench_.change(changes, [&](ViewSettings& settings) {
+    scene::Light& light = settings.lights[settings.light];
+    light = move_in_sky(light, kLightPerPixel_deg * static_cast<double>(by.x),
+                        -kLightPerPixel_deg * static_cast<double>(by.y));
+  });
+}
+
+void PictureInput::fly_by_keys(double seconds) {
+  const ImGuiIO& io = ImGui::GetIO();
+  glm::vec3 way(0.0f);
+  if (!io.WantTextInput && !io.KeyCtrl)
+    way = {key_axis(GLFW_KEY_D, GLFW_KEY_A), key_axis(GLFW_KEY_E, GLFW_KEY_Q), key_axis(GLFW_KEY_W, GLFW_KEY_S)};
+  is_flying_ = way != glm::vec3(0.0f);
+  if (!is_flying_) return;
+  const float speed = kFlightsPerSecond * scene_size() * (io.KeyShift ? kFaster : 1.0f);
+  set_camera(fly(bench_.state().active_camera(), way * speed * static_cast<float>(std::min(seconds, 0.1))));
+}
+
+void PictureInput::set_camera(const scene::Camera& camera) {
+  bench_.change(
+      camera_changes(), [&](ViewSettings& settings) { settings.cameras[settings.camera] = camera; });
+}
+
+glm::vec3 PictureInput::find_pivot(const glm::vec2& pixel) const {
+  const gl::Texture& positions = bench_.stage().gbuffer().position();
+  const int x = std::clamp(static_cast<int>(pixel.x), 0, positions.width() - 1);
+  const int y = std::clamp(positions.height() - 1 - static_cast<int>(pixel.y), 0, positions.height() - 1);
+  const std::vector<float> position = positions.read_texel(x, y, 4);
+  if (position[3] > 0.0f) return {position[0], position[1], position[2]};
+  const scene::Bounds bounds = bench_.state().scene.bounds();
+  return 0.5f * (bounds.min + bounds.max);
+}
+
+float PictureInput::scene_size() const {
+  const scene::Bounds bounds = bench_.state().scene.bounds();
+  return glm::length(bounds.max - bounds.min);
+}
+
+}  // namespace shadowbench::view

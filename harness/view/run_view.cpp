@@ -1,0 +1,60 @@
+#include "harness/view/run_view.h"
+
+#include <chrono>
+
+#include "filters/base/error.h"
+#include "harness/gl/timer/timer.h"
+#include "harness/view/gui.h"
+
+namespace shadowbench::view {
+namespace {
+
+constexpr double kSecondsOfRest = 0.1;  ///< between frames in which nothing moves
+
+double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+Side make_side(const filters::Catalogue& catalogue, const std::string& text, const std::string& otherwise) {
+  const bool truth = text == kTruthName;
+  return {catalogue.parse_requests(truth ? otherwise : text).front(), truth};
+}
+
+std::array<Side, kSides> make_sides(const ViewOptions& options) {
+  filters::Catalogue catalogue(options.run.resources.filters);
+  for (const std::filesystem::path& file : options.filter_files) catalogue.add_user_file(file);
+  return {make_side(catalogue, options.sides[0], "none"), make_side(catalogue, options.sides[1], "none")};
+}
+
+}  // namespace
+
+void run_view(const ViewOptions& options) {
+  ViewState state = make_view_state(options.run, options.scene, make_sides(options));
+  state.fit_texts = options.fit_texts;
+  check(state);
+  const gl::GlfwLibrary library;
+  const glm::ivec2 size =
+      Gui::window_size({state.options.width, state.options.height}, options.scale > 0.0f ? options.scale : 1.0f);
+  auto context =
+      std::make_unique<gl::GlfwContext>(gl::WindowShape{size.x, size.y, "shadowbench: " + state.scene.name, true});
+  gl::GlfwContext& shown = *context;
+  const gl::TimerKind timer = gl::choose_timer(shown);
+  measure::Renderer renderer{std::move(context), {}, timer, render::ShaderLibrary(options.run.resources.shaders)};
+  Window window(shown, options.scale);
+  ViewLog log = options.log.empty() ? ViewLog() : ViewLog(options.log);
+  Workbench bench(renderer, std::move(state), options.filter_files);
+  bench.draw();
+  Gui gui(window, bench, log, options.run.out, options.keeps_size);
+  while (!window.is_closing()) {
+    window.wait(gui.is_moving() ? 0.0 : kSecondsOfRest);
+    const double begun = now_s();
+    bench.update(begun);
+    window.begin_frame();
+    gui.lay_out(begun);
+    const bool drawn = bench.draw();
+    gui.draw_picture();
+    window.end_frame();
+    log.end_frame(begun, 1e3 * (now_s() - begun), drawn, {});
+    shown.require_no_gl_errors();
+  }
+}
+
+}  // namespace shadowbench::view

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "harness/view/view_state.h"
+
+namespace shadowbench::view {
+
+/// What a side is called that shows the truth.
+inline constexpr const char* kTruthName = "truth";
+
+/// What `shadowbench view` is told.
+struct ViewOptions {
+  options::RunOptions run;  ///< its `out` is where files are saved
+  std::vector<std::string> fit_texts;
+  std::string scene;
+  std::array<std::string, kSides> sides;  ///< filters as `--filters` names them, or "truth"
+  std::vector<std::filesystem::path> filter_files;
+  bool keeps_size = false;    ///< the picture does not follow the window's size
+  float scale = 0.0f;         ///< of text and widgets; 0: as the screen asks for
+  std::filesystem::path log;  ///< empty: none
+};
+
+/// Opens the window, and returns when it is closed. Throws Error(kContext) where there is no display, and otherwise as
+/// a run does.
+void run_view(const ViewOptions& options);
+
+}  // namespace shadowbench::view

@@ -1,0 +1,84 @@
+#include "harness/view/window.h"
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include "filters/base/error.h"
+#include "report/images/font_face.h"
+
+// After the loader, see gl_api.h.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+namespace shadowbench::view {
+namespace {
+
+constexpr float kTextPixels = 14.0f;
+
+float find_scale(GLFWwindow* window, float asked) {
+  if (asked > 0.0f) return asked;
+  float x = 1.0f, y = 1.0f;
+  glfwGetWindowContentScale(window, &x, &y);
+  return x > 0.0f ? x : 1.0f;
+}
+
+void set_style(float scale) {
+  ImGui::StyleColorsDark();
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.WindowRounding = style.FrameRounding = 3.0f;
+  style.Colors[ImGuiCol_WindowBg].w = 1.0f;  // half-transparent panels cost a software rasteriser much
+  style.ScaleAllSizes(scale);
+}
+
+}  // namespace
+
+Window::Window(gl::GlfwContext& context, float scale)
+    : window_(context.window()), scale_(find_scale(context.window(), scale)) {
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;  // no file is left where the program was started
+  io.Fonts->AddFontFromFileTTF(images::font_file().c_str(), kTextPixels * scale_);
+  set_style(scale_);
+  glfwSwapInterval(1);
+  if (ImGui_ImplGlfw_InitForOpenGL(window_, true) && ImGui_ImplOpenGL3_Init("#version 450")) return;
+  throw Error(ErrorKind::kContext, "Dear ImGui cannot draw into this window");
+}
+
+Window::~Window() {
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+bool Window::is_closing() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
+
+void Window::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
+
+void Window::wait(double seconds) {
+  if (seconds > 0.0)
+    glfwWaitEventsTimeout(seconds);
+  else
+    glfwPollEvents();
+}
+
+glm::ivec2 Window::size() const {
+  glm::ivec2 size(0);
+  glfwGetFramebufferSize(window_, &size.x, &size.y);
+  return size;
+}
+
+void Window::begin_frame() {
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+}
+
+void Window::end_frame() {
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  glfwSwapBuffers(window_);
+}
+
+}  // namespace shadowbench::view

@@ -1,0 +1,105 @@
+#include "harness/view/workbench.h"
+
+#include <utility>
+
+#include "filters/base/error.h"
+
+namespace shadowbench::view {
+namespace {
+
+/// A filter as it is now, with the values that it had as far as it still takes them.
+filters::FilterRequest renew(const filters::FilterRequest& old, const filters::FilterSpec& spec) {
+  filters::FilterRequest request = old;
+  request.spec = spec;
+  request.values = filters::default_values(spec);
+  for (const auto& [name, value] : old.values) {
+    if (spec.find_param(name) == nullptr) continue;
+    try {
+      request.values[name] = filters::parse_value(spec, name, filters::to_string(value));
+    } catch (const Error&) {  // out of the new range: the default stays
+    }
+  }
+  return request;
+}
+
+}  // namespace
+
+Workbench::Workbench(measure::Renderer& renderer, ViewState state, std::vector<std::filesystem::path> filter_files)
+    : renderer_(renderer),
+      filter_files_(std::move(filter_files)),
+      catalogue_(load_catalogue(state.options.resources.filters)),
+      state_(std::move(state)),
+      drawn_(state_),
+      stage_(renderer, state_.scene) {
+  watch_sides();
+}
+
+filters::Catalogue Workbench::load_catalogue(const std::filesystem::path& folder) const {
+  filters::Catalogue catalogue(folder);
+  for (const std::filesystem::path& file : filter_files_) catalogue.add_user_file(file);
+  return catalogue;
+}
+
+void Workbench::watch_sides() {
+  std::vector<std::filesystem::path> files = filter_files_;
+  for (const Side& side : state_.sides) files.emplace_back(side.filter.spec.path);
+  watch_.watch(files);
+}
+
+void Workbench::change(const Changes& what, const std::function<void(ViewSettings& settings)>& edit) {
+  ViewSettings settings = state_;
+  try {
+    edit(settings);
+    check(settings);
+  } catch (const Error& error) {
+    return say(error.what());
+  }
+  say({});
+  apply(state_, std::move(settings));
+  changes_ |= what;
+  if (what.filter[0] || what.filter[1]) watch_sides();
+}
+
+void Workbench::update(double now_s) {
+  if (now_s >= next_look_s_) {
+    next_look_s_ = now_s + kSecondsBetweenLooks;
+    if (watch_.has_changed()) reload_filters();
+  }
+}
+
+void Workbench::reload_filters() {
+  try {
+    filters::Catalogue catalogue = load_catalogue(state_.options.resources.filters);
+    catalogue_ = std::move(catalogue);
+  } catch (const Error& error) {
+    say(error.what());
+    return;
+  }
+  say({});
+  for (std::size_t side = 0; side < kSides; ++side) {
+    const filters::FilterRequest& shown = state_.sides[side].filter;
+    const filters::FilterSpec& spec = catalogue_.find(shown.spec.id);
+    if (spec == shown.spec && stage_.fault(side).empty()) continue;
+    Changes changes;
+    changes.filter[side] = true;
+    change(changes, [&](ViewSettings& settings) { settings.sides[side].filter = renew(shown, spec); });
+  }
+}
+
+bool Workbench::draw() {
+  if (!changes_.any()) return false;
+  const Changes changes = std::exchange(changes_, {});
+  try {
+    stage_.draw(state_, changes);
+    drawn_ = state_;
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::kContext || drawings_ == 0) throw;
+    say(error.what());
+    apply(state_, ViewSettings(drawn_));
+    stage_.draw(state_, Changes::all());
+  }
+  ++drawings_;
+  return true;
+}
+
+}  // namespace shadowbench::view
