@@ -1,6 +1,7 @@
 #include "harness/render/display_pass.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -59,24 +60,32 @@ void DisplayPass::clear_window(const glm::ivec2& size, const glm::vec3& color) {
 
 void DisplayPass::draw_here(ShaderLibrary& shaders, const std::array<DisplayedValues, 2>& sides,
                             const DisplayPlace& place) {
-  gl::Program& program = shaders.fullscreen("display.frag");
-  glViewport(place.corner.x, place.corner.y, place.size.x, place.size.y);
-  for (GLuint side = 0; side < 2; ++side) {
-    const DisplayedValues& shown = sides[side];
-    for (const auto& [unit, texture] :
-         {std::pair(side, shown.values), std::pair(side + 2, shown.less ? shown.less : shown.values),
-          std::pair(side + 4, &scale_of(shown.colors))}) {
-      gl::Sampler::unbind(unit);
-      texture->bind(unit);
-    }
-    program.set(side == 0 ? "left_range" : "right_range",
-                glm::vec4(shown.low, shown.high, static_cast<float>(shown.channel), shown.less ? 1.0f : 0.0f));
+  const float column = (place.divider - place.first_pixel.x) * place.magnified;
+  const int left = std::clamp(static_cast<int>(std::lround(column)), 0, place.size.x);
+  draw_side(shaders, sides[0], place, 0, left);
+  draw_side(shaders, sides[1], place, left, place.size.x);
+}
+
+/// Draws columns of the place, from one up to another.
+void DisplayPass::draw_side(ShaderLibrary& shaders, const DisplayedValues& shown, const DisplayPlace& place, int from,
+                            int to) {
+  if (from == to) return;
+  const bool is_picture = shown.colors == Colors::kPicture;
+  gl::Program& program = shaders.fullscreen("display.frag", is_picture ? Defines{{"PICTURE", "1"}} : Defines{});
+  glViewport(place.corner.x + from, place.corner.y, to - from, place.size.y);
+  gl::Sampler::unbind(0);
+  shown.values->bind(0);
+  if (!is_picture) {
+    for (const GLuint unit : {1U, 2U}) gl::Sampler::unbind(unit);
+    (shown.less ? shown.less : shown.values)->bind(1);
+    scale_of(shown.colors).bind(2);
+    program.set("range", glm::vec2(shown.low, shown.high));
+    program.set("channel", shown.channel);
+    program.set("has_less", shown.less ? 1 : 0);
   }
-  program.set("is_picture", glm::ivec2(sides[0].colors == Colors::kPicture, sides[1].colors == Colors::kPicture));
   program.set("corner", glm::vec2(place.corner));
   program.set("first_pixel", place.first_pixel);
-  program.set("magnified", place.magnified);
-  program.set("divider", place.divider);
+  program.set("pixels_per_target", 1.0f / place.magnified);
   program.use();
   triangle_.draw();
 }

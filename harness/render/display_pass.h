@@ -59,6 +59,7 @@ class DisplayPass {
   gl::FullscreenTriangle triangle_;
 
   const gl::Texture& scale_of(Colors colors) const;
+  void draw_side(ShaderLibrary& shaders, const DisplayedValues& shown, const DisplayPlace& place, int from, int to);
   void draw_here(ShaderLibrary& shaders, const std::array<DisplayedValues, 2>& sides, const DisplayPlace& place);
 };
 

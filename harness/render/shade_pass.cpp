@@ -38,7 +38,8 @@ void set_cookie(gl::Program& program, const gl::Texture& cookie, const scene::Be
 }  // namespace
 
 void shade_into(ImageTarget& target, ShaderLibrary& shaders, const GBuffer& gbuffer, const gl::Texture& visibility,
-                const scene::Scene& scene, const scene::Camera& camera, const filters::RangeRule& range) {
+                const scene::Scene& scene, const scene::Camera& camera, const filters::RangeRule& range,
+                const glm::ivec2& columns) {
   const std::optional<scene::Beam> beam = scene::find_beam(scene.light);
   gl::Program& program = shaders.fullscreen("shade.frag", shade_defines(scene.light, range));
   program.set("camera_position_ws", camera.position_ws);
@@ -51,6 +52,7 @@ void shade_into(ImageTarget& target, ShaderLibrary& shaders, const GBuffer& gbuf
   program.set("light_radiance", scene.light.color * scene.light.intensity);
   program.set("background", scene.background);
   target.bind();
+  glViewport(columns.x, 0, columns.y - columns.x, gbuffer.height());
   gbuffer.bind();
   gl::Sampler::unbind(kVisibilityUnit);
   visibility.bind(kVisibilityUnit);
@@ -66,7 +68,7 @@ void shade_into(ImageTarget& target, ShaderLibrary& shaders, const GBuffer& gbuf
 images::Image shade(ShaderLibrary& shaders, const GBuffer& gbuffer, const gl::Texture& visibility,
                     const scene::Scene& scene, const scene::Camera& camera, const filters::RangeRule& range) {
   ImageTarget target("picture", GL_RGBA32F, gbuffer.width(), gbuffer.height());
-  shade_into(target, shaders, gbuffer, visibility, scene, camera, range);
+  shade_into(target, shaders, gbuffer, visibility, scene, camera, range, {0, gbuffer.width()});
   return read_image(target.texture(), 3);
 }
 

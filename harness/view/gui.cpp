@@ -183,8 +183,10 @@ void Gui::lay_out_help() {
 void Gui::draw_picture() {
   is_timing_ = look_.panels && meter_.step();
   const Layer& layer = Layers::list()[look_.layer];
-  for (std::size_t side = 0; side < kSides; ++side) shown_[side] = layers_.show(layer, side, look_.error_scale);
   const PicturePlace at = place();
+  const int divider = static_cast<int>(std::ceil(at.divider_column(look_)));
+  shown_[0] = layers_.show(layer, 0, look_.error_scale, {0, divider});
+  shown_[1] = layers_.show(layer, 1, look_.error_scale, {std::max(divider - 1, 0), at.pixels.x});
   const glm::ivec2 window = window_.size(), size(at.size());
   render::DisplayPass::clear_window(window, glm::vec3(0.08f));
   const glm::ivec2 corner(static_cast<int>(at.corner.x), window.y - static_cast<int>(at.corner.y) - size.y);

@@ -26,7 +26,10 @@ Range find_range(const images::Image& image) {
   return range;
 }
 
-DisplayedValues picture_of(Layers& layers, std::size_t side) { return {&layers.bench().stage().picture(side)}; }
+DisplayedValues picture_of(Layers& layers, std::size_t side) {
+  Workbench& bench = layers.bench();
+  return {&bench.stage().picture(bench.state(), side, layers.columns())};
+}
 
 ShownLayer show_picture(Layers& layers, const Layer&, std::size_t side) { return {picture_of(layers, side), {}}; }
 
@@ -73,8 +76,9 @@ const std::vector<Layer>& Layers::list() {
   return layers;
 }
 
-ShownLayer Layers::show(const Layer& layer, std::size_t side, float scale) {
+ShownLayer Layers::show(const Layer& layer, std::size_t side, float scale, const glm::ivec2& columns) {
   scale_ = scale;
+  columns_ = columns;
   return layer.show(*this, layer, side);
 }
 

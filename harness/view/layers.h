@@ -37,12 +37,13 @@ class Layers {
   /// All there are; one row of one table each.
   static const std::vector<Layer>& list();
 
-  /// `scale` is the error that gets the full colour.
-  ShownLayer show(const Layer& layer, std::size_t side, float scale);
+  /// `scale` is the error that gets the full colour; only these columns will be looked at.
+  ShownLayer show(const Layer& layer, std::size_t side, float scale, const glm::ivec2& columns);
 
   // For the rows of the table.
   Workbench& bench() { return bench_; }
   float scale() const { return scale_; }
+  const glm::ivec2& columns() const { return columns_; }
 
   /// An image, rows top to bottom, in the colours of its range from the least finite value, or 0, to the greatest; kept
   /// until `version` is another.
@@ -57,6 +58,7 @@ class Layers {
 
   Workbench& bench_;
   float scale_ = 0.2f;
+  glm::ivec2 columns_{0};
   std::map<std::string, Kept> kept_;
 };
 

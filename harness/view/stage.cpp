@@ -49,7 +49,7 @@ void Stage::draw(const ViewState& state, const Changes& changes) {
   if (refit) blocker_passes_.reset();
   for (std::size_t side = 0; side < kSides; ++side)
     draw_side(state, side, other_map || changes.filter[side], refit || changes.values[side]);
-  for (std::size_t side = 0; side < kSides; ++side) draw_picture(state, side);
+  for (SideDrawing& side : sides_) side.shaded = glm::ivec2(0);
 }
 
 void Stage::draw_gbuffer(const ViewState& state) {
@@ -100,9 +100,11 @@ void Stage::draw_side(const ViewState& state, std::size_t side, bool compiles, b
   if (state.sides[side].truth) {
     drawing.passes.reset();
     drawing.fault.clear();
+    drawing.visibility->clear(glm::vec4(1.0f));  // seen until there is a truth
     return;
   }
-  if (compiles || !drawing.passes) compile(state, side);
+  compiles = compiles || !drawing.passes;
+  if (compiles) compile(state, side);
   if (!drawing.passes) return;
   if (retunes && !compiles) {
     // A filter whose newer code does not compile keeps the values that its older one knows.
@@ -110,7 +112,7 @@ void Stage::draw_side(const ViewState& state, std::size_t side, bool compiles, b
     drawing.passes->retune(renderer_.shaders, request.values,
                            measure::make_filter_light(state.options, state.scene.light, light_->layers, request));
   }
-  drawing.passes->prefilter(light_->map);
+  if (compiles || retunes) drawing.passes->prefilter(light_->map);
   drawing.passes->lookup(*gbuffer_, light_->map, *drawing.visibility);
 }
 
@@ -131,14 +133,11 @@ void Stage::compile(const ViewState& state, std::size_t side) {
   }
 }
 
-void Stage::draw_picture(const ViewState& state, std::size_t side) {
-  render::shade_into(*sides_[side].picture, renderer_.shaders, *gbuffer_, visibility(side), state.scene,
-                     state.active_camera(), state.options.range);
-}
-
 void Stage::set_truth(const images::Image& visibility) {
   truth_.reset();
   if (!visibility.empty()) truth_.emplace(render::upload_image(visibility));
+  for (SideDrawing& side : sides_)
+    if (!side.passes) side.shaded = glm::ivec2(0);
 }
 
 const gl::Texture& Stage::visibility(std::size_t side) const {
@@ -146,7 +145,16 @@ const gl::Texture& Stage::visibility(std::size_t side) const {
   return !drawing.passes && truth_ ? *truth_ : drawing.visibility->texture();
 }
 
-const gl::Texture& Stage::picture(std::size_t side) const { return sides_[side].picture->texture(); }
+const gl::Texture& Stage::picture(const ViewState& state, std::size_t side, const glm::ivec2& columns) {
+  SideDrawing& drawing = sides_[side];
+  const bool is_there = drawing.shaded.x <= columns.x && columns.y <= drawing.shaded.y;
+  if (columns.x < columns.y && !is_there) {
+    drawing.shaded = columns;
+    render::shade_into(*drawing.picture, renderer_.shaders, *gbuffer_, visibility(side), state.scene,
+                       state.active_camera(), state.options.range, columns);
+  }
+  return drawing.picture->texture();
+}
 
 void Stage::look_up(std::size_t side) { sides_[side].passes->lookup(*gbuffer_, light_->map, *unseen_); }
 

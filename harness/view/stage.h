@@ -49,8 +49,11 @@ class Stage {
   const render::GBuffer& gbuffer() const { return *gbuffer_; }
   measure::LightMap& light_map() { return *light_; }
   const gl::Texture& visibility(std::size_t side) const;                    ///< R32F
-  const gl::Texture& picture(std::size_t side) const;                       ///< RGBA32F, linear
   const gl::Texture* truth() const { return truth_ ? &*truth_ : nullptr; }  ///< R32F; null: none yet
+
+  /// RGBA32F, linear RGB; valid in these columns, from the first up to the second. Cost: their shading, where they have
+  /// not been asked for since the last draw().
+  const gl::Texture& picture(const ViewState& state, std::size_t side, const glm::ivec2& columns);
 
   /// A side's passes; null where it shows the truth, or where its filter has never compiled.
   render::FilterPasses* passes(std::size_t side) { return sides_[side].passes.get(); }
@@ -70,6 +73,7 @@ class Stage {
     measure::EmptyLookups empty;
     std::optional<render::ImageTarget> visibility;
     std::optional<render::ImageTarget> picture;
+    glm::ivec2 shaded{0};  ///< columns of the picture that are valid
     std::string fault;
   };
 
@@ -88,7 +92,6 @@ class Stage {
   bool draw_map(const ViewState& state, bool map_changed);
   void draw_side(const ViewState& state, std::size_t side, bool compile, bool retune);
   void compile(const ViewState& state, std::size_t side);
-  void draw_picture(const ViewState& state, std::size_t side);
 };
 
 }  // namespace shadowbench::view
