@@ -49,7 +49,9 @@ Gui::Gui(Window& window, Workbench& bench, ViewLog& log, std::filesystem::path o
       layers_(bench),
       input_(bench),
       settings_(bench, Widgets(log)),
-      meter_(bench) {}
+      meter_(bench),
+      magnifier_(bench, display_, Widgets(log)),
+      map_(bench, layers_, display_, Widgets(log)) {}
 
 glm::ivec2 Gui::window_size(const glm::ivec2& picture, float scale) {
   return picture + glm::ivec2(glm::vec2(kPanelWidth, kStatusHeight) * scale);
@@ -184,9 +186,11 @@ void Gui::draw_picture() {
   is_timing_ = look_.panels && meter_.step();
   const Layer& layer = Layers::list()[look_.layer];
   const PicturePlace at = place();
-  const int divider = static_cast<int>(std::ceil(at.divider_column(look_)));
-  shown_[0] = layers_.show(layer, 0, look_.error_scale, {0, divider});
-  shown_[1] = layers_.show(layer, 1, look_.error_scale, {std::max(divider - 1, 0), at.pixels.x});
+  // Half a column more than is seen: the divider may stand within one. The magnifier shows both sides anywhere.
+  const int divider = static_cast<int>(at.divider_column(look_)), all = at.pixels.x;
+  shown_[0] = layers_.show(layer, 0, look_.error_scale, {0, look_.magnifier ? all : std::min(divider + 1, all)});
+  shown_[1] = layers_.show(layer, 1, look_.error_scale, {look_.magnifier ? 0 : std::max(divider - 1, 0), all});
+  lay_out_inspection();
   const glm::ivec2 window = window_.size(), size(at.size());
   render::DisplayPass::clear_window(window, glm::vec3(0.08f));
   const glm::ivec2 corner(static_cast<int>(at.corner.x), window.y - static_cast<int>(at.corner.y) - size.y);
@@ -195,6 +199,20 @@ void Gui::draw_picture() {
   draw_divider();
   lay_out_captions();
   lay_out_faults();
+}
+
+/// The windows that follow the pointer.
+void Gui::lay_out_inspection() {
+  const PicturePlace at = place();
+  const ImGuiIO& io = ImGui::GetIO();
+  const glm::vec2 pointer(io.MousePos.x, io.MousePos.y);
+  std::optional<glm::ivec2> pixel;
+  if (!io.WantCaptureMouse && at.holds(pointer)) pixel = glm::ivec2(at.to_picture(pointer));
+  const bool is_left = !pixel || static_cast<float>(pixel->x) < at.divider_column(look_);
+  if (look_.magnifier)
+    magnifier_.lay_out(look_, Layers::list()[look_.layer], shown_, pixel,
+                       at.corner + glm::vec2(at.size().x - 8.0f, 40.0f), window_.scale());
+  if (look_.map) map_.lay_out(look_, pixel, is_left ? 0 : 1, window_.scale());
 }
 
 void Gui::draw_divider() {

@@ -7,6 +7,8 @@
 #include "harness/view/keys.h"
 #include "harness/view/layers.h"
 #include "harness/view/look.h"
+#include "harness/view/magnifier.h"
+#include "harness/view/map_panel.h"
 #include "harness/view/picture_input.h"
 #include "harness/view/settings_panel.h"
 #include "harness/view/time_meter.h"
@@ -51,6 +53,8 @@ class Gui {
   PictureInput input_;
   SettingsPanel settings_;
   TimeMeter meter_;
+  Magnifier magnifier_;
+  MapPanel map_;
   std::array<ShownLayer, kSides> shown_;
   bool is_timing_ = false;
   double last_s_ = 0.0;
@@ -64,6 +68,7 @@ class Gui {
   void lay_out_help();
   void lay_out_captions();
   void lay_out_faults();
+  void lay_out_inspection();
   void draw_divider();
   void save_picture();
 };

@@ -52,10 +52,10 @@ ShownLayer show_blockers(Layers& layers, const Layer& layer, std::size_t side) {
   Workbench& bench = layers.bench();
   if (bench.state().sides[side].truth) {
     if (bench.first_blockers().empty()) return {picture_of(layers, side), explain_no_truth(bench)};
-    return {layers.upload(layer.id + ".truth", bench.drawings(), bench.first_blockers()), {}};
+    return {layers.upload(layer.id + ".truth", bench.drawings(), [&] { return bench.first_blockers(); }), {}};
   }
   const gl::Texture& distance = bench.stage().blocker_distance(bench.state());
-  return {layers.upload(layer.id, bench.drawings(), render::read_image(distance, 1)), {}};
+  return {layers.upload(layer.id, bench.drawings(), [&] { return render::read_image(distance, 1); }), {}};
 }
 
 std::vector<Layer> make_layers() {
@@ -82,9 +82,11 @@ ShownLayer Layers::show(const Layer& layer, std::size_t side, float scale, const
   return layer.show(*this, layer, side);
 }
 
-DisplayedValues Layers::upload(const std::string& id, std::uint64_t version, const images::Image& image) {
+DisplayedValues Layers::upload(const std::string& id, std::uint64_t version,
+                               const std::function<images::Image()>& make_image) {
   Kept& kept = kept_[id];
   if (!kept.texture || kept.version != version) {
+    const images::Image image = make_image();
     kept.version = version;
     kept.texture.reset();
     kept.texture.emplace(render::upload_image(image));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -47,7 +48,8 @@ class Layers {
 
   /// An image, rows top to bottom, in the colours of its range from the least finite value, or 0, to the greatest; kept
   /// until `version` is another.
-  render::DisplayedValues upload(const std::string& id, std::uint64_t version, const images::Image& image);
+  render::DisplayedValues upload(const std::string& id, std::uint64_t version,
+                                 const std::function<images::Image()>& make_image);
 
  private:
   struct Kept {

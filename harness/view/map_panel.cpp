@@ -1,0 +1,110 @@
+#include "harness/view/map_panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "harness/gl/pixel_format.h"
+
+namespace shadowbench::view {
+namespace {
+
+constexpr float kPanelSide = 400.0f;
+constexpr ImU32 kReceiverInk = IM_COL32(255, 60, 60, 255);
+constexpr ImU32 kKernelInk = IM_COL32(255, 200, 40, 255);
+constexpr ImU32 kReadInk = IM_COL32(255, 255, 255, 200);
+
+}  // namespace
+
+void MapPanel::lay_out(Look& look, const std::optional<glm::ivec2>& pixel, std::size_t side, float scale) {
+  if (pixel) {
+    last_pixel_ = *pixel;
+    last_side_ = side;
+  }
+  ImGui::SetNextWindowPos({20.0f * scale, 60.0f * scale}, ImGuiCond_Appearing);
+  ImGui::Begin("Shadow map", &look.map, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
+  footprint_ = footprints_.find(last_side_, last_pixel_);
+  std::vector<std::string> contents = {"depth, linear"};
+  if (const render::FilterPasses* passes = bench_.stage().passes(last_side_); passes && passes->encoded_format())
+    for (int channel = 0; channel < gl::pixel_format(*passes->encoded_format()).channels; ++channel)
+      contents.push_back(fmt::format("{} stores: channel {}", passes->request().spec.id, channel + 1));
+  content_ = std::min(content_, contents.size() - 1);
+  widgets_.choose("map.content", "content", contents, content_);
+  widgets_.slide("map.zoom", "zoom", {1.0, 128.0, true, false, ""}, zoom_, "Around the receiver under the pointer.");
+  show_map(static_cast<int>(kPanelSide * scale), footprint_ ? footprint_->receiver.layer : 0);
+  ImGui::End();
+}
+
+images::Image MapPanel::read_content(int layer) const {
+  const render::ShadowMap& map = bench_.stage().light_map().map;
+  const int size = map.size();
+  images::Image image(size, size, 1);
+  if (content_ == 0) {
+    const filters::DepthMap depth = map.read(layer);
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x)
+        *image.at(x, size - 1 - y) = depth.curve.linear(depth.stored[static_cast<std::size_t>(y * size + x)]);
+    return image;
+  }
+  const render::EncodedTexels stored = bench_.stage().passes(last_side_)->encoded_map(layer)->read();
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x)
+      *image.at(x, size - 1 - y) =
+          stored.values[static_cast<std::size_t>((y * size + x) * stored.channels) + content_ - 1];
+  return image;
+}
+
+void MapPanel::show_map(int side_pixels, int layer) {
+  const std::string id = fmt::format("map {} {} {}", content_, last_side_, layer);
+  const render::DisplayedValues values = layers_.upload(id, bench_.drawings(), [&] { return read_content(layer); });
+  if (!target_ || target_->texture().width() != side_pixels)
+    target_.emplace("shadow map, shown", GL_RGBA8, side_pixels, side_pixels);
+  const double texels = bench_.state().map_size(), shown = texels / zoom_;
+  const glm::dvec2 centre = footprint_ ? footprint_->place_texels : glm::dvec2(0.5 * texels);
+  const glm::dvec2 first = glm::clamp(centre - 0.5 * shown, glm::dvec2(0.0), glm::dvec2(texels - shown));
+  const auto magnified = static_cast<float>(side_pixels / shown);
+  display_.draw(bench_.renderer().shaders, {values, values},
+                {glm::ivec2(0), glm::ivec2(side_pixels), glm::vec2(first), magnified, 0.0f}, *target_);
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const auto side = static_cast<float>(side_pixels);
+  // Row 0 of a texture lies at the bottom.
+  ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(render::gl_name(target_->texture()))),
+               {side, side}, {0.0f, 1.0f}, {1.0f, 0.0f});
+  widgets_.note("map.image");
+  draw_footprint({corner.x, corner.y}, side_pixels, first);
+  ImGui::Text("%.4g (dark) .. %.4g", static_cast<double>(values.low), static_cast<double>(values.high));
+  if (!footprint_) return ImGui::TextDisabled("No receiver in the map under the pointer.");
+  ImGui::Text("texel %.2f, %.2f of layer %d, depth %.6f", footprint_->place_texels.x, footprint_->place_texels.y,
+              footprint_->receiver.layer, static_cast<double>(footprint_->receiver.depth));
+  ImGui::Text("kernel: %s; %zu texels read", footprint_->shape.c_str(), footprint_->reads.size());
+}
+
+void MapPanel::draw_footprint(const glm::vec2& corner, int side_pixels, const glm::dvec2& first_texel) const {
+  if (!footprint_) return;
+  const double pixels = side_pixels / (bench_.state().map_size() / zoom_);
+  const auto place = [&](const glm::dvec2& texel) {
+    const glm::dvec2 at = (texel - first_texel) * pixels;
+    return ImVec2(corner.x + static_cast<float>(at.x), corner.y + static_cast<float>(side_pixels - at.y));
+  };
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->PushClipRect({corner.x, corner.y},
+                     {corner.x + static_cast<float>(side_pixels), corner.y + static_cast<float>(side_pixels)}, true);
+  if (pixels >= 3.0)
+    for (const glm::ivec2& read : footprint_->reads)
+      list->AddRect(place(glm::dvec2(read) + glm::dvec2(0.08, 0.92)), place(glm::dvec2(read) + glm::dvec2(0.92, 0.08)),
+                    kReadInk);
+  const glm::dvec2 centre = footprint_->place_texels;
+  const double reach = footprint_->half_width_texels;
+  if (footprint_->is_disk)
+    list->AddCircle(place(centre), static_cast<float>(reach * pixels), kKernelInk, 0, 2.0f);
+  else
+    list->AddRect(place(centre + glm::dvec2(-reach, reach)), place(centre + glm::dvec2(reach, -reach)), kKernelInk,
+                  0.0f, 0, 2.0f);
+  const ImVec2 middle = place(centre);
+  for (const auto& [x, y] : {std::pair(6.0f, 0.0f), std::pair(0.0f, 6.0f)})
+    list->AddLine({middle.x - x, middle.y - y}, {middle.x + x, middle.y + y}, kReceiverInk, 2.0f);
+  list->PopClipRect();
+}
+
+}  // namespace shadowbench::view
