@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "filters/base/error.h"
+#include "harness/view/save_picture.h"
 #include "harness/view/times_panel.h"
 
 namespace shadowbench::view {
@@ -130,7 +131,7 @@ void Gui::obey(Command command) {
         settings.lights = first_.lights;
       });
       break;
-    case Command::kSavePicture: save_picture(); break;
+    case Command::kSavePicture: save("picture", [this](const auto& stem) { save_picture(stem); }); break;
     case Command::kSaveScene: break;
     case Command::kSaveExperiment: break;
     case Command::kQuit: window_.close(); break;
@@ -256,6 +257,24 @@ void Gui::lay_out_faults() {
   ImGui::End();
 }
 
-void Gui::save_picture() { saved_ = "not yet"; }
+void Gui::save(const std::string& what, const std::function<void(const std::filesystem::path& stem)>& write) {
+  try {
+    const std::filesystem::path stem = find_free_stem(out_, bench_.state().scene.name);
+    write(stem);
+    saved_ = fmt::format("saved {}: {}", what, stem.string());
+    log_.note(last_s_, "saved " + what, stem.string());
+  } catch (const Error& error) {
+    bench_.say(error.what());
+  }
+}
+
+void Gui::save_picture(const std::filesystem::path& stem) {
+  const Layer& layer = Layers::list()[look_.layer];
+  const PicturePlace at = place();
+  std::array<render::DisplayedValues, 2> shown;
+  for (std::size_t side = 0; side < kSides; ++side)
+    shown[side] = layers_.show(layer, side, look_.error_scale, {0, at.pixels.x}).values;
+  view::save_picture(bench_, display_, shown, at.divider_column(look_), stem);
+}
 
 }  // namespace shadowbench::view

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "harness/render/display_pass.h"
@@ -70,7 +71,8 @@ class Gui {
   void lay_out_faults();
   void lay_out_inspection();
   void draw_divider();
-  void save_picture();
+  void save(const std::string& what, const std::function<void(const std::filesystem::path& stem)>& write);
+  void save_picture(const std::filesystem::path& stem);
 };
 
 }  // namespace shadowbench::view

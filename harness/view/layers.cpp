@@ -37,22 +37,35 @@ ShownLayer show_visibility(Layers& layers, const Layer&, std::size_t side) {
   return {{&layers.bench().stage().visibility(side), nullptr, 0, Colors::kGrey}, {}};
 }
 
-/// Why the truth is not there.
-std::string explain_no_truth(const Workbench& bench) {
-  return bench.truth_absent().empty() ? "the truth is being traced" : bench.truth_absent();
-}
-
 ShownLayer show_error(Layers& layers, const Layer&, std::size_t side) {
   Stage& stage = layers.bench().stage();
-  if (!stage.truth()) return {picture_of(layers, side), explain_no_truth(layers.bench())};
+  if (!stage.truth()) return {picture_of(layers, side), layers.bench().explain_no_truth()};
   return {{&stage.visibility(side), stage.truth(), 0, Colors::kDiverging, -layers.scale(), layers.scale()}, {}};
+}
+
+/// How far the first ray towards the light goes; 0 where nothing blocks it.
+images::Image make_blocker_image(const measure::SceneTruth& truth) {
+  images::Image image(truth.area.width, truth.area.height, 1);
+  std::ranges::transform(truth.rays.first_blockers_ws, image.texels.begin(),
+                         [](float distance) { return std::isfinite(distance) ? distance : 0.0f; });
+  return image;
+}
+
+ShownLayer show_texels(Layers& layers, const Layer& layer, std::size_t side) {
+  Workbench& bench = layers.bench();
+  bench.want_coverage();
+  const auto& coverage = bench.truth().coverage;
+  if (!coverage) return {picture_of(layers, side), "being counted"};
+  return {layers.upload(layer.id, bench.drawings(), [&] { return coverage->density; }), {}};
 }
 
 ShownLayer show_blockers(Layers& layers, const Layer& layer, std::size_t side) {
   Workbench& bench = layers.bench();
   if (bench.state().sides[side].truth) {
-    if (bench.first_blockers().empty()) return {picture_of(layers, side), explain_no_truth(bench)};
-    return {layers.upload(layer.id + ".truth", bench.drawings(), [&] { return bench.first_blockers(); }), {}};
+    const auto& truth = bench.truth().truth;
+    if (!truth || !truth->absent.empty())
+      return {picture_of(layers, side), truth ? truth->absent : "the truth is being traced"};
+    return {layers.upload(layer.id + ".truth", bench.drawings(), [&] { return make_blocker_image(*truth); }), {}};
   }
   const gl::Texture& distance = bench.stage().blocker_distance(bench.state());
   return {layers.upload(layer.id, bench.drawings(), [&] { return render::read_image(distance, 1); }), {}};
@@ -64,6 +77,9 @@ std::vector<Layer> make_layers() {
           {"visibility", "visibility", "of the light", "1 is lit, 0 is in the shadow.", false, show_visibility},
           {"error", "signed error", "visibility",
            "Visibility less the ray-traced truth: red is too bright, blue too dark.", false, show_error},
+          {"texels", "texels per pixel", "texels",
+           "Texels of the map under a pixel's footprint: below 1 the map is too coarse, far above 1 it is wasted.",
+           false, show_texels},
           {"blocker", "blocker distance", "m",
            "From a receiver towards the light to what the map, or for the truth the first ray, holds there.", false,
            show_blockers}};

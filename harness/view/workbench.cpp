@@ -3,6 +3,9 @@
 #include <utility>
 
 #include "filters/base/error.h"
+#include "harness/measure/filter_setup.h"
+#include "harness/measure/layer_truth.h"
+#include "harness/scene/occluders.h"
 
 namespace shadowbench::view {
 namespace {
@@ -30,7 +33,9 @@ Workbench::Workbench(measure::Renderer& renderer, ViewState state, std::vector<s
       catalogue_(load_catalogue(state.options.resources.filters)),
       state_(std::move(state)),
       drawn_(state_),
-      stage_(renderer, state_.scene) {
+      stage_(renderer, state_.scene),
+      cache_(state_.options.cache, [](const std::string&) {}),  // one that cannot be written costs time alone
+      truth_([this] { return scene::list_occluders(state_.scene); }, cache_, state_.options.seed) {
   watch_sides();
 }
 
@@ -65,6 +70,54 @@ void Workbench::update(double now_s) {
     next_look_s_ = now_s + kSecondsBetweenLooks;
     if (watch_.has_changed()) reload_filters();
   }
+  follow_truth(now_s);
+}
+
+/// The truth depends on what is seen and on the light; texels per pixel depend on the map as well.
+void Workbench::age_truth(const Changes& changes) {
+  if (changes.camera) surfaces_.reset();
+  if (!changes.camera && !changes.light && !(changes.map && wants_coverage_)) return;
+  truth_is_old_ = true;
+  truth_.stop();
+  shown_truth_ = {};
+  stage_.set_truth({});
+}
+
+void Workbench::follow_truth(double now_s) {
+  if (std::exchange(was_changed_, false)) last_change_s_ = now_s;
+  if (truth_is_old_ && now_s - last_change_s_ >= kSecondsBeforeTruth) start_truth();
+  std::optional<BackgroundTruth::Shown> more = truth_.take();
+  if (!more) return;
+  shown_truth_ = std::move(*more);
+  if (!shown_truth_.error.empty()) say("the truth: " + shown_truth_.error);
+  stage_.set_truth(shown_truth_.visibility);
+  ++drawings_;
+}
+
+void Workbench::start_truth() {
+  truth_is_old_ = false;
+  if (!surfaces_) surfaces_ = std::make_shared<measure::ViewSurfaces>(measure::read_view_surfaces(stage_.gbuffer()));
+  TruthJob job{surfaces_, state_.scene.light};
+  if (wants_coverage_) {
+    const measure::LightMap& light = stage_.light_map();
+    const render::LightLayers setups = measure::make_unbiased_light(state_.options, state_.scene.light, light.layers);
+    const auto traced = measure::list_traced_layers(renderer_.shaders, stage_.gbuffer(), setups);
+    TruthJob::Map map{state_.active_camera(), {}, measure::read_linear_depth(light.map)};
+    for (std::size_t i = 0; i < traced.size(); ++i) map.layers.push_back({light.layers[i], traced[i].shares});
+    job.map = std::move(map);
+  }
+  truth_.start(std::move(job));
+}
+
+std::string Workbench::explain_no_truth() const {
+  if (stage_.truth() != nullptr) return {};
+  if (!shown_truth_.error.empty()) return "the truth cannot be traced";
+  return shown_truth_.truth ? shown_truth_.truth->absent : "the truth is being traced";
+}
+
+void Workbench::want_coverage() {
+  if (std::exchange(wants_coverage_, true)) return;
+  truth_is_old_ = true;
 }
 
 void Workbench::reload_filters() {
@@ -89,6 +142,8 @@ void Workbench::reload_filters() {
 bool Workbench::draw() {
   if (!changes_.any()) return false;
   const Changes changes = std::exchange(changes_, {});
+  was_changed_ = true;
+  age_truth(changes);
   try {
     stage_.draw(state_, changes);
     drawn_ = state_;

@@ -9,6 +9,7 @@
 
 #include "filters/catalogue.h"
 #include "harness/measure/renderer.h"
+#include "harness/view/background_truth.h"
 #include "harness/view/file_watch.h"
 #include "harness/view/stage.h"
 #include "harness/view/view_state.h"
@@ -17,6 +18,9 @@ namespace shadowbench::view {
 
 /// How long a saved file may go unseen.
 inline constexpr double kSecondsBetweenLooks = 0.1;
+
+/// The truth waits for this long after the last change: a picture that moves would only throw it away.
+inline constexpr double kSecondsBeforeTruth = 0.15;
 
 /// What the window works on: a state, its drawing, its truth and its measurement, kept in step. Nothing here knows of
 /// widgets. Times are seconds of any clock that does not go back.
@@ -48,14 +52,18 @@ class Workbench {
   const std::string& message() const { return message_; }
   void say(std::string message) { message_ = std::move(message); }
 
-  /// Whether work goes on beside the window, that would disturb times.
-  bool is_busy() const { return truth_part_ < 1.0; }
+  /// Whether work goes on beside the window, which would disturb times.
+  bool is_busy() const { return truth_is_old_ || truth_part() < 1.0; }
 
-  double truth_part() const { return truth_part_; }  ///< how much of the truth is traced, [0,1]
-  const std::string& truth_absent() const { return truth_absent_; }
-  const images::Image& truth_image() const { return truth_image_; }
-  const images::Image& first_blockers() const { return first_blockers_; }  ///< metres; empty until the truth is whole
-  const images::Image& texels_per_pixel() const { return texels_per_pixel_; }
+  /// What is traced of the truth; it starts anew when camera or light change.
+  const BackgroundTruth::Shown& truth() const { return shown_truth_; }
+  double truth_part() const { return shown_truth_.truth || !shown_truth_.error.empty() ? 1.0 : shown_truth_.part; }
+
+  /// Why there is no truth to be seen; empty where there is.
+  std::string explain_no_truth() const;
+
+  /// Asks for the map's texels per pixel, which come with the truth.
+  void want_coverage();
 
   /// Counts what has been drawn anew, for those who keep what they made of it.
   std::uint64_t drawings() const { return drawings_; }
@@ -71,16 +79,22 @@ class Workbench {
   double next_look_s_ = 0.0;  ///< at the files
   Changes changes_ = Changes::all();
   std::string message_;
+  bool was_changed_ = true;
   double last_change_s_ = 0.0;
+  truth::TruthCache cache_;
+  BackgroundTruth truth_;
+  BackgroundTruth::Shown shown_truth_;
+  std::shared_ptr<const measure::ViewSurfaces> surfaces_;  ///< of the camera that is looked through; null: not read yet
   bool truth_is_old_ = true;
-  double truth_part_ = 0.0;
-  std::string truth_absent_;
-  images::Image truth_image_, first_blockers_, texels_per_pixel_;
+  bool wants_coverage_ = false;
   std::uint64_t drawings_ = 0;
 
   filters::Catalogue load_catalogue(const std::filesystem::path& folder) const;
   void watch_sides();
   void reload_filters();
+  void age_truth(const Changes& changes);
+  void follow_truth(double now_s);
+  void start_truth();
 };
 
 }  // namespace shadowbench::view

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/images/picture_io.h"
+
 namespace shadowbench::images {
 namespace {
 
@@ -39,6 +41,7 @@ Image color_values(const Image& values, const std::string& map) {
   Image colors(values.width, values.height, 3);
   OIIO::ImageBufAlgo::color_map(source, 0, map)
       .get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, colors.texels.data());
+  std::ranges::transform(colors.texels, colors.texels.begin(), encode_srgb);  // its tables are linear
   return colors;
 }
 
