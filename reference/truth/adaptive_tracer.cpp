@@ -10,6 +10,7 @@
 #include <cassert>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "filters/random.h"
 
@@ -24,6 +25,8 @@ constexpr int kEdgePoints = 16;
 /// edge. Where it is something else, pixels stop earlier or later; the standard errors that are stored do not depend on
 /// it.
 constexpr double kGainOfDoubling = 0.5946;
+
+constexpr int kTileSide = 16;
 
 /// What the first points of all pixels take of a whole image's time, roughly.
 constexpr double kFirstPart = 0.3;
@@ -114,10 +117,12 @@ class AdaptiveTracer {
     truth_.standard_error.assign(pixels, 0.0f);
     truth_.unanimous.assign(pixels, 1);
     truth_.rays.assign(pixels, 0);
-    for_each_receiver(0.0, kFirstPart, [this](std::size_t i) { trace(i, kFirstPoints, kFirstPoints); });
+    for (int side = settings_.coarsest; side >= 1; side /= 2) trace_first_points(side);
     const std::vector<float> first = truth_.visibility;
-    for_each_receiver(kFirstPart, 1.0, [&](std::size_t i) {
-      if (!is_settled(first, static_cast<int>(i))) trace(i, kEdgePoints, samples_.max_points());
+    for_each_tile(kFirstPart, 1.0, [&](const TracedTile& tile) {
+      for_each_receiver(tile, [&](std::size_t i) {
+        if (!is_settled(first, static_cast<int>(i))) trace(i, kEdgePoints, samples_.max_points());
+      });
     });
     return std::move(truth_);
   }
@@ -133,20 +138,61 @@ class AdaptiveTracer {
 
   /// Pixels are traced in tiles, because rays of neighbouring pixels visit the same parts of the scene.
   template <class Work>
-  void for_each_receiver(double from, double to, Work work) {
-    std::atomic<std::size_t> visited = 0;
-    const tbb::blocked_range2d<int> all(0, receivers_.height, 16, 0, receivers_.width, 16);
-    tbb::parallel_for(all, [&](const tbb::blocked_range2d<int>& tile) {
-      for (int y = tile.rows().begin(); y < tile.rows().end(); ++y) {
-        for (int x = tile.cols().begin(); x < tile.cols().end(); ++x) {
-          const std::size_t i =
-              static_cast<std::size_t>(y) * static_cast<std::size_t>(receivers_.width) + static_cast<std::size_t>(x);
-          if (receivers_.points[i].counts) work(i);
+  void for_each_tile(double from, double to, Work work) {
+    const int width = receivers_.width, height = receivers_.height;
+    const int columns = (width + kTileSide - 1) / kTileSide, rows = (height + kTileSide - 1) / kTileSide;
+    std::atomic<int> visited = 0;
+    tbb::parallel_for(tbb::blocked_range2d<int>(0, rows, 0, columns), [&](const tbb::blocked_range2d<int>& some) {
+      for (int row = some.rows().begin(); row < some.rows().end(); ++row) {
+        for (int column = some.cols().begin(); column < some.cols().end(); ++column) {
+          const int x = column * kTileSide, y = row * kTileSide;
+          const TracedTile tile{x, y, std::min(kTileSide, width - x), std::min(kTileSide, height - y),
+                                truth_.visibility};
+          work(tile);
+          if (settings_.on_tile) settings_.on_tile(tile);
+          const double share = static_cast<double>(++visited) / (static_cast<double>(rows) * columns);
+          if (settings_.on_part) settings_.on_part(from + (to - from) * share);
         }
       }
-      const std::size_t so_far = visited += tile.rows().size() * tile.cols().size();
-      const double share = static_cast<double>(so_far) / static_cast<double>(receivers_.points.size());
-      if (settings_.on_part) settings_.on_part(from + (to - from) * share);
+    });
+  }
+
+  /// Calls `work` with the pixels of a tile that count.
+  template <class Work>
+  void for_each_receiver(const TracedTile& tile, Work work) {
+    for (int y = tile.y; y < tile.y + tile.height; ++y) {
+      for (int x = tile.x; x < tile.x + tile.width; ++x) {
+        const std::size_t i =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(receivers_.width) + static_cast<std::size_t>(x);
+        if (receivers_.points[i].counts) work(i);
+      }
+    }
+  }
+
+  /// Gives the first pixel of every square that counts its first points, if it has none yet, and shows its visibility
+  /// in those pixels of the square that have none either.
+  void trace_first_points(int side) {
+    const auto part_of = [](int s) { return kFirstPart / s / s; };
+    for_each_tile(side == settings_.coarsest ? 0.0 : part_of(2 * side), part_of(side), [&](const TracedTile& tile) {
+      for (int y = 0; y < tile.height; y += side) {
+        for (int x = 0; x < tile.width; x += side) {
+          const TracedTile square{tile.x + x, tile.y + y, std::min(side, tile.width - x),
+                                  std::min(side, tile.height - y), tile.visibility};
+          trace_first_of(square);
+        }
+      }
+    });
+  }
+
+  void trace_first_of(const TracedTile& square) {
+    std::optional<float> seen;
+    for_each_receiver(square, [&](std::size_t i) {
+      if (!seen) {
+        if (truth_.rays[i] == 0) trace(i, kFirstPoints, kFirstPoints);
+        seen = truth_.visibility[i];
+      } else if (truth_.rays[i] == 0) {
+        truth_.visibility[i] = *seen;
+      }
     });
   }
 
@@ -174,6 +220,7 @@ class AdaptiveTracer {
     FanTracer tracer(fan);
     double foretold = HUGE_VAL;
     for (int points = least / 2, traced = 0;; points *= 2) {
+      if (settings_.stop.stop_requested()) throw TracingStopped();
       for (; traced < points; ++traced) tracer.trace(occluders_, offsets_of(fan, set, traced), settings_);
       const double error = conclude(pixel, tracer.lit(), points);
       if (points == most || (points >= least && foretold <= settings_.standard_error)) return;
@@ -218,6 +265,7 @@ class AdaptiveTracer {
 TracedVisibility trace_fans(const Occluders& occluders, const ReceiverImage& receivers, const SampleSets& samples,
                             const TraceSettings& settings, const MakeFan& make_fan, const SampleSets* scaled) {
   assert(std::has_single_bit(static_cast<unsigned>(samples.max_points())) && samples.max_points() >= kEdgePoints);
+  assert(std::has_single_bit(static_cast<unsigned>(settings.coarsest)) && settings.coarsest <= kTileSide);
   return AdaptiveTracer(occluders, receivers, samples, settings, make_fan, scaled).run();
 }
 

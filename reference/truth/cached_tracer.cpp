@@ -88,8 +88,8 @@ ViewRays CachedTracer::trace_view(const ReceiverImage& receivers, const AreaLigh
                                        name_vector(light.half_u()), name_vector(light.half_v()));
   Layers layers = find_or_trace(receivers, what, kViewLayers, [&] {
     Layers traced = to_layers(trace_area(occluders(), receivers, light, settings_));
-    traced.push_back(trace_hard(occluders(), receivers, light));
-    traced.push_back(trace_first_blockers(occluders(), receivers, light));
+    traced.push_back(trace_hard(occluders(), receivers, light, settings_.stop));
+    traced.push_back(trace_first_blockers(occluders(), receivers, light, settings_.stop));
     return traced;
   });
   std::vector<float> hard = std::move(layers[kTracedLayers]), blockers = std::move(layers[kTracedLayers + 1]);

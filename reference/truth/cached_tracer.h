@@ -29,6 +29,16 @@ class CachedTracer {
   /// Says from now on how much of an image is traced, 0 .. 1, from many threads.
   void listen(std::function<void(double part)> on_part) { settings_.on_part = std::move(on_part); }
 
+  /// Shows from now on what is traced, tile by tile, from many threads: see TraceSettings. What the cache holds is not
+  /// traced.
+  void show(int coarsest, std::function<void(const TracedTile&)> on_tile) {
+    settings_.coarsest = coarsest;
+    settings_.on_tile = std::move(on_tile);
+  }
+
+  /// Lets tracing end with TracingStopped, from now on, where this asks for it. Nothing of it comes into the cache.
+  void heed(std::stop_token stop) { settings_.stop = std::move(stop); }
+
   /// Cost: 64 rays for most pixels, up to 16384 at the edges of shadows.
   ViewRays trace_view(const ReceiverImage& receivers, const AreaLight& light);
 
