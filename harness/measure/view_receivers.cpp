@@ -34,10 +34,13 @@ bool faces(const scene::Light& light, const glm::vec3& position, const glm::vec3
 
 }  // namespace
 
-ViewReceivers read_view_receivers(const render::GBuffer& gbuffer, const scene::Light& light) {
-  const images::Image positions = render::read_image(gbuffer.position(), 4);
-  const images::Image normals = render::read_image(gbuffer.normal(), 4);
-  ViewReceivers receivers{{gbuffer.width(), gbuffer.height(), {}}, {}};
+ViewSurfaces read_view_surfaces(const render::GBuffer& gbuffer) {
+  return {render::read_image(gbuffer.position(), 4), render::read_image(gbuffer.normal(), 4)};
+}
+
+ViewReceivers make_view_receivers(const ViewSurfaces& surfaces, const scene::Light& light) {
+  const auto& [positions, normals] = surfaces;
+  ViewReceivers receivers{{positions.width, positions.height, {}}, {}};
   for (std::size_t i = 0; i < positions.texels.size(); i += 4) {
     const float* p = &positions.texels[i];
     const float* n = &normals.texels[i];
@@ -52,6 +55,10 @@ ViewReceivers read_view_receivers(const render::GBuffer& gbuffer, const scene::L
   hash.add_values(std::span<const std::uint8_t>(receivers.mask()));
   receivers.image.content = hash.name();
   return receivers;
+}
+
+ViewReceivers read_view_receivers(const render::GBuffer& gbuffer, const scene::Light& light) {
+  return make_view_receivers(read_view_surfaces(gbuffer), light);
 }
 
 }  // namespace shadowbench::measure
