@@ -87,7 +87,7 @@ void Gui::fit_picture() {
 
 void Gui::lay_out(double now_s) {
   const double seconds = std::exchange(last_s_, now_s) == 0.0 ? 0.0 : now_s - last_s_;
-  for (const Command command : take_commands()) obey(command);
+  for (const Command command : find_commands(window_.take_keys())) obey(command);
   fit_picture();
   input_.take(place(), look_, seconds);
   if (look_.panels) {

@@ -1,7 +1,5 @@
 #include "harness/view/keys.h"
 
-#include <imgui.h>
-
 #include "harness/gl/gl_api.h"
 
 // After the loader, see gl_api.h.
@@ -44,12 +42,11 @@ const std::vector<std::pair<std::string, std::string>>& list_gestures() {
   return gestures;
 }
 
-std::vector<Command> take_commands() {
+std::vector<Command> find_commands(const std::vector<Window::KeyPress>& presses) {
   std::vector<Command> commands;
-  const ImGuiIO& io = ImGui::GetIO();
-  if (io.WantTextInput) return commands;
-  for (const Key& each : list_keys())
-    if (io.KeyCtrl == each.control && ImGui::IsKeyPressed(each.key, false)) commands.push_back(each.command);
+  for (const Window::KeyPress& press : presses)
+    for (const Key& each : list_keys())
+      if (each.key == press.key && each.control == press.control) commands.push_back(each.command);
   return commands;
 }
 

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "harness/view/window.h"
 
 namespace shadowbench::view {
 
@@ -40,7 +43,7 @@ const std::vector<Key>& list_keys();
 /// What the mouse does, for the help: gesture and effect.
 const std::vector<std::pair<std::string, std::string>>& list_gestures();
 
-/// The commands whose keys went down in this frame; none while a text is typed.
-std::vector<Command> take_commands();
+/// What these keys ask for.
+std::vector<Command> find_commands(const std::vector<Window::KeyPress>& presses);
 
 }  // namespace shadowbench::view

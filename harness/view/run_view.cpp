@@ -24,6 +24,23 @@ std::array<Side, kSides> make_sides(const ViewOptions& options) {
   return {make_side(catalogue, options.sides[0], "none"), make_side(catalogue, options.sides[1], "none")};
 }
 
+/// What tests want to know of a frame.
+ViewLog::Frame describe_frame(const Gui& gui, Workbench& bench, double begun_s, bool drawn) {
+  ViewLog::Frame frame{begun_s, 1e3 * (now_s() - begun_s), drawn, {}, {}};
+  frame.numbers = {
+      {"divider", gui.look().divider}, {"truth", bench.truth_part()}, {"busy", bench.is_busy() ? 1.0 : 0.0}};
+  frame.texts["layer"] = Layers::list()[gui.look().layer].id;
+  frame.texts["message"] = bench.message();
+  for (std::size_t side = 0; side < kSides; ++side) {
+    const std::string name = side == 0 ? "left" : "right";
+    const Side& shown = bench.state().sides[side];
+    frame.texts[name] = shown.truth ? kTruthName : shown.filter.spec.id;
+    frame.texts[name + ".fault"] = bench.stage().fault(side);
+    for (const auto& [param, value] : shown.filter.values) frame.texts[name + "." + param] = filters::to_string(value);
+  }
+  return frame;
+}
+
 }  // namespace
 
 void run_view(const ViewOptions& options) {
@@ -52,7 +69,7 @@ void run_view(const ViewOptions& options) {
     const bool drawn = bench.draw();
     gui.draw_picture();
     window.end_frame();
-    log.end_frame(begun, 1e3 * (now_s() - begun), drawn, {});
+    if (log.is_on()) log.end_frame(describe_frame(gui, bench, begun, drawn));
     shown.require_no_gl_errors();
   }
 }

@@ -19,10 +19,11 @@ void ViewLog::note_widget(const std::string& name, const glm::vec2& least, const
   if (is_on()) widgets_[name] = glm::vec4(least, most);
 }
 
-void ViewLog::end_frame(double now_s, double frame_ms, bool drawn, const std::map<std::string, double>& more) {
+void ViewLog::end_frame(const Frame& frame) {
   if (!is_on()) return;
-  nlohmann::json line = {{"event", "frame"}, {"t", now_s}, {"ms", frame_ms}, {"drawn", drawn}};
-  for (const auto& [name, value] : more) line[name] = value;
+  nlohmann::json line = {{"event", "frame"}, {"t", frame.begun_s}, {"ms", frame.ms}, {"drawn", frame.drawn}};
+  for (const auto& [name, value] : frame.numbers) line[name] = value;
+  for (const auto& [name, text] : frame.texts) line[name] = text;
   if (widgets_ != written_) {
     for (const auto& [name, place] : widgets_) line["widgets"][name] = {place.x, place.y, place.z, place.w};
     written_ = widgets_;

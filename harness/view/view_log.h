@@ -21,9 +21,17 @@ class ViewLog {
   /// The last widget has this name and place, in pixels from the window's upper left corner.
   void note_widget(const std::string& name, const glm::vec2& least, const glm::vec2& most);
 
-  /// A frame is finished: the time that it took from its events to its picture, and whether something was drawn anew.
-  /// Writes also the widgets, where they are not where they were.
-  void end_frame(double now_s, double frame_ms, bool drawn, const std::map<std::string, double>& more);
+  /// What a frame shows.
+  struct Frame {
+    double begun_s = 0.0;  ///< of std::chrono::steady_clock, after its events were taken
+    double ms = 0.0;       ///< from there until it was handed to the window system
+    bool drawn = false;    ///< whether passes ran
+    std::map<std::string, double> numbers;
+    std::map<std::string, std::string> texts;
+  };
+
+  /// A frame is finished. Writes also the widgets, where they are not where they were.
+  void end_frame(const Frame& frame);
 
   /// Something happened.
   void note(double now_s, const std::string& event, const std::string& what);

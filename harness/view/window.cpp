@@ -4,6 +4,8 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include <utility>
+
 #include "filters/base/error.h"
 #include "report/images/font_face.h"
 
@@ -42,6 +44,8 @@ Window::Window(gl::GlfwContext& context, float scale)
   io.Fonts->AddFontFromFileTTF(images::font_file().c_str(), kTextPixels * scale_);
   set_style(scale_);
   glfwSwapInterval(1);
+  glfwSetWindowUserPointer(window_, this);
+  glfwSetKeyCallback(window_, note_key);  // ImGui's own calls it
   if (ImGui_ImplGlfw_InitForOpenGL(window_, true) && ImGui_ImplOpenGL3_Init("#version 450")) return;
   throw Error(ErrorKind::kContext, "Dear ImGui cannot draw into this window");
 }
@@ -62,6 +66,14 @@ void Window::wait(double seconds) {
   else
     glfwPollEvents();
 }
+
+void Window::note_key(GLFWwindow* window, int key, int, int action, int modifiers) {
+  auto* self = static_cast<Window*>(glfwGetWindowUserPointer(window));
+  if (action == GLFW_PRESS && !ImGui::GetIO().WantTextInput)
+    self->keys_.push_back({key, (modifiers & GLFW_MOD_CONTROL) != 0});
+}
+
+std::vector<Window::KeyPress> Window::take_keys() { return std::exchange(keys_, {}); }
 
 glm::ivec2 Window::size() const {
   glm::ivec2 size(0);

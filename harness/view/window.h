@@ -1,7 +1,7 @@
 #pragma once
 
-#include <functional>
 #include <glm/glm.hpp>
+#include <vector>
 
 #include "harness/gl/context/context_glfw.h"
 
@@ -26,6 +26,16 @@ class Window {
   glm::ivec2 size() const;                ///< of the framebuffer, pixels
   float scale() const { return scale_; }  ///< pixels for each of a usual screen's
 
+  /// A key that went down.
+  struct KeyPress {
+    int key = 0;  ///< of GLFW
+    bool control = false;
+  };
+
+  /// The keys that went down since the last call, also those that are up again: ImGui sees only what is down while a
+  /// frame begins. None of those that were typed into a widget.
+  std::vector<KeyPress> take_keys();
+
   void begin_frame();
 
   /// Draws the widgets over what the window's framebuffer holds, and shows it.
@@ -34,6 +44,9 @@ class Window {
  private:
   GLFWwindow* window_;
   float scale_ = 1.0f;
+  std::vector<KeyPress> keys_;
+
+  static void note_key(GLFWwindow* window, int key, int scancode, int action, int modifiers);
 };
 
 }  // namespace shadowbench::view
