@@ -14,10 +14,11 @@ Scene with_floor(Scene scene, float ground_y) {
   Material material;
   material.name = "ground";
   material.base_color = {0.42f, 0.40f, 0.37f, 1.0f};
-  Mesh floor = make_ground(scene, ground_y);
-  floor.material = static_cast<int>(scene.materials.size());
+  scene.floor = place_floor(scene, ground_y);
+  Mesh mesh = make_floor(*scene.floor);
+  mesh.material = static_cast<int>(scene.materials.size());
   scene.materials.push_back(material);
-  scene.meshes.push_back(std::move(floor));
+  scene.meshes.push_back(std::move(mesh));
   return scene;
 }
 

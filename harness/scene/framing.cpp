@@ -117,18 +117,20 @@ float ground_height(const Scene& scene) {
   return bounds.min.y - std::max(kGap * glm::length(bounds.max - bounds.min), away_from_rounding);
 }
 
-Mesh make_ground(const Scene& scene, float ground_y) {
+Floor place_floor(const Scene& scene, float ground_y) {
   constexpr float kBorder = 0.15f;
-  constexpr int kCells = 32;
   Bounds covered;
   for (const glm::dvec3& p : points_to_show(scene, ground_y)) covered.add(glm::vec3(p.x, ground_y, p.z));
   const glm::vec3 size = covered.max - covered.min;
   const float border = 2.0f * kBorder * std::max(size.x, size.z);
-  const glm::vec3 center = 0.5f * (covered.min + covered.max);
-  Mesh ground = transform_mesh(make_plane({size.x + border, size.z + border}, kCells),
-                               glm::translate(glm::dmat4(1.0), glm::dvec3(center)));
-  ground.name = "ground";
-  return ground;
+  return {{size.x + border, size.z + border}, 0.5f * (covered.min + covered.max)};
+}
+
+Mesh make_floor(const Floor& floor) {
+  Mesh mesh = without_unused_vertices(transform_mesh(make_plane(floor.size_m, kFloorCells),
+                                                     glm::translate(glm::dmat4(1.0), glm::dvec3(floor.center_ws))));
+  mesh.name = "ground";
+  return mesh;
 }
 
 }  // namespace shadowbench::scene

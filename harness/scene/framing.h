@@ -29,7 +29,13 @@ Camera frame_camera(const Scene& scene, const SkyAngles& from, double aspect, st
 /// Returns the height of a floor just below the meshes: near enough to look like contact, far enough not to coincide.
 float ground_height(const Scene& scene);
 
-/// Returns a floor at that height, under the meshes and the shadows that the scene's light throws on it.
-Mesh make_ground(const Scene& scene, float ground_y);
+/// Returns the place of a floor at that height, under the meshes and the shadows that the scene's light throws on it.
+Floor place_floor(const Scene& scene, float ground_y);
+
+/// How many quads a floor has along each side.
+inline constexpr int kFloorCells = 32;
+
+/// Returns the mesh of a floor: that of a plane of this size and place in a scene file.
+Mesh make_floor(const Floor& floor);
 
 }  // namespace shadowbench::scene

@@ -130,9 +130,13 @@ std::vector<SceneInfo> list_scenes(const fs::path& folder) { return with_titles(
 
 std::vector<SceneInfo> list_teaching_scenes(const fs::path& folder) { return with_titles(teaching_files(folder)); }
 
+fs::path find_scene_file(const std::string& name_or_path, const fs::path& scenes_folder) {
+  if (!is_path(name_or_path)) return find_named(name_or_path, scenes_folder);
+  return is_folder(name_or_path) ? find_scene_in(name_or_path) : fs::path(name_or_path);
+}
+
 Scene load(const std::string& name_or_path, const LoadOptions& options) {
-  if (!is_path(name_or_path)) return load_file(find_named(name_or_path, options.scenes_folder), options);
-  return load_file(is_folder(name_or_path) ? find_scene_in(name_or_path) : fs::path(name_or_path), options);
+  return load_file(find_scene_file(name_or_path, options.scenes_folder), options);
 }
 
 }  // namespace shadowbench::scene

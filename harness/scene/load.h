@@ -31,6 +31,9 @@ std::vector<SceneInfo> list_scenes(const std::filesystem::path& folder);
 /// where the folder or a title cannot be read; a folder that is not there has no scenes.
 std::vector<SceneInfo> list_teaching_scenes(const std::filesystem::path& folder);
 
+/// Finds the file that load() loads. Throws kUsage and kInput as load() does.
+std::filesystem::path find_scene_file(const std::string& name_or_path, const std::filesystem::path& scenes_folder);
+
 /// Loads a built-in scene, or a teaching scene, by its name, or a .toml, .gltf, .glb or .obj file by its path, and
 /// validates it.
 ///

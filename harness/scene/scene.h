@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,12 @@ struct Bounds {
   void add(const glm::vec3& p);
 };
 
+/// A level rectangle that was put under a bare model.
+struct Floor {
+  glm::vec2 size_m{0.0f};  ///< along x, z
+  glm::vec3 center_ws{0.0f};
+};
+
 /// Everything a run needs to know of a scene; checked: finite, not empty, indices in range.
 struct Scene {
   std::string name;   ///< file stem; names report files
@@ -72,6 +79,7 @@ struct Scene {
   std::vector<Camera> cameras;  ///< at least one
   Light light;
   std::vector<Light> other_lights;            ///< see separate_lights()
+  std::optional<Floor> floor;                 ///< of the last mesh, where that was put under a bare model
   glm::vec3 background{0.62f, 0.71f, 0.82f};  ///< linear
   std::vector<std::string> warnings;          ///< what was changed or ignored while loading, for the user
   std::vector<std::string> notes;             ///< what was chosen while loading, for the user

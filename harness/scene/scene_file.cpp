@@ -16,6 +16,8 @@
 namespace shadowbench::scene {
 namespace {
 
+constexpr Range kFovDeg{0.01, 179.0};
+
 /// Builds a scene from its tables; materials come before the objects that use them.
 class SceneBuilder {
  public:
@@ -28,8 +30,8 @@ class SceneBuilder {
     scene_.background = glm::vec3(root_.vec3("background", kColor, glm::dvec3(scene_.background)));
     add_lights(root_.tables("light"));
     for (const TomlTable& table : root_.tables("material")) add_material(table);
-    for (const TomlTable& table : root_.tables("object")) add_object(table);
     if (root_.has("model")) scene_ = add_mesh_file(std::move(scene_), import_mesh_file(root_.file("model")));
+    for (const TomlTable& table : root_.tables("object")) add_object(table);
     for (const TomlTable& table : root_.tables("camera")) add_camera(table);
     scene_ = validate_geometry(std::move(scene_), file_.string());
     return complete(std::move(scene_), completion, file_.string());
@@ -37,19 +39,10 @@ class SceneBuilder {
 
  private:
   void add_camera(const TomlTable& table) {
-    table.require_known_keys({"name", "position", "target", "up", "vertical_fov_deg"});
-    Camera camera;
-    camera.name = table.string("name", camera.name);
+    const Camera camera = read_camera(table);
     for (const Camera& other : scene_.cameras)
       if (other.name == camera.name)
         throw table.error("name", fmt::format("two cameras have the name '{}'", camera.name));
-    const glm::dvec3 position = table.vec3("position", kAnyNumber);
-    const glm::dvec3 ahead = table.vec3("target", kAnyNumber) - position;
-    if (glm::length(ahead) == 0.0) throw table.error("target", "the camera's target is its position");
-    camera.position_ws = glm::vec3(position);
-    camera.forward_ws = glm::vec3(glm::normalize(ahead));
-    camera.up_ws = glm::vec3(table.vec3("up", kAnyNumber, glm::dvec3(0.0, 1.0, 0.0)));
-    camera.vertical_fov_rad = static_cast<float>(glm::radians(table.number("vertical_fov_deg", {1.0, 170.0}, 45.0)));
     scene_.cameras.push_back(camera);
   }
 
@@ -146,6 +139,27 @@ class SceneBuilder {
 };
 
 }  // namespace
+
+Camera read_camera(const TomlTable& table) {
+  table.require_known_keys({"name", "position", "target", "up", "vertical_fov_deg", "orthographic_height"});
+  Camera camera;
+  camera.name = table.string("name", camera.name);
+  const glm::dvec3 position = table.vec3("position", kAnyNumber);
+  const glm::dvec3 ahead = table.vec3("target", kAnyNumber) - position;
+  if (glm::length(ahead) == 0.0) throw table.error("target", "the camera's target is its position");
+  camera.position_ws = glm::vec3(position);
+  camera.forward_ws = glm::vec3(is_unit(ahead) ? ahead : glm::normalize(ahead));
+  camera.up_ws = glm::vec3(table.vec3("up", kAnyNumber, glm::dvec3(0.0, 1.0, 0.0)));
+  if (!table.has("orthographic_height")) {
+    camera.vertical_fov_rad = static_cast<float>(glm::radians(table.number("vertical_fov_deg", kFovDeg, 45.0)));
+    return camera;
+  }
+  if (table.has("vertical_fov_deg"))
+    throw table.error("orthographic_height",
+                      table.title() + " has both a 'vertical_fov_deg' and an 'orthographic_height': give one");
+  camera.orthographic_height_m = table.number_f("orthographic_height", kPositive);
+  return camera;
+}
 
 Scene load_scene(const std::filesystem::path& file, double aspect, const std::optional<SkyAngles>& light) {
   const toml::table document = parse_toml_file(file);

@@ -8,6 +8,8 @@
 
 namespace shadowbench::scene {
 
+class TomlTable;
+
 /// Reads and validates a scene file.
 ///
 /// Lengths are metres, colours linear, angles degrees, +y is up. An azimuth of 0 is +z, of 90 is +x. Keys:
@@ -17,8 +19,8 @@ namespace shadowbench::scene {
 ///   - `map_width` and `map_center` = [x, y, z]: the square that the light's map shows, instead of the whole scene;
 ///     `map_near` and `map_far`: where depth is 0 and 1, metres from that centre along the light (negative: before it).
 ///     For scenes that show what happens outside a map
-/// - `[camera]`, or several `[[camera]]`: `name`, `position`, `target`, `up`, `vertical_fov_deg`; without one, a
-///   camera is chosen: see complete()
+/// - `[camera]`, or several `[[camera]]`: `name`, `position`, `target`, `up`, `vertical_fov_deg`, or
+///   `orthographic_height` for a view without perspective; without one, a camera is chosen: see complete()
 /// - `[[material]]`: `name`, `color`
 /// - `[[object]]`: `shape`, `name`, `material`, `casts_shadow`, `center`, `rotation_deg` (about x, then y, then z),
 ///   `scale` (a number or three), and by shape
@@ -35,6 +37,9 @@ namespace shadowbench::scene {
 /// picture that a chosen camera fills; `light` is where every light is put, if it is given.
 Scene load_scene(const std::filesystem::path& file, double aspect = 16.0 / 9.0,
                  const std::optional<SkyAngles>& light = std::nullopt);
+
+/// Reads the [camera] of a scene file; its directions are not yet checked. Throws kInput.
+Camera read_camera(const TomlTable& table);
 
 /// Reads a scene file's title alone. Throws as load_scene does.
 std::string read_scene_title(const std::filesystem::path& file);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -89,30 +90,16 @@ Mesh with_unit_normals(Mesh mesh) {
   return mesh;
 }
 
-/// A direction across the view: the given one made perpendicular or, if that is parallel to the view, the axis least
-/// parallel to it.
+/// A direction across the view: the given one made perpendicular, unless it is, or, if that is parallel to the view,
+/// the axis least parallel to it.
 glm::vec3 usable_up(const glm::vec3& up, const glm::vec3& forward) {
-  constexpr double kLeastSine = 1e-4;
+  constexpr double kLeastSine = 1e-4, kRightAngle = 1e-6;
   const glm::dvec3 ahead(forward);
   const auto across = [&](const glm::dvec3& v) { return v - glm::dot(v, ahead) * ahead; };
   const glm::dvec3 given(up);
+  if (is_unit(given) && std::abs(glm::dot(given, ahead)) < kRightAngle) return up;
   const bool usable = is_finite(up) && glm::length(across(given)) > kLeastSine * glm::length(given);
   return glm::vec3(glm::normalize(across(usable ? given : axis_least_parallel(ahead))));
-}
-
-Camera checked_camera(Camera camera, const std::string& where) {
-  const std::string owner = fmt::format("camera '{}'", camera.name);
-  if (!is_finite(camera.position_ws)) fail_input(owner + " stands at " + text_of(camera.position_ws), where);
-  camera.forward_ws = unit_direction(camera.forward_ws, owner, where);
-  camera.up_ws = usable_up(camera.up_ws, camera.forward_ws);
-  const bool orthographic = camera.orthographic_height_m != 0.0f;
-  const float fov = camera.vertical_fov_rad;
-  if (orthographic && !(std::isfinite(camera.orthographic_height_m) && camera.orthographic_height_m > 0.0f))
-    fail_input(fmt::format("{} sees a height of {} m", owner, camera.orthographic_height_m), where);
-  if (!orthographic && !(fov > 0.0f && fov < std::numbers::pi_v<float>))
-    fail_input(fmt::format("{} has a vertical field of view of {} rad; it must lie between 0 and pi", owner, fov),
-               where);
-  return camera;
 }
 
 /// Renames cameras or lights of equal name, since names tell their pictures apart.
@@ -148,12 +135,31 @@ void check_material(const Material& material, const Scene& scene, const std::str
 
 }  // namespace
 
+bool is_unit(const glm::dvec3& v) {
+  return std::abs(glm::length(v) - 1.0) < double{std::numeric_limits<float>::epsilon()};
+}
+
 glm::vec3 unit_direction(const glm::vec3& v, const std::string& owner, const std::string& where) {
   const glm::dvec3 direction(v);
   const double length = glm::length(direction);
   if (!std::isfinite(length) || !(length > 0.0))
     fail_input(fmt::format("{} has no direction: {}", owner, text_of(v)), where);
-  return glm::vec3(direction / length);
+  return is_unit(direction) ? v : glm::vec3(direction / length);
+}
+
+Camera checked_camera(Camera camera, const std::string& where) {
+  const std::string owner = fmt::format("camera '{}'", camera.name);
+  if (!is_finite(camera.position_ws)) fail_input(owner + " stands at " + text_of(camera.position_ws), where);
+  camera.forward_ws = unit_direction(camera.forward_ws, owner, where);
+  camera.up_ws = usable_up(camera.up_ws, camera.forward_ws);
+  const bool orthographic = camera.orthographic_height_m != 0.0f;
+  const float fov = camera.vertical_fov_rad;
+  if (orthographic && !(std::isfinite(camera.orthographic_height_m) && camera.orthographic_height_m > 0.0f))
+    fail_input(fmt::format("{} sees a height of {} m", owner, camera.orthographic_height_m), where);
+  if (!orthographic && !(fov > 0.0f && fov < std::numbers::pi_v<float>))
+    fail_input(fmt::format("{} has a vertical field of view of {} rad; it must lie between 0 and pi", owner, fov),
+               where);
+  return camera;
 }
 
 Scene validate_geometry(Scene scene, const std::string& where) {

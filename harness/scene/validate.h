@@ -17,6 +17,13 @@ Scene validate(Scene scene, const std::string& where);
 /// The part of `validate` that concerns meshes and materials; code that frames or measures a scene relies on it.
 Scene validate_geometry(Scene scene, const std::string& where);
 
+/// The part of `validate` that concerns one camera.
+Camera checked_camera(Camera camera, const std::string& where);
+
+/// Whether a direction has unit length, but for the rounding of its floats. It then stays as it is: what was read,
+/// written and read again is the same.
+bool is_unit(const glm::dvec3& v);
+
 /// Returns `v` with unit length. Throws kInput, naming `owner`, where it has no direction.
 glm::vec3 unit_direction(const glm::vec3& v, const std::string& owner, const std::string& where);
 

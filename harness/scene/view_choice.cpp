@@ -64,7 +64,7 @@ class ViewSearch {
     std::vector<Light> lights = shape.other_lights;
     lights.push_back(shape.light);
     std::optional<Mesh> floor;
-    if (free_.ground_y) floor = make_ground(shape, *free_.ground_y);
+    if (free_.ground_y) floor = make_floor(place_floor(shape, *free_.ground_y));
     meter_.set_floor(floor ? &*floor : nullptr);
     std::vector<EdgeCount> counts(cameras.size());
     tbb::parallel_for(std::size_t{0}, cameras.size(), [&](std::size_t i) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <charconv>
 #include <cmath>
 #include <glm/gtx/rotate_vector.hpp>
 
@@ -36,7 +37,7 @@ std::optional<MapWindow> read_map_window(const TomlTable& table) {
   return window;
 }
 
-/// How a kind is read from a scene file.
+/// How a kind is read from a scene file; listed in the order of LightKind.
 struct KindReader {
   std::string_view type;
   const std::vector<std::string>& (*keys)();
@@ -52,6 +53,17 @@ const std::array<KindReader, 3>& list_readers() {
 }
 
 }  // namespace
+
+double write_number(float value) {
+  const std::string text = fmt::format("{}", value);
+  double number = 0.0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+std::vector<double> write_numbers(const glm::vec3& v) {
+  return {write_number(v.x), write_number(v.y), write_number(v.z)};
+}
 
 std::string write_vector(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
@@ -126,6 +138,22 @@ Light read_light(const TomlTable& table) {
   light.intensity = table.number_f("intensity", {0.0, 1000.0}, 1.0);
   light.map_window = read_map_window(table);
   return light;
+}
+
+TomlEntries write_light(const Light& light) {
+  TomlEntries entries = std::visit([](const auto& kind) { return write_light(kind); }, light.kind);
+  if (!light.name.empty()) entries["name"] = light.name;
+  entries["type"] = std::string(list_readers()[light.kind.index()].type);
+  entries["color"] = write_numbers(light.color);
+  entries["intensity"] = write_number(light.intensity);
+  if (!light.map_window) return entries;
+  const MapWindow& window = *light.map_window;
+  entries["map_center"] = std::vector{window.center_ws.x, window.center_ws.y, window.center_ws.z};
+  entries["map_width"] = window.width_m;
+  if (!window.planes) return entries;
+  entries["map_near"] = window.planes->near_m;
+  entries["map_far"] = window.planes->far_m;
+  return entries;
 }
 
 std::optional<LightKind> make_gltf_light(std::string_view type, const glm::dmat4& world_from_node,

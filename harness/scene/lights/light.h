@@ -73,6 +73,9 @@ Light read_light(const TomlTable& table);
 /// The numbers of a light beside its direction: its size first. They stay those of this light.
 std::vector<LightNumber> list_numbers(Light& light);
 
+/// What the [light] of a scene file says of it, but for its cookie, whose file it does not know.
+TomlEntries write_light(const Light& light);
+
 /// Returns the light of a glTF node, or nothing for a type that is not modelled. A spot's cones are given as half
 /// angles, radians; glTF knows no size of lamps, so that it gets that of one without `radius` in a scene file.
 std::optional<LightKind> make_gltf_light(std::string_view type, const glm::dmat4& world_from_node,

@@ -39,6 +39,13 @@ struct LightNumber {
 /// The coordinates of a place, each any number.
 std::vector<LightNumber> list_coordinates(const std::string& name, glm::vec3& place_ws);
 
+/// What a table of a scene file says, by key.
+using TomlEntries = std::map<std::string, std::variant<double, std::string, std::vector<double>>>;
+
+/// Numbers for a scene file: the shortest decimals that are read back as the same floats.
+double write_number(float value);
+std::vector<double> write_numbers(const glm::vec3& v);
+
 /// "1 2 3", for texts that name a light.
 std::string write_vector(const glm::vec3& v);
 

@@ -122,6 +122,12 @@ std::vector<LightNumber> list_numbers(PointLight& point) {
   return numbers;
 }
 
+TomlEntries write_light(const PointLight& point) {
+  return {{"position", write_numbers(point.position_ws)},
+          {"radius", write_number(point.radius_m)},
+          {"reference", write_number(point.reference_m)}};
+}
+
 LightMetadata light_metadata(const PointLight& point) {
   return {{"light_position_ws", write_vector(point.position_ws)},
           {"light_reference_m", static_cast<double>(point.reference_m)},

@@ -28,6 +28,7 @@ void aim_light(PointLight& point, const glm::vec3& center_ws);
 PointLight checked_light(const PointLight& point, const std::string& where);
 std::string describe_light(const PointLight& point);
 std::vector<LightNumber> list_numbers(PointLight& point);
+TomlEntries write_light(const PointLight& point);
 LightMetadata light_metadata(const PointLight& point);
 std::string light_content(const PointLight& point);
 int count_layers(const PointLight& point, const MapWindow* window, const FitRule& rule);

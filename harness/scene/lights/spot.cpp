@@ -135,6 +135,18 @@ std::vector<LightNumber> list_numbers(Spot& spot) {
   return numbers;
 }
 
+TomlEntries write_light(const Spot& spot) {
+  TomlEntries entries = {{"position", write_numbers(spot.position_ws)},
+                         {"target", write_numbers(spot.target_ws)},
+                         {"cone_deg", write_number(spot.cone_deg)},
+                         {"inner_cone_deg", write_number(std::min(spot.inner_cone_deg, spot.cone_deg))}};
+  if (is_rectangle(spot))
+    entries["size"] = std::vector{write_number(spot.size_m.x), write_number(spot.size_m.y)};
+  else
+    entries["radius"] = write_number(spot.radius_m);
+  return entries;
+}
+
 LightMetadata light_metadata(const Spot& spot) {
   return {{"light_position_ws", write_vector(spot.position_ws)},
           {"light_target_ws", write_vector(spot.target_ws)},

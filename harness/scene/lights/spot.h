@@ -39,6 +39,7 @@ void aim_light(Spot& spot, const glm::vec3& center_ws);
 Spot checked_light(const Spot& spot, const std::string& where);
 std::string describe_light(const Spot& spot);
 std::vector<LightNumber> list_numbers(Spot& spot);
+TomlEntries write_light(const Spot& spot);
 LightMetadata light_metadata(const Spot& spot);
 std::string light_content(const Spot& spot);
 int count_layers(const Spot& spot, const MapWindow* window, const FitRule& rule);

@@ -238,6 +238,11 @@ std::vector<LightNumber> list_numbers(Sun& sun) {
   return {{"angular diameter", "degrees", &sun.angular_diameter_deg, 0.0f, 20.0f}};
 }
 
+TomlEntries write_light(const Sun& sun) {
+  return {{"direction", write_numbers(sun.direction_ws)},
+          {"angular_diameter_deg", write_number(sun.angular_diameter_deg)}};
+}
+
 LightMetadata light_metadata(const Sun& sun) {
   return {{"light_direction_ws", write_vector(sun.direction_ws)},
           {"light_angular_diameter_deg", static_cast<double>(sun.angular_diameter_deg)}};

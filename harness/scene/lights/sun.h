@@ -38,6 +38,7 @@ void aim_light(Sun& sun, const glm::vec3& center_ws);
 Sun checked_light(const Sun& sun, const std::string& where);
 std::string describe_light(const Sun& sun);
 std::vector<LightNumber> list_numbers(Sun& sun);
+TomlEntries write_light(const Sun& sun);
 LightMetadata light_metadata(const Sun& sun);
 std::string light_content(const Sun& sun);
 int count_layers(const Sun& sun, const MapWindow* window, const FitRule& rule);

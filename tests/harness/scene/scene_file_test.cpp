@@ -232,6 +232,15 @@ TEST(SceneFileTest, CameraAtItsTarget_IsAnError) {
   EXPECT_EQ(complaint_about(replaced(kBase, "[0, 2, 5]", "[0, 0, 0]")).line, "6");
 }
 
+TEST(SceneFileTest, OrthographicHeight_IsGivenInPlaceOfAFieldOfView) {
+  const std::string height = "target = [0, 0, 0]\northographic_height = 3.5\n";
+  const Scene scene = load_text(replaced(kBase, "target = [0, 0, 0]\n", height));
+  EXPECT_EQ(scene.cameras[0].orthographic_height_m, 3.5f);
+  const Complaint c = complaint_about(replaced(kBase, "target = [0, 0, 0]\n", height + "vertical_fov_deg = 40\n"));
+  EXPECT_THAT(c.message, AllOf(HasSubstr("[camera]"), HasSubstr("give one")));
+  EXPECT_EQ(c.line, "7");
+}
+
 TEST(SceneFileTest, NoCamera_IsFramed) {
   const Scene scene = load_text(replaced(kBase, "[camera]\nposition = [0, 2, 5]\ntarget = [0, 0, 0]\n", ""));
   EXPECT_EQ(scene.cameras.size(), 1U);
