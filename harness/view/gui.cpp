@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "filters/base/error.h"
+#include "harness/view/save.h"
 #include "harness/view/save_picture.h"
 #include "harness/view/times_panel.h"
 
@@ -132,8 +133,8 @@ void Gui::obey(Command command) {
       });
       break;
     case Command::kSavePicture: save("picture", [this](const auto& stem) { save_picture(stem); }); break;
-    case Command::kSaveScene: break;
-    case Command::kSaveExperiment: break;
+    case Command::kSaveScene: save_state("scene", save_scene); break;
+    case Command::kSaveExperiment: save_state("experiment", save_experiment); break;
     case Command::kQuit: window_.close(); break;
   }
 }
@@ -162,9 +163,9 @@ void Gui::lay_out_status() {
 }
 
 void Gui::lay_out_help() {
-  const glm::vec2 size(window_.size());
-  ImGui::SetNextWindowPos({0.5f * size.x, 0.5f * size.y}, ImGuiCond_Appearing, {0.5f, 0.5f});
-  ImGui::SetNextWindowSize({36.0f * ImGui::GetFontSize(), 0.0f});
+  const glm::vec2 area = free_area();
+  ImGui::SetNextWindowPos({0.5f * area.x, 0.5f * area.y}, ImGuiCond_Appearing, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({std::min(36.0f * ImGui::GetFontSize(), area.x), 0.0f});
   ImGui::Begin("Keys and mouse", &look_.help, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse);
   if (ImGui::BeginTable("keys", 2)) {
     ImGui::TableSetupColumn("key", ImGuiTableColumnFlags_WidthStretch, 1.0f);
@@ -266,6 +267,16 @@ void Gui::save(const std::string& what, const std::function<void(const std::file
   } catch (const Error& error) {
     bench_.say(error.what());
   }
+}
+
+/// What is saved is what is shown from then on: a file keeps directions as it reads them.
+void Gui::save_state(const std::string& what,
+                     void (*write)(const ViewState& state, const std::filesystem::path& file)) {
+  Changes changes;
+  changes.camera = changes.light = true;
+  bench_.change(changes, settle);
+  bench_.draw();
+  save(what, [&](const std::filesystem::path& stem) { write(bench_.state(), std::filesystem::path(stem) += ".toml"); });
 }
 
 void Gui::save_picture(const std::filesystem::path& stem) {

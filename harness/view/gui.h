@@ -72,6 +72,7 @@ class Gui {
   void lay_out_inspection();
   void draw_divider();
   void save(const std::string& what, const std::function<void(const std::filesystem::path& stem)>& write);
+  void save_state(const std::string& what, void (*write)(const ViewState& state, const std::filesystem::path& file));
   void save_picture(const std::filesystem::path& stem);
 };
 

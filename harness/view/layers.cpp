@@ -67,8 +67,7 @@ ShownLayer show_blockers(Layers& layers, const Layer& layer, std::size_t side) {
       return {picture_of(layers, side), truth ? truth->absent : "the truth is being traced"};
     return {layers.upload(layer.id + ".truth", bench.drawings(), [&] { return make_blocker_image(*truth); }), {}};
   }
-  const gl::Texture& distance = bench.stage().blocker_distance(bench.state());
-  return {layers.upload(layer.id, bench.drawings(), [&] { return render::read_image(distance, 1); }), {}};
+  return {layers.upload(layer.id, bench.drawings(), [&] { return bench.stage().blocker_distance(bench.state()); }), {}};
 }
 
 std::vector<Layer> make_layers() {

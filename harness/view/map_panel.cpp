@@ -10,7 +10,7 @@
 namespace shadowbench::view {
 namespace {
 
-constexpr float kPanelSide = 400.0f;
+constexpr float kLargestSide = 400.0f;
 constexpr ImU32 kReceiverInk = IM_COL32(255, 60, 60, 255);
 constexpr ImU32 kKernelInk = IM_COL32(255, 200, 40, 255);
 constexpr ImU32 kReadInk = IM_COL32(255, 255, 255, 200);
@@ -32,7 +32,10 @@ void MapPanel::lay_out(Look& look, const std::optional<glm::ivec2>& pixel, std::
   content_ = std::min(content_, contents.size() - 1);
   widgets_.choose("map.content", "content", contents, content_);
   widgets_.slide("map.zoom", "zoom", {1.0, 128.0, true, false, ""}, zoom_, "Around the receiver under the pointer.");
-  show_map(static_cast<int>(kPanelSide * scale), footprint_ ? footprint_->receiver.layer : 0);
+  // What stands above and below the map takes ten lines.
+  const float room = ImGui::GetIO().DisplaySize.y - 60.0f * scale - 10.0f * ImGui::GetTextLineHeightWithSpacing();
+  const float side_pixels = std::clamp(room, 100.0f * scale, kLargestSide * scale);
+  show_map(static_cast<int>(side_pixels), footprint_ ? footprint_->receiver.layer : 0);
   ImGui::End();
 }
 

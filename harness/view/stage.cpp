@@ -10,13 +10,14 @@
 namespace shadowbench::view {
 namespace {
 
-/// A lookup whose visibility is the distance to what the map holds for a receiver.
+/// A lookup whose visibility is -1 less the distance to what the map holds for a receiver: what is 0 or more stands for
+/// pixels that no filter is asked about.
 filters::FilterRequest make_blocker_lookup() {
   filters::FilterRequest request;
   request.spec = filters::parse_filter(
       "/*+++\ntitle = \"Distance to the blocker\"\nsource = \"none\"\nkind = \"other\"\n+++*/\n"
       "float visibility(Receiver r) {\n"
-      "  return max(r.depth_unbiased - fetch_depth(r, vec2(0.0)), 0.0) * r.depth_range_ws;\n}\n",
+      "  return -1.0 - max(r.depth_unbiased - fetch_depth(r, vec2(0.0)), 0.0) * r.depth_range_ws;\n}\n",
       "blocker.glsl");
   return request;
 }
@@ -46,7 +47,6 @@ void Stage::draw(const ViewState& state, const Changes& changes) {
   const bool refit = !light_ || changes.light || changes.map || follows || pad != pad_texels_;
   const bool other_map = refit && draw_map(state, changes.map);
   pad_texels_ = pad;
-  if (refit) blocker_passes_.reset();
   for (std::size_t side = 0; side < kSides; ++side)
     draw_side(state, side, other_map || changes.filter[side], refit || changes.values[side]);
   for (SideDrawing& side : sides_) side.shaded = glm::ivec2(0);
@@ -61,7 +61,6 @@ void Stage::draw_gbuffer(const ViewState& state) {
       side.picture.emplace("picture", GL_RGBA32F, width, height);
     }
     unseen_.emplace("timed visibility", GL_R32F, width, height);
-    blockers_.emplace("distance to the blocker", GL_R32F, width, height);
     truth_.reset();
   }
   gbuffer_->draw(renderer_.shaders, geometry_, state.scene, state.active_camera());
@@ -162,13 +161,14 @@ void Stage::look_up_nothing(std::size_t side) {
   sides_[side].empty.passes.front()->lookup(*gbuffer_, light_->map, *unseen_);
 }
 
-const gl::Texture& Stage::blocker_distance(const ViewState& state) {
-  if (!blocker_passes_) {
-    blocker_passes_ =
-        measure::make_filter_passes(renderer_, state.options, state.scene, *light_, make_blocker_lookup());
-    blocker_passes_->lookup(*gbuffer_, light_->map, *blockers_);
-  }
-  return blockers_->texture();
+images::Image Stage::blocker_distance(const ViewState& state) {
+  render::ImageTarget target("distance to the blocker", GL_R32F, gbuffer_->width(), gbuffer_->height());
+  const auto passes =
+      measure::make_filter_passes(renderer_, state.options, state.scene, *light_, make_blocker_lookup());
+  passes->lookup(*gbuffer_, light_->map, target);
+  images::Image distance = render::read_image(target.texture(), 1);
+  for (float& value : distance.texels) value = value < 0.0f ? -1.0f - value : 0.0f;
+  return distance;
 }
 
 }  // namespace shadowbench::view

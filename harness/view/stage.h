@@ -63,9 +63,9 @@ class Stage {
   void look_up(std::size_t side);
   void look_up_nothing(std::size_t side);
 
-  /// The distance in metres from each receiver towards the light to the surface that the map holds for it, R32F; 0
-  /// where there is none before it. Cost: a lookup.
-  const gl::Texture& blocker_distance(const ViewState& state);
+  /// The distance in metres from each receiver towards the light to the surface that the map holds for it, rows top to
+  /// bottom; 0 where there is none before it. Cost: a lookup that is compiled.
+  images::Image blocker_distance(const ViewState& state);
 
  private:
   struct SideDrawing {
@@ -85,8 +85,6 @@ class Stage {
   std::array<SideDrawing, kSides> sides_;
   std::optional<gl::Texture> truth_;
   std::optional<render::ImageTarget> unseen_;  ///< what timed lookups draw into
-  std::optional<render::ImageTarget> blockers_;
-  std::unique_ptr<render::FilterPasses> blocker_passes_;  ///< null where the light or the map has changed
 
   void draw_gbuffer(const ViewState& state);
   bool draw_map(const ViewState& state, bool map_changed);

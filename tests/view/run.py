@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+"""Uses the window of `shadowbench view` as a person does, on a display that nobody sees.
+
+    python3 tests/view/run.py --program build/tests/shadowbench [--only NAME] [--figures]
+
+Needs Xvfb, xdotool and oiiotool. With --figures it measures times as well, for which the machine should do nothing else.
+"""
+
+import argparse
+import os
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "exr"))
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from recompute import ExrFile  # noqa: E402
+from window import Display, Window  # noqa: E402
+
+FIXED = ["--size", "480x270", "--map-size", "256"]
+FILTER = """/*+++
+title = "Halved"
+source = "none"
+kind = "other"
+[param.factor]
+default = 0.5
+min = 0.0
+max = 1.0
+unit = "1"
+text = "what visibility is multiplied by"
++++*/
+float visibility(Receiver r) { return factor * compare_nearest(r, vec2(0.0), r.depth); }
+"""
+
+
+def read_part(path, name, folder):
+    width, height, channels, values = ExrFile(Path(path), folder).part(name)
+    return width, height, list(values)[::channels] if channels > 1 else list(values)
+
+
+def test_no_display_is_code_4(program, folder):
+    environment = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    done = subprocess.run([program, "view", "cubes"], env=environment, capture_output=True, text=True)
+    assert done.returncode == 4, done
+    assert done.stderr.count("\n") == 1 and "display" in done.stderr.lower(), done.stderr
+
+
+def test_bad_input_is_refused_before_a_window_opens(program, folder):
+    for arguments, code in ((["nowhere"], 2), (["cubes", "--left", "vsn"], 2), (["cubes", "--size", "12"], 2),
+                            (["cubes", "--filter-file", str(folder / "none.glsl")], 5), (["missing.toml"], 3)):
+        done = subprocess.run([program, "view", *arguments], capture_output=True, text=True, timeout=60)
+        assert done.returncode == code, (arguments, done)
+        assert done.stderr.count("\n") == 1, done.stderr
+
+
+def test_divider_follows_the_mouse(program, folder):
+    window = Window(program, folder, ["cubes", *FIXED, "--right", "none"])
+    window.drag(window.place("divider"), (-120, 0))
+    assert abs(window.last()["divider"] - (0.5 - 120 / 480)) < 0.02, window.last()
+    assert not any(frame["drawn"] for frame in window.frames[-4:]), "a divider that moves draws no pass anew"
+    window.close()
+
+
+def test_parameter_is_seen_in_the_next_frame(program, folder):
+    window = Window(program, folder, ["cubes", *FIXED, "--left", "vsm", "--right", "none"])
+    before = window.last()["left.radius"]
+    since = window.now()
+    window.click("left.radius", 0.5)
+    changed = window.wait("another radius", lambda frame: frame["left.radius"] != before, since=since)
+    assert changed["drawn"], "the frame that takes the value draws with it"
+    window.close()
+
+
+def test_mouse_turns_camera_and_light(program, folder):
+    window = Window(program, folder, ["cubes", *FIXED, "--right", "none"])
+    first = read_part(window.save("ctrl+p", "picture") + ".exr", "left.visibility", folder)
+    window.drag((120, 200), (60, 0))
+    turned = read_part(window.save("ctrl+p", "picture") + ".exr", "left.visibility", folder)
+    assert turned != first, "a drag orbits"
+    window.key("r")
+    window.pause(0.5)
+    assert read_part(window.save("ctrl+p", "picture") + ".exr", "left.visibility", folder) == first, "R goes back"
+    since = window.now()
+    window.send("keydown", "shift")
+    window.drag((120, 200), (60, 0))
+    window.send("keyup", "shift")
+    window.wait("a drawing", lambda frame: frame["drawn"], since=since)
+    assert read_part(window.save("ctrl+p", "picture") + ".exr", "left.visibility", folder) != first, "the light moves"
+    since = window.now()
+    window.send("keydown", "w")
+    window.wait("a flight", lambda frame: frame["drawn"], since=since)
+    window.send("keyup", "w")
+    window.close()
+
+
+def test_saved_filter_is_live(program, folder):
+    file = folder / "halved.glsl"
+    file.write_text(FILTER)
+    window = Window(program, folder, ["cubes", *FIXED, "--filter-file", str(file), "--right", "none"])
+    first = read_part(window.save("ctrl+p", "picture") + ".exr", "left.visibility", folder)
+    since, begun = window.now(), time.monotonic()
+    file.write_text(FILTER.replace("factor * compare", "0.25 * factor * compare"))
+    frame = window.wait("a drawing", lambda frame: frame["drawn"], since=since)
+    seconds = frame["t"] + 1e-3 * frame["ms"] - begun
+    second = read_part(window.save("ctrl+p", "picture") + ".exr", "left.visibility", folder)
+    lit = first[2].index(0.5)
+    assert second[2][lit] == 0.125, second[2][lit]
+    # A mistake is said with file and line over the last good image.
+    since = window.now()
+    file.write_text(FILTER.replace("compare_nearest(", "compare_neerest("))
+    frame = window.wait("a fault", lambda frame: frame["left.fault"], since=since)
+    line = FILTER.count("\n")
+    assert f"halved.glsl:{line}" in frame["left.fault"] and "compare_neerest" in frame["left.fault"], frame["left.fault"]
+    assert "fault" in window.widgets, "the fault is shown"
+    assert read_part(window.save("ctrl+p", "picture") + ".exr", "left.visibility", folder) == second, "the good image stays"
+    # The front matter too.
+    since = window.now()
+    file.write_text(FILTER.replace("min = 0.0", "minimum = 0.0"))
+    window.wait("a message", lambda frame: "halved.glsl" in frame["message"], since=since)
+    since = window.now()
+    file.write_text(FILTER)
+    window.wait("the end of the fault", lambda frame: not frame["left.fault"] and not frame["message"], since=since)
+    assert read_part(window.save("ctrl+p", "picture") + ".exr", "left.visibility", folder) == first, "mended"
+    window.close()
+    return f"a saved file was live after {seconds:.2f} s"
+
+
+def test_run_on_the_saved_experiment_gives_the_same_images(program, folder):
+    window = Window(program, folder, ["cubes", *FIXED, "--left", "vsm:radius=3", "--right", "tent3x3"])
+    window.drag((120, 200), (40, -20))
+    window.send("keydown", "shift")
+    window.drag((120, 200), (30, 10))
+    window.send("keyup", "shift")
+    experiment = Path(window.save("ctrl+e", "experiment") + ".toml")
+    picture = window.save("ctrl+p", "picture") + ".exr"
+    window.close()
+    subprocess.run([program, "run", str(experiment), "--out", str(folder / "run"), "--gl", "glfw", "--rounds", "1", "--gpu", "none",
+                    "--phases", "1", "--no-attribution", "--grids"], check=True, capture_output=True)
+    drawn = next((folder / "run").glob("*.exr"))
+    parts = subprocess.run(["oiiotool", "--info", "-a", "-v", str(drawn)], check=True, capture_output=True, text=True).stdout
+    for side, filter_id in (("left", "vsm"), ("right", "tent3x3")):
+        name = next(part for part in (line.split('"')[1] for line in parts.splitlines() if "oiio:subimagename" in line)
+                    if part.startswith(filter_id) and part.endswith(".visibility"))
+        assert read_part(drawn, name, folder) == read_part(picture, f"{side}.visibility", folder), f"{side}: {name}"
+
+
+def test_truth_comes_while_the_window_answers(program, folder):
+    window = Window(program, folder, ["cubes", *FIXED, "--right", "truth"])
+    window.key("Next")
+    window.key("Next")
+    window.wait("the error's layer", lambda frame: frame["layer"] == "error")
+    window.wait("the whole truth", lambda frame: frame["truth"] == 1.0, 120.0)
+    error = read_part(window.save("ctrl+p", "picture") + ".exr", "truth.area", folder)[2]
+    assert min(error) == 0.0 and max(error) == 1.0, "shadow and light"
+    window.close()
+
+
+def test_every_key_and_panel(program, folder):
+    window = Window(program, folder, ["lamp", "--size", "640x800", "--map-size", "256", "--left", "none", "--right", "vsm"])
+    for key in ("F1", "m", "n", "Tab", "space", "space", "x", "c", "l", "h", "h", "F1", *["Next"] * 12, *["Prior"] * 3, "r"):
+        window.key(key)
+        window.pause(0.25)
+    assert window.last()["left"] == "vsm", "X exchanges the sides"
+    window.choose("map_size", "512")
+    window.choose("map_format", "d16")
+    for filter_id, name in (("ray-traced truth", "truth"), ("pcss", "pcss")):
+        since = window.now()
+        window.choose("right.filter", filter_id)
+        window.wait(filter_id, lambda frame: frame["right"] == name, since=since)
+    window.close()
+
+
+def measure_figures(program, folder):
+    size = ["--size", "960x540"]
+    window = Window(program, folder, ["cubes", *size, "--left", "tent3x3", "--right", "tent3x3"])
+    window.wait("the whole truth", lambda frame: frame["busy"] == 0.0, 120.0)
+    for what, shift in (("camera", False), ("light", True)):
+        if shift:
+            window.send("keydown", "shift")
+        window.move(300, 300)
+        window.send("mousedown", 1)
+        window.pause(0.3)
+        since, end = window.now(), time.monotonic() + 5.0
+        while time.monotonic() < end:
+            window.send("mousemove_relative", "--", 1, 0)
+        window.send("mouseup", 1)
+        if shift:
+            window.send("keyup", "shift")
+        window.pause(0.5)
+        frames = [frame for frame in window.frames[since:] if frame["drawn"]]
+        gaps = [b["t"] - a["t"] for a, b in zip(frames, frames[1:])]
+        print(f"{what} moves: {1 / statistics.median(gaps):.1f} frames a second, median of {len(frames)}; "
+              f"longest frame {max(frame['ms'] for frame in frames):.0f} ms")
+    window.wait("the whole truth", lambda frame: frame["truth"] == 1.0, 120.0)
+    # While truth is traced: from a key to the frame that shows what it does.
+    waits = []
+    window.drag((300, 300), (40, 0))
+    while window.last()["truth"] < 1.0 and len(waits) < 40:
+        since, layer, begun = window.now(), window.last()["layer"], time.monotonic()
+        window.key("Next")
+        frame = window.wait("another layer", lambda frame: frame["layer"] != layer, since=since)
+        waits.append(1e3 * (frame["t"] - begun) + frame["ms"])
+        window.key("Prior")
+        window.pause(0.2)
+    print(f"while truth is traced: answers within {statistics.median(waits):.0f} ms, the longest of {len(waits)} {max(waits):.0f} ms")
+    window.close()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", type=Path, required=True)
+    parser.add_argument("--only", default="")
+    parser.add_argument("--figures", action="store_true")
+    arguments = parser.parse_args()
+    program = arguments.program.resolve()
+    missing = [tool for tool in ("Xvfb", "xdotool", "oiiotool") if shutil.which(tool) is None]
+    if missing:
+        print(f"SKIPPED: {', '.join(missing)} is not installed")
+        return 77
+    display = Display()
+    failed = []
+    tests = [(name[5:], test) for name, test in globals().items() if name.startswith("test_") and arguments.only in name]
+    if arguments.figures:
+        tests = [("figures", measure_figures)]
+    for name, test in tests:
+        with tempfile.TemporaryDirectory() as folder:
+            begun = time.monotonic()
+            try:
+                note = test(program, Path(folder))
+                print(f"ok      {name} ({time.monotonic() - begun:.1f} s){': ' + note if note else ''}", flush=True)
+            except (AssertionError, subprocess.SubprocessError, StopIteration) as error:
+                failed.append(name)
+                print(f"FAILED  {name}: {error!r}", flush=True)
+                subprocess.run(["pkill", "-9", "-P", str(os.getpid()), "-x", program.name], check=False)
+    display.close()
+    print(f"{len(tests) - len(failed)} of {len(tests)} passed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
