@@ -49,9 +49,8 @@ Widgets::Range bias_range(const std::string& key) {
 SettingsPanel::SettingsPanel(Workbench& bench, Widgets widgets) : bench_(bench), widgets_(widgets) {}
 
 void SettingsPanel::lay_out(Look& look) {
-  choices_.clear();
+  choices_ = {kTruth};
   for (const filters::FilterSpec& spec : bench_.catalogue().filters()) choices_.push_back(spec.id);
-  choices_.emplace_back(kTruth);
   show_look(look);
   for (std::size_t side = 0; side < kSides; ++side) show_side(side);
   show_light();

@@ -20,7 +20,7 @@ class SettingsPanel {
  private:
   Workbench& bench_;
   Widgets widgets_;
-  std::vector<std::string> choices_;  ///< of a side: the filters by id, and the truth
+  std::vector<std::string> choices_;  ///< of a side: the truth, and the filters by id
   double bias_amount_ = 0.0;
 
   void show_look(Look& look);
