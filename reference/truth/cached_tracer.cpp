@@ -67,6 +67,12 @@ const Occluders& CachedTracer::occluders() {
   return *occluders_;
 }
 
+const SampleSets& CachedTracer::samples(const AreaLight& light) {
+  const auto found = samples_.find(light.shape());
+  if (found != samples_.end()) return found->second;
+  return samples_.emplace(light.shape(), make_light_samples(light, settings_)).first->second;
+}
+
 Layers CachedTracer::find_or_trace(const ReceiverImage& receivers, const std::string& what, std::size_t count,
                                    const std::function<Layers()>& trace) {
   if (receivers.content.empty()) return trace();
@@ -87,7 +93,7 @@ ViewRays CachedTracer::trace_view(const ReceiverImage& receivers, const AreaLigh
                                        name_vector(light.centre_direction(glm::dvec3(0.0))),
                                        name_vector(light.half_u()), name_vector(light.half_v()));
   Layers layers = find_or_trace(receivers, what, kViewLayers, [&] {
-    Layers traced = to_layers(trace_area(occluders(), receivers, light, settings_));
+    Layers traced = to_layers(trace_area(occluders(), receivers, light, settings_, samples(light)));
     traced.push_back(trace_hard(occluders(), receivers, light, settings_.stop));
     traced.push_back(trace_first_blockers(occluders(), receivers, light, settings_.stop));
     return traced;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,9 +59,11 @@ class CachedTracer {
   TraceSettings settings_;
   std::string geometry_;  ///< names all meshes and the code that traces; empty until it is needed
   std::optional<Occluders> occluders_;
+  std::map<AreaLight::Shape, SampleSets> samples_;  ///< of lights, made when they are first needed
 
   const std::string& geometry();
   const Occluders& occluders();
+  const SampleSets& samples(const AreaLight& light);
 
   /// Returns the `count` layers that `what` names: from the cache, or from `trace`, and then kept.
   Layers find_or_trace(const ReceiverImage& receivers, const std::string& what, std::size_t count,

@@ -80,27 +80,37 @@ void for_each_group(const ReceiverImage& receivers, const std::stop_token& stop,
 
 TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
                             const TraceSettings& settings) {
-  const SampleSets samples(settings.max_points, settings.seed,
-                           [&](const glm::dvec2& u, const glm::dvec2&) { return light.map_sample(u); });
-  return trace_fans(occluders, receivers, samples, settings, [&](std::size_t i) {
-    const ReceiverPoint& point = receivers.points[i];
-    RayFan fan;
-    fan.origin = occluders.offset_origin(point.position_ws, point.normal_ws);
-    fan.direction = light.centre_direction(glm::dvec3(fan.origin));
-    const AreaLight::Aim aim = light.aim(glm::dvec3(fan.origin));
-    fan.direction_x = aim.u;
-    fan.direction_y = aim.v;
-    fan.cap = aim.cap;
-    fan.normal = point.normal_ws;
-    fan.reach = light.reach();
-    fan.origin_moves = false;
-    if (aim.cap < 1.0f) return fan;
-    // Inside a sphere: the rays end where they start.
-    fan.direction = point.normal_ws;
-    fan.direction_moves = false;
-    fan.reach = 0.0f;
-    return fan;
-  });
+  return trace_area(occluders, receivers, light, settings, make_light_samples(light, settings));
+}
+
+SampleSets make_light_samples(const AreaLight& light, const TraceSettings& settings) {
+  return {settings.max_points, settings.seed,
+          [&](const glm::dvec2& u, const glm::dvec2&) { return light.map_sample(u); }};
+}
+
+TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
+                            const TraceSettings& settings, const SampleSets& samples) {
+  return trace_fans(
+      occluders, receivers, samples, settings,
+      [&](std::size_t i) {
+        const ReceiverPoint& point = receivers.points[i];
+        RayFan fan;
+        fan.origin = occluders.offset_origin(point.position_ws, point.normal_ws);
+        fan.direction = light.centre_direction(glm::dvec3(fan.origin));
+        const AreaLight::Aim aim = light.aim(glm::dvec3(fan.origin));
+        fan.direction_x = aim.u;
+        fan.direction_y = aim.v;
+        fan.cap = aim.cap;
+        fan.normal = point.normal_ws;
+        fan.reach = light.reach();
+        fan.origin_moves = false;
+        if (aim.cap < 1.0f) return fan;
+        // Inside a sphere: the rays end where they start.
+        fan.direction = point.normal_ws;
+        fan.direction_moves = false;
+        fan.reach = 0.0f;
+        return fan;
+      });
 }
 
 TracedVisibility trace_kernel(const Occluders& occluders, const ReceiverImage& receivers, const filters::Kernel& kernel,

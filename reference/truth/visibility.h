@@ -68,6 +68,14 @@ inline constexpr std::uint32_t kRaysOfSettledPixel = 64;
 TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
                             const TraceSettings& settings);
 
+/// The points of a light that trace_area() sends rays to, the same for all lights of one shape. Cost: 0.05 s of one
+/// core.
+SampleSets make_light_samples(const AreaLight& light, const TraceSettings& settings);
+
+/// The same with these samples of make_light_samples(), for whoever traces often.
+TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
+                            const TraceSettings& settings, const SampleSets& samples);
+
 /// How a point's place in a map changes with its place in the world: texels for each metre.
 struct TexelGradients {
   glm::dvec3 u;

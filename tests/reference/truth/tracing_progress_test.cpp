@@ -126,7 +126,7 @@ TEST(TracingProgress, Parts_NeverFall) {
   EXPECT_EQ(parts.back(), 1.0);
 }
 
-class StoppedTrace : public ::testing::Test {
+class WatchedTracer : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = std::filesystem::temp_directory_path() / ("shadowbench.stopped." + std::to_string(getpid()));
@@ -140,7 +140,7 @@ class StoppedTrace : public ::testing::Test {
   CachedTracer tracer_{[] { return std::vector{make_sheet(-2.0, 0.0, -2.0, 2.0, 1.0)}; }, cache_, 1};
 };
 
-TEST_F(StoppedTrace, LeavesNothingInTheCache) {
+TEST_F(WatchedTracer, LeavesNothingInTheCache) {
   std::stop_source stop;
   std::atomic<int> tiles = 0;
   tracer_.heed(stop.get_token());
@@ -156,7 +156,7 @@ TEST_F(StoppedTrace, LeavesNothingInTheCache) {
                trace_area(make_edge(), receivers_, make_wide_sun(), {}));
 }
 
-TEST_F(StoppedTrace, StopsSingleRaysToo) {
+TEST_F(WatchedTracer, StopsSingleRaysToo) {
   const Occluders occluders = make_edge();
   std::stop_source stop;
   stop.request_stop();
@@ -164,8 +164,16 @@ TEST_F(StoppedTrace, StopsSingleRaysToo) {
   EXPECT_THROW(trace_first_blockers(occluders, receivers_, make_wide_sun(), stop.get_token()), TracingStopped);
 }
 
+/// Lights of one shape share the points that rays go to, others do not.
+TEST_F(WatchedTracer, OneTracer_SeesEveryShapeOfLight) {
+  const glm::dvec3 centre(0.1, 3.0, 0.0), half_u(0.5, 0.0, 0.0), half_v(0.0, 0.0, 0.5);
+  for (const AreaLight& light : {make_wide_sun(), AreaLight::make_rectangle(centre, half_u, half_v),
+                                 AreaLight::make_disk(centre, {0.0, -1.0, 0.0}, 0.5), make_wide_sun()})
+    expect_equal(tracer_.trace_view(receivers_, light).area, trace_area(make_edge(), receivers_, light, {}));
+}
+
 /// What was asked to stop between the area and the single rays is not kept without them.
-TEST_F(StoppedTrace, StopAfterTheArea_LeavesNothingInTheCache) {
+TEST_F(WatchedTracer, StopAfterTheArea_LeavesNothingInTheCache) {
   std::stop_source stop;
   tracer_.heed(stop.get_token());
   tracer_.listen([&](double part) {
