@@ -30,7 +30,7 @@ double memory_us(const Gpu& gpu, double bytes) { return bytes / (gpu.memory_gb_s
 Part largest(const std::array<Part, 3>& parts) { return *std::ranges::max_element(parts, {}, &Part::us); }
 
 Reads reads_of(const PrefilterWork& pass) {
-  const double count = pass.facts.samples + pass.facts.compares + pass.facts.gathers + pass.facts.loads;
+  const double count = pass.facts.reads();
   if (pass.read_bytes <= 4) return {count, 0.0, 0.0};
   return pass.read_bytes <= 8 ? Reads{0.0, count, 0.0} : Reads{0.0, 0.0, count};
 }

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "filters/base/atomic_file.h"
 #include "filters/base/content_hash.h"

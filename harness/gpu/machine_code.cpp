@@ -1,5 +1,6 @@
 #include "harness/gpu/machine_code.h"
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
 #include <set>

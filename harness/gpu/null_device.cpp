@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <optional>
 #include <string_view>
 #include <vulkan/vulkan_raii.hpp>
 
@@ -162,8 +164,9 @@ struct NullDevice::Vulkan {
   vk::raii::Instance instance = make_instance(context);
   vk::raii::PhysicalDevice physical;
   std::string driver;
-  SpirvShader vertex = compile_spirv(gl::FullscreenTriangle::vertex_source(), ShaderStage::kVertex);
-  std::optional<vk::raii::Device> device = std::nullopt;  ///< made when something is first compiled: it takes long
+  // Both are made when something is first compiled: glslang and a device take long to start.
+  std::optional<SpirvShader> vertex = std::nullopt;
+  std::optional<vk::raii::Device> device = std::nullopt;
 
   explicit Vulkan(const std::string& family) : physical(find_device(instance, family)) {
     const auto properties =
@@ -194,13 +197,14 @@ NullDevice::~NullDevice() = default;
 const std::string& NullDevice::driver() const { return vulkan_->driver; }
 
 records::ShaderFacts NullDevice::compile(const gl::ShaderSource& source, const std::string& format) {
+  if (!vulkan_->vertex) vulkan_->vertex = compile_spirv(gl::FullscreenTriangle::vertex_source(), ShaderStage::kVertex);
   const SpirvShader fragment = compile_spirv(source, ShaderStage::kFragment);
   try {
     if (!vulkan_->device) vulkan_->device = make_device(vulkan_->physical);
     const vk::raii::Device& device = *vulkan_->device;
     const vk::raii::DescriptorSetLayout set = make_layout(device, fragment.bindings);
     const vk::raii::PipelineLayout layout(device, vk::PipelineLayoutCreateInfo({}, *set));
-    const vk::raii::Pipeline pipeline = make_pipeline(device, layout, vulkan_->vertex, fragment, find_format(format));
+    const vk::raii::Pipeline pipeline = make_pipeline(device, layout, *vulkan_->vertex, fragment, find_format(format));
     const auto executables = device.getPipelineExecutablePropertiesKHR(vk::PipelineInfoKHR(*pipeline));
     for (std::uint32_t i = 0; i < executables.size(); ++i) {
       if (!(executables[i].stages & vk::ShaderStageFlagBits::eFragment)) continue;

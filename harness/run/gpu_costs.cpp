@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "filters/base/error.h"
@@ -36,10 +37,7 @@ gpu::Reads find_reads(const render::FilterCost& cost, const records::ShaderFacts
                       const records::ShaderFacts& empty) {
   if (cost.fetches) return {*cost.fetches - cost.fetches_64 - cost.fetches_128, cost.fetches_64, cost.fetches_128};
   // A filter that reads samplers itself is not counted while it draws: what stands in its code is what there is.
-  const auto count = [](const records::ShaderFacts& facts) {
-    return facts.samples + facts.compares + facts.gathers + facts.loads;
-  };
-  return {static_cast<double>(std::max(0, count(lookup) - count(empty))), 0.0, 0.0};
+  return {static_cast<double>(std::max(0, lookup.reads() - empty.reads())), 0.0, 0.0};
 }
 
 }  // namespace

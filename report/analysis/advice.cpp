@@ -271,7 +271,7 @@ void add_relaxations(Advice& advice, std::size_t demand) {
 }
 
 void require_gpu(const std::vector<records::CellRecord>& cells, const std::string& gpu) {
-  const std::vector<std::string> known = list_gpus(cells);
+  const std::vector<std::string> known = list_gpus(point_to(cells));
   if (known.empty()) throw Error(ErrorKind::kUsage, "the run has no costs on GPUs: run it again, with --gpu");
   if (std::ranges::find(known, gpu) == known.end())
     throw Error(ErrorKind::kUsage,

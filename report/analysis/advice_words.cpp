@@ -9,6 +9,7 @@
 #include <set>
 
 #include "report/analysis/summary.h"
+#include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
 
@@ -117,10 +118,7 @@ bool uses_time(const AdviceRequest& request) {
 
 void add_time_notes(std::vector<std::string>& notes, const std::vector<const records::CellRecord*>& cells,
                     const records::GlRecord& gl) {
-  std::set<std::string> gpus;
-  for (const records::CellRecord* cell : cells)
-    if (cell->gpu)
-      for (const auto& [name, gpu] : *cell->gpu) gpus.insert(name);
+  const std::vector<std::string> gpus = list_gpus(cells);
   if (gl.software)
     notes.push_back(
         fmt::format("Times are {}: a GPU ranks filters differently{}.", records::describe_clock(gl),

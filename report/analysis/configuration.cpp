@@ -78,6 +78,12 @@ void set_labels(std::vector<Configuration>& all) {
 
 }  // namespace
 
+std::vector<const records::CellRecord*> point_to(const std::vector<records::CellRecord>& cells) {
+  std::vector<const records::CellRecord*> pointers;
+  for (const records::CellRecord& cell : cells) pointers.push_back(&cell);
+  return pointers;
+}
+
 Place place_of(const records::CellRecord& cell) { return {cell.scene, cell.view}; }
 
 std::vector<Place> list_places(const std::vector<const records::CellRecord*>& cells) {

@@ -7,6 +7,9 @@
 
 namespace shadowbench::analysis {
 
+/// Points to each of some cells, in their order. Requires that the cells outlive what is returned.
+std::vector<const records::CellRecord*> point_to(const std::vector<records::CellRecord>& cells);
+
 /// Names what a filter is judged on: a scene, seen from one of its views.
 struct Place {
   std::string scene;

@@ -38,8 +38,7 @@ std::string list_some(const std::vector<std::string>& names) {
 /// Everything about a run's configurations that sentences are made of.
 class Finder {
  public:
-  explicit Finder(const Cells& cells) {
-    for (const records::CellRecord& cell : cells) all_.push_back(&cell);
+  explicit Finder(const Cells& cells) : all_(point_to(cells)) {
     places_ = list_places(all_);
     configurations_ = list_configurations(all_);
     std::vector<const records::CellRecord*> ranked = all_;

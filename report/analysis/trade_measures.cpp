@@ -7,6 +7,7 @@
 #include <set>
 
 #include "report/analysis/accuracy.h"
+#include "report/analysis/configuration.h"
 #include "report/analysis/limits.h"
 #include "report/analysis/summary.h"
 #include "report/records/absence.h"
@@ -106,11 +107,11 @@ const std::array<Measure, kErrorMeasures>& list_error_measures() {
   return kMeasures;
 }
 
-std::vector<std::string> list_gpus(const std::vector<records::CellRecord>& cells) {
+std::vector<std::string> list_gpus(const std::vector<const records::CellRecord*>& cells) {
   std::set<std::string> gpus;
-  for (const records::CellRecord& cell : cells)
-    if (cell.gpu)
-      for (const auto& [name, record] : *cell.gpu) gpus.insert(name);
+  for (const records::CellRecord* cell : cells)
+    if (cell->gpu)
+      for (const auto& [name, record] : *cell->gpu) gpus.insert(name);
   return {gpus.begin(), gpus.end()};
 }
 
@@ -126,7 +127,7 @@ std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& 
                         "what the filter costs while they stand still: its lookup, less a lookup that reads nothing, "
                         "per round; interval: 95 % of the median"),
       make_measure("cost.fetches", "no interval", "mean over the scenes", mean_of), bytes};
-  for (const std::string& gpu : list_gpus(cells)) {
+  for (const std::string& gpu : list_gpus(point_to(cells))) {
     measures.push_back({"gpu_" + gpu, fmt::format("estimate on {}, us", gpu),
                         "microseconds of the prefilter and of a million receivers' lookups on that GPU, which was not "
                         "there: made of its compiler's facts; no interval",

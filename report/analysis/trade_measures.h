@@ -36,7 +36,7 @@ const std::array<Measure, kErrorMeasures>& list_error_measures();
 std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& cells = {});
 
 /// Names the GPUs that cells have costs on.
-std::vector<std::string> list_gpus(const std::vector<records::CellRecord>& cells);
+std::vector<std::string> list_gpus(const std::vector<const records::CellRecord*>& cells);
 
 /// Names a measure with its unit: "time of the lookup, ms: CPU time (software rasteriser)".
 std::string name_axis(const Measure& measure, const records::GlRecord& gl);

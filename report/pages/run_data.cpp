@@ -163,11 +163,10 @@ json make_configuration(const analysis::Configuration& configuration, const std:
 
 json make_run_data(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                    const analysis::AdviceRequest& request) {
-  std::vector<const records::CellRecord*> all;
-  for (const records::CellRecord& cell : cells) all.push_back(&cell);
+  const std::vector<const records::CellRecord*> all = analysis::point_to(cells);
   const std::vector<analysis::Place> places = analysis::list_places(all);
   const std::vector<std::string> filters = analysis::list_filters(cells);
-  const std::vector<std::string> gpus = analysis::list_gpus(cells);
+  const std::vector<std::string> gpus = analysis::list_gpus(all);
   json data{{"unit", records::time_unit(run.gl)},
             {"measures", list_measures(run, gpus)},
             {"classes", json::array()},

@@ -142,8 +142,7 @@ page::Details make_group_details(const records::RunRecord& run, const std::vecto
 
 /// RMSE of scenes by filters: what the script's table begins with.
 page::Section make_table_section(const std::vector<records::CellRecord>& cells) {
-  std::vector<const records::CellRecord*> all;
-  for (const records::CellRecord& cell : cells) all.push_back(&cell);
+  const std::vector<const records::CellRecord*> all = analysis::point_to(cells);
   const std::vector<analysis::Place> places = analysis::list_places(all);
   records::TextTable table;
   table.header = {"filter", "kernel"};
@@ -163,10 +162,9 @@ page::Section make_table_section(const std::vector<records::CellRecord>& cells) 
 /// Facts and estimates for each GPU that the run names; nothing where it names none.
 std::optional<page::Section> make_gpu_section(const records::RunRecord& run,
                                               const std::vector<records::CellRecord>& cells) {
-  const std::vector<std::string> gpus = analysis::list_gpus(cells);
+  const std::vector<const records::CellRecord*> all = analysis::point_to(cells);
+  const std::vector<std::string> gpus = analysis::list_gpus(all);
   if (gpus.empty()) return std::nullopt;
-  std::vector<const records::CellRecord*> all;
-  for (const records::CellRecord& cell : cells) all.push_back(&cell);
   const std::vector<analysis::Configuration> configurations = analysis::list_configurations(all);
   page::Section section{"gpus", "Costs on GPUs that are not here", {}};
   page::Sentences sentences;

@@ -149,6 +149,9 @@ struct ShaderFacts {
   int loads = 0;              ///< reads of a texel without a sampler
   int loops = 0;
 
+  /// Reads of textures, of all four kinds.
+  int reads() const { return samples + compares + gathers + loads; }
+
   bool operator==(const ShaderFacts&) const = default;
 };
 

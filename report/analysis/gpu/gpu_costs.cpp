@@ -169,12 +169,11 @@ records::TextTable make_gpu_table(const std::vector<GpuCost>& costs) {
     const records::ShaderFacts* lookup = find_facts(*cost.record, "lookup");
     const records::ShaderFacts* empty = find_facts(*cost.record, "empty");
     if (!lookup || !empty || !cost.estimate_us) continue;
-    const auto reads = [](const records::ShaderFacts& f) { return f.samples + f.compares + f.gathers + f.loads; };
     table.rows.push_back({cost.configuration->name, records::format_number(cost.estimate_us),
                           records::format_number(cost.measured_ms), records::format_number(cost.lookup_us),
                           records::format_number(cost.prefilter_us), cost.record->estimate->bound_by,
                           fmt::format("{}", lookup->instructions - empty->instructions),
-                          fmt::format("{}", reads(*lookup) - reads(*empty)),
+                          fmt::format("{}", lookup->reads() - empty->reads()),
                           fmt::format("{}", lookup->vector_registers), fmt::format("{}", lookup->waves_per_simd)});
   }
   return table;

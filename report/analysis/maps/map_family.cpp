@@ -117,8 +117,7 @@ std::vector<MapFamily> list_map_families(const std::vector<records::CellRecord>&
     plain.back().fit.clear();
     plain.back().map_size = 0;
   }
-  CellPointers all;
-  for (const records::CellRecord& cell : plain) all.push_back(&cell);
+  const CellPointers all = point_to(plain);
   const auto places = list_places(all);
   std::vector<MapFamily> families;
   for (const Configuration& configuration : list_configurations(all)) {

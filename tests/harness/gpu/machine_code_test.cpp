@@ -32,6 +32,7 @@ TEST(MachineCode, ReadsAreOfTheirKind) {
   EXPECT_EQ(facts.samples, 3);
   EXPECT_EQ(facts.compares, 2);
   EXPECT_EQ(facts.gathers, 3);
+  EXPECT_EQ(facts.reads(), 10);
   EXPECT_EQ(facts.loops, 0);
 }
 

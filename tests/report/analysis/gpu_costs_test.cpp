@@ -31,16 +31,11 @@ CellRecord make_gpu_cell(const std::string& filter, double ms, double us) {
 }
 
 struct Costs {
-  explicit Costs(std::vector<CellRecord> made) : cells(std::move(made)) {
-    std::vector<const CellRecord*> all;
-    for (const CellRecord& cell : cells) all.push_back(&cell);
-    configurations = list_configurations(all);
-    costs = list_gpu_costs(configurations, "one");
-  }
+  explicit Costs(std::vector<CellRecord> made) : cells(std::move(made)) {}
 
   std::vector<CellRecord> cells;
-  std::vector<Configuration> configurations;
-  std::vector<GpuCost> costs;
+  std::vector<Configuration> configurations = list_configurations(point_to(cells));
+  std::vector<GpuCost> costs = list_gpu_costs(configurations, "one");
 };
 
 TEST(GpuCosts, OrdersAreComparedByRank) {

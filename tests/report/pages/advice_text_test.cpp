@@ -46,10 +46,8 @@ analysis::Advice advise_on(const std::vector<records::CellRecord>& cells, std::v
 }
 
 std::vector<std::string> list_labels(const std::vector<records::CellRecord>& cells) {
-  std::vector<const records::CellRecord*> pointers;
-  for (const records::CellRecord& cell : cells) pointers.push_back(&cell);
   std::vector<std::string> labels;
-  for (const analysis::Configuration& configuration : analysis::list_configurations(pointers))
+  for (const analysis::Configuration& configuration : analysis::list_configurations(analysis::point_to(cells)))
     labels.push_back(configuration.label);
   return labels;
 }
@@ -72,8 +70,7 @@ std::vector<std::string> list_names(const nlohmann::ordered_json& json) {
 TEST(Configurations, CellsOfOneChoice_AreTogetherWhateverTheScene) {
   std::vector<records::CellRecord> cells = make_cells();
   cells[5].view = "top";
-  std::vector<const records::CellRecord*> pointers;
-  for (const records::CellRecord& cell : cells) pointers.push_back(&cell);
+  const auto pointers = analysis::point_to(cells);
   const auto configurations = analysis::list_configurations(pointers);
   ASSERT_EQ(configurations.size(), 3U);
   EXPECT_THAT(configurations[1].cells, ElementsAre(&cells[2], &cells[3]));

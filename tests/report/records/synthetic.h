@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 
+#include "filters/base/temporary_files.h"
 #include "report/images/grid.h"
 #include "report/records/cell_key.h"
 #include "report/records/error_parts.h"
@@ -18,24 +19,14 @@
 namespace shadowbench::records {
 
 /// A folder of its own for one test, removed at the end.
-class TemporaryFolder {
+class TemporaryFolder : public ScratchFolder {
  public:
   explicit TemporaryFolder(const std::string& name)
-      : path_(std::filesystem::path(::testing::TempDir()) / ("shadowbench_" + name + "_" + std::to_string(getpid()))) {
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
+      : ScratchFolder(std::filesystem::path(::testing::TempDir()) /
+                      ("shadowbench_" + name + "_" + std::to_string(getpid()))) {
+    std::filesystem::remove_all(path());
+    std::filesystem::create_directories(path());
   }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
 };
 
 inline std::string read_text(const std::filesystem::path& file) {
