@@ -7,6 +7,7 @@
 #include <csignal>
 #include <memory>
 
+#include "filters/base/error.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/progress_bar.h"
 #include "harness/cli/run_arguments.h"

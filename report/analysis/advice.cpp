@@ -12,6 +12,7 @@
 
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
+#include "report/analysis/accuracy.h"
 #include "report/analysis/summary.h"
 #include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"

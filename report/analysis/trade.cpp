@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "report/analysis/cell_group.h"
 #include "report/analysis/summary.h"
 #include "report/files/file_name.h"
 #include "report/records/cell_key.h"

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "filters/model.h"
 #include "harness/render/bias/bias_theory.h"
 #include "harness/stress/case_tools.h"
 #include "harness/stress/heat_map.h"

@@ -1,5 +1,7 @@
 // `shadowbench run` and `list`, as a user calls them.
 
+#include <gmock/gmock.h>
+
 #include <nlohmann/json.hpp>
 #include <set>
 

@@ -1,8 +1,12 @@
 // Mistakes of published comparisons, replayed.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include <filesystem>
+
+#include "harness/stress/axis.h"
 #include "tests/harness/stress/stress_fixture.h"
 
 namespace shadowbench::stress {
