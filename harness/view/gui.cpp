@@ -99,6 +99,7 @@ void Gui::lay_out(double now_s) {
 }
 
 void Gui::obey(Command command) {
+  log_.note(last_s_, "key", std::ranges::find(list_keys(), command, &Key::command)->name);
   const ViewState& state = bench_.state();
   const std::size_t layers = Layers::list().size();
   switch (command) {

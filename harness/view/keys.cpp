@@ -11,7 +11,7 @@ namespace shadowbench::view {
 const std::vector<Key>& list_keys() {
   static const std::vector<Key> keys = {
       {Command::kHelp, GLFW_KEY_F1, false, "F1", "show or hide this list"},
-      {Command::kShare, GLFW_KEY_TAB, false, "Tab", "divider between the sides, or one side at a time"},
+      {Command::kShare, GLFW_KEY_T, false, "T", "divider between the sides, or one side at a time"},
       {Command::kFlip, GLFW_KEY_SPACE, false, "Space", "one side at a time: flip to the other"},
       {Command::kSwapSides, GLFW_KEY_X, false, "X", "exchange left and right"},
       {Command::kNextLayer, GLFW_KEY_PAGE_DOWN, false, "Page Down", "next layer: picture, visibility, error, ..."},

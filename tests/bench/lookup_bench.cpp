@@ -46,7 +46,7 @@ class LookupBench {
     std::vector<render::FilterPasses*> pointers;
     for (const auto& filter : filters_) pointers.push_back(filter.get());
     return measure::time_rounds(
-        pointers, 0, [] {}, map_, gbuffer_, timer_, options::RoundLimits::exactly(rounds), 1);
+        pointers, 0, {}, [] {}, map_, gbuffer_, timer_, options::RoundLimits::exactly(rounds), 1);
   }
 
  private:

@@ -161,7 +161,7 @@ def test_truth_comes_while_the_window_answers(program, folder):
 
 def test_every_key_and_panel(program, folder):
     window = Window(program, folder, ["lamp", "--size", "640x800", "--map-size", "256", "--left", "none", "--right", "vsm"])
-    for key in ("F1", "m", "n", "Tab", "space", "space", "x", "c", "l", "h", "h", "F1", *["Next"] * 12, *["Prior"] * 3, "r"):
+    for key in ("F1", "m", "n", "t", "space", "space", "x", "c", "l", "h", "h", "F1", *["Next"] * 12, *["Prior"] * 3, "r"):
         window.key(key)
         window.pause(0.25)
     assert window.last()["left"] == "vsm", "X exchanges the sides"
