@@ -49,6 +49,7 @@ struct RunArguments : DrawingArguments {
   bool stability = false;
   bool uncertainty = false;
   int grids = 0;  ///< 1: yes, -1: no, 0: where there are few filters
+  bool pictures = true;
   std::string shard;
   bool fresh = false;
   bool yes = false;

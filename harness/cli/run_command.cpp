@@ -1,10 +1,6 @@
 #include <fmt/format.h>
-#include <poll.h>
-#include <sys/prctl.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <memory>
 
 #include "filters/base/error.h"
@@ -159,6 +155,7 @@ options::RunOptions make_run_options(const RunArguments& arguments, std::vector<
   options.uncertainty = arguments.uncertainty;
   options.shard = parse_shard(arguments.shard);
   options.grids = arguments.grids > 0 || (arguments.grids == 0 && options.filters.size() <= kFiltersOfAGrid);
+  options.pictures = arguments.pictures;
   if (options.grids && options.shard.count > 1)
     fail("--shard needs --no-grids: a grid shows all filters of a view, and a shard has some of them");
   options.fresh = arguments.fresh;
@@ -166,13 +163,6 @@ options::RunOptions make_run_options(const RunArguments& arguments, std::vector<
   options.worker = arguments.worker;
   options.pad_texels = arguments.pad_texels;
   return options;
-}
-
-/// Ends this worker together with the run that waits for it and reads what it writes to standard error.
-void end_with_parent() {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  pollfd reader{STDERR_FILENO, 0, 0};
-  if (poll(&reader, 1, 0) > 0 && (reader.revents & POLLERR) != 0) raise(SIGKILL);  // the run had ended before that
 }
 
 void run_with_notes(const options::RunOptions& options, options::Progress& progress) {
@@ -199,10 +189,7 @@ void require_no_warnings(const std::filesystem::path& out) {
 }
 
 int run(const CommandLine& line, RunArguments& arguments) {
-  if (arguments.worker) {
-    end_with_parent();
-    return run_as_worker(make_run_options(arguments, line.words()));
-  }
+  if (arguments.worker) return run_as_worker(make_run_options(arguments, line.words()));
   if (!arguments.truth && arguments.attribution && line.has("--attribution"))
     fail(
         "--attribution takes apart the errors against traced truth, which --no-truth leaves out: leave one of them "

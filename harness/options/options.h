@@ -84,6 +84,7 @@ struct RunOptions {
   bool uncertainty = false;  ///< keep how far rounding and other seeds can move each pixel
   bool grids = true;  ///< compare all filters of a view in one picture and keep their float images; else each cell's
                       ///< pictures alone
+  bool pictures = true;  ///< draw what people look at beside the float images, which the window asks for alone
   Shard shard;
   std::string title;             ///< of the experiment
   bool fresh = false;            ///< measure again the cells that the report folder has

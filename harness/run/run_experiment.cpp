@@ -112,7 +112,7 @@ class Experiment {
     run_.work.truths_cached = cache_.loaded();
     cache_.prune(kMaxCacheBytes);
     steps_.begin_report();
-    if (options_.grids && !options_.worker) draw_all_lights(options_, plan, run_.gl);
+    if (options_.grids && options_.pictures && !options_.worker) draw_all_lights(options_, plan, run_.gl);
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
     if (!options_.worker) pages::write_report(options_.out, run_, list_keys(plan));
     steps_.finish();

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "harness/measure/stability_meter.h"
 #include "harness/run/exr_metadata.h"
@@ -124,9 +126,9 @@ void add_receiver_parts(std::vector<images::Part>& parts, const truth::ReceiverI
 void add_truth_parts(std::vector<images::Part>& parts, const measure::SceneTruth& truth,
                      const std::optional<metrics::ArtefactMasks>& masks) {
   parts.push_back({"truth.hard", {"Y"}, truth.hard, false});
-  parts.push_back({"truth.area", {"Y"}, truth.area, false});
+  parts.push_back({kTruthPart, {"Y"}, truth.area, false});
   parts.push_back(make_part("truth.standard_error", truth, truth.rays.area.standard_error));
-  parts.push_back(make_part("truth.mask", truth, truth.mask));
+  parts.push_back(make_part(kTruthMaskPart, truth, truth.mask));
   parts.push_back({kTruthPicturePart, {"R", "G", "B"}, truth.area_picture, true});
   add_receiver_parts(parts, truth.receivers.image);
   if (!masks) return;
@@ -255,6 +257,28 @@ std::string uncertainty_part(const std::string& label, const images::Uncertainty
 
 std::string phase_part(const std::string& label, std::size_t phase) { return fmt::format("{}.phase.{}", label, phase); }
 
+std::string error_part(const std::string& label, const records::ErrorPart& part) {
+  return fmt::format("{}.error.{}", label, part.id);
+}
+
+void take_float_images(measure::MeasuredCell& cell, std::vector<images::Part>& parts) {
+  const std::string& label = cell.label;
+  std::map<std::string, images::Image*> places = {{visibility_part(label), &cell.visibility},
+                                                  {picture_part(label), &cell.picture},
+                                                  {unbiased_part(label), &cell.unbiased}};
+  for (std::size_t i = 0; i < cell.phases.size(); ++i) places[phase_part(label, i)] = &cell.phases[i];
+  std::vector<images::Image> errors(records::list_error_parts().size());
+  for (std::size_t p = 0; p < errors.size(); ++p)
+    places[error_part(label, records::list_error_parts()[p])] = &errors[p];
+  for (const images::StabilityImage& each : images::list_stability_images())
+    places[stability_part(label, each)] = &(cell.stability.*each.image);
+  for (const images::UncertaintyImage& each : images::list_uncertainty_images())
+    places[uncertainty_part(label, each)] = &(cell.uncertainty.*each.image);
+  for (images::Part& part : parts)
+    if (const auto place = places.find(part.name); place != places.end()) *place->second = std::move(part.image);
+  if (!std::ranges::all_of(errors, &images::Image::empty)) cell.error_parts = std::move(errors);
+}
+
 void write_float_images(const options::RunOptions& options, const measure::SceneTask& task,
                         const measure::SceneMeasurement& measured, const measure::SceneTruth& truth,
                         const gl::GlInfo& info) {
@@ -266,10 +290,7 @@ void write_float_images(const options::RunOptions& options, const measure::Scene
     if (options.worker) parts.push_back({unbiased_part(cell.label), {"Y"}, cell.unbiased, false});
     for (std::size_t p = 0; p < cell.error_parts.size(); ++p) {
       if (cell.error_parts[p].empty()) continue;
-      parts.push_back({fmt::format("{}.error.{}", cell.label, records::list_error_parts()[p].id),
-                       {"Y"},
-                       cell.error_parts[p],
-                       false});
+      parts.push_back({error_part(cell.label, records::list_error_parts()[p]), {"Y"}, cell.error_parts[p], false});
     }
   }
   for (const measure::MeasuredCell& cell : measured.cells) {
@@ -281,6 +302,15 @@ void write_float_images(const options::RunOptions& options, const measure::Scene
   parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});
   if (!measured.ambient.empty()) parts.push_back({kAmbientPart, {"R", "G", "B"}, measured.ambient, true});
   images::write_exr(options.out / exr_name(options, task), parts, describe_task(options, task, measured, info));
+}
+
+void note_float_images(const options::RunOptions& options, const measure::SceneTask& task,
+                       measure::SceneMeasurement& measured) {
+  for (measure::MeasuredCell& cell : measured.cells) {
+    cell.record.images.exr = exr_name(options, task);
+    cell.record.images.parts = cell.label;
+    if (!options.pictures) cell.record.absent["images"] = "the run was made with --no-pictures";
+  }
 }
 
 void write_single_pictures(const options::RunOptions& options, const measure::SceneTask& task,
@@ -297,11 +327,7 @@ void write_pictures(const options::RunOptions& options, const measure::SceneTask
   images::write_grid(options.out / grid_name, make_grid(options, task, measured, truth, gl));
   on_part(0.5);
   write_shown(options, stem, measured, truth, [&](double part) { on_part(0.5 + 0.5 * part); });
-  for (measure::MeasuredCell& cell : measured.cells) {
-    cell.record.images.grid = grid_name;
-    cell.record.images.exr = exr_name(options, task);
-    cell.record.images.parts = cell.label;
-  }
+  for (measure::MeasuredCell& cell : measured.cells) cell.record.images.grid = grid_name;
 }
 
 }  // namespace shadowbench::run

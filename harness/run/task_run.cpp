@@ -154,11 +154,12 @@ void TaskRun::write_images(const measure::SceneTask& task, measure::SceneMeasure
     write_single_pictures(options_, task, measured, truth);
     return;
   }
-  if (!options_.worker) {
+  if (!options_.worker && options_.pictures) {
     write_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size));
     steps_.advance(0.2);
     write_pictures(options_, task, measured, truth, gl_, [this](double part) { steps_.advance(0.2 + 0.5 * part); });
   }
+  note_float_images(options_, task, measured);
   if (options_.border_page) draw_border_page(task);
   write_float_images(options_, task, measured, truth, renderer_.context->info());
 }

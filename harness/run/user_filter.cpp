@@ -104,19 +104,9 @@ measure::MeasuredCell read_cell(const options::RunOptions& options, const measur
   of_worker.map_sizes = {task.map_size};
   of_worker.sizes = {{options.width, options.height}};
   of_worker.fits = {options.fit};
-  const images::ExrFile file = images::read_exr(folder / exr_name(of_worker, task));
   cell.phases.resize(static_cast<std::size_t>(options.phases) - 1);
-  for (const images::Part& part : file.parts) {
-    for (std::size_t i = 0; i < cell.phases.size(); ++i)
-      if (part.name == phase_part(cell.label, i)) cell.phases[i] = part.image;
-    if (part.name == visibility_part(cell.label)) cell.visibility = part.image;
-    if (part.name == picture_part(cell.label)) cell.picture = part.image;
-    if (part.name == unbiased_part(cell.label)) cell.unbiased = part.image;
-    for (const images::UncertaintyImage& each : images::list_uncertainty_images())
-      if (part.name == uncertainty_part(cell.label, each)) cell.uncertainty.*each.image = part.image;
-    for (const images::StabilityImage& each : images::list_stability_images())
-      if (part.name == stability_part(cell.label, each)) cell.stability.*each.image = part.image;
-  }
+  images::ExrFile file = images::read_exr(folder / exr_name(of_worker, task));
+  take_float_images(cell, file.parts);
   return cell;
 }
 

@@ -3,70 +3,104 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <spawn.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
+#include <cstdint>
+#include <cstdlib>
 #include <cstring>
+#include <string_view>
+#include <utility>
 
 #include "filters/base/error.h"
-
-extern char** environ;
 
 namespace shadowbench::run {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-pid_t spawn_self(const std::vector<std::string>& arguments, int error_write_end) {
+/// What the new process does before it is the program; nothing here may take memory, which another thread may have
+/// locked.
+[[noreturn]] void become_worker(const char* program, char* const* words, int niceness, int error_write_end,
+                                pid_t parent) {
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(EXIT_FAILURE);  // it had ended before that
+  if (niceness > 0) setpriority(PRIO_PROCESS, 0, niceness);
+  dup2(open("/dev/null", O_WRONLY | O_CLOEXEC), STDOUT_FILENO);
+  dup2(error_write_end, STDERR_FILENO);
+  execv(program, words);
+  constexpr std::string_view kMessage = "shadowbench: the program's own file cannot be started\n";
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kMessage.data(), kMessage.size());
+  _exit(EXIT_FAILURE);
+}
+
+}  // namespace
+
+WorkerProcess::WorkerProcess(const std::vector<std::string>& arguments, const WorkerSetup& setup) {
   std::vector<std::string> words = {"shadowbench"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&files, error_write_end, STDERR_FILENO);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  pid_t pid = -1;
-  const int error = posix_spawn(&pid, "/proc/self/exe", &files, &attributes, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&files);
-  posix_spawnattr_destroy(&attributes);
-  if (error != 0) throw Error(ErrorKind::kOutput, fmt::format("cannot start a process: {}", std::strerror(error)));
-  return pid;
-}
-
-/// What a worker wrote.
-struct WorkerText {
-  std::string text;
-  bool complete = false;  ///< false: the deadline passed before the worker closed the pipe
-};
-
-WorkerText read_until(int fd, Clock::time_point deadline) {
-  WorkerText result;
-  std::array<char, 4096> buffer;
-  while (!result.complete) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    if (left <= 0) return result;
-    pollfd waiting{fd, POLLIN, 0};
-    if (poll(&waiting, 1, static_cast<int>(left)) <= 0) continue;
-    const ssize_t got = read(fd, buffer.data(), buffer.size());
-    if (got > 0) result.text.append(buffer.data(), static_cast<std::size_t>(got));
-    result.complete = got == 0 || (got < 0 && errno != EINTR);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    throw Error(ErrorKind::kOutput, fmt::format("cannot make a pipe for a process: {}", std::strerror(errno)));
+  pipe_ = ends[0];
+  const pid_t parent = getpid();
+  process_ = fork();
+  if (process_ == 0) become_worker(setup.program.c_str(), argv.data(), setup.niceness, ends[1], parent);
+  const int error = errno;
+  close(ends[1]);
+  if (process_ > 0) {
+    setpgid(process_, process_);  // as it does itself, so that it can be killed at once
+    return;
   }
-  return result;
+  close(pipe_);
+  throw Error(ErrorKind::kOutput, fmt::format("cannot start a process: {}", std::strerror(error)));
 }
 
-}  // namespace
+WorkerProcess::~WorkerProcess() {
+  if (process_ > 0) end();
+}
+
+bool WorkerProcess::listen(Clock::time_point deadline) {
+  std::array<char, 4096> buffer;
+  while (pipe_ >= 0) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    pollfd waiting{pipe_, POLLIN, 0};
+    if (poll(&waiting, 1, static_cast<int>(std::max<std::int64_t>(left, 0))) <= 0) {
+      if (left <= 0) return false;
+      continue;
+    }
+    const ssize_t got = read(pipe_, buffer.data(), buffer.size());
+    if (got > 0) text_.append(buffer.data(), static_cast<std::size_t>(got));
+    if (got == 0 || (got < 0 && errno != EINTR)) close(std::exchange(pipe_, -1));
+  }
+  return true;
+}
+
+WorkerOutcome WorkerProcess::end() {
+  const bool had_ended = pipe_ < 0;
+  if (!had_ended) {
+    kill(-process_, SIGKILL);
+    close(std::exchange(pipe_, -1));
+  }
+  int status = 0;
+  while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+  }
+  process_ = -1;
+  WorkerOutcome outcome{.error_text = text_};
+  if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
+  if (WIFEXITED(status) && had_ended) outcome.exit_code = WEXITSTATUS(status);
+  return outcome;
+}
 
 std::string clean_message(const std::string& text) {
   const std::string prefix = "shadowbench: ";
@@ -77,21 +111,11 @@ std::string clean_message(const std::string& text) {
 }
 
 WorkerOutcome run_worker(const std::vector<std::string>& arguments, double timeout_s) {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0)
-    throw Error(ErrorKind::kOutput, fmt::format("cannot make a pipe for a process: {}", std::strerror(errno)));
   const auto deadline = Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(timeout_s * 1000.0));
-  const pid_t pid = spawn_self(arguments, ends[1]);
-  close(ends[1]);
-  const WorkerText written = read_until(ends[0], deadline);
-  WorkerOutcome outcome{.timed_out = !written.complete, .error_text = written.text};
-  close(ends[0]);
-  if (outcome.timed_out) kill(-pid, SIGKILL);
-  int status = 0;
-  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
-  if (WIFEXITED(status) && !outcome.timed_out) outcome.exit_code = WEXITSTATUS(status);
+  WorkerProcess worker(arguments);
+  const bool ended = worker.listen(deadline);
+  WorkerOutcome outcome = worker.end();
+  outcome.timed_out = !ended;
   return outcome;
 }
 

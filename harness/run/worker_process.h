@@ -1,5 +1,9 @@
 #pragma once
 
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,11 +18,41 @@ struct WorkerOutcome {
   std::string error_text = {};  ///< what it wrote to standard error
 };
 
+/// What a worker process is.
+struct WorkerSetup {
+  std::filesystem::path program = "/proc/self/exe";  ///< this same program
+  int niceness = 0;                                  ///< 0 .. 19
+};
+
+/// A process of a program with other arguments, in a process group of its own. It is killed with this object, and with
+/// the thread that started it, however that ends; so are the workers of a worker. Its standard output is thrown away.
+class WorkerProcess {
+ public:
+  /// Throws Error(kOutput) when no process can be started.
+  explicit WorkerProcess(const std::vector<std::string>& arguments, const WorkerSetup& setup = {});
+  ~WorkerProcess();
+  WorkerProcess(const WorkerProcess&) = delete;
+  WorkerProcess& operator=(const WorkerProcess&) = delete;
+
+  /// Takes in what it writes to standard error until it ends, which is when this gives true, or until the deadline.
+  bool listen(std::chrono::steady_clock::time_point deadline);
+
+  /// What it has written so far.
+  const std::string& error_text() const { return text_; }
+
+  /// Kills it, unless it has ended, and tells how it ended.
+  WorkerOutcome end();
+
+ private:
+  pid_t process_ = -1;  ///< -1: none that could still be killed
+  int pipe_ = -1;       ///< its standard error; -1: closed
+  std::string text_;
+};
+
 /// A worker's message without the program's name in front.
 std::string clean_message(const std::string& text);
 
-/// Runs this same program with other arguments in a process group of its own, and kills it after `timeout_s` seconds.
-/// Its standard output is thrown away.
+/// Runs this same program with other arguments, and kills it after `timeout_s` seconds.
 /// Throws Error(kOutput) when no process can be started.
 WorkerOutcome run_worker(const std::vector<std::string>& arguments, double timeout_s);
 

@@ -45,6 +45,7 @@ class ProgramTest : public ::testing::Test {
   const std::filesystem::path& folder() const { return folder_; }
 
   std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((folder_ / name).parent_path());
     std::ofstream(folder_ / name, std::ios::binary) << text;
     return folder_ / name;
   }

@@ -1,0 +1,164 @@
+#include "harness/view/side_measurement.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <system_error>
+
+#include "filters/base/error.h"
+#include "harness/run/task_images.h"
+#include "harness/view/save.h"
+#include "report/images/picture_io.h"
+#include "report/records/json_io.h"
+
+namespace shadowbench::view {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kLowestPriority = 19;
+constexpr const char *kExperimentName = "measured.toml", *kReportName = "report";
+
+/// The folder for the files of all windows of this user.
+fs::path find_place() { return fs::temp_directory_path() / fmt::format("shadowbench-view-{}", getuid()); }
+
+/// A run that takes no longer than it must: one phase, as few timed rounds as there may be, since times beside a window
+/// say nothing, and no pictures but the float images.
+std::vector<std::string> list_arguments(const options::RunOptions& options, const fs::path& folder) {
+  std::vector<std::string> arguments = {"run",         (folder / kExperimentName).string(),
+                                        "--out",       (folder / kReportName).string(),
+                                        "--gl",        std::string(gl::backend_name(options.backend)),
+                                        "--phases",    "1",
+                                        "--precision", "1",
+                                        "--budget",    "0.001",
+                                        "--stability", "--grids",
+                                        "--fresh",     "--no-pictures"};
+  const auto add = [&](std::initializer_list<std::string> more) { arguments.insert(arguments.end(), more); };
+  if (options.cache.empty())
+    add({"--no-cache"});
+  else
+    add({"--cache", options.cache.string()});
+  std::vector<std::string> gpus;
+  for (const gpu::Gpu& gpu : options.gpus) gpus.push_back(gpu.name);
+  if (!gpus.empty()) add({"--gpu", fmt::format("{}", fmt::join(gpus, ","))});
+  return arguments;
+}
+
+/// The last line that was written to its end, as far as the process tells what it does.
+std::string find_last_line(const std::string& text) {
+  const std::size_t end = text.rfind('\n');
+  if (end == std::string::npos) return {};
+  const std::size_t begin = end == 0 ? std::string::npos : text.rfind('\n', end - 1);
+  return text.substr(begin + 1, end - begin - 1);
+}
+
+/// The cells of a state's filters, in the order of its run, still without records.
+MeasuredSides list_cells(const ViewState& state) {
+  MeasuredSides sides;
+  const std::vector<filters::FilterRequest>& listed = state.options.filters;
+  for (const filters::FilterRequest& request : listed) sides.cells.emplace_back().request = request;
+  for (std::size_t side = 0; side < kSides; ++side) {
+    if (state.sides[side].truth) continue;
+    const filters::FilterRequest& shown = state.sides[side].filter;
+    const auto is_it = [&](const auto& each) { return each.spec.id == shown.spec.id && each.values == shown.values; };
+    sides.cell_of_side[side] = std::ranges::find_if(listed, is_it) - listed.begin();
+  }
+  return sides;
+}
+
+/// Reads what a finished run left.
+MeasuredSides read_results(MeasuredSides sides, const fs::path& report) {
+  records::Results results = records::read_results(report / "results.json");
+  images::ExrFile file = images::read_exr(report / results.cells.front().images.exr.value());
+  for (std::size_t i = 0; i < sides.cells.size(); ++i) {
+    measure::MeasuredCell& cell = sides.cells[i];
+    cell.record = std::move(results.cells.at(i));
+    cell.label = cell.record.images.parts.value();
+    run::take_float_images(cell, file.parts);
+  }
+  for (images::Part& part : file.parts) {
+    if (part.name == run::kTruthPart) sides.truth = std::move(part.image);
+    if (part.name == run::kTruthMaskPart) sides.truth_mask = std::move(part.image);
+  }
+  return sides;
+}
+
+std::string explain(const run::WorkerOutcome& outcome) {
+  if (outcome.signal != 0)
+    return fmt::format("the run was killed by signal {} ({})", outcome.signal, strsignal(outcome.signal));
+  return run::clean_message(outcome.error_text);
+}
+
+}  // namespace
+
+const measure::MeasuredCell* MeasuredSides::find_side(std::size_t side) const {
+  return cell_of_side[side] ? &cells[*cell_of_side[side]] : nullptr;
+}
+
+void SideMeasurement::start(const ViewState& state) {
+  cancel();
+  remove_temporary_files(find_place(), is_gone);  // of a window that was killed
+  folder_.emplace(make_temporary_folder_path(find_place(), "worker"));
+  save_experiment(state, folder_->path() / kExperimentName);
+  results_ = list_cells(state);
+  worker_.emplace(list_arguments(state.options, folder_->path()), run::WorkerSetup{program_, kLowestPriority});
+  text_ = "starting";
+  stage_ = Stage::kRunning;
+}
+
+SideMeasurement::Stage SideMeasurement::poll() {
+  if (worker_ && worker_->listen({})) end_worker();
+  if (worker_) {
+    if (std::string line = find_last_line(worker_->error_text()); !line.empty()) text_ = std::move(line);
+  }
+  if (reading_.valid() && reading_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) finish_reading();
+  return stage_;
+}
+
+void SideMeasurement::end_worker() {
+  const run::WorkerOutcome outcome = worker_->end();
+  worker_.reset();
+  if (outcome.exit_code == 0) {
+    text_ = "reading the results";
+    reading_ = std::async(std::launch::async, read_results, std::move(results_), folder_->path() / kReportName);
+    return;
+  }
+  text_ = explain(outcome);
+  stage_ = Stage::kFailed;
+  remove_files();
+}
+
+void SideMeasurement::finish_reading() {
+  try {
+    results_ = reading_.get();
+    text_.clear();
+    stage_ = Stage::kFinished;
+  } catch (const std::exception& error) {
+    text_ = error.what();
+    stage_ = Stage::kFailed;
+  }
+  remove_files();
+}
+
+void SideMeasurement::remove_files() {
+  if (!folder_) return;
+  folder_.reset();
+  std::error_code in_use;  // by another window
+  fs::remove(find_place(), in_use);
+}
+
+void SideMeasurement::cancel() {
+  worker_.reset();
+  if (reading_.valid()) reading_.wait();
+  reading_ = {};
+  remove_files();
+  results_ = {};
+  text_.clear();
+  stage_ = Stage::kIdle;
+}
+
+}  // namespace shadowbench::view

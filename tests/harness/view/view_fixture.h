@@ -1,0 +1,80 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "filters/catalogue.h"
+#include "harness/measure/filter_setup.h"
+#include "harness/measure/scene_assets.h"
+#include "harness/view/save.h"
+#include "tests/harness/cli/program.h"
+
+namespace shadowbench::test {
+
+/// A window's state without a window, in a folder of each test's own.
+class ViewTest : public ProgramTest {
+ protected:
+  static measure::Renderer& renderer() {
+    static measure::Renderer only = measure::make_renderer(gl::Backend::kAuto, options::find_resources());
+    return only;
+  }
+
+  options::RunOptions make_options(int width = 240, int height = 135) const {
+    options::RunOptions options;
+    options.resources = options::find_resources();
+    options.width = width;
+    options.height = height;
+    options.sizes = {{width, height}};
+    options.map_sizes = {512};
+    options.cache = cache_folder();
+    options.reference = request("none");
+    return options;
+  }
+
+  /// A filter with parameters, of the catalogue or a user's file.
+  static filters::FilterRequest request(const std::string& text, const std::filesystem::path& file = {}) {
+    filters::Catalogue catalogue(options::find_resources().filters);
+    if (!file.empty()) catalogue.add_user_file(file);
+    return catalogue.parse_requests(text).front();
+  }
+
+  static std::array<view::Side, view::kSides> sides(const std::string& left, const std::string& right) {
+    return {view::Side{request(left)}, view::Side{request(right)}};
+  }
+
+  /// What a filter makes of a scene, drawn as the window does.
+  static images::Image draw(const options::RunOptions& options, const scene::Scene& scene, const scene::Camera& camera,
+                            const filters::FilterRequest& request) {
+    truth::TruthCache cache({}, [](const std::string&) {});
+    measure::SceneAssets assets(renderer(), options, scene, cache, measure::padding_texels(options));
+    const measure::LightMap& map = assets.light_map(camera, options.map_sizes.front());
+    render::ImageTarget target("visibility", GL_R32F, options.width, options.height);
+    const auto passes = measure::make_filter_passes(renderer(), options, scene, map, request);
+    return measure::draw_visibility(*passes, map.map, assets.gbuffer(camera), target);
+  }
+
+  static images::Image draw(const view::ViewState& state, std::size_t side) {
+    return draw(state.options, state.scene, state.active_camera(), state.sides[side].filter);
+  }
+
+  /// Changes a state as the window does.
+  template <class Edit>
+  static void change(view::ViewState& state, const Edit& edit) {
+    view::ViewSettings settings = state;
+    edit(settings);
+    view::settle(settings);
+    view::check(settings);
+    view::apply(state, std::move(settings));
+  }
+};
+
+/// How many texels differ in any bit.
+inline std::size_t count_different(const images::Image& a, const images::Image& b) {
+  if (a.texels.size() != b.texels.size()) return std::max(a.texels.size(), b.texels.size());
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < a.texels.size(); ++i) different += a.texels[i] == b.texels[i] ? 0 : 1;
+  return different;
+}
+
+}  // namespace shadowbench::test
