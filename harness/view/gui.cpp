@@ -234,7 +234,11 @@ void Gui::lay_out_captions() {
   for (std::size_t side = 0; side < kSides; ++side) {
     if (look_.sharing == Sharing::kFlip && side != look_.flipped_to) continue;
     std::string text = name_side(bench_, side);
-    if (!shown_[side].absent.empty()) text += ": " + shown_[side].absent;
+    const render::DisplayedValues& values = shown_[side].values;
+    if (!shown_[side].absent.empty())
+      text += ": " + shown_[side].absent;
+    else if (values.colors == render::Colors::kSequential)
+      text += fmt::format(": {:.3g} (dark) .. {:.3g} {}", values.low, values.high, Layers::list()[look_.layer].unit);
     const float width = ImGui::CalcTextSize(text.c_str()).x;
     const float x = side == 0 ? at.corner.x + edge : at.corner.x + at.size().x - width - edge;
     draw_caption({x, at.corner.y + edge}, text);
@@ -270,14 +274,10 @@ void Gui::save(const std::string& what, const std::function<void(const std::file
   }
 }
 
-/// What is saved is what is shown from then on: a file keeps directions as it reads them.
 void Gui::save_state(const std::string& what,
                      void (*write)(const ViewState& state, const std::filesystem::path& file)) {
-  Changes changes;
-  changes.camera = changes.light = true;
-  bench_.change(changes, settle);
-  bench_.draw();
-  save(what, [&](const std::filesystem::path& stem) { write(bench_.state(), std::filesystem::path(stem) += ".toml"); });
+  save(
+      what, [&](const std::filesystem::path& stem) { write(bench_.state(), std::filesystem::path(stem) += ".toml"); });
 }
 
 void Gui::save_picture(const std::filesystem::path& stem) {

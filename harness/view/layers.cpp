@@ -1,7 +1,11 @@
 #include "harness/view/layers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "report/records/error_parts.h"
 
 namespace shadowbench::view {
 namespace {
@@ -29,6 +33,14 @@ Range find_range(const images::Image& image) {
 DisplayedValues picture_of(Layers& layers, std::size_t side) {
   Workbench& bench = layers.bench();
   return {&bench.stage().picture(bench.state(), side, layers.columns())};
+}
+
+/// Why a layer of a measured cell does not exist.
+std::string explain_empty(const records::CellRecord& record, const Layer& layer) {
+  for (const std::string& field : {"attribution." + layer.id, std::string("attribution"), "stability." + layer.id,
+                                   std::string("stability"), std::string("error")})
+    if (const auto reason = record.absent.find(field); reason != record.absent.end()) return reason->second;
+  return record.message.empty() ? "the filter has none" : record.message;
 }
 
 ShownLayer show_picture(Layers& layers, const Layer&, std::size_t side) { return {picture_of(layers, side), {}}; }
@@ -70,18 +82,66 @@ ShownLayer show_blockers(Layers& layers, const Layer& layer, std::size_t side) {
   return {layers.upload(layer.id, bench.drawings(), [&] { return bench.stage().blocker_distance(bench.state()); }), {}};
 }
 
+/// A measured image in colours; `find` picks it of what was measured of a side.
+template <class Find>
+ShownLayer show_measured(Layers& layers, const Layer& layer, std::size_t side, bool is_signed, Find find) {
+  Workbench& bench = layers.bench();
+  bench.want_measurement();
+  const measure::MeasuredCell* cell = bench.find_measured(side);
+  if (cell == nullptr) return {picture_of(layers, side), bench.explain_no_measurement(side)};
+  const images::Image& image = find(*cell);
+  if (image.empty()) return {picture_of(layers, side), explain_empty(cell->record, layer)};
+  DisplayedValues values = layers.upload(fmt::format("{} {}", layer.id, side), bench.drawings(), [&] { return image; });
+  if (is_signed) values.colors = Colors::kDiverging, values.low = -layers.scale(), values.high = layers.scale();
+  return {values, {}};
+}
+
+ShownLayer show_part(Layers& layers, const Layer& layer, std::size_t side) {
+  return show_measured(
+      layers, layer, side, true,
+      [&](const measure::MeasuredCell& cell) -> const images::Image& {
+        static const images::Image kNone;
+        const auto& parts = records::list_error_parts();
+        const auto index = static_cast<std::size_t>(std::ranges::find_if(
+                                                        parts, [&](const auto& part) { return part.id == layer.id; }) -
+                                                    parts.begin());
+        return index < cell.error_parts.size() ? cell.error_parts[index] : kNone;
+      });
+}
+
+ShownLayer show_half_difference(Layers& layers, const Layer& layer, std::size_t side) {
+  return show_measured(
+      layers, layer, side, true,
+      [](const measure::MeasuredCell& cell) -> const images::Image& { return cell.stability.half_difference; });
+}
+
+ShownLayer show_shortfall(Layers& layers, const Layer& layer, std::size_t side) {
+  return show_measured(
+      layers, layer, side, false,
+      [](const measure::MeasuredCell& cell) -> const images::Image& { return cell.stability.shortfall; });
+}
+
 std::vector<Layer> make_layers() {
-  return {{"picture", "shaded picture", "", "What the eye sees: direct light times visibility, and ambient light.",
-           false, show_picture},
-          {"visibility", "visibility", "of the light", "1 is lit, 0 is in the shadow.", false, show_visibility},
-          {"error", "signed error", "visibility",
-           "Visibility less the ray-traced truth: red is too bright, blue too dark.", false, show_error},
-          {"texels", "texels per pixel", "texels",
-           "Texels of the map under a pixel's footprint: below 1 the map is too coarse, far above 1 it is wasted.",
-           false, show_texels},
-          {"blocker", "blocker distance", "m",
-           "From a receiver towards the light to what the map, or for the truth the first ray, holds there.", false,
-           show_blockers}};
+  std::vector<Layer> layers = {
+      {"picture", "shaded picture", "", "What the eye sees: direct light times visibility, and ambient light.",
+       show_picture},
+      {"visibility", "visibility", "of the light", "1 is lit, 0 is in the shadow.", show_visibility},
+      {"error", "signed error", "visibility", "Visibility less the ray-traced truth: red is too bright, blue too dark.",
+       show_error},
+      {"texels", "texels per pixel", "texels",
+       "Texels of the map under a pixel's footprint: below 1 the map is too coarse, far above 1 it is wasted.",
+       show_texels},
+      {"blocker", "blocker distance", "m",
+       "From a receiver towards the light to what the map, or for the truth the first ray, holds there.",
+       show_blockers}};
+  for (const records::ErrorPart& part : records::list_error_parts())
+    layers.push_back({part.id, std::string("error: ") + part.name, "visibility",
+                      fmt::format("A part of the signed error: {}.", part.meaning), show_part});
+  layers.push_back({"half_difference", "stability: 16-bit store", "visibility",
+                    "Visibility with a 16-bit store less that with a 32-bit one.", show_half_difference});
+  layers.push_back({"shortfall", "stability: broken bound", "visibility",
+                    "By how much a filter that promises a bound is darker than what it bounds.", show_shortfall});
+  return layers;
 }
 
 }  // namespace

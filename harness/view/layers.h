@@ -24,9 +24,8 @@ class Layers;
 struct Layer {
   std::string id;
   std::string title;
-  std::string unit;          ///< of the values; empty: none, or a picture
-  std::string text;          ///< what it shows, one sentence
-  bool is_measured = false;  ///< by a run of its own, which takes seconds
+  std::string unit;  ///< of the values; empty: none, or a picture
+  std::string text;  ///< what it shows, one sentence
   ShownLayer (*show)(Layers& layers, const Layer& layer, std::size_t side) = nullptr;
 };
 

@@ -80,7 +80,9 @@ void MapPanel::show_map(int side_pixels, int layer) {
   if (!footprint_) return ImGui::TextDisabled("No receiver in the map under the pointer.");
   ImGui::Text("texel %.2f, %.2f of layer %d, depth %.6f", footprint_->place_texels.x, footprint_->place_texels.y,
               footprint_->receiver.layer, static_cast<double>(footprint_->receiver.depth));
-  ImGui::Text("kernel: %s; %zu texels read", footprint_->shape.c_str(), footprint_->reads.size());
+  std::string kernel = "kernel: " + footprint_->shape;
+  if (!footprint_->reads.empty()) kernel += fmt::format("; {} texels read", footprint_->reads.size());
+  ImGui::TextUnformatted(kernel.c_str());
 }
 
 void MapPanel::draw_footprint(const glm::vec2& corner, int side_pixels, const glm::dvec2& first_texel) const {

@@ -21,8 +21,25 @@ void show_history(const std::string& name, const TimeHistory& history) {
   const float most = values.empty() ? 1.0f : *std::ranges::max_element(values);
   ImGui::PushID(name.c_str());
   ImGui::PlotLines("##history", values.data(), static_cast<int>(values.size()), 0, nullptr, 0.0f, most,
-                   {-1.0f, ImGui::GetTextLineHeight()});
+                   {ImGui::GetContentRegionAvail().x, ImGui::GetTextLineHeight()});
   ImGui::PopID();
+}
+
+/// What the open compiler says of GPUs that are not there; known once both sides were measured.
+void show_gpus(const Workbench& bench) {
+  for (std::size_t side = 0; side < kSides; ++side) {
+    const measure::MeasuredCell* cell = bench.find_measured(side);
+    if (cell == nullptr || !cell->record.gpu) continue;
+    for (const auto& [gpu, record] : *cell->record.gpu) {
+      const char* name = side == 0 ? "left" : "right";
+      if (record.estimate)
+        ImGui::Text("%s on %s: %.3g us a million receivers,\n  bound by %s; prefilter %.3g us", name, gpu.c_str(),
+                    record.estimate->lookup_us, record.estimate->bound_by.c_str(), record.estimate->prefilter_us);
+      if (!record.facts.empty())
+        ImGui::TextDisabled("  lookup: %d instructions, %d registers", record.facts.front().facts.instructions,
+                            record.facts.front().facts.vector_registers);
+    }
+  }
 }
 
 }  // namespace
@@ -46,6 +63,7 @@ void show_times(const Workbench& bench, const TimeMeter& meter) {
     }
     ImGui::EndTable();
   }
+  show_gpus(bench);
   ImGui::PushTextWrapPos();
   ImGui::TextDisabled("%s", bench.is_busy() ? "Times wait until the truth is traced and the run is finished."
                                             : "Medians, while nothing moves. Filter alone: less an empty lookup.");

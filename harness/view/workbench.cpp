@@ -6,9 +6,12 @@
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/layer_truth.h"
 #include "harness/scene/occluders.h"
+#include "harness/view/save.h"
 
 namespace shadowbench::view {
 namespace {
+
+constexpr double kSecondsAfterFailure = 5.0;  ///< before a measurement is tried again
 
 /// A filter as it is now, with the values that it had as far as it still takes them.
 filters::FilterRequest renew(const filters::FilterRequest& old, const filters::FilterSpec& spec) {
@@ -56,6 +59,7 @@ void Workbench::change(const Changes& what, const std::function<void(ViewSetting
   try {
     edit(settings);
     check(settings);
+    if (what.camera || what.light) settle(settings);  // so that what is saved, or measured, is what is shown
   } catch (const Error& error) {
     return say(error.what());
   }
@@ -71,6 +75,7 @@ void Workbench::update(double now_s) {
     if (watch_.has_changed()) reload_filters();
   }
   follow_truth(now_s);
+  follow_measurement(now_s);
 }
 
 /// The truth depends on what is seen and on the light; texels per pixel depend on the map as well.
@@ -115,6 +120,34 @@ std::string Workbench::explain_no_truth() const {
   return shown_truth_.truth ? shown_truth_.truth->absent : "the truth is being traced";
 }
 
+void Workbench::follow_measurement(double now_s) {
+  using State = SideMeasurement::Stage;
+  const bool wanted = std::exchange(wants_measurement_, false);
+  if (!wanted && measured_ == State::kRunning) measurement_.cancel();
+  const State before = std::exchange(measured_, measurement_.poll());
+  if (measured_ == State::kFinished && before != State::kFinished) ++drawings_;
+  // The truth comes first: the run takes it from the cache.
+  const bool may_start = wanted && measured_ == State::kIdle && !truth_is_old_ && truth_part() == 1.0;
+  if (!may_start || now_s - last_change_s_ < kSecondsBeforeMeasurement) return;
+  try {
+    measurement_.start(state_);
+    measured_ = State::kRunning;
+  } catch (const Error& error) {
+    say(error.what());
+    last_change_s_ = now_s + kSecondsAfterFailure;
+  }
+}
+
+const measure::MeasuredCell* Workbench::find_measured(std::size_t side) const {
+  return measured_ == SideMeasurement::Stage::kFinished ? measurement_.results().find_side(side) : nullptr;
+}
+
+std::string Workbench::explain_no_measurement(std::size_t side) const {
+  if (state_.sides[side].truth) return "the truth is what is measured against";
+  if (measured_ == SideMeasurement::Stage::kFailed) return "cannot be measured: " + measurement_.text();
+  return measurement_.text().empty() ? "waits to be measured" : "is measured: " + measurement_.text();
+}
+
 void Workbench::want_coverage() {
   if (std::exchange(wants_coverage_, true)) return;
   truth_is_old_ = true;
@@ -144,6 +177,8 @@ bool Workbench::draw() {
   const Changes changes = std::exchange(changes_, {});
   was_changed_ = true;
   age_truth(changes);
+  measurement_.cancel();
+  measured_ = SideMeasurement::Stage::kIdle;
   try {
     stage_.draw(state_, changes);
     drawn_ = state_;

@@ -11,6 +11,7 @@
 #include "harness/measure/renderer.h"
 #include "harness/view/background_truth.h"
 #include "harness/view/file_watch.h"
+#include "harness/view/side_measurement.h"
 #include "harness/view/stage.h"
 #include "harness/view/view_state.h"
 
@@ -21,6 +22,9 @@ inline constexpr double kSecondsBetweenLooks = 0.1;
 
 /// The truth waits for this long after the last change: a picture that moves would only throw it away.
 inline constexpr double kSecondsBeforeTruth = 0.15;
+
+/// A run of its own takes seconds: it waits for longer.
+inline constexpr double kSecondsBeforeMeasurement = 0.5;
 
 /// What the window works on: a state, its drawing, its truth and its measurement, kept in step. Nothing here knows of
 /// widgets. Times are seconds of any clock that does not go back.
@@ -53,7 +57,7 @@ class Workbench {
   void say(std::string message) { message_ = std::move(message); }
 
   /// Whether work goes on beside the window, which would disturb times.
-  bool is_busy() const { return truth_is_old_ || truth_part() < 1.0; }
+  bool is_busy() const { return truth_is_old_ || truth_part() < 1.0 || measured_ == SideMeasurement::Stage::kRunning; }
 
   /// What is traced of the truth; it starts anew when camera or light change.
   const BackgroundTruth::Shown& truth() const { return shown_truth_; }
@@ -64,6 +68,14 @@ class Workbench {
 
   /// Asks for the map's texels per pixel, which come with the truth.
   void want_coverage();
+
+  /// Asks, in a frame that shows what comes of it, for a run that measures both sides; it starts when nothing has
+  /// changed for a while.
+  void want_measurement() { wants_measurement_ = true; }
+
+  /// What such a run has found of a side as it is now; null where there is nothing, see explain_no_measurement().
+  const measure::MeasuredCell* find_measured(std::size_t side) const;
+  std::string explain_no_measurement(std::size_t side) const;
 
   /// Counts what has been drawn anew, for those who keep what they made of it.
   std::uint64_t drawings() const { return drawings_; }
@@ -87,6 +99,9 @@ class Workbench {
   std::shared_ptr<const measure::ViewSurfaces> surfaces_;  ///< of the camera that is looked through; null: not read yet
   bool truth_is_old_ = true;
   bool wants_coverage_ = false;
+  SideMeasurement measurement_;
+  SideMeasurement::Stage measured_ = SideMeasurement::Stage::kIdle;
+  bool wants_measurement_ = false;
   std::uint64_t drawings_ = 0;
 
   filters::Catalogue load_catalogue(const std::filesystem::path& folder) const;
@@ -95,6 +110,7 @@ class Workbench {
   void age_truth(const Changes& changes);
   void follow_truth(double now_s);
   void start_truth();
+  void follow_measurement(double now_s);
 };
 
 }  // namespace shadowbench::view

@@ -1,0 +1,246 @@
+// The run that measures both sides beside the window: what it gives, how it fails, and that it leaves nothing.
+
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <chrono>
+#include <thread>
+
+#include "filters/base/error.h"
+#include "harness/view/side_measurement.h"
+#include "report/records/error_parts.h"
+#include "tests/harness/view/view_fixture.h"
+
+namespace shadowbench::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Stage = view::SideMeasurement::Stage;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+double now_ms() {
+  return 1e-6 * static_cast<double>(std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1));
+}
+
+class SideMeasurementTest : public ViewTest {
+ protected:
+  void SetUp() override {
+    ViewTest::SetUp();
+    setenv("TMPDIR", folder().c_str(), 1);
+  }
+
+  void TearDown() override {
+    unsetenv("TMPDIR");
+    ViewTest::TearDown();
+  }
+
+  view::ViewState make_state(const std::string& scene, const std::string& left, const std::string& right) const {
+    options::RunOptions options = make_options();
+    options.gpus = gpu::choose_gpus(gpu::load_gpus(options.resources.gpus), {"navi21"});
+    view::ViewState state = view::make_view_state(options, scene, sides(left, right));
+    change(state, [](view::ViewSettings& settings) { settings.cameras[0].position_ws.x += 0.0123f; });
+    return state;
+  }
+
+  /// Waits for the end of what runs, two minutes at most; what it says meanwhile is noted.
+  Stage finish(view::SideMeasurement& measurement, std::vector<std::string>* said = nullptr) const {
+    for (int i = 0; i < 12000; ++i) {
+      const Stage stage = measurement.poll();
+      if (stage != Stage::kRunning) return stage;
+      if (said != nullptr && (said->empty() || said->back() != measurement.text())) said->push_back(measurement.text());
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ADD_FAILURE() << measurement.text();
+    return Stage::kRunning;
+  }
+
+  /// Processes that were told of a file in the test's folder.
+  std::vector<std::string> list_processes(const std::string& word = {}) const {
+    std::vector<std::string> found;
+    for (const auto& entry : fs::directory_iterator("/proc")) {
+      const std::string command = read_text(entry.path() / "cmdline");
+      if (command.find(folder().string()) != std::string::npos && command.find(word) != std::string::npos)
+        found.push_back(entry.path().filename().string() + " " + command);
+    }
+    return found;
+  }
+
+  template <class Condition>
+  static bool wait_until(const Condition& holds) {
+    for (int i = 0; i < 6000; ++i) {
+      if (holds()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+
+  /// Killed processes are given a moment.
+  void expect_nothing_left() const {
+    wait_until([&] { return list_processes().empty(); });
+    EXPECT_THAT(list_processes(), IsEmpty());
+    for (const auto& entry : fs::directory_iterator(folder()))
+      EXPECT_THAT(entry.path().string(), testing::Not(HasSubstr("shadowbench-view"))) << "left by the measurement";
+  }
+
+  static void expect_sum(const view::MeasuredSides& sides, const measure::MeasuredCell& cell) {
+    ASSERT_EQ(cell.error_parts.size(), records::list_error_parts().size());
+    std::size_t counted = 0;
+    for (std::size_t i = 0; i < sides.truth.texels.size(); ++i) {
+      if (sides.truth_mask.texels[i] == 0.0f) continue;
+      ++counted;
+      double sum = 0.0;
+      for (const images::Image& part : cell.error_parts)
+        if (!part.empty()) sum += static_cast<double>(part.texels[i]);
+      ASSERT_NEAR(sum, static_cast<double>(cell.visibility.texels[i] - sides.truth.texels[i]), 1e-6) << i;
+    }
+    EXPECT_GT(counted, 10000u);
+  }
+};
+
+TEST_F(SideMeasurementTest, Finished_HasBothSides_WithPartsThatAddUpToTheError) {
+  const view::ViewState state = make_state("cubes", "vsm:radius=6", "tent3x3");
+  view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
+  EXPECT_EQ(measurement.poll(), Stage::kIdle);
+  measurement.start(state);
+  std::vector<std::string> said;
+  ASSERT_EQ(finish(measurement, &said), Stage::kFinished) << measurement.text();
+  EXPECT_THAT(said, testing::Contains(HasSubstr("attribution of tent3x3")));
+  const view::MeasuredSides& sides = measurement.results();
+  for (std::size_t side = 0; side < view::kSides; ++side) {
+    const measure::MeasuredCell* cell = sides.find_side(side);
+    ASSERT_NE(cell, nullptr);
+    EXPECT_EQ(cell->record.filter, state.sides[side].filter.spec.id);
+    EXPECT_EQ(count_different(cell->visibility, draw(state, side)), 0u) << "what is measured is what is shown";
+    EXPECT_GT(cell->record.error.rmse.value(), 0.0);
+    EXPECT_TRUE((cell->record.gpu && cell->record.gpu->contains("navi21")) || cell->record.absent.contains("gpu"));
+    EXPECT_FALSE(cell->picture.empty());
+    expect_sum(sides, *cell);
+  }
+  EXPECT_FALSE(sides.find_side(0)->stability.variance.empty());
+  EXPECT_TRUE(sides.find_side(1)->stability.variance.empty()) << "tent3x3 stores none";
+  expect_nothing_left();
+}
+
+TEST_F(SideMeasurementTest, StartedTwice_MeasuresTheSecond_WhateverTheFirstWasDoing) {
+  const view::ViewState first = make_state("cubes", "vsm:radius=6", "tent3x3");
+  view::ViewState second = first;
+  change(second, [](view::ViewSettings& settings) {
+    settings.sides[0].truth = true;
+    settings.cameras[0].position_ws.y += 0.5f;
+  });
+  view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
+  measurement.start(first);
+  ASSERT_TRUE(wait_until([&] { return measurement.poll() != Stage::kRunning || measurement.text() != "starting"; }));
+  measurement.start(second);
+  EXPECT_EQ(list_processes().size(), 1u);
+  ASSERT_EQ(finish(measurement), Stage::kFinished) << measurement.text();
+  const view::MeasuredSides& sides = measurement.results();
+  EXPECT_EQ(sides.find_side(0), nullptr) << "it shows the truth";
+  ASSERT_NE(sides.find_side(1), nullptr);
+  EXPECT_EQ(count_different(sides.find_side(1)->visibility, draw(second, 1)), 0u);
+  expect_sum(sides, *sides.find_side(1));
+  measurement.start(first);
+  ASSERT_EQ(finish(measurement), Stage::kFinished) << measurement.text();
+  EXPECT_EQ(count_different(measurement.results().find_side(0)->visibility, draw(first, 0)), 0u);
+}
+
+TEST_F(SideMeasurementTest, NothingThatFacesTheLight_LeavesFieldsAbsentWithReasons) {
+  view::ViewState state = make_state("edge", "none", "tent3x3");
+  change(state, [](view::ViewSettings& settings) {
+    settings.lights[0] = scene::turn_light(settings.lights[0], [](const glm::vec3&) { return glm::vec3(0, 1, 0); });
+    settings.cameras[0].forward_ws = glm::vec3(0.0f, -1.0f, 0.0f);
+  });
+  view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
+  measurement.start(state);
+  ASSERT_EQ(finish(measurement), Stage::kFinished) << measurement.text();
+  const measure::MeasuredCell& cell = *measurement.results().find_side(0);
+  EXPECT_FALSE(cell.record.error.rmse.has_value());
+  EXPECT_FALSE(cell.record.absent.at("error").empty());
+  EXPECT_TRUE(std::ranges::all_of(cell.error_parts, &images::Image::empty));
+}
+
+TEST_F(SideMeasurementTest, FilterWithBrokenGlsl_FailsWithItsFileAndLine) {
+  view::ViewState state = make_state("cubes", "none", "tent3x3");
+  const std::string file = user_filter("broken_glsl.glsl");
+  change(state, [&](view::ViewSettings& settings) { settings.sides[0].filter = request("broken_glsl", file); });
+  view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
+  measurement.start(state);
+  EXPECT_EQ(finish(measurement), Stage::kFailed);
+  EXPECT_THAT(measurement.text(), HasSubstr("broken_glsl.glsl:"));
+  EXPECT_THAT(measurement.text(), testing::Not(HasSubstr("\n0.0 %"))) << "nothing of what it said before";
+  expect_nothing_left();
+  change(state, [&](view::ViewSettings& settings) { settings.sides[0].filter = request("none"); });
+  measurement.start(state);
+  EXPECT_EQ(finish(measurement), Stage::kFinished) << measurement.text();
+}
+
+TEST_F(SideMeasurementTest, ProgramThatIsNotThere_Fails) {
+  view::SideMeasurement measurement(folder() / "none");
+  measurement.start(make_state("cubes", "none", "tent3x3"));
+  EXPECT_EQ(finish(measurement), Stage::kFailed);
+  EXPECT_THAT(measurement.text(), HasSubstr("cannot be started"));
+}
+
+TEST_F(SideMeasurementTest, Cancelled_IsKilledWithItsChildren_WithinATenthOfASecond) {
+  view::ViewState state = make_state("cubes", "none", "tent3x3");
+  const std::string file = user_filter("endless.glsl");
+  change(state, [&](view::ViewSettings& settings) { settings.sides[0].filter = request("endless", file); });
+  double fastest_ms = 1e9;
+  for (int attempt = 0; attempt < 3; ++attempt) {  // another process may hold this one up
+    view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
+    measurement.start(state);
+    ASSERT_TRUE(wait_until([&] { return !list_processes("--worker").empty(); })) << "a child of the child";
+    const double begin_ms = now_ms();
+    measurement.cancel();
+    fastest_ms = std::min(fastest_ms, now_ms() - begin_ms);
+    EXPECT_EQ(measurement.poll(), Stage::kIdle);
+    expect_nothing_left();
+  }
+  std::printf("cancelled within %.1f ms\n", fastest_ms);
+  EXPECT_LT(fastest_ms, 100.0);
+}
+
+TEST_F(SideMeasurementTest, NeitherStartNorPoll_HoldsUpTheWindow) {
+  const view::ViewState state = make_state("cubes", "vsm:radius=6", "tent3x3");
+  view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
+  std::vector<double> times_ms;
+  const auto time = [&](const auto& work) {
+    const double begin_ms = now_ms();
+    work();
+    times_ms.push_back(now_ms() - begin_ms);
+  };
+  time([&] { measurement.start(state); });
+  Stage stage = Stage::kRunning;
+  while (stage == Stage::kRunning) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    time([&] { stage = measurement.poll(); });
+  }
+  ASSERT_EQ(stage, Stage::kFinished) << measurement.text();
+  std::printf("start %.2f ms, ", times_ms.front());
+  std::ranges::sort(times_ms);
+  std::printf("median of polls %.3f ms, longest call %.2f ms\n", times_ms[times_ms.size() / 2], times_ms.back());
+  EXPECT_LT(times_ms[times_ms.size() * 99 / 100], 50.0);
+}
+
+TEST_F(SideMeasurementTest, WindowThatIsKilled_LeavesNoProcess_AndItsFilesGoWithTheNext) {
+  const view::ViewState state = make_state("cubes", "vsm:radius=6", "tent3x3");
+  const pid_t window = fork();
+  if (window == 0) {
+    view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
+    measurement.start(state);
+    for (;;) pause();
+  }
+  ASSERT_TRUE(wait_until([&] { return !list_processes().empty(); }));
+  kill(window, SIGKILL);
+  waitpid(window, nullptr, 0);
+  wait_until([&] { return list_processes().empty(); });
+  EXPECT_THAT(list_processes(), IsEmpty());
+  view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
+  measurement.start(state);
+  measurement.cancel();
+  expect_nothing_left();
+}
+
+}  // namespace
+}  // namespace shadowbench::test
