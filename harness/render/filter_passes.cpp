@@ -161,13 +161,18 @@ const ReceiverBuffer& FilterPasses::bind_lookup(gl::Program& program, const GBuf
   return receivers;
 }
 
-void FilterPasses::lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& target) {
+void FilterPasses::lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& target,
+                          const std::optional<glm::ivec2>& columns) {
+  const auto narrow = [&] {
+    if (columns) glViewport(columns->x, 0, columns->y - columns->x, gbuffer.height());
+  };
   if (layers() > 1) target.clear(glm::vec4(0.0f));
   for (int layer = 0; layer < layers(); ++layer) {
     select(layer);
     const ReceiverBuffer& receivers = bind_lookup(lookup_, gbuffer, layer, map);
     if (layers() == 1) {
       target.bind();
+      narrow();
       triangle_.draw();
       continue;
     }
@@ -175,6 +180,7 @@ void FilterPasses::lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTar
     masked.attach_color(0, target.texture());
     masked.attach_depth(receivers.mask());
     masked.bind();
+    narrow();
     triangle_.draw_added();
   }
 }

@@ -100,7 +100,9 @@ class FilterPasses {
 
   /// Looks every receiver up; `target` is R32F, of the G-buffer's size. Background is 1. Of a map with layers each is
   /// looked up in a pass of its own, for the receivers that it serves, and what they make of their shares is added.
-  void lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& target);
+  /// Only in `columns`, from the first up to the second, where they are given.
+  void lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& target,
+              const std::optional<glm::ivec2>& columns = std::nullopt);
 
   /// Compiles and runs the counting variant of the lookup. Call after prefilter().
   FilterCost measure_cost(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);

@@ -46,13 +46,15 @@ std::string explain_empty(const records::CellRecord& record, const Layer& layer)
 ShownLayer show_picture(Layers& layers, const Layer&, std::size_t side) { return {picture_of(layers, side), {}}; }
 
 ShownLayer show_visibility(Layers& layers, const Layer&, std::size_t side) {
-  return {{&layers.bench().stage().visibility(side), nullptr, 0, Colors::kGrey}, {}};
+  return {{&layers.bench().stage().visibility(side, layers.columns()), nullptr, 0, Colors::kGrey}, {}};
 }
 
 ShownLayer show_error(Layers& layers, const Layer&, std::size_t side) {
   Stage& stage = layers.bench().stage();
   if (!stage.truth()) return {picture_of(layers, side), layers.bench().explain_no_truth()};
-  return {{&stage.visibility(side), stage.truth(), 0, Colors::kDiverging, -layers.scale(), layers.scale()}, {}};
+  return {{&stage.visibility(side, layers.columns()), stage.truth(), 0, Colors::kDiverging, -layers.scale(),
+           layers.scale()},
+          {}};
 }
 
 /// How far the first ray towards the light goes; 0 where nothing blocks it.

@@ -69,7 +69,8 @@ void Magnifier::show_values(const Layer& layer, const std::array<ShownLayer, kSi
   }
   Stage& stage = bench_.stage();
   for (std::size_t side = 0; side < kSides; ++side) {
-    const render::DisplayedValues visibility{&stage.visibility(side), nullptr, 0, render::Colors::kGrey};
+    const render::DisplayedValues visibility{&stage.visibility(side, {0, bench_.state().options.width}), nullptr, 0,
+                                             render::Colors::kGrey};
     const float value = read_value(visibility, last_pixel_).front();
     std::string line = fmt::format("{}: visibility {:.6g}", side == 0 ? "left" : "right", value);
     if (stage.truth()) {

@@ -35,7 +35,8 @@ void save_picture(Workbench& bench, render::DisplayPass& display, const std::arr
   std::vector<images::Part> parts;
   for (std::size_t side = 0; side < kSides; ++side) {
     const std::string name = side == 0 ? "left" : "right";
-    parts.push_back({name + ".visibility", {"Y"}, render::read_image(bench.stage().visibility(side), 1), false});
+    parts.push_back(
+        {name + ".visibility", {"Y"}, render::read_image(bench.stage().visibility(side, {0, size.x}), 1), false});
     const gl::Texture& picture = bench.stage().picture(state, side, {0, size.x});
     parts.push_back({name + ".picture", {"R", "G", "B"}, render::read_image(picture, 3), true});
   }

@@ -22,6 +22,11 @@ filters::FilterRequest make_blocker_lookup() {
   return request;
 }
 
+/// Whether columns are not among those that are there; each from the first up to the second.
+bool needs(const glm::ivec2& there, const glm::ivec2& columns) {
+  return columns.x < columns.y && !(there.x <= columns.x && columns.y <= there.y);
+}
+
 }  // namespace
 
 Changes& Changes::operator|=(const Changes& other) {
@@ -49,7 +54,7 @@ void Stage::draw(const ViewState& state, const Changes& changes) {
   pad_texels_ = pad;
   for (std::size_t side = 0; side < kSides; ++side)
     draw_side(state, side, other_map || changes.filter[side], refit || changes.values[side]);
-  for (SideDrawing& side : sides_) side.shaded = glm::ivec2(0);
+  for (SideDrawing& side : sides_) side.looked_up = side.shaded = glm::ivec2(0);
 }
 
 void Stage::draw_gbuffer(const ViewState& state) {
@@ -112,7 +117,6 @@ void Stage::draw_side(const ViewState& state, std::size_t side, bool compiles, b
                            measure::make_filter_light(state.options, state.scene.light, light_->layers, request));
   }
   if (compiles || retunes) drawing.passes->prefilter(light_->map);
-  drawing.passes->lookup(*gbuffer_, light_->map, *drawing.visibility);
 }
 
 void Stage::compile(const ViewState& state, std::size_t side) {
@@ -139,17 +143,19 @@ void Stage::set_truth(const images::Image& visibility) {
     if (!side.passes) side.shaded = glm::ivec2(0);
 }
 
-const gl::Texture& Stage::visibility(std::size_t side) const {
-  const SideDrawing& drawing = sides_[side];
-  return !drawing.passes && truth_ ? *truth_ : drawing.visibility->texture();
+const gl::Texture& Stage::visibility(std::size_t side, const glm::ivec2& columns) {
+  SideDrawing& drawing = sides_[side];
+  if (!drawing.passes) return truth_ ? *truth_ : drawing.visibility->texture();
+  if (needs(drawing.looked_up, columns))
+    drawing.passes->lookup(*gbuffer_, light_->map, *drawing.visibility, drawing.looked_up = columns);
+  return drawing.visibility->texture();
 }
 
 const gl::Texture& Stage::picture(const ViewState& state, std::size_t side, const glm::ivec2& columns) {
   SideDrawing& drawing = sides_[side];
-  const bool is_there = drawing.shaded.x <= columns.x && columns.y <= drawing.shaded.y;
-  if (columns.x < columns.y && !is_there) {
+  if (needs(drawing.shaded, columns)) {
     drawing.shaded = columns;
-    render::shade_into(*drawing.picture, renderer_.shaders, *gbuffer_, visibility(side), state.scene,
+    render::shade_into(*drawing.picture, renderer_.shaders, *gbuffer_, visibility(side, columns), state.scene,
                        state.active_camera(), state.options.range, columns);
   }
   return drawing.picture->texture();

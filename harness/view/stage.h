@@ -48,11 +48,13 @@ class Stage {
 
   const render::GBuffer& gbuffer() const { return *gbuffer_; }
   measure::LightMap& light_map() { return *light_; }
-  const gl::Texture& visibility(std::size_t side) const;                    ///< R32F
   const gl::Texture* truth() const { return truth_ ? &*truth_ : nullptr; }  ///< R32F; null: none yet
 
-  /// RGBA32F, linear RGB; valid in these columns, from the first up to the second. Cost: their shading, where they have
-  /// not been asked for since the last draw().
+  /// R32F; valid in these columns, from the first up to the second. Cost: their lookup, where they have not been asked
+  /// for since the last draw().
+  const gl::Texture& visibility(std::size_t side, const glm::ivec2& columns);
+
+  /// RGBA32F, linear RGB; as above, with their shading.
   const gl::Texture& picture(const ViewState& state, std::size_t side, const glm::ivec2& columns);
 
   /// A side's passes; null where it shows the truth, or where its filter has never compiled.
@@ -73,7 +75,8 @@ class Stage {
     measure::EmptyLookups empty;
     std::optional<render::ImageTarget> visibility;
     std::optional<render::ImageTarget> picture;
-    glm::ivec2 shaded{0};  ///< columns of the picture that are valid
+    glm::ivec2 looked_up{0};  ///< columns of the visibility that are valid
+    glm::ivec2 shaded{0};     ///< likewise of the picture
     std::string fault;
   };
 
