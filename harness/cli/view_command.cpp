@@ -20,6 +20,7 @@ struct ViewArguments : DrawingArguments {
   std::string size;
   double scale = 0.0;
   std::string log;
+  double close_after_s = 0.0;
 };
 
 int view_scene(const ViewArguments& arguments) {
@@ -41,6 +42,7 @@ int view_scene(const ViewArguments& arguments) {
                      kLargestScale));
   options.scale = static_cast<float>(arguments.scale);
   options.log = arguments.log;
+  options.close_after_s = arguments.close_after_s;
   view::run_view(options);
   return 0;
 }
@@ -70,6 +72,7 @@ Command make_view_command() {
   command.add("--scale", &a->scale, "enlarge text and widgets so many times (default: as the screen asks for)");
   command.add("--out", &a->out, "folder for what is saved");
   command.add("--log", &a->log, "").hide();
+  command.add("--close-after", &a->close_after_s, "").hide();
   command.action = [a](const CommandLine&) { return view_scene(*a); };
   return command;
 }

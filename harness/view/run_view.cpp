@@ -60,6 +60,7 @@ void run_view(const ViewOptions& options) {
   Workbench bench(renderer, std::move(state), options.filter_files);
   bench.draw();
   Gui gui(window, bench, log, options.run.out, options.keeps_size);
+  const double opened = now_s();
   while (!window.is_closing()) {
     window.wait(gui.is_moving() ? 0.0 : kSecondsOfRest);
     const double begun = now_s();
@@ -71,6 +72,7 @@ void run_view(const ViewOptions& options) {
     window.end_frame();
     if (log.is_on()) log.end_frame(describe_frame(gui, bench, begun, drawn));
     shown.require_no_gl_errors();
+    if (options.close_after_s > 0.0 && now_s() - opened > options.close_after_s) window.close();
   }
 }
 

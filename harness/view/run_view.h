@@ -18,9 +18,10 @@ struct ViewOptions {
   std::string scene;
   std::array<std::string, kSides> sides;  ///< filters as `--filters` names them, or "truth"
   std::vector<std::filesystem::path> filter_files;
-  bool keeps_size = false;    ///< the picture does not follow the window's size
-  float scale = 0.0f;         ///< of text and widgets; 0: as the screen asks for
-  std::filesystem::path log;  ///< empty: none
+  bool keeps_size = false;     ///< the picture does not follow the window's size
+  float scale = 0.0f;          ///< of text and widgets; 0: as the screen asks for
+  std::filesystem::path log;   ///< empty: none
+  double close_after_s = 0.0;  ///< 0: never
 };
 
 /// Opens the window, and returns when it is closed. Throws Error(kContext) where there is no display, and otherwise as

@@ -42,6 +42,7 @@ CHEAPER = {
     "bias": [("--size", "96x54"), ("--map-size", "128"), ("--filters", "none")],
     "flicker": [("--size", "96x54"), ("--map-size", "128"), ("--frames", "3"), ("--filters", "none,vsm")],
     "stress": [("--axes", "taps")],
+    "view": [("--size", "96x54"), ("--close-after", "0.5")],
     "tune": [("--size", "96x54"), ("--map-size", "128"), ("--scene", "cubes"), ("--budget", "3")],
 }
 # An experiment's own tables of filters are what its README shows: they are not overridden.

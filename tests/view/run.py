@@ -194,18 +194,27 @@ def measure_figures(program, folder):
         gaps = [b["t"] - a["t"] for a, b in zip(frames, frames[1:])]
         print(f"{what} moves: {1 / statistics.median(gaps):.1f} frames a second, median of {len(frames)}; "
               f"longest frame {max(frame['ms'] for frame in frames):.0f} ms")
-    window.wait("the whole truth", lambda frame: frame["truth"] == 1.0, 120.0)
-    # While truth is traced: from a key to the frame that shows what it does.
+    window.close()
+    # While truth is traced, which takes seconds under so wide a sun: from a key to the frame that shows what it does.
+    window = Window(program, folder, ["fence", *size])
+    window.click("light.angular diameter", 0.5)
     waits = []
-    window.drag((300, 300), (40, 0))
-    while window.last()["truth"] < 1.0 and len(waits) < 40:
-        since, layer, begun = window.now(), window.last()["layer"], time.monotonic()
-        window.key("Next")
-        frame = window.wait("another layer", lambda frame: frame["layer"] != layer, since=since)
-        waits.append(1e3 * (frame["t"] - begun) + frame["ms"])
-        window.key("Prior")
-        window.pause(0.2)
-    print(f"while truth is traced: answers within {statistics.median(waits):.0f} ms, the longest of {len(waits)} {max(waits):.0f} ms")
+    for turn in range(3):
+        window.drag((300, 300), (10, 0), steps=2)
+        window.wait("a trace", lambda frame: 0.0 < frame["truth"] < 1.0, since=window.now())
+        for _ in range(12):
+            if window.last()["truth"] == 1.0:
+                break
+            since, layer, begun = window.now(), window.last()["layer"], time.monotonic()
+            window.key("Next")
+            frame = window.wait("another layer", lambda frame: frame["layer"] != layer, since=since)
+            waits.append(1e3 * (frame["t"] - begun) + frame["ms"])
+            window.pause(0.1)
+            window.key("Prior")
+            window.pause(0.1)
+    waits.sort()
+    print(f"while truth is traced: answers within {statistics.median(waits):.0f} ms, nine in ten within "
+          f"{waits[len(waits) * 9 // 10]:.0f} ms, the longest of {len(waits)} {waits[-1]:.0f} ms")
     window.close()
 
 

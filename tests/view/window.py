@@ -15,7 +15,9 @@ class Window:
         self.errors = folder / "stderr.txt"
         self.widgets, self.frames, self.events, self.read = {}, [], [], 0
         command = [str(program), "view", *arguments, "--out", str(folder / "saved"), "--log", str(self.log)]
-        self.process = subprocess.Popen(command, stdout=self.errors.open("w"), stderr=subprocess.STDOUT)
+        # A cache of its own, or a truth that an earlier test traced would be there at once.
+        environment = dict(os.environ, XDG_CACHE_HOME=str(folder / "cache"))
+        self.process = subprocess.Popen(command, env=environment, stdout=self.errors.open("w"), stderr=subprocess.STDOUT)
         self.wait("the first frame", lambda frame: True, 60.0)
         # Nobody else on this display gives a window the keyboard.
         self.send("search", "--sync", "--name", "^shadowbench: ", "windowfocus", "--sync")
