@@ -61,8 +61,10 @@ bool Widgets::choose(const std::string& name, const std::string& label, const st
   begin_widget();
   const bool open =
       ImGui::BeginCombo(label_of(name, label).c_str(), choices[chosen].c_str(), ImGuiComboFlags_HeightLarge);
-  finish(name, help);
-  if (!open) return false;
+  if (!open) {  // else the last item is one of the list's
+    finish(name, help);
+    return false;
+  }
   for (std::size_t i = 0; i < choices.size(); ++i) {
     const bool pressed = ImGui::Selectable(choices[i].c_str(), i == chosen);
     note(name + "=" + choices[i]);

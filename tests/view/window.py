@@ -109,6 +109,7 @@ class Window:
         self.click(widget)
         name = f"{widget}={choice}"
         self.wait(name, lambda frame: name in self.widgets)
+        self.pause(0.3)  # a list has its place from its second frame on
         self.click(name)
 
     def last(self):
