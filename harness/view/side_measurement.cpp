@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <functional>
 #include <system_error>
 
 #include "filters/base/error.h"
@@ -70,16 +71,24 @@ MeasuredSides list_cells(const ViewState& state) {
   return sides;
 }
 
-/// Reads what a finished run left.
-MeasuredSides read_results(MeasuredSides sides, const fs::path& report) {
+bool has_use(const measure::MeasuredCell& cell, const std::string& part) {
+  return part.starts_with(cell.label + ".") && part != run::picture_part(cell.label);
+}
+
+/// Reads what a finished run left. Once it is cancelled, what it gives is worth nothing.
+MeasuredSides read_results(MeasuredSides sides, const fs::path& report, const std::atomic<bool>& is_cancelled) {
   records::Results results = records::read_results(report / "results.json");
-  images::ExrFile file = images::read_exr(report / results.cells.front().images.exr.value());
+  const fs::path images = report / results.cells.front().images.exr.value();
   for (std::size_t i = 0; i < sides.cells.size(); ++i) {
-    measure::MeasuredCell& cell = sides.cells[i];
-    cell.record = std::move(results.cells.at(i));
-    cell.label = cell.record.images.parts.value();
-    run::take_float_images(cell, file.parts);
+    sides.cells[i].record = std::move(results.cells.at(i));
+    sides.cells[i].label = sides.cells[i].record.images.parts.value();
   }
+  images::ExrFile file = images::read_exr(images, [&](const std::string& part) {
+    if (is_cancelled) return false;
+    return part == run::kTruthPart || part == run::kTruthMaskPart ||
+           std::ranges::any_of(sides.cells, [&](const auto& cell) { return has_use(cell, part); });
+  });
+  for (measure::MeasuredCell& cell : sides.cells) run::take_float_images(cell, file.parts);
   for (images::Part& part : file.parts) {
     if (part.name == run::kTruthPart) sides.truth = std::move(part.image);
     if (part.name == run::kTruthMaskPart) sides.truth_mask = std::move(part.image);
@@ -124,7 +133,8 @@ void SideMeasurement::end_worker() {
   worker_.reset();
   if (outcome.exit_code == 0) {
     text_ = "reading the results";
-    reading_ = std::async(std::launch::async, read_results, std::move(results_), folder_->path() / kReportName);
+    reading_ = std::async(std::launch::async, read_results, std::move(results_), folder_->path() / kReportName,
+                          std::cref(is_cancelled_));
     return;
   }
   text_ = explain(outcome);
@@ -153,8 +163,10 @@ void SideMeasurement::remove_files() {
 
 void SideMeasurement::cancel() {
   worker_.reset();
-  if (reading_.valid()) reading_.wait();
+  is_cancelled_ = true;
+  if (reading_.valid()) reading_.wait();  // for one image at most
   reading_ = {};
+  is_cancelled_ = false;
   remove_files();
   results_ = {};
   text_.clear();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <filesystem>
 #include <future>
 #include <optional>
@@ -16,8 +17,8 @@ namespace shadowbench::view {
 
 /// What a run found out about both sides.
 struct MeasuredSides {
-  /// One for each filter. Of its images there are the picture, the visibility, the parts of the error and those of
-  /// stability; one that does not exist is empty, and `absent` of the record says why.
+  /// One for each filter. Of its images there are the visibility, the parts of the error and those of stability; one
+  /// that does not exist is empty, and `absent` of the record says why.
   std::vector<measure::MeasuredCell> cells;
   std::array<std::optional<std::size_t>, kSides> cell_of_side;  ///< index; none where a side shows the truth
   images::Image truth;                                          ///< visibility; empty where there is none
@@ -64,6 +65,7 @@ class SideMeasurement {
   std::optional<ScratchFolder> folder_;
   std::optional<run::WorkerProcess> worker_;
   std::future<MeasuredSides> reading_;
+  std::atomic<bool> is_cancelled_ = false;  ///< nobody waits for what is read
 
   void end_worker();
   void finish_reading();

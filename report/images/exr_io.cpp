@@ -78,10 +78,12 @@ Part reorder_channels(Part part, const std::string& order) {
   return result;
 }
 
+std::string name_part(const OIIO::ImageSpec& spec) { return spec.get_string_attribute("oiio:subimagename"); }
+
 Part read_part(OIIO::ImageInput& input, int index, const std::filesystem::path& path) {
   const OIIO::ImageSpec spec = input.spec(index);
-  Part part{spec.get_string_attribute("oiio:subimagename"), spec.channelnames,
-            Image(spec.width, spec.height, spec.nchannels), spec.format == OIIO::TypeDesc::HALF};
+  Part part{name_part(spec), spec.channelnames, Image(spec.width, spec.height, spec.nchannels),
+            spec.format == OIIO::TypeDesc::HALF};
   if (!input.read_image(index, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, part.image.texels.data())) {
     throw Error(ErrorKind::kInput, fmt::format("part '{}' is damaged ({})", part.name, input.geterror()),
                 path.string());
@@ -122,13 +124,14 @@ void write_exr(const std::filesystem::path& path, const std::vector<Part>& parts
   });
 }
 
-ExrFile read_exr(const std::filesystem::path& path) {
+ExrFile read_exr(const std::filesystem::path& path, const PartChoice& is_wanted) {
   require_plain_file(path, 16384 * kMebibyte);
   const auto input = OIIO::ImageInput::open(path.string());
   if (!input)
     throw Error(ErrorKind::kInput, fmt::format("the EXR file cannot be read ({})", OIIO::geterror()), path.string());
   ExrFile file{{}, read_metadata(input->spec(0))};
-  for (int i = 0; input->seek_subimage(i, 0); ++i) file.parts.push_back(read_part(*input, i, path));
+  for (int i = 0; input->seek_subimage(i, 0); ++i)
+    if (is_wanted(name_part(input->spec(i)))) file.parts.push_back(read_part(*input, i, path));
   return file;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <variant>
@@ -66,8 +67,12 @@ struct ExrFile {
   Metadata metadata;  ///< of the first part: numbers and texts, the format's own attributes included
 };
 
-/// Reads a multi-part EXR file; channels come in the order that write_exr() was given.
-/// Throws Error(kInput).
-ExrFile read_exr(const std::filesystem::path& path);
+/// Chooses parts of a file by their names.
+using PartChoice = std::function<bool(const std::string& name)>;
+
+/// Reads a multi-part EXR file, or the parts of it that are wanted; channels come in the order that write_exr() was
+/// given. Throws Error(kInput).
+ExrFile read_exr(
+    const std::filesystem::path& path, const PartChoice& is_wanted = [](const std::string&) { return true; });
 
 }  // namespace shadowbench::images

@@ -133,6 +133,10 @@ TEST(PictureIo, ExrParts_MayDifferInSize) {
   const ExrFile back = read_exr(folder.path() / "a.exr");
   ASSERT_EQ(back.parts.size(), 2u);
   EXPECT_TRUE(has_same_bits(back.parts[1].image, parts[1].image));
+  const ExrFile chosen = read_exr(folder.path() / "a.exr", [](const std::string& name) { return name == "depth"; });
+  ASSERT_EQ(chosen.parts.size(), 1u);
+  EXPECT_EQ(chosen.parts[0].name, "depth");
+  EXPECT_TRUE(has_same_bits(chosen.parts[0].image, parts[1].image));
 }
 
 TEST(PictureIo, HalfPart_IsRoundedToHalf) {
