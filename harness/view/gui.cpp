@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "filters/base/error.h"
+#include "harness/view/panels/times_panel.h"
 #include "harness/view/save.h"
 #include "harness/view/save_picture.h"
-#include "harness/view/times_panel.h"
 
 namespace shadowbench::view {
 namespace {

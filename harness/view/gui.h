@@ -5,13 +5,13 @@
 #include <string>
 
 #include "harness/render/display_pass.h"
-#include "harness/view/keys.h"
 #include "harness/view/layers.h"
 #include "harness/view/look.h"
-#include "harness/view/magnifier.h"
-#include "harness/view/map_panel.h"
-#include "harness/view/picture_input.h"
-#include "harness/view/settings_panel.h"
+#include "harness/view/panels/keys.h"
+#include "harness/view/panels/magnifier.h"
+#include "harness/view/panels/map_panel.h"
+#include "harness/view/panels/picture_input.h"
+#include "harness/view/panels/settings_panel.h"
 #include "harness/view/time_meter.h"
 #include "harness/view/view_log.h"
 #include "harness/view/window.h"

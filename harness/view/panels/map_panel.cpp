@@ -1,4 +1,4 @@
-#include "harness/view/map_panel.h"
+#include "harness/view/panels/map_panel.h"
 
 #include <fmt/format.h>
 #include <imgui.h>

@@ -7,7 +7,7 @@
 #include "harness/view/footprint.h"
 #include "harness/view/layers.h"
 #include "harness/view/look.h"
-#include "harness/view/widgets.h"
+#include "harness/view/panels/widgets.h"
 
 namespace shadowbench::view {
 

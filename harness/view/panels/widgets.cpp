@@ -1,4 +1,4 @@
-#include "harness/view/widgets.h"
+#include "harness/view/panels/widgets.h"
 
 #include <fmt/format.h>
 #include <imgui.h>

@@ -1,4 +1,4 @@
-#include "harness/view/times_panel.h"
+#include "harness/view/panels/times_panel.h"
 
 #include <fmt/format.h>
 #include <imgui.h>

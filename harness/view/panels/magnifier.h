@@ -7,7 +7,7 @@
 #include "harness/render/display_pass.h"
 #include "harness/view/layers.h"
 #include "harness/view/look.h"
-#include "harness/view/widgets.h"
+#include "harness/view/panels/widgets.h"
 
 namespace shadowbench::view {
 

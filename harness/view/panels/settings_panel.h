@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "harness/view/look.h"
-#include "harness/view/widgets.h"
+#include "harness/view/panels/widgets.h"
 #include "harness/view/workbench.h"
 
 namespace shadowbench::view {

@@ -1,4 +1,4 @@
-#include "harness/view/keys.h"
+#include "harness/view/panels/keys.h"
 
 #include "harness/gl/gl_api.h"
 

@@ -1,4 +1,4 @@
-#include "harness/view/settings_panel.h"
+#include "harness/view/panels/settings_panel.h"
 
 #include <fmt/format.h>
 #include <imgui.h>

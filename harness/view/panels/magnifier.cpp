@@ -1,4 +1,4 @@
-#include "harness/view/magnifier.h"
+#include "harness/view/panels/magnifier.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

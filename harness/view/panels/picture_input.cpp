@@ -1,4 +1,4 @@
-#include "harness/view/picture_input.h"
+#include "harness/view/panels/picture_input.h"
 
 #include <imgui.h>
 
