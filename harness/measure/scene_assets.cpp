@@ -65,7 +65,7 @@ LightMap SceneAssets::make_light_map(const scene::Light& light, const scene::Cam
   std::vector<scene::LightFrustum> layers = fit_map_layers(
       options_, scene_, light, camera, map_size, pad_texels_, [&]() -> render::GBuffer& { return gbuffer(camera); },
       shift_texels);
-  render::ShadowMap map(map_size, render::fit_settings(options_.map, layers.front()), static_cast<int>(layers.size()));
+  render::ShadowMap map(map_size, options_.map, static_cast<int>(layers.size()));
   LightMap made{std::move(layers), std::move(map)};
   made.map.set_border(options_.range.border);
   redraw(made);

@@ -138,6 +138,7 @@ Prefilter* FilterPasses::encoded_map(int layer) {
 }
 
 void FilterPasses::prefilter(const ShadowMap& map) {
+  assert(curve_defines(map.settings().curve) == map_defines_);
   for (int layer = 0; layer < layers(); ++layer) {
     select(layer);
     if (prefilter_) prefilter_->run(map, layer);
@@ -147,10 +148,11 @@ void FilterPasses::prefilter(const ShadowMap& map) {
 
 const ReceiverBuffer& FilterPasses::bind_lookup(gl::Program& program, const GBuffer& gbuffer, int layer,
                                                 const ShadowMap& map) {
+  assert(curve_defines(map.settings().curve) == map_defines_);
   const ReceiverBuffer& receivers = gbuffer.receivers(*shaders_, layers_[static_cast<std::size_t>(layer)].light);
   gbuffer.bind();
   receivers.bind();
-  map.bind(layer);
+  map.bind(program, layer);
   if (prefilter_) prefilter_->bind();
   if (own_) own_->bind();
   if (blue_noise_) {

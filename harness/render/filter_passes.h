@@ -54,7 +54,8 @@ using EncodedTargets = std::vector<std::shared_ptr<ImageTarget>>;
 class FilterPasses {
  public:
   /// Compiles what this filter needs, and nothing else.
-  /// `map` says how large the maps are that it will read, and how they store depth; it need not outlive this object.
+  /// `map`, which has been drawn, says how large the maps are that it will read, and whether they store depth linearly
+  /// or reversed; those maps tell a perspective's ratio themselves. It need not outlive this object.
   /// Throws Error(kFilter) with the line of the filter's file, Error(kUsage) where it reads the samplers itself
   /// and would take what the map's curve makes of depth for depth.
   FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, const ShadowMap& map,
@@ -62,7 +63,8 @@ class FilterPasses {
 
   /// Changes the light and parameter values without compiling anything; the result equals that of new passes. Requires
   /// that only values change that are neither `const` nor texts, and a light with the same range rule, map size and
-  /// number of layers, and with a bias by slope only if the one before had it.
+  /// number of layers, with a bias by slope only if the one before had it, and with a map that curves depth only if the
+  /// one before did.
   void retune(ShaderLibrary& shaders, const filters::ParamValues& values, const LightLayers& light);
 
   /// Prepares another light with the same range rule, map size and number of layers. `encoded` are as

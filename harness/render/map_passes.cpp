@@ -123,14 +123,15 @@ void MapPasses::bind() const {
 }
 
 void MapPasses::run(const ShadowMap& map, int layer, const Prefilter* encoded) {
-  map.bind(layer);
   if (encoded) encoded->bind();
   bind();
-  for (std::size_t i = 0; i < passes_.size(); ++i)
+  for (std::size_t i = 0; i < passes_.size(); ++i) {
+    map.bind(passes_[i].program, layer);
     if (passes_[i].spec.steps == PassSteps::kLevels)
       run_levels(i);
     else
       run_steps(i);
+  }
 }
 
 void MapPasses::draw(Pass& pass, gl::Framebuffer& target, int step) {

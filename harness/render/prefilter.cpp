@@ -114,7 +114,7 @@ void Prefilter::encode(const ShadowMap& map, int layer, ImageTarget& to) {
     gl::Sampler::unbind(kSamplesUnit);
     samples_->depth.bind(kSamplesUnit);
   }
-  map.bind(layer);
+  map.bind(encode_, layer);
   to.bind();
   encode_.use();
   triangle_.draw();

@@ -22,18 +22,22 @@ glm::dmat4 reverse_depth(glm::dmat4 clip) {
   return clip;
 }
 
-}  // namespace
-
-MapSettings fit_settings(MapSettings settings, const scene::LightFrustum& frustum) {
-  if (!frustum.perspective || is_curved(frustum.shape)) return settings;
-  if (!settings.curve.is_linear()) {
+/// What a light's map holds: a perspective one the depth of its projection.
+filters::DepthCurve fit_curve(filters::DepthCurve wanted, const scene::LightFrustum& frustum) {
+  if (!frustum.perspective || is_curved(frustum.shape)) return wanted;
+  if (!wanted.is_linear()) {
     throw Error(ErrorKind::kUsage,
                 "--perspective-depth: this light stands in the scene, and its map holds the depth of its own "
                 "projection; leave the option out");
   }
-  settings.curve.far_over_near = frustum.perspective->far_over_near();
-  return settings;
+  return {wanted.reversed, frustum.perspective->far_over_near()};
 }
+
+void set_curve(gl::Program& program, const filters::DepthCurve& curve) {
+  program.set("far_over_near", static_cast<float>(curve.far_over_near));
+}
+
+}  // namespace
 
 std::string describe_map(const MapSettings& settings) {
   std::string text(gl::pixel_format(settings.format).name);
@@ -53,7 +57,7 @@ double find_coarsest_step(const MapSettings& settings, double farthest) {
 
 Defines curve_defines(const filters::DepthCurve& curve) {
   Defines defines;
-  if (!curve.is_linear()) defines.emplace_back("PERSPECTIVE_DEPTH", fmt::format("{:.9e}", curve.far_over_near));
+  if (!curve.is_linear()) defines.emplace_back("PERSPECTIVE_DEPTH", "1");
   if (curve.reversed) defines.emplace_back("REVERSED_DEPTH", "1");
   return defines;
 }
@@ -80,7 +84,7 @@ ShadowMap::Layer::Layer(const char* label, GLenum format, int size)
 }
 
 ShadowMap::ShadowMap(int size, const MapSettings& settings, int layers)
-    : settings_(settings), drawn_(static_cast<std::size_t>(layers)) {
+    : wanted_(settings.curve), settings_(settings), drawn_(static_cast<std::size_t>(layers)) {
   for (int layer = 0; layer < layers; ++layer) layers_.emplace_back("shadow map", settings.format, size);
   require_depth_bits(settings.format, texture().depth_bits());
   const GLenum compare = settings.curve.reversed ? GL_GEQUAL : GL_LEQUAL;
@@ -127,6 +131,7 @@ void ShadowMap::draw_casters(ShaderLibrary& shaders, const Geometry& geometry, c
                                         : frustum.clip_from_world;
   const auto prepare = [&](gl::Program& program) {
     program.set("clip_from_world", clip_from_world);
+    set_curve(program, curve);
     if (!is_plane) set_shape(program, frustum);
   };
   if (frustum.shape == scene::MapShape::kParaboloid) glEnable(GL_CLIP_DISTANCE0);
@@ -146,6 +151,7 @@ void ShadowMap::draw(ShaderLibrary& shaders, const Geometry& geometry, const sce
                      const MapBias& bias) {
   const auto layer = static_cast<std::size_t>(frustum.layer);
   drawn_[layer].emplace(geometry, frustum, bias);
+  settings_.curve = fit_curve(wanted_, frustum);
   if (bias.midpoint)
     draw_midpoint(shaders, geometry, frustum, bias);
   else
@@ -166,8 +172,14 @@ void ShadowMap::draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, 
   draw_casters(shaders, geometry, frustum, bias, surfaces_[1].framebuffer, {{"BEHIND_FIRST", "1"}});
   gl::Sampler::unbind(1);
   surfaces_[1].depth.bind(1);
-  layers_[static_cast<std::size_t>(frustum.layer)].framebuffer.bind();
-  shaders.fullscreen("midpoint.frag", curve_defines(settings_.curve)).use();
+  draw_mean(shaders, layers_[static_cast<std::size_t>(frustum.layer)].framebuffer);
+}
+
+void ShadowMap::draw_mean(ShaderLibrary& shaders, gl::Framebuffer& framebuffer) const {
+  gl::Program& program = shaders.fullscreen("midpoint.frag", curve_defines(settings_.curve));
+  set_curve(program, settings_.curve);
+  framebuffer.bind();
+  program.use();
   gl::FullscreenTriangle().draw_depth();
 }
 
@@ -184,9 +196,7 @@ void ShadowMap::draw_samples(ShaderLibrary& shaders, gl::Framebuffer& framebuffe
     gl::Sampler::unbind(unit);
     layers_[static_cast<std::size_t>(layer)].depth.bind(unit);
   }
-  framebuffer.bind();
-  shaders.fullscreen("midpoint.frag", curve_defines(settings_.curve)).use();
-  gl::FullscreenTriangle().draw_depth();
+  draw_mean(shaders, framebuffer);
 }
 
 void ShadowMap::upload(std::span<const float> stored) {
@@ -194,7 +204,8 @@ void ShadowMap::upload(std::span<const float> stored) {
   drawn_.front().reset();
 }
 
-void ShadowMap::bind(int layer) const {
+void ShadowMap::bind(gl::Program& reader, int layer) const {
+  set_curve(reader, settings_.curve);
   const gl::Sampler* samplers[] = {&plain_, &compare_linear_, &compare_nearest_};
   for (GLuint unit = 0; unit < 3; ++unit) {
     layers_[static_cast<std::size_t>(layer)].depth.bind(unit);

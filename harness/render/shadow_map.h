@@ -19,10 +19,6 @@ namespace shadowbench::render {
 /// The wrap mode of samplers that reads outside a map as `border` says, e.g. GL_CLAMP_TO_BORDER.
 GLenum wrap_mode(filters::Border border);
 
-/// What a light's map holds: a perspective one the depth of its projection. Throws Error(kUsage) where another curve
-/// was asked for.
-MapSettings fit_settings(MapSettings settings, const scene::LightFrustum& frustum);
-
 /// Names map settings as records do: "d32f", "d16 reversed", "d24 perspective 1000".
 std::string describe_map(const MapSettings& settings);
 
@@ -30,7 +26,8 @@ std::string describe_map(const MapSettings& settings);
 /// one.
 double find_coarsest_step(const MapSettings& settings, double farthest = 1.0);
 
-/// The defines that lib/depth_curve.glsl needs; none for a map that holds linear depth, 0 near.
+/// The defines that lib/depth_curve.glsl needs; none for a map that holds linear depth, 0 near. Curves that differ in
+/// nothing but `far_over_near` share a program; whoever draws with it sets that.
 Defines curve_defines(const filters::DepthCurve& curve);
 
 /// Checks that the GL stores the depth format that it was asked for; `bits` is GL_TEXTURE_DEPTH_SIZE of the texture.
@@ -38,7 +35,8 @@ Defines curve_defines(const filters::DepthCurve& curve);
 void require_depth_bits(GLenum format, int bits);
 
 /// The depth map of one light; depth in [0,1], 0 near, whatever the format and the curve it is stored by. It has one
-/// layer or, where cascades or the faces of a cube share the receivers, several of one size.
+/// layer or, where cascades or the faces of a cube share the receivers, several of one size. A perspective map of a
+/// light that stands in the scene holds the depth of its projection, from draw() on.
 class ShadowMap {
  public:
   /// Throws Error(kUsage) when the GL cannot give this size or format.
@@ -51,6 +49,7 @@ class ShadowMap {
   /// biased.
   /// Cost: one pass over the casters, two and a full-screen pass for a midpoint map.
   /// Requires linear depth where the bias has a polygon offset, which the GL adds to depth as it is drawn.
+  /// Throws Error(kUsage) where the frustum's projection has a curve, and the map was to have another.
   void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
             const MapBias& bias = {});
 
@@ -62,8 +61,9 @@ class ShadowMap {
   /// size() * size() values.
   void upload(std::span<const float> stored);
 
-  /// Binds a layer to the three units of lib/map_access.glsl that read depth.
-  void bind(int layer = 0) const;
+  /// Binds a layer to the three units of lib/map_access.glsl that read depth, and tells the program that will read them
+  /// how it is stored. Requires a program that was compiled with the curve_defines() of this map.
+  void bind(gl::Program& reader, int layer = 0) const;
 
   /// Reads a layer back for the models, as it is stored.
   filters::DepthMap read(int layer = 0) const;
@@ -75,7 +75,7 @@ class ShadowMap {
   const gl::Texture& texture() const { return layers_.front().depth; }
   int size() const { return texture().width(); }
   int layers() const { return static_cast<int>(layers_.size()); }
-  const MapSettings& settings() const { return settings_; }
+  const MapSettings& settings() const { return settings_; }  ///< as it was drawn last
   std::int64_t bytes() const { return layers() * static_cast<std::int64_t>(texture().bytes()); }
 
  private:
@@ -93,6 +93,7 @@ class ShadowMap {
     MapBias bias;
   };
 
+  filters::DepthCurve wanted_;  ///< of depth that no projection has curved
   MapSettings settings_;
   std::vector<Layer> layers_;
   std::vector<std::optional<Drawn>> drawn_;  ///< by layer; nothing where it was uploaded
@@ -107,6 +108,8 @@ class ShadowMap {
                     const MapBias& bias, gl::Framebuffer& framebuffer, Defines defines) const;
   void draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
                      const MapBias& bias);
+  /// Draws the mean of the depths that units 0 and 1 hold.
+  void draw_mean(ShaderLibrary& shaders, gl::Framebuffer& framebuffer) const;
 };
 
 }  // namespace shadowbench::render

@@ -52,6 +52,7 @@ void Stage::draw(const ViewState& state, const Changes& changes) {
   const bool refit = !light_ || changes.light || changes.map || follows || pad != pad_texels_;
   const bool other_map = refit && draw_map(state, changes.map);
   pad_texels_ = pad;
+  if (other_map) blocker_passes_.reset();
   for (std::size_t side = 0; side < kSides; ++side)
     draw_side(state, side, other_map || changes.filter[side], refit || changes.values[side]);
   for (SideDrawing& side : sides_) side.looked_up = side.shaded = glm::ivec2(0);
@@ -77,14 +78,11 @@ bool Stage::draw_map(const ViewState& state, bool map_changed) {
   std::vector<scene::LightFrustum> layers =
       measure::fit_map_layers(options, state.scene, state.scene.light, state.active_camera(), state.map_size(),
                               measure::padding_texels(options), [&]() -> render::GBuffer& { return *gbuffer_; });
-  // The curve of a lamp's map follows its frustum, and is compiled into the filters that read it.
-  const render::MapSettings settings = render::fit_settings(options.map, layers.front());
   const bool other_map = !light_ || map_changed || light_->map.size() != state.map_size() ||
                          light_->map.layers() != static_cast<int>(layers.size()) ||
-                         light_->map.settings().format != settings.format ||
-                         !(light_->map.settings().curve == settings.curve);
+                         render::shape_defines(light_->frustum()) != render::shape_defines(layers.front());
   if (other_map) {
-    render::ShadowMap map(state.map_size(), settings, static_cast<int>(layers.size()));
+    render::ShadowMap map(state.map_size(), options.map, static_cast<int>(layers.size()));
     map.set_border(options.range.border);
     light_ = std::make_unique<measure::LightMap>(std::move(layers), std::move(map));
   } else {
@@ -113,10 +111,15 @@ void Stage::draw_side(const ViewState& state, std::size_t side, bool compiles, b
   if (retunes && !compiles) {
     // A filter whose newer code does not compile keeps the values that its older one knows.
     const filters::FilterRequest request = drawing.fault.empty() ? state.sides[side].filter : drawing.passes->request();
-    drawing.passes->retune(renderer_.shaders, request.values,
-                           measure::make_filter_light(state.options, state.scene.light, light_->layers, request));
+    retune(state, *drawing.passes, request);
+    for (const auto& empty : drawing.empty.passes) retune(state, *empty, empty->request());
   }
   if (compiles || retunes) drawing.passes->prefilter(light_->map);
+}
+
+void Stage::retune(const ViewState& state, render::FilterPasses& passes, const filters::FilterRequest& request) {
+  passes.retune(renderer_.shaders, request.values,
+                measure::make_filter_light(state.options, state.scene.light, light_->layers, request));
 }
 
 void Stage::compile(const ViewState& state, std::size_t side) {
@@ -169,9 +172,12 @@ void Stage::look_up_nothing(std::size_t side) {
 
 images::Image Stage::blocker_distance(const ViewState& state) {
   render::ImageTarget target("distance to the blocker", GL_R32F, gbuffer_->width(), gbuffer_->height());
-  const auto passes =
-      measure::make_filter_passes(renderer_, state.options, state.scene, *light_, make_blocker_lookup());
-  passes->lookup(*gbuffer_, light_->map, target);
+  if (blocker_passes_)
+    retune(state, *blocker_passes_, blocker_passes_->request());
+  else
+    blocker_passes_ =
+        measure::make_filter_passes(renderer_, state.options, state.scene, *light_, make_blocker_lookup());
+  blocker_passes_->lookup(*gbuffer_, light_->map, target);
   images::Image distance = render::read_image(target.texture(), 1);
   for (float& value : distance.texels) value = value < 0.0f ? -1.0f - value : 0.0f;
   return distance;

@@ -66,7 +66,7 @@ class Stage {
   void look_up_nothing(std::size_t side);
 
   /// The distance in metres from each receiver towards the light to the surface that the map holds for it, rows top to
-  /// bottom; 0 where there is none before it. Cost: a lookup that is compiled.
+  /// bottom; 0 where there is none before it. Cost: a lookup.
   images::Image blocker_distance(const ViewState& state);
 
  private:
@@ -87,12 +87,14 @@ class Stage {
   double pad_texels_ = -1.0;
   std::array<SideDrawing, kSides> sides_;
   std::optional<gl::Texture> truth_;
-  std::optional<render::ImageTarget> unseen_;  ///< what timed lookups draw into
+  std::optional<render::ImageTarget> unseen_;             ///< what timed lookups draw into
+  std::unique_ptr<render::FilterPasses> blocker_passes_;  ///< null where they must be compiled anew
 
   void draw_gbuffer(const ViewState& state);
   bool draw_map(const ViewState& state, bool map_changed);
   void draw_side(const ViewState& state, std::size_t side, bool compile, bool retune);
   void compile(const ViewState& state, std::size_t side);
+  void retune(const ViewState& state, render::FilterPasses& passes, const filters::FilterRequest& request);
 };
 
 }  // namespace shadowbench::view

@@ -1,15 +1,18 @@
 // How the map stores depth; filters/depth_curve.h does the same. Filters see linear depth, 0 near. With
-// PERSPECTIVE_DEPTH, the distance of the far plane divided by that of the near plane, the map holds the depth of a
-// perspective projection; with REVERSED_DEPTH it holds 1 minus the depth.
+// PERSPECTIVE_DEPTH the map holds the depth of a perspective projection; with REVERSED_DEPTH it holds 1 minus the depth.
 #ifdef PERSPECTIVE_DEPTH
+uniform float far_over_near;  // the distance of the far plane divided by that of the near plane
+
+// Maps, lookups and models round alike, step by step; no compiler may fuse the steps in one of them.
 float store_depth(float z) {
   z = max(z, 0.0);
-  float steps = 1.0 + (PERSPECTIVE_DEPTH - 1.0) * z;
+  precise float steps = 1.0 + (far_over_near - 1.0) * z;
 #ifdef REVERSED_DEPTH
-  return (1.0 - z) / steps;
+  precise float stored = (1.0 - z) / steps;
 #else
-  return PERSPECTIVE_DEPTH * z / steps;
+  precise float stored = far_over_near * z / steps;
 #endif
+  return stored;
 }
 
 float linear_depth(float stored) {
@@ -18,7 +21,9 @@ float linear_depth(float stored) {
 #else
   float away = 1.0 - stored;
 #endif
-  return (1.0 - away) / (1.0 + (PERSPECTIVE_DEPTH - 1.0) * away);
+  precise float steps = 1.0 + (far_over_near - 1.0) * away;
+  precise float z = (1.0 - away) / steps;
+  return z;
 }
 #else
 #ifdef REVERSED_DEPTH

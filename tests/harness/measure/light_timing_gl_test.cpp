@@ -58,7 +58,8 @@ class LightFrames {
   /// A light that is not overhead: turned about the vertical it is another.
   static scene::Scene load_tilted(const std::string& name) {
     scene::Scene scene = load_builtin(name);
-    scene.light.kind = scene::Sun{glm::normalize(-scene::to_light(scene.light, {}) + glm::vec3(0.3f, 0.0f, 0.1f))};
+    scene.light = scene::turn_light(
+        scene.light, [](const glm::vec3& way) { return glm::normalize(way + glm::vec3(0.3f, 0.0f, 0.1f)); });
     return scene;
   }
 
@@ -97,8 +98,9 @@ TEST_P(LightFramesOf, EveryLight_DrawsTheSameBitsAsAlone) {
   }
 }
 
-// On "edge" the map's edge cuts casters: what lies outside it is seen.
-INSTANTIATE_TEST_SUITE_P(Scenes, LightFramesOf, ::testing::Values("fence", "edge"));
+// On "edge" the map's edge cuts casters: what lies outside it is seen. The maps of a lamp's ring curve depth in several
+// ways.
+INSTANTIATE_TEST_SUITE_P(Scenes, LightFramesOf, ::testing::Values("fence", "edge", "lamp"));
 
 TEST(LightTiming, TimesEveryPassOnce_OfFiltersThatNeedIt) {
   LightFrames frames("cubes", "none,vsm");

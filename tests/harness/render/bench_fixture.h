@@ -41,7 +41,7 @@ class Bench {
                                           .pad_texels = pad_texels,
                                           .camera = &scene.cameras.front(),
                                           .aspect = static_cast<double>(width) / height})),
-        map_(map_size, render::fit_settings(map, layers_.front()), static_cast<int>(layers_.size())),
+        map_(map_size, map, static_cast<int>(layers_.size())),
         gbuffer_(width, height),
         target_("visibility", GL_R32F, width, height) {
     redraw({});
