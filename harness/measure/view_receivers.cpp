@@ -4,6 +4,7 @@
 
 #include "filters/base/content_hash.h"
 #include "filters/receiver.h"
+#include "harness/measure/receiver_pixels.h"
 #include "harness/render/image_target.h"
 
 namespace shadowbench::measure {
@@ -40,15 +41,17 @@ ViewSurfaces read_view_surfaces(const render::GBuffer& gbuffer) {
 
 ViewReceivers make_view_receivers(const ViewSurfaces& surfaces, const scene::Light& light) {
   const auto& [positions, normals] = surfaces;
-  ViewReceivers receivers{{positions.width, positions.height, {}}, {}};
-  for (std::size_t i = 0; i < positions.texels.size(); i += 4) {
-    const float* p = &positions.texels[i];
-    const float* n = &normals.texels[i];
+  const std::size_t pixels = positions.texels.size() / 4;
+  ViewReceivers receivers{{positions.width, positions.height, std::vector<truth::ReceiverPoint>(pixels)},
+                          std::vector<std::uint8_t>(pixels)};
+  visit_in_parallel(pixels, [&](std::size_t i) {
+    const float* p = &positions.texels[4 * i];
+    const float* n = &normals.texels[4 * i];
     const glm::vec3 position(p[0], p[1], p[2]), normal(n[0], n[1], n[2]);
     const bool is_surface = p[3] != 0.0f;
-    receivers.is_surface.push_back(is_surface ? 1 : 0);
-    receivers.image.points.push_back({position, normal, is_surface && faces(light, position, normal)});
-  }
+    receivers.is_surface[i] = is_surface ? 1 : 0;
+    receivers.image.points[i] = {position, normal, is_surface && faces(light, position, normal)};
+  });
   ContentHash hash;
   hash.add_values(std::span<const float>(positions.texels));
   hash.add_values(std::span<const float>(normals.texels));
