@@ -64,7 +64,8 @@ struct BackgroundTruth::Picture {
 
 struct BackgroundTruth::Request {
   TruthJob job;
-  std::shared_ptr<Picture> picture;
+  std::shared_ptr<Picture> picture;    ///< of the job; null: there is none
+  std::shared_ptr<Picture> forgotten;  ///< an earlier one: to free it takes milliseconds, which the window has not
 };
 
 BackgroundTruth::BackgroundTruth(truth::CachedTracer::MeshList list_meshes, truth::TruthCache& cache,
@@ -72,31 +73,32 @@ BackgroundTruth::BackgroundTruth(truth::CachedTracer::MeshList list_meshes, trut
     : tracer_(std::move(list_meshes), cache, seed), thread_([this] { work(); }) {}
 
 BackgroundTruth::~BackgroundTruth() {
-  stop();
   ends_ = true;
-  put(nullptr);
+  stop();
   thread_.join();
+  const std::unique_ptr<Request> not_taken(waiting_.load());
 }
 
-void BackgroundTruth::put(std::unique_ptr<Request> request) {
-  const std::unique_ptr<Request> replaced(waiting_.exchange(request.release()));
+void BackgroundTruth::put(Request request) {
+  const std::unique_ptr<Request> replaced(waiting_.exchange(new Request(std::move(request))));
   ++rings_;
   rings_.notify_one();
 }
 
-void BackgroundTruth::start(TruthJob job) {
-  stop();
-  picture_ = std::make_shared<Picture>();
-  put(std::make_unique<Request>(Request{std::move(job), picture_}));
-}
-
-void BackgroundTruth::stop() {
+std::shared_ptr<BackgroundTruth::Picture> BackgroundTruth::forget() {
   if (picture_) picture_->stop.request_stop();
-  picture_.reset();
   stages_seen_ = 0;
   pixels_seen_ = 0;
-  put(nullptr);
+  return std::move(picture_);
 }
+
+void BackgroundTruth::start(TruthJob job) {
+  std::shared_ptr<Picture> forgotten = forget();
+  picture_ = std::make_shared<Picture>();
+  put({std::move(job), picture_, std::move(forgotten)});
+}
+
+void BackgroundTruth::stop() { put({{}, nullptr, forget()}); }
 
 std::optional<BackgroundTruth::Shown> BackgroundTruth::take() {
   if (!picture_) return std::nullopt;
@@ -123,7 +125,8 @@ std::optional<BackgroundTruth::Shown> BackgroundTruth::take() {
 void BackgroundTruth::work() {
   give_way_to_others();
   for (int heard = 0; !ends_; heard = rings_) {
-    if (const std::unique_ptr<Request> request{waiting_.exchange(nullptr)}) serve(*request);
+    if (const std::unique_ptr<Request> request{waiting_.exchange(nullptr)}; request && request->picture)
+      serve(*request);
     rings_.wait(heard);
   }
 }

@@ -84,7 +84,8 @@ class BackgroundTruth {
   std::atomic<bool> ends_ = false;
   std::thread thread_;  ///< the last member: it uses the others
 
-  void put(std::unique_ptr<Request> request);
+  void put(Request request);
+  std::shared_ptr<Picture> forget();
   void work();
   void serve(const Request& request);
   void trace(const Request& request);
