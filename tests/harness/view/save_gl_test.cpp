@@ -87,9 +87,12 @@ TEST_F(SaveTest, CubesUnderAnotherSun) {
 }
 
 TEST_F(SaveTest, SpotLight) {
-  view::ViewState state = view::make_view_state(make_options(), "lamp", sides("vsm:radius=6", "tent3x3"));
+  options::RunOptions options = make_options();
+  options.range.behind_test = false;
+  view::ViewState state = view::make_view_state(options, "lamp", sides("vsm:radius=6", "tent3x3"));
   change(state, move);
   expect_same(state);
+  EXPECT_THAT(read_text(folder() / "e" / "shown.toml"), HasSubstr("behind_test = 'off'"));
 }
 
 TEST_F(SaveTest, SpotLightNarrowerThanItsInnerCone) {
@@ -134,19 +137,23 @@ TEST_F(SaveTest, BareModelOnItsFloor_ThroughTheSecondCamera) {
 
 TEST_F(SaveTest, EverySettingOfTheMapAndTheLookup) {
   options::RunOptions options = make_options();
-  options.map = {GL_DEPTH_COMPONENT16, {true, 30.0}};
-  options.snap = true;
+  options.map = {GL_DEPTH_COMPONENT16, {false, 30.0}};
   options.range = {filters::Border::kEdge, false, true};
   options.seed = 17;
-  options.pad_texels = 13.0;
   view::ViewState state = view::make_view_state(options, "edge", sides("poisson:radius=3", "tent3x3"));
   change(state, [&](view::ViewSettings& settings) {
-    view::set_fit(settings, "view");
     view::set_bias(settings, {"constant:depth=1e-4", "slope:texels=0.7"});
   });
   expect_same(state);
-  change(state, [&](view::ViewSettings& settings) { view::set_fit(settings, "cascades:count=3,split=0.37"); });
-  expect_same(state);
+  options = make_options();
+  options.map.curve = {true, 1e5};
+  options.snap = true;
+  options.pad_texels = 13.0;
+  state = view::make_view_state(options, "cubes", sides("none", "tent3x3"));
+  for (const char* fit : {"cascades:count=3,split=0.37", "view"}) {
+    change(state, [&](view::ViewSettings& settings) { view::set_fit(settings, fit); });
+    expect_same(state);
+  }
 }
 
 TEST_F(SaveTest, OneFilterTwice_AndAUsersOwn) {
@@ -173,8 +180,11 @@ TEST_F(SaveTest, TruthIsNoCell_AndTwoTruthsMakeARunAllTheSame) {
 }
 
 TEST_F(SaveTest, NoFileIsWrittenOverAScene) {
-  const fs::path own = write("own.toml", read_text(SHADOWBENCH_SOURCE_DIR "/harness/scenes/cubes.toml"));
-  const view::ViewState state = view::make_view_state(make_options(), own.string(), sides("tent3x3", "none"));
+  options::RunOptions options = make_options();
+  const std::string cubes = read_text(options.resources.scenes / "cubes.toml");
+  options.resources.scenes = folder() / "built-in";
+  const fs::path edge = write("built-in/teaching/edge.toml", cubes), own = write("own.toml", cubes);
+  const view::ViewState state = view::make_view_state(options, own.string(), sides("tent3x3", "none"));
   const auto refusal = [&](const fs::path& file) {
     try {
       view::save_scene(state, file);
@@ -187,13 +197,14 @@ TEST_F(SaveTest, NoFileIsWrittenOverAScene) {
   EXPECT_THAT(refusal(folder() / "." / "own.toml"), HasSubstr("loaded from this file"));
   fs::create_symlink(own, folder() / "link.toml");
   EXPECT_THAT(refusal(folder() / "link.toml"), HasSubstr("loaded from this file"));
-  EXPECT_THAT(refusal(SHADOWBENCH_SOURCE_DIR "/harness/scenes/new.toml"), HasSubstr("built-in scenes"));
-  EXPECT_THAT(refusal(SHADOWBENCH_SOURCE_DIR "/harness/scenes/teaching/edge.toml"), HasSubstr("built-in scenes"));
+  EXPECT_THAT(refusal(folder() / "built-in" / "new.toml"), HasSubstr("built-in scenes"));
+  EXPECT_THAT(refusal(edge), HasSubstr("built-in scenes"));
   EXPECT_THAT(refusal(folder() / "scene.gltf"), HasSubstr("end in .toml"));
   EXPECT_EQ(refusal(folder() / "other.toml"), "none");
   EXPECT_EQ(refusal(folder() / "other.toml"), "none") << "what was saved may be saved again";
   EXPECT_THROW(view::save_experiment(state, own), Error);
-  EXPECT_EQ(read_text(own), read_text(SHADOWBENCH_SOURCE_DIR "/harness/scenes/cubes.toml"));
+  EXPECT_EQ(read_text(own), cubes);
+  EXPECT_EQ(read_text(edge), cubes);
 }
 
 }  // namespace
