@@ -276,8 +276,11 @@ void Gui::save(const std::string& what, const std::function<void(const std::file
 
 void Gui::save_state(const std::string& what,
                      void (*write)(const ViewState& state, const std::filesystem::path& file)) {
-  save(
-      what, [&](const std::filesystem::path& stem) { write(bench_.state(), std::filesystem::path(stem) += ".toml"); });
+  Changes settled;  // by change(): a file keeps directions as it reads them
+  settled.camera = settled.light = true;
+  bench_.change(settled, [](ViewSettings&) {});
+  bench_.draw();
+  save(what, [&](const std::filesystem::path& stem) { write(bench_.state(), std::filesystem::path(stem) += ".toml"); });
 }
 
 void Gui::save_picture(const std::filesystem::path& stem) {
