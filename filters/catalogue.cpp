@@ -134,6 +134,8 @@ ParamValue parse_value(const FilterSpec& spec, const std::string& name, const st
   return value;
 }
 
+bool is_same(const FilterRequest& a, const FilterRequest& b) { return a.spec.id == b.spec.id && a.values == b.values; }
+
 Catalogue::Catalogue(const std::filesystem::path& folder) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error))

@@ -20,6 +20,9 @@ struct FilterRequest {
   std::string label() const;
 };
 
+/// Whether both are one filter with the same values: whether they make one cell.
+bool is_same(const FilterRequest& a, const FilterRequest& b);
+
 /// Knows the filters of one folder, one `<id>.glsl` each; comparison filters first, narrow before wide.
 class Catalogue {
  public:

@@ -97,7 +97,7 @@ void require_distinct(const std::vector<filters::FilterRequest>& requests) {
   for (std::size_t i = 0; i < requests.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const filters::FilterRequest &a = requests[i], &b = requests[j];
-      if (a.spec.id == b.spec.id && a.values == b.values)
+      if (filters::is_same(a, b))
         fail(fmt::format("--filters names '{}' twice: '{}' has the same parameters", a.label(), b.label()));
     }
   }

@@ -32,7 +32,6 @@ int view_scene(const ViewArguments& arguments) {
   options.keeps_size = !arguments.size.empty();
   if (options.keeps_size) std::tie(options.run.width, options.run.height) = parse_picture_size(arguments.size);
   options.run.sizes = {{options.run.width, options.run.height}};
-  options.run.reference = filters::Catalogue(options.run.resources.filters).parse_requests("none").front();
   options.filter_files.assign(arguments.filter_files.begin(), arguments.filter_files.end());
   const std::string usual =
       options.filter_files.empty() ? std::string("tent3x3") : options.filter_files.front().stem().string();

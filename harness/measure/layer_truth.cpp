@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "filters/base/content_hash.h"
+#include "harness/measure/filter_setup.h"
 
 namespace shadowbench::measure {
 namespace {
@@ -61,6 +62,15 @@ std::vector<TracedLayer> list_traced_layers(render::ShaderLibrary& shaders, cons
     layer.content = hash.name();
   }
   return layers;
+}
+
+std::vector<CoveredLayer> list_covered_layers(render::ShaderLibrary& shaders, const render::GBuffer& gbuffer,
+                                              const options::RunOptions& options, const scene::Light& light,
+                                              const std::vector<scene::LightFrustum>& layers) {
+  const auto traced = list_traced_layers(shaders, gbuffer, make_unbiased_light(options, light, layers));
+  std::vector<CoveredLayer> covered;
+  for (std::size_t i = 0; i < traced.size(); ++i) covered.push_back({layers[i], traced[i].shares});
+  return covered;
 }
 
 truth::TracedVisibility trace_layers(const std::vector<TracedLayer>& layers, const truth::ReceiverImage& receivers,

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/measure/map_coverage.h"
+#include "harness/options/options.h"
 #include "harness/render/receivers.h"
 #include "reference/truth/cached_tracer.h"
 
@@ -23,6 +25,11 @@ using LayerTrace =
 /// The layers of a light's map for the receivers of a view.
 std::vector<TracedLayer> list_traced_layers(render::ShaderLibrary& shaders, const render::GBuffer& gbuffer,
                                             const render::LightLayers& light);
+
+/// The same for measure_coverage(); the layers have no bias.
+std::vector<CoveredLayer> list_covered_layers(render::ShaderLibrary& shaders, const render::GBuffer& gbuffer,
+                                              const options::RunOptions& options, const scene::Light& light,
+                                              const std::vector<scene::LightFrustum>& layers);
 
 /// Traces receivers through the grid of the layer that serves them; where several share a pixel, their traces are added
 /// by their shares, and agree where all rays of all of them do.

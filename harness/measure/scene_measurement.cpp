@@ -155,10 +155,9 @@ class SceneBench {
   void time(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
     std::vector<render::FilterPasses*> pointers;
     for (const auto& filter : filters) pointers.push_back(filter.get());
-    const auto asked =
-        std::find_if(task_.filters.begin(), task_.filters.end(), [&](const filters::FilterRequest& request) {
-          return request.spec.id == options_.reference.spec.id && request.values == options_.reference.values;
-        });
+    const auto asked = std::find_if(
+        task_.filters.begin(), task_.filters.end(),
+        [&](const filters::FilterRequest& request) { return filters::is_same(request, options_.reference); });
     const auto reference = static_cast<std::size_t>(asked - task_.filters.begin());
     std::unique_ptr<render::FilterPasses> added;
     if (asked == task_.filters.end()) {

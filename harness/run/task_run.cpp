@@ -130,22 +130,16 @@ void TaskRun::measure_coverage(measure::SceneMeasurement& measured) {
     std::optional<measure::ViewReceivers> untraced;
     if (truth.receivers.image.points.empty())
       untraced = measure::read_view_receivers(assets_.gbuffer(*task_.camera), task_.scene->light);
-    coverage_ = measure::measure_coverage(untraced ? *untraced : truth.receivers, *task_.camera, list_covered(light),
-                                          measure::read_linear_depth(light.map));
+    coverage_ =
+        measure::measure_coverage(untraced ? *untraced : truth.receivers, *task_.camera,
+                                  measure::list_covered_layers(renderer_.shaders, assets_.gbuffer(*task_.camera),
+                                                               options_, task_.scene->light, light.layers),
+                                  measure::read_linear_depth(light.map));
   }
   for (measure::MeasuredCell& cell : measured.cells) {
     cell.record.coverage = coverage_->record;
     if (!coverage_->record.texels_per_pixel) cell.record.absent["coverage"] = "no surface in view faces the light";
   }
-}
-
-std::vector<measure::CoveredLayer> TaskRun::list_covered(const measure::LightMap& light) {
-  const auto traced =
-      measure::list_traced_layers(renderer_.shaders, assets_.gbuffer(*task_.camera),
-                                  measure::make_unbiased_light(options_, task_.scene->light, light.layers));
-  std::vector<measure::CoveredLayer> covered;
-  for (std::size_t i = 0; i < traced.size(); ++i) covered.push_back({light.layers[i], traced[i].shares});
-  return covered;
 }
 
 void TaskRun::write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured) {

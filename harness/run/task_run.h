@@ -55,7 +55,6 @@ class TaskRun {
   images::Image draw_ambient();
   measure::MeasuredCell measure_user_cell(const filters::FilterRequest& request);
   void score(measure::SceneMeasurement& measured);
-  std::vector<measure::CoveredLayer> list_covered(const measure::LightMap& light);
   void measure_coverage(measure::SceneMeasurement& measured);
   void write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured);
   void draw_border_page(const measure::SceneTask& task);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "filters/map_reader.h"
 #include "harness/render/receivers.h"
@@ -51,10 +52,10 @@ std::optional<filters::Receiver> FootprintFinder::find_receiver(const render::Li
                                                                 const glm::ivec2& pixel) const {
   const render::GBuffer& seen = bench_.stage().gbuffer();
   const glm::ivec2 at(pixel.x, seen.height() - 1 - pixel.y);
-  const std::vector<float> position = seen.position().read_texel(at.x, at.y, 4);
-  if (position[3] == 0.0f) return std::nullopt;
+  const auto place = bench_.stage().find_surface(pixel);
+  if (!place) return std::nullopt;
   render::GBuffer one(1, 1);
-  one.upload(position, seen.normal().read_texel(at.x, at.y, 4));
+  one.upload(std::span(&place->x, 4), seen.normal().read_texel(at.x, at.y, 4));
   std::optional<filters::Receiver> found;
   for (const render::LightSetup& layer : light) {
     for (filters::Receiver& receiver : render::read_receivers(bench_.renderer().shaders, one, layer))

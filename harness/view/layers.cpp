@@ -104,9 +104,9 @@ ShownLayer show_part(Layers& layers, const Layer& layer, std::size_t side) {
       [&](const measure::MeasuredCell& cell) -> const images::Image& {
         static const images::Image kNone;
         const auto& parts = records::list_error_parts();
-        const auto index = static_cast<std::size_t>(std::ranges::find_if(
-                                                        parts, [&](const auto& part) { return part.id == layer.id; }) -
-                                                    parts.begin());
+        const auto part = std::ranges::find(
+            parts, layer.id, [](const auto& each) { return std::string(each.id); });
+        const auto index = static_cast<std::size_t>(part - parts.begin());
         return index < cell.error_parts.size() ? cell.error_parts[index] : kNone;
       });
 }

@@ -13,15 +13,10 @@ constexpr double kSecondsOfRest = 0.1;  ///< between frames in which nothing mov
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-Side make_side(const filters::Catalogue& catalogue, const std::string& text, const std::string& otherwise) {
+/// A side that shows the truth keeps a filter, for when it shows one.
+Side make_side(const filters::Catalogue& catalogue, const std::string& text) {
   const bool truth = text == kTruthName;
-  return {catalogue.parse_requests(truth ? otherwise : text).front(), truth};
-}
-
-std::array<Side, kSides> make_sides(const ViewOptions& options) {
-  filters::Catalogue catalogue(options.run.resources.filters);
-  for (const std::filesystem::path& file : options.filter_files) catalogue.add_user_file(file);
-  return {make_side(catalogue, options.sides[0], "none"), make_side(catalogue, options.sides[1], "none")};
+  return {catalogue.parse_requests(truth ? "none" : text).front(), truth};
 }
 
 /// What tests want to know of a frame.
@@ -32,7 +27,7 @@ ViewLog::Frame describe_frame(const Gui& gui, Workbench& bench, double begun_s, 
   frame.texts["layer"] = Layers::list()[gui.look().layer].id;
   frame.texts["message"] = bench.message();
   for (std::size_t side = 0; side < kSides; ++side) {
-    const std::string name = side == 0 ? "left" : "right";
+    const std::string name = kSideNames[side];
     const Side& shown = bench.state().sides[side];
     frame.texts[name] = shown.truth ? kTruthName : shown.filter.spec.id;
     frame.texts[name + ".fault"] = bench.stage().fault(side);
@@ -44,10 +39,12 @@ ViewLog::Frame describe_frame(const Gui& gui, Workbench& bench, double begun_s, 
 }  // namespace
 
 void run_view(const ViewOptions& options) {
-  ViewState state = make_view_state(options.run, options.scene, make_sides(options));
-  state.fit_texts = options.fit_texts;
+  filters::Catalogue catalogue = load_catalogue(options.run.resources.filters, options.filter_files);
+  options::RunOptions run = options.run;
+  run.reference = catalogue.parse_requests("none").front();
+  ViewState state = make_view_state(std::move(run), options.scene,
+                                    {make_side(catalogue, options.sides[0]), make_side(catalogue, options.sides[1])});
   check(state);
-  const gl::GlfwLibrary library;
   const glm::ivec2 size =
       Gui::window_size({state.options.width, state.options.height}, options.scale > 0.0f ? options.scale : 1.0f);
   auto context =
@@ -57,7 +54,7 @@ void run_view(const ViewOptions& options) {
   measure::Renderer renderer{std::move(context), {}, timer, render::ShaderLibrary(options.run.resources.shaders)};
   Window window(shown, options.scale);
   ViewLog log = options.log.empty() ? ViewLog() : ViewLog(options.log);
-  Workbench bench(renderer, std::move(state), options.filter_files);
+  Workbench bench(renderer, std::move(state), std::move(catalogue), options.filter_files);
   bench.draw();
   Gui gui(window, bench, log, options.run.out, options.keeps_size);
   const double opened = now_s();

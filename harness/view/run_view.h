@@ -14,7 +14,6 @@ inline constexpr const char* kTruthName = "truth";
 /// What `shadowbench view` is told.
 struct ViewOptions {
   options::RunOptions run;  ///< its `out` is where files are saved
-  std::vector<std::string> fit_texts;
   std::string scene;
   std::array<std::string, kSides> sides;  ///< filters as `--filters` names them, or "truth"
   std::vector<std::filesystem::path> filter_files;

@@ -42,8 +42,7 @@ std::string write_scene(const ViewState& state, const fs::path& file) {
 }
 
 std::string write_title(const ViewState& state) {
-  const auto name = [](const Side& side) { return side.truth ? std::string("truth") : side.filter.label(); };
-  return fmt::format("{}: {} and {}", state.scene.title, name(state.sides[0]), name(state.sides[1]));
+  return fmt::format("{}: {} and {}", state.scene.title, state.sides[0].label(), state.sides[1].label());
 }
 
 toml::table write_filter(const filters::FilterRequest& request) {

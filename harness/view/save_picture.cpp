@@ -4,20 +4,14 @@
 
 #include <system_error>
 
-#include "filters/base/error.h"
 #include "report/images/picture_io.h"
 
 namespace shadowbench::view {
 
 std::filesystem::path find_free_stem(const std::filesystem::path& folder, const std::string& name) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed)
-    throw Error(ErrorKind::kOutput,
-                fmt::format("the folder cannot be made ({}); choose another with --out", failed.message()),
-                folder.string());
   const auto is_taken = [&](const std::string& stem) {
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
+    std::error_code missing;  // a folder that is not there yet has no files
+    for (const auto& entry : std::filesystem::directory_iterator(folder, missing))
       if (entry.path().filename().string().starts_with(stem + ".")) return true;
     return false;
   };
@@ -34,7 +28,7 @@ void save_picture(Workbench& bench, render::DisplayPass& display, const std::arr
   display.draw(bench.renderer().shaders, shown, {glm::ivec2(0), size, glm::vec2(0.0f), 1.0f, divider}, target);
   std::vector<images::Part> parts;
   for (std::size_t side = 0; side < kSides; ++side) {
-    const std::string name = side == 0 ? "left" : "right";
+    const std::string name = kSideNames[side];
     parts.push_back(
         {name + ".visibility", {"Y"}, render::read_image(bench.stage().visibility(side, {0, size.x}), 1), false});
     const gl::Texture& picture = bench.stage().picture(state, side, {0, size.x});
@@ -43,9 +37,7 @@ void save_picture(Workbench& bench, render::DisplayPass& display, const std::arr
   if (bench.stage().truth() != nullptr)
     parts.push_back({"truth.area", {"Y"}, render::read_image(*bench.stage().truth(), 1), false});
   images::Metadata metadata = {{"scene", state.scene.name}};
-  for (std::size_t side = 0; side < kSides; ++side)
-    metadata[side == 0 ? "left" : "right"] =
-        state.sides[side].truth ? std::string("truth") : state.sides[side].filter.label();
+  for (std::size_t side = 0; side < kSides; ++side) metadata[kSideNames[side]] = state.sides[side].label();
   images::write_exr(std::filesystem::path(stem) += ".exr", parts, metadata);
   images::write_display_png(std::filesystem::path(stem) += ".png", render::read_image(target.texture(), 3));
 }

@@ -8,8 +8,7 @@
 
 namespace shadowbench::view {
 
-/// A path in `folder` without an extension, which no file of any extension has yet: "cubes-1". Makes the folder.
-/// Throws Error(kOutput) where that fails.
+/// A path in `folder` without an extension, which no file of any extension has yet: "cubes-1".
 std::filesystem::path find_free_stem(const std::filesystem::path& folder, const std::string& name);
 
 /// Writes STEM.png, which is what the window shows of both sides, and STEM.exr with the float images behind it: for

@@ -64,8 +64,7 @@ MeasuredSides list_cells(const ViewState& state) {
   for (const filters::FilterRequest& request : listed) sides.cells.emplace_back().request = request;
   for (std::size_t side = 0; side < kSides; ++side) {
     if (state.sides[side].truth) continue;
-    const filters::FilterRequest& shown = state.sides[side].filter;
-    const auto is_it = [&](const auto& each) { return each.spec.id == shown.spec.id && each.values == shown.values; };
+    const auto is_it = [&](const auto& each) { return filters::is_same(each, state.sides[side].filter); };
     sides.cell_of_side[side] = std::ranges::find_if(listed, is_it) - listed.begin();
   }
   return sides;

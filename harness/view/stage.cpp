@@ -33,7 +33,6 @@ Changes& Changes::operator|=(const Changes& other) {
   camera |= other.camera;
   light |= other.light;
   map |= other.map;
-  truth |= other.truth;
   for (std::size_t side = 0; side < kSides; ++side) {
     filter[side] |= other.filter[side];
     values[side] |= other.values[side];
@@ -137,6 +136,12 @@ void Stage::compile(const ViewState& state, std::size_t side) {
     drawing.fault = error.what();
     if (drawing.passes) make(filters::FilterRequest(drawing.passes->request()));
   }
+}
+
+std::optional<glm::vec4> Stage::find_surface(const glm::ivec2& pixel) const {
+  const std::vector<float> place = gbuffer_->position().read_texel(pixel.x, gbuffer_->height() - 1 - pixel.y, 4);
+  if (place[3] == 0.0f) return std::nullopt;
+  return glm::vec4(place[0], place[1], place[2], place[3]);
 }
 
 void Stage::set_truth(const images::Image& visibility) {

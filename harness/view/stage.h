@@ -16,16 +16,15 @@ namespace shadowbench::view {
 
 /// What is different from what was drawn last.
 struct Changes {
-  bool camera = false;  ///< or the picture's size
-  bool light = false;   ///< or what decides how its map is fitted
-  bool map = false;     ///< the map's size, format or bias: filters are compiled for it
-  bool truth = false;
+  bool camera = false;                ///< or the picture's size
+  bool light = false;                 ///< or what decides how its map is fitted
+  bool map = false;                   ///< the map's size, format or bias: filters are compiled for it
   std::array<bool, kSides> filter{};  ///< another filter, or its code
   std::array<bool, kSides> values{};  ///< its parameters
 
   Changes& operator|=(const Changes& other);
-  static Changes all() { return {true, true, true, true, {true, true}, {true, true}}; }
-  bool any() const { return camera || light || map || truth || filter[0] || filter[1] || values[0] || values[1]; }
+  static Changes all() { return {true, true, true, {true, true}, {true, true}}; }
+  bool any() const { return camera || light || map || filter[0] || filter[1] || values[0] || values[1]; }
 };
 
 /// Draws what a state says, with the passes that a run draws with: the G-buffer, the light's map, and for each side
@@ -47,6 +46,9 @@ class Stage {
   const std::string& fault(std::size_t side) const { return sides_[side].fault; }
 
   const render::GBuffer& gbuffer() const { return *gbuffer_; }
+
+  /// World position and view depth of what a pixel shows, row 0 on top; nothing on the background.
+  std::optional<glm::vec4> find_surface(const glm::ivec2& pixel) const;
   measure::LightMap& light_map() { return *light_; }
   const gl::Texture* truth() const { return truth_ ? &*truth_ : nullptr; }  ///< R32F; null: none yet
 

@@ -3,12 +3,13 @@
 #include <algorithm>
 
 #include "harness/gl/timer/timer.h"
+#include "harness/measure/timing/statistics.h"
+#include "harness/measure/timing/timing.h"
 
 namespace shadowbench::view {
 namespace {
 
 constexpr std::size_t kRoundsOfADrawing = 40;
-constexpr int kSettlingLookups = 3;  ///< right after a prefilter, a CPU's lookups are slower
 
 }  // namespace
 
@@ -19,10 +20,7 @@ void TimeHistory::add(double ms) {
 
 std::optional<double> TimeHistory::median() const {
   if (ms_.empty()) return std::nullopt;
-  std::vector<float> sorted = ms_;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return static_cast<double>(*middle);
+  return measure::summarise({ms_.begin(), ms_.end()}).median;
 }
 
 bool TimeMeter::step() {
@@ -55,7 +53,8 @@ void TimeMeter::plan_side(std::size_t side, std::vector<std::function<void()>>& 
   if (stage.passes(side)->has_prefilter()) {
     round.emplace_back(
         [&, side] { times.prefilter.add(time([&] { stage.passes(side)->prefilter(stage.light_map().map); })); });
-    for (int i = 0; i < kSettlingLookups; ++i) round.emplace_back([&, side] { time([&] { stage.look_up(side); }); });
+    for (int i = 0; i < measure::kSettlingLookups; ++i)
+      round.emplace_back([&, side] { time([&] { stage.look_up(side); }); });
   }
   round.emplace_back([&, side] { times.lookup.add(lookup_ms_ = time([&] { stage.look_up(side); })); });
   round.emplace_back([&, side] { times.filter.add(lookup_ms_ - time([&] { stage.look_up_nothing(side); })); });

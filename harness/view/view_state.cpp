@@ -26,8 +26,7 @@ void apply(ViewState& state, ViewSettings settings) {
   listed.clear();
   for (const Side& side : settings.sides) {
     if (side.truth) continue;
-    if (listed.empty() || listed.front().spec.id != side.filter.spec.id || listed.front().values != side.filter.values)
-      listed.push_back(side.filter);
+    if (listed.empty() || !filters::is_same(listed.front(), side.filter)) listed.push_back(side.filter);
   }
   static_cast<ViewSettings&>(state) = std::move(settings);
   state.scene.light = state.lights[state.light];
@@ -36,7 +35,6 @@ void apply(ViewState& state, ViewSettings settings) {
 void set_fit(ViewSettings& settings, const std::string& text) {
   settings.options.fit = scene::parse_fit_rule(text);
   settings.options.fits = {settings.options.fit};
-  settings.fit_texts = {text};
 }
 
 void set_bias(ViewSettings& settings, const std::vector<std::string>& texts) {

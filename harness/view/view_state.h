@@ -12,17 +12,20 @@ namespace shadowbench::view {
 
 /// The two sides of the divider.
 inline constexpr std::size_t kSides = 2;
+inline constexpr std::array<const char*, kSides> kSideNames = {"left", "right"};
 
 /// What one side shows.
 struct Side {
   filters::FilterRequest filter;
   bool truth = false;  ///< ray-traced visibility, in place of the filter's
+
+  /// For titles: "truth", or the filter with the parameters that were asked for.
+  std::string label() const { return truth ? "truth" : filter.label(); }
 };
 
 /// What can be changed in the window.
 struct ViewSettings {
   options::RunOptions options;         ///< of one picture size, one map size and one fit; `filters` are of both sides
-  std::vector<std::string> fit_texts;  ///< `options.fit` as `--fit` takes it; empty: the default
   std::vector<scene::Camera> cameras;  ///< the scene's, as they were moved
   std::vector<scene::Light> lights;    ///< likewise
   std::size_t camera = 0;              ///< index of the one that is looked through

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "filters/base/error.h"
-#include "harness/measure/filter_setup.h"
 #include "harness/measure/layer_truth.h"
 #include "harness/scene/occluders.h"
 #include "harness/view/save.h"
@@ -30,22 +29,24 @@ filters::FilterRequest renew(const filters::FilterRequest& old, const filters::F
 
 }  // namespace
 
-Workbench::Workbench(measure::Renderer& renderer, ViewState state, std::vector<std::filesystem::path> filter_files)
+filters::Catalogue load_catalogue(const std::filesystem::path& folder,
+                                  const std::vector<std::filesystem::path>& filter_files) {
+  filters::Catalogue catalogue(folder);
+  for (const std::filesystem::path& file : filter_files) catalogue.add_user_file(file);
+  return catalogue;
+}
+
+Workbench::Workbench(measure::Renderer& renderer, ViewState state, filters::Catalogue catalogue,
+                     std::vector<std::filesystem::path> filter_files)
     : renderer_(renderer),
       filter_files_(std::move(filter_files)),
-      catalogue_(load_catalogue(state.options.resources.filters)),
+      catalogue_(std::move(catalogue)),
       state_(std::move(state)),
       drawn_(state_),
       stage_(renderer, state_.scene),
       cache_(state_.options.cache, [](const std::string&) {}),  // one that cannot be written costs time alone
       truth_([this] { return scene::list_occluders(state_.scene); }, cache_, state_.options.seed) {
   watch_sides();
-}
-
-filters::Catalogue Workbench::load_catalogue(const std::filesystem::path& folder) const {
-  filters::Catalogue catalogue(folder);
-  for (const std::filesystem::path& file : filter_files_) catalogue.add_user_file(file);
-  return catalogue;
 }
 
 void Workbench::watch_sides() {
@@ -105,11 +106,10 @@ void Workbench::start_truth() {
   TruthJob job{surfaces_, state_.scene.light};
   if (wants_coverage_) {
     const measure::LightMap& light = stage_.light_map();
-    const render::LightLayers setups = measure::make_unbiased_light(state_.options, state_.scene.light, light.layers);
-    const auto traced = measure::list_traced_layers(renderer_.shaders, stage_.gbuffer(), setups);
-    TruthJob::Map map{state_.active_camera(), {}, measure::read_linear_depth(light.map)};
-    for (std::size_t i = 0; i < traced.size(); ++i) map.layers.push_back({light.layers[i], traced[i].shares});
-    job.map = std::move(map);
+    job.map = {state_.active_camera(),
+               measure::list_covered_layers(renderer_.shaders, stage_.gbuffer(), state_.options, state_.scene.light,
+                                            light.layers),
+               measure::read_linear_depth(light.map)};
   }
   truth_.start(std::move(job));
 }
@@ -155,8 +155,7 @@ void Workbench::want_coverage() {
 
 void Workbench::reload_filters() {
   try {
-    filters::Catalogue catalogue = load_catalogue(state_.options.resources.filters);
-    catalogue_ = std::move(catalogue);
+    catalogue_ = load_catalogue(state_.options.resources.filters, filter_files_);
   } catch (const Error& error) {
     say(error.what());
     return;

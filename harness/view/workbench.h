@@ -26,13 +26,17 @@ inline constexpr double kSecondsBeforeTruth = 0.15;
 /// A run of its own takes seconds: it waits for longer.
 inline constexpr double kSecondsBeforeMeasurement = 0.5;
 
+/// The filters of a folder, and users' own. Throws Error as Catalogue does.
+filters::Catalogue load_catalogue(const std::filesystem::path& folder,
+                                  const std::vector<std::filesystem::path>& filter_files);
+
 /// What the window works on: a state, its drawing, its truth and its measurement, kept in step. Nothing here knows of
 /// widgets. Times are seconds of any clock that does not go back.
 class Workbench {
  public:
-  /// `renderer` must outlive this object. `filter_files` are users' own. Throws Error as Catalogue and
-  /// make_view_state() do.
-  Workbench(measure::Renderer& renderer, ViewState state, std::vector<std::filesystem::path> filter_files);
+  /// `renderer` must outlive this object. `catalogue` is what load_catalogue() gives for these users' files.
+  Workbench(measure::Renderer& renderer, ViewState state, filters::Catalogue catalogue,
+            std::vector<std::filesystem::path> filter_files);
 
   const ViewState& state() const { return state_; }
   Stage& stage() { return stage_; }
@@ -104,7 +108,6 @@ class Workbench {
   bool wants_measurement_ = false;
   std::uint64_t drawings_ = 0;
 
-  filters::Catalogue load_catalogue(const std::filesystem::path& folder) const;
   void watch_sides();
   void reload_filters();
   void age_truth(const Changes& changes);

@@ -11,7 +11,6 @@ namespace shadowbench::measure {
 namespace {
 
 constexpr int kFewestOfAnyBudget = 3;
-constexpr int kSettlingLookups = 3;
 constexpr int kRoundsPerLook =
     8;  ///< a bootstrap takes as long as a small lookup: it looks again after an eighth more rounds
 

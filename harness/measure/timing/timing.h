@@ -12,6 +12,9 @@
 
 namespace shadowbench::measure {
 
+/// Lookups that go untimed after a prefilter: right after it a CPU's are slower.
+inline constexpr int kSettlingLookups = 3;
+
 /// Why no more rounds were timed.
 enum class StopReason {
   kRounds,   ///< as many as were asked for, or as there may be

@@ -46,9 +46,7 @@ void Magnifier::show_pixels(const std::array<ShownLayer, kSides>& shown, int mag
                   {corner, glm::ivec2(side), first, static_cast<float>(magnified), 0.0f}, *target_);
   }
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(render::gl_name(target_->texture()))),
-               {static_cast<float>(width), static_cast<float>(side)}, {0.0f, 1.0f}, {1.0f, 0.0f});
-  widgets_.note("magnifier.image");
+  widgets_.show("magnifier.image", target_->texture());
   for (std::size_t i = 0; i < kSides; ++i) {
     const auto x = at.x + static_cast<float>(static_cast<int>(i) * (side + kGap) + side / 2);
     const auto y = at.y + static_cast<float>(side / 2), half = 0.5f * static_cast<float>(magnified) + 1.0f;
@@ -60,7 +58,7 @@ void Magnifier::show_pixels(const std::array<ShownLayer, kSides>& shown, int mag
 void Magnifier::show_values(const Layer& layer, const std::array<ShownLayer, kSides>& shown) const {
   ImGui::Text("pixel %d, %d", last_pixel_.x, last_pixel_.y);
   for (std::size_t side = 0; side < kSides; ++side) {
-    const char* name = side == 0 ? "left" : "right";
+    const char* name = kSideNames[side];
     if (shown[side].absent.empty())
       ImGui::Text("%s: %s %s %s", name, layer.title.c_str(), write(read_value(shown[side].values, last_pixel_)).c_str(),
                   layer.unit.c_str());
@@ -72,20 +70,18 @@ void Magnifier::show_values(const Layer& layer, const std::array<ShownLayer, kSi
     const render::DisplayedValues visibility{&stage.visibility(side, {0, bench_.state().options.width}), nullptr, 0,
                                              render::Colors::kGrey};
     const float value = read_value(visibility, last_pixel_).front();
-    std::string line = fmt::format("{}: visibility {:.6g}", side == 0 ? "left" : "right", value);
+    std::string line = fmt::format("{}: visibility {:.6g}", kSideNames[side], value);
     if (stage.truth()) {
       const render::DisplayedValues truth{stage.truth(), nullptr, 0, render::Colors::kGrey};
       line += fmt::format(", less the truth {:+.6g}", value - read_value(truth, last_pixel_).front());
     }
     ImGui::TextUnformatted(line.c_str());
   }
-  const gl::Texture& positions = stage.gbuffer().position();
-  const std::vector<float> position = positions.read_texel(last_pixel_.x, positions.height() - 1 - last_pixel_.y, 4);
-  if (position[3] == 0.0f)
-    ImGui::TextDisabled("no surface");
+  if (const auto place = stage.find_surface(last_pixel_))
+    ImGui::Text("at %.4g %.4g %.4g m, %.4g m away", static_cast<double>(place->x), static_cast<double>(place->y),
+                static_cast<double>(place->z), static_cast<double>(place->w));
   else
-    ImGui::Text("at %.4g %.4g %.4g m, %.4g m away", static_cast<double>(position[0]), static_cast<double>(position[1]),
-                static_cast<double>(position[2]), static_cast<double>(position[3]));
+    ImGui::TextDisabled("no surface");
 }
 
 }  // namespace shadowbench::view

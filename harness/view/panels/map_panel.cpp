@@ -70,11 +70,7 @@ void MapPanel::show_map(int side_pixels, int layer) {
   display_.draw(bench_.renderer().shaders, {values, values},
                 {glm::ivec2(0), glm::ivec2(side_pixels), glm::vec2(first), magnified, 0.0f}, *target_);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const auto side = static_cast<float>(side_pixels);
-  // Row 0 of a texture lies at the bottom.
-  ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(render::gl_name(target_->texture()))),
-               {side, side}, {0.0f, 1.0f}, {1.0f, 0.0f});
-  widgets_.note("map.image");
+  widgets_.show("map.image", target_->texture());
   draw_footprint({corner.x, corner.y}, side_pixels, first);
   ImGui::Text("%.4g (dark) .. %.4g", static_cast<double>(values.low), static_cast<double>(values.high));
   if (!footprint_) return ImGui::TextDisabled("No receiver in the map under the pointer.");

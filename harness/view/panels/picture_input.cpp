@@ -111,11 +111,7 @@ void PictureInput::set_camera(const scene::Camera& camera) {
 }
 
 glm::vec3 PictureInput::find_pivot(const glm::vec2& pixel) const {
-  const gl::Texture& positions = bench_.stage().gbuffer().position();
-  const int x = std::clamp(static_cast<int>(pixel.x), 0, positions.width() - 1);
-  const int y = std::clamp(positions.height() - 1 - static_cast<int>(pixel.y), 0, positions.height() - 1);
-  const std::vector<float> position = positions.read_texel(x, y, 4);
-  if (position[3] > 0.0f) return {position[0], position[1], position[2]};
+  if (const auto place = bench_.stage().find_surface(glm::ivec2(pixel))) return glm::vec3(*place);
   const scene::Bounds bounds = bench_.state().scene.bounds();
   return 0.5f * (bounds.min + bounds.max);
 }

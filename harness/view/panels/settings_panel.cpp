@@ -16,7 +16,6 @@ namespace shadowbench::view {
 namespace {
 
 constexpr const char* kTruth = "ray-traced truth";
-constexpr std::array<const char*, kSides> kSideNames = {"left", "right"};
 
 bool begin_section(const std::string& title, bool open = true) {
   return ImGui::CollapsingHeader(title.c_str(), open ? ImGuiTreeNodeFlags_DefaultOpen : 0);

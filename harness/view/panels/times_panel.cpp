@@ -31,7 +31,7 @@ void show_gpus(const Workbench& bench) {
     const measure::MeasuredCell* cell = bench.find_measured(side);
     if (cell == nullptr || !cell->record.gpu) continue;
     for (const auto& [gpu, record] : *cell->record.gpu) {
-      const char* name = side == 0 ? "left" : "right";
+      const char* name = kSideNames[side];
       if (record.estimate)
         ImGui::Text("%s on %s: %.3g us a million receivers,\n  bound by %s; prefilter %.3g us", name, gpu.c_str(),
                     record.estimate->lookup_us, record.estimate->bound_by.c_str(), record.estimate->prefilter_us);
@@ -55,7 +55,7 @@ void show_times(const Workbench& bench, const TimeMeter& meter) {
     for (std::size_t side = 0; side < kSides; ++side) {
       const Side& shown = bench.state().sides[side];
       if (shown.truth) continue;
-      const char* name = side == 0 ? "left" : "right";
+      const char* name = kSideNames[side];
       const TimeMeter::Side& times = meter.side(side);
       if (times.prefilter.count() > 0) show_history(fmt::format("{} prefilter", name), times.prefilter);
       show_history(fmt::format("{} filter alone", name), times.filter);

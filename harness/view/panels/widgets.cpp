@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
+#include "harness/render/display_pass.h"
 #include "harness/tune/param_scale.h"
 
 namespace shadowbench::view {
@@ -111,6 +113,12 @@ bool Widgets::press(const std::string& name, const std::string& label, const std
   const bool pressed = ImGui::Button(label_of(name, label).c_str());
   finish(name, help);
   return pressed;
+}
+
+void Widgets::show(const std::string& name, const gl::Texture& texture) {
+  ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(render::gl_name(texture))),
+               {static_cast<float>(texture.width()), static_cast<float>(texture.height())}, {0.0f, 1.0f}, {1.0f, 0.0f});
+  note(name);
 }
 
 bool Widgets::parameter(const std::string& name, const filters::ParamSpec& spec, filters::ParamValue& value) {

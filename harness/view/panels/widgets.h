@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "filters/filter_spec.h"
+#include "harness/gl/texture.h"
 #include "harness/view/view_log.h"
 
 namespace shadowbench::view {
@@ -38,6 +39,9 @@ class Widgets {
 
   /// A filter's parameter, by what its front matter says of it.
   bool parameter(const std::string& name, const filters::ParamSpec& spec, filters::ParamValue& value);
+
+  /// A texture, pixel by pixel, its row 0 at the bottom.
+  void show(const std::string& name, const gl::Texture& texture);
 
   /// To be called after a widget of another kind.
   void note(const std::string& name);

@@ -11,50 +11,46 @@ namespace {
 
 void write(const std::filesystem::path& file, const std::string& text) { std::ofstream(file) << text; }
 
-/// A folder of this test's own.
-class Folder : public ScratchFolder {
- public:
-  Folder() : ScratchFolder(make_temporary_folder_path(std::filesystem::temp_directory_path(), "file watch")) {
-    std::filesystem::create_directories(path());
+/// Watches a file that is there.
+class FileWatchTest : public testing::Test {
+ protected:
+  FileWatchTest() : folder_(make_temporary_folder_path(std::filesystem::temp_directory_path(), "file watch")) {
+    std::filesystem::create_directories(folder_.path());
+    write(file(), "one");
+    watch_.watch({file()});
   }
+
+  std::filesystem::path file() const { return path("a.glsl"); }
+  std::filesystem::path path(const char* name) const { return folder_.path() / name; }
+
+  FileWatch watch_;
+
+ private:
+  ScratchFolder folder_;
 };
 
-TEST(FileWatch, SeesASave_AReplacement_AndNothingElse) {
-  const Folder folder;
-  const std::filesystem::path file = folder.path() / "a.glsl";
-  write(file, "one");
-  FileWatch watch;
-  watch.watch({file});
-  EXPECT_FALSE(watch.has_changed());
-  write(file, "three");
-  EXPECT_TRUE(watch.has_changed());
-  EXPECT_FALSE(watch.has_changed());
+TEST_F(FileWatchTest, SeesASave_AReplacement_AndNothingElse) {
+  EXPECT_FALSE(watch_.has_changed());
+  write(file(), "three");
+  EXPECT_TRUE(watch_.has_changed());
+  EXPECT_FALSE(watch_.has_changed());
   // Many editors write a new file and rename it.
-  write(folder.path() / "b", "seven..");
-  std::filesystem::rename(folder.path() / "b", file);
-  EXPECT_TRUE(watch.has_changed());
+  write(path("b"), "seven..");
+  std::filesystem::rename(path("b"), file());
+  EXPECT_TRUE(watch_.has_changed());
 }
 
-TEST(FileWatch, AFileThatIsGone_IsNoChangeUntilItIsBack) {
-  const Folder folder;
-  const std::filesystem::path file = folder.path() / "a.glsl";
-  write(file, "one");
-  FileWatch watch;
-  watch.watch({file});
-  std::filesystem::remove(file);
-  EXPECT_FALSE(watch.has_changed());
-  write(file, "other");
-  EXPECT_TRUE(watch.has_changed());
+TEST_F(FileWatchTest, AFileThatIsGone_IsNoChangeUntilItIsBack) {
+  std::filesystem::remove(file());
+  EXPECT_FALSE(watch_.has_changed());
+  write(file(), "other");
+  EXPECT_TRUE(watch_.has_changed());
 }
 
-TEST(FileWatch, WatchingMore_ForgetsNoChange) {
-  const Folder folder;
-  write(folder.path() / "a", "one");
-  FileWatch watch;
-  watch.watch({folder.path() / "a"});
-  write(folder.path() / "a", "three");
-  watch.watch({folder.path() / "a", folder.path() / "b"});
-  EXPECT_TRUE(watch.has_changed());
+TEST_F(FileWatchTest, WatchingMore_ForgetsNoChange) {
+  write(file(), "three");
+  watch_.watch({file(), path("b")});
+  EXPECT_TRUE(watch_.has_changed());
 }
 
 }  // namespace
