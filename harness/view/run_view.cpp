@@ -1,5 +1,7 @@
 #include "harness/view/run_view.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "filters/base/error.h"
@@ -16,7 +18,11 @@ double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock:
 /// A side that shows the truth keeps a filter, for when it shows one.
 Side make_side(const filters::Catalogue& catalogue, const std::string& text) {
   const bool truth = text == kTruthName;
-  return {catalogue.parse_requests(truth ? "none" : text).front(), truth};
+  const std::vector<filters::FilterRequest> requests = catalogue.parse_requests(truth ? "none" : text);
+  if (requests.size() != 1)
+    throw Error(ErrorKind::kUsage,
+                fmt::format("'{}' names {} filters: a side shows one, or '{}'", text, requests.size(), kTruthName));
+  return {requests.front(), truth};
 }
 
 /// What tests want to know of a frame.

@@ -50,7 +50,7 @@ def test_no_display_is_code_4(program, folder):
 
 
 def test_bad_input_is_refused_before_a_window_opens(program, folder):
-    for arguments, code in ((["nowhere"], 2), (["cubes", "--left", "vsn"], 2), (["cubes", "--size", "12"], 2),
+    for arguments, code in ((["nowhere"], 2), (["cubes", "--left", "vsn"], 2), (["cubes", "--left", "none,vsm"], 2), (["cubes", "--size", "12"], 2),
                             (["cubes", "--filter-file", str(folder / "none.glsl")], 5), (["missing.toml"], 3)):
         done = subprocess.run([program, "view", *arguments], capture_output=True, text=True, timeout=60)
         assert done.returncode == code, (arguments, done)
