@@ -11,49 +11,60 @@
 #include <system_error>
 #include <vector>
 
+#include "filters/base/content_hash.h"
+
 namespace shadowbench {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::string_view kFileMark = ".shadowbench-tmp-";
-constexpr std::string_view kFolderMarks[] = {".worker-"};
+constexpr std::string_view kFolderMarks[] = {".worker-", ".gpu-"};
 
-/// Reads the number at the beginning of a text; nothing where other characters follow than `end`.
-std::optional<pid_t> parse_process(std::string_view text, std::string_view end) {
-  pid_t process = 0;
-  const auto [last, error] = std::from_chars(text.data(), text.data() + text.size(), process);
+std::string name_of(const Writer& writer) { return fmt::format("{}-{}", writer.process, writer.host); }
+
+/// Reads name_of() at the beginning of a text; nothing where other characters follow than `end`. Versions of before
+/// wrote the number alone.
+std::optional<Writer> parse_writer(std::string_view text, std::string_view end) {
+  Writer writer = this_writer();
+  if (!text.ends_with(end)) return std::nullopt;
+  text.remove_suffix(end.size());
+  const auto [last, error] = std::from_chars(text.data(), text.data() + text.size(), writer.process);
   const std::string_view rest(last, static_cast<std::size_t>(text.data() + text.size() - last));
-  if (error != std::errc() || process <= 0 || rest != end) return std::nullopt;
-  return process;
+  if (error != std::errc() || writer.process <= 0) return std::nullopt;
+  if (rest.starts_with('-'))
+    writer.host = rest.substr(1);
+  else if (!rest.empty())
+    return std::nullopt;
+  return writer;
 }
 
-/// The number of the process that a temporary file belongs to; nothing where it is no temporary file.
-std::optional<pid_t> owner_of_file(const fs::path& path) {
+/// The writer of a temporary file; nothing where it is no temporary file.
+std::optional<Writer> writer_of_file(const fs::path& path) {
   const std::string name = path.filename().string();
   const std::size_t mark = name.rfind(kFileMark);
   if (mark == std::string::npos) return std::nullopt;
-  return parse_process(std::string_view(name).substr(mark + kFileMark.size()),
-                       path.extension().string().starts_with(kFileMark) ? "" : path.extension().string());
+  return parse_writer(std::string_view(name).substr(mark + kFileMark.size()),
+                      path.extension().string().starts_with(kFileMark) ? "" : path.extension().string());
 }
 
-std::optional<pid_t> owner_of_folder(const fs::path& path) {
+std::optional<Writer> writer_of_folder(const fs::path& path) {
   const std::string name = path.filename().string();
   for (const std::string_view mark : kFolderMarks)
-    if (name.starts_with(mark)) return parse_process(std::string_view(name).substr(mark.size()), "");
+    if (name.starts_with(mark)) return parse_writer(std::string_view(name).substr(mark.size()), "");
   return std::nullopt;
 }
 
 /// Removes the stale entries of one folder, and gives its folders that are not stale.
-std::vector<fs::path> clean(const fs::path& folder, const std::function<bool(pid_t)>& is_stale) {
+std::vector<fs::path> clean(const fs::path& folder, const std::function<bool(const Writer&)>& is_stale) {
   std::vector<fs::path> stale, folders;
   std::error_code error;
   fs::directory_iterator entry(folder, error);
   for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
     std::error_code unknown;
     const bool is_folder = entry->symlink_status(unknown).type() == fs::file_type::directory;
-    const std::optional<pid_t> owner = is_folder ? owner_of_folder(entry->path()) : owner_of_file(entry->path());
-    if (owner && is_stale(*owner))
+    const std::optional<Writer> writer = is_folder ? writer_of_folder(entry->path()) : writer_of_file(entry->path());
+    if (writer && is_stale(*writer))
       stale.push_back(entry->path());
     else if (is_folder)
       folders.push_back(entry->path());
@@ -64,15 +75,26 @@ std::vector<fs::path> clean(const fs::path& folder, const std::function<bool(pid
 
 }  // namespace
 
+Writer this_writer() {
+  static const std::string host = [] {
+    char name[256] = {};
+    if (gethostname(name, sizeof name - 1) != 0) name[0] = 0;
+    ContentHash hash;
+    hash.add(name);
+    return hash.name().substr(0, 8);
+  }();
+  return {host, getpid()};
+}
+
 fs::path make_temporary_path(const fs::path& path) {
   fs::path name = path.stem();
-  name += fmt::format("{}{}", kFileMark, getpid());
+  name += fmt::format("{}{}", kFileMark, name_of(this_writer()));
   name += path.extension();
   return path.parent_path() / name;
 }
 
 fs::path make_temporary_folder_path(const fs::path& folder, std::string_view what) {
-  return folder / fmt::format(".{}-{}", what, getpid());
+  return folder / fmt::format(".{}-{}", what, name_of(this_writer()));
 }
 
 ScratchFolder::~ScratchFolder() {
@@ -80,12 +102,14 @@ ScratchFolder::~ScratchFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
-bool is_temporary(const fs::path& path) { return owner_of_file(path) || owner_of_folder(path); }
+bool is_temporary(const fs::path& path) { return writer_of_file(path) || writer_of_folder(path); }
 
-void remove_temporary_files(const fs::path& folder, const std::function<bool(pid_t)>& is_stale) {
+void remove_temporary_files(const fs::path& folder, const std::function<bool(const Writer&)>& is_stale) {
   for (const fs::path& inner : clean(folder, is_stale)) clean(inner, is_stale);
 }
 
-bool is_gone(pid_t process) { return kill(process, 0) != 0 && errno == ESRCH; }
+bool is_gone(const Writer& writer) {
+  return writer.host == this_writer().host && kill(writer.process, 0) != 0 && errno == ESRCH;
+}
 
 }  // namespace shadowbench

@@ -4,9 +4,20 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
 
 namespace shadowbench {
+
+/// The process that writes a temporary file. Machines that share a folder have processes of equal numbers.
+struct Writer {
+  std::string host;  ///< 8 hexadecimal digits, of the machine's name
+  pid_t process = 0;
+  bool operator==(const Writer&) const = default;
+};
+
+/// This process.
+Writer this_writer();
 
 /// The path at which this process writes what will be `path`: beside it, with the same extension.
 std::filesystem::path make_temporary_path(const std::filesystem::path& path);
@@ -30,11 +41,11 @@ class ScratchFolder {
 /// Whether a path is one of the two.
 bool is_temporary(const std::filesystem::path& path);
 
-/// Removes from a folder and the folders right in it what was written under those two names by processes that
+/// Removes from a folder and the folders right in it what was written under those two names by writers that
 /// `is_stale` picks. What cannot be listed or removed stays.
-void remove_temporary_files(const std::filesystem::path& folder, const std::function<bool(pid_t)>& is_stale);
+void remove_temporary_files(const std::filesystem::path& folder, const std::function<bool(const Writer&)>& is_stale);
 
-/// Whether no process of this machine has the number.
-bool is_gone(pid_t process);
+/// Whether it was a process of this machine, and has ended. What other machines' processes do nobody can tell here.
+bool is_gone(const Writer& writer);
 
 }  // namespace shadowbench

@@ -71,13 +71,12 @@ void Interruption::wait() const {
 }
 
 void Interruption::end(int signal) const {
-  const pid_t own = getpid();
-  remove_temporary_files(out_, [own](pid_t owner) { return owner == own; });
+  remove_temporary_files(out_, [](const Writer& writer) { return writer == this_writer(); });
   flockfile(stderr);  // and never given back: what other threads are about to say must not follow this line
   fmt::print(stderr, "{}shadowbench: stopped by {}; {}\n", isatty(STDERR_FILENO) ? "\n" : "", name_of(signal), advice_);
   std::fflush(stderr);
   std::signal(signal, SIG_DFL);
-  kill(own, signal);
+  kill(getpid(), signal);
   for (;;) pause();
 }
 

@@ -61,7 +61,7 @@ FolderLock::FolderLock(std::filesystem::path folder) : folder_(std::move(folder)
     close(descriptor_);
     fail(folder_, code);
   }
-  remove_temporary_files(folder_, [](pid_t) { return true; });
+  remove_temporary_files(folder_, [](const Writer&) { return true; });
 }
 
 FolderLock::~FolderLock() {

@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "filters/base/temporary_files.h"
 #include "tests/harness/cli/faults.h"
 
 namespace shadowbench::test {
@@ -106,7 +107,8 @@ TEST_F(FaultSignal, WhileAUsersFilterIsMeasured_NoChildStays) {
         "run --size 320x180 --map-size 64 --rounds 1 --scene cubes --filters none,endless --cell-timeout 600 --out out "
         "--filter-file " +
         user_filter("endless.glsl"));
-    const std::filesystem::path worker = folder() / "out" / (".worker-" + std::to_string(pid));
+    const std::filesystem::path worker =
+        folder() / "out" / (".worker-" + std::to_string(pid) + "-" + this_writer().host);
     ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(worker); })) << read_text(folder() / "started.txt");
     std::this_thread::sleep_for(
         std::chrono::milliseconds(1500));  // by now it says nothing more, and a closed pipe would not end it

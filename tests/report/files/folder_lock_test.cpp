@@ -63,17 +63,31 @@ TEST(TemporaryFiles, AreRemoved_AndNothingElseIs) {
   const TemporaryFolder folder("lock_clean");
   const char* others[] = {"a.json",      "a.tmp-12.png", "a.shadowbench-tmp-.png", "a.shadowbench-tmp-12x.png",
                           ".worker-x/a", ".worker-/a",   "cells/b.json",           "deep/er/a.shadowbench-tmp-12.png"};
-  const char* ours[] = {"a.shadowbench-tmp-12.png", "b.grid.shadowbench-tmp-12.json", "c.shadowbench-tmp-12",
-                        "cells/d.shadowbench-tmp-12.json", ".worker-12/cells/e.json"};
+  const char* ours[] = {"a.shadowbench-tmp-12.png",        "b.grid.shadowbench-tmp-12.json", "c.shadowbench-tmp-12",
+                        "cells/d.shadowbench-tmp-12.json", ".worker-12/cells/e.json",        ".gpu-12/request.json"};
   for (const char* name : others) write_text_file(folder.path() / name, "x");
   for (const char* name : ours) write_text_file(folder.path() / name, "x");
-  remove_temporary_files(folder.path(), [](pid_t process) { return process == 13; });
+  remove_temporary_files(folder.path(), [](const Writer& writer) { return writer.process == 13; });
   for (const char* name : ours) EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
-  remove_temporary_files(folder.path(), [](pid_t process) { return process == 12; });
+  remove_temporary_files(folder.path(), [](const Writer& writer) { return writer.process == 12; });
   for (const char* name : ours) EXPECT_FALSE(std::filesystem::exists(folder.path() / name)) << name;
   for (const char* name : others) EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
-  EXPECT_FALSE(is_gone(getpid()));
-  EXPECT_TRUE(is_gone(99999999));
+  EXPECT_FALSE(is_gone(this_writer()));
+  EXPECT_TRUE(is_gone({this_writer().host, 99999999}));
+}
+
+/// Machines that share a folder have processes of equal numbers.
+TEST(TemporaryFiles, OfAnotherMachine_AreItsOwn) {
+  const TemporaryFolder folder("lock_host");
+  const std::string theirs = "a.shadowbench-tmp-99999999-elsewhere.json";
+  write_text_file(folder.path() / theirs, "x");
+  write_text_file(folder.path() / ("a.shadowbench-tmp-99999999-" + this_writer().host + ".json"), "x");
+  remove_temporary_files(folder.path(), is_gone);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / theirs));
+  std::filesystem::remove(folder.path() / theirs);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  const std::string own = make_temporary_path("a.json").string();
+  EXPECT_TRUE(own.ends_with(this_writer().host + ".json")) << own;
 }
 
 TEST(TemporaryFiles, NamesOfThisProcess_AreRecognised) {
@@ -81,7 +95,7 @@ TEST(TemporaryFiles, NamesOfThisProcess_AreRecognised) {
   { PendingFile(folder.path() / "x.png"); }
   for (const char* name : {"x.png", "x", "x.y.exr"}) write_text_file(make_temporary_path(folder.path() / name), "x");
   std::filesystem::create_directories(make_temporary_folder_path(folder.path(), "worker"));
-  remove_temporary_files(folder.path(), [](pid_t process) { return process == getpid(); });
+  remove_temporary_files(folder.path(), [](const Writer& writer) { return writer == this_writer(); });
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
