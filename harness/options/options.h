@@ -47,6 +47,23 @@ struct Shard {
   int count = 1;
 };
 
+/// A stretch of a plan's cells: from `begin` on, up to `end` and without it.
+struct CellRange {
+  int begin = 0;
+  int end = 0;
+  bool operator==(const CellRange&) const = default;
+};
+
+/// The part of an experiment that one task of a sweep does. It writes cells into a folder that other tasks write into
+/// at the same time: it takes no lock, deletes nothing of theirs, and makes no report.
+struct Part {
+  std::vector<CellRange> ranges;  ///< of its own cells, ascending
+  std::vector<int> scene_cells;   ///< how many cells each scene has in each picture size, in the plan's order; scenes
+                                  ///< without an own cell are not loaded
+  std::string content;            ///< name of what the own cells are made from, as it was planned; empty: not checked
+  bool only_truth = false;        ///< trace what the cells share, and leave it in the cache
+};
+
 /// The most places of the map's grid that a run may average errors over.
 inline constexpr int kMostPhases = 64;
 
@@ -86,6 +103,7 @@ struct RunOptions {
                          ///< pictures alone
   bool pictures = true;  ///< draw what people look at beside the float images, which the window asks for alone
   Shard shard;
+  std::optional<Part> part;      ///< of a sweep; empty: all of the shard
   std::string title;             ///< of the experiment
   bool fresh = false;            ///< measure again the cells that the report folder has
   bool large_is_fine = false;    ///< start even where there are very many cells

@@ -11,6 +11,7 @@
 
 #include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
+#include "harness/measure/cell_analysis.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/run/all_lights.h"
 #include "harness/run/provenance.h"
@@ -71,21 +72,22 @@ class Experiment {
     for (const std::string& reason : renderer_.refused) progress_.note("not used: " + reason);
   }
 
-  void run() {
+  records::RunRecord run() {
     const RunPlan plan = make_plan(options_, renderer_.context->info().renderer);
     announce(plan);
-    lock_.emplace(options_.out);
+    if (!options_.part) lock_.emplace(options_.out);
     require_writable(options_.out);
-    if (plan.finished == plan.own_cells && has_report(plan)) {
+    if (plan.finished == plan.own_cells && (options_.part || has_report(plan))) {
       progress_.note("nothing is left to do");
-      return;
+      return run_;
     }
     try {
       measure(plan);
     } catch (const std::exception&) {
-      lock_->require_in_place();  // else this is why a file cannot be written, or a cell is missing
+      require_in_place();  // else this is why a file cannot be written, or a cell is missing
       throw;
     }
+    return run_;
   }
 
  private:
@@ -95,11 +97,15 @@ class Experiment {
   measure::Renderer renderer_;
   truth::TruthCache cache_;
   records::RunRecord run_;
-  std::optional<files::FolderLock> lock_;
+  std::optional<files::FolderLock> lock_;  ///< none where other tasks write into the folder too
   std::set<std::string> told_;  ///< warnings that the user has seen
   TaskListener listener_{&steps_, [this](const measure::SceneMeasurement& measured) { count(measured); }};
   std::function<void(const std::string&)> note_ = [this](const std::string& message) { progress_.note(message); };
   GpuCosts gpus_{options_, note_};
+
+  void require_in_place() const {
+    if (lock_) lock_->require_in_place();
+  }
 
   void measure(const RunPlan& plan) {
     const std::vector<records::CellRecord> replaced = read_replaced();
@@ -110,16 +116,20 @@ class Experiment {
     run_.work.shader_variants_compiled = renderer_.shaders.compiled();
     run_.work.truths_traced = cache_.traced();
     run_.work.truths_cached = cache_.loaded();
+    if (!options_.part) finish(plan, replaced);
+    steps_.finish();
+  }
+
+  void finish(const RunPlan& plan, const std::vector<records::CellRecord>& replaced) {
     cache_.prune(kMaxCacheBytes);
     steps_.begin_report();
     if (options_.grids && options_.pictures && !options_.worker) draw_all_lights(options_, plan, run_.gl);
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
     if (!options_.worker) pages::write_report(options_.out, run_, list_keys(plan));
-    steps_.finish();
   }
 
   void count(const measure::SceneMeasurement& measured) {
-    lock_->require_in_place();
+    require_in_place();
     steps_.count(static_cast<int>(measured.cells.size()));
     run_.work.timed_s += 1e-3 * measured.timed_ms;
     if (options_.truth && options_.attribution)
@@ -142,10 +152,10 @@ class Experiment {
       text += fmt::format(" of {}, shard {}/{}", plan.cells, options_.shard.index + 1, options_.shard.count);
     if (plan.finished > 0)
       text += fmt::format(", {} of them finished before (--fresh measures them again)", plan.finished);
-    const TimeForecast forecast = left > 0 ? forecast_time(plan, left) : TimeForecast();
+    const TimeForecast forecast = left > 0 && !options_.part ? forecast_time(plan, left) : TimeForecast();
     text += forecast.text;
     progress_.note(text);
-    if ((left <= kManyCells && forecast.seconds <= kManySeconds) || options_.large_is_fine) return;
+    if (options_.part || (left <= kManyCells && forecast.seconds <= kManySeconds) || options_.large_is_fine) return;
     throw Error(ErrorKind::kUsage, fmt::format("{}: add --yes to run them all, or name fewer values, or {}", text,
                                                options_.rounds.is_fixed() ? "fewer --rounds" : "a smaller --budget"));
   }
@@ -280,6 +290,15 @@ class Experiment {
     warn_of_tests_without_effect(scene);
   }
 
+  /// Traces what all cells of a view and map ask for, and leaves it in the cache.
+  void trace_shared(const PlannedScene& planned, const measure::SceneTask& task, measure::SceneAssets& assets) {
+    const std::string what = fmt::format("{} · {} · truth", planned.scene.name, task.map_size);
+    steps_.begin(planned.options, options::Work::kTruth, task.filters.size(), what);
+    assets.tracer().listen([this](double part) { steps_.advance_tracing(part); });
+    const measure::SceneTruth& truth = assets.truth(*task.camera);
+    const measure::CellAnalyser traces(renderer_, planned.options, task, assets, truth);
+  }
+
   void run_scene(const RunPlan& plan, std::size_t index) {
     const PlannedScene& planned = plan.scenes[index];
     note_scene(planned);
@@ -287,15 +306,18 @@ class Experiment {
     for (const PlannedTask& each : plan.tasks) {
       if (each.scene != index || each.task.filters.empty()) continue;
       if (!assets) assets.emplace(renderer_, planned.options, planned.scene, cache_, measure::padding_texels(options_));
-      TaskRun(renderer_, planned, each, *assets, run_.gl, listener_, gpus_).run();
+      if (options_.part && options_.part->only_truth)
+        trace_shared(planned, each.task, *assets);
+      else
+        TaskRun(renderer_, planned, each, *assets, run_.gl, listener_, gpus_).run();
     }
   }
 };
 
 }  // namespace
 
-void run_experiment(const options::RunOptions& options, options::Progress& progress) {
-  Experiment(options, progress).run();
+records::RunRecord run_experiment(const options::RunOptions& options, options::Progress& progress) {
+  return Experiment(options, progress).run();
 }
 
 }  // namespace shadowbench::run

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 #include "filters/base/content_hash.h"
@@ -16,28 +17,68 @@
 namespace shadowbench::run {
 namespace {
 
+constexpr const char* kChanged =
+    "the experiment is no longer what was submitted: scenes, filters, settings or the program have changed; submit it "
+    "into another folder";
+
 /// Whether a light was asked for; all are where none was named.
 bool is_wanted(const options::RunOptions& options, const scene::Light& light) {
   return options.light_names.empty() || std::ranges::count(options.light_names, light.name) > 0;
 }
 
+/// Whether a stretch of cells has one that is to be measured.
+bool has_own_cell(const options::Part& part, const options::CellRange& cells) {
+  return std::ranges::any_of(
+      part.ranges, [&](const options::CellRange& own) { return own.begin < cells.end && cells.begin < own.end; });
+}
+
+/// The first cell of the scene that stands at a place of the plan.
+int find_first_cell(const options::Part& part, std::size_t place) {
+  return std::accumulate(part.scene_cells.begin(), part.scene_cells.begin() + static_cast<std::ptrdiff_t>(place), 0);
+}
+
+/// The scenes of a picture size that have a cell of this run, as indices. The first of them stands at `place`.
+std::vector<std::size_t> list_needed_scenes(const options::RunOptions& options, std::size_t place) {
+  std::vector<std::size_t> needed;
+  for (std::size_t i = 0; i < options.scenes.size(); ++i) {
+    if (options.part) {
+      const int begin = find_first_cell(*options.part, place + i);
+      if (!has_own_cell(*options.part, {begin, begin + options.part->scene_cells[place + i]})) continue;
+    }
+    needed.push_back(i);
+  }
+  return needed;
+}
+
+void require_known_scenes(const options::RunOptions& options) {
+  if (!options.part || options.part->scene_cells.size() == options.sizes.size() * options.scenes.size()) return;
+  throw Error(ErrorKind::kInput, kChanged);
+}
+
 /// Every scene in every picture size, under each of its lights, with every fit of the light's map.
 std::vector<PlannedScene> plan_scenes(const options::RunOptions& options) {
+  require_known_scenes(options);
   std::vector<PlannedScene> planned;
+  std::size_t first_place = 0;
   for (const options::PictureSize& size : options.sizes) {
     options::RunOptions framed = options;
     framed.width = size.width;
     framed.height = size.height;
-    std::vector<scene::Scene> scenes = load_scenes(framed);
+    const std::vector<std::size_t> needed = list_needed_scenes(options, first_place);
+    options::RunOptions loaded = framed;
+    loaded.scenes.clear();
+    for (const std::size_t i : needed) loaded.scenes.push_back(options.scenes[i]);
+    std::vector<scene::Scene> scenes = load_scenes(loaded);
     for (std::size_t i = 0; i < scenes.size(); ++i) {
       for (const scene::Scene& lit : scene::separate_lights(scenes[i])) {
         if (!is_wanted(options, lit.light)) continue;
         for (const scene::FitRule& fit : options.fits) {
           framed.fit = fit;
-          planned.push_back({framed, options.scenes[i], lit});
+          planned.push_back({framed, options.scenes[needed[i]], lit, first_place + needed[i]});
         }
       }
     }
+    first_place += options.scenes.size();
   }
   return planned;
 }
@@ -54,6 +95,7 @@ std::vector<const scene::Camera*> choose_views(const options::RunOptions& option
 }
 
 void require_views(const options::RunOptions& options, const std::vector<PlannedScene>& scenes) {
+  if (options.part) return;  // the scenes that have it may be others' work
   std::set<std::string> known;
   for (const PlannedScene& each : scenes)
     for (const scene::Camera& camera : each.scene.cameras) known.insert(camera.name);
@@ -92,9 +134,11 @@ class Planner {
     }
     require_views(options_, plan_.scenes);
     require_few_maps(plan_.scenes);
+    plan_.scene_cells.resize(options_.sizes.size() * options_.scenes.size());
     for (std::size_t i = 0; i < plan_.scenes.size(); ++i) add_scene(i);
     plan_.settings = hash_.name();
     require_cells();
+    require_unchanged();
     return std::move(plan_);
   }
 
@@ -102,10 +146,12 @@ class Planner {
   const options::RunOptions& options_;
   const std::string& renderer_;
   RunPlan plan_;
-  ContentHash hash_;
+  ContentHash hash_, own_hash_;
 
   void add_scene(std::size_t index) {
     const PlannedScene& scene = plan_.scenes[index];
+    if (options_.part && (index == 0 || plan_.scenes[index - 1].place != scene.place))
+      plan_.cells = find_first_cell(*options_.part, scene.place);
     const std::string content = name_scene_content(scene.options, scene.scene, renderer_);
     for (const scene::Camera* camera : choose_views(options_, scene.scene))
       for (const int map_size : options_.map_sizes) add_task(index, {&scene.scene, camera, map_size, {}}, content);
@@ -119,7 +165,10 @@ class Planner {
       const std::string content = name_cell_content(scene_content, request);
       hash_.add(key);
       hash_.add(content);
-      if (plan_.cells++ % options_.shard.count != options_.shard.index) continue;
+      ++plan_.scene_cells[plan_.scenes[scene].place];
+      if (!is_own(plan_.cells++)) continue;
+      own_hash_.add(key);
+      own_hash_.add(content);
       planned.keys.push_back(key);
       planned.task.filters.push_back(request);
       planned.contents.push_back(content);
@@ -127,6 +176,11 @@ class Planner {
     plan_.own_cells += static_cast<int>(planned.keys.size());
     leave_out_finished(planned);
     if (!planned.keys.empty()) plan_.tasks.push_back(std::move(planned));
+  }
+
+  bool is_own(int cell) const {
+    if (options_.part) return has_own_cell(*options_.part, {cell, cell + 1});
+    return cell % options_.shard.count == options_.shard.index;
   }
 
   void leave_out_finished(PlannedTask& planned) {
@@ -152,6 +206,11 @@ class Planner {
     } catch (const Error&) {
       return false;
     }
+  }
+
+  void require_unchanged() const {
+    if (options_.part && !options_.part->content.empty() && options_.part->content != own_hash_.name())
+      throw Error(ErrorKind::kInput, kChanged);
   }
 
   void require_cells() const {

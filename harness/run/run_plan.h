@@ -15,6 +15,7 @@ struct PlannedScene {
   options::RunOptions options;  ///< of the run, with one picture size and one fit
   std::string argument;         ///< name or path
   scene::Scene scene;
+  std::size_t place = 0;  ///< of the scene in this picture size among all of the plan: an entry of Part::scene_cells
 };
 
 /// The cells of one view through one shadow map that this run is to hold.
@@ -29,10 +30,11 @@ struct PlannedTask {
 struct RunPlan {
   std::vector<PlannedScene> scenes;
   std::vector<PlannedTask> tasks;
-  int cells = 0;         ///< of the whole experiment, other shards' included
-  int own_cells = 0;     ///< of this shard
-  int finished = 0;      ///< of those, found in the report folder
-  std::string settings;  ///< names all cells of the experiment: shards of one experiment agree
+  int cells = 0;                 ///< of the whole experiment, other shards' included
+  int own_cells = 0;             ///< of this shard
+  int finished = 0;              ///< of those, found in the report folder
+  std::vector<int> scene_cells;  ///< see options::Part
+  std::string settings;          ///< names all cells of the experiment: shards of one experiment agree
 };
 
 /// Loads the scenes and lays out the run. A cell counts as finished where the report folder holds one of its key and

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "harness/submit/sweep_folder.h"
+
+namespace shadowbench::submit {
+
+/// What the user asks of an engine.
+struct EngineOptions {
+  std::string engine;
+  std::string time, partition, gres;  ///< as sbatch takes them; empty: not asked for
+  std::vector<std::string> words;     ///< further options of the engine's own program
+};
+
+/// The work that jobs are to do.
+struct JobPlan {
+  std::filesystem::path out;             ///< absolute: of the sweep
+  std::filesystem::path working_folder;  ///< absolute: where paths of the command begin
+  std::vector<std::string> program;      ///< words that start this program anywhere
+  std::vector<std::string> command;      ///< words of a task, but for `--task FOLDER`
+  std::string name;                      ///< of the jobs
+  std::vector<int> truths, tasks;        ///< numbers of those that are to be done
+};
+
+/// Tasks that earlier jobs have before them or under way.
+struct QueuedTasks {
+  std::set<int> truths, tasks;
+  std::vector<SubmittedJobs> jobs;  ///< theirs
+};
+
+/// What distributes tasks over machines.
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  virtual QueuedTasks find_queued(const std::filesystem::path& out, const std::vector<SubmittedJobs>& earlier) = 0;
+
+  /// Writes scripts that a person can read into the folder of the sweep, and returns the commands that submit() gives
+  /// them to. Throws Error(kOutput).
+  virtual std::vector<std::string> write_scripts(const JobPlan& plan, const QueuedTasks& queued) = 0;
+
+  /// Throws Error(kUsage) where the engine's program is missing or refuses; no job stays then.
+  virtual SubmittedJobs submit(const JobPlan& plan, const QueuedTasks& queued) = 0;
+};
+
+/// Names the engines.
+std::vector<std::string> list_engines();
+
+/// Throws Error(kUsage) for an unknown name, and for an option that the engine does not have.
+std::unique_ptr<Engine> make_engine(const EngineOptions& options);
+
+std::unique_ptr<Engine> make_slurm_engine(const EngineOptions& options);
+std::unique_ptr<Engine> make_parallel_engine(const EngineOptions& options);
+
+}  // namespace shadowbench::submit

@@ -1,0 +1,39 @@
+#include "harness/submit/run_task.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "filters/base/error.h"
+#include "harness/run/run_experiment.h"
+#include "harness/submit/sign_of_life.h"
+#include "harness/submit/sweep_folder.h"
+
+namespace shadowbench::submit {
+namespace {
+
+/// The exit code of a process that a signal ends, as shells say it.
+constexpr int kSignalCode = 128;
+
+}  // namespace
+
+void run_task(options::RunOptions options, const std::filesystem::path& folder, options::Progress& progress) {
+  const SweepTask task = read_task(folder);
+  const Sweep sweep = read_sweep(options.out);
+  options.part = options::Part{task.ranges, sweep.scene_cells, task.content, task.kind == TaskKind::kTruth};
+  remove_failure(folder);
+  const SignOfLife alive(folder);
+  try {
+    write_result(folder, run::run_experiment(options, progress));
+  } catch (const Error& error) {
+    write_failure(folder, {static_cast<int>(error.kind()), error.what()});
+    throw;
+  }
+}
+
+void note_stopped_task(const std::filesystem::path& folder, int signal) {
+  remove_sign_of_life(folder);
+  write_failure(folder, {kSignalCode + signal, fmt::format("stopped by signal {} ({})", signal, strsignal(signal))});
+}
+
+}  // namespace shadowbench::submit

@@ -1,0 +1,83 @@
+#include "harness/submit/sign_of_life.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include "filters/base/atomic_file.h"
+#include "filters/base/temporary_files.h"
+
+namespace shadowbench::submit {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFile = "alive";
+
+std::string read_environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+/// Who runs the task, for people.
+std::string describe_runner() {
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  std::string text = fmt::format("process {} on {}", getpid(), host);
+  if (const std::string job = read_environment("SLURM_JOB_ID"); !job.empty())
+    text += fmt::format(", job {}, node {}", job, read_environment("SLURMD_NODENAME"));
+  return text + "\n";
+}
+
+}  // namespace
+
+SignOfLife::SignOfLife(fs::path folder) : file_(std::move(folder) / kFile) {
+  write_text_file(file_, describe_runner());
+  thread_ = std::thread([this] { beat(); });
+}
+
+SignOfLife::~SignOfLife() {
+  {
+    const std::scoped_lock lock(mutex_);
+    ending_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+  remove_sign_of_life(file_.parent_path());
+}
+
+void SignOfLife::beat() {
+  std::unique_lock lock(mutex_);
+  while (!wake_.wait_for(lock, kBeat, [this] { return ending_; }))
+    utimensat(AT_FDCWD, file_.c_str(), nullptr, 0);  // without a time: the file system's own
+}
+
+void remove_sign_of_life(const fs::path& folder) {
+  std::error_code ignored;
+  fs::remove(folder / kFile, ignored);
+}
+
+std::optional<std::chrono::duration<double>> read_silence(const fs::path& folder, fs::file_time_type now) {
+  std::error_code error;
+  const fs::file_time_type last = fs::last_write_time(folder / kFile, error);
+  if (error) return std::nullopt;
+  return std::chrono::duration<double>(now - last);
+}
+
+fs::file_time_type file_system_now(const fs::path& folder) {
+  const fs::path probe = make_temporary_path(folder / "now");
+  std::error_code error;
+  std::ofstream(probe) << "now";
+  const fs::file_time_type now = fs::last_write_time(probe, error);
+  std::error_code ignored;
+  fs::remove(probe, ignored);
+  return error ? fs::file_time_type::clock::now() : now;
+}
+
+}  // namespace shadowbench::submit
