@@ -49,6 +49,7 @@ struct SceneMeasurement {
   std::optional<metrics::ArtefactMasks> masks;  ///< where artefacts can occur; nothing without truth
   double timed_ms = 0.0;                        ///< of the passes that were timed
   double attribution_s = 0.0;                   ///< that taking the errors apart took
+  double truth_s = 0.0;                         ///< that the truth took, which other cells use too
   int passes_run = 0;
   int passes_skipped = 0;  ///< encode and blur passes that no chosen filter needed
 };

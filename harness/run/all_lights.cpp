@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "harness/run/task_images.h"
@@ -74,12 +75,15 @@ images::Image add_up(const std::vector<Lit>& lights, const std::string& part) {
   return sum;
 }
 
-/// What a frame costs whose lights all move.
+/// What a frame costs whose lights all move; nothing where several kinds of machine measured the lights.
 std::string describe_frame(const std::vector<Lit>& lights, const std::string& label, const records::GlRecord& gl) {
   double sum = 0.0;
+  std::optional<records::MachineKind> machine;
   for (const Lit& lit : lights) {
     const auto cell = std::ranges::find(lit.cells, label, [](const auto& c) { return c.images.parts.value_or(""); });
     if (cell == lit.cells.end() || !cell->time_ms.moving) return {};
+    if (&lit != &lights.front() && cell->machine != machine) return {};
+    machine = cell->machine;
     sum += cell->time_ms.moving->median;
   }
   return fmt::format("{} ms ({}) for the maps, prefilters and lookups of all {} lights", records::format_number(sum),

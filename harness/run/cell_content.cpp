@@ -58,11 +58,9 @@ void add_scene(ContentHash& hash, const scene::Scene& scene) {
 
 }  // namespace
 
-std::string name_scene_content(const options::RunOptions& options, const scene::Scene& scene,
-                               const std::string& renderer) {
+std::string name_scene_content(const options::RunOptions& options, const scene::Scene& scene) {
   ContentHash hash;
   hash.add(build_commit());
-  hash.add(renderer);
   add_options(hash, options);
   add_scene(hash, scene);
   return hash.name();

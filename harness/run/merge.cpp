@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <system_error>
 
 #include "filters/base/atomic_file.h"
@@ -42,8 +43,8 @@ void require_same(const ShardRun& first, const ShardRun& other) {
   if (a.settings == b.settings && a.shards == b.shards) return;
   throw Error(
       ErrorKind::kInput,
-      fmt::format("this is no shard of the experiment in {}: scenes, filters, settings, program or OpenGL differ, "
-                  "or it is one of {} shards and not of {}",
+      fmt::format("this is no shard of the experiment in {}: scenes, filters, settings or program differ, or it "
+                  "is one of {} shards and not of {}",
                   first.folder.string(), b.shards, a.shards),
       other.folder.string());
 }
@@ -119,33 +120,29 @@ std::vector<std::string> list_files(const records::CellRecord& cell) {
   return files;
 }
 
-records::RunRecord join(const std::vector<ShardRun>& shards) {
-  records::RunRecord run = shards.front().results.run;
-  run.experiment.shard = run.experiment.shards = 1;
-  run.repeat = {};  // of one shard alone
-  for (std::size_t i = 1; i < shards.size(); ++i) {
-    const records::RunRecord& other = shards[i].results.run;
-    run.work.shader_variants_compiled += other.work.shader_variants_compiled;
-    run.work.passes_run += other.work.passes_run;
-    run.work.passes_skipped += other.work.passes_skipped;
-    run.work.truths_traced += other.work.truths_traced;
-    run.work.truths_cached += other.work.truths_cached;
-    run.work.timed_s += other.work.timed_s;
-    run.work.elapsed_s += other.work.elapsed_s;
-    if (other.work.attribution_s)
-      run.work.attribution_s = run.work.attribution_s.value_or(0.0) + *other.work.attribution_s;
-    for (const std::string& warning : other.warnings)
-      if (std::find(run.warnings.begin(), run.warnings.end(), warning) == run.warnings.end())
-        run.warnings.push_back(warning);
-    if (other.machine.cpu == run.machine.cpu && other.machine.cores == run.machine.cores) continue;
-    run.warnings.push_back(fmt::format(
-        "shards ran on different machines, so times of their cells do not compare: {} with {} cores, {} with {}",
-        run.machine.cpu, run.machine.cores, other.machine.cpu, other.machine.cores));
-  }
-  return run;
-}
-
 }  // namespace
+
+records::RunRecord join_runs(const std::vector<records::RunRecord>& runs) {
+  records::RunRecord whole = runs.front();
+  whole.experiment.shard = whole.experiment.shards = 1;
+  whole.repeat = {};  // of one run alone
+  for (const records::RunRecord& run : std::span(runs).subspan(1)) {
+    whole.work.shader_variants_compiled += run.work.shader_variants_compiled;
+    whole.work.passes_run += run.work.passes_run;
+    whole.work.passes_skipped += run.work.passes_skipped;
+    whole.work.truths_traced += run.work.truths_traced;
+    whole.work.truths_cached += run.work.truths_cached;
+    whole.work.timed_s += run.work.timed_s;
+    whole.work.elapsed_s += run.work.elapsed_s;
+    if (run.work.attribution_s)
+      whole.work.attribution_s = whole.work.attribution_s.value_or(0.0) + *run.work.attribution_s;
+    for (const records::SceneRecord& scene : run.scenes)
+      if (std::ranges::count(whole.scenes, scene.name, &records::SceneRecord::name) == 0) whole.scenes.push_back(scene);
+    for (const std::string& warning : run.warnings)
+      if (std::ranges::count(whole.warnings, warning) == 0) whole.warnings.push_back(warning);
+  }
+  return whole;
+}
 
 void merge_runs(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out) {
   if (folders.empty()) throw Error(ErrorKind::kUsage, "merge: name the report folders of all shards");
@@ -162,7 +159,9 @@ void merge_runs(const std::vector<std::filesystem::path>& folders, const std::fi
     copy_whole(records::cell_path(shard.folder, cell.key), records::cell_path(out, cell.key));
     keys.push_back(cell.key);
   }
-  pages::write_report(out, join(shards), keys);
+  std::vector<records::RunRecord> runs;
+  for (const ShardRun& shard : shards) runs.push_back(shard.results.run);
+  pages::write_report(out, join_runs(runs), keys);
 }
 
 }  // namespace shadowbench::run

@@ -98,7 +98,7 @@ class Experiment {
   truth::TruthCache cache_;
   records::RunRecord run_;
   std::optional<files::FolderLock> lock_;  ///< none where other tasks write into the folder too
-  std::set<std::string> told_;  ///< warnings that the user has seen
+  std::set<std::string> told_;             ///< warnings that the user has seen
   TaskListener listener_{&steps_, [this](const measure::SceneMeasurement& measured) { count(measured); }};
   std::function<void(const std::string&)> note_ = [this](const std::string& message) { progress_.note(message); };
   GpuCosts gpus_{options_, note_};
@@ -180,13 +180,17 @@ class Experiment {
     return known.settings == own.settings && known.shard == own.shard && known.shards == own.shards;
   }
 
-  /// The cells of the finished report of this very run that is measured anew; none where there is none.
+  /// The cells of the finished report of this very run that is measured anew, as far as this kind of machine measured
+  /// them; none where there is none.
   std::vector<records::CellRecord> read_replaced() const {
     const std::filesystem::path file = options_.out / "results.json";
     if (!options_.fresh || options_.worker || !std::filesystem::exists(file)) return {};
     try {
       records::Results results = records::read_results(file);
-      if (is_same(results.run.experiment)) return std::move(results.cells);
+      if (!is_same(results.run.experiment)) return {};
+      const records::MachineKind here = records::kind_of(run_.machine, run_.gl);
+      std::erase_if(results.cells, [&](const records::CellRecord& cell) { return cell.machine != here; });
+      return std::move(results.cells);
     } catch (const Error&) {
       // What cannot be read cannot be compared with.
     }
@@ -309,7 +313,7 @@ class Experiment {
       if (options_.part && options_.part->only_truth)
         trace_shared(planned, each.task, *assets);
       else
-        TaskRun(renderer_, planned, each, *assets, run_.gl, listener_, gpus_).run();
+        TaskRun(renderer_, planned, each, *assets, run_, listener_, gpus_).run();
     }
   }
 };

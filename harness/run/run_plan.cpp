@@ -152,7 +152,7 @@ class Planner {
     const PlannedScene& scene = plan_.scenes[index];
     if (options_.part && (index == 0 || plan_.scenes[index - 1].place != scene.place))
       plan_.cells = find_first_cell(*options_.part, scene.place);
-    const std::string content = name_scene_content(scene.options, scene.scene, renderer_);
+    const std::string content = name_scene_content(scene.options, scene.scene);
     for (const scene::Camera* camera : choose_views(options_, scene.scene))
       for (const int map_size : options_.map_sizes) add_task(index, {&scene.scene, camera, map_size, {}}, content);
   }
@@ -196,13 +196,16 @@ class Planner {
     std::erase_if(planned.contents, [&](const auto&) { return finished[at++] != 0; });
   }
 
-  /// A file that cannot be read, or was made from something else, is measured anew.
+  /// A file that cannot be read, or was made from something else or by another OpenGL, is measured anew. The machines
+  /// of a sweep may differ.
   bool is_finished(const std::string& key, const std::string& content) const {
     std::error_code ignored;
     if (options_.worker || options_.fresh || !std::filesystem::exists(records::cell_path(options_.out, key), ignored))
       return false;
     try {
-      return records::read_cell(options_.out, key).content == content;
+      const records::CellRecord cell = records::read_cell(options_.out, key);
+      const bool is_drawn_alike = options_.part || (cell.machine && cell.machine->renderer == renderer_);
+      return cell.content == content && is_drawn_alike;
     } catch (const Error&) {
       return false;
     }

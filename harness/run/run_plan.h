@@ -34,13 +34,13 @@ struct RunPlan {
   int own_cells = 0;             ///< of this shard
   int finished = 0;              ///< of those, found in the report folder
   std::vector<int> scene_cells;  ///< see options::Part
-  std::string settings;          ///< names all cells of the experiment: shards of one experiment agree
+  std::string settings;  ///< names all cells of the experiment, whatever draws them: shards of one experiment agree
 };
 
-/// Loads the scenes and lays out the run. A cell counts as finished where the report folder holds one of its key and
-/// its content; with grids, which need every image of their view, only where all of the view's cells are finished.
-/// Throws Error for a scene that cannot be loaded, a view that no scene has, scenes or cells of one name, a shard of
-/// nothing.
+/// Loads the scenes and lays out the run. A cell counts as finished where the report folder holds one of its key, its
+/// content and this OpenGL, whose GL_RENDERER is `renderer`; with grids, which need every image of their view, only
+/// where all of the view's cells are finished. Throws Error for a scene that cannot be loaded, a view that no scene
+/// has, scenes or cells of one name, a shard of nothing.
 RunPlan make_plan(const options::RunOptions& options, const std::string& renderer);
 
 }  // namespace shadowbench::run

@@ -23,17 +23,27 @@ namespace {
 /// Passes of so many filters are kept at once: a run's memory does not grow with its cells.
 constexpr std::size_t kFiltersAtOnce = 8;
 
+/// Seconds since this was made.
+class Stopwatch {
+ public:
+  double read_s() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
 }  // namespace
 
 TaskRun::TaskRun(measure::Renderer& renderer, const PlannedScene& planned, const PlannedTask& task,
-                 measure::SceneAssets& assets, const records::GlRecord& gl, const TaskListener& listener,
+                 measure::SceneAssets& assets, const records::RunRecord& run, const TaskListener& listener,
                  GpuCosts& gpus)
     : renderer_(renderer),
       options_(planned.options),
       planned_(planned),
       task_(task.task),
       assets_(assets),
-      gl_(gl),
+      run_(run),
       listener_(listener),
       gpus_(gpus) {
   steps_.begin = [this](options::Work kind, std::size_t cells, const std::string& what) { begin(kind, cells, what); };
@@ -65,6 +75,7 @@ measure::SceneTask TaskRun::task_of(const Requests& requests) const {
 }
 
 void TaskRun::run_group(const Requests& built_in, const Requests& of_users) {
+  const Stopwatch watch;
   std::vector<measure::MeasuredCell> user_cells;
   for (const filters::FilterRequest& request : of_users) user_cells.push_back(measure_user_cell(request));
   measure::SceneMeasurement measured;
@@ -74,6 +85,7 @@ void TaskRun::run_group(const Requests& built_in, const Requests& of_users) {
   measured.depth_map = measure::read_linear_depth(light.map);
   if (!task_.scene->light.name.empty()) measured.ambient = draw_ambient();
   for (measure::MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
+  for (measure::MeasuredCell& cell : measured.cells) cell.record.measured_s = 0.0;
   Requests all = built_in;
   all.insert(all.end(), of_users.begin(), of_users.end());
   if (!options_.worker) {
@@ -83,6 +95,9 @@ void TaskRun::run_group(const Requests& built_in, const Requests& of_users) {
   begin(options::Work::kPictures, measured.cells.size(), "pictures");
   gpus_.add_to(measured.cells);
   write_images(task_of(all), measured);
+  const double shared_s = watch.read_s() - measured.truth_s - measured.attribution_s;
+  for (measure::MeasuredCell& cell : measured.cells)
+    *cell.record.measured_s += shared_s / static_cast<double>(measured.cells.size());
   write_cells(measured);
 }
 
@@ -102,7 +117,9 @@ measure::MeasuredCell TaskRun::measure_user_cell(const filters::FilterRequest& r
 void TaskRun::score(measure::SceneMeasurement& measured) {
   const std::size_t cells = measured.cells.size();
   begin(options::Work::kTruth, cells, "truth");
+  Stopwatch watch;
   const measure::SceneTruth& truth = assets_.truth(*task_.camera);
+  measured.truth_s = watch.read_s();
   begin(options::Work::kScores, cells, "errors");
   std::atomic<std::size_t> scored = 0;
   tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
@@ -112,13 +129,16 @@ void TaskRun::score(measure::SceneMeasurement& measured) {
     steps_.advance(static_cast<double>(++scored) / static_cast<double>(cells));
   });
   begin(options::Work::kSurroundings, cells, "artefacts");
+  watch = {};
   if (!analyser_) analyser_.emplace(renderer_, options_, task_, assets_, truth);
-  const auto start = std::chrono::steady_clock::now();
+  measured.truth_s += watch.read_s();
   for (measure::MeasuredCell& cell : measured.cells) {
     begin(options::Work::kAttribution, 1, "attribution of " + cell.label);
+    watch = {};
     analyser_->analyse(cell);
+    cell.record.measured_s = watch.read_s();
+    measured.attribution_s += *cell.record.measured_s;
   }
-  measured.attribution_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   measured.masks = analyser_->masks();
 }
 
@@ -151,7 +171,7 @@ void TaskRun::write_images(const measure::SceneTask& task, measure::SceneMeasure
   if (!options_.worker && options_.pictures) {
     write_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size));
     steps_.advance(0.2);
-    write_pictures(options_, task, measured, truth, gl_, [this](double part) { steps_.advance(0.2 + 0.5 * part); });
+    write_pictures(options_, task, measured, truth, run_.gl, [this](double part) { steps_.advance(0.2 + 0.5 * part); });
   }
   note_float_images(options_, task, measured);
   if (options_.border_page) draw_border_page(task);
@@ -169,6 +189,7 @@ void TaskRun::draw_border_page(const measure::SceneTask& task) {
 void TaskRun::write_cells(measure::SceneMeasurement& measured) {
   for (measure::MeasuredCell& cell : measured.cells) {
     cell.record.content = contents_.at(cell.record.key);
+    cell.record.machine = records::kind_of(run_.machine, run_.gl);
     records::write_cell(options_.out, cell.record);
   }
   listener_.finished(measured);

@@ -25,9 +25,9 @@ struct TaskListener {
 /// Measures the cells of one task that are still to be measured, and writes them.
 class TaskRun {
  public:
-  /// Everything must outlive this object.
+  /// Machine and OpenGL are those of `run`. Everything must outlive this object.
   TaskRun(measure::Renderer& renderer, const PlannedScene& planned, const PlannedTask& task,
-          measure::SceneAssets& assets, const records::GlRecord& gl, const TaskListener& listener, GpuCosts& gpus);
+          measure::SceneAssets& assets, const records::RunRecord& run, const TaskListener& listener, GpuCosts& gpus);
 
   /// With grids all cells are measured, drawn and written together; without, a few at a time, each written as soon as
   /// it is finished. Users' filters come first, so that a mistake in one is heard of at once. Throws Error; cells
@@ -42,7 +42,7 @@ class TaskRun {
   const PlannedScene& planned_;
   const measure::SceneTask& task_;
   measure::SceneAssets& assets_;
-  const records::GlRecord& gl_;
+  const records::RunRecord& run_;
   const TaskListener& listener_;
   GpuCosts& gpus_;
   std::map<std::string, std::string> contents_;  ///< by key

@@ -29,8 +29,8 @@ bool carries_out(const std::string& process, const fs::path& script) {
 class ParallelEngine : public Engine {
  public:
   explicit ParallelEngine(const EngineOptions& options) : options_(options) {
-    for (const auto& [name, value] : {std::pair{"--time", options.time}, {"--partition", options.partition},
-                                      {"--gres", options.gres}})
+    for (const auto& [name, value] :
+         {std::pair{"--time", options.time}, {"--partition", options.partition}, {"--gres", options.gres}})
       if (!value.empty())
         throw Error(ErrorKind::kUsage, fmt::format("{} is an option of --engine slurm; leave it out", name));
   }

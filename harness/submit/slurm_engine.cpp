@@ -85,7 +85,8 @@ class SlurmEngine : public Engine {
   static std::set<int> list_array(const std::string& job) {
     std::set<int> numbers;
     if (job.empty()) return numbers;
-    const ShellOutcome outcome = run_shell(quote_words({"squeue", "--noheader", "--array", "--format=%K", "--jobs", job}));
+    const ShellOutcome outcome =
+        run_shell(quote_words({"squeue", "--noheader", "--array", "--format=%K", "--jobs", job}));
     if (outcome.exit_code != 0) return numbers;
     std::istringstream lines(outcome.text);
     for (int number = 0; lines >> number;) numbers.insert(number);
@@ -111,9 +112,8 @@ class SlurmEngine : public Engine {
                     "#SBATCH --job-name={}-{}\n#SBATCH --array={}\n#SBATCH --output={}\n#SBATCH --open-mode=append\n"
                     "#SBATCH --chdir={}\n#SBATCH --requeue\n{}\nexec {} --task {}/\"$SLURM_ARRAY_TASK_ID\"\n",
                     what, plan.name, folder.filename().string(), describe_array(numbers),
-                    quote_pattern(folder, "/%a/log.txt"),
-                    quote_pattern(plan.working_folder), describe_resources(true), quote_words(plan.command),
-                    quote_words({folder.string()})));
+                    quote_pattern(folder, "/%a/log.txt"), quote_pattern(plan.working_folder), describe_resources(true),
+                    quote_words(plan.command), quote_words({folder.string()})));
   }
 
   void write_merge(const JobPlan& plan) const {
@@ -144,7 +144,8 @@ class SlurmEngine : public Engine {
     for (const SubmittedJobs& each : queued.jobs)
       if (!each.truth.empty() && !queued.truths.empty()) after.push_back(each.truth);
     if (after.empty()) return make_command(plan, {}, kCellScript);
-    return make_command(plan, {fmt::format("--dependency=afterok:{}", fmt::join(after, ":")), "--kill-on-invalid-dep=yes"},
+    return make_command(plan,
+                        {fmt::format("--dependency=afterok:{}", fmt::join(after, ":")), "--kill-on-invalid-dep=yes"},
                         kCellScript);
   }
 

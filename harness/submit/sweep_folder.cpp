@@ -79,18 +79,20 @@ void write_sweep(const fs::path& out, const Sweep& sweep) {
 }
 
 Sweep read_sweep(const fs::path& out) {
-  return read_json(out / kSweepFile, [](const json& content) {
-    Sweep sweep{.title = content.at("title"),
-                .settings = content.at("settings"),
-                .command = content.at("command"),
-                .scene_cells = content.at("scene_cells"),
-                .cells = content.at("cells"),
-                .truths = content.at("truths"),
-                .tasks = content.at("tasks")};
-    for (const json& each : content.at("jobs"))
-      sweep.jobs.push_back({each.at("engine"), each.at("truth"), each.at("cells"), each.at("merge")});
-    return sweep;
-  });
+  return read_json(
+      out / kSweepFile,
+      [](const json& content) {
+        Sweep sweep{.title = content.at("title"),
+                    .settings = content.at("settings"),
+                    .command = content.at("command"),
+                    .scene_cells = content.at("scene_cells"),
+                    .cells = content.at("cells"),
+                    .truths = content.at("truths"),
+                    .tasks = content.at("tasks")};
+        for (const json& each : content.at("jobs"))
+          sweep.jobs.push_back({each.at("engine"), each.at("truth"), each.at("cells"), each.at("merge")});
+        return sweep;
+      });
 }
 
 void write_task(const fs::path& out, const SweepTask& task) {
@@ -105,16 +107,18 @@ void write_task(const fs::path& out, const SweepTask& task) {
 }
 
 SweepTask read_task(const fs::path& folder) {
-  return read_json(folder / kTaskFile, [](const json& content) {
-    SweepTask task{.kind = content.at("kind") == name_of(TaskKind::kTruth) ? TaskKind::kTruth : TaskKind::kCells,
-                   .number = content.at("number"),
-                   .ranges = {},
-                   .keys = content.at("keys"),
-                   .content = content.at("content"),
-                   .seconds = content.at("seconds")};
-    for (const json& range : content.at("ranges")) task.ranges.push_back({range.at(0), range.at(1)});
-    return task;
-  });
+  return read_json(
+      folder / kTaskFile,
+      [](const json& content) {
+        SweepTask task{.kind = content.at("kind") == name_of(TaskKind::kTruth) ? TaskKind::kTruth : TaskKind::kCells,
+                       .number = content.at("number"),
+                       .ranges = {},
+                       .keys = content.at("keys"),
+                       .content = content.at("content"),
+                       .seconds = content.at("seconds")};
+        for (const json& range : content.at("ranges")) task.ranges.push_back({range.at(0), range.at(1)});
+        return task;
+      });
 }
 
 void write_result(const fs::path& folder, const records::RunRecord& run) {

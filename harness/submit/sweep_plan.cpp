@@ -78,10 +78,8 @@ class SweepPlanner {
   void add_cells(std::size_t index) {
     const run::PlannedTask& task = plan_.tasks[index];
     for (std::size_t i = 0; i < task.keys.size(); ++i)
-      cells_.push_back(
-          {index,
-           measure::make_record(plan_.scenes[task.scene].options, task.task, task.task.filters[i]),
-           task.contents[i]});
+      cells_.push_back({index, measure::make_record(plan_.scenes[task.scene].options, task.task, task.task.filters[i]),
+                        task.contents[i]});
   }
 
   std::vector<SweepTask> split_cells() {
@@ -89,9 +87,10 @@ class SweepPlanner {
     std::vector<double> costs;
     double all_s = 0.0;
     for (const PlannedCell& cell : cells_) all_s += costs.emplace_back(known.expect_s(cell.record));
-    const int wanted = rule_.tasks > 0     ? rule_.tasks
-                       : known.is_empty() ? kMostTasks
-                                          : static_cast<int>(std::ceil(std::min(all_s / kTaskSeconds, 1.0 * kMostTasks)));
+    const int wanted = rule_.tasks > 0 ? rule_.tasks
+                       : known.is_empty()
+                           ? kMostTasks
+                           : static_cast<int>(std::ceil(std::min(all_s / kTaskSeconds, 1.0 * kMostTasks)));
     std::vector<SweepTask> tasks;
     for (const options::CellRange& range : split_evenly(costs, std::min(wanted, plan_.cells)))
       tasks.push_back(make_task(TaskKind::kCells, static_cast<int>(tasks.size()) + 1, {range}));
@@ -153,13 +152,15 @@ class SweepPlanner {
     if (!rule_.earlier_run.empty()) {
       CellCosts known(records::read_results(rule_.earlier_run).cells);
       if (known.is_empty())
-        throw Error(ErrorKind::kInput, "--times-of: none of its cells says how long it took", rule_.earlier_run.string());
+        throw Error(ErrorKind::kInput, "--times-of: none of its cells says how long it took",
+                    rule_.earlier_run.string());
       return known;
     }
     return CellCosts(rule_.probe ? probe() : std::vector<records::CellRecord>());
   }
 
-  /// Of the first view through the first map, each filter's cells of the narrowest and of the widest kernel, as indices.
+  /// Of the first view through the first map, each filter's cells of the narrowest and of the widest kernel, as
+  /// indices.
   std::vector<int> choose_probes() const {
     std::map<std::string, std::pair<int, int>> ends;
     const auto width = [&](int cell) {
@@ -187,9 +188,10 @@ class SweepPlanner {
     options.out = folder.path();
     options.part = options::Part{.ranges = {}, .scene_cells = plan_.scene_cells, .content = {}};
     for (const int cell : probes) options.part->ranges.push_back({cell, cell + 1});
-    progress_.note(fmt::format("probe: measuring {} of {} cells here, to split them evenly (--times-of RUN takes an "
-                               "earlier run's times, --no-probe none)",
-                               probes.size(), plan_.cells));
+    progress_.note(
+        fmt::format("probe: measuring {} of {} cells here, to split them evenly (--times-of RUN takes an "
+                    "earlier run's times, --no-probe none)",
+                    probes.size(), plan_.cells));
     Notes notes(progress_);
     try {
       run::run_experiment(options, notes);

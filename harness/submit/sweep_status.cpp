@@ -87,7 +87,8 @@ json task_json(const TaskStatus& status) {
 const char* name_of(TaskState state) { return kNames[static_cast<std::size_t>(state)]; }
 
 bool SweepStatus::is_measured() const {
-  return std::ranges::all_of(tasks, [](const TaskStatus& each) { return each.state == TaskState::kFinished; });
+  return std::ranges::all_of(
+      tasks, [](const TaskStatus& each) { return each.state == TaskState::kFinished; });
 }
 
 SweepStatus read_status(const fs::path& out, double silent_after_s) {

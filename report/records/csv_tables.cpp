@@ -160,7 +160,15 @@ void add_phase_columns(std::vector<Column>& columns) {
 
 void add_timing_columns(std::vector<Column>& columns) {
   columns.push_back({{"clock", "what the times are times of"},
-                     [](const RunRecord& run, const CellRecord&) { return describe_clock(run.gl); }});
+                     [](const RunRecord& run, const CellRecord& cell) {
+                       return cell.machine ? describe_clock(*cell.machine) : describe_clock(run.gl);
+                     }});
+  columns.push_back({{"machine",
+                      "what measured the times: those of two kinds of machine do not compare; empty in cells "
+                      "of before"},
+                     [](const RunRecord&, const CellRecord& cell) {
+                       return cell.machine ? describe_machine_kind(*cell.machine) : std::string();
+                     }});
   add_time_columns(columns, "lookup", "filtered lookup of all pixels", &TimeRecord::lookup);
   add_time_columns(columns, "prefilter", "encoding and blurring the map", &TimeRecord::prefilter);
   add_time_columns(columns, "map", "drawing the depth map", &TimeRecord::map);

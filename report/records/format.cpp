@@ -117,15 +117,22 @@ std::string format_ratio(const std::optional<records::Ratio>& ratio) {
   return ratio ? format_interval(ratio->median, ratio->ci95) : kNothing;
 }
 
-std::string describe_clock(const records::GlRecord& gl) {
-  const bool wall_clock = gl.timer == records::TimerKind::kWallClock;
-  if (gl.software) return wall_clock ? "CPU time (software rasteriser)" : "GL timer query (software rasteriser)";
+std::string describe_clock(const records::GlRecord& gl) { return describe_clock(kind_of({}, gl)); }
+
+std::string describe_clock(const MachineKind& kind) {
+  const bool wall_clock = kind.timer == records::TimerKind::kWallClock;
+  if (kind.software) return wall_clock ? "CPU time (software rasteriser)" : "GL timer query (software rasteriser)";
   return wall_clock ? "wall-clock time" : "GPU time (timer query)";
 }
 
 std::string time_unit(const records::GlRecord& gl) {
   if (gl.timer == records::TimerKind::kWallClock) return gl.software ? "ms (CPU)" : "ms";
   return gl.software ? "ms (GL timer)" : "ms (GPU)";
+}
+
+std::string describe_machine_kind(const MachineKind& kind) {
+  return fmt::format("{}, {} core{}, {}, {}", kind.cpu, kind.cores, kind.cores == 1 ? "" : "s", kind.renderer,
+                     describe_clock(kind));
 }
 
 std::string describe_params(const records::ParamMap& params) {

@@ -36,10 +36,14 @@ std::string format_ratio(const std::optional<records::Ratio>& ratio);
 
 /// Names the clock that a run's times come from: "CPU time (software rasteriser)".
 std::string describe_clock(const records::GlRecord& gl);
+std::string describe_clock(const MachineKind& kind);
 
 /// Names the unit of a run's times where room is short: "ms (CPU)", "ms (GPU)",
 /// "ms (GL timer)" or "ms".
 std::string time_unit(const records::GlRecord& gl);
+
+/// Names a kind of machine: "AMD EPYC 7B13, 2 cores, llvmpipe (LLVM 15.0.6, 256 bits), CPU time (software rasteriser)".
+std::string describe_machine_kind(const MachineKind& kind);
 
 /// Lists parameters: "radius 4, store rg32f".
 std::string describe_params(const records::ParamMap& params);

@@ -30,6 +30,7 @@ bool is_finite(std::int64_t) { return true; }
 bool is_finite(bool) { return true; }
 bool is_finite(const std::string&) { return true; }
 bool is_finite(const std::vector<std::string>&) { return true; }
+bool is_finite(const MachineKind&) { return true; }
 bool is_finite(const Quartiles& value) {
   return std::isfinite(value.median) && std::isfinite(value.q1) && std::isfinite(value.q3);
 }

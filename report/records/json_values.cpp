@@ -55,6 +55,14 @@ NLOHMANN_JSON_SERIALIZE_ENUM(TimerKind,
 json value_json(CellStatus value) { return value; }
 json value_json(TimerKind value) { return value; }
 
+json value_json(const MachineKind& value) {
+  return {{"cpu", value.cpu},
+          {"cores", value.cores},
+          {"renderer", value.renderer},
+          {"software", value.software},
+          {"timer", value_json(value.timer)}};
+}
+
 json value_json(const Quartiles& value) {
   return {{"median", value.median}, {"q1", value.q1}, {"q3", value.q3}, {"n", value.n}};
 }
@@ -182,6 +190,13 @@ TimerKind read_value(const json& value) {
   const auto kind = value.get<TimerKind>();
   require(value == json(kind), "wall_clock or timer_query");
   return kind;
+}
+
+template <>
+MachineKind read_value(const json& json) {
+  return {read_value<std::string>(json.at("cpu")), read_value<int>(json.at("cores")),
+          read_value<std::string>(json.at("renderer")), read_value<bool>(json.at("software")),
+          read_value<TimerKind>(json.at("timer"))};
 }
 
 template <>

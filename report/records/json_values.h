@@ -36,6 +36,7 @@ nlohmann::json value_json(bool value);
 nlohmann::json value_json(double value);
 nlohmann::json value_json(CellStatus value);
 nlohmann::json value_json(TimerKind value);
+nlohmann::json value_json(const MachineKind& value);
 nlohmann::json value_json(const Quartiles& value);
 nlohmann::json value_json(const Interval& value);
 nlohmann::json value_json(const OwnTime& value);

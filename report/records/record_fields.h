@@ -9,12 +9,28 @@
 namespace shadowbench::records {
 
 /// Names the fields that older files of this schema version lack; they are read as null or empty there.
-inline constexpr std::array<std::string_view, 20> kLaterFields = {
-    "time_ms.empty",       "error.rmse_ci95",    "phases",        "time_ms.filter",
-    "time_ms.moving",      "images.parts",       "images.values", "images.truth_picture",
-    "images.truth_values", "work.attribution_s", "claims",        "lights",
-    "repeat.cells",        "repeat.overlapping", "repeat.of",     "suspect_of",
-    "kernel.sigma_texels", "kernel.class",       "teaching",      "gpu"};
+inline constexpr std::string_view kLaterFields[] = {"time_ms.empty",
+                                                    "error.rmse_ci95",
+                                                    "phases",
+                                                    "time_ms.filter",
+                                                    "time_ms.moving",
+                                                    "images.parts",
+                                                    "images.values",
+                                                    "images.truth_picture",
+                                                    "images.truth_values",
+                                                    "work.attribution_s",
+                                                    "claims",
+                                                    "lights",
+                                                    "repeat.cells",
+                                                    "repeat.overlapping",
+                                                    "repeat.of",
+                                                    "suspect_of",
+                                                    "kernel.sigma_texels",
+                                                    "kernel.class",
+                                                    "teaching",
+                                                    "gpu",
+                                                    "machine",
+                                                    "measured_s"};
 
 /// Calls `visit(name, value)` for every field of a bias.
 template <class Bias, class Visitor>
@@ -43,6 +59,8 @@ template <class Cell, class Visitor>
 void visit_cell_fields(Cell& cell, Visitor&& visit) {
   visit("key", cell.key);
   visit("content", cell.content);
+  visit("machine", cell.machine);
+  visit("measured_s", cell.measured_s);
   visit("status", cell.status);
   visit("message", cell.message);
   visit("suspect_of", cell.suspect_of);

@@ -201,13 +201,30 @@ struct GpuRecord {
 /// By the GPU's name.
 using GpuRecords = std::map<std::string, GpuRecord>;
 
+/// Which clock the times come from.
+enum class TimerKind { kWallClock, kTimerQuery };
+
+/// The kind of machine that a cell was measured on. Times of two kinds are never compared.
+struct MachineKind {
+  std::string cpu;
+  int cores = 0;
+  std::string renderer;  ///< GL_RENDERER
+  bool software = true;  ///< a rasteriser on the CPU
+  TimerKind timer = TimerKind::kWallClock;
+
+  bool operator==(const MachineKind&) const = default;
+};
+
 /// Everything measured of one scene x view x filter x parameters x map settings.
 ///
 /// What does not exist stays empty, and `absent` says why: dotted field name, or the name of a whole group
 /// ("error"), to reason. A null that nobody explained is written as "not measured".
 struct CellRecord : metrics::MetricValues {
   std::string key;      ///< cell_key() of the settings below
-  std::string content;  ///< names what made the cell beside its settings: program, OpenGL, scene, filter, options
+  std::string content;  ///< names what made the cell beside its settings: program, scene, filter, options
+  std::optional<MachineKind> machine;  ///< what measured it; empty in files of before
+  std::optional<double> measured_s;  ///< seconds that measuring it took: its share of what cells did together, without
+                                     ///< the truth, which others use too
   CellStatus status = CellStatus::kOk;
   std::string message;                  ///< why `status` is not ok; empty otherwise
   std::vector<std::string> suspect_of;  ///< what is wrong with the filter, and what to do; empty unless it is suspect
@@ -245,9 +262,6 @@ inline bool is_drawn(const CellRecord& cell) {
   return cell.status == CellStatus::kOk || cell.status == CellStatus::kSuspect;
 }
 
-/// Which clock the times come from.
-enum class TimerKind { kWallClock, kTimerQuery };
-
 /// The OpenGL that drew the pictures.
 struct GlRecord {
   std::string backend;   ///< "osmesa", "egl", "glfw"
@@ -265,6 +279,11 @@ struct MachineRecord {
   std::string compiler;
   std::string os;
 };
+
+/// The kind of a machine and its OpenGL.
+inline MachineKind kind_of(const MachineRecord& machine, const GlRecord& gl) {
+  return {machine.cpu, machine.cores, gl.renderer, gl.software, gl.timer};
+}
 
 /// Counts the work that was done, and the work that no chosen filter needed.
 struct WorkRecord {

@@ -143,6 +143,29 @@ TEST_F(Sweep, Continued_MeasuresNothingTwice_UnlessSomethingChanged) {
   EXPECT_THAT(run("run e.toml --out out --seed 2 --fresh").err, Not(HasSubstr("finished before")));
 }
 
+/// Whatever draws them, cells are of one experiment; but a run counts those of its own OpenGL alone as finished.
+TEST_F(Sweep, CellsOfAnotherOpenGl_AreMeasuredAnew_AndThoseOfAnotherProcessorStay) {
+  const std::string few = "run e.toml --scene cubes --map-size 32 --filters none,pcf2x2,tent3x3,vsm --out out";
+  ASSERT_EQ(run(few).exit_code, 0);
+  const json first = results();
+  ASSERT_EQ(first["cells"].size(), 4u);
+  EXPECT_EQ(first["cells"][0]["machine"]["renderer"], first["gl"]["renderer"]);
+  EXPECT_EQ(first["cells"][0]["machine"]["cpu"], first["machine"]["cpu"]);
+  const auto edit = [&](std::size_t i, const json& patch) {
+    const std::string cell = "out/cells/" + first["cells"][i]["key"].get<std::string>() + ".json";
+    write(cell, json::parse(read_text(folder() / cell)).patch(patch).dump());
+  };
+  edit(0, json::parse(R"([{"op": "replace", "path": "/cell/machine/renderer", "value": "another"}])"));
+  edit(1, json::parse(R"([{"op": "remove", "path": "/cell/machine"}])"));
+  edit(2, json::parse(R"([{"op": "replace", "path": "/cell/machine/cpu", "value": "another"}])"));
+  EXPECT_THAT(run(few).err, HasSubstr("2 of them finished before"));
+  const json second = results();
+  EXPECT_EQ(second["experiment"], first["experiment"]);
+  for (const std::size_t measured : {0, 1})
+    EXPECT_EQ(second["cells"][measured]["machine"], first["cells"][measured]["machine"]);
+  EXPECT_EQ(second["cells"][2]["machine"]["cpu"], "another");
+}
+
 TEST_F(Sweep, FreshOverAFinishedReport_SaysHowManyTimesRepeat) {
   const std::string few = "run e.toml --scene cubes --map-size 32 --filters none,pcf2x2,tent3x3 --out out ";
   ASSERT_EQ(run(few + "--fresh").exit_code, 0);
@@ -157,6 +180,11 @@ TEST_F(Sweep, FreshOverAFinishedReport_SaysHowManyTimesRepeat) {
   EXPECT_THAT(outcome.err, HasSubstr(said));
   for (const char* file : {"out/summary.md", "out/index.html"})
     EXPECT_THAT(read_text(folder() / file), HasSubstr(said)) << file;
+  json replaced = results();
+  for (json& cell : replaced["cells"]) cell["machine"]["cores"] = 1000;
+  write("out/results.json", replaced.dump());
+  ASSERT_EQ(run(few + "--fresh").exit_code, 0);
+  EXPECT_TRUE(results()["repeat"]["of"].is_null()) << "what was replaced was of another kind of machine";
   ASSERT_EQ(run(few + "--fresh --seed 2").exit_code, 0);
   EXPECT_TRUE(results()["repeat"]["of"].is_null()) << "what was replaced was told something else";
 }

@@ -77,6 +77,7 @@ TEST(TimingsCsv, Fields_HoldTheirColumnsValues) {
   cell.ratio_to_none.moving = Ratio{2.5, {2.25, 2.75}};
   const auto rows = parse_csv(make_csv(CsvTable::kTimings, make_run(), {cell}));
   EXPECT_EQ(field(rows, 1, "clock"), "CPU time (software rasteriser)");
+  EXPECT_EQ(field(rows, 1, "machine"), "");
   EXPECT_EQ(field(rows, 1, "params"), R"({"radius":4,"store":"rg32f"})");
   EXPECT_EQ(field(rows, 1, "lookup_median_ms"), "4.5");
   EXPECT_EQ(field(rows, 1, "border"), "repeat");
@@ -90,6 +91,14 @@ TEST(TimingsCsv, Fields_HoldTheirColumnsValues) {
   EXPECT_EQ(field(rows, 1, "ratio_moving_high"), "2.75");
   EXPECT_EQ(field(rows, 1, "map_bytes"), "4194304");
   EXPECT_EQ(field(rows, 1, "key"), cell.key);
+}
+
+TEST(TimingsCsv, ClockAndMachine_AreTheCellsOwn) {
+  CellRecord cell = make_cell("cubes", "vsm", 4.5);
+  cell.machine = {"A CPU", 3, "A GPU", false, TimerKind::kTimerQuery};
+  const auto rows = parse_csv(make_csv(CsvTable::kTimings, make_run(), {cell}));
+  EXPECT_EQ(field(rows, 1, "clock"), "GPU time (timer query)");
+  EXPECT_EQ(field(rows, 1, "machine"), "A CPU, 3 cores, A GPU, GPU time (timer query)");
 }
 
 TEST(TimingsCsv, Numbers_ReadBackAsTheSameDoubles) {

@@ -104,6 +104,7 @@ CellRecord make_full_cell() {
   cell.lights = {{1, {1.5, 1.25, 1.75, 9}, {2.5, 2.25, 2.75, 9}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 1024},
                  {16, {24.0, 20.0, 28.0, 5}, {40.0, 36.0, 44.0, 5}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 16384}};
   cell.content = "0123";
+  cell.machine = {"A CPU", 3, "A GPU", false, TimerKind::kTimerQuery};
   cell.warnings = {"one", "two"};
   cell.absent.clear();
   return cell;
@@ -178,6 +179,7 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   EXPECT_EQ(back.lights->back().moving_ratio.ci95.low, 1.75);
   EXPECT_EQ(back.lights->back().maps_bytes, 16384);
   EXPECT_EQ(back.content, "0123");
+  EXPECT_EQ(back.machine, (MachineKind{"A CPU", 3, "A GPU", false, TimerKind::kTimerQuery}));
   EXPECT_EQ(back.warnings, (std::vector<std::string>{"one", "two"}));
   EXPECT_EQ(std::get<std::string>(back.params.at("store")), "rg32f");
 }
@@ -189,6 +191,8 @@ TEST(JsonIo, LaterFields_MayLack) {
   written.erase("claims");
   EXPECT_FALSE(cell_from_json(written, "here").claims);
   EXPECT_EQ(cell_from_json(written, "here").fit, "view snapped");
+  written.erase("machine");
+  EXPECT_FALSE(cell_from_json(written, "here").machine);
   CellRecord suspect = make_full_cell();
   suspect.status = CellStatus::kSuspect;
   suspect.suspect_of = {"it reads nothing", "it is constant"};
@@ -345,6 +349,7 @@ TEST(JsonIo, BrokenRecords_AreRefusedByTheSchema) {
       json::parse(R"([{"op": "replace", "path": "/cells/0/range/border", "value": "mirror"}])"),
       json::parse(R"([{"op": "replace", "path": "/cells/0/range/far_test", "value": "on"}])"),
       json::parse(R"([{"op": "remove", "path": "/cells/0/range/behind_test"}])"),
+      json::parse(R"([{"op": "add", "path": "/cells/0/machine", "value": {"cpu": "x", "cores": 2}}])"),
       json::parse(R"([{"op": "remove", "path": "/work/truths_cached"}])"),
       json::parse(R"([{"op": "replace", "path": "/work/truths_traced", "value": -1}])"),
       json::parse(R"([{"op": "replace", "path": "/schema_version", "value": 1}])"),
