@@ -102,10 +102,12 @@ const Command& find_command(const Command& program, const std::vector<std::strin
   return *command;
 }
 
-/// Puts the options' own names in place of their other spellings, so that nothing else knows of these. The parser takes
-/// the words in reverse order, without the program's name.
+/// Puts the options' own names in place of their other spellings, so that nothing else knows of these, and gives the
+/// command what is meant for another program. The parser takes the words in reverse order, without the program's name.
 std::vector<std::string> list_parser_words(const Command& command, const std::vector<std::string>& words) {
-  std::vector<std::string> own(words.rbegin(), std::prev(words.rend()));
+  const auto end = command.rest ? std::ranges::find(words, "--") : words.end();
+  if (end != words.end()) command.rest->assign(std::next(end), words.end());
+  std::vector<std::string> own(std::make_reverse_iterator(end), std::prev(words.rend()));
   for (std::string& word : own)
     for (const Option& option : command.options)
       if (!option.other_name.empty() && word.substr(0, word.find('=')) == option.other_name)

@@ -2,9 +2,11 @@
 
 #include <memory>
 
+#include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/interruption.h"
 #include "harness/run/merge.h"
+#include "harness/submit/merge_sweep.h"
 
 namespace shadowbench::cli {
 
@@ -13,17 +15,26 @@ Command make_merge_command() {
     std::vector<std::string> folders;
     std::string out;
   };
-  Command command{"merge", "Join the report folders that 'run --shard 1/N' to 'N/N' wrote"};
+  Command command{"merge", "Write one report of the shards of 'run', or of the tasks of 'submit'"};
+  command.about =
+      "Of several folders, which 'run --shard 1/N' to 'N/N' wrote, it makes a new one. Of the folder of a sweep that "
+      "'submit' made, it writes the report into that folder, once all cells are measured; the last job of the sweep "
+      "does so by itself.";
   auto a = std::make_shared<Arguments>();
-  command.add("DIR", &a->folders, "the report folders of all shards of one experiment")
+  command.add("DIR", &a->folders, "the report folders of all shards of one experiment, or the folder of a sweep")
       .names(ValueKind::kFolder)
       .require();
-  command.add("--out", &a->out, "folder of the whole report; new or empty").names(ValueKind::kFolder).require();
+  command.add("--out", &a->out, "folder of the whole report of shards; new or empty").names(ValueKind::kFolder);
   command.action = [a](const CommandLine&) {
-    const std::filesystem::path out = a->out;
+    const bool is_sweep = a->out.empty();
+    if (is_sweep && a->folders.size() > 1) fail("--out: name the folder of the whole report; new or empty");
+    const std::filesystem::path out = is_sweep ? a->folders.front() : a->out;
     {
       const Interruption interruption(out, kStoppedAdvice);
-      run::merge_runs({a->folders.begin(), a->folders.end()}, out);
+      if (is_sweep)
+        submit::merge_sweep(out);
+      else
+        run::merge_runs({a->folders.begin(), a->folders.end()}, out);
     }
     fmt::print("report: {}\n", (out / "index.html").string());
     return 0;

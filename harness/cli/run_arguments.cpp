@@ -176,6 +176,7 @@ void add_run_options(Command& command, RunArguments& a) {
               "same");
   add_drawing_options(command, a, "shadowbench in $XDG_CACHE_HOME or ~/.cache");
   command.add("--worker", &a.worker, "").hide();
+  command.add("--task", &a.task, "").hide();
   command.add("--pictures", &a.pictures, "").with_opposite().hide();
 }
 

@@ -56,6 +56,7 @@ struct RunArguments : DrawingArguments {
   bool strict = false;
   std::string tuned;
   bool worker = false;
+  std::string task;  ///< folder of the task of a sweep that is to be done
   std::optional<double> pad_texels;
 };
 

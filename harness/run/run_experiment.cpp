@@ -73,6 +73,7 @@ class Experiment {
   }
 
   records::RunRecord run() {
+    require_no_sweep();
     const RunPlan plan = make_plan(options_, renderer_.context->info().renderer);
     announce(plan);
     if (!options_.part) lock_.emplace(options_.out);
@@ -102,6 +103,15 @@ class Experiment {
   TaskListener listener_{&steps_, [this](const measure::SceneMeasurement& measured) { count(measured); }};
   std::function<void(const std::string&)> note_ = [this](const std::string& message) { progress_.note(message); };
   GpuCosts gpus_{options_, note_};
+
+  /// What is half-written in the folder of a sweep belongs to tasks that may run anywhere.
+  void require_no_sweep() const {
+    if (options_.part || !std::filesystem::exists(options_.out / "tasks.json")) return;
+    throw Error(
+        ErrorKind::kUsage,
+        "--out: a sweep was submitted into this folder: 'shadowbench status' says how far it is; choose another",
+        options_.out.string());
+  }
 
   void require_in_place() const {
     if (lock_) lock_->require_in_place();

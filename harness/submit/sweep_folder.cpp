@@ -51,7 +51,7 @@ auto read_json(const fs::path& file, const Read& read) {
   }
 }
 
-bool exists(const fs::path& file) {
+bool is_there(const fs::path& file) {
   std::error_code ignored;
   return fs::exists(file, ignored);
 }
@@ -62,7 +62,7 @@ fs::path task_folder(const fs::path& out, TaskKind kind, int number) {
   return out / name_of(kind) / std::to_string(number);
 }
 
-bool is_sweep(const fs::path& out) { return exists(out / kSweepFile); }
+bool is_sweep(const fs::path& out) { return is_there(out / kSweepFile); }
 
 void write_sweep(const fs::path& out, const Sweep& sweep) {
   json jobs = json::array();
@@ -88,7 +88,8 @@ Sweep read_sweep(const fs::path& out) {
                     .scene_cells = content.at("scene_cells"),
                     .cells = content.at("cells"),
                     .truths = content.at("truths"),
-                    .tasks = content.at("tasks")};
+                    .tasks = content.at("tasks"),
+                .jobs = {}};
         for (const json& each : content.at("jobs"))
           sweep.jobs.push_back({each.at("engine"), each.at("truth"), each.at("cells"), each.at("merge")});
         return sweep;
@@ -125,7 +126,7 @@ void write_result(const fs::path& folder, const records::RunRecord& run) {
   write_json(folder / kResultFile, {{"run", records::to_json(run)}});
 }
 
-bool is_finished(const fs::path& folder) { return exists(folder / kResultFile); }
+bool is_finished(const fs::path& folder) { return is_there(folder / kResultFile); }
 
 records::RunRecord read_result(const fs::path& folder) {
   const fs::path file = folder / kResultFile;
@@ -137,7 +138,7 @@ void write_failure(const fs::path& folder, const TaskFailure& failure) {
 }
 
 std::optional<TaskFailure> read_failure(const fs::path& folder) {
-  if (!exists(folder / kFailureFile)) return std::nullopt;
+  if (!is_there(folder / kFailureFile)) return std::nullopt;
   return read_json(folder / kFailureFile, [](const json& content) {
     return TaskFailure{content.at("exit_code"), content.at("message")};
   });

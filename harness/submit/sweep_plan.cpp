@@ -64,7 +64,8 @@ class SweepPlanner {
                   .scene_cells = plan_.scene_cells,
                   .cells = plan_.cells,
                   .truths = static_cast<int>(made.truths.size()),
-                  .tasks = static_cast<int>(made.tasks.size())};
+                  .tasks = static_cast<int>(made.tasks.size()),
+                  .jobs = {}};
     return made;
   }
 

@@ -1,0 +1,107 @@
+#include "harness/submit/submit_sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "filters/base/error.h"
+#include "harness/run/run_plan.h"
+#include "harness/submit/sweep_status.h"
+
+namespace shadowbench::submit {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Refuses a folder in which cells lie that no task of this sweep has measured.
+void require_free(const fs::path& out) {
+  std::error_code ignored;
+  if (!fs::exists(out / "results.json", ignored) && !fs::exists(out / "cells", ignored)) return;
+  throw Error(ErrorKind::kUsage, "--out: there are cells of a run in this folder already; choose an empty or new one",
+              out.string());
+}
+
+void plan_folder(const options::RunOptions& options, const SplitRule& rule, options::Progress& progress) {
+  require_free(options.out);
+  const SweepPlan plan = plan_sweep(options, rule, progress);
+  for (const SweepTask& task : plan.truths) write_task(options.out, task);
+  for (const SweepTask& task : plan.tasks) write_task(options.out, task);
+  write_sweep(options.out, plan.sweep);  // last: where it is, all tasks are
+}
+
+void require_same(options::RunOptions options, const Sweep& sweep) {
+  options.fresh = true;
+  if (run::make_plan(options, {}).settings == sweep.settings) return;
+  throw Error(ErrorKind::kUsage,
+              "--out: the sweep in this folder is of another experiment, or of another version of the program: name "
+              "the same scenes, filters and settings, or choose another folder",
+              options.out.string());
+}
+
+/// Those of the tasks that somebody has to do.
+std::vector<int> list_left(const std::vector<TaskStatus>& tasks, const std::set<int>& queued) {
+  std::vector<int> left;
+  for (const TaskStatus& each : tasks) {
+    const bool is_under_way = each.state == TaskState::kFinished || each.state == TaskState::kRunning;
+    if (!is_under_way && !queued.contains(each.task.number)) left.push_back(each.task.number);
+  }
+  return left;
+}
+
+std::string describe_tasks(const SweepStatus& status, const std::vector<int>& tasks) {
+  std::size_t cells = 0;
+  double seconds = 0.0;
+  for (const int number : tasks) {
+    const SweepTask& task = status.tasks[static_cast<std::size_t>(number - 1)].task;
+    cells += task.keys.size();
+    seconds = std::max(seconds, task.seconds);
+  }
+  std::string text = fmt::format("{} tasks of {} cells", tasks.size(), cells);
+  if (seconds > 0.0) text += fmt::format(", {:.0f} s at most each on a machine like this", seconds);
+  return text;
+}
+
+std::string describe_job(const std::string& job) { return job.empty() ? "" : "job " + job + ": "; }
+
+/// What was submitted, or would be where jobs have no names yet.
+std::vector<std::string> describe_jobs(const SweepStatus& status, const JobPlan& plan, const SubmittedJobs& jobs) {
+  std::vector<std::string> lines;
+  if (!plan.truths.empty())
+    lines.push_back(fmt::format("{}{} tasks trace what cells share", describe_job(jobs.truth), plan.truths.size()));
+  if (!plan.tasks.empty()) lines.push_back(describe_job(jobs.cells) + describe_tasks(status, plan.tasks));
+  lines.push_back(fmt::format("{}the report, {}", describe_job(jobs.merge), (plan.out / "index.html").string()));
+  return lines;
+}
+
+}  // namespace
+
+std::vector<std::string> submit_sweep(const options::RunOptions& options, SubmitRequest request,
+                                      options::Progress& progress) {
+  const std::unique_ptr<Engine> engine = make_engine(request.engine);
+  const fs::path& out = options.out;
+  if (is_sweep(out))
+    require_same(options, read_sweep(out));
+  else
+    plan_folder(options, request.split, progress);
+  SweepStatus status = read_status(out);
+  const QueuedTasks queued = engine->find_queued(out, status.sweep.jobs);
+  JobPlan& plan = request.jobs;
+  plan.tasks = list_left(status.tasks, queued.tasks);
+  if (!plan.tasks.empty()) plan.truths = list_left(status.truths, queued.truths);
+  if (plan.tasks.empty() && status.has_report) return {"nothing is left to do"};
+  if (plan.tasks.empty() && !status.is_measured())
+    return {"nothing is left to submit: the other tasks are queued or running"};
+  const std::vector<std::string> commands = engine->write_scripts(plan, queued);
+  if (request.dry_run) {
+    std::vector<std::string> lines = describe_jobs(status, plan, {});
+    lines.insert(lines.end(), commands.begin(), commands.end());
+    return lines;
+  }
+  const SubmittedJobs jobs = engine->submit(plan, queued);
+  status.sweep.jobs.push_back(jobs);
+  write_sweep(out, status.sweep);
+  return describe_jobs(status, plan, jobs);
+}
+
+}  // namespace shadowbench::submit
