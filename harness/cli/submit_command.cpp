@@ -100,8 +100,8 @@ int submit(const CommandLine& line, SubmitArguments& a) {
     fail("--grids shows all filters of a view, and a task has some of them; leave it out");
   a.grids = -1;
   if (a.out.empty()) fail("--out: name a folder that all machines share");
-  a.out = fs::weakly_canonical(a.out).string();
-  a.cache = a.cache.empty() ? (fs::path(a.out) / "cache").string() : fs::weakly_canonical(a.cache).string();
+  a.out = fs::absolute(a.out).lexically_normal().string();
+  a.cache = a.cache.empty() ? (fs::path(a.out) / "cache").string() : fs::absolute(a.cache).lexically_normal().string();
   options::RunOptions options = make_run_options(a, line.words());
   options.title = title;
   const std::unique_ptr<options::Progress> progress = make_progress();
