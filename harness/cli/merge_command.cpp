@@ -7,6 +7,7 @@
 #include "harness/cli/interruption.h"
 #include "harness/run/merge.h"
 #include "harness/submit/merge_sweep.h"
+#include "harness/submit/sweep_folder.h"
 
 namespace shadowbench::cli {
 
@@ -27,7 +28,11 @@ Command make_merge_command() {
   command.add("--out", &a->out, "folder of the whole report of shards; new or empty").names(ValueKind::kFolder);
   command.action = [a](const CommandLine&) {
     const bool is_sweep = a->out.empty();
-    if (is_sweep && a->folders.size() > 1) fail("--out: name the folder of the whole report; new or empty");
+    if (is_sweep && (a->folders.size() > 1 || !submit::is_sweep(a->folders.front())))
+      fail(
+          fmt::format("'{}' is not the folder of a sweep that 'submit' made; to join shards, name the folder of the "
+                      "whole report with --out",
+                      a->folders.front()));
     const std::filesystem::path out = is_sweep ? a->folders.front() : a->out;
     {
       const Interruption interruption(out, kStoppedAdvice);

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 struct SubmitArguments : RunArguments {
   submit::EngineOptions engine;
-  std::uint32_t tasks = 0;
+  std::string tasks;
   std::string times_of;
   bool probe = true;
   bool dry_run = false;
@@ -106,10 +106,11 @@ int submit(const CommandLine& line, SubmitArguments& a) {
   options.title = title;
   const std::unique_ptr<options::Progress> progress = make_progress();
   for (const std::string& note : options.notes) progress->note("note: " + note);
-  const submit::SubmitRequest request{.engine = a.engine,
-                                      .split = {static_cast<int>(a.tasks), a.times_of, a.probe},
-                                      .jobs = make_job_plan(options, a, line.words()),
-                                      .dry_run = a.dry_run};
+  const submit::SubmitRequest request{
+      .engine = a.engine,
+      .split = {a.tasks.empty() ? 0 : parse_count(a.tasks, "--tasks"), a.times_of, a.probe},
+      .jobs = make_job_plan(options, a, line.words()),
+      .dry_run = a.dry_run};
   const Interruption interruption(options.out, "the same command goes on");
   for (const std::string& each : submit::submit_sweep(options, request, *progress)) fmt::print("{}\n", each);
   return 0;

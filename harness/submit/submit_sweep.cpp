@@ -30,6 +30,12 @@ void plan_folder(const options::RunOptions& options, const SplitRule& rule, opti
   write_sweep(options.out, plan.sweep);  // last: where it is, all tasks are
 }
 
+/// Whether a task may have begun: a plan that nobody submitted can be made anew.
+bool was_submitted(const fs::path& out) {
+  std::error_code ignored;
+  return is_sweep(out) && (!read_sweep(out).jobs.empty() || fs::exists(out / "cells", ignored));
+}
+
 void require_same(options::RunOptions options, const Sweep& sweep) {
   options.fresh = true;
   if (run::make_plan(options, {}).settings == sweep.settings) return;
@@ -49,6 +55,10 @@ std::vector<int> list_left(const std::vector<TaskStatus>& tasks, const std::set<
   return left;
 }
 
+std::string count_tasks(const std::vector<int>& tasks) {
+  return fmt::format("{} task{}", tasks.size(), tasks.size() == 1 ? "" : "s");
+}
+
 std::string describe_tasks(const SweepStatus& status, const std::vector<int>& tasks) {
   std::size_t cells = 0;
   double seconds = 0.0;
@@ -57,7 +67,7 @@ std::string describe_tasks(const SweepStatus& status, const std::vector<int>& ta
     cells += task.keys.size();
     seconds = std::max(seconds, task.seconds);
   }
-  std::string text = fmt::format("{} tasks of {} cells", tasks.size(), cells);
+  std::string text = fmt::format("{} of {} cells", count_tasks(tasks), cells);
   if (seconds > 0.0) text += fmt::format(", {:.0f} s at most each on a machine like this", seconds);
   return text;
 }
@@ -68,7 +78,7 @@ std::string describe_job(const std::string& job) { return job.empty() ? "" : "jo
 std::vector<std::string> describe_jobs(const SweepStatus& status, const JobPlan& plan, const SubmittedJobs& jobs) {
   std::vector<std::string> lines;
   if (!plan.truths.empty())
-    lines.push_back(fmt::format("{}{} tasks trace what cells share", describe_job(jobs.truth), plan.truths.size()));
+    lines.push_back(fmt::format("{}{} to trace what cells share", describe_job(jobs.truth), count_tasks(plan.truths)));
   if (!plan.tasks.empty()) lines.push_back(describe_job(jobs.cells) + describe_tasks(status, plan.tasks));
   lines.push_back(fmt::format("{}the report, {}", describe_job(jobs.merge), (plan.out / "index.html").string()));
   return lines;
@@ -80,7 +90,7 @@ std::vector<std::string> submit_sweep(const options::RunOptions& options, Submit
                                       options::Progress& progress) {
   const std::unique_ptr<Engine> engine = make_engine(request.engine);
   const fs::path& out = options.out;
-  if (is_sweep(out))
+  if (was_submitted(out))
     require_same(options, read_sweep(out));
   else
     plan_folder(options, request.split, progress);

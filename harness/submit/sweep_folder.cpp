@@ -89,7 +89,7 @@ Sweep read_sweep(const fs::path& out) {
                     .cells = content.at("cells"),
                     .truths = content.at("truths"),
                     .tasks = content.at("tasks"),
-                .jobs = {}};
+                    .jobs = {}};
         for (const json& each : content.at("jobs"))
           sweep.jobs.push_back({each.at("engine"), each.at("truth"), each.at("cells"), each.at("merge")});
         return sweep;

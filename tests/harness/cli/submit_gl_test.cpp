@@ -1,0 +1,137 @@
+// A sweep that is submitted, with no scheduler: its scripts, its tasks done by hand, and their report. tests/cluster
+// has a real one.
+
+#include "tests/harness/cli/sweep.h"
+
+namespace shadowbench::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kDry = "submit e.toml --gpu none --engine slurm --no-probe --dry-run --out out ";
+
+class Submit : public Sweep {
+ protected:
+  /// Does a task as its job would.
+  Outcome do_task(const std::string& task, const std::string& more = "") const {
+    const std::string out = (folder() / "out").string();
+    return run("run e.toml --no-grids --cache '" + out + "/cache' --out '" + out + "' --task '" + out + "/" + task +
+               "' " + more);
+  }
+};
+
+TEST_F(Submit, TasksDoneByHand_AndMerged_EqualTheWhole) {
+  ASSERT_EQ(run("run e.toml --out whole").exit_code, 0);
+  const Outcome outcome = run(std::string(kDry) + "--tasks 5");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("5 tasks of " + std::to_string(kCells) + " cells"));
+  for (const char* task : {"truth/1", "truth/2"}) ASSERT_EQ(do_task(task).exit_code, 0) << task;
+  EXPECT_TRUE(std::filesystem::is_empty(folder() / "out" / "cells")) << "truth alone";
+  for (const char* task : {"tasks/3", "tasks/1", "tasks/5", "tasks/2"}) ASSERT_EQ(do_task(task).exit_code, 0) << task;
+  const Outcome early = run("merge out");
+  EXPECT_EQ(early.exit_code, 1);
+  EXPECT_THAT(early.err, HasSubstr("not all cells are measured"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "out" / "results.json"));
+  const json status = json::parse(run("status out --json").out);
+  EXPECT_EQ(status["tasks"][3]["state"], "waiting");
+  EXPECT_EQ(status["tasks"][4]["state"], "finished");
+  ASSERT_EQ(do_task("tasks/4").exit_code, 0);
+  ASSERT_EQ(run("merge out").exit_code, 0);
+  expect_same("whole", "out");
+  for (const json& cell : results()["cells"]) {
+    const std::string image = cell["images"]["picture"];
+    EXPECT_EQ(read_text(folder() / "out" / image), read_text(folder() / "whole" / image)) << image;
+  }
+  EXPECT_EQ(results()["work"]["truths_traced"], results("whole")["work"]["truths_traced"]) << "each is traced once";
+  EXPECT_EQ(run(kDry).out, "nothing is left to do\n");
+}
+
+TEST_F(Submit, ATaskGoesOnWhereItStopped) {
+  ASSERT_EQ(run(std::string(kDry) + "--tasks 2").exit_code, 0);
+  ASSERT_EQ(do_task("tasks/1").exit_code, 0);
+  const auto before = cell_times();
+  std::filesystem::remove(folder() / "out" / "cells" / before.begin()->first);
+  std::filesystem::remove(folder() / "out" / "tasks" / "1" / "result.json");
+  const Outcome again = do_task("tasks/1");
+  EXPECT_THAT(again.err, HasSubstr(std::to_string(before.size() - 1) + " of them finished before"));
+  const auto after = cell_times();
+  for (const auto& [name, time] : before)
+    if (name != before.begin()->first) EXPECT_EQ(after.at(name), time) << name << " was measured twice";
+  EXPECT_EQ(after.size(), before.size());
+}
+
+TEST_F(Submit, ATaskOfSomethingElse_Fails_AndStatusSaysWhy) {
+  ASSERT_EQ(run(std::string(kDry) + "--tasks 2").exit_code, 0);
+  EXPECT_EQ(do_task("tasks/1", "--seed 2").exit_code, 3);
+  EXPECT_EQ(do_task("tasks/2", "--map-size 32").exit_code, 3);
+  const Outcome status = run("status out");
+  EXPECT_EQ(status.exit_code, 1);
+  EXPECT_THAT(status.out, HasSubstr("task 1 failed: exit code 3: the experiment is no longer what was submitted"));
+  EXPECT_THAT(status.out, HasSubstr("task 2 failed"));
+  ASSERT_EQ(do_task("tasks/1").exit_code, 0);
+  EXPECT_THAT(run("status out").out, Not(HasSubstr("task 1 ")));
+}
+
+TEST_F(Submit, TheFolderOfASweep_IsItsOwn) {
+  ASSERT_EQ(run(std::string(kDry) + "--tasks 2").exit_code, 0);
+  EXPECT_EQ(run("run e.toml --out out").exit_code, 2);
+  EXPECT_THAT(read_text(folder() / "stderr.txt"), HasSubstr("a sweep was submitted into this folder"));
+  EXPECT_EQ(run(std::string(kDry) + "--tasks 3 --map-size 16").exit_code, 0) << "nobody had submitted it";
+  ASSERT_EQ(do_task("tasks/1", "--map-size 16").exit_code, 0);
+  EXPECT_EQ(run(kDry).exit_code, 2);
+  EXPECT_THAT(read_text(folder() / "stderr.txt"), HasSubstr("the sweep in this folder is of another experiment"));
+}
+
+TEST_F(Submit, BadWords_AreRefused) {
+  expect_refusal("submit e.toml --out out", 2, {"--engine is required"});
+  expect_refusal("submit e.toml --engine slurm", 2, {"--out is required"});
+  expect_refusal("submit e.toml --engine pbs --out out", 2, {"'pbs'", "slurm, parallel"});
+  expect_refusal("submit e.toml --engine slurm --tasks 0 --out out", 2, {"--tasks", "'0'"});
+  expect_refusal("submit e.toml --engine slurm --grids --out out", 2, {"--grids"});
+  expect_refusal("submit e.toml --engine slurm --shard 1/2 --out out", 2, {"--shard"});
+  expect_refusal("submit e.toml --engine slurm --times-of nosuch --out out", 3, {"nosuch"});
+  expect_refusal("submit e.toml --engine parallel --time 3 --out out", 2, {"--time", "--engine slurm"});
+  expect_refusal("status nosuch", 3, {"nosuch/tasks.json"});
+  expect_refusal("status out --silent-after 0", 2, {"--silent-after"});
+  expect_refusal("merge nosuch", 2, {"'nosuch'", "--out"});
+  EXPECT_FALSE(std::filesystem::exists(folder() / "out"));
+}
+
+/// Without Slurm, or where it refuses, nothing is queued, and the same command goes on.
+TEST_F(Submit, WithoutItsEngine_IsRefused) {
+  const std::string words = "submit e.toml --gpu none --no-probe --out out --engine ";
+  for (const char* engine : {"slurm", "parallel"}) {
+    const Outcome outcome = run(words + engine, "PATH=/nowhere");
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(std::string("--engine ") + engine));
+    EXPECT_EQ(run("status out").exit_code, 0);
+  }
+}
+
+TEST_F(Submit, Scripts_TakeOddFoldersAndPassWordsOn) {
+  const Outcome outcome =
+      run("submit e.toml --gpu none --no-probe --dry-run --engine slurm --tasks 3 --time 1:30 --partition fast "
+          "--gres gpu:1 --cache 'my cache' --out \"it's 100%\" -- --comment='two words' --qos low");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("'--comment=two words' --qos low"));
+  EXPECT_THAT(outcome.out, HasSubstr("--dependency=afterok:TRUTH"));
+  EXPECT_THAT(outcome.out, HasSubstr("--dependency=afterany:CELLS"));
+  const std::filesystem::path out = folder() / "it's 100%";
+  const std::string script = read_text(out / "submit.sbatch");
+  for (const char* line :
+       {"#SBATCH --array=1-3\n", "#SBATCH --time=1:30\n", "#SBATCH --partition=fast\n", "#SBATCH --gres=gpu:1\n",
+        "it's 100%%/tasks/%a/log.txt\"\n", "/my cache'", "'\\''s 100%/tasks'/\"$SLURM_ARRAY_TASK_ID\"\n"})
+    EXPECT_THAT(script, HasSubstr(line));
+  EXPECT_THAT(script, Not(HasSubstr("--qos"))) << "that is for sbatch";
+  // The last line, with the number that Slurm gives, does a task.
+  const std::string last = script.substr(script.rfind("exec "));
+  EXPECT_EQ(std::system(("cd '" + folder().string() + "' && SLURM_ARRAY_TASK_ID=2 sh -c \"$(cat <<'END'\n" + last +
+                         "END\n)\" 2>/dev/null")
+                            .c_str()),
+            0);
+  EXPECT_TRUE(std::filesystem::exists(out / "tasks" / "2" / "result.json"));
+}
+
+}  // namespace
+}  // namespace shadowbench::test
