@@ -57,11 +57,13 @@ WORDS = {"--map-format": ["d32", "", "D16 ", "r32f", "d16,d24"], "--fit": ["box"
 SHORT = {"run": SMALL, "bias": ["--filters", "none", "--size", "96x54", "--map-size", "128", "--gl", "osmesa"],
          "stress": ["--filters", "esm", "--axes", "esm-exponent", "--gl", "osmesa"],
          "flicker": ["--filters", "none", "--frames", "2", "--size", "16x9", "--map-size", "16", "--gl", "osmesa"],
+         "submit": SMALL + ["--engine", "slurm", "--dry-run", "--no-probe", "--out", "s"],
          "tune": ["--scene", "cubes", "--budget", "1", "--size", "16x9", "--map-size", "16", "--gl", "osmesa"]}
-COMMANDS = ["run", "list", "diff", "bias", "merge", "advise", "tune", "stress", "regress", "flicker", "manual", "nosuch", ""]
+COMMANDS = ["run", "list", "diff", "bias", "merge", "submit", "status", "advise", "tune", "stress", "regress", "flicker", "manual", "nosuch",
+            ""]
 PIECES = ["--help", "--out", "out", "--scene", "cubes", "--filters", "none", "--fresh", "--json", "--yes", "-1", "..", "/",
           "/dev/null", "/nonexistent/x", "a\nb", "\x1b[31m", "%s%n", "$(id)", "; id", "'", '"', "../" * 40, "x" * 5000,
-          "--nosuch", "--nosuch=1", "-z", "=", "golden", "*", "~", "--shard", "1/2", "--no-cache", "\udcff"]
+          "--nosuch", "--nosuch=1", "-z", "--", "=", "golden", "*", "~", "--shard", "1/2", "--no-cache", "\udcff"]
 
 GLSL_HEAD = "/*+++\ntitle = \"Hostile\"\nsource = \"a test\"\nkind = \"other\"\nradius_texels = 1\n+++*/\n"
 GLSL = ["float visibility(Receiver r) { return 0.0 / 0.0; }", "float visibility(Receiver r) { return 1.0 / 0.0; }",

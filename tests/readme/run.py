@@ -39,6 +39,7 @@ ROOT = Path(__file__).resolve().parents[2]
 # What is appended to a command that does not say it itself: (option, value). The value None marks a flag.
 CHEAPER = {
     "run": [("--size", "96x54"), ("--map-size", "128"), ("--rounds", "6"), ("--scene", "cubes"), ("--filters", "none,vsm")],
+    "submit": [("--size", "96x54"), ("--map-size", "128"), ("--scene", "cubes"), ("--filters", "none,vsm"), ("--no-probe", None)],
     "bias": [("--size", "96x54"), ("--map-size", "128"), ("--filters", "none")],
     "flicker": [("--size", "96x54"), ("--map-size", "128"), ("--frames", "3"), ("--filters", "none,vsm")],
     "stress": [("--axes", "taps")],
@@ -60,7 +61,7 @@ NOT_RUN = {"apt-get", "cd", "clang-format", "curl", "dpkg", "gh", "git", "man", 
 RUN_AS_THEY_ARE = {"cp", "mkdir"}
 
 # Options of other programs that texts name.
-OTHER_OPTIONS = {"--gtest_filter", "--preset", "--config", "--prefix"}
+OTHER_OPTIONS = {"--gtest_filter", "--preset", "--config", "--prefix", "--exclusive", "--sshlogin"}
 # Paths that appear only when something is built or run.
 GENERATED = ("build/", "report/out")
 
