@@ -16,6 +16,7 @@
 #include "harness/options/options.h"
 #include "report/analysis/advice.h"
 #include "report/analysis/advice_words.h"
+#include "report/analysis/machines/machine_kinds.h"
 #include "report/pages/advice_text.h"
 #include "report/records/json_io.h"
 
@@ -84,7 +85,8 @@ AdviceRequest make_request(const AdviseArguments& arguments) {
 
 int advise(const AdviseArguments& arguments) {
   const AdviceRequest request = make_request(arguments);
-  const records::Results results = records::read_results(find_results(arguments.run));
+  records::Results results = records::read_results(find_results(arguments.run));
+  if (auto withheld = analysis::withhold_mixed_times(results.cells)) results.cells = std::move(*withheld);
   const analysis::Advice advice = analysis::advise(results.cells, request);
   if (arguments.json) {
     const auto json = pages::make_advice_json(results.run, advice);

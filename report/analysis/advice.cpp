@@ -13,6 +13,7 @@
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
 #include "report/analysis/accuracy.h"
+#include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/summary.h"
 #include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"
@@ -195,11 +196,12 @@ double mean_or_infinity(const Candidate& candidate, const LimitSpec& spec, Light
   return sum;
 }
 
-void sort_by_cost(std::vector<Candidate>& candidates, LightMotion light) {
+void sort_by_cost(std::vector<Candidate>& candidates, const AdviceRequest& request) {
   const LimitSpec& rmse = *std::ranges::find(limit_table(), kRmse, &LimitSpec::field);
   const auto key = [&](const Candidate& candidate) {
-    return std::tuple(candidate.cost.mean, mean_or_infinity(candidate, cost_spec(CostKind::kTime), light),
-                      mean_or_infinity(candidate, rmse, light));
+    const auto size = request.cheapest == CostKind::kRatio ? size_of(candidate.configuration) : std::pair(0, 0);
+    return std::tuple(size, candidate.cost.mean, mean_or_infinity(candidate, cost_spec(CostKind::kTime), request.light),
+                      mean_or_infinity(candidate, rmse, request.light));
   };
   std::ranges::stable_sort(candidates, {}, key);
 }
@@ -279,11 +281,27 @@ void require_gpu(const std::vector<records::CellRecord>& cells, const std::strin
                 fmt::format("the run has no costs on '{}'{}", gpu, did_you_mean_or_known(gpu, known)));
 }
 
+void refuse_mixed_times(const AdviceRequest& request) {
+  for (const Demand& demand : request.demands) {
+    if (demand.spec != &cost_spec(CostKind::kTime)) continue;
+    refuse(
+        fmt::format("{}: several kinds of machine measured the run, and their times do not compare; leave it out: "
+                    "the cheapest is found by its ratio to 'none'",
+                    demand.spec->option));
+  }
+}
+
+std::optional<records::Interval> find_interval(const records::CellRecord& cell, const CostKind& kind,
+                                               LightMotion light) {
+  if (kind == CostKind::kTime) return frame_interval(cell, light);
+  const auto& ratio = frame_ratio(cell, light);
+  return kind == CostKind::kRatio && ratio ? std::optional(ratio->ci95) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& cells, const CostKind& kind,
                                  LightMotion light) {
-  const bool timed = kind == CostKind::kTime;
   double sum = 0.0;
   std::vector<double> values;
   std::vector<records::Interval> quartiles, ci95;
@@ -292,21 +310,31 @@ std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& 
     if (!value) return std::nullopt;
     sum += *value;
     values.push_back(*value);
-    const auto time = timed ? frame_time(*cell, light) : std::nullopt;
+    const auto time = kind == CostKind::kTime ? frame_time(*cell, light) : std::nullopt;
     quartiles.push_back(time ? records::Interval{time->q1, time->q3} : records::Interval{*value, *value});
-    const auto interval = timed ? frame_interval(*cell, light) : std::nullopt;
-    if (interval) ci95.push_back(*interval);
+    if (const auto interval = find_interval(*cell, kind, light)) ci95.push_back(*interval);
   }
   const double mean = sum / static_cast<double>(cells.size());
   return Cost{mean, combine(mean, values, quartiles),
               ci95.size() == values.size() ? std::optional(combine(mean, values, ci95)) : std::nullopt};
 }
 
+std::pair<int, int> size_of(const Configuration& configuration) {
+  const records::CellRecord& cell = *configuration.cells.front();
+  return {cell.width * cell.height, cell.map_size};
+}
+
 CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind) {
   const Cost &a = cheaper.cost, &b = dearer.cost;
   CostGap gap{b.mean - a.mean, a.mean > 0.0 ? (b.mean - a.mean) / a.mean : 0.0, b.mean <= a.mean, Basis::kExact};
-  if (kind != CostKind::kTime) return gap;
-  const bool common = a.ci95 && b.ci95 && cheaper.configuration.surroundings == dearer.configuration.surroundings;
+  if (!kind.is_of_frame()) return gap;
+  const bool alike = cheaper.configuration.surroundings == dearer.configuration.surroundings;
+  if (kind == CostKind::kRatio && !alike) {
+    gap.tied = true;
+    gap.basis = Basis::kNone;
+    return gap;
+  }
+  const bool common = a.ci95 && b.ci95 && alike;
   gap.basis = common ? Basis::kInterval : Basis::kQuartiles;
   gap.tied = common ? a.ci95->high >= b.ci95->low : a.quartiles.high >= b.quartiles.low;
   return gap;
@@ -318,6 +346,10 @@ Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest
   if (request.cheapest.kind == CostKind::kGpu) require_gpu(cells, request.cheapest.gpu);
   Advice advice;
   advice.request = request;
+  if (mixes_machines(cells)) {
+    refuse_mixed_times(request);
+    if (request.cheapest == CostKind::kTime) advice.request.cheapest = CostKind::kRatio;
+  }
   const std::vector<const records::CellRecord*> chosen = choose_cells(cells, request, advice.teaching);
   advice.places = list_places(chosen);
   for (const Configuration& configuration : list_configurations(chosen)) {
@@ -329,8 +361,8 @@ Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest
     auto& candidate = std::get<Candidate>(verdict);
     (list_failed(candidate).empty() ? advice.keeping : advice.failing).push_back(std::move(candidate));
   }
-  sort_by_cost(advice.keeping, request.light);
-  sort_by_cost(advice.failing, request.light);
+  sort_by_cost(advice.keeping, advice.request);
+  sort_by_cost(advice.failing, advice.request);
   for (std::size_t i = 0; i < request.demands.size(); ++i) {
     advice.obstacles.push_back(find_obstacle(advice, i));
     if (!advice.keeping.empty()) add_relaxations(advice, i);

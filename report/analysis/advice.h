@@ -37,11 +37,11 @@ struct Verdict {
 };
 
 /// A cost over all places, each counting the same. What is known of each place's value (its quartiles, its interval as
-/// frame_interval() gives it) adds up in quadrature, for the places are measured independently.
+/// frame_interval() gives it, or that of its ratio) adds up in quadrature, for the places are measured independently.
 struct Cost {
   double mean = 0.0;                      ///< arithmetic
   records::Interval quartiles;            ///< of all but times: the mean twice
-  std::optional<records::Interval> ci95;  ///< of times alone; empty where a place has none
+  std::optional<records::Interval> ci95;  ///< of times and ratios alone; empty where a place has none
 };
 
 /// Measures what a configuration costs over `cells`, which are one or more; nothing where a cell has no value.
@@ -67,6 +67,7 @@ enum class Basis {
   kExact,      ///< all but times have none
   kInterval,   ///< 95 % intervals, measured under the same circumstances
   kQuartiles,  ///< of the times, where circumstances differ or there is no interval
+  kNone,       ///< ratios to `none` under other circumstances are to another `none`: nothing tells them apart
 };
 
 /// How much more one configuration costs than another.
@@ -77,7 +78,12 @@ struct CostGap {
   Basis basis = Basis::kExact;
 };
 
-/// Compares two costs. Requires that the mean of `cheaper` is not above that of `dearer`.
+/// What a configuration is ordered by before its ratio to `none`, which says nothing of a frame of another size: the
+/// pixels of its picture, and its map's texels along a side.
+std::pair<int, int> size_of(const Configuration& configuration);
+
+/// Compares two costs. Requires that the mean of `cheaper` is not above that of `dearer`, or that
+/// they are ratios under different settings.
 CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind);
 
 /// How far one demand is in the way.
@@ -110,12 +116,14 @@ struct Advice {
 };
 
 /// Finds the cheapest configuration that keeps every demand in every place; the worst place decides. Configurations of
-/// the same cost are ordered by time, then RMSE.
+/// the same cost are ordered by time, then RMSE. Where several kinds of machine measured the cells, their ratio to
+/// `none` stands for their time, smaller pictures and maps come first, and `cells` are those of
+/// withhold_mixed_times().
 /// Filters for teaching are left out, and with a class of width those of others. A configuration that was not measured
 /// in a place, did not finish there, or lacks a value there is not judged. A value that has nothing to be measured on
 /// in some places, as is_nothing_to_see() says, is judged on the others, if there are any. Requires that `cells`
 /// outlive what is returned. Throws Error(kUsage) for a scene, class, picture size or GPU that the run does not have,
-/// or a claim that no filter makes; Error(kInput) where there is no cell.
+/// or a claim that no filter makes, or a limit on times of mixed machines; Error(kInput) where there is no cell.
 Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest& request);
 
 }  // namespace shadowbench::analysis

@@ -58,6 +58,11 @@ std::string describe_tie(const Advice& advice, const CostGap& gap) {
     return fmt::format("a tie, at the same cost: {} is named first for {}", name,
                        explain_order(first, second, advice.request.light));
   }
+  if (gap.basis == Basis::kNone) {
+    const bool smaller = size_of(first.configuration) < size_of(second.configuration);
+    return fmt::format("not to be compared, for a ratio to 'none' under other settings is to another 'none': {} is {}",
+                       name, smaller ? "named first for its smaller picture or map" : "standing first in the run");
+  }
   return fmt::format("a tie, for their {} overlap: {} is named first for its lower mean{}",
                      gap.basis == Basis::kInterval ? "95 % intervals" : "quartiles", name,
                      compare_errors(first, second));
@@ -66,7 +71,8 @@ std::string describe_tie(const Advice& advice, const CostGap& gap) {
 std::string count_ties(const Advice& advice) {
   std::vector<std::string> labels;
   for (std::size_t i = 2; i < advice.keeping.size(); ++i) {
-    if (!compare_costs(advice.keeping[0], advice.keeping[i], advice.request.cheapest).tied) continue;
+    const CostGap gap = compare_costs(advice.keeping[0], advice.keeping[i], advice.request.cheapest);
+    if (!gap.tied || gap.basis == Basis::kNone) continue;
     labels.push_back(advice.keeping[i].configuration.label);
   }
   if (labels.empty()) return "";
@@ -111,20 +117,33 @@ std::vector<const records::CellRecord*> list_judged_cells(const Advice& advice) 
 }
 
 bool uses_time(const AdviceRequest& request) {
-  return request.cheapest == CostKind::kTime ||
+  return request.cheapest.is_of_frame() ||
          std::ranges::any_of(
              request.demands, [](const Demand& d) { return d.spec == &cost_spec(CostKind::kTime); });
 }
 
+bool is_of_one_round(const std::optional<records::Ratio>& ratio) {
+  return ratio && ratio->median != 1.0 && ratio->ci95.low == ratio->ci95.high;
+}
+
+// What a time is, or, of mixed machines, what stands for it.
 void add_time_notes(std::vector<std::string>& notes, const std::vector<const records::CellRecord*>& cells,
-                    const records::GlRecord& gl) {
+                    const records::GlRecord& gl, const AdviceRequest& request) {
+  if (request.cheapest == CostKind::kRatio) {
+    notes.push_back(
+        "Several kinds of machine measured the run, and their times do not compare: a cost is the ratio of a whole "
+        "frame to that of 'none', which was timed in the same rounds. With another picture, map, bias or light it is "
+        "the ratio to another 'none': of such costs neither is called the cheaper one, and smaller pictures and maps "
+        "come first.");
+  }
   const std::vector<std::string> gpus = list_gpus(cells);
-  if (gl.software)
+  if (gl.software && request.cheapest != CostKind::kRatio)
     notes.push_back(
         fmt::format("Times are {}: a GPU ranks filters differently{}.", records::describe_clock(gl),
                     gpus.empty() ? "" : fmt::format("; there are estimates for {}", fmt::join(gpus, ", "))));
-  const bool once = std::ranges::any_of(
-      cells, [](const records::CellRecord* c) { return c->time_ms.lookup && c->time_ms.lookup->n < 2; });
+  const bool once = std::ranges::any_of(cells, [&](const records::CellRecord* c) {
+    return c->time_ms.lookup ? c->time_ms.lookup->n < 2 : is_of_one_round(frame_ratio(*c, request.light));
+  });
   if (once) notes.push_back("Times of a single round have no spread, so their order may be chance: raise --rounds.");
 }
 
@@ -154,6 +173,7 @@ void add_notes_of_nothing_to_see(std::vector<std::string>& notes, const Advice& 
 std::string format_cost(double value, const CostKind& cost, const records::GlRecord& gl) {
   switch (cost.kind) {
     case CostKind::kTime: return fmt::format("{} {}", records::format_number(value), records::time_unit(gl));
+    case CostKind::kRatio: return fmt::format("{} {}", records::format_number(value), kRatioUnit);
     case CostKind::kBytes: return fmt::format("{} bytes", records::format_number(value));
     case CostKind::kFetches:
       return fmt::format("{} {}", records::format_number(value), value == 1.0 ? "fetch" : "fetches");
@@ -177,8 +197,18 @@ std::string format_kept(double value, double most) {
 }
 
 std::string describe_frame(const AdviceRequest& request) {
-  if (request.cheapest != CostKind::kTime) return "";
+  if (!request.cheapest.is_of_frame()) return "";
   return request.light == LightMotion::kMoving ? " a frame, moving light" : " a frame, static light";
+}
+
+std::string describe_choice(const Advice& advice) {
+  assert(!advice.keeping.empty());
+  const CostKind kind = advice.request.cheapest;
+  if (kind != CostKind::kRatio) return "cheapest";
+  const bool any_apart = std::ranges::any_of(advice.keeping, [&](const Candidate& other) {
+    return compare_costs(advice.keeping.front(), other, kind).basis == Basis::kNone;
+  });
+  return any_apart ? "lowest ratio to 'none', on the smallest picture and map," : "lowest ratio to 'none'";
 }
 
 std::string describe_runner_up(const Advice& advice, const records::GlRecord& gl) {
@@ -224,7 +254,7 @@ std::vector<std::string> list_run_notes(const Advice& advice, const records::GlR
         fmt::format("Left out, for they show a mistake and are for teaching: {}.", fmt::join(advice.teaching, ", ")));
   }
   const std::vector<const records::CellRecord*> cells = list_judged_cells(advice);
-  if (uses_time(advice.request)) add_time_notes(notes, cells, gl);
+  if (uses_time(advice.request)) add_time_notes(notes, cells, gl, advice.request);
   add_setting_notes(notes, cells);
   return notes;
 }

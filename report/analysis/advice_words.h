@@ -7,7 +7,7 @@
 
 namespace shadowbench::analysis {
 
-/// Writes a cost for people, with its unit: "4.39 ms (CPU)", "4194304 bytes", "4 fetches".
+/// Writes a cost for people, with its unit: "4.39 ms (CPU)", "1.09 × none", "4194304 bytes", "4 fetches".
 std::string format_cost(double value, const CostKind& cost, const records::GlRecord& gl);
 
 /// Writes a number that is no smaller than the value, with three significant digits: as a limit it lets the value pass.
@@ -18,6 +18,10 @@ std::string format_kept(double value, double most);
 
 /// Says behind a cost what it is paid for: " a frame, moving light"; empty where that is not time.
 std::string describe_frame(const AdviceRequest& request);
+
+/// What makes the advised one the advised one, to precede "of those that keep the limits": "cheapest". Requires
+/// one that keeps the demands.
+std::string describe_choice(const Advice& advice);
 
 /// Why the runner-up lost, or that it ties and why it is named second. Requires two that keep the demands.
 std::string describe_runner_up(const Advice& advice, const records::GlRecord& gl);

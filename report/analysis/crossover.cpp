@@ -42,7 +42,8 @@ WidthChart make_chart(const TradeScope& scope, int map_size, const std::vector<r
   WidthChart chart{scope.id,     fmt::format("{} · map {}", scope.title, map_size),
                    scope.scene,  scope.view,
                    map_size,     scope.width,
-                   scope.height, {}};
+                   scope.height, {},
+                   scope.costs};
   for (const WidthSeries& series : list_width_series(scope.configurations, timed))
     chart.curves.push_back(make_curve(scope, series, cells));
   return chart;

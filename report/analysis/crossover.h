@@ -10,11 +10,11 @@
 
 namespace shadowbench::analysis {
 
-/// A time measured at one kernel width.
+/// What a frame costs at one kernel width, as the chart's measures have it: milliseconds, or a ratio to `none`.
 struct WidthPoint {
   double sigma_texels = 0.0;
-  Estimate still;   ///< ms: the lookup alone
-  Estimate moving;  ///< ms: map, prefilter and lookup
+  Estimate still;   ///< the lookup alone
+  Estimate moving;  ///< map, prefilter and lookup
 };
 
 /// One filter over its kernel width, all else being equal.
@@ -36,6 +36,7 @@ struct WidthChart {
   int width = 0;
   int height = 0;
   std::vector<WidthCurve> curves;
+  std::vector<Measure> costs;  ///< those of its scope: what the curves' values are
 };
 
 /// Which passes are paid in a frame.

@@ -7,7 +7,7 @@
 
 namespace shadowbench::analysis {
 
-std::vector<std::string> explain_fronts() {
+std::vector<std::string> explain_fronts(const std::vector<Measure>& costs) {
   std::vector<std::string> sentences = {
       fmt::format(
           "Only filters whose kernels are about equally wide are compared: a wider kernel makes a softer shadow, "
@@ -25,7 +25,7 @@ std::vector<std::string> explain_fronts() {
     sentences.push_back(
         fmt::format("{}: {}. All scenes together: {}.", measure.name, measure.meaning, measure.over_scenes));
   }
-  for (const Measure& measure : list_cost_measures()) {
+  for (const Measure& measure : costs) {
     sentences.push_back(
         fmt::format("{}: {}. All scenes together: {}.", measure.name, measure.meaning, measure.over_scenes));
   }

@@ -9,12 +9,16 @@
 
 namespace shadowbench::analysis {
 
+/// Stands behind a ratio to `none`.
+inline constexpr const char* kRatioUnit = "× none";
+
 /// Which passes a frame pays for: map, prefilter and the filter's own lookup (moving), or that lookup alone (static).
 enum class LightMotion { kMoving, kStatic };
 
-/// What is to be cheap: the time of a frame, the maps' bytes, fetches, or the estimate for a GPU.
+/// What is to be cheap: the time of a frame, its ratio to that of `none`, the maps' bytes, fetches, or the estimate for
+/// a GPU.
 struct CostKind {
-  enum Kind { kTime, kBytes, kFetches, kGpu };
+  enum Kind { kTime, kRatio, kBytes, kFetches, kGpu };
 
   // NOLINTNEXTLINE(google-explicit-constructor): a kind alone is a cost, but for GPUs
   CostKind(Kind of = kTime, std::string on = {}) : kind(of), gpu(std::move(on)) {}
@@ -23,6 +27,9 @@ struct CostKind {
   std::string gpu;  ///< its name; empty but for kGpu
 
   bool operator==(const CostKind&) const = default;
+
+  /// Whether it says how long a frame takes, in milliseconds or beside `none`.
+  bool is_of_frame() const { return kind == kTime || kind == kRatio; }
 };
 
 /// One number of a cell that may be limited; less is better.
@@ -30,8 +37,9 @@ struct LimitSpec {
   std::string option;             ///< "--max-rmse"
   std::string field;              ///< of the record: "error.rmse"; "time_ms" for a sum over passes
   std::string text;               ///< for help
-  const metrics::Metric* metric;  ///< null: the time of a frame, or an estimate
+  const metrics::Metric* metric;  ///< null: the time of a frame, its ratio, or an estimate
   std::string gpu = {};           ///< of an estimate: the GPU that it is for
+  bool is_ratio = false;          ///< the frame's ratio to `none`
 
   std::optional<double> read(const records::CellRecord& cell, LightMotion light) const;
 };

@@ -27,21 +27,35 @@ std::string describe_work(const records::WorkRecord& work) {
   return text;
 }
 
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+void add_machine(Facts& facts, const records::RunRecord& run) {
+  facts.emplace_back("times", records::describe_clock(run.gl));
+  facts.emplace_back("GL", fmt::format("{} · {} · {}", run.gl.backend, run.gl.renderer, run.gl.version));
+  facts.emplace_back(
+      "machine",
+      fmt::format("{} · {} cores · load {} at the start", run.machine.cpu, run.machine.cores,
+                  run.machine.load_at_start ? records::format_number(*run.machine.load_at_start) : records::kNothing));
+  facts.emplace_back("system", fmt::format("{} · {}", run.machine.os, run.machine.compiler));
+}
+
+void add_machines(Facts& facts, const std::vector<MachineCount>& machines) {
+  for (std::size_t i = 0; i < machines.size(); ++i)
+    facts.emplace_back(fmt::format("machine {}", i + 1), describe_machine(machines[i]));
+}
+
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> list_run_facts(const records::RunRecord& run) {
-  std::vector<std::pair<std::string, std::string>> facts = {
-      {"experiment", describe_experiment(run.experiment)},
-      {"command", fmt::format("{}", fmt::join(run.command, " "))},
-      {"commit", run.commit},
-      {"seed", fmt::format("{}", run.seed)},
-      {"times", records::describe_clock(run.gl)},
-      {"GL", fmt::format("{} · {} · {}", run.gl.backend, run.gl.renderer, run.gl.version)},
-      {"machine",
-       fmt::format("{} · {} cores · load {} at the start", run.machine.cpu, run.machine.cores,
-                   run.machine.load_at_start ? records::format_number(*run.machine.load_at_start) : records::kNothing)},
-      {"system", fmt::format("{} · {}", run.machine.os, run.machine.compiler)},
-      {"work", describe_work(run.work)}};
+Facts list_run_facts(const records::RunRecord& run, const std::vector<MachineCount>& machines) {
+  Facts facts = {{"experiment", describe_experiment(run.experiment)},
+                 {"command", fmt::format("{}", fmt::join(run.command, " "))},
+                 {"commit", run.commit},
+                 {"seed", fmt::format("{}", run.seed)}};
+  if (machines.size() > 1)
+    add_machines(facts, machines);
+  else
+    add_machine(facts, run);
+  facts.emplace_back("work", describe_work(run.work));
   if (run.repeat.of.value_or(0) > 0) {
     facts.emplace_back("repeat", fmt::format("{} those of the run that this one replaced ({} cells)",
                                              describe_overlap(run.repeat), run.repeat.cells.value_or(0)));

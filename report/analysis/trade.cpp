@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "filters/kernel_width.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/summary.h"
 #include "report/files/file_name.h"
@@ -163,6 +164,14 @@ void label_series(std::vector<WidthSeries>& all) {
   }
 }
 
+// Who may be compared with whom: kernels of one class of width, and by a ratio to `none` on maps of one size alone.
+std::optional<std::size_t> find_group(const TradeConfiguration& own, const Measure& cost,
+                                      const std::set<int>& map_sizes) {
+  if (!own.width_class || !cost.is_ratio) return own.width_class;
+  const auto map = std::distance(map_sizes.begin(), map_sizes.find(own.map_size));
+  return *own.width_class + static_cast<std::size_t>(map) * filters::width_classes().size();
+}
+
 }  // namespace
 
 void label_configurations(std::vector<TradeConfiguration>& configurations) {
@@ -230,6 +239,8 @@ TradeFront make_trade_front(const TradeScope& scope, std::size_t error, std::siz
   TradeFront front;
   front.error = error;
   front.cost = cost;
+  std::set<int> map_sizes;
+  for (const TradeConfiguration& each : scope.configurations) map_sizes.insert(each.map_size);
   for (std::size_t i = 0; i < scope.configurations.size(); ++i) {
     const Measured& e = scope.configurations[i].errors[error];
     const Measured& c = scope.configurations[i].costs[cost];
@@ -238,7 +249,8 @@ TradeFront make_trade_front(const TradeScope& scope, std::size_t error, std::siz
       continue;
     }
     front.configurations.push_back(i);
-    front.points.push_back({*e.estimate, *c.estimate, scope.configurations[i].width_class});
+    front.points.push_back(
+        {*e.estimate, *c.estimate, find_group(scope.configurations[i], scope.costs[cost], map_sizes)});
   }
   front.placements = find_front(front.points);
   front.members = list_members(front.points, front.placements);

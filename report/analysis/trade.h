@@ -67,11 +67,12 @@ struct TradeFront {
   std::vector<std::size_t> configurations;  ///< those that have both, indices into the scope's
   std::vector<FrontPoint> points;           ///< entry i is of configurations[i]
   std::vector<Placement> placements;        ///< likewise; `by` is an index into `points`
-  std::vector<std::size_t> members;         ///< indices into `points`; by class of width, then cheapest first
-  std::map<std::string, int> left_out;      ///< reason to number of configurations without one of the two
+  std::vector<std::size_t> members;  ///< indices into `points`; by group, that is class of width, then cheapest first
+  std::map<std::string, int> left_out;  ///< reason to number of configurations without one of the two
 };
 
-/// Finds the front of a scope: one of each class of width, for a wider kernel is a softer shadow, not a worse filter.
+/// Finds the front of a scope: one of each class of width, for a wider kernel is a softer shadow, not a worse filter;
+/// where the cost is a ratio to `none`, one of each class and size of map, for each map has a `none` of its own.
 TradeFront make_trade_front(const TradeScope& scope, std::size_t error, std::size_t cost);
 
 /// Is there a scope in which three cells or more have an error and a cost? Below that there is no trade to show.

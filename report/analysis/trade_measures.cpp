@@ -9,6 +9,7 @@
 #include "report/analysis/accuracy.h"
 #include "report/analysis/configuration.h"
 #include "report/analysis/limits.h"
+#include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/summary.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
@@ -34,6 +35,12 @@ Measured read_time(const records::CellRecord& cell, LightMotion light) {
   const auto interval = frame_interval(cell, light);
   return {interval ? Estimate{time->median, interval->low, interval->high} : Estimate{time->median, time->q1, time->q3},
           {}};
+}
+
+Measured read_ratio(const records::CellRecord& cell, LightMotion light) {
+  const auto& ratio = frame_ratio(cell, light);
+  if (!ratio) return miss(cell, light == LightMotion::kMoving ? "ratio_to_none.moving" : "ratio_to_none.static");
+  return {Estimate{ratio->median, ratio->ci95.low, ratio->ci95.high}, {}};
 }
 
 Estimate mean_of(const std::vector<Estimate>& estimates) {
@@ -95,6 +102,39 @@ Measure make_time_measure(const char* id, const char* name, const char* meaning)
   return {id, name, meaning, "geometric mean over the scenes", geometric_mean, nullptr, true, false};
 }
 
+Measure make_ratio_measure(const char* id, const char* name, const char* frame) {
+  return {id,
+          name,
+          fmt::format("time of {} over that of 'none' in the same rounds, and so on the same machine, map and picture; "
+                      "on a map of another size it is the ratio to another 'none', so that each size of map has fronts "
+                      "of its own; interval: 95 % of the median",
+                      frame),
+          "geometric mean over the scenes",
+          geometric_mean,
+          nullptr,
+          false,
+          false,
+          {},
+          true};
+}
+
+// What a frame costs, the light moving and still, in milliseconds.
+std::array<Measure, 2> list_time_measures() {
+  return {make_time_measure("moving", "time of map, prefilter and filter, moving light",
+                            "what the filter costs while light or casters move: map, prefilter and lookup, less a "
+                            "lookup that reads nothing, per round; interval: 95 % of the median"),
+          make_time_measure("filter", "time of the filter alone, still light",
+                            "what the filter costs while they stand still: its lookup, less a lookup that reads "
+                            "nothing, per round; interval: 95 % of the median")};
+}
+
+std::array<Measure, 2> list_ratio_measures() {
+  return {make_ratio_measure("moving_ratio", "ratio to 'none' on the same map, moving light",
+                             "a whole frame whose light or casters move (map, prefilter and lookup)"),
+          make_ratio_measure("still_ratio", "ratio to 'none' on the same map, still light",
+                             "a whole frame whose light and casters stand still (the lookup alone)")};
+}
+
 }  // namespace
 
 const std::array<Measure, kErrorMeasures>& list_error_measures() {
@@ -119,14 +159,9 @@ std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& 
   Measure bytes = make_measure("cost.map_bytes", "exact", "the largest of the scenes", worst_of);
   bytes.id = "bytes";
   bytes.is_bytes = true;
-  std::vector<Measure> measures = {
-      make_time_measure("moving", "time of map, prefilter and filter, moving light",
-                        "what the filter costs while light or casters move: map, prefilter and lookup, less a lookup "
-                        "that reads nothing, per round; interval: 95 % of the median"),
-      make_time_measure("filter", "time of the filter alone, still light",
-                        "what the filter costs while they stand still: its lookup, less a lookup that reads nothing, "
-                        "per round; interval: 95 % of the median"),
-      make_measure("cost.fetches", "no interval", "mean over the scenes", mean_of), bytes};
+  const auto frame = mixes_machines(cells) ? list_ratio_measures() : list_time_measures();
+  std::vector<Measure> measures = {frame[kMovingCost], frame[kStillCost],
+                                   make_measure("cost.fetches", "no interval", "mean over the scenes", mean_of), bytes};
   for (const std::string& gpu : list_gpus(point_to(cells))) {
     measures.push_back({"gpu_" + gpu, fmt::format("estimate on {}, us", gpu),
                         "microseconds of the prefilter and of a million receivers' lookups on that GPU, which was not "
@@ -167,7 +202,8 @@ Measured read_cost(const records::CellRecord& cell, const Measure& cost) {
     const auto value = spec.read(cell, LightMotion::kMoving);
     return value ? Measured{exact(*value), {}} : miss(cell, spec.field);
   }
-  return read_time(cell, cost.id == "moving" ? LightMotion::kMoving : LightMotion::kStatic);
+  const LightMotion light = cost.id.starts_with("moving") ? LightMotion::kMoving : LightMotion::kStatic;
+  return cost.is_ratio ? read_ratio(cell, light) : read_time(cell, light);
 }
 
 bool is_reference(const records::CellRecord& cell) {

@@ -13,7 +13,7 @@
 namespace shadowbench::analysis {
 
 inline constexpr std::size_t kErrorMeasures = 4;
-inline constexpr std::size_t kMovingCost = 0, kStillCost = 1;  ///< of the costs: times, the light moving or still
+inline constexpr std::size_t kMovingCost = 0, kStillCost = 1;  ///< of the costs: of a frame, the light moving or still
 
 /// One axis of the trade.
 struct Measure {
@@ -22,17 +22,19 @@ struct Measure {
   std::string meaning;                                ///< what it is and what its interval is
   const char* over_scenes;                            ///< how one number is made of several scenes'
   Estimate (*combine)(const std::vector<Estimate>&);  ///< makes it; requires at least one scene
-  const metrics::Metric* metric;  ///< where it is read from; null for milliseconds of the run's clock
-  bool is_time;                   ///< milliseconds of the run's clock
+  const metrics::Metric* metric;                      ///< where it is read from; null for what a frame costs
+  bool is_time;                                       ///< milliseconds of the run's clock
   bool is_bytes;
-  std::string gpu = {};  ///< of an estimate: the GPU that it is for
+  std::string gpu = {};   ///< of an estimate: the GPU that it is for
+  bool is_ratio = false;  ///< to the time of `none` on a map and a picture of the same size
 };
 
 /// Lists the errors: rmse, kernel_rmse, leak, flip.
 const std::array<Measure, kErrorMeasures>& list_error_measures();
 
 /// Lists the costs: moving, filter, fetches, bytes, and an estimate for each GPU that a cell names. The first is what
-/// is compared unless something else is asked for.
+/// is compared unless something else is asked for. Where several kinds of machine measured the cells, moving_ratio and
+/// still_ratio stand in place of the first two.
 std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& cells = {});
 
 /// Names the GPUs that cells have costs on.
@@ -58,7 +60,7 @@ struct Measured {
 Measured read_error(const records::CellRecord& cell, const Measure& measure);
 
 /// Reads a cost from a cell; `measure` is of list_cost_measures(). Times: frame_time() with
-/// frame_interval(), or where that is missing with the quartiles.
+/// frame_interval(), or where that is missing with the quartiles. Ratios: frame_ratio() with its interval.
 Measured read_cost(const records::CellRecord& cell, const Measure& measure);
 
 /// Whether a cell is the one that ratios refer to: its own ratio is exactly 1 [1, 1].

@@ -47,8 +47,11 @@
   };
   const listAsked = () => [...new Set(run.cells.filter((cell) => isAsked(run.configurations[cell.configuration])).map((cell) => cell.place))];
   const costOf = (index) => run.configurations[index][fieldOf(kTime)];
+  const areAlike = (a, b) => run.configurations[a].surroundings === run.configurations[b].surroundings;
+  // Of mixed machines, costs are ratios to `none`, which under other settings is another one.
+  const areComparable = (a, b) => !run.ratios || areAlike(a, b);
   const areTied = (a, b) => {
-    const common = costOf(a).ci95 && costOf(b).ci95 && run.configurations[a].surroundings === run.configurations[b].surroundings;
+    const common = costOf(a).ci95 && costOf(b).ci95 && areAlike(a, b);
     const name = common ? "ci95" : "quartiles";
     return costOf(a)[name][1] >= costOf(b)[name][0];
   };
@@ -61,7 +64,8 @@
       const broken = fields.map((field) => ({ field, worst: findWorst(index, field), most: state.limits[field] })).filter(({ worst, most }) => worst.value > most);
       (broken.length > 0 ? failing : keeping).push({ index, broken });
     });
-    const byCost = (a, b) => costOf(a.index).mean - costOf(b.index).mean;
+    const sizeOf = ({ index }, by) => (run.ratios ? run.configurations[index][by] : 0);
+    const byCost = (a, b) => sizeOf(a, "pixels") - sizeOf(b, "pixels") || sizeOf(a, "map") - sizeOf(b, "map") || costOf(a.index).mean - costOf(b.index).mean;
     return { keeping: keeping.sort(byCost), failing: failing.sort(byCost), unjudged };
   };
 
@@ -143,7 +147,7 @@
   };
 
   const showChoice = (keeping, failing) => {
-    const best = keeping[0].index, tied = keeping.slice(1).filter((other) => areTied(best, other.index)).map((other) => other.index);
+    const best = keeping[0].index, tied = keeping.slice(1).filter((other) => areComparable(best, other.index) && areTied(best, other.index)).map((other) => other.index);
     headline.replaceChildren();
     element(headline, "bdi", {}, tied.length > 0 ? labelOf(best) : run.configurations[best].full);
     if (tied.length > 0) {
@@ -157,14 +161,15 @@
       const { value, cell } = findWorst(best, field);
       return `${titleOf(field)} ${say(value, field)} at worst, on ${places[cell.place]} (limit ${say(most, field)})`;
     });
-    const lead = tied.length > 0 ? "it has the lowest mean cost" : "it is the cheapest";
+    const smallest = keeping.every((other) => areComparable(best, other.index)) ? "" : ", on the smallest picture and map,";
+    const lead = run.ratios ? `it has the lowest ratio to 'none'${smallest}` : tied.length > 0 ? "it has the lowest mean cost" : "it is the cheapest";
     explain("Why:", `${lead} of ${keeping.length} ${bounds.length > 0 ? "that keep the limits" : "that can be judged"}`, ...[...bounds, ...listUnseen(best)].map((text, i) => (i === 0 ? ": " : "; ") + text), ".");
     explain("Kernel:", `${configuration.sigma === null ? "of no one width that is known" : configuration.kernel}${configuration.params ? "; " + configuration.params : ""}.`);
     if (keeping.length > 1) {
       const second = keeping[1].index, more = costOf(second).mean / costOf(best).mean;
-      explain("Runner-up:", second, tied.includes(second) ? `, whose cost cannot be told from it; ` : `, at ${format(more)} times the cost; `, compareWorst(best, second) + ".");
+      explain("Runner-up:", second, !areComparable(best, second) ? ", whose ratio is to another 'none', and is not compared; " : tied.includes(second) ? ", whose cost cannot be told from it; " : `, at ${format(more)} times the cost; `, compareWorst(best, second) + ".");
     } else explain("Runner-up:", "no other keeps the limits.");
-    const cheaper = failing.find((other) => other.broken.length === 1 && costOf(other.index).mean < costOf(best).mean && !areTied(other.index, best));
+    const cheaper = failing.find((other) => other.broken.length === 1 && areComparable(best, other.index) && costOf(other.index).mean < costOf(best).mean && !areTied(other.index, best));
     if (cheaper) {
       const [only] = cheaper.broken;
       explain("Cheaper:", cheaper.index, `, ${costText(cheaper.index)}, were ${titleOf(only.field)} of ${say(roundUp(only.worst.value), only.field)} allowed.`);

@@ -106,8 +106,13 @@ Row describe_cell(const records::CellRecord& cell, const analysis::Advice& advic
 std::string list_cells(const records::RunRecord& run, const analysis::Advice& advice) {
   std::vector<Row> rows = {
       {"scene", records::time_unit(run.gl), "quartiles", "/ none [95 %]", "RMSE", "bytes", "fetches", "cell"}};
-  for (const records::CellRecord* cell : advice.keeping.front().configuration.cells)
+  bool timed = false;
+  for (const records::CellRecord* cell : advice.keeping.front().configuration.cells) {
     rows.push_back(describe_cell(*cell, advice));
+    timed = timed || analysis::frame_time(*cell, advice.request.light);
+  }
+  for (Row& row : rows)
+    if (!timed) row.erase(row.begin() + 1, row.begin() + 3);
   return align(rows);
 }
 
@@ -182,9 +187,9 @@ std::string describe_answer(const records::RunRecord& run, const analysis::Advic
   if (cell.kernel.sigma_texels) parts.push_back(fmt::format("a kernel of {}", records::describe_kernel(cell.kernel)));
   if (!cell.params.empty()) parts.push_back(records::describe_params(cell.params));
   const std::string with = parts.empty() ? "" : wrap(fmt::format("with {}", fmt::join(parts, ", ")));
-  return fmt::format("{}: {}{}; cheapest of {}{}\n{}", best.configuration.label,
+  return fmt::format("{}: {}{}; {} of {}{}\n{}", best.configuration.label,
                      analysis::format_cost(best.cost.mean, advice.request.cheapest, run.gl),
-                     analysis::describe_frame(advice.request), advice.keeping.size(),
+                     analysis::describe_frame(advice.request), analysis::describe_choice(advice), advice.keeping.size(),
                      advice.request.demands.empty() ? "" : " that keep the limits", with);
 }
 

@@ -48,7 +48,7 @@ page::Sentences describe_choice(const records::RunRecord& run, const analysis::A
   page::Sentences answer{fmt::format("{}: {} a frame with a moving light.", best.configuration.label,
                                      analysis::format_cost(best.cost.mean, advice.request.cheapest, run.gl)),
                          {}};
-  answer.items.push_back(fmt::format("Why: the cheapest of {}{}{}.", advice.keeping.size(),
+  answer.items.push_back(fmt::format("Why: the {} of {}{}{}.", analysis::describe_choice(advice), advice.keeping.size(),
                                      has_limits ? " that keep the limits" : " that can be judged",
                                      describe_limits(advice, best)));
   if (advice.keeping.size() > 1)

@@ -79,7 +79,10 @@ std::vector<records::CsvColumn> list_front_columns() {
           {"width", "picture, pixels"},
           {"height", "picture, pixels"},
           {"error", "which error: rmse, kernel_rmse, leak, flip"},
-          {"cost", "which cost: moving and filter in ms of the run's clock, fetches, bytes, gpu_NAME in us"},
+          {"cost",
+           "which cost: moving and filter in ms of the run's clock, or moving_ratio and still_ratio to 'none' where "
+           "several "
+           "kinds of machine measured the run, fetches, bytes, gpu_NAME in us"},
           {"cell", "the cell's key; of all scenes: the keys of its cells, joined by +"},
           {"filter", "the filter's id"},
           {"params", "the filter's parameters as JSON"},

@@ -1,5 +1,7 @@
 #include "report/pages/run_data.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +9,7 @@
 #include "reference/metrics/metric_table.h"
 #include "report/analysis/accuracy.h"
 #include "report/analysis/cell_group.h"
+#include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/summary.h"
 #include "report/analysis/trade.h"
 #include "report/analysis/trade_measures.h"
@@ -21,6 +24,8 @@ namespace {
 
 using nlohmann::json;
 
+/// What a frame costs, by the names that the page's scripts have for it: milliseconds, or ratios to `none` where
+/// several kinds of machine measured the cells.
 constexpr const char *kMoving = "time_ms.moving", *kStill = "time_ms.still";
 
 json value_of(const std::optional<double>& value) { return value && std::isfinite(*value) ? json(*value) : json(); }
@@ -40,20 +45,34 @@ json make_measure(std::string_view id, std::string_view title, std::string_view 
           {"better", kBetter[static_cast<std::size_t>(direction)]}};
 }
 
+/// The time of a frame, light moving and still; no limit is set on a ratio.
+json list_frame_measures(const records::RunRecord& run, const analysis::CostKind& frame) {
+  if (frame == analysis::CostKind::kRatio) {
+    constexpr const char* kUnder =
+        "over that of 'none' in the same rounds, on the same machine and map; a map of another size has another 'none'";
+    return {make_measure(kMoving, "ratio to 'none', moving light",
+                         fmt::format("time of map, prefilter and lookup {}", kUnder), analysis::kRatioUnit, "", "cost"),
+            make_measure(kStill, "ratio to 'none', still light", fmt::format("time of the lookup {}", kUnder),
+                         analysis::kRatioUnit, "", "cost")};
+  }
+  const std::string unit = records::time_unit(run.gl), clock = records::describe_clock(run.gl);
+  return {
+      make_measure(kMoving, "time, moving light",
+                   "map, prefilter and lookup less a lookup that reads nothing: what a frame pays in which light or "
+                   "casters move; " +
+                       clock,
+                   unit, "--max-ms", "cost"),
+      make_measure(kStill, "time, still light",
+                   "lookup less a lookup that reads nothing: what a frame pays while light and casters stand "
+                   "still; " +
+                       clock,
+                   unit, "--max-ms", "cost")};
+}
+
 /// Everything that the table can show, and that limits can be set on.
-json list_measures(const records::RunRecord& run, const std::vector<std::string>& gpus) {
-  const std::string unit = records::time_unit(run.gl);
-  json measures = json::array();
-  measures.push_back(make_measure(kMoving, "time, moving light",
-                                  "map, prefilter and lookup less a lookup that reads nothing: what a frame pays in "
-                                  "which light or casters move; " +
-                                      records::describe_clock(run.gl),
-                                  unit, "--max-ms", "cost"));
-  measures.push_back(make_measure(kStill, "time, still light",
-                                  "lookup less a lookup that reads nothing: what a frame pays while light and casters "
-                                  "stand still; " +
-                                      records::describe_clock(run.gl),
-                                  unit, "--max-ms", "cost"));
+json list_measures(const records::RunRecord& run, const std::vector<std::string>& gpus,
+                   const analysis::CostKind& frame) {
+  json measures = list_frame_measures(run, frame);
   for (const metrics::Metric& metric : metrics::metric_table())
     if (metric.tabled || !metric.limit.empty())
       measures.push_back(make_measure(metric.path, metric.title, metric.definition, metric.unit, metric.limit,
@@ -65,14 +84,11 @@ json list_measures(const records::RunRecord& run, const std::vector<std::string>
   return measures;
 }
 
-json list_values(const records::CellRecord& cell, const std::vector<std::string>& gpus) {
+json list_values(const records::CellRecord& cell, const std::vector<std::string>& gpus,
+                 const analysis::CostKind& frame) {
   json values;
-  const auto time = [&](analysis::LightMotion light) {
-    const auto quartiles = analysis::frame_time(cell, light);
-    return quartiles ? value_of(quartiles->median) : json();
-  };
-  values[kMoving] = time(analysis::LightMotion::kMoving);
-  values[kStill] = time(analysis::LightMotion::kStatic);
+  values[kMoving] = value_of(analysis::cost_spec(frame).read(cell, analysis::LightMotion::kMoving));
+  values[kStill] = value_of(analysis::cost_spec(frame).read(cell, analysis::LightMotion::kStatic));
   for (const metrics::Metric& metric : metrics::metric_table())
     if (metric.tabled || !metric.limit.empty()) values[std::string(metric.path)] = value_of(metric.read(cell));
   for (const std::string& gpu : gpus)
@@ -81,17 +97,15 @@ json list_values(const records::CellRecord& cell, const std::vector<std::string>
   return values;
 }
 
-/// Of times the 95 % intervals, or the quartiles where there are none.
-json list_intervals(const records::CellRecord& cell) {
+/// Of times and ratios the 95 % intervals, or the quartiles where there are none.
+json list_intervals(const records::CellRecord& cell, const analysis::CostKind& frame) {
   json intervals = json::object();
   for (const auto& [id, light] :
        {std::pair(kMoving, analysis::LightMotion::kMoving), std::pair(kStill, analysis::LightMotion::kStatic)}) {
-    const auto interval = analysis::frame_interval(cell, light);
-    const auto time = analysis::frame_time(cell, light);
-    if (interval)
-      intervals[id] = {interval->low, interval->high};
-    else if (time)
-      intervals[id] = {time->q1, time->q3};
+    const auto cost = analysis::measure_cost({&cell}, frame, light);
+    if (!cost) continue;
+    const records::Interval& interval = cost->ci95 ? *cost->ci95 : cost->quartiles;
+    intervals[id] = {interval.low, interval.high};
   }
   return intervals;
 }
@@ -117,30 +131,32 @@ std::string find_cause(const records::CellRecord& cell) {
 }
 
 json make_cell(const records::CellRecord& cell, std::size_t configuration, std::size_t place,
-               const std::vector<std::string>& gpus) {
+               const std::vector<std::string>& gpus, const analysis::CostKind& frame) {
   return {{"key", cell.key},
           {"configuration", configuration},
           {"place", place},
           {"status", cell.status == records::CellStatus::kOk ? "ok" : records::describe_status(cell)},
-          {"values_of", list_values(cell, gpus)},
+          {"values_of", list_values(cell, gpus, frame)},
           {"nothing", list_nothing(cell)},
           {"reach", analysis::find_rmse_reach(cell)},
-          {"intervals", list_intervals(cell)},
+          {"intervals", list_intervals(cell, frame)},
           {"cause", find_cause(cell)},
           {"picture", path_of(cell.images.picture)},
           {"values", path_of(cell.images.values)}};
 }
 
 /// What a frame takes over the places; null where a cell was not timed.
-json describe_cost(const analysis::Configuration& configuration, analysis::LightMotion light) {
-  const auto cost = analysis::measure_cost(configuration.cells, analysis::CostKind::kTime, light);
+json describe_cost(const analysis::Configuration& configuration, const analysis::CostKind& frame,
+                   analysis::LightMotion light) {
+  const auto cost = analysis::measure_cost(configuration.cells, frame, light);
   if (!cost) return nullptr;
   const auto list = [](const records::Interval& interval) { return json::array({interval.low, interval.high}); };
   return {
       {"mean", cost->mean}, {"ci95", cost->ci95 ? list(*cost->ci95) : json()}, {"quartiles", list(cost->quartiles)}};
 }
 
-json make_configuration(const analysis::Configuration& configuration, const std::vector<std::string>& filters) {
+json make_configuration(const analysis::Configuration& configuration, const std::vector<std::string>& filters,
+                        const analysis::CostKind& frame) {
   const records::CellRecord& cell = *configuration.cells.front();
   const page::ChartStyle style =
       page::style_of(static_cast<std::size_t>(std::ranges::find(filters, cell.filter) - filters.begin()));
@@ -152,11 +168,12 @@ json make_configuration(const analysis::Configuration& configuration, const std:
           {"kernel", records::describe_kernel(cell.kernel)},
           {"sigma", value_of(cell.kernel.sigma_texels)},
           {"map", cell.map_size},
+          {"pixels", cell.width * cell.height},
           {"teaching", cell.teaching.value_or(false)},
           {"surroundings", configuration.surroundings},
           {"color", style.color},
-          {kMoving, describe_cost(configuration, analysis::LightMotion::kMoving)},
-          {kStill, describe_cost(configuration, analysis::LightMotion::kStatic)}};
+          {kMoving, describe_cost(configuration, frame, analysis::LightMotion::kMoving)},
+          {kStill, describe_cost(configuration, frame, analysis::LightMotion::kStatic)}};
 }
 
 }  // namespace
@@ -167,8 +184,11 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
   const std::vector<analysis::Place> places = analysis::list_places(all);
   const std::vector<std::string> filters = analysis::list_filters(cells);
   const std::vector<std::string> gpus = analysis::list_gpus(all);
-  json data{{"unit", records::time_unit(run.gl)},
-            {"measures", list_measures(run, gpus)},
+  const analysis::CostKind frame = analysis::frame_cost_kind(cells);
+  const bool is_ratio = frame == analysis::CostKind::kRatio;
+  json data{{"unit", is_ratio ? analysis::kRatioUnit : records::time_unit(run.gl)},
+            {"ratios", is_ratio},
+            {"measures", list_measures(run, gpus, frame)},
             {"classes", json::array()},
             {"limits", json::object()},
             {"places", json::array()},
@@ -192,9 +212,10 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
   for (const analysis::Configuration& configuration : analysis::list_configurations(all)) {
     for (const records::CellRecord* cell : configuration.cells) {
       const auto place = std::ranges::find(places, analysis::place_of(*cell)) - places.begin();
-      data["cells"].push_back(make_cell(*cell, data["configurations"].size(), static_cast<std::size_t>(place), gpus));
+      data["cells"].push_back(
+          make_cell(*cell, data["configurations"].size(), static_cast<std::size_t>(place), gpus, frame));
     }
-    data["configurations"].push_back(make_configuration(configuration, filters));
+    data["configurations"].push_back(make_configuration(configuration, filters, frame));
   }
   return data;
 }

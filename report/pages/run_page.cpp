@@ -119,13 +119,19 @@ std::optional<page::Bars> make_bars(const analysis::CellGroup& group) {
   return bars;
 }
 
+std::string describe_times(const records::RunRecord& run, const std::vector<analysis::MachineCount>& machines) {
+  return machines.size() < 2 ? records::describe_clock(run.gl)
+                             : "times of machines of several kinds do not compare; the warnings name the machines";
+}
+
 /// All numbers of one scene, folded away.
 page::Details make_group_details(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                                 const analysis::CellGroup& group) {
+                                 const analysis::CellGroup& group,
+                                 const std::vector<analysis::MachineCount>& machines) {
   page::Details details{head_group(run, cells, group.cells.front()), {}};
   auto& blocks = details.blocks;
   blocks = {page::Paragraph{records::describe_settings(group.cells.front()), true},
-            page::Table{"What it costs: " + records::describe_clock(run.gl), make_cost_table(group, run.gl)},
+            page::Table{"What it costs: " + describe_times(run, machines), make_cost_table(group, run.gl, machines)},
             page::Table{"How wrong it is, and why: errors of visibility in [0,1]", make_accuracy_table(group)}};
   if (const auto stability = analysis::describe_stability(group); !stability.empty())
     blocks.emplace_back(page::Sentences{{}, stability});
@@ -184,8 +190,9 @@ std::optional<page::Section> make_gpu_section(const records::RunRecord& run,
 
 page::Section make_evidence_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
   page::Section section{"evidence", "Behind the numbers", {}};
+  const std::vector<analysis::MachineCount> machines = analysis::count_machines(cells);
   for (const analysis::CellGroup& group : analysis::group_cells(cells))
-    section.blocks.emplace_back(make_group_details(run, cells, group));
+    section.blocks.emplace_back(make_group_details(run, cells, group, machines));
   if (const auto absences = analysis::count_absences(cells); !absences.empty()) {
     page::Sentences reasons;
     for (const auto& [reason, count] : absences)
@@ -195,7 +202,7 @@ page::Section make_evidence_section(const records::RunRecord& run, const std::ve
   section.blocks.emplace_back(explain_columns("timings.csv", records::list_csv_columns(records::CsvTable::kTimings)));
   section.blocks.emplace_back(explain_columns("accuracy.csv", records::list_csv_columns(records::CsvTable::kAccuracy)));
   section.blocks.emplace_back(
-      page::Details{"Machine, OpenGL, command and seed", {page::Facts{analysis::list_run_facts(run)}}});
+      page::Details{"Machine, OpenGL, command and seed", {page::Facts{analysis::list_run_facts(run, machines)}}});
   section.blocks.emplace_back(page::Links{"Data:",
                                           {{"summary.md", "summary.md"},
                                            {"timings.csv", "timings.csv"},
@@ -207,8 +214,10 @@ page::Section make_evidence_section(const records::RunRecord& run, const std::ve
 
 }  // namespace
 
-page::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+page::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& measured,
                          const std::optional<Trade>& trade) {
+  const auto withheld = analysis::withhold_mixed_times(measured);
+  const std::vector<records::CellRecord>& cells = withheld ? *withheld : measured;
   const analysis::AdviceRequest request = choose_request(cells);
   page::Page page{"Shadow filters compared", {make_answer_section(run, cells, request)}, {}};
   const auto add = [&](page::Section section) { page.sections.push_back(std::move(section)); };
@@ -222,7 +231,7 @@ page::Page make_run_page(const records::RunRecord& run, const std::vector<record
   }
   if (trade) add(make_trade_section(run, cells, *trade));
   if (auto gpus = make_gpu_section(run, cells)) add(std::move(*gpus));
-  add(make_evidence_section(run, cells));
+  add(make_evidence_section(run, measured));
   return page;
 }
 

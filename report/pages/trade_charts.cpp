@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
-#include "filters/kernel_width.h"
 #include "report/analysis/cell_group.h"
 #include "report/page/chart_style.h"
 #include "report/records/format.h"
@@ -74,7 +74,7 @@ class FrontChart {
                       choose_measure_axis(scope_, error_of, false),
                       {},
                       {}};
-    for (std::size_t i = 0; i < filters::width_classes().size(); ++i) add_front(chart, i);
+    add_fronts(chart);
     for (const std::string& filter : filters) add_filter(chart.series, filter, style_among(filters, filter));
     return chart;
   }
@@ -84,16 +84,25 @@ class FrontChart {
     return scope_.configurations[front_.configurations[point]];
   }
 
-  /// The line through the front of one class of width, where it has more than a point.
-  void add_front(page::Chart& chart, std::size_t width_class) const {
-    const std::string_view name = analysis::name_class(width_class);
-    ChartSeries line = start_line(fmt::format("front, {}", name), page::kInk, page::LineStyle::kSteps);
-    for (const std::size_t member : front_.members) {
-      const analysis::FrontPoint& values = front_.points[member];
-      if (values.group != width_class) continue;
-      line.points.push_back({values.cost, values.error, {}, {}, {}, std::string(name)});
+  /// A line through each front that has more than a point.
+  void add_fronts(page::Chart& chart) const {
+    for (auto first = front_.members.begin(); first != front_.members.end();) {
+      const auto group = front_.points[*first].group;
+      const auto last = std::find_if(first, front_.members.end(),
+                                     [&](std::size_t member) { return front_.points[member].group != group; });
+      if (last - first > 1) chart.series.push_back(make_front({first, last}));
+      first = last;
     }
-    if (line.points.size() > 1) chart.series.push_back(std::move(line));
+  }
+
+  ChartSeries make_front(std::span<const std::size_t> members) const {
+    const Configuration& configuration = configuration_of(members.front());
+    const std::string name(analysis::name_class(configuration.width_class));
+    const std::string map = cost_.is_ratio ? fmt::format(", map {}", configuration.map_size) : std::string();
+    ChartSeries line = start_line(fmt::format("front, {}{}", name, map), page::kInk, page::LineStyle::kSteps);
+    for (const std::size_t member : members)
+      line.points.push_back({front_.points[member].cost, front_.points[member].error, {}, {}, {}, name});
+    return line;
   }
 
   std::string describe_standing(std::size_t point) const {
@@ -110,7 +119,7 @@ class FrontChart {
     const Configuration& configuration = configuration_of(point);
     const analysis::FrontPoint& values = front_.points[point];
     page::ChartPoint made{values.cost, values.error, configuration.label};
-    made.group = analysis::name_class(values.group);
+    made.group = analysis::name_class(configuration.width_class);
     made.details = {configuration.label,
                     configuration.params.empty() ? "no parameters" : records::describe_params(configuration.params),
                     "kernel: " + records::describe_kernel(cells_[configuration.cells.front()].kernel),
@@ -145,7 +154,7 @@ class FrontChart {
                                {},
                                {},
                                {},
-                               std::string(analysis::name_class(front_.points[i].group))});
+                               std::string(analysis::name_class(configuration_of(i).width_class))});
     }
     if (members.points.empty() && tied.points.empty() && beaten.points.empty()) return;
     series.push_back(std::move(members));
@@ -227,7 +236,7 @@ ChartSeries make_crossings(const analysis::WidthChart& chart, analysis::LightSta
 page::Chart make_width_chart(const analysis::WidthChart& chart, analysis::LightState light,
                              const std::vector<std::string>& filters, const records::GlRecord& gl) {
   const bool still = light == analysis::LightState::kStill;
-  const analysis::Measure cost = analysis::list_cost_measures()[still ? 1 : 0];
+  const analysis::Measure& cost = chart.costs[still ? analysis::kStillCost : analysis::kMovingCost];
   page::Chart made;
   made.id = fmt::format("{}.map{}.width.{}", chart.scope_id, chart.map_size, still ? "still" : "moving");
   made.title = chart.title;

@@ -6,6 +6,7 @@
 
 #include "report/analysis/front_words.h"
 #include "report/analysis/growth.h"
+#include "report/analysis/machines/machine_kinds.h"
 #include "report/pages/column_list.h"
 #include "report/pages/fronts_csv.h"
 #include "report/pages/trade_charts.h"
@@ -43,7 +44,7 @@ void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector
   blocks.emplace_back(page::Paragraph{kFrontsNote, true});
   blocks.emplace_back(make_front_choice(trade.scopes, cells, run.gl));
   blocks.emplace_back(page::Details{"How to read the fronts",
-                                    {page::Sentences{{}, analysis::explain_fronts()},
+                                    {page::Sentences{{}, analysis::explain_fronts(trade.scopes.front().costs)},
                                      page::Links{"All fronts, cell by cell:", {{"fronts.csv", "fronts.csv"}}}}});
   blocks.emplace_back(explain_columns("fronts.csv", list_front_columns()));
 }
@@ -95,7 +96,9 @@ void add_maps(Blocks& blocks, const records::RunRecord& run, const std::vector<a
 
 }  // namespace
 
-std::optional<Trade> make_trade(const std::vector<records::CellRecord>& cells) {
+std::optional<Trade> make_trade(const std::vector<records::CellRecord>& measured) {
+  const auto withheld = analysis::withhold_mixed_times(measured);
+  const std::vector<records::CellRecord>& cells = withheld ? *withheld : measured;
   Trade trade;
   trade.scopes = analysis::make_trade_scopes(cells);
   trade.has_fronts = analysis::has_trade(trade.scopes);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "filters/base/atomic_file.h"
+#include "report/analysis/machines/machine_kinds.h"
 #include "report/pages/fronts_csv.h"
 #include "report/pages/run_page.h"
 #include "report/pages/write_page.h"
@@ -13,13 +14,17 @@ namespace shadowbench::pages {
 
 namespace {
 
-/// Adds the warnings of the cells to those of the run, each once.
+/// Adds the warnings of the cells to those of the run, each once, and that of their machines.
 void add_warnings(records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
   for (const records::CellRecord& cell : cells) {
     for (const std::string& warning : cell.warnings)
       if (std::find(run.warnings.begin(), run.warnings.end(), warning) == run.warnings.end())
         run.warnings.push_back(warning);
   }
+  // Shards that were merged have warned of their own machines.
+  std::erase_if(run.warnings, [](const std::string& warning) { return warning.starts_with(analysis::kMixedMachines); });
+  if (const auto machines = analysis::count_machines(cells); machines.size() > 1)
+    run.warnings.insert(run.warnings.begin(), analysis::warn_of_mixed_machines(machines));
 }
 
 }  // namespace
