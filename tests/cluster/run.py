@@ -7,6 +7,8 @@ Needs root, slurm-wlm and munge; touches no Slurm that the machine may have. See
 """
 
 import argparse
+import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -14,36 +16,235 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from slurm import Cluster, say_what_is_missing  # noqa: E402
+from slurm import Cluster, end_descendants, read_processes, say_what_is_missing, send  # noqa: E402
+from sweep import LONG, Sweep, make_older  # noqa: E402
 
 
-def submit(cluster, folder, script, *options):
-    """The job's id; what it prints is in FOLDER/ID.txt, or ID_TASK.txt of an array's task."""
-    name = "%A_%a" if any(option.startswith("--array") for option in options) else "%j"
-    (folder / "job.sh").write_text(f"#!/bin/sh\n{script}\n")
-    return cluster.run("sbatch", "--parsable", f"--output={folder}/{name}.txt", *options, folder / "job.sh").stdout.strip()
+FILTER = """/*+++
+title = "Mine"
+source = "none"
+kind = "comparison"
++++*/
+float visibility(Receiver r) { return compare_nearest(r, vec2(0.0), r.depth); }
+"""
+
+
+def find_faketime(shift):
+    """What the environment must hold for a program whose clock is wrong; files keep their times. None: not installed."""
+    libraries = sorted(Path("/usr/lib").glob("*/faketime/libfaketimeMT.so.1"))
+    if not libraries:
+        return None
+    return {"LD_PRELOAD": str(libraries[0]), "FAKETIME": shift, "NO_FAKE_STAT": "1", "FAKE_UTIME": "1", "DONT_FAKE_MONOTONIC": "1"}
+
+
+def hide_tools(folder):
+    """A PATH with the shell's own tools, and without those of Slurm."""
+    folder.mkdir()
+    for tool in ("sh", "setsid", "env"):
+        (folder / tool).symlink_to(shutil.which(tool))
+    return str(folder)
+
+
+def find_processes(word):
+    """The processes whose command line holds a word."""
+    found = []
+    for process in read_processes():
+        try:
+            if str(word).encode() in Path(f"/proc/{process}/cmdline").read_bytes():
+                found.append(process)
+        except OSError:  # it ended meanwhile
+            pass
+    return found
 
 
 def test_cluster_runs_an_array_and_what_depends_on_it(program, cluster, folder):
-    array = submit(cluster, folder, "sleep 0.2; echo $SLURMD_NODENAME", "--array=1-4")
-    after = submit(cluster, folder, f"cat {folder}/{array}_*.txt", f"--dependency=afterok:{array}")
+    submit = ["sbatch", "--parsable", f"--chdir={folder}"]
+    array = cluster.run(*submit, "--array=1-4", "--output=%a.txt", "--wrap", "sleep 0.2; echo $SLURMD_NODENAME").stdout.strip()
+    cluster.run(*submit, f"--dependency=afterok:{array}", "--output=all", "--wrap", "cat *.txt")
     cluster.wait_until_empty()
     assert set(cluster.read_jobs().values()) == {"COMPLETED"}, cluster.read_jobs()
-    assert len((folder / f"{after}.txt").read_text().split()) == 4, "the dependent job ran last"
+    assert set((folder / "all").read_text().split()) == set(cluster.nodes), "both nodes work, and then the dependent job"
 
 
-def test_cluster_requeues_the_job_of_a_node_that_died(program, cluster, folder):
-    job = submit(cluster, folder, "echo $$ on $SLURMD_NODENAME >> times; sleep 3", "--nodelist=node1", f"--chdir={folder}")
-    cluster.wait_for_job(job, "RUNNING")
-    cluster.wait_for(lambda: (folder / "times").exists(), 5, "job's file")
-    cluster.kill_node("node1")
-    process = (folder / "times").read_text().split()[0]
-    assert not Path(f"/proc/{process}").exists(), "the job died with its node"
+def test_sweep_equals_one_run(program, cluster, folder):
+    odd = folder / "it's 5%j"  # no shell and no pattern of Slurm's may read this name
+    odd.mkdir()
+    sweep = Sweep(program, cluster, odd, ["--attribution", "--map-size", "64"], tasks=3, probe=True)
+    sweep.submit("--time", 5, "--partition", "all", "--gres", "gpu:1", "--", "--comment=for all of us")
+    jobs = cluster.run("scontrol", "show", "job").stdout
+    for said in ("Comment=for all of us", "TimeLimit=00:05:00", "Partition=all", "gres:gpu:1"):
+        assert said in jobs, f"sbatch did not hear {said}: {jobs}"
+    sweep.wait()
+    sweep.expect_same_as_one_run()
+    cells = sweep.read_cells()
+    sweep.submit()
+    sweep.wait()
+    sweep.expect_kept(cells)
+
+
+def test_dry_run_writes_and_prints_only(program, cluster, folder):
+    before = cluster.read_jobs()
+    sweep = Sweep(program, cluster, folder)
+    done = sweep.submit("--dry-run", "--time", 5, "--", "--comment=x")
+    for script in ("truth.sbatch", "submit.sbatch", "merge.sbatch"):
+        assert (sweep.out / script).exists() and script in done.stdout, (script, done)
+        cluster.run("sbatch", "--test-only", sweep.out / script)
+    assert cluster.read_jobs() == before and not sweep.list_cells(), "nothing is submitted, nothing measured"
+    assert sweep.read_states() == ["waiting", "waiting"], sweep.read_status()
+    sweep.refuse(["merge", "out"], 1, "cells")
+
+
+def test_node_that_dies_costs_no_cell(program, cluster, folder):
+    sweep = Sweep(program, cluster, folder, LONG)
+    sweep.submit()
+    sweep.wait_for_cells(1)
+    job, node = cluster.find_running()
+    cluster.kill_node(node)
+    cells = sweep.expect_stopped_midway()
+    cluster.wait_for(lambda: cluster.read_nodes()[node] == "down*", 30, f"failure of {node}")
+    cluster.restart_node(node)
+    sweep.wait()
+    assert "Restarts=1" in cluster.run("scontrol", "show", "job", job).stdout, "the job was requeued"
+    sweep.expect_same_as_one_run()
+    sweep.expect_kept(cells)
+
+
+def test_requeued_task_goes_on(program, cluster, folder):
+    sweep = Sweep(program, cluster, folder, LONG, tasks=1)
+    sweep.submit()
+    sweep.wait_for_cells(1)
+    job, _ = cluster.find_running()
+    cluster.run("scontrol", "requeue", job)
     cluster.wait_for_job(job, "PENDING")
-    cluster.restart_node("node1")
-    cluster.wait_until_empty()
-    assert cluster.read_jobs()[job] == "COMPLETED", cluster.read_jobs()
-    assert (folder / "times").read_text().count("on node1") == 2, "the job ran again"
+    cells = sweep.expect_stopped_midway()
+    jobs = cluster.read_jobs()
+    sweep.submit()
+    assert cluster.read_jobs().keys() == jobs.keys(), "what waits in the queue is not submitted twice"
+    sweep.wait()
+    sweep.expect_same_as_one_run()
+    sweep.expect_kept(cells)
+
+
+def test_cancelled_sweep_is_continued(program, cluster, folder):
+    sweep = Sweep(program, cluster, folder, LONG, tasks=4)
+    sweep.submit()
+    cluster.wait_for(lambda: "finished" in sweep.read_states(), 60, "finished task")
+    cluster.run("scancel", "--user=root")
+    sweep.wait()
+    states, cells = sweep.read_states(), sweep.expect_stopped_midway()
+    assert set(states) <= {"finished", "failed", "waiting"}, states
+    sweep.refuse(["merge", "out"], 1, "cells")
+    left = {number for number, state in enumerate(states, 1) if state != "finished"}
+    before = cluster.read_jobs()
+    sweep.submit()
+    submitted = {int(name.rpartition("_")[2]) for name in cluster.read_jobs() if "_" in name and name not in before}
+    assert submitted == left, f"{submitted} were submitted, where {left} were left"
+    sweep.wait()
+    sweep.expect_same_as_one_run()
+    sweep.expect_kept(cells)
+
+
+def test_failed_tasks_say_why_and_are_mended(program, cluster, folder):
+    mine, experiment = folder / "mine.glsl", folder / "e.toml"
+    mine.write_text(FILTER)
+    sweep = Sweep(program, cluster, folder, ["--filter-file", mine])
+    for file, broken, said in ((experiment, experiment.read_text().replace("[1, 2]", "[1, 3]"), "no longer what was submitted"),
+                               (mine, None, "mine.glsl")):
+        text = file.read_text()
+        cluster.hold()
+        sweep.submit()
+        file.write_text(broken) if broken else file.unlink()
+        cluster.release()
+        sweep.wait()
+        file.write_text(text)
+        status = sweep.read_status()
+        failed = [task for task in status["truths"] + status["tasks"] if task["state"] == "failed"]
+        assert failed and not status["report"], f"{said}: {status}\n{sweep.read_log()}"
+        for task in failed:
+            assert said in task["message"], task
+        assert said in sweep.run("status", "out", code=1).stdout
+    sweep.submit()
+    sweep.wait()
+    sweep.expect_same_as_one_run()
+
+
+def test_two_tasks_on_one_cell(program, cluster, folder):
+    sweep = Sweep(program, cluster, folder, tasks=1)
+    sweep.submit("--dry-run")
+    both = [sweep.start_task(1) for _ in range(2)]
+    for process in both:
+        assert process.wait(120) == 0, sweep.read_log()
+    sweep.run("merge", "out")
+    sweep.expect_same_as_one_run()
+
+
+def test_silent_task_is_lost_whatever_the_clock_says(program, cluster, folder):
+    sweep = Sweep(program, cluster, folder)
+    sweep.submit("--dry-run")
+    alive = sweep.out / "tasks" / "2" / "alive"
+    alive.write_text("process 1 on nowhere\n")
+    assert sweep.read_states() == ["waiting", "running"], sweep.read_status()
+    make_older(alive, 60)
+    assert sweep.read_states() == ["waiting", "running"], sweep.read_status()
+    assert sweep.read_states("--silent-after", 30) == ["waiting", "lost"], sweep.read_status()
+    make_older(alive, 3600)
+    assert sweep.read_states() == ["waiting", "lost"], sweep.read_status()
+    sweep.submit()
+    sweep.wait()
+    sweep.expect_same_as_one_run()
+
+
+def test_clocks_may_differ(program, cluster, folder):
+    late = find_faketime("+1h")
+    if late is None:
+        return "SKIPPED: faketime is not installed"
+    sweep = Sweep(program, cluster, folder, LONG, tasks=1)
+    sweep.submit("--dry-run")
+    late = dict(sweep.environment, **late)
+    task = sweep.start_task(1, late)
+    sweep.wait_for_cells(1)
+    for environment in (sweep.environment, late):
+        assert sweep.read_states(env=environment) == ["running"], sweep.read_status(env=environment)
+    assert task.wait(120) == 0, sweep.read_log()
+    sweep.run("merge", "out", env=late)
+    sweep.expect_same_as_one_run()
+
+
+def test_what_sbatch_refuses_is_one_message(program, cluster, folder):
+    sweep = Sweep(program, cluster, folder)
+    before = cluster.read_jobs()
+    words = ["submit", *sweep.words, *sweep.options, "--out", "out"]
+    sweep.refuse([*words, "--partition", "nosuch"], 2, "sbatch", "partition")
+    sweep.refuse([*words, "--", "--nosuch=3"], 2, "sbatch", "nosuch")
+    assert cluster.read_jobs() == before, "no job stays"
+    sweep.environment["PATH"] = hide_tools(folder / "bin")
+    sweep.refuse(words, 2, "no sbatch")
+    sweep.refuse(["submit", *sweep.words, "--engine", "slrm", "--out", "out"], 2, "slurm")
+    sweep.refuse(["status", "nowhere"], 3, "nowhere")
+
+
+def test_parallel_does_it_on_one_machine(program, cluster, folder):
+    if shutil.which("parallel") is None:
+        return "SKIPPED: parallel is not installed"
+    sweep = Sweep(program, cluster, folder, LONG, tasks=3)
+    sweep.options[1] = "parallel"
+    sweep.submit("--dry-run")
+    assert not sweep.list_cells(), "nothing is measured"
+    sweep.submit("--", "--jobs", 2)
+    sweep.wait_for_cells(1)
+    scripts = find_processes(sweep.out / "submit.sh")
+    assert scripts, "the script runs on"
+    for script in scripts:
+        end_descendants(script)
+    send(signal.SIGKILL, scripts)
+    cells = sweep.expect_stopped_midway()
+    for alive in sweep.out.glob("*/*/alive"):
+        make_older(alive, 3600)
+    assert "lost" in sweep.read_states(), sweep.read_status()
+    sweep.submit()
+    cluster.wait_for(lambda: sweep.read_status()["report"], 60, "report")
+    sweep.expect_same_as_one_run()
+    sweep.expect_kept(cells)
 
 
 def main():

@@ -194,7 +194,8 @@ class Cluster:
 
     def read_logs(self, lines=12):
         """The last lines of every daemon's log."""
-        logs = {path.name: path.read_text(errors="replace").splitlines() for path in sorted(self.folder.glob("*.log"))}
+        logs = {path.name: [line for line in path.read_text(errors="replace").splitlines() if "pmix" not in line]
+                for path in sorted(self.folder.glob("*.log"))}
         return "\n".join("\n  ".join([f"{name}:", *text[-lines:]]) for name, text in logs.items() if text)
 
     def run(self, *words, check=True, timeout=30, **options):
@@ -224,6 +225,19 @@ class Cluster:
 
     def wait_for_job(self, job, state, seconds=30):
         self.wait_for(lambda: self.read_jobs().get(job) == state, seconds, f"{state} of job {job}")
+
+    def find_running(self):
+        """(job, node) of one that runs."""
+        def read():
+            return self.run("squeue", "--noheader", "--array", "--states=running", "--format=%i %N").stdout.split()[:2]
+        return self.wait_for(read, 30, "running job")
+
+    def hold(self):
+        """Nodes start no job until release()."""
+        self.run("scontrol", "update", f"nodename={','.join(self.nodes)}", "state=drain", "reason=test")
+
+    def release(self):
+        self.run("scontrol", "update", f"nodename={','.join(self.nodes)}", "state=resume")
 
     def kill_node(self, name):
         """Ends a node and all that runs on it at once, as a machine that loses its power."""
