@@ -129,6 +129,22 @@ def test_saved_filter_is_live(program, folder):
     return f"a saved file was live after {seconds:.2f} s"
 
 
+def test_built_in_filter_of_a_tree_is_live_too(program, folder):
+    tree = folder / "tree"
+    for name in ("filters", "shaders", "harness/scenes", "harness/experiments", "harness/gpus"):
+        shutil.copytree(Path(__file__).resolve().parents[2] / name, tree / name)
+    file = tree / "filters" / "none.glsl"
+    window = Window(program, folder, ["cubes", *FIXED, "--left", "none", "--right", "tent3x3"], {"SHADOWBENCH_ROOT": str(tree)})
+    first = read_part(window.save("ctrl+p", "picture") + ".exr", "left.visibility", folder)
+    since = window.now()
+    file.write_text(file.read_text().replace("return compare_nearest", "return 0.25 * compare_nearest"))
+    window.wait("a drawing", lambda frame: frame["drawn"], since=since)
+    second = read_part(window.save("ctrl+p", "picture") + ".exr", "left.visibility", folder)
+    lit = first[2].index(1.0)
+    assert second[2][lit] == 0.25, second[2][lit]
+    window.close()
+
+
 def test_run_on_the_saved_experiment_gives_the_same_images(program, folder):
     window = Window(program, folder, ["cubes", *FIXED, "--left", "vsm:radius=3", "--right", "tent3x3"])
     window.drag((120, 200), (40, -20))

@@ -9,14 +9,14 @@ import time
 class Window:
     """A running window. Call it inside an X display of its own; see run.py."""
 
-    def __init__(self, program, folder, arguments):
+    def __init__(self, program, folder, arguments, more_environment=None):
         self.log = folder / "view.log"
         self.log.unlink(missing_ok=True)
         self.errors = folder / "stderr.txt"
         self.widgets, self.frames, self.events, self.read = {}, [], [], 0
         command = [str(program), "view", *arguments, "--out", str(folder / "saved"), "--log", str(self.log)]
         # A cache of its own, or a truth that an earlier test traced would be there at once.
-        environment = dict(os.environ, XDG_CACHE_HOME=str(folder / "cache"))
+        environment = dict(os.environ, XDG_CACHE_HOME=str(folder / "cache"), **(more_environment or {}))
         self.process = subprocess.Popen(command, env=environment, stdout=self.errors.open("w"), stderr=subprocess.STDOUT)
         self.wait("the first frame", lambda frame: True, 60.0)
         # Nobody else on this display gives a window the keyboard.
