@@ -17,7 +17,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from slurm import Cluster, end_descendants, read_processes, say_what_is_missing, send  # noqa: E402
-from sweep import LONG, Sweep, make_older  # noqa: E402
+from sweep import FILE, LONG, Sweep, make_older  # noqa: E402
 
 
 FILTER = """/*+++
@@ -145,7 +145,7 @@ def test_cancelled_sweep_is_continued(program, cluster, folder):
 
 
 def test_failed_tasks_say_why_and_are_mended(program, cluster, folder):
-    mine, experiment = folder / "mine.glsl", folder / "e.toml"
+    mine, experiment = folder / "mine.glsl", folder / FILE
     mine.write_text(FILTER)
     sweep = Sweep(program, cluster, folder, ["--filter-file", mine])
     for file, broken, said in ((experiment, experiment.read_text().replace("[1, 2]", "[1, 3]"), "no longer what was submitted"),

@@ -20,7 +20,8 @@ radius = [1, 2]
 [[filter]]
 id = 'esm'
 """
-WORDS = ["e.toml", "--gl", "osmesa", "--gpu", "none"]
+FILE = "an experiment.toml"
+WORDS = [FILE, "--gl", "osmesa", "--gpu", "none"]
 LONG = ["--map-size", "32,40,48,64,80,96"]  # long enough to be stopped in the middle
 
 # What two runs of one experiment need not share: the times, the load and the work that was done.
@@ -56,14 +57,14 @@ def expect_same_report(first, second):
 
 
 class Sweep:
-    """An experiment in `folder`, e.toml, which is submitted into `folder`/out."""
+    """An experiment in `folder` which is submitted into `folder`/out."""
 
     def __init__(self, program, cluster, folder, words=(), tasks=2, probe=False):
         self.program, self.cluster, self.folder, self.out = program, cluster, folder, folder / "out"
-        self.words = [*WORDS, *words]
+        self.words = [*WORDS, *map(str, words)]
         self.options = ["--engine", "slurm", "--tasks", tasks, "--probe" if probe else "--no-probe"]
         self.environment = dict(cluster.environment, XDG_CACHE_HOME=str(folder / "cache"))
-        (folder / "e.toml").write_text(EXPERIMENT)
+        (folder / FILE).write_text(EXPERIMENT)
 
     def run(self, *words, code=0, **options):
         """The program, in the folder of the experiment; it is to end with `code`."""
