@@ -216,7 +216,13 @@ def test_what_sbatch_refuses_is_one_message(program, cluster, folder):
     words = ["submit", *sweep.words, *sweep.options, "--out", "out"]
     sweep.refuse([*words, "--partition", "nosuch"], 2, "sbatch", "partition")
     sweep.refuse([*words, "--", "--nosuch=3"], 2, "sbatch", "nosuch")
-    assert cluster.read_jobs() == before, "no job stays"
+    assert cluster.read_jobs() == before, "nothing was submitted"
+    sweep.options[3] = 16  # the truth is submitted by then
+    sweep.refuse(["submit", *sweep.words, *sweep.options, "--out", "out"], 2, "sbatch", "array")
+    assert not cluster.read_jobs("pending,running"), "no job stays"
+    sweep.options[3] = 2
+    sweep.submit("--dry-run")
+    assert len(sweep.read_states()) == 2, "a plan that was refused is made anew"
     sweep.environment["PATH"] = hide_tools(folder / "bin")
     sweep.refuse(words, 2, "no sbatch")
     sweep.refuse(["submit", *sweep.words, "--engine", "slrm", "--out", "out"], 2, "slurm")

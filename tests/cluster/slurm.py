@@ -48,6 +48,7 @@ GresTypes=gpu
 ReturnToService=2
 SlurmdTimeout=3
 MinJobAge=600
+MaxArraySize=10
 KillWait=1
 MessageTimeout=3
 TCPTimeout=1
