@@ -111,6 +111,8 @@ Command make_advise_command() {
       "Two costs differ where their intervals do not overlap: the 95 % intervals of the ratio to 'none' where both "
       "share map, bias and picture size, else the quartiles of the times. Without any limit the answer is the cheapest "
       "configuration of all.\n"
+      "Where several kinds of machine measured the run, the ratio of a frame to that of 'none' stands for its time: it "
+      "compares filters on one map, smaller pictures and maps come first, and --max-ms is refused.\n"
       "A configuration that was not measured on all scenes, did not finish, or lacks a value that is asked for keeps "
       "no limit. Where a scene has too few receivers on which a fault can occur, a limit on that fault is judged on "
       "the other scenes, and the answer names the scene.\n"

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { kNarrow, kWide, listViolations, measureOverflow, open, pageOf, settle } from "./support.mjs";
 
-const kPages = [...["several", "odd", "untrue", "single"].map((run) => [run, "index.html"]),
+const kPages = [...["several", "odd", "untrue", "single", "mixed"].map((run) => [run, "index.html"]),
   ...["stress", "flicker", "bias", "tune"].map((name) => [name, name + ".html"])];
 
 for (const [run, file] of kPages) {

@@ -190,6 +190,27 @@ TEST_F(Sweep, ShardsMerged_EqualTheWhole) {
   EXPECT_THAT(run("run e.toml --out out").err, HasSubstr(std::to_string(kCells) + " of them finished before"));
 }
 
+TEST_F(Sweep, ShardsOfTwoKindsOfMachine_AreMerged_AndOneWarningSaysSo) {
+  const std::string few = "run e.toml --scene cubes --map-size 32 --filters none,pcf2x2,tent3x3,vsm ";
+  for (const char* shard : {"1", "2"}) ASSERT_EQ(run(few + "--shard " + shard + "/2 --out s" + shard).exit_code, 0);
+  for (const auto& entry : std::filesystem::directory_iterator(folder() / "s2" / "cells")) {
+    json cell = json::parse(read_text(entry.path()));
+    cell["cell"]["machine"]["renderer"] = "Another rasteriser";
+    write("s2/cells/" + entry.path().filename().string(), cell.dump());
+  }
+  const Outcome outcome = run("merge s1 s2 --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json merged = results();
+  ASSERT_EQ(merged["warnings"].size(), 1u);
+  EXPECT_THAT(merged["warnings"][0].get<std::string>(), ::testing::StartsWith("Several kinds of machine measured"));
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(merged["cells"][i]["machine"]["renderer"] == "Another rasteriser", i % 2 == 1) << i;
+  EXPECT_THAT(run("advise out").out, HasSubstr(" × none a frame, moving light; lowest ratio to 'none' of 4"));
+  const Outcome refused = run("advise out --max-ms 100");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--max-ms: several kinds of machine measured the run"));
+}
+
 TEST_F(Sweep, ShardsThatDoNotFit_AreRefused) {
   const std::string few =
       "run e.toml --scene cubes --map-size 32 --filters none,vsm:radius=1,vsm:radius=2,pcf2x2,tent3x3 ";
