@@ -113,6 +113,7 @@ int submit(const CommandLine& line, SubmitArguments& a) {
       .dry_run = a.dry_run};
   const Interruption interruption(options.out, "the same command goes on");
   for (const std::string& each : submit::submit_sweep(options, request, *progress)) fmt::print("{}\n", each);
+  fmt::print("'shadowbench status {}' says how far it is\n", a.out);
   return 0;
 }
 

@@ -44,7 +44,7 @@ TEST_F(Submit, TasksDoneByHand_AndMerged_EqualTheWhole) {
     EXPECT_EQ(read_text(folder() / "out" / image), read_text(folder() / "whole" / image)) << image;
   }
   EXPECT_EQ(results()["work"]["truths_traced"], results("whole")["work"]["truths_traced"]) << "each is traced once";
-  EXPECT_EQ(run(kDry).out, "nothing is left to do\n");
+  EXPECT_THAT(run(kDry).out, ::testing::StartsWith("nothing is left to do\n"));
 }
 
 TEST_F(Submit, ATaskGoesOnWhereItStopped) {
