@@ -45,7 +45,7 @@ int run_as_task(const options::RunOptions& options, const std::filesystem::path&
   return 0;
 }
 
-int run(const CommandLine& line, RunArguments& arguments) {
+int run_experiment(const CommandLine& line, RunArguments& arguments) {
   if (arguments.worker) return run_as_worker(make_run_options(arguments, line.words()));
   if (!arguments.truth && arguments.attribution && line.has("--attribution"))
     fail(
@@ -61,6 +61,15 @@ int run(const CommandLine& line, RunArguments& arguments) {
   fmt::print("report: {}\n", (options.out / "index.html").string());
   if (arguments.strict) require_no_warnings(options.out);
   return 0;
+}
+
+int run(const CommandLine& line, RunArguments& arguments) {
+  try {
+    return run_experiment(line, arguments);
+  } catch (const Error& error) {
+    if (!arguments.task.empty()) submit::note_failed_task(arguments.task, error);
+    throw;
+  }
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <exception>
 
-#include "filters/base/error.h"
 #include "harness/run/run_experiment.h"
 #include "harness/submit/sign_of_life.h"
 #include "harness/submit/sweep_folder.h"
@@ -23,11 +23,14 @@ void run_task(options::RunOptions options, const std::filesystem::path& folder, 
   options.part = options::Part{task.ranges, sweep.scene_cells, task.content, task.kind == TaskKind::kTruth};
   remove_failure(folder);
   const SignOfLife alive(folder);
+  write_result(folder, run::run_experiment(options, progress));
+}
+
+void note_failed_task(const std::filesystem::path& folder, const Error& error) {
   try {
-    write_result(folder, run::run_experiment(options, progress));
-  } catch (const Error& error) {
-    write_failure(folder, {static_cast<int>(error.kind()), error.what()});
-    throw;
+    if (std::filesystem::exists(folder)) write_failure(folder, {static_cast<int>(error.kind()), error.what()});
+  } catch (const std::exception&) {
+    // That it failed is said all the same, where the job prints.
   }
 }
 

@@ -2,17 +2,21 @@
 
 #include <filesystem>
 
+#include "filters/base/error.h"
 #include "harness/options/options.h"
 #include "harness/options/progress.h"
 
 namespace shadowbench::submit {
 
 /// Does a task of a sweep: measures those of its cells that are not there, or traces, and writes beside its plan what
-/// it ran with, or why it failed. Shows meanwhile that it runs. May be started again at any time, also while it runs
-/// elsewhere. `options` are those of the whole experiment.
+/// it ran with. Shows meanwhile that it runs. May be started again at any time, also while it runs elsewhere. `options`
+/// are those of the whole experiment.
 /// Throws Error as run::run_experiment(), and Error(kInput) where the folder holds no task, or the experiment, a filter
 /// or the program is no longer what was submitted.
 void run_task(options::RunOptions options, const std::filesystem::path& folder, options::Progress& progress);
+
+/// Notes why a task failed. Whoever reads its words does it, because they may be what is wrong.
+void note_failed_task(const std::filesystem::path& folder, const Error& error);
 
 /// Notes that a signal ends a task.
 void note_stopped_task(const std::filesystem::path& folder, int signal);

@@ -102,6 +102,11 @@ class SlurmEngine : public Engine {
     return lines;
   }
 
+  /// Slurm's own --chdir goes on in /tmp where there is no such folder.
+  static std::string enter_folder(const JobPlan& plan) {
+    return "cd " + quote_words({plan.working_folder.string()}) + " || exit 1\n";
+  }
+
   void write_array(const JobPlan& plan, const char* script, const char* what, TaskKind kind,
                    const std::vector<int>& numbers) const {
     const fs::path folder = task_folder(plan.out, kind, 1).parent_path();
@@ -109,10 +114,10 @@ class SlurmEngine : public Engine {
         plan.out / script,
         fmt::format("#!/bin/sh\n# {}\n# Written by 'shadowbench submit'. Stopped or requeued, a task goes on where it "
                     "was.\n"
-                    "#SBATCH --job-name={}-{}\n#SBATCH --array={}\n#SBATCH --output={}\n#SBATCH --open-mode=append\n"
-                    "#SBATCH --chdir={}\n#SBATCH --requeue\n{}\nexec {} --task {}/\"$SLURM_ARRAY_TASK_ID\"\n",
+                    "#SBATCH --job-name=\"{}-{}\"\n#SBATCH --array={}\n#SBATCH --output={}\n#SBATCH "
+                    "--open-mode=append\n#SBATCH --requeue\n{}\n{}exec {} --task {}/\"$SLURM_ARRAY_TASK_ID\"\n",
                     what, plan.name, folder.filename().string(), describe_array(numbers),
-                    quote_pattern(folder, "/%a/log.txt"), quote_pattern(plan.working_folder), describe_resources(true),
+                    quote_pattern(folder, "/%a/log.txt"), describe_resources(true), enter_folder(plan),
                     quote_words(plan.command), quote_words({folder.string()})));
   }
 
@@ -121,10 +126,10 @@ class SlurmEngine : public Engine {
     command.insert(command.end(), {"merge", plan.out.string()});
     write_text_file(plan.out / kMergeScript,
                     fmt::format("#!/bin/sh\n# Writes the report once no task runs any more.\n# Written by 'shadowbench "
-                                "submit'.\n#SBATCH --job-name={}-merge\n#SBATCH --output={}\n#SBATCH "
-                                "--open-mode=append\n#SBATCH --chdir={}\n{}\nexec {}\n",
-                                plan.name, quote_pattern(plan.out / "merge.log"), quote_pattern(plan.working_folder),
-                                describe_resources(false), quote_words(command)));
+                                "submit'.\n#SBATCH --job-name=\"{}-merge\"\n#SBATCH --output={}\n#SBATCH "
+                                "--open-mode=append\n{}\n{}exec {}\n",
+                                plan.name, quote_pattern(plan.out / "merge.log"), describe_resources(false),
+                                enter_folder(plan), quote_words(command)));
   }
 
   std::string make_command(const JobPlan& plan, const std::vector<std::string>& options, const char* script) const {
