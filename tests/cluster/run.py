@@ -264,7 +264,7 @@ def main():
         return 77
     failed = []
     tests = [(name[5:], test) for name, test in globals().items() if name.startswith("test_") and arguments.only in name]
-    with tempfile.TemporaryDirectory() as scratch, Cluster(Path(scratch) / "slurm") as cluster:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as scratch, Cluster(Path(scratch) / "slurm") as cluster:
         for name, test in tests:
             folder = Path(scratch) / name
             folder.mkdir()
@@ -276,6 +276,7 @@ def main():
                 failed.append(name)
                 print(f"FAILED  {name}: {error!r}\n{cluster.read_logs()}", flush=True)
             cluster.tidy()
+            send(signal.SIGKILL, find_processes(folder))  # what a test that failed left running
     print(f"{len(tests) - len(failed)} of {len(tests)} passed")
     return 1 if failed else 0
 
