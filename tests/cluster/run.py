@@ -101,7 +101,7 @@ def test_node_that_dies_costs_no_cell(program, cluster, folder):
     job, node = cluster.find_running()
     cluster.kill_node(node)
     cells = sweep.expect_stopped_midway()
-    cluster.wait_for(lambda: cluster.read_nodes()[node] == "down*", 30, f"failure of {node}")
+    cluster.notice_failure(node)
     cluster.restart_node(node)
     sweep.wait()
     assert "Restarts=1" in cluster.run("scontrol", "show", "job", job).stdout, "the job was requeued"

@@ -246,6 +246,10 @@ class Cluster:
         keeper.terminate()
         keeper.wait()
 
+    def notice_failure(self, name):
+        """What Slurm does of itself some ten seconds after a node has died."""
+        self.run("scontrol", "update", f"nodename={name}", "state=down", "reason=dead")
+
     def restart_node(self, name):
         self._start_daemon("slurmd", "-D", "-N", name, name=name)
 
