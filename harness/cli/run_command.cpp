@@ -66,7 +66,7 @@ int run_experiment(const CommandLine& line, RunArguments& arguments) {
 int run(const CommandLine& line, RunArguments& arguments) {
   try {
     return run_experiment(line, arguments);
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     if (!arguments.task.empty()) submit::note_failed_task(arguments.task, error);
     throw;
   }

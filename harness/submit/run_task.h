@@ -1,8 +1,8 @@
 #pragma once
 
+#include <exception>
 #include <filesystem>
 
-#include "filters/base/error.h"
 #include "harness/options/options.h"
 #include "harness/options/progress.h"
 
@@ -16,7 +16,7 @@ namespace shadowbench::submit {
 void run_task(options::RunOptions options, const std::filesystem::path& folder, options::Progress& progress);
 
 /// Notes why a task failed. Whoever reads its words does it, because they may be what is wrong.
-void note_failed_task(const std::filesystem::path& folder, const Error& error);
+void note_failed_task(const std::filesystem::path& folder, const std::exception& error);
 
 /// Notes that a signal ends a task.
 void note_stopped_task(const std::filesystem::path& folder, int signal);

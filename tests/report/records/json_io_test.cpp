@@ -105,6 +105,7 @@ CellRecord make_full_cell() {
                  {16, {24.0, 20.0, 28.0, 5}, {40.0, 36.0, 44.0, 5}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 16384}};
   cell.content = "0123";
   cell.machine = {"A CPU", 3, "A GPU", false, TimerKind::kTimerQuery};
+  cell.measured_s = 1.25;
   cell.warnings = {"one", "two"};
   cell.absent.clear();
   return cell;
@@ -193,6 +194,9 @@ TEST(JsonIo, LaterFields_MayLack) {
   EXPECT_EQ(cell_from_json(written, "here").fit, "view snapped");
   written.erase("machine");
   EXPECT_FALSE(cell_from_json(written, "here").machine);
+  EXPECT_EQ(cell_from_json(written, "here").measured_s, 1.25);
+  written.erase("measured_s");
+  EXPECT_FALSE(cell_from_json(written, "here").measured_s);
   CellRecord suspect = make_full_cell();
   suspect.status = CellStatus::kSuspect;
   suspect.suspect_of = {"it reads nothing", "it is constant"};
