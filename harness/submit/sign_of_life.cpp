@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "filters/base/atomic_file.h"
+#include "filters/base/error.h"
 #include "filters/base/temporary_files.h"
 
 namespace shadowbench::submit {
@@ -25,11 +26,12 @@ std::string read_environment(const char* name) {
   return value ? value : "";
 }
 
-/// Who runs the task, for people.
+/// Who runs the task: a line for read_last_sign(), and one for people.
 std::string describe_runner() {
   char host[256] = {};
   gethostname(host, sizeof host - 1);
-  std::string text = fmt::format("process {} on {}", getpid(), host);
+  const Writer own = this_writer();
+  std::string text = fmt::format("{} {}\nprocess {} on {}", own.process, own.host, own.process, host);
   if (const std::string job = read_environment("SLURM_JOB_ID"); !job.empty())
     text += fmt::format(", job {}, node {}", job, read_environment("SLURMD_NODENAME"));
   return text + "\n";
@@ -54,8 +56,14 @@ SignOfLife::~SignOfLife() {
 
 void SignOfLife::beat() {
   std::unique_lock lock(mutex_);
-  while (!wake_.wait_for(lock, kBeat, [this] { return ending_; }))
-    utimensat(AT_FDCWD, file_.c_str(), nullptr, 0);  // without a time: the file system's own
+  while (!wake_.wait_for(lock, kBeat, [this] { return ending_; })) {
+    if (utimensat(AT_FDCWD, file_.c_str(), nullptr, 0) == 0) continue;  // without a time: the file system's own
+    try {
+      write_text_file(file_, describe_runner());  // another process that did the same task has taken it away
+    } catch (const Error&) {
+      // A full disk ends the task where it matters.
+    }
+  }
 }
 
 void remove_sign_of_life(const fs::path& folder) {
@@ -63,11 +71,13 @@ void remove_sign_of_life(const fs::path& folder) {
   fs::remove(folder / kFile, ignored);
 }
 
-std::optional<std::chrono::duration<double>> read_silence(const fs::path& folder, fs::file_time_type now) {
+std::optional<LastSign> read_last_sign(const fs::path& folder, fs::file_time_type now) {
   std::error_code error;
   const fs::file_time_type last = fs::last_write_time(folder / kFile, error);
   if (error) return std::nullopt;
-  return std::chrono::duration<double>(now - last);
+  Writer writer;
+  std::ifstream(folder / kFile) >> writer.process >> writer.host;
+  return LastSign{std::chrono::duration<double>(now - last).count(), writer.process > 0 && is_gone(writer)};
 }
 
 fs::file_time_type file_system_now(const fs::path& folder) {

@@ -35,10 +35,14 @@ class SignOfLife {
 /// Takes the sign of life away, for a task that a signal ends.
 void remove_sign_of_life(const std::filesystem::path& folder);
 
-/// How long ago a task last showed that it runs; nothing where it does not run, or has not begun.
-/// `now` is file_system_now() of the folder of the sweep.
-std::optional<std::chrono::duration<double>> read_silence(const std::filesystem::path& folder,
-                                                          std::filesystem::file_time_type now);
+/// What a task last showed.
+struct LastSign {
+  double silent_s = 0.0;  ///< seconds since then
+  bool is_gone = false;   ///< it ran on this machine, and its process has ended
+};
+
+/// Nothing where a task does not run, or has not begun. `now` is file_system_now() of the folder of the sweep.
+std::optional<LastSign> read_last_sign(const std::filesystem::path& folder, std::filesystem::file_time_type now);
 
 /// The time of the file system of a folder, which need not be that of this machine: a file is written there, and
 /// removed. Where none can be written it is the time of this machine.

@@ -87,7 +87,13 @@ class SlurmEngine : public Engine {
     if (job.empty()) return numbers;
     const ShellOutcome outcome =
         run_shell(quote_words({"squeue", "--noheader", "--array", "--format=%K", "--jobs", job}));
-    if (outcome.exit_code != 0) return numbers;
+    const bool is_forgotten = outcome.text.find("Invalid job id") != std::string::npos;
+    if (is_forgotten || outcome.exit_code == kNoSuchCommand) return numbers;
+    if (outcome.exit_code != 0)
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("squeue refuses, so nobody can say which tasks wait: {}; try again once "
+                              "Slurm answers",
+                              outcome.text));
     std::istringstream lines(outcome.text);
     for (int number = 0; lines >> number;) numbers.insert(number);
     return numbers;

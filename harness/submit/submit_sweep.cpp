@@ -90,10 +90,13 @@ std::vector<std::string> submit_sweep(const options::RunOptions& options, Submit
                                       options::Progress& progress) {
   const std::unique_ptr<Engine> engine = make_engine(request.engine);
   const fs::path& out = options.out;
-  if (was_submitted(out))
+  if (was_submitted(out)) {
     require_same(options, read_sweep(out));
-  else
+    if (request.split.tasks > 0 || !request.split.earlier_run.empty())
+      progress.note("note: --tasks and --times-of change nothing: the tasks stay as they were submitted first");
+  } else {
     plan_folder(options, request.split, progress);
+  }
   SweepStatus status = read_status(out);
   const QueuedTasks queued = engine->find_queued(out, status.sweep.jobs);
   JobPlan& plan = request.jobs;

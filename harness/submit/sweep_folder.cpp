@@ -126,7 +126,15 @@ void write_result(const fs::path& folder, const records::RunRecord& run) {
   write_json(folder / kResultFile, {{"run", records::to_json(run)}});
 }
 
-bool is_finished(const fs::path& folder) { return is_there(folder / kResultFile); }
+bool is_finished(const fs::path& folder) {
+  if (!is_there(folder / kResultFile)) return false;
+  try {
+    read_result(folder);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
 
 records::RunRecord read_result(const fs::path& folder) {
   const fs::path file = folder / kResultFile;

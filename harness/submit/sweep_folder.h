@@ -63,7 +63,7 @@ Sweep read_sweep(const std::filesystem::path& out);
 void write_task(const std::filesystem::path& out, const SweepTask& task);
 SweepTask read_task(const std::filesystem::path& folder);
 
-/// What a finished task ran with. Where it is, all its cells are.
+/// What a finished task ran with; written after all its cells. One that cannot be read is none.
 void write_result(const std::filesystem::path& folder, const records::RunRecord& run);
 bool is_finished(const std::filesystem::path& folder);
 records::RunRecord read_result(const std::filesystem::path& folder);

@@ -30,22 +30,27 @@ class StatusReader {
   TaskStatus read(TaskKind kind, int number) const {
     const fs::path folder = task_folder(out_, kind, number);
     TaskStatus status{.task = read_task(folder), .message = {}};
-    if (is_finished(folder)) {
-      status.state = TaskState::kFinished;
-      status.cells = static_cast<int>(status.task.keys.size());
-      return status;
-    }
     status.cells = static_cast<int>(std::ranges::count_if(status.task.keys, [&](const std::string& key) {
       std::error_code ignored;
       return fs::exists(records::cell_path(out_, key), ignored);
     }));
-    if (const auto silence = read_silence(folder, now_)) {
-      const bool runs = silence->count() < silent_after_s_;
+    const bool has_all = status.cells == static_cast<int>(status.task.keys.size());
+    if (has_all && is_finished(folder)) {
+      status.state = TaskState::kFinished;
+    } else if (const auto sign = read_last_sign(folder, now_)) {
+      const bool runs = !sign->is_gone && sign->silent_s < silent_after_s_;
       status.state = runs ? TaskState::kRunning : TaskState::kLost;
-      if (!runs) status.message = fmt::format("it has shown nothing for {:.0f} s", silence->count());
+      if (sign->is_gone)
+        status.message = "its process has ended without a word";
+      else if (!runs)
+        status.message = fmt::format("it has shown nothing for {:.0f} s", sign->silent_s);
     } else if (const auto failure = read_failure(folder)) {
       status.state = TaskState::kFailed;
       status.message = fmt::format("exit code {}: {}", failure->exit_code, failure->message);
+    } else if (is_finished(folder)) {
+      status.state = TaskState::kLost;
+      status.message = fmt::format("it was finished, and {} of its cells are gone",
+                                   status.task.keys.size() - static_cast<std::size_t>(status.cells));
     }
     return status;
   }

@@ -73,6 +73,7 @@ TEST_F(SweepStatusTest, OfATask_GoesFromWaitingToFinished) {
     EXPECT_EQ(status(1).state, TaskState::kRunning);
     write_text_file(records::cell_path(out(), status(1).task.keys[0]), "{}");
     EXPECT_EQ(status(1).cells, 1);
+    write_text_file(records::cell_path(out(), status(1).task.keys[1]), "{}");
     write_result(task(1), {});
     EXPECT_EQ(status(1).state, TaskState::kFinished);
   }
@@ -105,6 +106,26 @@ TEST_F(SweepStatusTest, OfATaskThatIsSilent_IsLost) {
   EXPECT_EQ(status(3).state, TaskState::kRunning);
 }
 
+TEST_F(SweepStatusTest, OfATaskWhoseCellsAreGone_IsLost) {
+  for (const std::string& key : status(1).task.keys) write_text_file(records::cell_path(out(), key), "{}");
+  write_result(task(1), {});
+  ASSERT_EQ(status(1).state, TaskState::kFinished);
+  std::filesystem::remove(records::cell_path(out(), status(1).task.keys[0]));
+  EXPECT_EQ(status(1).state, TaskState::kLost);
+  EXPECT_THAT(status(1).message, HasSubstr("1 of its cells are gone"));
+  write_text_file(records::cell_path(out(), status(1).task.keys[0]), "{}");
+  write_text_file(task(1) / "result.json", "{");
+  EXPECT_EQ(status(1).state, TaskState::kWaiting) << "a damaged result is none";
+}
+
+TEST_F(SweepStatusTest, OfATaskWhoseProcessHasEnded_IsLostAtOnce) {
+  write_text_file(task(1) / "alive", "99999999 " + this_writer().host + "\nprocess 99999999 on this machine\n");
+  EXPECT_EQ(status(1).state, TaskState::kLost);
+  EXPECT_THAT(status(1).message, HasSubstr("its process has ended"));
+  write_text_file(task(1) / "alive", "99999999 elsewhere\nprocess 99999999 on elsewhere\n");
+  EXPECT_EQ(status(1).state, TaskState::kRunning) << "nobody here can tell";
+}
+
 TEST_F(SweepStatusTest, AsJson_HasEveryTask) {
   write_failure(task(4), {6, "the disk is full"});
   const auto json = nlohmann::json::parse(make_status_json(read_status(out())));
@@ -129,9 +150,9 @@ TEST_F(SweepStatusTest, OfDamagedFiles_IsRefused) {
 TEST_F(SweepStatusTest, SignOfLife_GoesWithItsTask_AndLeavesNothing) {
   {
     const SignOfLife alive(task(1));
-    EXPECT_TRUE(read_silence(task(1), file_system_now(out())));
+    EXPECT_TRUE(read_last_sign(task(1), file_system_now(out())));
   }
-  EXPECT_FALSE(read_silence(task(1), file_system_now(out())));
+  EXPECT_FALSE(read_last_sign(task(1), file_system_now(out())));
   for (const auto& entry : std::filesystem::directory_iterator(out()))
     EXPECT_FALSE(is_temporary(entry.path())) << entry.path();
 }
