@@ -101,20 +101,21 @@ std::vector<records::CsvColumn> list_front_columns() {
           {"left_out", "why it has no place on this front"}};
 }
 
-std::string make_fronts_csv(const std::vector<records::CellRecord>& cells,
-                            const std::vector<analysis::TradeScope>& scopes) {
+void write_fronts_csv(const std::vector<records::CellRecord>& cells, const std::vector<analysis::TradeScope>& scopes,
+                      const std::function<void(std::string_view)>& write) {
   std::vector<std::string> names;
   for (const records::CsvColumn& column : list_front_columns()) names.push_back(column.name);
-  std::string csv = join_front_row(names);
+  write(join_front_row(names));
   for (const analysis::TradeScope& scope : scopes) {
     for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error) {
       for (std::size_t cost = 0; cost < scope.costs.size(); ++cost) {
         const analysis::TradeFront front = analysis::make_trade_front(scope, error, cost);
-        for (std::size_t i = 0; i < scope.configurations.size(); ++i) csv += make_row(cells, scope, front, i);
+        std::string rows;
+        for (std::size_t i = 0; i < scope.configurations.size(); ++i) rows += make_row(cells, scope, front, i);
+        write(rows);
       }
     }
   }
-  return csv;
 }
 
 }  // namespace shadowbench::pages

@@ -36,9 +36,13 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run, cons
   write_text_file(dir / "timings.csv", records::make_csv(records::CsvTable::kTimings, run, cells));
   write_text_file(dir / "accuracy.csv", records::make_csv(records::CsvTable::kAccuracy, run, cells));
   const std::optional<Trade> trade = make_trade(cells);
-  if (trade && trade->has_fronts) write_text_file(dir / "fronts.csv", make_fronts_csv(cells, trade->scopes));
+  if (trade && trade->has_fronts) {
+    AtomicFile file(dir / "fronts.csv");
+    write_fronts_csv(cells, trade->scopes, [&](std::string_view rows) { file.write(rows); });
+    file.commit();
+  }
   write_page(dir, "run", make_run_page(run, cells, trade));
-  records::write_results(dir, run, keys);
+  records::write_results(dir, run, cells);
 }
 
 }  // namespace shadowbench::pages

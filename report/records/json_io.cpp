@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <exception>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "filters/base/atomic_file.h"
@@ -163,12 +165,12 @@ std::map<std::string, std::string> explain_nulls(const json& root, std::map<std:
   return absent;
 }
 
-json parse_file(const std::filesystem::path& file) {
+json parse_file(const std::filesystem::path& file, const json::parser_callback_t& keep = {}) {
   require_plain_file(file, 4096 * kMebibyte);
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw Error(ErrorKind::kInput, "the file cannot be opened; was the run finished?", file.string());
   try {
-    return parse_json(stream);
+    return parse_json(stream, keep);
   } catch (const std::exception& problem) {
     throw Error(
         ErrorKind::kInput,
@@ -188,6 +190,34 @@ void check_version(const json& root, const std::string& where) {
                 where);
   }
 }
+
+// Takes the cells out of a results.json while it is parsed: as JSON they fill ten times the memory that they need.
+class CellTaker {
+ public:
+  CellTaker(std::vector<CellRecord>& cells, const std::string& where) : cells_(cells), where_(where) {}
+
+  /// Whether a value stays; called by the parser. What is wrong with a cell waits until the file is known to be whole.
+  bool operator()(int depth, json::parse_event_t event, const json& value) {
+    if (depth == 1 && event == json::parse_event_t::key) among_cells_ = value == "cells";
+    if (!among_cells_ || depth != 2 || event != json::parse_event_t::object_end) return true;
+    try {
+      if (!problem_) cells_.push_back(cell_from_json(value, where_));
+    } catch (const Error&) {
+      problem_ = std::current_exception();
+    }
+    return false;
+  }
+
+  void throw_problem() const {
+    if (problem_) std::rethrow_exception(problem_);
+  }
+
+ private:
+  std::vector<CellRecord>& cells_;
+  const std::string& where_;
+  bool among_cells_ = false;
+  std::exception_ptr problem_;
+};
 
 // Whether a path that a report names stays in its folder: reports come from elsewhere, and `merge` copies what they
 // name.
@@ -286,15 +316,15 @@ CellRecord read_cell(const std::filesystem::path& dir, const std::string& key) {
   return cell_from_json(root.value("cell", json()), file.string());
 }
 
-void write_results(const std::filesystem::path& dir, const RunRecord& run, const std::vector<std::string>& keys) {
+void write_results(const std::filesystem::path& dir, const RunRecord& run, const std::vector<CellRecord>& cells) {
   write_text_file(dir / "results.schema.json", results_schema());
   AtomicFile file(dir / "results.json");
   std::string head = to_json(run).dump(1, ' ', false, json::error_handler_t::replace);
   head.resize(head.rfind('\n'));  // the closing brace comes after the cells
   file.write(head + ",\n \"cells\": [");
   std::string_view separator = "\n";
-  for (const std::string& key : keys) {
-    file.write(fmt::format("{}  {}", separator, dump_line(to_json(read_cell(dir, key)))));
+  for (const CellRecord& cell : cells) {
+    file.write(fmt::format("{}  {}", separator, dump_line(to_json(cell))));
     separator = ",\n";
   }
   file.write("\n ]\n}\n");
@@ -302,12 +332,15 @@ void write_results(const std::filesystem::path& dir, const RunRecord& run, const
 }
 
 Results read_results(const std::filesystem::path& file) {
-  const json root = parse_file(file);
-  Results results{run_from_json(root, file.string()), {}};
-  const json cells = root.value("cells", json());
-  if (!cells.is_array())
-    throw Error(ErrorKind::kInput, "the list 'cells' is missing; delete this file and run again", file.string());
-  for (const json& cell : cells) results.cells.push_back(cell_from_json(cell, file.string()));
+  Results results;
+  const std::string where = file.string();
+  CellTaker taker(results.cells, where);
+  const json root = parse_file(file, std::ref(taker));
+  results.run = run_from_json(root, where);
+  if (!root.contains("cells") || !root["cells"].is_array())
+    throw Error(ErrorKind::kInput, "the list 'cells' is missing; delete this file and run again", where);
+  taker.throw_problem();
+  for (const json& cell : root["cells"]) cell_from_json(cell, where);  // what is no object is no cell
   return results;
 }
 

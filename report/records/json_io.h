@@ -34,9 +34,9 @@ void write_cell(const std::filesystem::path& dir, const CellRecord& cell);
 /// Throws Error(kInput) where the file is missing, cut off or of another schema version.
 CellRecord read_cell(const std::filesystem::path& dir, const std::string& key);
 
-/// Writes results.json from the cell files that `keys` name, in that order, and results.schema.json beside it.
-/// Throws Error(kInput) for a cell file, Error(kOutput) for the results. Cost: memory of one cell at a time.
-void write_results(const std::filesystem::path& dir, const RunRecord& run, const std::vector<std::string>& keys);
+/// Writes results.json, with the cells in this order, and results.schema.json beside it.
+/// Throws Error(kOutput). Cost: memory of the JSON of one cell at a time.
+void write_results(const std::filesystem::path& dir, const RunRecord& run, const std::vector<CellRecord>& cells);
 
 /// A whole results.json.
 struct Results {

@@ -20,11 +20,11 @@ void require(bool holds, const char* expected) {
 
 }  // namespace
 
-json parse_json(std::istream& stream) {
+json parse_json(std::istream& stream, const json::parser_callback_t& keep) {
   constexpr int kDeepest = 100;
-  return json::parse(stream, [](int depth, json::parse_event_t, json&) {
+  return json::parse(stream, [&](int depth, json::parse_event_t event, json& value) {
     if (depth > kDeepest) throw std::invalid_argument("nested more than 100 deep");
-    return true;
+    return !keep || keep(depth, event, value);
   });
 }
 

@@ -11,7 +11,8 @@ namespace shadowbench::records {
 
 /// Parses JSON. Throws nlohmann::json::exception, or std::invalid_argument where it is nested more than 100 deep:
 /// copying or writing such a value recurses, and would end the program.
-nlohmann::json parse_json(std::istream& stream);
+/// `keep` is told of every value once it is read, and says whether it stays; see nlohmann::json::parser_callback_t.
+nlohmann::json parse_json(std::istream& stream, const nlohmann::json::parser_callback_t& keep = {});
 
 /// Writes a number: integral values as integers, so that 4 and 4.0 are one text. Requires a finite value.
 nlohmann::json number_json(double value);

@@ -22,21 +22,20 @@ class Advise : public ProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
-    std::vector<std::string> keys;
+    std::vector<records::CellRecord> cells;
     for (const char* scene : {"cubes", "stack"}) {
-      keys.push_back(write_cell(scene, "none", 1.0, 0.06));
-      keys.push_back(write_cell(scene, "tent3x3", 4.0, 0.02));
+      cells.push_back(make_cell(scene, "none", 1.0, 0.06));
+      cells.push_back(make_cell(scene, "tent3x3", 4.0, 0.02));
     }
-    records::write_results(folder() / "run", records::make_run(), keys);
+    records::write_results(folder() / "run", records::make_run(), cells);
   }
 
-  std::string write_cell(const std::string& scene, const std::string& filter, double ms, double rmse) const {
+  static records::CellRecord make_cell(const std::string& scene, const std::string& filter, double ms, double rmse) {
     records::CellRecord cell = records::make_cell(scene, filter, ms);
     cell.error.rmse = rmse;
     cell.truth.se = 0.001;
     cell.absent.erase("error");
-    records::write_cell(folder() / "run", cell);
-    return cell.key;
+    return cell;
   }
 
   /// Points the program at filters of our own, of which `soft` claims something.

@@ -224,13 +224,8 @@ class DiffRuns : public ProgramTest {
   }
 
   void write_run(const std::string& name, double vsm_ms, double esm_ms) const {
-    std::vector<std::string> keys;
-    for (const records::CellRecord& cell :
-         {records::make_cell("cubes", "vsm", vsm_ms), records::make_cell("cubes", "esm", esm_ms)}) {
-      records::write_cell(folder() / name, cell);
-      keys.push_back(cell.key);
-    }
-    records::write_results(folder() / name, records::make_run(), keys);
+    records::write_results(folder() / name, records::make_run(),
+                           {records::make_cell("cubes", "vsm", vsm_ms), records::make_cell("cubes", "esm", esm_ms)});
   }
 };
 

@@ -23,6 +23,12 @@ const Estimate& cost_of(const TradeScope& scope, std::size_t i, std::size_t meas
   return *scope.configurations[i].costs[measure].estimate;
 }
 
+std::string make_fronts_csv(const std::vector<CellRecord>& cells, const std::vector<TradeScope>& scopes) {
+  std::string csv;
+  pages::write_fronts_csv(cells, scopes, [&](std::string_view rows) { csv += rows; });
+  return csv;
+}
+
 TEST(TradeScopes, AreEachScene_AndAllTogetherFirst) {
   const auto scopes = make_trade_scopes({make_sweep_cell({"cubes"}), make_sweep_cell({"stack"})});
   ASSERT_THAT(scopes, SizeIs(3));
@@ -165,7 +171,7 @@ TEST(TradeFronts, CompareKernelsOfOneClass) {
   EXPECT_EQ(front.placements[1].by, 0u);
   EXPECT_EQ(front.placements[1].standing, Standing::kDominated);
   EXPECT_EQ(front.placements[3].standing, Standing::kApart);
-  EXPECT_THAT(pages::make_fronts_csv(cells, {scope}), HasSubstr(",,,,its kernel is of no class of width\r\n"));
+  EXPECT_THAT(make_fronts_csv(cells, {scope}), HasSubstr(",,,,its kernel is of no class of width\r\n"));
 }
 
 TEST(TradeFronts, ValuesThatAreNotFinite_AreLeftOut) {
@@ -200,7 +206,7 @@ TEST(FrontsCsv, HasARowPerCellOfEveryFront) {
   const std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}),
                                                   make_sweep_cell({"cubes", "vsm", 4.0, 2.0, 0.0, 0.2}),
                                                   make_sweep_cell({"cubes", "a,\"b", 4.0, 1.0, 0.0, 0.1})};
-  const std::string csv = pages::make_fronts_csv(cells, make_trade_scopes(cells));
+  const std::string csv = make_fronts_csv(cells, make_trade_scopes(cells));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 16 * 3);
   EXPECT_THAT(
       csv, HasSubstr("rmse,moving," + cells[1].key +
