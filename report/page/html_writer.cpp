@@ -68,33 +68,43 @@ std::string html_list(const std::vector<std::string>& items) {
   return text + "</ul>\n";
 }
 
-/// Writes data for a page's scripts. No text in it can end the element that it stands in, or begin a comment.
-std::string html_data(std::string_view id, const json& data) {
-  std::string safe;
-  for (const char c : records::dump_line(data))
+/// Writes a line of JSON for a page's scripts. No text in it can end the element that it stands in, or begin a comment.
+std::string html_data(std::string_view id, std::string_view line) {
+  std::string html = fmt::format("<script type=\"application/json\" id=\"{}\">", id);
+  html.reserve(html.size() + line.size() + line.size() / 16);
+  for (const char c : line)
     if (c == '<' || c == '>' || c == '&')
-      safe += fmt::format("\\u{:04x}", static_cast<int>(c));
+      html += fmt::format("\\u{:04x}", static_cast<int>(c));
     else
-      safe += c;
-  return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id, safe);
+      html += c;
+  return html.append("</script>\n");
 }
 
 std::string html_script(std::string_view script) { return fmt::format("<script>\n{}</script>\n", script); }
 
-/// Packs the charts of a page for charts.js. Texts that many points share are kept once, and named by their place.
+/// Packs the charts of a page for charts.js. Texts that many points share are kept once, and named by their place. Each
+/// chart is written once it is packed: as JSON values, the charts of a large run take ten times the memory.
 class ChartPacker {
  public:
   void add(const ChartChoice& choice) {
-    json selectors = json::array(), charts = json::array();
+    json selectors = json::array();
     for (const ChartChoice::Selector& each : choice.selectors)
       selectors.push_back({{"label", each.label}, {"options", each.options}});
-    for (const Chart& each : choice.charts) charts.push_back(pack(each));
-    charts_.push_back({{"id", choice.id}, {"selectors", selectors}, {"charts", charts}});
+    charts_ += charts_.empty() ? R"({"charts":[)" : R"(,{"charts":[)";
+    for (const Chart& each : choice.charts) {
+      if (&each != &choice.charts.front()) charts_ += ',';
+      charts_ += records::dump_line(pack(each));
+    }
+    charts_ +=
+        fmt::format(R"(],"id":{},"selectors":{}}})", records::dump_line(choice.id), records::dump_line(selectors));
   }
 
   bool is_empty() const { return charts_.empty(); }
 
-  json pack() const { return {{"texts", texts_}, {"charts", charts_}}; }
+  /// All that was added, as a line of JSON.
+  std::string write() const {
+    return fmt::format(R"({{"charts":[{}],"texts":{}}})", charts_, records::dump_line(texts_));
+  }
 
  private:
   std::size_t pack(const std::string& text) {
@@ -142,19 +152,19 @@ class ChartPacker {
                         {"line", kLines[static_cast<std::size_t>(each.line)]},
                         {"whiskers", each.whiskers},
                         {"hidden", each.hidden},
-                        {"points", points}});
+                        {"points", std::move(points)}});
     }
     return {{"id", chart.id},
             {"title", chart.title},
             {"x", pack(chart.x_name, chart.x)},
             {"y", pack(chart.y_name, chart.y)},
-            {"series", series},
+            {"series", std::move(series)},
             {"notes", chart.notes}};
   }
 
   std::map<std::string, std::size_t> places_;
   json texts_ = json::array();
-  json charts_ = json::array();
+  std::string charts_;
 };
 
 /// What a column holds decides how it is aligned and broken into lines: numbers ("n"), short texts ("s") or others.
@@ -331,9 +341,11 @@ std::string write_html(const Page& page) {
   html += write_contents(page);
   for (std::size_t i = begins ? 1 : 0; i < page.sections.size(); ++i) html += write_section(page.sections[i], writer);
   html += "</main>\n";
-  if (!page.data.is_null()) html += html_data("run", page.data) + html_script(run_script());
-  if (!writer.charts().is_empty()) html += html_data("charts", writer.charts().pack()) + html_script(chart_script());
-  return html + "</body>\n</html>\n";
+  if (!page.data.is_null())
+    html.append(html_data("run", records::dump_line(page.data))).append(html_script(run_script()));
+  if (!writer.charts().is_empty())
+    html.append(html_data("charts", writer.charts().write())).append(html_script(chart_script()));
+  return html.append("</body>\n</html>\n");
 }
 
 }  // namespace shadowbench::page
