@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <set>
+#include <string_view>
 
 #include "reference/metrics/metric_table.h"
 #include "report/analysis/accuracy.h"
@@ -81,19 +81,34 @@ class Finder {
   /// Calls `visit(a, b, pairs)` with each two configurations of one class of width and the cells of both by place.
   template <class Visitor>
   void visit_pairs(Visitor&& visit) const {
-    for (const Configuration& a : sound_) {
-      for (const Configuration& b : sound_) {
-        if (&a == &b || a.surroundings != b.surroundings) continue;
-        const auto of = find_class(*a.cells.front());
-        if (!of || of != find_class(*b.cells.front())) continue;
-        std::vector<std::array<const records::CellRecord*, 2>> pairs;
-        for (const records::CellRecord* cell : a.cells)
-          for (const records::CellRecord* other : b.cells)
-            if (place_of(*cell) == place_of(*other) && cell->error.rmse && other->error.rmse)
-              pairs.push_back({cell, other});
-        if (!pairs.empty()) visit(a, b, pairs);
+    using Common = std::pair<std::string_view, std::size_t>;
+    const auto common = [](const Configuration& each) {
+      return Common(each.surroundings, *find_class(*each.cells.front()));
+    };
+    std::map<Common, std::vector<std::size_t>> peers;
+    std::vector<std::vector<const records::CellRecord*>> at(sound_.size());  // with an error, by place
+    for (std::size_t i = 0; i < sound_.size(); ++i) {
+      if (!find_class(*sound_[i].cells.front())) continue;
+      peers[common(sound_[i])].push_back(i);
+      at[i].resize(places_.size());
+      for (const records::CellRecord* cell : sound_[i].cells)
+        if (cell->error.rmse) at[i][find_place(*cell)] = cell;
+    }
+    std::vector<std::array<const records::CellRecord*, 2>> pairs;
+    for (std::size_t a = 0; a < sound_.size(); ++a) {
+      if (at[a].empty()) continue;
+      for (const std::size_t b : peers[common(sound_[a])]) {
+        if (a == b) continue;
+        pairs.clear();
+        for (std::size_t place = 0; place < places_.size(); ++place)
+          if (at[a][place] && at[b][place]) pairs.push_back({at[a][place], at[b][place]});
+        if (!pairs.empty()) visit(sound_[a], sound_[b], pairs);
       }
     }
+  }
+
+  std::size_t find_place(const records::CellRecord& cell) const {
+    return static_cast<std::size_t>(std::ranges::find(places_, place_of(cell)) - places_.begin());
   }
 
   /// By how much the first error is clearly the smaller one, as a ratio; 1 where they cannot be told apart.
@@ -113,7 +128,7 @@ class Finder {
   }
 
   std::vector<std::string> list_turnovers() const {
-    std::map<std::set<std::string>, std::pair<double, std::string>> sentences;
+    std::map<std::pair<std::string_view, std::string_view>, std::pair<double, std::string>> sentences;
     visit_pairs([&](const Configuration& a, const Configuration& b, const auto& pairs) {
       const auto better = [](const auto& p) { return gain(*p[0], *p[1]); };
       const auto worse = [](const auto& p) { return gain(*p[1], *p[0]); };
@@ -121,8 +136,8 @@ class Finder {
       const double turn = std::min(better(*best), worse(*worst));
       if (turn <= 1.0) return;
       // Of all parameters of two filters the pair that turns most.
-      const std::set<std::string> filters = {a.cells.front()->filter, b.cells.front()->filter};
-      auto& known = sentences[filters];
+      const std::string_view first = a.cells.front()->filter, second = b.cells.front()->filter;
+      auto& known = sentences[std::minmax(first, second)];
       if (known.first >= turn) return;
       known = {turn, fmt::format(
                          "The order turns over: {} has a smaller RMSE than {} on {} ({} against {}), and a larger one "

@@ -108,6 +108,7 @@ std::optional<int> find_first_view(const MapUse& shared, const MapUse& own) {
 Estimate MapUse::frame() const { return add_times(redraw, lookup); }
 
 std::vector<MapFamily> list_map_families(const std::vector<records::CellRecord>& cells) {
+  if (std::ranges::all_of(cells, [&](const auto& cell) { return cell.fit == cells.front().fit; })) return {};
   CellPointers complete;
   std::vector<records::CellRecord> plain;  // the same without their maps: one configuration is a family
   for (const records::CellRecord& cell : cells) {
