@@ -104,6 +104,20 @@ TEST(Crossover, Words_NameThePlacesOnce) {
   EXPECT_THAT(words[1], HasSubstr("Light moving"));
 }
 
+TEST(Crossover, Words_NameASceneOnce_UnderHoweverManyLights) {
+  std::vector<records::CellRecord> cells;
+  for (const char* scene : {"stack", "cubes"}) {
+    for (const char* light : {"scene", "10,20", "30,40"}) {
+      for (records::CellRecord cell : make_crossing_cells(scene)) {
+        cell.light = light;
+        cells.push_back(cell);
+      }
+    }
+  }
+  EXPECT_THAT(describe_crossovers(make_charts(cells))[0],
+              HasSubstr(": stack (3 settings), cubes (3 settings), picture 960 × 540, map 1024."));
+}
+
 TEST(Growth, Exponent_IsTheSlopeOfLogarithms) {
   EXPECT_NEAR(fit_exponent({{1.0, 3.0}, {4.0, 6.0}, {16.0, 12.0}}), 0.5, 1e-12);
 }
