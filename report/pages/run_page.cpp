@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "report/analysis/cell_group.h"
@@ -14,6 +15,7 @@
 #include "report/images/attribution_bar.h"
 #include "report/pages/answer.h"
 #include "report/pages/column_list.h"
+#include "report/pages/large_run.h"
 #include "report/pages/run_data.h"
 #include "report/pages/text_tables.h"
 #include "report/records/error_parts.h"
@@ -124,26 +126,45 @@ std::string describe_times(const records::RunRecord& run, const std::vector<anal
                              : "times of machines of several kinds do not compare; the warnings name the machines";
 }
 
-/// All numbers of one scene, folded away.
-page::Details make_group_details(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                                 const analysis::CellGroup& group,
-                                 const std::vector<analysis::MachineCount>& machines) {
-  page::Details details{head_group(run, cells, group.cells.front()), {}};
-  auto& blocks = details.blocks;
-  blocks = {page::Paragraph{records::describe_settings(group.cells.front()), true},
-            page::Table{"What it costs: " + describe_times(run, machines), make_cost_table(group, run.gl, machines)},
-            page::Table{"How wrong it is, and why: errors of visibility in [0,1]", make_accuracy_table(group)}};
+/// Tables and bars of one scene.
+void add_numbers(std::vector<page::Block>& blocks, const records::RunRecord& run, const analysis::CellGroup& group,
+                 const std::vector<analysis::MachineCount>& machines) {
+  blocks.emplace_back(page::Paragraph{records::describe_settings(group.cells.front()), true});
+  blocks.emplace_back(
+      page::Table{"What it costs: " + describe_times(run, machines), make_cost_table(group, run.gl, machines)});
+  blocks.emplace_back(
+      page::Table{"How wrong it is, and why: errors of visibility in [0,1]", make_accuracy_table(group)});
   if (const auto stability = analysis::describe_stability(group); !stability.empty())
     blocks.emplace_back(page::Sentences{{}, stability});
   if (auto bars = make_bars(group)) blocks.emplace_back(std::move(*bars));
+}
+
+void add_pictures(std::vector<page::Block>& blocks, const analysis::CellGroup& group) {
   if (const auto grid = find_path(group, &records::ImagesRecord::grid))
     blocks.emplace_back(page::Gallery{{}, {{*grid, "all filters on " + group.scene + ", full size behind the link"}}});
-  blocks.emplace_back(make_lights_gallery(group));
-  blocks.emplace_back(make_stability_gallery(group));
-  blocks.emplace_back(make_map_gallery(group));
+  for (page::Gallery& gallery :
+       std::array{make_lights_gallery(group), make_stability_gallery(group), make_map_gallery(group)})
+    if (!gallery.pictures.empty()) blocks.emplace_back(std::move(gallery));
   if (const auto exr = find_path(group, &records::ImagesRecord::exr))
     blocks.emplace_back(page::Links{"The float images of all filters:", {{*exr, *exr}}});
-  return details;
+}
+
+/// What there is of each scene and map, folded away; of a large run its pictures alone.
+void add_groups(std::vector<page::Block>& blocks, const records::RunRecord& run,
+                const std::vector<records::CellRecord>& cells) {
+  const bool is_large = cells.size() > kMostCellsInDetail;
+  if (is_large)
+    blocks.emplace_back(page::Paragraph{
+        fmt::format("The run has {} cells, and tables and bars of each scene are made of {} at most: timings.csv and "
+                    "accuracy.csv have all numbers.",
+                    cells.size(), kMostCellsInDetail)});
+  const std::vector<analysis::MachineCount> machines = analysis::count_machines(cells);
+  for (const analysis::CellGroup& group : analysis::group_cells(cells)) {
+    page::Details details{head_group(run, cells, group.cells.front()), {}};
+    if (!is_large) add_numbers(details.blocks, run, group, machines);
+    add_pictures(details.blocks, group);
+    if (!details.blocks.empty()) blocks.emplace_back(std::move(details));
+  }
 }
 
 /// RMSE of scenes by filters: what the script's table begins with.
@@ -190,9 +211,7 @@ std::optional<page::Section> make_gpu_section(const records::RunRecord& run,
 
 page::Section make_evidence_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
   page::Section section{"evidence", "Behind the numbers", {}};
-  const std::vector<analysis::MachineCount> machines = analysis::count_machines(cells);
-  for (const analysis::CellGroup& group : analysis::group_cells(cells))
-    section.blocks.emplace_back(make_group_details(run, cells, group, machines));
+  add_groups(section.blocks, run, cells);
   if (const auto absences = analysis::count_absences(cells); !absences.empty()) {
     page::Sentences reasons;
     for (const auto& [reason, count] : absences)

@@ -7,6 +7,7 @@
 
 #include "report/analysis/cell_group.h"
 #include "report/page/chart_style.h"
+#include "report/pages/large_run.h"
 #include "report/records/format.h"
 
 namespace shadowbench::pages {
@@ -141,8 +142,8 @@ class FrontChart {
     tied.filled = beaten.filled = false;
     beaten.faint = true;
     for (std::size_t i = 0; i < front_.points.size(); ++i) {
-      if (configuration_of(i).filter != filter) continue;
       const auto [standing, by] = front_.placements[i];
+      if (configuration_of(i).filter != filter || (is_large_ && standing == analysis::Standing::kDominated)) continue;
       ChartSeries& own = standing == analysis::Standing::kFront       ? members
                          : standing == analysis::Standing::kDominated ? beaten
                                                                       : tied;
@@ -186,8 +187,10 @@ class FrontChart {
   const records::GlRecord& gl_;
   const analysis::Measure& error_ = analysis::list_error_measures()[front_.error];
   const analysis::Measure& cost_ = scope_.costs[front_.cost];
+  const bool is_large_ = cells_.size() > kMostCellsInDetail;
   const std::vector<analysis::WidthSeries> widths_ =
-      analysis::list_width_series(scope_.configurations, front_.configurations);
+      is_large_ ? std::vector<analysis::WidthSeries>()
+                : analysis::list_width_series(scope_.configurations, front_.configurations);
 };
 
 const analysis::Estimate& time_of(const analysis::WidthPoint& point, analysis::LightState light) {

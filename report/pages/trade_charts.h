@@ -11,7 +11,8 @@
 namespace shadowbench::pages {
 
 /// Draws the fronts of every scope, error and cost. Members are filled and joined; tied cells are hollow, dominated
-/// ones hollow and faint.
+/// ones hollow and faint. Those, and curves over the width, are left out of a run of more than kMostCellsInDetail
+/// cells.
 page::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& scopes,
                                     const std::vector<records::CellRecord>& cells, const records::GlRecord& gl);
 

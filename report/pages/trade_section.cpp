@@ -9,6 +9,7 @@
 #include "report/analysis/machines/machine_kinds.h"
 #include "report/pages/column_list.h"
 #include "report/pages/fronts_csv.h"
+#include "report/pages/large_run.h"
 #include "report/pages/trade_charts.h"
 #include "report/records/format.h"
 
@@ -21,6 +22,9 @@ constexpr const char* kFrontsNote =
     "Lower left is better. Filled and joined: no other filter of the same class of width beats it. Hollow: a tie. "
     "Faint: "
     "beaten. Click a mark to look closer.";
+constexpr const char* kLargeNote =
+    "The run has more than {} cells: beaten ones, and the lines from narrow to wide kernels, are left out of these "
+    "charts. fronts.csv has them.";
 constexpr const char* kCrossoversNote =
     "A width counts where both were measured, or one was and the other is interpolated between its neighbours; "
     "cheaper is said where the 95 % intervals do not overlap. Crosses mark where the medians meet.";
@@ -42,6 +46,8 @@ constexpr const char* kMapsNote =
 void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                 const Trade& trade) {
   blocks.emplace_back(page::Paragraph{kFrontsNote, true});
+  if (cells.size() > kMostCellsInDetail)
+    blocks.emplace_back(page::Paragraph{fmt::format(kLargeNote, kMostCellsInDetail), true});
   blocks.emplace_back(make_front_choice(trade.scopes, cells, run.gl));
   blocks.emplace_back(page::Details{"How to read the fronts",
                                     {page::Sentences{{}, analysis::explain_fronts(trade.scopes.front().costs)},

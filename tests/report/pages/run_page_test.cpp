@@ -7,6 +7,7 @@
 #include <set>
 
 #include "report/images/picture_io.h"
+#include "report/pages/large_run.h"
 #include "report/pages/write_report.h"
 #include "report/records/json_io.h"
 #include "tests/report/records/synthetic.h"
@@ -218,6 +219,20 @@ TEST(RunPage, Page_HoldsWhatTheReportIsOf) {
                            "CPU time (software rasteriser)", "cubes.grid.png", "cubes.depth.png", "cubes.exr",
                            "timings.csv", "results.json", "no truth in this run", "class=\"scroll\""})
     EXPECT_THAT(page, HasSubstr(text));
+}
+
+TEST(RunPage, LargeRun_LeavesTablesOfScenesToTheCsvFiles_AndKeepsPictures) {
+  std::vector<records::CellRecord> cells(kMostCellsInDetail, make_cell("cubes", "vsm", 4.0));
+  for (std::size_t i = 0; i < cells.size(); ++i) cells[i].params["radius"] = static_cast<double>(i);
+  cells.front().images.grid = "cubes.grid.png";
+  EXPECT_THAT(make_summary(make_run(), cells), HasSubstr("What it costs: "));
+  cells.push_back(make_cell("cubes", "none", 4.0));
+  const std::string summary = make_summary(make_run(), cells);
+  EXPECT_THAT(summary, Not(HasSubstr("What it costs: ")));
+  EXPECT_THAT(summary, Not(HasSubstr("How wrong it is")));
+  EXPECT_THAT(summary, HasSubstr("The run has 2001 cells"));
+  EXPECT_THAT(summary, HasSubstr("cubes.grid.png"));
+  EXPECT_THAT(summary, HasSubstr("RMSE to the area truth")) << "of all scenes";
 }
 
 TEST(SummaryMd, HoldsTheRunTheTablesAndTheReasons) {

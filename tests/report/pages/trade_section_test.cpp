@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "report/pages/large_run.h"
 #include "report/pages/run_page.h"
 #include "report/pages/write_report.h"
 #include "report/records/json_io.h"
@@ -89,6 +90,23 @@ TEST(TradeSection, Fronts_AreChartsOfEveryErrorAndCost) {
   EXPECT_EQ(member.group, "medium");
   for (const page::ChartSeries& series : chart.series)
     for (const page::ChartPoint& point : series.points) EXPECT_EQ(point.group, "medium") << series.title;
+}
+
+TEST(TradeSection, Fronts_OfALargeRun_LeaveOutWhatIsBeaten) {
+  std::vector<records::CellRecord> cells;
+  for (int light = 0; cells.size() <= kMostCellsInDetail; ++light) {
+    for (records::CellRecord cell : make_crossing_cells("cubes")) {
+      cell.light = std::to_string(light) + ",45";
+      cells.push_back(cell);
+    }
+  }
+  const page::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
+  const page::Chart& chart = find_choice(section, "front").charts[0];
+  EXPECT_THAT(list_titles(chart), ElementsAre("front, medium", "none", "poisson", "vsm", "", ""));
+  EXPECT_THAT(chart.series[4].points, SizeIs(2)) << "tied";
+  const std::string page = page::write_html({"", {section}, {}});
+  EXPECT_THAT(page, HasSubstr("more than 2000 cells: beaten ones, and"));
+  EXPECT_THAT(write_trade(make_crossing_cells("cubes")), Not(HasSubstr("more than 2000 cells")));
 }
 
 TEST(TradeSection, FrontOfOnePoint_HasNoLine_AndNamesHaveSixDigits) {
