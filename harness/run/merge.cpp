@@ -152,10 +152,12 @@ void merge_runs(const std::vector<std::filesystem::path>& folders, const std::fi
   const files::FolderLock lock(out);
   require_free(out, shards);
   std::vector<std::string> keys;
+  std::set<std::string> copied;  // cells of one view share its truth's pictures
   for (int i = 0; i < shards.front().results.run.experiment.cells; ++i) {
     const ShardRun& shard = shards[static_cast<std::size_t>(i) % shards.size()];
     const records::CellRecord& cell = shard.results.cells[static_cast<std::size_t>(i) / shards.size()];
-    for (const std::string& file : list_files(cell)) copy_whole(shard.folder / file, out / file);
+    for (const std::string& file : list_files(cell))
+      if (copied.insert(file).second) copy_whole(shard.folder / file, out / file);
     copy_whole(records::cell_path(shard.folder, cell.key), records::cell_path(out, cell.key));
     keys.push_back(cell.key);
   }
