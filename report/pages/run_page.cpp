@@ -221,7 +221,8 @@ page::Section make_evidence_section(const records::RunRecord& run, const std::ve
   section.blocks.emplace_back(explain_columns("timings.csv", records::list_csv_columns(records::CsvTable::kTimings)));
   section.blocks.emplace_back(explain_columns("accuracy.csv", records::list_csv_columns(records::CsvTable::kAccuracy)));
   section.blocks.emplace_back(
-      page::Details{"Machine, OpenGL, command and seed", {page::Facts{analysis::list_run_facts(run, machines)}}});
+      page::Details{"Machine, OpenGL, command and seed",
+                    {page::Facts{analysis::list_run_facts(run, analysis::count_machines(cells))}}});
   section.blocks.emplace_back(page::Links{"Data:",
                                           {{"summary.md", "summary.md"},
                                            {"timings.csv", "timings.csv"},
