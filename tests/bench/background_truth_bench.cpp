@@ -14,6 +14,7 @@
 #include "harness/scene/load.h"
 #include "harness/scene/occluders.h"
 #include "harness/view/background_truth.h"
+#include "tests/bench/median.h"
 
 namespace shadowbench::bench {
 namespace {
@@ -22,11 +23,6 @@ using Clock = std::chrono::steady_clock;
 
 double ms_since(Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
 }
 
 double computed_ms(clockid_t clock) {

@@ -22,6 +22,7 @@
 #include "harness/scene/load.h"
 #include "harness/scene/occluders.h"
 #include "reference/truth/cached_tracer.h"
+#include "tests/bench/median.h"
 
 namespace shadowbench::bench {
 namespace {
@@ -29,11 +30,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
 
 /// A built-in scene with the receivers that its camera sees.
 struct View {
