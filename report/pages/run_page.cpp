@@ -154,10 +154,10 @@ void add_groups(std::vector<page::Block>& blocks, const records::RunRecord& run,
                 const std::vector<records::CellRecord>& cells) {
   const bool is_large = cells.size() > kMostCellsInDetail;
   if (is_large)
-    blocks.emplace_back(page::Paragraph{
-        fmt::format("The run has {} cells, and tables and bars of each scene are made of {} at most: timings.csv and "
-                    "accuracy.csv have all numbers.",
-                    cells.size(), kMostCellsInDetail)});
+    blocks.emplace_back(page::Paragraph{fmt::format(
+        "The run has {} cells: of more than {}, tables and bars of each scene are left out. timings.csv and "
+        "accuracy.csv have all numbers.",
+        cells.size(), kMostCellsInDetail)});
   const std::vector<analysis::MachineCount> machines = analysis::count_machines(cells);
   for (const analysis::CellGroup& group : analysis::group_cells(cells)) {
     page::Details details{head_group(run, cells, group.cells.front()), {}};
