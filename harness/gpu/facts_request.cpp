@@ -106,6 +106,12 @@ void answer_request(const std::filesystem::path& request_file, const std::filesy
       throw Error(ErrorKind::kOutput, "the file cannot be written; check the free space", answers.string());
 }
 
+void write_answer(const std::filesystem::path& file, const FactsAnswer& answer) {
+  const json written =
+      answer.refused.empty() ? json{{"facts", to_json(answer.facts)}} : json{{"refused", answer.refused}};
+  write_text_file(file, dump(written));
+}
+
 std::vector<FactsAnswer> read_answers(const std::filesystem::path& answers) {
   std::vector<FactsAnswer> read;
   std::ifstream stream(answers);

@@ -61,6 +61,27 @@ TEST_F(Submit, ATaskGoesOnWhereItStopped) {
   EXPECT_EQ(after.size(), before.size());
 }
 
+/// What one task has compiled, another takes: its own driver, which is none, is not asked.
+TEST_F(Submit, TasksShareWhatTheyCompile) {
+  const std::string words = "e.toml --gpu navi21 ";
+  ASSERT_EQ(run("submit " + words + "--engine slurm --no-probe --dry-run --out out --tasks 4").exit_code, 0);
+  const auto do_it = [&](const std::string& task, const std::string& environment) {
+    const std::string out = (folder() / "out").string();
+    return run("run " + words + "--no-grids --cache out/cache --out '" + out + "' --task out/tasks/" + task,
+               environment);
+  };
+  const Outcome first = do_it("1", "");
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  if (first.err.find("no costs on navi21") != std::string::npos) GTEST_SKIP() << "there is no driver";
+  const Outcome second = do_it("2", "VK_DRIVER_FILES=/nowhere VK_ICD_FILENAMES=/nowhere");
+  ASSERT_EQ(second.exit_code, 0) << second.err;
+  EXPECT_THAT(second.err, Not(HasSubstr("no costs on navi21")));
+  EXPECT_EQ(cell_times().size(), kCells / 2);
+  for (const auto& [name, time] : cell_times())
+    EXPECT_FALSE(json::parse(read_text(folder() / "out" / "cells" / name))["cell"]["gpu"]["navi21"]["facts"].empty())
+        << name;
+}
+
 TEST_F(Submit, ATaskOfSomethingElse_Fails_AndStatusSaysWhy) {
   ASSERT_EQ(run(std::string(kDry) + "--tasks 2").exit_code, 0);
   EXPECT_EQ(do_task("tasks/1", "--seed 2").exit_code, 3);
