@@ -72,12 +72,12 @@ void Interruption::wait() const {
 }
 
 void Interruption::end(int signal) const {
-  remove_temporary_files(out_, [](const Writer& writer) { return writer == this_writer(); });
   try {
     at_end_(signal);
   } catch (const std::exception&) {
     // The program ends all the same.
   }
+  remove_temporary_files(out_, [](const Writer& writer) { return writer == this_writer(); });
   flockfile(stderr);  // and never given back: what other threads are about to say must not follow this line
   fmt::print(stderr, "{}shadowbench: stopped by {}; {}\n", isatty(STDERR_FILENO) ? "\n" : "", name_of(signal), advice_);
   std::fflush(stderr);

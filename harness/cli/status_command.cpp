@@ -24,8 +24,9 @@ Command make_status_command() {
   };
   Command command{"status", "Say how far a submitted sweep is"};
   command.about =
-      "Reads the files of the sweep alone, and asks no scheduler: a task that waits in a queue counts as waiting. Exit "
-      "code 1 where a task failed or was lost; 'submit' with the same words submits those again.";
+      "Reads the files of the sweep alone, and asks no scheduler: a task that waits in a queue counts as waiting, "
+      "and one that was stopped and waits there again as failed until it begins. Exit code 1 where a task failed or "
+      "was lost; 'submit' with the same words submits those again.";
   auto a = std::make_shared<Arguments>();
   command.add("DIR", &a->folder, "the folder that 'submit' was given with --out").names(ValueKind::kFolder).require();
   command.add("--silent-after", &a->silent_after_s,

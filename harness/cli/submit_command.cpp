@@ -27,16 +27,16 @@ void add_engine_options(Command& command, SubmitArguments& a) {
   command.add("--engine", &a.engine.engine, "what distributes the tasks: 'slurm', or 'parallel', which is GNU parallel")
       .one_of(submit::list_engines())
       .require();
-  command.add("--tasks", &a.tasks, "into how many tasks to split (default: so many that each takes about ten minutes)");
+  command.add("--tasks", &a.tasks,
+              "into how many tasks to split (default: so many that each takes about ten minutes, at most 1000)");
   command.add("--time", &a.engine.time, "time limit of a task, as sbatch takes it");
   command.add("--partition", &a.engine.partition, "partition of the jobs, as sbatch takes it");
   command.add("--gres", &a.engine.gres, "what a node must have, as sbatch takes it, such as gpu:1");
   command
       .add("--times-of", &a.times_of,
-           "report folder of an earlier run, whose cells say what cells take (default: two cells of every filter are "
-           "measured here first)")
+           "report folder of an earlier run, whose cells say what cells take, in place of a probe")
       .names(ValueKind::kFolder);
-  command.add("--probe", &a.probe, "measure those two (default)").with_opposite();
+  command.add("--probe", &a.probe, "measure two cells of every filter first (default)").with_opposite();
   command.add("--dry-run", &a.dry_run, "write the scripts and print the commands; submit nothing");
 }
 
@@ -95,10 +95,9 @@ submit::JobPlan make_job_plan(const options::RunOptions& options, const SubmitAr
 }
 
 int submit(const CommandLine& line, SubmitArguments& a) {
+  if (a.grids > 0) fail("--grids shows all filters of a view, and a task has some of them; leave it out");
   const std::string title = apply_experiment(line, a);
-  if (line.has("--grids") && a.grids > 0)
-    fail("--grids shows all filters of a view, and a task has some of them; leave it out");
-  a.grids = -1;
+  a.grids = -1;  // whatever the experiment says
   if (a.out.empty()) fail("--out: name a folder that all machines share");
   a.out = fs::absolute(a.out).lexically_normal().string();
   a.cache = a.cache.empty() ? (fs::path(a.out) / "cache").string() : fs::absolute(a.cache).lexically_normal().string();
@@ -135,6 +134,9 @@ Command make_submit_command() {
   for (Option& option : command.options) {
     if (option.name == "--grids") option.hidden = true;
     if (option.name == "--out") option.required = true;
+    if (option.name == "--out") option.help = "folder of the sweep and of its report, which all machines share";
+    if (option.name == "--cache")
+      option.help = "folder for traced images, which all machines share (default: cache in --out)";
   }
   add_engine_options(command, *a);
   command.rest = &a->engine.words;

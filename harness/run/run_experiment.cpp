@@ -80,6 +80,7 @@ class Experiment {
     require_writable(options_.out);
     if (plan.finished == plan.own_cells && (options_.part || has_report(plan))) {
       progress_.note("nothing is left to do");
+      if (options_.part) std::ranges::for_each(plan.scenes, [&](const PlannedScene& each) { note_scene(each); });
       return run_;
     }
     try {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <set>
 #include <string>
@@ -30,8 +31,11 @@ struct JobPlan {
 /// Tasks that earlier jobs have before them or under way.
 struct QueuedTasks {
   std::set<int> truths, tasks;
-  std::vector<SubmittedJobs> jobs;  ///< theirs
+  std::vector<SubmittedJobs> jobs;  ///< theirs; those that are done have no name here
 };
+
+/// Keeps the names of jobs as soon as there are any.
+using NoteJobs = std::function<void(const SubmittedJobs&)>;
 
 /// What distributes tasks over machines.
 class Engine {
@@ -44,8 +48,9 @@ class Engine {
   /// them to. Throws Error(kOutput).
   virtual std::vector<std::string> write_scripts(const JobPlan& plan, const QueuedTasks& queued) = 0;
 
-  /// Throws Error(kUsage) where the engine's program is missing or refuses; no job stays then.
-  virtual SubmittedJobs submit(const JobPlan& plan, const QueuedTasks& queued) = 0;
+  /// Tells `note` of each job that it has made. Throws Error(kUsage) where the engine's program is missing or refuses;
+  /// no job stays then, and `note` is told of jobs without names.
+  virtual SubmittedJobs submit(const JobPlan& plan, const QueuedTasks& queued, const NoteJobs& note) = 0;
 };
 
 /// Names the engines.

@@ -60,12 +60,15 @@ class ParallelEngine : public Engine {
     return {"setsid sh " + quote_words({(plan.out / kScript).string()})};
   }
 
-  SubmittedJobs submit(const JobPlan& plan, const QueuedTasks& queued) override {
-    if (run_shell("command -v parallel setsid").exit_code != 0)
+  SubmittedJobs submit(const JobPlan& plan, const QueuedTasks& queued, const NoteJobs& note) override {
+    const ShellOutcome found = run_shell("command -v setsid && parallel --version");
+    if (found.exit_code != 0 || found.text.find("GNU parallel") == std::string::npos)
       throw Error(ErrorKind::kUsage, "--engine parallel: GNU parallel is not installed here, or not in PATH");
     const ShellOutcome outcome = run_shell(write_scripts(plan, queued).front() + " >> " +
                                            quote_words({(plan.out / kLog).string()}) + " 2>&1 < /dev/null & echo $!");
-    return {options_.engine, {}, outcome.text, {}};
+    const SubmittedJobs jobs{options_.engine, {}, outcome.text, {}};
+    note(jobs);
+    return jobs;
   }
 
  private:

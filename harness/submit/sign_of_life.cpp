@@ -39,9 +39,10 @@ std::string describe_runner() {
 
 }  // namespace
 
-SignOfLife::SignOfLife(fs::path folder) : file_(std::move(folder) / kFile) {
+SignOfLife::SignOfLife(fs::path folder, std::chrono::milliseconds beat)
+    : file_(std::move(folder) / kFile), beat_(beat) {
   write_text_file(file_, describe_runner());
-  thread_ = std::thread([this] { beat(); });
+  thread_ = std::thread([this] { keep_beating(); });
 }
 
 SignOfLife::~SignOfLife() {
@@ -54,9 +55,9 @@ SignOfLife::~SignOfLife() {
   remove_sign_of_life(file_.parent_path());
 }
 
-void SignOfLife::beat() {
+void SignOfLife::keep_beating() {
   std::unique_lock lock(mutex_);
-  while (!wake_.wait_for(lock, kBeat, [this] { return ending_; })) {
+  while (!wake_.wait_for(lock, beat_, [this] { return ending_; })) {
     if (utimensat(AT_FDCWD, file_.c_str(), nullptr, 0) == 0) continue;  // without a time: the file system's own
     try {
       write_text_file(file_, describe_runner());  // another process that did the same task has taken it away

@@ -10,26 +10,27 @@
 namespace shadowbench::submit {
 
 /// How often a task shows that it runs.
-inline constexpr std::chrono::seconds kBeat{5};
+inline constexpr std::chrono::milliseconds kBeat{5000};
 
 /// Shows that a task runs, by a file in its folder that is touched every few seconds for as long as this object lives.
 /// The time of the file is set by the file system, so that no two clocks are compared.
 class SignOfLife {
  public:
   /// Throws Error(kOutput) where the file cannot be written.
-  explicit SignOfLife(std::filesystem::path folder);
+  explicit SignOfLife(std::filesystem::path folder, std::chrono::milliseconds beat = kBeat);
   ~SignOfLife();
   SignOfLife(const SignOfLife&) = delete;
   SignOfLife& operator=(const SignOfLife&) = delete;
 
  private:
   std::filesystem::path file_;
+  std::chrono::milliseconds beat_;
   std::mutex mutex_;
   std::condition_variable wake_;
   bool ending_ = false;
   std::thread thread_;
 
-  void beat();
+  void keep_beating();
 };
 
 /// Takes the sign of life away, for a task that a signal ends.

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <charconv>
 #include <sstream>
+#include <string_view>
 
 #include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
@@ -38,16 +41,26 @@ std::string quote_pattern(const fs::path& path, const std::string& pattern = {})
 
 class SlurmEngine : public Engine {
  public:
-  explicit SlurmEngine(const EngineOptions& options) : options_(options) {}
+  explicit SlurmEngine(const EngineOptions& options) : options_(options) {
+    for (const std::string& word : options.words)
+      for (const char* own : {"--array", "-a", "--dependency", "-d", "--output", "-o", "--wrap"})
+        if (word == own || word.starts_with(std::string(own) + "="))
+          throw Error(ErrorKind::kUsage,
+                      fmt::format("-- {}: that is submit's own, to have each task once and in order; leave it out "
+                                  "('scontrol update job=ID arraytaskthrottle=N' limits how many run at once)",
+                                  own));
+  }
 
   QueuedTasks find_queued(const fs::path&, const std::vector<SubmittedJobs>& earlier) override {
     QueuedTasks queued;
     for (const SubmittedJobs& jobs : earlier) {
       if (jobs.engine != options_.engine) continue;
-      const std::size_t before = queued.truths.size() + queued.tasks.size();
-      queued.truths.merge(list_array(jobs.truth));
-      queued.tasks.merge(list_array(jobs.cells));
-      if (queued.truths.size() + queued.tasks.size() > before) queued.jobs.push_back(jobs);
+      std::set<int> truths = list_array(jobs.truth), tasks = list_array(jobs.cells);
+      if (truths.empty() && tasks.empty()) continue;
+      queued.jobs.push_back(
+          {jobs.engine, truths.empty() ? "" : jobs.truth, tasks.empty() ? "" : jobs.cells, jobs.merge});
+      queued.truths.merge(truths);
+      queued.tasks.merge(tasks);
     }
     return queued;
   }
@@ -63,30 +76,54 @@ class SlurmEngine : public Engine {
     return list_commands(plan, queued, {"", "TRUTH", "CELLS", ""});
   }
 
-  SubmittedJobs submit(const JobPlan& plan, const QueuedTasks& queued) override {
+  SubmittedJobs submit(const JobPlan& plan, const QueuedTasks& queued, const NoteJobs& note) override {
     SubmittedJobs jobs{options_.engine, {}, {}, {}};
+    const auto make = [&](std::string& job, const std::string& command) {
+      job = run_sbatch(command);
+      note(jobs);
+    };
     try {
-      if (!plan.truths.empty()) jobs.truth = run_sbatch(truth_command(plan));
-      if (!plan.tasks.empty()) jobs.cells = run_sbatch(cell_command(plan, queued, jobs.truth));
-      jobs.merge = run_sbatch(merge_command(plan, queued, jobs.cells));
+      if (!plan.truths.empty()) make(jobs.truth, truth_command(plan));
+      if (!plan.tasks.empty()) make(jobs.cells, cell_command(plan, queued, jobs.truth));
+      make(jobs.merge, merge_command(plan, queued, jobs.cells));
     } catch (const Error&) {
-      for (const std::string& job : {jobs.truth, jobs.cells})
-        if (!job.empty()) run_shell(quote_words({"scancel", job}));
+      cancel(jobs.truth);
+      cancel(jobs.cells);
+      note({});
       throw;
     }
-    for (const SubmittedJobs& each : queued.jobs) run_shell(quote_words({"scancel", each.merge}));  // it would be early
+    for (const SubmittedJobs& each : queued.jobs) cancel(each.merge);  // it would be early
     return jobs;
   }
 
  private:
   EngineOptions options_;
 
+  /// The number of a job, which sbatch writes before a ';' and its cluster's name.
+  static std::string number_of(const std::string& job) { return job.substr(0, job.find(';')); }
+
+  /// A program of Slurm that is asked about a job, with what says where the job is.
+  static std::vector<std::string> address(const char* program, const std::string& job) {
+    std::vector<std::string> words = {program};
+    if (const std::size_t end = job.find(';'); end != std::string::npos)
+      words.push_back("--clusters=" + job.substr(end + 1));
+    return words;
+  }
+
+  static void cancel(const std::string& job) {
+    if (job.empty()) return;
+    std::vector<std::string> words = address("scancel", job);
+    words.push_back(number_of(job));
+    run_shell(quote_words(words));
+  }
+
   /// The numbers of an array's elements that are not done; none where Slurm has forgotten the job.
   static std::set<int> list_array(const std::string& job) {
     std::set<int> numbers;
     if (job.empty()) return numbers;
-    const ShellOutcome outcome =
-        run_shell(quote_words({"squeue", "--noheader", "--array", "--format=%K", "--jobs", job}));
+    std::vector<std::string> words = address("squeue", job);
+    words.insert(words.end(), {"--noheader", "--array", "--format=%K", "--jobs", number_of(job)});
+    const ShellOutcome outcome = run_shell(quote_words(words));
     const bool is_forgotten = outcome.text.find("Invalid job id") != std::string::npos;
     if (is_forgotten || outcome.exit_code == kNoSuchCommand) return numbers;
     if (outcome.exit_code != 0)
@@ -95,15 +132,21 @@ class SlurmEngine : public Engine {
                               "Slurm answers",
                               outcome.text));
     std::istringstream lines(outcome.text);
-    for (int number = 0; lines >> number;) numbers.insert(number);
+    for (std::string line; std::getline(lines, line);) {  // warnings may stand among them
+      int number = 0;
+      const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), number);
+      if (error == std::errc() &&
+          std::string_view(end, line.data() + line.size()).find_first_not_of(' ') == std::string_view::npos)
+        numbers.insert(number);
+    }
     return numbers;
   }
 
   std::string describe_resources(bool whole_node) const {
     std::string lines;
     if (whole_node) lines += "#SBATCH --exclusive\n";  // beside other work, times would be of that work too
-    if (whole_node && !options_.time.empty()) lines += "#SBATCH --time=" + options_.time + "\n";
-    if (whole_node && !options_.gres.empty()) lines += "#SBATCH --gres=" + options_.gres + "\n";
+    if (!options_.time.empty()) lines += "#SBATCH --time=" + options_.time + "\n";
+    if (!options_.gres.empty()) lines += "#SBATCH --gres=" + options_.gres + "\n";
     if (!options_.partition.empty()) lines += "#SBATCH --partition=" + options_.partition + "\n";
     return lines;
   }
@@ -139,32 +182,33 @@ class SlurmEngine : public Engine {
   }
 
   std::string make_command(const JobPlan& plan, const std::vector<std::string>& options, const char* script) const {
-    std::vector<std::string> words = {"sbatch", "--parsable"};
-    words.insert(words.end(), options.begin(), options.end());
+    std::vector<std::string> words = {"sbatch"};
     words.insert(words.end(), options_.words.begin(), options_.words.end());
+    words.push_back("--parsable");
+    words.insert(words.end(), options.begin(), options.end());
     words.push_back((plan.out / script).string());
     return quote_words(words);
   }
 
   std::string truth_command(const JobPlan& plan) const { return make_command(plan, {}, kTruthScript); }
 
-  /// Cells wait for all truth, and are not begun where that fails: what fails there would fail in each of them.
+  /// Cells wait for all truth, and are not begun where that fails: what fails there would fail in each of them. What
+  /// failed of earlier truth is done again by the new.
   std::string cell_command(const JobPlan& plan, const QueuedTasks& queued, const std::string& truth) const {
     std::vector<std::string> after;
-    if (!truth.empty()) after.push_back(truth);
+    if (!truth.empty()) after.push_back("afterok:" + number_of(truth));
     for (const SubmittedJobs& each : queued.jobs)
-      if (!each.truth.empty() && !queued.truths.empty()) after.push_back(each.truth);
+      if (!each.truth.empty()) after.push_back("afterany:" + number_of(each.truth));
     if (after.empty()) return make_command(plan, {}, kCellScript);
-    return make_command(plan,
-                        {fmt::format("--dependency=afterok:{}", fmt::join(after, ":")), "--kill-on-invalid-dep=yes"},
+    return make_command(plan, {fmt::format("--dependency={}", fmt::join(after, ",")), "--kill-on-invalid-dep=yes"},
                         kCellScript);
   }
 
   std::string merge_command(const JobPlan& plan, const QueuedTasks& queued, const std::string& cells) const {
     std::vector<std::string> after;
-    if (!cells.empty()) after.push_back(cells);
+    if (!cells.empty()) after.push_back(number_of(cells));
     for (const SubmittedJobs& each : queued.jobs)
-      if (!each.cells.empty()) after.push_back(each.cells);
+      if (!each.cells.empty()) after.push_back(number_of(each.cells));
     if (after.empty()) return make_command(plan, {}, kMergeScript);
     return make_command(plan, {fmt::format("--dependency=afterany:{}", fmt::join(after, ":"))}, kMergeScript);
   }
@@ -178,17 +222,24 @@ class SlurmEngine : public Engine {
     return commands;
   }
 
-  /// Gives the job's number, which sbatch writes before a ';' and the cluster's name.
+  /// Gives the job as sbatch names it: its number, perhaps with ';' and a cluster behind it.
   static std::string run_sbatch(const std::string& command) {
     const ShellOutcome outcome = run_shell(command);
     if (outcome.exit_code == kNoSuchCommand)
       throw Error(ErrorKind::kUsage,
                   "--engine slurm: there is no sbatch here; submit from a machine of the cluster, or choose --engine "
                   "parallel");
-    const std::string job = outcome.text.substr(outcome.text.find_last_of('\n') + 1);
+    std::string job;
+    std::istringstream lines(outcome.text);
+    for (std::string line; std::getline(lines, line);) {  // warnings may stand among them
+      const std::string number = number_of(line);
+      if (!number.empty() && std::ranges::all_of(number, [](char c) { return c >= '0' && c <= '9'; })) job = line;
+    }
     if (outcome.exit_code != 0 || job.empty())
-      throw Error(ErrorKind::kUsage, fmt::format("sbatch refuses: {}; nothing is submitted", outcome.text));
-    return job.substr(0, job.find(';'));
+      throw Error(ErrorKind::kUsage, fmt::format("sbatch refuses: {}; nothing is submitted (of too many tasks, --tasks "
+                                                 "asks for fewer)",
+                                                 outcome.text));
+    return job;
   }
 };
 

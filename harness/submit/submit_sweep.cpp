@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
 
 #include "filters/base/error.h"
 #include "harness/run/run_plan.h"
+#include "harness/submit/sign_of_life.h"
 #include "harness/submit/sweep_status.h"
 
 namespace shadowbench::submit {
@@ -14,10 +16,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool has_cells(const fs::path& out) {
+  std::error_code error;
+  fs::directory_iterator entry(out / "cells", error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error))
+    if (entry->path().extension() == ".json") return true;
+  return false;
+}
+
 /// Refuses a folder in which cells lie that no task of this sweep has measured.
 void require_free(const fs::path& out) {
   std::error_code ignored;
-  if (!fs::exists(out / "results.json", ignored) && !fs::exists(out / "cells", ignored)) return;
+  if (!fs::exists(out / "results.json", ignored) && !has_cells(out)) return;
   throw Error(ErrorKind::kUsage, "--out: there are cells of a run in this folder already; choose an empty or new one",
               out.string());
 }
@@ -31,10 +41,7 @@ void plan_folder(const options::RunOptions& options, const SplitRule& rule, opti
 }
 
 /// Whether a task may have begun: a plan that nobody submitted can be made anew.
-bool was_submitted(const fs::path& out) {
-  std::error_code ignored;
-  return is_sweep(out) && (!read_sweep(out).jobs.empty() || fs::exists(out / "cells", ignored));
-}
+bool was_submitted(const fs::path& out) { return is_sweep(out) && (!read_sweep(out).jobs.empty() || has_cells(out)); }
 
 void require_same(options::RunOptions options, const Sweep& sweep) {
   options.fresh = true;
@@ -84,6 +91,16 @@ std::vector<std::string> describe_jobs(const SweepStatus& status, const JobPlan&
   return lines;
 }
 
+/// What tasks left when they ended is of an earlier submission from now on.
+void forget_ends(const JobPlan& plan) {
+  for (const auto& [kind, numbers] : {std::pair(TaskKind::kTruth, &plan.truths), {TaskKind::kCells, &plan.tasks}}) {
+    for (const int number : *numbers) {
+      remove_failure(task_folder(plan.out, kind, number));
+      remove_sign_of_life(task_folder(plan.out, kind, number));
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> submit_sweep(const options::RunOptions& options, SubmitRequest request,
@@ -111,9 +128,13 @@ std::vector<std::string> submit_sweep(const options::RunOptions& options, Submit
     lines.insert(lines.end(), commands.begin(), commands.end());
     return lines;
   }
-  const SubmittedJobs jobs = engine->submit(plan, queued);
-  status.sweep.jobs.push_back(jobs);
-  write_sweep(out, status.sweep);
+  forget_ends(plan);
+  const std::vector<SubmittedJobs> earlier = status.sweep.jobs;
+  const SubmittedJobs jobs = engine->submit(plan, queued, [&](const SubmittedJobs& made) {
+    status.sweep.jobs = earlier;
+    if (!made.engine.empty()) status.sweep.jobs.push_back(made);
+    write_sweep(out, status.sweep);
+  });
   return describe_jobs(status, plan, jobs);
 }
 

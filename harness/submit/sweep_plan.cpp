@@ -21,6 +21,8 @@ namespace shadowbench::submit {
 namespace {
 
 constexpr double kTaskSeconds = 600.0;
+/// Where nobody knows what a cell takes.
+constexpr double kCellsOfATask = 10.0;
 /// Schedulers take arrays of 1000 unless they are told otherwise.
 constexpr int kMostTasks = 1000;
 
@@ -88,10 +90,9 @@ class SweepPlanner {
     std::vector<double> costs;
     double all_s = 0.0;
     for (const PlannedCell& cell : cells_) all_s += costs.emplace_back(known.expect_s(cell.record));
-    const int wanted = rule_.tasks > 0 ? rule_.tasks
-                       : known.is_empty()
-                           ? kMostTasks
-                           : static_cast<int>(std::ceil(std::min(all_s / kTaskSeconds, 1.0 * kMostTasks)));
+    const double usual = known.is_empty() ? plan_.cells / kCellsOfATask : all_s / kTaskSeconds;
+    const int wanted =
+        rule_.tasks > 0 ? rule_.tasks : static_cast<int>(std::ceil(std::clamp(usual, 1.0, 1.0 * kMostTasks)));
     std::vector<SweepTask> tasks;
     for (const options::CellRange& range : split_evenly(costs, std::min(wanted, plan_.cells)))
       tasks.push_back(make_task(TaskKind::kCells, static_cast<int>(tasks.size()) + 1, {range}));

@@ -25,7 +25,7 @@ constexpr int kShownMessages = 10;
 class StatusReader {
  public:
   StatusReader(const fs::path& out, double silent_after_s)
-      : out_(out), silent_after_s_(silent_after_s), now_(file_system_now(out)) {}
+      : out_(out), silent_after_s_(silent_after_s), now_(file_system_now(out)), submitted_(find_submission(out)) {}
 
   TaskStatus read(TaskKind kind, int number) const {
     const fs::path folder = task_folder(out_, kind, number);
@@ -41,12 +41,15 @@ class StatusReader {
       const bool runs = !sign->is_gone && sign->silent_s < silent_after_s_;
       status.state = runs ? TaskState::kRunning : TaskState::kLost;
       if (sign->is_gone)
-        status.message = "its process has ended without a word";
+        status.message = "its process has ended without a word; see its log.txt";
       else if (!runs)
-        status.message = fmt::format("it has shown nothing for {:.0f} s", sign->silent_s);
+        status.message = fmt::format("it has shown nothing for {:.0f} s; see its log.txt", sign->silent_s);
     } else if (const auto failure = read_failure(folder)) {
       status.state = TaskState::kFailed;
       status.message = fmt::format("exit code {}: {}", failure->exit_code, failure->message);
+    } else if (const auto log = read_log_silence(folder); log && !is_finished(folder)) {
+      status.state = *log < silent_after_s_ ? TaskState::kRunning : TaskState::kLost;
+      if (status.state == TaskState::kLost) status.message = "it ended without a word; see its log.txt";
     } else if (is_finished(folder)) {
       status.state = TaskState::kLost;
       status.message = fmt::format("it was finished, and {} of its cells are gone",
@@ -59,6 +62,26 @@ class StatusReader {
   const fs::path& out_;
   double silent_after_s_;
   fs::file_time_type now_;
+  fs::file_time_type submitted_;
+
+  /// When the scripts were last written, which is before their jobs begin.
+  static fs::file_time_type find_submission(const fs::path& out) {
+    fs::file_time_type last = fs::file_time_type::min();
+    for (const char* script : {"submit.sbatch", "submit.sh"}) {
+      std::error_code missing;
+      const fs::file_time_type time = fs::last_write_time(out / script, missing);
+      if (!missing) last = std::max(last, time);
+    }
+    return last;
+  }
+
+  /// How long a job has printed nothing; nothing where it has not printed since it was submitted.
+  std::optional<double> read_log_silence(const fs::path& folder) const {
+    std::error_code missing;
+    const fs::file_time_type last = fs::last_write_time(folder / "log.txt", missing);
+    if (missing || last < submitted_ || fs::file_size(folder / "log.txt", missing) == 0) return std::nullopt;
+    return std::chrono::duration<double>(now_ - last).count();
+  }
 };
 
 struct Count {

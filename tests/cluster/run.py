@@ -264,6 +264,8 @@ def main():
         return 77
     failed = []
     tests = [(name[5:], test) for name, test in globals().items() if name.startswith("test_") and arguments.only in name]
+    if not tests:
+        parser.error(f"--only: no test has '{arguments.only}' in its name")
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as scratch, Cluster(Path(scratch) / "slurm") as cluster:
         for name, test in tests:
             folder = Path(scratch) / name

@@ -153,7 +153,7 @@ class Sweep:
 
     def list_leftovers(self):
         """Temporary files, of which none is to stay."""
-        return [str(path) for path in self.out.rglob("*") if ".shadowbench-tmp-" in path.name or path.name.startswith(".worker-")]
+        return [str(path) for path in self.out.rglob("*") if ".shadowbench-tmp-" in path.name or path.name.startswith((".worker-", ".gpu-"))]
 
 
 def make_older(path, seconds):

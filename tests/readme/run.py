@@ -61,7 +61,7 @@ NOT_RUN = {"apt-get", "cd", "clang-format", "curl", "dpkg", "gh", "git", "man", 
 RUN_AS_THEY_ARE = {"cp", "mkdir"}
 
 # Options of other programs that texts name.
-OTHER_OPTIONS = {"--gtest_filter", "--preset", "--config", "--prefix", "--exclusive", "--sshlogin"}
+OTHER_OPTIONS = {"--gtest_filter", "--preset", "--config", "--prefix", "--exclusive", "--sshlogin", "--account", "--env"}
 # Paths that appear only when something is built or run.
 GENERATED = ("build/", "report/out")
 

@@ -104,6 +104,14 @@ TEST_F(Submit, TheFolderOfASweep_IsItsOwn) {
   EXPECT_THAT(read_text(folder() / "stderr.txt"), HasSubstr("the sweep in this folder is of another experiment"));
 }
 
+/// Grids are the experiment's wish, and no task's.
+TEST_F(Submit, GridsOfAnExperiment_AreLeftOut) {
+  write("e.toml", "scene = 'cubes'\nmap_size = 16\nsize = '16x9'\nrounds = 1\ngrids = true\nfilters = 'none'\n");
+  const Outcome outcome = run(kDry);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(read_text(folder() / "out" / "submit.sbatch"), HasSubstr(" --no-grids "));
+}
+
 TEST_F(Submit, BadWords_AreRefused) {
   expect_refusal("submit e.toml --out out", 2, {"--engine is required"});
   expect_refusal("submit e.toml --engine slurm", 2, {"--out is required"});
@@ -112,6 +120,7 @@ TEST_F(Submit, BadWords_AreRefused) {
   expect_refusal("submit e.toml --engine slurm --grids --out out", 2, {"--grids"});
   expect_refusal("submit e.toml --engine slurm --shard 1/2 --out out", 2, {"--shard"});
   expect_refusal("submit e.toml --engine slurm --times-of nosuch --out out", 3, {"nosuch"});
+  expect_refusal("submit e.toml --engine slurm --out out -- --array=1-9%4", 2, {"--array", "arraytaskthrottle"});
   expect_refusal("submit e.toml --engine parallel --time 3 --out out", 2, {"--time", "--engine slurm"});
   expect_refusal("status nosuch", 3, {"nosuch/tasks.json"});
   expect_refusal("status out --silent-after 0", 2, {"--silent-after"});

@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
@@ -145,6 +146,33 @@ TEST_F(SweepStatusTest, OfDamagedFiles_IsRefused) {
   write_text_file(out() / "tasks.json", R"({"schema_version": 99})");
   EXPECT_THROW(read_sweep(out()), Error);
   EXPECT_THROW(read_sweep(out() / "tasks"), Error);
+}
+
+/// Where two processes do one task, the first to end takes the file of the other away.
+TEST_F(SweepStatusTest, SignOfLife_ComesAgain) {
+  using std::chrono::milliseconds;
+  const SignOfLife alive(task(1), milliseconds(20));
+  const auto comes_back = [&] {
+    for (int tries = 0; tries < 500 && status(1).state != TaskState::kRunning; ++tries)
+      std::this_thread::sleep_for(milliseconds(10));
+    return status(1).state == TaskState::kRunning;
+  };
+  std::filesystem::last_write_time(task(1) / "alive", file_system_now(out()) - std::chrono::hours(1));
+  EXPECT_TRUE(comes_back());
+  remove_sign_of_life(task(1));
+  EXPECT_TRUE(comes_back());
+}
+
+/// A job that never came as far as its task: no program there, no folder.
+TEST_F(SweepStatusTest, OfAJobThatPrintedAndEnded_IsLost) {
+  write_text_file(task(1) / "log.txt", "sh: 1: shadowbench: not found\n");
+  EXPECT_EQ(status(1).state, TaskState::kRunning) << "it may yet begin";
+  const auto now = file_system_now(out());
+  std::filesystem::last_write_time(task(1) / "log.txt", now - std::chrono::seconds(100));
+  EXPECT_EQ(status(1).state, TaskState::kLost);
+  EXPECT_THAT(status(1).message, HasSubstr("log.txt"));
+  write_text_file(out() / "submit.sbatch", "#!/bin/sh\n");
+  EXPECT_EQ(status(1).state, TaskState::kWaiting) << "what it printed is of an earlier submission";
 }
 
 TEST_F(SweepStatusTest, SignOfLife_GoesWithItsTask_AndLeavesNothing) {
