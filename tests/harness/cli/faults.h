@@ -108,7 +108,7 @@ class FaultTest : public ProgramTest {
   /// Expects that no file below a folder is temporary.
   void expect_no_leftovers(const std::string& name) const {
     for (const auto& path : list_files(name))
-      for (const char* mark : {"shadowbench-tmp", ".worker-", ".plots-", "shadowbench-lock"})
+      for (const char* mark : {"shadowbench-tmp", ".worker-", ".gpu-", ".plots-", "shadowbench-lock"})
         EXPECT_THAT(path.string(), ::testing::Not(::testing::HasSubstr(mark)));
   }
 
@@ -164,7 +164,7 @@ class FaultTest : public ProgramTest {
   }
 
   static json without_times(json cell) {
-    for (const char* name : {"time_ms", "ratio_to_none"}) cell.erase(name);
+    for (const char* name : {"time_ms", "ratio_to_none", "measured_s"}) cell.erase(name);
     return cell;
   }
 
