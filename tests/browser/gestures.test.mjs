@@ -130,6 +130,7 @@ test("ManyFiltersWithOddNames_StayUsable", async () => {
     assert.ok(await measureOverflow(page) <= 0);
     await shoot("many_" + viewport.width);
     await pick(page, "Right", { label: names[1] });
+    await settle(page);
     assert.match(await hashOf(page), /مرشح الظل/);
     assert.deepEqual(messages, []);
     await close();

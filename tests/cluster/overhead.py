@@ -54,10 +54,11 @@ def main():
     parser.add_argument("--program", type=pathlib.Path, required=True)
     parser.add_argument("--cells", type=int, default=1000)
     parser.add_argument("--tasks", type=int, default=100)
+    parser.add_argument("options", nargs="*", default=OPTIONS, help="options of run, after --, in place of small pictures")
     arguments = parser.parse_args()
     program = arguments.program.resolve()
     per_map = arguments.cells // (len(SCENES) * len(MAPS))
-    words = [word for scene in SCENES for word in ("--scene", scene)] + OPTIONS
+    words = [word for scene in SCENES for word in ("--scene", scene)] + arguments.options
     words += ["--map-size", ",".join(map(str, MAPS)), "--filters", ",".join(list_filters(per_map))]
     with tempfile.TemporaryDirectory(prefix="shadowbench.overhead.") as scratch:
         folder = pathlib.Path(scratch)
