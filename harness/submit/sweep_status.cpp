@@ -35,7 +35,8 @@ class StatusReader {
       return fs::exists(records::cell_path(out_, key), ignored);
     }));
     const bool has_all = status.cells == static_cast<int>(status.task.keys.size());
-    if (has_all && is_finished(folder)) {
+    const bool wrote_result = is_finished(folder);
+    if (has_all && wrote_result) {
       status.state = TaskState::kFinished;
     } else if (const auto sign = read_last_sign(folder, now_)) {
       const bool runs = !sign->is_gone && sign->silent_s < silent_after_s_;
@@ -47,10 +48,10 @@ class StatusReader {
     } else if (const auto failure = read_failure(folder)) {
       status.state = TaskState::kFailed;
       status.message = fmt::format("exit code {}: {}", failure->exit_code, failure->message);
-    } else if (const auto log = read_log_silence(folder); log && !is_finished(folder)) {
+    } else if (const auto log = read_log_silence(folder); log && !wrote_result) {
       status.state = *log < silent_after_s_ ? TaskState::kRunning : TaskState::kLost;
       if (status.state == TaskState::kLost) status.message = "it ended without a word; see its log.txt";
-    } else if (is_finished(folder)) {
+    } else if (wrote_result) {
       status.state = TaskState::kLost;
       status.message = fmt::format("it was finished, and {} of its cells are gone",
                                    status.task.keys.size() - static_cast<std::size_t>(status.cells));
