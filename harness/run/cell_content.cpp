@@ -78,4 +78,9 @@ std::string name_cell_content(const std::string& scene_content, const filters::F
   return hash.name();
 }
 
+void add_cell(ContentHash& cells, const std::string& key, const std::string& content) {
+  cells.add(key);
+  cells.add(content);
+}
+
 }  // namespace shadowbench::run

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "filters/base/content_hash.h"
 #include "harness/options/options.h"
 #include "harness/scene/scene.h"
 
@@ -15,5 +16,8 @@ std::string name_scene_content(const options::RunOptions& options, const scene::
 /// Names everything that one cell is made from: the above, and the filter's GLSL. Two cells of one key and one content
 /// differ in their times, and by what another OpenGL rounds, alone.
 std::string name_cell_content(const std::string& scene_content, const filters::FilterRequest& request);
+
+/// Adds a cell to the name of several: planner and sweeps agree on it.
+void add_cell(ContentHash& cells, const std::string& key, const std::string& content);
 
 }  // namespace shadowbench::run

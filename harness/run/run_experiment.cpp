@@ -107,7 +107,7 @@ class Experiment {
 
   /// What is half-written in the folder of a sweep belongs to tasks that may run anywhere.
   void require_no_sweep() const {
-    if (options_.part || !std::filesystem::exists(options_.out / "tasks.json")) return;
+    if (options_.part || !std::filesystem::exists(options_.out / kSweepFile)) return;
     throw Error(
         ErrorKind::kUsage,
         "--out: a sweep was submitted into this folder: 'shadowbench status' says how far it is; choose another",

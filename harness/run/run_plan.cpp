@@ -163,12 +163,10 @@ class Planner {
     for (const filters::FilterRequest& request : options_.filters) {
       const std::string key = measure::make_record(plan_.scenes[scene].options, task, request).key;
       const std::string content = name_cell_content(scene_content, request);
-      hash_.add(key);
-      hash_.add(content);
+      add_cell(hash_, key, content);
       ++plan_.scene_cells[plan_.scenes[scene].place];
       if (!is_own(plan_.cells++)) continue;
-      own_hash_.add(key);
-      own_hash_.add(content);
+      add_cell(own_hash_, key, content);
       planned.keys.push_back(key);
       planned.task.filters.push_back(request);
       planned.contents.push_back(content);

@@ -2,13 +2,12 @@
 
 #include <iterator>
 
+#include "harness/run/run_progress.h"
+
 namespace shadowbench::submit {
 namespace {
 
-/// What a picture of any size costs, in megapixels.
-constexpr double kFixedMegapixels = 0.05;
-
-double count_megapixels(const records::CellRecord& cell) { return kFixedMegapixels + 1e-6 * cell.width * cell.height; }
+double count_megapixels(const records::CellRecord& cell) { return run::count_megapixels(cell.width, cell.height); }
 
 double width_of(const records::CellRecord& cell) { return cell.kernel_radius_texels.value_or(0.0); }
 

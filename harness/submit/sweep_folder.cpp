@@ -9,6 +9,7 @@
 #include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
 #include "filters/base/input_file.h"
+#include "harness/run/run_experiment.h"
 #include "report/records/json_io.h"
 #include "report/records/json_values.h"
 
@@ -20,8 +21,7 @@ using nlohmann::json;
 
 /// Version of all files of a sweep.
 constexpr int kSchemaVersion = 1;
-constexpr const char *kSweepFile = "tasks.json", *kTaskFile = "task.json", *kResultFile = "result.json",
-                     *kFailureFile = "failure.json";
+constexpr const char *kTaskFile = "task.json", *kResultFile = "result.json", *kFailureFile = "failure.json";
 
 const char* name_of(TaskKind kind) { return kind == TaskKind::kTruth ? "truth" : "tasks"; }
 
@@ -62,25 +62,25 @@ fs::path task_folder(const fs::path& out, TaskKind kind, int number) {
   return out / name_of(kind) / std::to_string(number);
 }
 
-bool is_sweep(const fs::path& out) { return is_there(out / kSweepFile); }
+bool is_sweep(const fs::path& out) { return is_there(out / run::kSweepFile); }
 
 void write_sweep(const fs::path& out, const Sweep& sweep) {
   json jobs = json::array();
   for (const SubmittedJobs& each : sweep.jobs)
     jobs.push_back({{"engine", each.engine}, {"truth", each.truth}, {"cells", each.cells}, {"merge", each.merge}});
-  write_json(out / kSweepFile, {{"title", sweep.title},
-                                {"settings", sweep.settings},
-                                {"command", sweep.command},
-                                {"scene_cells", sweep.scene_cells},
-                                {"cells", sweep.cells},
-                                {"truths", sweep.truths},
-                                {"tasks", sweep.tasks},
-                                {"jobs", jobs}});
+  write_json(out / run::kSweepFile, {{"title", sweep.title},
+                                     {"settings", sweep.settings},
+                                     {"command", sweep.command},
+                                     {"scene_cells", sweep.scene_cells},
+                                     {"cells", sweep.cells},
+                                     {"truths", sweep.truths},
+                                     {"tasks", sweep.tasks},
+                                     {"jobs", jobs}});
 }
 
 Sweep read_sweep(const fs::path& out) {
   return read_json(
-      out / kSweepFile,
+      out / run::kSweepFile,
       [](const json& content) {
         Sweep sweep{.title = content.at("title"),
                     .settings = content.at("settings"),

@@ -10,6 +10,7 @@
 #include "filters/base/content_hash.h"
 #include "filters/base/error.h"
 #include "filters/base/temporary_files.h"
+#include "harness/run/cell_content.h"
 #include "harness/run/run_experiment.h"
 #include "harness/run/run_plan.h"
 #include "harness/submit/cell_costs.h"
@@ -141,8 +142,7 @@ class SweepPlanner {
     for (const options::CellRange& range : ranges) {
       for (int i = range.begin; i < range.end; ++i) {
         const PlannedCell& cell = cells_[static_cast<std::size_t>(i)];
-        content.add(cell.record.key);
-        content.add(cell.content);
+        run::add_cell(content, cell.record.key, cell.content);
         if (kind == TaskKind::kCells) task.keys.push_back(cell.record.key);
       }
     }
