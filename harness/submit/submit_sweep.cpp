@@ -1,6 +1,7 @@
 #include "harness/submit/submit_sweep.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <system_error>
@@ -52,13 +53,20 @@ void require_same(options::RunOptions options, const Sweep& sweep) {
               options.out.string());
 }
 
-/// Those of the tasks that somebody has to do.
-std::vector<int> list_left(const std::vector<TaskStatus>& tasks, const std::set<int>& queued) {
-  std::vector<int> left;
+/// Those of the tasks that somebody has to do. A job that has printed and shown no sign of life is known by the queue
+/// alone: one that was cancelled in its first moments leaves the same.
+std::vector<int> list_left(const std::vector<TaskStatus>& tasks, const std::set<int>& queued,
+                           options::Progress& progress) {
+  std::vector<int> left, alive;
   for (const TaskStatus& each : tasks) {
-    const bool is_under_way = each.state == TaskState::kFinished || each.state == TaskState::kRunning;
-    if (!is_under_way && !queued.contains(each.task.number)) left.push_back(each.task.number);
+    if (each.state == TaskState::kFinished || queued.contains(each.task.number)) continue;
+    (each.is_alive ? alive : left).push_back(each.task.number);
   }
+  if (!alive.empty())
+    progress.note(
+        fmt::format("note: not submitted, because they showed less than {:.0f} s ago that they run, though "
+                    "they are in no queue: task {}; where they were killed, submit again after that time",
+                    kSilentAfter_s, fmt::join(alive, ", ")));
   return left;
 }
 
@@ -117,8 +125,8 @@ std::vector<std::string> submit_sweep(const options::RunOptions& options, Submit
   SweepStatus status = read_status(out);
   const QueuedTasks queued = engine->find_queued(out, status.sweep.jobs);
   JobPlan& plan = request.jobs;
-  plan.tasks = list_left(status.tasks, queued.tasks);
-  if (!plan.tasks.empty()) plan.truths = list_left(status.truths, queued.truths);
+  plan.tasks = list_left(status.tasks, queued.tasks, progress);
+  if (!plan.tasks.empty()) plan.truths = list_left(status.truths, queued.truths, progress);
   if (plan.tasks.empty() && status.has_report) return {"nothing is left to do"};
   if (plan.tasks.empty() && !status.is_measured())
     return {"nothing is left to submit: the other tasks are queued or running"};

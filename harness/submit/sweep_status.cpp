@@ -39,18 +39,20 @@ class StatusReader {
     if (has_all && wrote_result) {
       status.state = TaskState::kFinished;
     } else if (const auto sign = read_last_sign(folder, now_)) {
-      const bool runs = !sign->is_gone && sign->silent_s < silent_after_s_;
-      status.state = runs ? TaskState::kRunning : TaskState::kLost;
+      status.is_alive = !sign->is_gone && sign->silent_s < silent_after_s_;
+      status.state = status.is_alive ? TaskState::kRunning : TaskState::kLost;
       if (sign->is_gone)
         status.message = "its process has ended without a word; see its log.txt";
-      else if (!runs)
+      else if (!status.is_alive)
         status.message = fmt::format("it has shown nothing for {:.0f} s; see its log.txt", sign->silent_s);
     } else if (const auto failure = read_failure(folder)) {
       status.state = TaskState::kFailed;
       status.message = fmt::format("exit code {}: {}", failure->exit_code, failure->message);
     } else if (const auto log = read_log_silence(folder); log && !wrote_result) {
       status.state = *log < silent_after_s_ ? TaskState::kRunning : TaskState::kLost;
-      if (status.state == TaskState::kLost) status.message = "it ended without a word; see its log.txt";
+      status.message = status.state == TaskState::kLost
+                           ? "it ended without a word; see its log.txt"
+                           : "its job has printed, and no process of it has shown itself yet; see its log.txt";
     } else if (wrote_result) {
       status.state = TaskState::kLost;
       status.message = fmt::format("it was finished, and {} of its cells are gone",

@@ -11,7 +11,7 @@ namespace shadowbench::submit {
 /// What the files of a task say of it.
 enum class TaskState {
   kFinished,
-  kRunning,  ///< it has shown lately that it runs
+  kRunning,  ///< it has shown lately that it runs, or its job has printed lately and may yet begin it
   kFailed,   ///< it said why
   kLost,     ///< it ran, and has long shown nothing: its machine is gone, or it was killed
   kWaiting   ///< it has not begun
@@ -24,8 +24,9 @@ const char* name_of(TaskState state);
 struct TaskStatus {
   SweepTask task;
   TaskState state = TaskState::kWaiting;
-  int cells = 0;        ///< that it has measured
-  std::string message;  ///< why it failed, or who ran it; else empty
+  int cells = 0;          ///< that it has measured
+  bool is_alive = false;  ///< it has shown lately that it runs
+  std::string message;    ///< why it failed or is lost; else empty
 };
 
 struct SweepStatus {

@@ -82,6 +82,22 @@ TEST_F(Submit, TasksShareWhatTheyCompile) {
         << name;
 }
 
+/// A job that was cancelled before its process showed itself leaves a line of its scheduler, and no task undone.
+TEST_F(Submit, WhatPrintedAndIsInNoQueue_IsSubmittedAgain_AndWhatShowsThatItRunsIsNot) {
+  ASSERT_EQ(run(std::string(kDry) + "--tasks 3").exit_code, 0);
+  ASSERT_EQ(do_task("tasks/1").exit_code, 0);
+  write("out/tasks/2/log.txt", "slurmstepd: error: *** JOB 29 ON node1 CANCELLED ***\n");
+  write("out/tasks/3/alive", "7 another-machine\n");
+  const Outcome status = run("status out --json");
+  EXPECT_EQ(json::parse(status.out)["tasks"][1]["state"], "running") << "it may yet begin";
+  EXPECT_EQ(json::parse(status.out)["tasks"][2]["state"], "running");
+  const Outcome outcome = run(kDry);
+  EXPECT_THAT(outcome.out, HasSubstr("1 task of "));
+  EXPECT_THAT(read_text(folder() / "out" / "submit.sbatch"), HasSubstr("#SBATCH --array=2\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("not submitted"));
+  EXPECT_THAT(outcome.err, HasSubstr("in no queue: task 3;"));
+}
+
 TEST_F(Submit, ATaskOfSomethingElse_Fails_AndStatusSaysWhy) {
   ASSERT_EQ(run(std::string(kDry) + "--tasks 2").exit_code, 0);
   EXPECT_EQ(do_task("tasks/1", "--seed 2").exit_code, 3);

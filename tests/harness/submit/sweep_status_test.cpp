@@ -167,6 +167,8 @@ TEST_F(SweepStatusTest, SignOfLife_ComesAgain) {
 TEST_F(SweepStatusTest, OfAJobThatPrintedAndEnded_IsLost) {
   write_text_file(task(1) / "log.txt", "sh: 1: shadowbench: not found\n");
   EXPECT_EQ(status(1).state, TaskState::kRunning) << "it may yet begin";
+  EXPECT_THAT(status(1).message, HasSubstr("shown itself"));
+  EXPECT_FALSE(status(1).is_alive) << "a queue knows more of it";
   const auto now = file_system_now(out());
   std::filesystem::last_write_time(task(1) / "log.txt", now - std::chrono::seconds(100));
   EXPECT_EQ(status(1).state, TaskState::kLost);
