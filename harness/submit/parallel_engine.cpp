@@ -1,7 +1,6 @@
 #include <fmt/format.h>
-#include <signal.h>
+#include <unistd.h>
 
-#include <charconv>
 #include <fstream>
 #include <iterator>
 
@@ -9,6 +8,8 @@
 #include "filters/base/error.h"
 #include "harness/submit/engine.h"
 #include "harness/submit/shell.h"
+#include "harness/submit/sign_of_life.h"
+#include "harness/submit/sweep_status.h"
 
 namespace shadowbench::submit {
 namespace {
@@ -19,11 +20,23 @@ constexpr const char *kScript = "submit.sh", *kLog = "submit.log";
 /// Stands for the number of a task.
 constexpr const char* kNumber = "@task@";
 
-/// Whether a process of this machine still carries out a script.
-bool carries_out(const std::string& process, const fs::path& script) {
-  std::ifstream file("/proc/" + process + "/cmdline", std::ios::binary);
+std::string host_name() {
+  char name[256] = {};
+  gethostname(name, sizeof name - 1);
+  return name;
+}
+
+/// Whether a process "number@machine" still carries out the script of a sweep, which shows on other machines that it
+/// does as tasks do.
+bool carries_out(const std::string& process, const fs::path& out) {
+  const std::size_t at = process.find('@');
+  if (at != std::string::npos && process.substr(at + 1) != host_name()) {
+    const auto sign = read_last_sign(out, file_system_now(out));
+    return sign && sign->silent_s < kSilentAfter_s;
+  }
+  std::ifstream file("/proc/" + process.substr(0, at) + "/cmdline", std::ios::binary);
   const std::string words(std::istreambuf_iterator<char>(file), {});
-  return words.find(script.string()) != std::string::npos;
+  return words.find((out / kScript).string()) != std::string::npos;
 }
 
 class ParallelEngine : public Engine {
@@ -38,7 +51,7 @@ class ParallelEngine : public Engine {
   QueuedTasks find_queued(const fs::path& out, const std::vector<SubmittedJobs>& earlier) override {
     QueuedTasks queued;
     for (const SubmittedJobs& jobs : earlier) {
-      if (jobs.engine != options_.engine || !carries_out(jobs.cells, out / kScript)) continue;
+      if (jobs.engine != options_.engine || !carries_out(jobs.cells, out)) continue;
       const Sweep sweep = read_sweep(out);
       for (int i = 1; i <= sweep.truths; ++i) queued.truths.insert(i);
       for (int i = 1; i <= sweep.tasks; ++i) queued.tasks.insert(i);
@@ -51,7 +64,8 @@ class ParallelEngine : public Engine {
     std::string script =
         "#!/bin/sh\n# Does the tasks of a sweep, and writes the report. Written by 'shadowbench submit'.\n"
         "# Stopped or started again, a task goes on where it was. One runs on a machine at a time: beside another, "
-        "its times\n# would be of that too.\n";
+        "its times\n# would be of that too.\n\n" +
+        show_life(quote_words({(plan.out / kSignOfLife).string()}));
     if (!plan.truths.empty()) script += "\n" + describe_tasks(plan, TaskKind::kTruth, plan.truths) + " || exit 1\n";
     if (!plan.tasks.empty()) script += "\n" + describe_tasks(plan, TaskKind::kCells, plan.tasks) + "\n";
     std::vector<std::string> merge = plan.program;
@@ -66,13 +80,18 @@ class ParallelEngine : public Engine {
       throw Error(ErrorKind::kUsage, "--engine parallel: GNU parallel is not installed here, or not in PATH");
     const ShellOutcome outcome = run_shell(write_scripts(plan, queued).front() + " >> " +
                                            quote_words({(plan.out / kLog).string()}) + " 2>&1 < /dev/null & echo $!");
-    const SubmittedJobs jobs{options_.engine, {}, outcome.text, {}};
+    const SubmittedJobs jobs{options_.engine, {}, outcome.text + "@" + host_name(), {}};
     note(jobs);
     return jobs;
   }
 
  private:
   EngineOptions options_;
+
+  /// Touches a file every few seconds for as long as the script runs, and removes it then.
+  static std::string show_life(const std::string& file) {
+    return fmt::format("(while kill -0 $$; do touch {0}; sleep 5; done; rm -f {0}) > /dev/null 2>&1 &\n", file);
+  }
 
   std::string describe_tasks(const JobPlan& plan, TaskKind kind, const std::vector<int>& numbers) const {
     const fs::path folder = task_folder(plan.out, kind, 1).parent_path() / kNumber;

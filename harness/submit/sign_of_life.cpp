@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFile = "alive";
-
 std::string read_environment(const char* name) {
   const char* value = std::getenv(name);
   return value ? value : "";
@@ -40,7 +38,7 @@ std::string describe_runner() {
 }  // namespace
 
 SignOfLife::SignOfLife(fs::path folder, std::chrono::milliseconds beat)
-    : file_(std::move(folder) / kFile), beat_(beat) {
+    : file_(std::move(folder) / kSignOfLife), beat_(beat) {
   write_text_file(file_, describe_runner());
   thread_ = std::thread([this] { keep_beating(); });
 }
@@ -69,15 +67,15 @@ void SignOfLife::keep_beating() {
 
 void remove_sign_of_life(const fs::path& folder) {
   std::error_code ignored;
-  fs::remove(folder / kFile, ignored);
+  fs::remove(folder / kSignOfLife, ignored);
 }
 
 std::optional<LastSign> read_last_sign(const fs::path& folder, fs::file_time_type now) {
   std::error_code error;
-  const fs::file_time_type last = fs::last_write_time(folder / kFile, error);
+  const fs::file_time_type last = fs::last_write_time(folder / kSignOfLife, error);
   if (error) return std::nullopt;
   Writer writer;
-  std::ifstream(folder / kFile) >> writer.process >> writer.host;
+  std::ifstream(folder / kSignOfLife) >> writer.process >> writer.host;
   return LastSign{std::chrono::duration<double>(now - last).count(), writer.process > 0 && is_gone(writer)};
 }
 

@@ -9,6 +9,9 @@
 
 namespace shadowbench::submit {
 
+/// The name of the file that shows it.
+inline constexpr const char* kSignOfLife = "alive";
+
 /// How often a task shows that it runs.
 inline constexpr std::chrono::milliseconds kBeat{5000};
 

@@ -29,7 +29,7 @@ struct SweepTask {
 /// The jobs that one submission made.
 struct SubmittedJobs {
   std::string engine;
-  std::string truth, cells, merge;  ///< names of jobs, or the number of a process; empty: there is none
+  std::string truth, cells, merge;  ///< names of jobs, or a process "12@machine"; empty: there is none
 };
 
 /// A sweep as it was submitted.

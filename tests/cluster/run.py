@@ -9,6 +9,7 @@ Needs root, slurm-wlm and munge; touches no Slurm that the machine may have. See
 import argparse
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -247,10 +248,14 @@ def test_parallel_does_it_on_one_machine(program, cluster, folder):
         end_descendants(script)
     send(signal.SIGKILL, scripts)
     cells = sweep.expect_stopped_midway()
-    for alive in sweep.out.glob("*/*/alive"):
+    for alive in sweep.out.glob("**/alive"):
         make_older(alive, 3600)
     assert "lost" in sweep.read_states(), sweep.read_status()
     sweep.submit()
+    for there in (False, True):
+        if there:  # as if begun on another machine, whose processes have other numbers
+            sweep.edit_jobs(rf'"\d+@{socket.gethostname()}"', '"1@elsewhere"')
+        assert "nothing is left to submit" in sweep.submit().stdout, "the script has the tasks before it"
     cluster.wait_for(lambda: sweep.read_status()["report"], 60, "report")
     sweep.expect_same_as_one_run()
     sweep.expect_kept(cells)
