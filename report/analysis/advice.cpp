@@ -143,10 +143,10 @@ Verdict judge_limit(const std::vector<const records::CellRecord*>& cells, const 
       verdict.worst = value;
       verdict.where = cell;
     }
-    if (is_rmse && demand.most - value < find_rmse_reach(*cell)) verdict.lost_in_truth = cell;
+    if (is_rmse && demand.most - value < find_rmse_reach(*cell)) verdict.uncertain = cell;
   }
   verdict.kept = *verdict.worst <= demand.most;
-  if (!verdict.kept) verdict.lost_in_truth = nullptr;
+  if (!verdict.kept) verdict.uncertain = nullptr;
   return verdict;
 }
 

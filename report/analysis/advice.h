@@ -33,7 +33,7 @@ struct Verdict {
   /// Cells that have nothing on which the limit could be broken; it counts as kept there.
   std::vector<const records::CellRecord*> nothing_to_see = {};
   /// A cell that keeps a limit on the RMSE by less than the RMSE is uncertain; null: there is none.
-  const records::CellRecord* lost_in_truth = nullptr;
+  const records::CellRecord* uncertain = nullptr;
 };
 
 /// A cost over all places, each counting the same. What is known of each place's value (its quartiles, its interval as

@@ -90,7 +90,7 @@ Json verdict_json(const analysis::Demand& demand, const analysis::Verdict& verdi
   set(json, "scene", of_cell(&records::CellRecord::scene), kClaim);
   set(json, "view", of_cell(&records::CellRecord::view), kClaim);
   set(json, "key", of_cell(&records::CellRecord::key), kClaim);
-  json["within_truth_se"] = verdict.lost_in_truth != nullptr;
+  json["within_uncertainty"] = verdict.uncertain != nullptr;
   json["nothing_to_see"] = nothing_to_see_json(demand, verdict);
   return json;
 }

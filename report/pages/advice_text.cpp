@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "report/analysis/accuracy.h"
 #include "report/analysis/advice_words.h"
 #include "report/analysis/summary.h"
 #include "report/records/format.h"
@@ -62,9 +63,11 @@ std::string place_name(const records::CellRecord& cell, const analysis::Advice& 
 }
 
 std::string remark(const analysis::Demand& demand, const analysis::Verdict& verdict, analysis::LightMotion light) {
-  if (verdict.lost_in_truth) {
-    return fmt::format("kept by less than the truth's own standard error, {}",
-                       records::format_number(*verdict.lost_in_truth->truth.se));
+  if (verdict.uncertain) {
+    return fmt::format("kept by less than {}, {}",
+                       verdict.uncertain->rmse_ci95 ? "its interval over the phases of the map reaches"
+                                                    : "the truth's own standard error",
+                       records::format_number(analysis::find_rmse_reach(*verdict.uncertain)));
   }
   if (demand.spec == &analysis::cost_spec(analysis::CostKind::kTime)) {
     const double q3 = analysis::frame_time(*verdict.where, light)->q3;

@@ -313,12 +313,12 @@ TEST(Advice, NothingCanBeJudged_SaysWhy) {
 
 TEST(Advice, RmseKeptByLessThanTheTruthsStandardError_IsMarked) {
   std::vector<records::CellRecord> cells = {measure("cubes", "a", 9.0, 0.0295), measure("stack", "a", 9.0, 0.001)};
-  EXPECT_EQ(advise_on(cells, {limit("--max-rmse", 0.03)}).keeping.at(0).verdicts[0].lost_in_truth, &cells[0]);
-  EXPECT_FALSE(advise_on(cells, {limit("--max-rmse", 0.031)}).keeping.at(0).verdicts[0].lost_in_truth);
+  EXPECT_EQ(advise_on(cells, {limit("--max-rmse", 0.03)}).keeping.at(0).verdicts[0].uncertain, &cells[0]);
+  EXPECT_FALSE(advise_on(cells, {limit("--max-rmse", 0.031)}).keeping.at(0).verdicts[0].uncertain);
   cells[1].truth.se = 0.04;
-  EXPECT_EQ(advise_on(cells, {limit("--max-rmse", 0.031)}).keeping.at(0).verdicts[0].lost_in_truth, &cells[1])
+  EXPECT_EQ(advise_on(cells, {limit("--max-rmse", 0.031)}).keeping.at(0).verdicts[0].uncertain, &cells[1])
       << "not the worst";
-  EXPECT_FALSE(advise_on(cells, {limit("--max-fetches", 4.0)}).keeping.at(0).verdicts[0].lost_in_truth);
+  EXPECT_FALSE(advise_on(cells, {limit("--max-fetches", 4.0)}).keeping.at(0).verdicts[0].uncertain);
 }
 
 TEST(Advice, RequiredClaim_IsReadFromTheKnownFilters) {

@@ -112,6 +112,14 @@ TEST(AdviceText, FirstLine_IsTheAnswer) {
   EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {max_rmse(0.001)})), StartsWith("Nothing fits.\n"));
 }
 
+TEST(AdviceText, ALimitKeptWithinTheIntervalOverPhases_SaysSo) {
+  auto cells = make_cells();
+  for (records::CellRecord& cell : cells)
+    cell.rmse_ci95 = records::Interval{*cell.error.rmse - 0.002, *cell.error.rmse + 0.002};
+  EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {max_rmse(0.03)})),
+              HasSubstr("0.0295  stack  kept by less than its interval over the phases of the map reaches, 0.002\n"));
+}
+
 TEST(AdviceText, Evidence_IsQuoted) {
   const auto cells = make_cells();
   const std::string text = make_advice_text(make_run(), advise_on(cells, {max_rmse(0.03)}));
@@ -214,7 +222,7 @@ TEST(AdviceJson, Numbers_AreThoseOfTheCells) {
   EXPECT_EQ(json["advised"]["cost"]["mean"], 8.5);
   EXPECT_EQ(json["advised"]["limits"][0]["worst"], 0.0295);
   EXPECT_EQ(json["advised"]["limits"][0]["key"], cells[3].key);
-  EXPECT_EQ(json["advised"]["limits"][0]["within_truth_se"], true);
+  EXPECT_EQ(json["advised"]["limits"][0]["within_uncertainty"], true);
   EXPECT_EQ(json["advised"]["cells"][1]["time_ms"]["median"], 9.5);
   EXPECT_EQ(json["runner_up"]["lost_by"]["difference"], 4.0);
   EXPECT_EQ(json["runner_up"]["lost_by"]["tied"], false);
