@@ -93,12 +93,12 @@ def read_processes():
 
 
 def find_descendants(root):
-    """The processes that `root`, and those that it has started, have started."""
+    """The processes that `root`, and those that it has started, have started: parents before their children."""
     parents = read_processes()
-    found, more = set(), {root}
+    found, more = [], {root}
     while more:
         more = {process for process, parent in parents.items() if parent in more}
-        found |= more
+        found += sorted(more)
     return found
 
 
@@ -112,11 +112,11 @@ def send(number, processes):
 
 def end_descendants(root):
     """Ends all that `root` and those below it have started, at once: nobody is left who could start another."""
-    processes = set()
+    processes = []
     while (found := find_descendants(root)) != processes:
         processes = found
         send(signal.SIGSTOP, processes)
-    send(signal.SIGKILL, processes)
+    send(signal.SIGKILL, reversed(processes))  # a stopped group whose parent dies first hears SIGHUP, and says so
 
 
 def keep(command):
