@@ -128,8 +128,8 @@ std::vector<std::string> submit_sweep(const options::RunOptions& options, Submit
   plan.tasks = list_left(status.tasks, queued.tasks, progress);
   if (!plan.tasks.empty()) plan.truths = list_left(status.truths, queued.truths, progress);
   if (plan.tasks.empty() && status.has_report) return {"nothing is left to do"};
-  if (plan.tasks.empty() && !status.is_measured())
-    return {"nothing is left to submit: the other tasks are queued or running"};
+  if (plan.tasks.empty() && !(status.is_measured() && queued.tasks.empty()))
+    return {"nothing is left to submit: the other tasks are queued or running, and the report follows them"};
   const std::vector<std::string> commands = engine->write_scripts(plan, queued);
   if (request.dry_run) {
     std::vector<std::string> lines = describe_jobs(status, plan, {});

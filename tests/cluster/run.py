@@ -252,10 +252,13 @@ def test_parallel_does_it_on_one_machine(program, cluster, folder):
         make_older(alive, 3600)
     assert "lost" in sweep.read_states(), sweep.read_status()
     sweep.submit()
+    scripts = find_processes(sweep.out / "submit.sh")
+    send(signal.SIGSTOP, scripts)  # it neither ends nor goes on to the report
     for there in (False, True):
         if there:  # as if begun on another machine, whose processes have other numbers
             sweep.edit_jobs(rf'"\d+@{socket.gethostname()}"', '"1@elsewhere"')
         assert "nothing is left to submit" in sweep.submit().stdout, "the script has the tasks before it"
+    send(signal.SIGCONT, scripts)
     cluster.wait_for(lambda: sweep.read_status()["report"], 60, "report")
     sweep.expect_same_as_one_run()
     sweep.expect_kept(cells)
