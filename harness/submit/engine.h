@@ -28,7 +28,7 @@ struct JobPlan {
   std::vector<int> truths, tasks;        ///< numbers of those that are to be done
 };
 
-/// Tasks that earlier jobs have before them or under way.
+/// Tasks that earlier jobs have before them or under way. Of a script that runs on that is each of its tasks.
 struct QueuedTasks {
   std::set<int> truths, tasks;
   std::vector<SubmittedJobs> jobs;  ///< theirs; those that are done have no name here

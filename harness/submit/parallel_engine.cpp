@@ -66,8 +66,9 @@ class ParallelEngine : public Engine {
         "# Stopped or started again, a task goes on where it was. One runs on a machine at a time: beside another, "
         "its times\n# would be of that too.\n\n" +
         show_life(quote_words({(plan.out / kSignOfLife).string()}));
-    if (!plan.truths.empty()) script += "\n" + describe_tasks(plan, TaskKind::kTruth, plan.truths) + " || exit 1\n";
-    if (!plan.tasks.empty()) script += "\n" + describe_tasks(plan, TaskKind::kCells, plan.tasks) + "\n";
+    if (!plan.truths.empty())
+      script += "\n" + describe_tasks(plan, TaskKind::kTruth, plan.truths) + " &\nwait $! || exit 1\n";
+    if (!plan.tasks.empty()) script += "\n" + describe_tasks(plan, TaskKind::kCells, plan.tasks) + " &\nwait $!\n";
     std::vector<std::string> merge = plan.program;
     merge.insert(merge.end(), {"merge", plan.out.string()});
     write_text_file(plan.out / kScript, script + "\n" + quote_words(merge) + "\n");
@@ -88,9 +89,13 @@ class ParallelEngine : public Engine {
  private:
   EngineOptions options_;
 
-  /// Touches a file every few seconds for as long as the script runs, and removes it then.
+  /// Touches a file every few seconds for as long as the script runs, and takes it away when it ends. Who ends the
+  /// script ends all that it has started.
   static std::string show_life(const std::string& file) {
-    return fmt::format("(while kill -0 $$; do touch {0}; sleep 5; done; rm -f {0}) > /dev/null 2>&1 &\n", file);
+    return fmt::format(
+        "trap 'rm -f \"$alive\"' EXIT\ntrap 'trap \"\" TERM; kill 0; exit 1' HUP INT TERM\nalive={}\n"
+        "(while grep -qs . /proc/$$/cmdline; do touch \"$alive\"; sleep 5; done) > /dev/null 2>&1 &\n",
+        file);
   }
 
   std::string describe_tasks(const JobPlan& plan, TaskKind kind, const std::vector<int>& numbers) const {

@@ -2,9 +2,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
+#include <chrono>
+#include <cstring>
 #include <sstream>
-#include <string_view>
+#include <thread>
 
 #include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
@@ -18,6 +19,18 @@ namespace fs = std::filesystem;
 
 constexpr const char *kTruthScript = "truth.sbatch", *kCellScript = "submit.sbatch", *kMergeScript = "merge.sbatch";
 constexpr int kNoSuchCommand = 127;
+/// For so many seconds jobs that are ending are waited for. Slurm kills them after 30, unless it is told otherwise.
+constexpr int kMostTries = 40;
+
+/// What no line of options may hold: sbatch has no way to say it.
+constexpr const char* kUnquotable = "\"\\\n";
+
+/// A name without what no line of options may hold.
+std::string plain(std::string name) {
+  for (char& c : name)
+    if (std::strchr(kUnquotable, c)) c = '_';
+  return name;
+}
 
 /// Writes numbers as Slurm takes those of an array: "1-3,7".
 std::string describe_array(const std::vector<int>& numbers) {
@@ -43,8 +56,8 @@ class SlurmEngine : public Engine {
  public:
   explicit SlurmEngine(const EngineOptions& options) : options_(options) {
     for (const std::string& word : options.words)
-      for (const char* own : {"--array", "-a", "--dependency", "-d", "--output", "-o", "--wrap"})
-        if (word == own || word.starts_with(std::string(own) + "="))
+      for (const std::string own : {"--array", "-a", "--dependency", "-d", "--output", "-o", "--wrap"})
+        if (word == own || word.starts_with(own.size() == 2 ? own : own + "="))
           throw Error(ErrorKind::kUsage,
                       fmt::format("-- {}: that is submit's own, to have each task once and in order; leave it out "
                                   "('scontrol update job=ID arraytaskthrottle=N' limits how many run at once)",
@@ -66,6 +79,11 @@ class SlurmEngine : public Engine {
   }
 
   std::vector<std::string> write_scripts(const JobPlan& plan, const QueuedTasks& queued) override {
+    if (plan.out.string().find_first_of(kUnquotable) != std::string::npos)
+      throw Error(ErrorKind::kUsage,
+                  "--out: Slurm cannot be told a folder with a double quote, a backslash or a line end in its name; "
+                  "choose another",
+                  plan.out.string());
     if (!plan.truths.empty())
       write_array(plan, kTruthScript, "Traces what cells share, once, into the cache that all tasks read.",
                   TaskKind::kTruth, plan.truths);
@@ -117,27 +135,36 @@ class SlurmEngine : public Engine {
     run_shell(quote_words(words));
   }
 
-  /// The numbers of an array's elements that are not done; none where Slurm has forgotten the job.
+  /// The numbers of an array's elements that are not done; none where Slurm has forgotten the job. Those that are
+  /// ending may be cancelled or go back to the queue: they are waited for.
   static std::set<int> list_array(const std::string& job) {
-    std::set<int> numbers;
-    if (job.empty()) return numbers;
+    if (job.empty()) return {};
     std::vector<std::string> words = address("squeue", job);
-    words.insert(words.end(), {"--noheader", "--array", "--format=%K", "--jobs", number_of(job)});
-    const ShellOutcome outcome = run_shell(quote_words(words));
-    const bool is_forgotten = outcome.text.find("Invalid job id") != std::string::npos;
-    if (is_forgotten || outcome.exit_code == kNoSuchCommand) return numbers;
-    if (outcome.exit_code != 0)
-      throw Error(ErrorKind::kUsage,
-                  fmt::format("squeue refuses, so nobody can say which tasks wait: {}; try again once "
-                              "Slurm answers",
-                              outcome.text));
-    std::istringstream lines(outcome.text);
-    for (std::string line; std::getline(lines, line);) {  // warnings may stand among them
+    words.insert(words.end(), {"--noheader", "--array", "--format=%K %T", "--jobs", number_of(job)});
+    for (int tries = 0;; ++tries) {
+      const ShellOutcome outcome = run_shell(quote_words(words));
+      const bool is_forgotten = outcome.text.find("Invalid job id") != std::string::npos;
+      if (is_forgotten || outcome.exit_code == kNoSuchCommand) return {};
+      if (outcome.exit_code != 0)
+        throw Error(ErrorKind::kUsage,
+                    fmt::format("squeue refuses, so nobody can say which tasks wait: {}; try again once "
+                                "Slurm answers",
+                                outcome.text));
+      if (tries == kMostTries || outcome.text.find(" COMPLETING") == std::string::npos)
+        return read_elements(outcome.text);
+      std::this_thread::sleep_for(std::chrono::seconds(1));
+    }
+  }
+
+  /// The numbers with which lines begin; warnings may stand among them.
+  static std::set<int> read_elements(const std::string& text) {
+    std::set<int> numbers;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      std::istringstream words(line);
       int number = 0;
-      const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), number);
-      if (error == std::errc() &&
-          std::string_view(end, line.data() + line.size()).find_first_not_of(' ') == std::string_view::npos)
-        numbers.insert(number);
+      std::string state, more;
+      if (words >> number >> state && !(words >> more)) numbers.insert(number);
     }
     return numbers;
   }
@@ -165,7 +192,7 @@ class SlurmEngine : public Engine {
                     "was.\n"
                     "#SBATCH --job-name=\"{}-{}\"\n#SBATCH --array={}\n#SBATCH --output={}\n#SBATCH "
                     "--open-mode=append\n#SBATCH --requeue\n{}\n{}exec {} --task {}/\"$SLURM_ARRAY_TASK_ID\"\n",
-                    what, plan.name, folder.filename().string(), describe_array(numbers),
+                    what, plain(plan.name), folder.filename().string(), describe_array(numbers),
                     quote_pattern(folder, "/%a/log.txt"), describe_resources(true), enter_folder(plan),
                     quote_words(plan.command), quote_words({folder.string()})));
   }
@@ -177,7 +204,7 @@ class SlurmEngine : public Engine {
                     fmt::format("#!/bin/sh\n# Writes the report once no task runs any more.\n# Written by 'shadowbench "
                                 "submit'.\n#SBATCH --job-name=\"{}-merge\"\n#SBATCH --output={}\n#SBATCH "
                                 "--open-mode=append\n{}\n{}exec {}\n",
-                                plan.name, quote_pattern(plan.out / "merge.log"), describe_resources(false),
+                                plain(plan.name), quote_pattern(plan.out / "merge.log"), describe_resources(false),
                                 enter_folder(plan), quote_words(command)));
   }
 

@@ -33,16 +33,20 @@ void require_free(const fs::path& out) {
               out.string());
 }
 
+/// Whether a task may have begun: a plan that nobody submitted can be made anew.
+bool was_submitted(const fs::path& out) { return is_sweep(out) && (!read_sweep(out).jobs.empty() || has_cells(out)); }
+
 void plan_folder(const options::RunOptions& options, const SplitRule& rule, options::Progress& progress) {
   require_free(options.out);
   const SweepPlan plan = plan_sweep(options, rule, progress);
+  if (was_submitted(options.out))
+    throw Error(ErrorKind::kUsage,
+                "--out: meanwhile another 'submit' was given this folder; the same command submits what it leaves",
+                options.out.string());
   for (const SweepTask& task : plan.truths) write_task(options.out, task);
   for (const SweepTask& task : plan.tasks) write_task(options.out, task);
   write_sweep(options.out, plan.sweep);  // last: where it is, all tasks are
 }
-
-/// Whether a task may have begun: a plan that nobody submitted can be made anew.
-bool was_submitted(const fs::path& out) { return is_sweep(out) && (!read_sweep(out).jobs.empty() || has_cells(out)); }
 
 void require_same(options::RunOptions options, const Sweep& sweep) {
   options.fresh = true;
@@ -55,19 +59,26 @@ void require_same(options::RunOptions options, const Sweep& sweep) {
 
 /// Those of the tasks that somebody has to do. A job that has printed and shown no sign of life is known by the queue
 /// alone: one that was cancelled in its first moments leaves the same.
-std::vector<int> list_left(const std::vector<TaskStatus>& tasks, const std::set<int>& queued,
-                           options::Progress& progress) {
-  std::vector<int> left, alive;
-  for (const TaskStatus& each : tasks) {
-    if (each.state == TaskState::kFinished || queued.contains(each.task.number)) continue;
-    (each.is_alive ? alive : left).push_back(each.task.number);
-  }
-  if (!alive.empty())
-    progress.note(
-        fmt::format("note: not submitted, because they showed less than {:.0f} s ago that they run, though "
-                    "they are in no queue: task {}; where they were killed, submit again after that time",
-                    kSilentAfter_s, fmt::join(alive, ", ")));
+std::vector<int> list_left(const std::vector<TaskStatus>& tasks, const std::set<int>& queued) {
+  std::vector<int> left;
+  for (const TaskStatus& each : tasks)
+    if (each.state != TaskState::kFinished && !queued.contains(each.task.number)) left.push_back(each.task.number);
   return left;
+}
+
+/// Takes those away that have shown lately that they run. Returns what is said of them; empty: there were none.
+std::string leave_out_alive(std::vector<int>& left, const std::vector<TaskStatus>& tasks) {
+  std::vector<int> alive;
+  std::erase_if(left, [&](int number) {
+    const bool is_alive = tasks[static_cast<std::size_t>(number - 1)].is_alive;
+    if (is_alive) alive.push_back(number);
+    return is_alive;
+  });
+  if (alive.empty()) return {};
+  return fmt::format(
+      "not submitted, because they showed less than {:.0f} s ago that they run, though they are in no "
+      "queue: task {}; once they have ended, or after that time where they were killed, submit again",
+      kSilentAfter_s, fmt::join(alive, ", "));
 }
 
 std::string count_tasks(const std::vector<int>& tasks) {
@@ -82,7 +93,7 @@ std::string describe_tasks(const SweepStatus& status, const std::vector<int>& ta
     cells += task.keys.size();
     seconds = std::max(seconds, task.seconds);
   }
-  std::string text = fmt::format("{} of {} cells", count_tasks(tasks), cells);
+  std::string text = fmt::format("{} of {} cell{}", count_tasks(tasks), cells, cells == 1 ? "" : "s");
   if (seconds > 0.0) text += fmt::format(", {:.0f} s at most each on a machine like this", seconds);
   return text;
 }
@@ -122,14 +133,19 @@ std::vector<std::string> submit_sweep(const options::RunOptions& options, Submit
   } else {
     plan_folder(options, request.split, progress);
   }
-  SweepStatus status = read_status(out);
-  const QueuedTasks queued = engine->find_queued(out, status.sweep.jobs);
+  const QueuedTasks queued = engine->find_queued(out, read_sweep(out).jobs);
+  SweepStatus status = read_status(out);  // after that: what ends meanwhile is finished here
   JobPlan& plan = request.jobs;
-  plan.tasks = list_left(status.tasks, queued.tasks, progress);
-  if (!plan.tasks.empty()) plan.truths = list_left(status.truths, queued.truths, progress);
-  if (plan.tasks.empty() && status.has_report) return {"nothing is left to do"};
-  if (plan.tasks.empty() && !(status.is_measured() && queued.tasks.empty()))
-    return {"nothing is left to submit: the other tasks are queued or running, and the report follows them"};
+  plan.tasks = list_left(status.tasks, queued.tasks);
+  const std::string alive = leave_out_alive(plan.tasks, status.tasks);
+  if (plan.tasks.empty()) {
+    if (!alive.empty()) return {alive};
+    if (!queued.tasks.empty()) return {"nothing is left to submit: the other tasks are queued or running"};
+    if (status.has_report) return {"nothing is left to do"};
+  } else {
+    plan.truths = list_left(status.truths, queued.truths);  // two may trace the same
+    if (!alive.empty()) progress.note("note: " + alive);
+  }
   const std::vector<std::string> commands = engine->write_scripts(plan, queued);
   if (request.dry_run) {
     std::vector<std::string> lines = describe_jobs(status, plan, {});

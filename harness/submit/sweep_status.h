@@ -26,7 +26,7 @@ struct TaskStatus {
   TaskState state = TaskState::kWaiting;
   int cells = 0;          ///< that it has measured
   bool is_alive = false;  ///< it has shown lately that it runs
-  std::string message;    ///< why it failed or is lost; else empty
+  std::string message;    ///< why it failed or is lost, or runs without a sign; else empty
 };
 
 struct SweepStatus {
@@ -47,7 +47,7 @@ inline constexpr double kSilentAfter_s = 120.0;
 /// Throws Error(kInput) where no sweep was submitted into the folder, or a file of it is damaged.
 SweepStatus read_status(const std::filesystem::path& out, double silent_after_s = kSilentAfter_s);
 
-/// A table for people, and a line for each task that failed or was lost.
+/// A table for people, and a line for each of the first tasks that have a message.
 std::string describe_status(const SweepStatus& status);
 
 /// The same for programs.

@@ -7,6 +7,7 @@ Needs root, slurm-wlm and munge; touches no Slurm that the machine may have. See
 """
 
 import argparse
+import re
 import shutil
 import signal
 import socket
@@ -143,6 +144,9 @@ def test_cancelled_sweep_is_continued(program, cluster, folder):
     sweep.submit()
     submitted = {int(name.rpartition("_")[2]) for name in cluster.read_jobs() if "_" in name and name not in before}
     assert submitted == left, f"{submitted} were submitted, where {left} were left"
+    sweep.wait_for_cells(len(cells) + 1)
+    cluster.run("scancel", "--user=root")
+    sweep.submit()  # while they are still ending
     sweep.wait()
     sweep.expect_same_as_one_run()
     sweep.expect_kept(cells)
@@ -240,8 +244,14 @@ def test_parallel_does_it_on_one_machine(program, cluster, folder):
     sweep.options[1] = "parallel"
     sweep.submit("--dry-run")
     assert not sweep.list_cells(), "nothing is measured"
-    sweep.submit("--", "--jobs", 2)
+    script = int(re.search(r"job (\d+)@", sweep.submit().stdout)[1])
     sweep.wait_for_cells(1)
+    send(signal.SIGTERM, [script])
+    cluster.wait_for(lambda: not find_processes(sweep.out), 60, "end of what the script had started")
+    assert sweep.read_states()[1:] == ["waiting", "waiting"] and not (sweep.out / "alive").exists(), sweep.read_status()
+    before = len(sweep.list_cells())
+    sweep.submit("--", "--jobs", 2)
+    sweep.wait_for_cells(before + 1)
     scripts = find_processes(sweep.out / "submit.sh")
     assert scripts, "the script runs on"
     for script in scripts:
@@ -252,6 +262,7 @@ def test_parallel_does_it_on_one_machine(program, cluster, folder):
         make_older(alive, 3600)
     assert "lost" in sweep.read_states(), sweep.read_status()
     sweep.submit()
+    cluster.wait_for(lambda: time.time() - (sweep.out / "alive").stat().st_mtime < 60, 10, "sign of life")
     scripts = find_processes(sweep.out / "submit.sh")
     send(signal.SIGSTOP, scripts)  # it neither ends nor goes on to the report
     for there in (False, True):

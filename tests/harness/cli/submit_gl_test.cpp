@@ -137,6 +137,7 @@ TEST_F(Submit, BadWords_AreRefused) {
   expect_refusal("submit e.toml --engine slurm --shard 1/2 --out out", 2, {"--shard"});
   expect_refusal("submit e.toml --engine slurm --times-of nosuch --out out", 3, {"nosuch"});
   expect_refusal("submit e.toml --engine slurm --out out -- --array=1-9%4", 2, {"--array", "arraytaskthrottle"});
+  expect_refusal("submit e.toml --engine slurm --out out -- -a1-9", 2, {"-a", "arraytaskthrottle"});
   expect_refusal("submit e.toml --engine parallel --time 3 --out out", 2, {"--time", "--engine slurm"});
   expect_refusal("status nosuch", 3, {"nosuch/tasks.json"});
   expect_refusal("status out --silent-after 0", 2, {"--silent-after"});
@@ -153,6 +154,16 @@ TEST_F(Submit, WithoutItsEngine_IsRefused) {
     EXPECT_THAT(outcome.err, HasSubstr(std::string("--engine ") + engine));
     EXPECT_EQ(run("status out").exit_code, 0);
   }
+}
+
+/// No line of options can hold some characters.
+TEST_F(Submit, WhatSlurmCannotBeTold_IsRefused_OrReplaced) {
+  const Outcome outcome = run("submit e.toml --gpu none --no-probe --dry-run --engine slurm --out 'a \"b\"'");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("double quote"));
+  std::filesystem::copy_file(folder() / "e.toml", folder() / "my \"e\".toml");
+  EXPECT_EQ(run("submit 'my \"e\".toml' --gpu none --no-probe --dry-run --engine slurm --out out").exit_code, 0);
+  EXPECT_THAT(read_text(folder() / "out" / "submit.sbatch"), HasSubstr("#SBATCH --job-name=\"my _e_-tasks\"\n"));
 }
 
 TEST_F(Submit, Scripts_TakeOddFoldersAndPassWordsOn) {
