@@ -174,6 +174,7 @@ class Cluster:
         nodes = "".join(NODE.format(name=name, host=host, port=port, cpus=cpus) for name, port in zip(self.nodes, ports[1:]))
         self.configuration.write_text(CONFIGURATION.format(folder=self.folder, host=host, ports=ports) + nodes)
         (self.folder / "gres.conf").write_text("Name=gpu File=/dev/null\n")
+        (self.folder / "cgroup.conf").write_text("CgroupPlugin=cgroup/v1\n")  # asks for no mount, which a container may lack
 
     def _start_daemon(self, *command, name=None):
         name = name or command[0]
