@@ -98,6 +98,27 @@ TEST_F(Submit, WhatPrintedAndIsInNoQueue_IsSubmittedAgain_AndWhatShowsThatItRuns
   EXPECT_THAT(outcome.err, HasSubstr("in no queue: task 3;"));
 }
 
+/// A cancelled job stays in the queue until its processes have ended.
+TEST_F(Submit, JobsThatAreEnding_AreWaitedFor) {
+  const std::filesystem::path bin = folder() / "bin";
+  const auto write_tool = [&](const char* name, const std::string& text) {
+    std::filesystem::create_directories(bin);
+    write(std::string("bin/") + name, "#!/bin/sh\n" + text + "\n");
+    std::filesystem::permissions(bin / name, std::filesystem::perms::owner_all);
+  };
+  write_tool("sbatch", "echo 77");
+  write_tool("scancel", "");
+  write_tool("squeue", "echo asked >> '" + bin.string() + "/asked'; test $(grep -c . '" + bin.string() +
+                           "/asked') -gt 2 || echo 2 COMPLETING");
+  const std::string words = "submit e.toml --gpu none --no-probe --engine slurm --tasks 3 --out out";
+  const std::string path = "PATH='" + bin.string() + "':/usr/bin:/bin";
+  EXPECT_THAT(run(words, path).out, HasSubstr("job 77: 3 tasks of"));
+  EXPECT_FALSE(std::filesystem::exists(bin / "asked"));
+  EXPECT_THAT(run(words, path).out, HasSubstr("job 77: 3 tasks of")) << "of those none is in the queue any more";
+  write_tool("squeue", "echo '2 PENDING'; echo squeue: warning: 3 of it");
+  EXPECT_THAT(run(words, path).out, HasSubstr("job 77: 2 tasks of"));
+}
+
 TEST_F(Submit, ATaskOfSomethingElse_Fails_AndStatusSaysWhy) {
   ASSERT_EQ(run(std::string(kDry) + "--tasks 2").exit_code, 0);
   EXPECT_EQ(do_task("tasks/1", "--seed 2").exit_code, 3);
