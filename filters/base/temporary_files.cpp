@@ -75,12 +75,15 @@ std::vector<fs::path> clean(const fs::path& folder, const std::function<bool(con
 
 }  // namespace
 
+std::string host_name() {
+  char name[256] = {};
+  return gethostname(name, sizeof name - 1) == 0 ? name : "";
+}
+
 Writer this_writer() {
   static const std::string host = [] {
-    char name[256] = {};
-    if (gethostname(name, sizeof name - 1) != 0) name[0] = 0;
     ContentHash hash;
-    hash.add(name);
+    hash.add(host_name());
     return hash.name().substr(0, 8);
   }();
   return {host, getpid()};

@@ -16,6 +16,9 @@ struct Writer {
   bool operator==(const Writer&) const = default;
 };
 
+/// The name of this machine; empty where it has none.
+std::string host_name();
+
 /// This process.
 Writer this_writer();
 

@@ -28,7 +28,8 @@ struct JobPlan {
   std::vector<int> truths, tasks;        ///< numbers of those that are to be done
 };
 
-/// Tasks that earlier jobs have before them or under way. Of a script that runs on that is each of its tasks.
+/// Tasks that earlier jobs have before them or under way. A script has all tasks of its sweep for as long as it
+/// runs.
 struct QueuedTasks {
   std::set<int> truths, tasks;
   std::vector<SubmittedJobs> jobs;  ///< theirs; those that are done have no name here

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <iterator>
 
 #include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
+#include "filters/base/temporary_files.h"
 #include "harness/submit/engine.h"
 #include "harness/submit/shell.h"
 #include "harness/submit/sign_of_life.h"
@@ -19,12 +19,6 @@ namespace fs = std::filesystem;
 constexpr const char *kScript = "submit.sh", *kLog = "submit.log";
 /// Stands for the number of a task.
 constexpr const char* kNumber = "@task@";
-
-std::string host_name() {
-  char name[256] = {};
-  gethostname(name, sizeof name - 1);
-  return name;
-}
 
 /// Whether a process "number@machine" still carries out the script of a sweep, which shows on other machines that it
 /// does as tasks do.

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -26,10 +25,8 @@ std::string read_environment(const char* name) {
 
 /// Who runs the task: a line for read_last_sign(), and one for people.
 std::string describe_runner() {
-  char host[256] = {};
-  gethostname(host, sizeof host - 1);
   const Writer own = this_writer();
-  std::string text = fmt::format("{} {}\nprocess {} on {}", own.process, own.host, own.process, host);
+  std::string text = fmt::format("{} {}\nprocess {} on {}", own.process, own.host, own.process, host_name());
   if (const std::string job = read_environment("SLURM_JOB_ID"); !job.empty())
     text += fmt::format(", job {}, node {}", job, read_environment("SLURMD_NODENAME"));
   return text + "\n";
