@@ -13,7 +13,7 @@ namespace {
 
 struct EngineEntry {
   const char* name;
-  std::unique_ptr<Engine> (*make)(const EngineOptions& options);
+  std::unique_ptr<Engine> (*make)(const EngineOptions& options, const std::filesystem::path& out);
 };
 
 constexpr std::array<EngineEntry, 2> kEngines = {{{"slurm", make_slurm_engine}, {"parallel", make_parallel_engine}}};
@@ -26,12 +26,12 @@ std::vector<std::string> list_engines() {
   return names;
 }
 
-std::unique_ptr<Engine> make_engine(const EngineOptions& options) {
+std::unique_ptr<Engine> make_engine(const EngineOptions& options, const std::filesystem::path& out) {
   const auto found = std::ranges::find(kEngines, options.engine, &EngineEntry::name);
   if (found == kEngines.end())
     throw Error(ErrorKind::kUsage,
                 fmt::format("--engine: '{}' must be one of {}", options.engine, fmt::join(list_engines(), ", ")));
-  return found->make(options);
+  return found->make(options, out);
 }
 
 }  // namespace shadowbench::submit

@@ -57,10 +57,11 @@ class Engine {
 /// Names the engines.
 std::vector<std::string> list_engines();
 
-/// Throws Error(kUsage) for an unknown name, and for an option that the engine does not have.
-std::unique_ptr<Engine> make_engine(const EngineOptions& options);
+/// Of a sweep into `out`, which is absolute. Throws Error(kUsage) for an unknown name, for an option that the engine
+/// does not have, and for a folder that it cannot be told.
+std::unique_ptr<Engine> make_engine(const EngineOptions& options, const std::filesystem::path& out);
 
-std::unique_ptr<Engine> make_slurm_engine(const EngineOptions& options);
-std::unique_ptr<Engine> make_parallel_engine(const EngineOptions& options);
+std::unique_ptr<Engine> make_slurm_engine(const EngineOptions& options, const std::filesystem::path& out);
+std::unique_ptr<Engine> make_parallel_engine(const EngineOptions& options, const std::filesystem::path& out);
 
 }  // namespace shadowbench::submit

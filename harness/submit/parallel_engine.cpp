@@ -108,7 +108,7 @@ class ParallelEngine : public Engine {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_parallel_engine(const EngineOptions& options) {
+std::unique_ptr<Engine> make_parallel_engine(const EngineOptions& options, const fs::path&) {
   return std::make_unique<ParallelEngine>(options);
 }
 

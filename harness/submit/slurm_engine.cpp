@@ -79,11 +79,6 @@ class SlurmEngine : public Engine {
   }
 
   std::vector<std::string> write_scripts(const JobPlan& plan, const QueuedTasks& queued) override {
-    if (plan.out.string().find_first_of(kUnquotable) != std::string::npos)
-      throw Error(ErrorKind::kUsage,
-                  "--out: Slurm cannot be told a folder with a double quote, a backslash or a line end in its name; "
-                  "choose another",
-                  plan.out.string());
     if (!plan.truths.empty())
       write_array(plan, kTruthScript, "Traces what cells share, once, into the cache that all tasks read.",
                   TaskKind::kTruth, plan.truths);
@@ -272,7 +267,12 @@ class SlurmEngine : public Engine {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_slurm_engine(const EngineOptions& options) {
+std::unique_ptr<Engine> make_slurm_engine(const EngineOptions& options, const fs::path& out) {
+  if (out.string().find_first_of(kUnquotable) != std::string::npos)
+    throw Error(ErrorKind::kUsage,
+                "--out: Slurm cannot be told a folder with a double quote, a backslash or a line end in its name; "
+                "choose another",
+                out.string());
   return std::make_unique<SlurmEngine>(options);
 }
 

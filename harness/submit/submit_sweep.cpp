@@ -124,8 +124,8 @@ void forget_ends(const JobPlan& plan) {
 
 std::vector<std::string> submit_sweep(const options::RunOptions& options, SubmitRequest request,
                                       options::Progress& progress) {
-  const std::unique_ptr<Engine> engine = make_engine(request.engine);
   const fs::path& out = options.out;
+  const std::unique_ptr<Engine> engine = make_engine(request.engine, out);
   if (was_submitted(out)) {
     require_same(options, read_sweep(out));
     if (request.split.tasks > 0 || !request.split.earlier_run.empty())

@@ -182,6 +182,7 @@ TEST_F(Submit, WhatSlurmCannotBeTold_IsRefused_OrReplaced) {
   const Outcome outcome = run("submit e.toml --gpu none --no-probe --dry-run --engine slurm --out 'a \"b\"'");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("double quote"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "a \"b\"")) << "nothing was planned there";
   std::filesystem::copy_file(folder() / "e.toml", folder() / "my \"e\".toml");
   EXPECT_EQ(run("submit 'my \"e\".toml' --gpu none --no-probe --dry-run --engine slurm --out out").exit_code, 0);
   EXPECT_THAT(read_text(folder() / "out" / "submit.sbatch"), HasSubstr("#SBATCH --job-name=\"my _e_-tasks\"\n"));
