@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 #include <sstream>
 #include <type_traits>
@@ -53,9 +54,13 @@ std::string check_value(const Option& option, const std::string& value) {
 void add_option(CLI::App& app, const Option& option) {
   const auto add = [&](auto* variable) -> CLI::Option* {
     using Value = std::remove_pointer_t<decltype(variable)>;
-    if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, int>)
-      return app.add_flag(option.opposite ? option.name + ",!--no-" + option.name.substr(2) : option.name, *variable,
-                          option.help);
+    const std::string flag = option.opposite ? option.name + ",!--no-" + option.name.substr(2) : option.name;
+    if constexpr (std::is_same_v<Value, bool>)
+      return app.add_flag(flag, *variable, option.help);
+    else if constexpr (std::is_same_v<Value,
+                                      int>)  // CLI11 2.4 would set a flag that was not given to 0, and check that
+      return app.add_flag_function(
+          flag, [variable](std::int64_t count) { *variable = static_cast<int>(count); }, option.help);
     else
       return app.add_option(option.name, *variable, option.help)->type_name(option.value_name());
   };

@@ -1,9 +1,9 @@
 #include "harness/gpu/spirv.h"
 
-#include <SPIRV/GlslangToSpv.h>
 #include <fmt/format.h>
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
 
 #include "filters/base/error.h"
 #include "harness/gl/shader_log.h"
@@ -28,8 +28,8 @@ std::vector<Binding> list_bindings(glslang::TProgram& program) {
   std::vector<Binding> bindings;
   for (int i = 0; i < program.getNumUniformVariables(); ++i) {
     const glslang::TObjectReflection& uniform = program.getUniform(i);
-    if (uniform.getType()->getBasicType() == glslang::EbtSampler)
-      bindings.push_back({static_cast<std::uint32_t>(uniform.getBinding()), true});
+    // What lies in no block is a sampler: the relaxed rules have put all other uniforms into one.
+    if (uniform.index < 0) bindings.push_back({static_cast<std::uint32_t>(uniform.getBinding()), true});
   }
   for (int i = 0; i < program.getNumUniformBlocks(); ++i)
     bindings.push_back({static_cast<std::uint32_t>(program.getUniformBlock(i).getBinding()), false});

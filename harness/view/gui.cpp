@@ -49,7 +49,7 @@ Gui::Gui(Window& window, Workbench& bench, ViewLog& log, std::filesystem::path o
       keeps_size_(keeps_size),
       first_(bench.state()),
       layers_(bench),
-      input_(bench),
+      input_(bench, window),
       settings_(bench, Widgets(log)),
       meter_(bench),
       magnifier_(bench, display_, Widgets(log)),

@@ -75,6 +75,8 @@ void Window::note_key(GLFWwindow* window, int key, int, int action, int modifier
 
 std::vector<Window::KeyPress> Window::take_keys() { return std::exchange(keys_, {}); }
 
+bool Window::is_held(int key) const { return glfwGetKey(window_, key) == GLFW_PRESS; }
+
 glm::ivec2 Window::size() const {
   glm::ivec2 size(0);
   glfwGetFramebufferSize(window_, &size.x, &size.y);

@@ -36,6 +36,9 @@ class Window {
   /// frame begins. None of those that were typed into a widget.
   std::vector<KeyPress> take_keys();
 
+  /// Whether a key of GLFW is down.
+  bool is_held(int key) const;
+
   void begin_frame();
 
   /// Draws the widgets over what the window's framebuffer holds, and shows it.

@@ -1,8 +1,8 @@
 #include "reference/truth/cut_out.h"
 
-#include <embree3/rtcore.h>
-
 #include <cmath>
+
+#include "reference/truth/embree.h"
 
 namespace shadowbench::truth {
 namespace {

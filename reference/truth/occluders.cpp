@@ -1,7 +1,5 @@
 #include "reference/truth/occluders.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -12,6 +10,7 @@
 #include <string>
 
 #include "reference/truth/cut_out.h"
+#include "reference/truth/embree.h"
 
 namespace shadowbench::truth {
 namespace {
@@ -114,18 +113,14 @@ Occluders::Occluders(Occluders&&) noexcept = default;
 Occluders& Occluders::operator=(Occluders&&) noexcept = default;
 
 void Occluders::find_blocked(RayPacket& packet) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded16(packet.active.data(), impl_->scene, &context, reinterpret_cast<RTCRay16*>(&packet));
+  occlude_packet(packet.active.data(), impl_->scene, reinterpret_cast<RTCRay16*>(&packet));
 }
 
 PacketHits Occluders::find_nearest(const RayPacket& packet) const {
   RTCRayHit16 hits;
   std::memcpy(&hits.ray, &packet, sizeof(hits.ray));
   std::fill(std::begin(hits.hit.geomID), std::end(hits.hit.geomID), RTC_INVALID_GEOMETRY_ID);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect16(packet.active.data(), impl_->scene, &context, &hits);
+  intersect_packet(packet.active.data(), impl_->scene, &hits);
   PacketHits result;
   for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
     const bool is_hit = packet.active[i] != 0 && hits.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;

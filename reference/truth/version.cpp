@@ -1,6 +1,6 @@
 #include "reference/truth/version.h"
 
-#include <embree3/rtcore.h>
+#include "reference/truth/embree.h"
 
 namespace shadowbench::truth {
 

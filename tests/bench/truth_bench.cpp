@@ -1,7 +1,6 @@
 // What truth costs: rays per second beside a bare Embree loop, and whole views with and without the cache.
 
 #include <benchmark/benchmark.h>
-#include <embree3/rtcore.h>
 #include <tbb/concurrent_vector.h>
 #include <tbb/parallel_for.h>
 #include <unistd.h>
@@ -22,6 +21,7 @@
 #include "harness/scene/load.h"
 #include "harness/scene/occluders.h"
 #include "reference/truth/cached_tracer.h"
+#include "reference/truth/embree.h"
 #include "tests/bench/median.h"
 
 namespace shadowbench::bench {
@@ -69,10 +69,8 @@ class BareEmbree {
         std::size_t{0}, packets.size(), std::size_t{64},
         [&](std::size_t begin) {
           for (std::size_t i = begin; i < std::min(begin + std::size_t{64}, packets.size()); ++i) {
-            RTCIntersectContext context;
-            rtcInitIntersectContext(&context);
             alignas(64) std::array<int, 16> active = valid[i];
-            rtcOccluded16(active.data(), scene_, &context, &packets[i]);
+            truth::occlude_packet(active.data(), scene_, &packets[i]);
             std::fill(std::begin(packets[i].tfar), std::end(packets[i].tfar), std::numeric_limits<float>::infinity());
           }
         });

@@ -4,7 +4,13 @@
 #include "harness/gl/context/context_backends.h"
 #include "harness/gl/gl_api.h"
 
-// After the loader, see gl_api.h.
+// After the loader, see gl_api.h. The header of Mesa 25 takes these words from <GL/gl.h>, whose place the loader has.
+#ifndef GLAPI
+#define GLAPI extern
+#endif
+#ifndef APIENTRY
+#define APIENTRY
+#endif
 #include <GL/osmesa.h>
 
 namespace shadowbench::gl {

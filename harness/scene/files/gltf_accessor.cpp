@@ -6,6 +6,7 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include "filters/base/error.h"
 #include "harness/scene/files/gltf_parse.h"
@@ -148,8 +149,9 @@ std::vector<double> with_sparse_values(std::vector<double> values, const tinyglt
                                        const std::string& where) {
   const auto& sparse = accessor.sparse;
   const std::string owner = fmt::format("sparse accessor '{}'", accessor.name);
-  if (sparse.count < 0 || static_cast<std::size_t>(sparse.count) > base.count || sparse.indices.byteOffset < 0 ||
-      sparse.values.byteOffset < 0)
+  // Offsets are signed in tinygltf 2.5 and unsigned in 2.9.
+  if (sparse.count < 0 || static_cast<std::size_t>(sparse.count) > base.count ||
+      std::cmp_less(sparse.indices.byteOffset, 0) || std::cmp_less(sparse.values.byteOffset, 0))
     fail_input(fmt::format("{} has a count or offset out of range", owner), where);
   const auto count = static_cast<std::size_t>(sparse.count);
   const Elements slots = place({nullptr, count, 0, sparse.indices.componentType, 1},

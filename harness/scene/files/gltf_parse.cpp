@@ -210,7 +210,13 @@ tinygltf::Model parse_gltf(const fs::path& file) {
   FolderGuard guard{fs::absolute(file).lexically_normal().parent_path().string(), {}};
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(&keep_encoded, nullptr);
-  parser.SetFsCallbacks({&exists_inside, &keep_path, &read_inside, nullptr, &guard});
+  // By name: later versions have more members, which stay empty.
+  tinygltf::FsCallbacks callbacks{};
+  callbacks.FileExists = &exists_inside;
+  callbacks.ExpandFilePath = &keep_path;
+  callbacks.ReadWholeFile = &read_inside;
+  callbacks.user_data = &guard;
+  parser.SetFsCallbacks(callbacks);
   tinygltf::Model model;
   std::string failure;
   const bool parsed = parse_bytes(parser, &model, &failure, bytes, guard.folder);

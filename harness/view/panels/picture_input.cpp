@@ -24,8 +24,8 @@ constexpr float kFaster = 4.0f;
 
 glm::vec2 to_glm(const ImVec2& v) { return {v.x, v.y}; }
 
-float key_axis(int plus, int minus) {
-  return (ImGui::IsKeyDown(plus) ? 1.0f : 0.0f) - (ImGui::IsKeyDown(minus) ? 1.0f : 0.0f);
+float key_axis(const Window& window, int plus, int minus) {
+  return (window.is_held(plus) ? 1.0f : 0.0f) - (window.is_held(minus) ? 1.0f : 0.0f);
 }
 
 Changes camera_changes() {
@@ -98,7 +98,8 @@ void PictureInput::fly_by_keys(double seconds) {
   const ImGuiIO& io = ImGui::GetIO();
   glm::vec3 way(0.0f);
   if (!io.WantTextInput && !io.KeyCtrl)
-    way = {key_axis(GLFW_KEY_D, GLFW_KEY_A), key_axis(GLFW_KEY_E, GLFW_KEY_Q), key_axis(GLFW_KEY_W, GLFW_KEY_S)};
+    way = {key_axis(window_, GLFW_KEY_D, GLFW_KEY_A), key_axis(window_, GLFW_KEY_E, GLFW_KEY_Q),
+           key_axis(window_, GLFW_KEY_W, GLFW_KEY_S)};
   is_flying_ = way != glm::vec3(0.0f);
   if (!is_flying_) return;
   const float speed = kFlightsPerSecond * scene_size() * (io.KeyShift ? kFaster : 1.0f);

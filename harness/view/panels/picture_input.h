@@ -3,6 +3,7 @@
 #include <glm/glm.hpp>
 
 #include "harness/view/look.h"
+#include "harness/view/window.h"
 #include "harness/view/workbench.h"
 
 namespace shadowbench::view {
@@ -10,7 +11,7 @@ namespace shadowbench::view {
 /// What the mouse and the flying keys do to the picture: they move the divider, the camera and the light.
 class PictureInput {
  public:
-  explicit PictureInput(Workbench& bench) : bench_(bench) {}
+  PictureInput(Workbench& bench, const Window& window) : bench_(bench), window_(window) {}
 
   /// Takes a frame's input; `seconds` have passed since the last one.
   void take(const PicturePlace& place, Look& look, double seconds);
@@ -22,6 +23,7 @@ class PictureInput {
   enum class Grip { kNone, kDivider, kOrbit, kLook, kShift, kLight };
 
   Workbench& bench_;
+  const Window& window_;
   Grip grip_ = Grip::kNone;
   bool is_flying_ = false;
   glm::vec3 pivot_ws_{0.0f};
