@@ -23,7 +23,8 @@ double parse_angle(const std::string& text, const char* name, double limit_deg) 
 }  // namespace
 
 void add_backend_option(Command& command, std::string& backend) {
-  command.add("--gl", &backend, "OpenGL context: auto, osmesa, egl or glfw").such_as({"auto", "osmesa", "egl", "glfw"});
+  command.add("--gl", &backend, "OpenGL context: auto, software, osmesa, egl or glfw")
+      .such_as({"auto", "software", "osmesa", "egl", "glfw"});
 }
 
 void add_drawing_options(Command& command, DrawingArguments& arguments, const std::string& cache_default) {

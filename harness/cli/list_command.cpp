@@ -13,6 +13,7 @@
 #include "harness/gl/timer/timer.h"
 #include "harness/gpu/gpu.h"
 #include "harness/options/options.h"
+#include "harness/run/gpu_costs.h"
 #include "harness/scene/load.h"
 #include "report/records/format.h"
 #include "report/records/metric_list.h"
@@ -150,9 +151,12 @@ int list_metrics(const ListArguments& arguments) {
 int list_gpus(const ListArguments& arguments) {
   nlohmann::json json = nlohmann::json::array();
   for (const gpu::Gpu& gpu : gpu::load_gpus(options::find_resources().gpus)) {
-    nlohmann::json& each =
-        json.emplace_back(nlohmann::json{{"name", gpu.name}, {"title", gpu.title}, {"driver", gpu.driver}});
-    if (!arguments.json) fmt::print("{}  {}\n", gpu.name, gpu.title);
+    const std::optional<std::string> family = run::find_family(gpu);
+    nlohmann::json& each = json.emplace_back(nlohmann::json{{"name", gpu.name}, {"title", gpu.title}});
+    each["driver"] = family ? nlohmann::json(*family) : nlohmann::json();
+    if (!arguments.json)
+      fmt::print("{}  {}{}\n", gpu.name, gpu.title,
+                 family ? "" : ": left out, since no Vulkan driver of this machine compiles for it");
     gpu::visit_constants(gpu, [&](const char* key, const gpu::Constant& constant) {
       each[key] = {{"value", constant.value}, {"source", constant.source}};
       if (!arguments.json) fmt::print("  {:<14} {:<6} {}\n", key, constant.value, constant.source);
@@ -188,7 +192,7 @@ Command make_list_command() {
   add("filters", "Filters with parameters, ranges, units and source", list_filters);
   add("scenes", "Built-in scenes", list_scenes);
   add("metrics", "Numbers that a run reports, with unit, range and definition", list_metrics);
-  add("gpus", "GPUs whose costs a run estimates, with the source of every number", list_gpus);
+  add("gpus", "GPUs whose costs a run estimates, as far as the Vulkan driver of this machine knows them", list_gpus);
   add("gl", "The OpenGL context that a run would use", list_gl);
   command.commands.back().add("--measure", &a->measure, "what this GL really does, by experiment");
   add_backend_option(command.commands.back(), a->backend);

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "filters/base/error.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/run_arguments.h"
 #include "harness/view/run_view.h"
@@ -42,8 +43,13 @@ int view_scene(const ViewArguments& arguments) {
   options.scale = static_cast<float>(arguments.scale);
   options.log = arguments.log;
   options.close_after_s = arguments.close_after_s;
+#ifdef SHADOWBENCH_HAS_WINDOW
   view::run_view(options);
   return 0;
+#else
+  throw Error(ErrorKind::kContext,
+              "this build has no window; install libglfw3-dev, libimgui-dev and libstb-dev, and configure it again");
+#endif
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ Gpu load_gpu(const std::filesystem::path& file) {
   table.require_known_keys(keys);
   gpu.name = file.stem().string();
   gpu.title = table.string("title");
-  gpu.driver = table.string("driver");
+  gpu.families = table.strings("driver");
   visit_constants(gpu, [&](const char* key, Constant& constant) { constant = read_constant(table, key); });
   const double line = gpu.line_bytes.value;
   if (line != std::floor(line) || !std::has_single_bit(static_cast<unsigned>(line)))

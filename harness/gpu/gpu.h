@@ -15,10 +15,10 @@ struct Constant {
 /// A GPU as `harness/gpus/<name>.toml` describes it: whose compiler is asked, and what the estimate takes from data
 /// sheets.
 struct Gpu {
-  std::string name;    ///< stem of its file
-  std::string title;   ///< for people: "AMD Radeon RX 6900 XT (RDNA 2, 2020)"
-  std::string driver;  ///< what Mesa's RADV calls its family: "NAVI21"
-  Constant simds;      ///< units that each work on one wave at a time
+  std::string name;                   ///< stem of its file
+  std::string title;                  ///< for people: "AMD Radeon RX 6900 XT (RDNA 2, 2020)"
+  std::vector<std::string> families;  ///< what Mesa's RADV calls its family, the newest name first: "NAVI21"
+  Constant simds;                     ///< units that each work on one wave at a time
   Constant clock_mhz;
   Constant texture_units;      ///< texels of at most 32 bits that are filtered in a clock
   Constant rate_64, rate_128;  ///< share of that rate for texels of 64 and of 128 bits, 0 .. 1

@@ -22,7 +22,7 @@ void add_options(ContentHash& hash, const options::RunOptions& options) {
                        options.reference.label(), options.border_page));
   hash.add(fmt::format("lights {} phases {}", fmt::join(options.lights, " "), options.phases));
   for (const gpu::Gpu& gpu : options.gpus) {
-    hash.add(gpu.name + " " + gpu.driver);
+    hash.add(fmt::format("{} {}", gpu.name, fmt::join(gpu.families, " ")));
     gpu::visit_constants(gpu, [&](const char*, const gpu::Constant& constant) {
       hash.add_values(std::span<const double>(&constant.value, 1));
     });

@@ -1,6 +1,7 @@
 #include "harness/run/gpu_costs.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstring>
@@ -26,6 +27,9 @@ std::vector<const render::DrawnPass*> list_passes(const measure::MeasuredCell& c
   for (const render::DrawnPass& pass : cell.passes) passes.push_back(&pass);
   return passes;
 }
+
+/// Whether RADV ended the process because it does not know the family that it was to compile for.
+bool is_unknown(const WorkerOutcome& outcome) { return outcome.error_text.find("Unknown family") != std::string::npos; }
 
 /// With what the driver said, if anything.
 std::string describe_end(const WorkerOutcome& outcome) {
@@ -57,6 +61,16 @@ void GpuCosts::add_to(std::vector<measure::MeasuredCell>& cells) {
   for (measure::MeasuredCell& cell : cells) cell.record.absent["gpu"] = "the run was made with --gpu none";
 }
 
+std::optional<std::string> find_family(const gpu::Gpu& gpu) {
+  const ScratchFolder folder(make_temporary_folder_path(std::filesystem::temp_directory_path() / "shadowbench", "gpu"));
+  const auto request = folder.path() / "request.json", answers = folder.path() / "answers.json";
+  for (const std::string& family : gpu.families) {
+    gpu::write_request(request, {family, {}, {}});
+    if (run_worker({"gpu-facts", request.string(), answers.string()}, kTimeout_s).exit_code == 0) return family;
+  }
+  return std::nullopt;
+}
+
 /// After a crash the passes behind the one that crashed are given to a new process; after two that gave no answer at
 /// all, none is.
 void GpuCosts::compile(const gpu::Gpu& gpu, const std::vector<measure::MeasuredCell>& cells) {
@@ -74,15 +88,24 @@ void GpuCosts::compile(const gpu::Gpu& gpu, const std::vector<measure::MeasuredC
   };
   if (wanted.empty()) return;
   bool was_silent = false;  // the process before gave no answer at all
+  std::string family = gpu.families.front();
   const ScratchFolder folder(make_temporary_folder_path(options_.out, "gpu"));
   while (!wanted.empty()) {
     const auto request = folder.path() / fmt::format("{}.request.json", wanted.size());
     const auto answers = folder.path() / fmt::format("{}.answers.json", wanted.size());
-    gpu::FactsRequest asked{gpu.driver, options_.cache, {}};
+    gpu::FactsRequest asked{family, options_.cache, {}};
     for (const auto& [name, pass] : wanted) asked.passes.push_back({pass->fragment, std::string(pass->target.name)});
     gpu::write_request(request, asked);
     const WorkerOutcome outcome = run_worker({"gpu-facts", request.string(), answers.string()}, kTimeout_s);
     if (outcome.exit_code.value_or(0) != 0) return refuse(clean_message(outcome.error_text));
+    if (is_unknown(outcome)) {
+      const std::optional<std::string> known_family = find_family(gpu);
+      if (!known_family || *known_family == family)
+        return refuse(fmt::format("this machine's Vulkan driver does not know {}; 'list gpus' shows what it knows",
+                                  fmt::join(gpu.families, " or ")));
+      family = *known_family;
+      continue;
+    }
     std::vector<gpu::FactsAnswer> given = gpu::read_answers(answers);
     if (given.empty() && was_silent) return refuse(describe_end(outcome));
     was_silent = given.empty();
@@ -100,7 +123,7 @@ void GpuCosts::compile(const gpu::Gpu& gpu, const std::vector<measure::MeasuredC
 
 std::filesystem::path GpuCosts::shared_file(const gpu::Gpu& gpu, const std::string& pass) const {
   ContentHash hash;
-  hash.add(gpu.driver);
+  hash.add(gpu.name);
   hash.add(pass);
   return options_.out / "gpu" / (hash.name() + ".json");
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,10 @@
 #include "harness/options/options.h"
 
 namespace shadowbench::run {
+
+/// The name by which this machine's Vulkan driver compiles for a GPU, asked in a process of its own for each name; none
+/// where it knows none, or where there is no such driver.
+std::optional<std::string> find_family(const gpu::Gpu& gpu);
 
 /// What a run's filters cost on the GPUs that it names, by compiling their passes in a process of its own: a driver
 /// that crashes costs the facts of one pass.

@@ -107,6 +107,17 @@ std::string TomlTable::string(std::string_view key, std::optional<std::string> f
   return node->as_string()->get();
 }
 
+std::vector<std::string> TomlTable::strings(std::string_view key) const {
+  constexpr std::string_view kExpected = "a list of strings, such as [\"a\"]";
+  const toml::node* node = table_->get(key);
+  if (!node) fail_missing(key, kExpected);
+  const toml::array* list = node->as_array();
+  if (!list || list->empty() || !list->is_homogeneous(toml::node_type::string)) fail_type(key, *node, kExpected);
+  std::vector<std::string> texts;
+  for (const toml::node& each : *list) texts.push_back(each.as_string()->get());
+  return texts;
+}
+
 glm::dvec3 TomlTable::vec3(std::string_view key, Range range, std::optional<glm::dvec3> fallback) const {
   if (!has(key) && fallback) return *fallback;
   const std::vector<double> v = numbers(key, 3, range);

@@ -47,6 +47,8 @@ class TomlTable {
   int integer(std::string_view key, Range range, std::optional<int> fallback = std::nullopt) const;
   bool boolean(std::string_view key, bool fallback) const;
   std::string string(std::string_view key, std::optional<std::string> fallback = std::nullopt) const;
+  /// A list of strings, of one at least.
+  std::vector<std::string> strings(std::string_view key) const;
   glm::dvec3 vec3(std::string_view key, Range range, std::optional<glm::dvec3> fallback = std::nullopt) const;
   glm::dvec2 vec2(std::string_view key, Range range) const;
   /// Reads a string that must be one of `choices`.

@@ -16,8 +16,11 @@
 namespace shadowbench::gl {
 namespace {
 
-constexpr std::array<std::pair<Backend, std::string_view>, 4> kNames = {
-    {{Backend::kAuto, "auto"}, {Backend::kOsmesa, "osmesa"}, {Backend::kEgl, "egl"}, {Backend::kGlfw, "glfw"}}};
+constexpr std::array<std::pair<Backend, std::string_view>, 5> kNames = {{{Backend::kAuto, "auto"},
+                                                                         {Backend::kSoftware, "software"},
+                                                                         {Backend::kOsmesa, "osmesa"},
+                                                                         {Backend::kEgl, "egl"},
+                                                                         {Backend::kGlfw, "glfw"}}};
 
 std::string get_gl_string(GLenum name) {
   const auto* text = glGetString(name);
@@ -37,18 +40,23 @@ struct Attempt {
   std::unique_ptr<Context> (*create)();
 };
 
+/// What to try, without what this build leaves out.
 std::vector<Attempt> list_attempts(Backend backend) {
   const Attempt osmesa = {"osmesa", create_osmesa_context};
   const Attempt egl_gpu = {"egl on a GPU", create_egl_gpu_context};
+  const Attempt egl_software = {"egl in software", create_egl_software_context};
   const Attempt egl = {"egl", create_egl_context};
   const Attempt glfw = {"glfw", create_glfw_context};
+  std::vector<Attempt> attempts;
   switch (backend) {
-    case Backend::kOsmesa: return {osmesa};
-    case Backend::kEgl: return {egl};
-    case Backend::kGlfw: return {glfw};
-    case Backend::kAuto: break;
+    case Backend::kAuto: attempts = {egl_gpu, osmesa, egl, glfw}; break;
+    case Backend::kSoftware: attempts = {osmesa, egl_software}; break;
+    case Backend::kOsmesa: attempts = {osmesa}; break;
+    case Backend::kEgl: attempts = {egl}; break;
+    case Backend::kGlfw: attempts = {glfw}; break;
   }
-  return {egl_gpu, osmesa, egl, glfw};
+  std::erase_if(attempts, [](const Attempt& attempt) { return attempt.create == nullptr; });
+  return attempts;
 }
 
 }  // namespace
@@ -56,7 +64,8 @@ std::vector<Attempt> list_attempts(Backend backend) {
 Backend parse_backend(std::string_view text) {
   for (const auto& [backend, name] : kNames)
     if (name == text) return backend;
-  throw Error(ErrorKind::kUsage, fmt::format("unknown GL back end '{}'; there are auto, osmesa, egl and glfw", text));
+  throw Error(ErrorKind::kUsage,
+              fmt::format("unknown GL back end '{}'; there are auto, software, osmesa, egl and glfw", text));
 }
 
 std::string_view backend_name(Backend backend) {
@@ -65,7 +74,14 @@ std::string_view backend_name(Backend backend) {
   throw std::logic_error("a GL back end without a name");
 }
 
+bool has_backend(Backend backend) { return !list_attempts(backend).empty(); }
+
 ContextChoice create_context(Backend backend) {
+  if (!has_backend(backend)) {
+    throw Error(ErrorKind::kContext,
+                fmt::format("this build has no --gl {}; take another, or build with the library that it needs",
+                            backend_name(backend)));
+  }
   ContextChoice choice;
   if (std::string full = disable_shader_cache_on_full_disk(); !full.empty()) choice.refused.push_back(std::move(full));
   for (const Attempt& attempt : list_attempts(backend)) {
@@ -78,7 +94,7 @@ ContextChoice create_context(Backend backend) {
   }
   throw Error(
       ErrorKind::kContext,
-      fmt::format("no OpenGL 4.5 core context: {}; install OSMesa (harness/setup.sh does), or choose another with --gl",
+      fmt::format("no OpenGL 4.5 core context: {}; install libosmesa6 or libegl-mesa0, or choose another with --gl",
                   fmt::join(choice.refused, "; ")));
 }
 

@@ -10,15 +10,18 @@
 
 namespace shadowbench::gl {
 
-/// Names a way to get an OpenGL context; `kAuto` tries them in turn.
-enum class Backend { kAuto, kOsmesa, kEgl, kGlfw };
+/// Names a way to get an OpenGL context; `kAuto` tries them in turn, `kSoftware` those that need no GPU and no display.
+enum class Backend { kAuto, kSoftware, kOsmesa, kEgl, kGlfw };
 
-/// Reads `auto`, `osmesa`, `egl` or `glfw`.
+/// Reads `auto`, `software`, `osmesa`, `egl` or `glfw`.
 /// Throws Error(kUsage) for any other word, naming the ones that exist.
 Backend parse_backend(std::string_view text);
 
 /// Returns the word that `parse_backend` reads.
 std::string_view backend_name(Backend backend);
+
+/// Whether this build has a way to make such a context; the machine may still refuse it.
+bool has_backend(Backend backend);
 
 /// What a context runs on.
 struct GlInfo {
@@ -78,7 +81,8 @@ struct ContextChoice {
   std::vector<std::string> refused;  ///< "egl: why", in the order tried; what else is not used, and why, comes first
 };
 
-/// Makes a context with `backend`, or for `kAuto` the first that works of: EGL on a GPU, OSMesa, EGL in software, GLFW.
+/// Makes a context with `backend`, or for `kAuto` the first that works of: EGL on a GPU, OSMesa, EGL in software, GLFW;
+/// for `kSoftware` of OSMesa and EGL in software.
 /// Throws Error(kContext) with every reason when none works.
 /// Cost: 3 to 30 ms in software (a second one 2 ms), more on a GPU.
 ContextChoice create_context(Backend backend);

@@ -153,13 +153,19 @@ class EglContext : public Context {
   Owned owned_;
 };
 
-template <typename Accept>
-std::unique_ptr<Context> create_first(Accept accept) {
+/// Which devices will do.
+enum class Wanted { kAny, kGpu, kSoftware };
+
+std::unique_ptr<Context> create_first(Wanted wanted) {
   std::vector<std::string> reasons;
   for (const Candidate& candidate : list_candidates()) {
     try {
-      if (auto context = accept(candidate)) return context;
-      reasons.push_back(candidate.name + ": a software rasteriser");
+      // What draws in software says so only once it has a context; what says so before needs none.
+      const bool is_known = candidate.software && wanted == Wanted::kGpu;
+      std::unique_ptr<Context> context = is_known ? nullptr : std::make_unique<EglContext>(candidate);
+      const bool is_software = is_known || context->info().software;
+      if (wanted == Wanted::kAny || is_software == (wanted == Wanted::kSoftware)) return context;
+      reasons.push_back(candidate.name + (is_software ? ": a software rasteriser" : ": a GPU"));
     } catch (const Error& error) {
       reasons.push_back(fmt::format("{}: {}", candidate.name, error.message()));
     }
@@ -170,16 +176,8 @@ std::unique_ptr<Context> create_first(Accept accept) {
 
 }  // namespace
 
-std::unique_ptr<Context> create_egl_context() {
-  return create_first([](const Candidate& candidate) { return std::make_unique<EglContext>(candidate); });
-}
-
-std::unique_ptr<Context> create_egl_gpu_context() {
-  return create_first([](const Candidate& candidate) -> std::unique_ptr<Context> {
-    if (candidate.software) return nullptr;
-    auto context = std::make_unique<EglContext>(candidate);
-    return context->info().software ? nullptr : std::move(context);
-  });
-}
+std::unique_ptr<Context> create_egl_context() { return create_first(Wanted::kAny); }
+std::unique_ptr<Context> create_egl_gpu_context() { return create_first(Wanted::kGpu); }
+std::unique_ptr<Context> create_egl_software_context() { return create_first(Wanted::kSoftware); }
 
 }  // namespace shadowbench::gl
