@@ -72,4 +72,13 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "fonts-dejavu-core, libgl1, libgl1-mesa-dri")
 # Costs on GPUs are left out where there is no compiler for them.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libvulkan1, mesa-vulkan-drivers")
+# A package lacks a part only where somebody has said so.
+get_property(_not_found GLOBAL PROPERTY SHADOWBENCH_NOT_FOUND)
+set(_check ${PROJECT_BINARY_DIR}/package_is_complete.cmake)
+file(WRITE ${_check} "")
+foreach(_part IN LISTS _not_found)
+  file(APPEND ${_check} "message(FATAL_ERROR \"The package would lack a part whose libraries were not found: install them, \"
+    \"or configure with -DSHADOWBENCH_WITH_${_part}=OFF\")\n")
+endforeach()
+set(CPACK_PROJECT_CONFIG_FILE ${_check})
 include(CPack)

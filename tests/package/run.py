@@ -10,9 +10,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-TINY = ["--size", "32x18", "--map-size", "32", "--rounds", "1", "--no-attribution", "--no-cache", "--gl", "osmesa"]
+TINY = ["--size", "32x18", "--map-size", "32", "--rounds", "1", "--no-attribution", "--no-cache", "--gl", "software"]
 OPENED_AT_RUN_TIME = ("fonts-dejavu-core", "libgl1-mesa-dri")
-LINKED = ("libosmesa6", "libembree3-3", "libopenimageio2.4")
+LINKED = (r"libembree\d-\d", r"libopenimageio[\d.]+")
 
 
 def call(*words, **options):
@@ -75,7 +75,7 @@ def check_package(build, folder):
     expect(re.fullmatch(r"shadowbench_[\d.]+_[a-z0-9]+\.deb", packages[0].name), f"a package named {packages[0].name}")
     depends = call("dpkg-deb", "--field", packages[0], "Depends")
     for package in OPENED_AT_RUN_TIME + LINKED:
-        expect(re.search(rf"(^|, ){re.escape(package)}( |,|$)", depends), f"no dependency on {package} in: {depends}")
+        expect(re.search(rf"(^|, ){package}( |,|$)", depends), f"no dependency on {package} in: {depends}")
     expect(call("dpkg-deb", "--field", packages[0], "Section").strip() == "graphics", "another section than graphics")
     files = call("dpkg-deb", "--contents", packages[0])
     expect("./usr/bin/shadowbench\n" in files, f"no ./usr/bin/shadowbench in the package:\n{files}")

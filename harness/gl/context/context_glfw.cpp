@@ -18,7 +18,8 @@ namespace {
 [[noreturn]] void refuse_glfw(std::string_view what) {
   const char* reason = nullptr;
   glfwGetError(&reason);
-  throw Error(ErrorKind::kContext, fmt::format("{}: {}", what, reason == nullptr ? "no reason given" : reason));
+  throw Error(ErrorKind::kContext, fmt::format("{}: {}; it needs a display: log in to a desktop, or use xvfb-run", what,
+                                               reason == nullptr ? "no reason given" : reason));
 }
 
 /// glfwInit does not count its callers.
