@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs the Debian 12 packages that building, packing and running Shadowbench need; does nothing where they are.
+# Installs the packages of Debian 12 or 13 that building, packing and running Shadowbench need; does nothing where they are.
 # With --tests also what the tests need; with --fuzz that, and clang with its libFuzzer for the preset `fuzz`.
 set -eu
 
@@ -18,7 +18,7 @@ command -v npm >/dev/null || tests="$tests npm"
 case "${1-}" in
   "") ;;
   --tests) packages="$packages $tests" ;;
-  --fuzz) packages="$packages $tests clang llvm libclang-rt-14-dev" ;;
+  --fuzz) packages="$packages $tests clang llvm libclang-rt-dev" ;;
   *) echo "setup.sh: unknown argument '$1': use --tests, --fuzz, or none" >&2; exit 2 ;;
 esac
 
@@ -27,6 +27,14 @@ for package in $packages; do
   status=$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true)
   [ "$status" = "install ok installed" ] || missing="$missing $package"
 done
+
+# Releases with Mesa 25.1 or later have no OSMesa: the program is then built without it, and draws through EGL.
+drop_osmesa_where_it_is_gone() {
+  [ -n "$(apt-cache madison libegl-dev)" ] || return 0  # no lists of packages yet
+  [ -z "$(apt-cache madison libosmesa6-dev)" ] || return 0
+  missing=$(echo "$missing" | sed 's/ libosmesa6-dev//')
+}
+drop_osmesa_where_it_is_gone
 [ -n "$missing" ] || exit 0
 
 as_root=""
@@ -34,7 +42,8 @@ if [ "$(id -u)" -ne 0 ]; then
   command -v sudo >/dev/null || { echo "setup.sh: run as root, or install sudo; missing:$missing" >&2; exit 1; }
   as_root="sudo"
 fi
-echo "setup.sh: installing$missing"
 $as_root apt-get update -q
+drop_osmesa_where_it_is_gone
+echo "setup.sh: installing$missing"
 # shellcheck disable=SC2086  # the lists are words on purpose
 $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing
