@@ -5,6 +5,17 @@
 
 namespace shadowbench::filters {
 
+/// The longest side of a box that reaches `radius` texels beyond the receiver's own texel, wherever in that it stands:
+/// the texels that it covers in part, and one to spare for what rounding moves it by.
+inline int longest_box_side(int radius) { return 2 * radius + 3; }
+
+/// The steps from 0 to 1 in which shaders/lib/summed_area.glsl counts a moment: as many as single precision tells
+/// apart, and so few that a box with sides of `side` texels sums to less than 2^32.
+template <class P>
+P count_moment_steps(int side) {
+  return std::min(P(16777216), std::floor(P(4e9) / static_cast<P>(side * side)));
+}
+
 /// Means of two moments over boxes of texels, as shaders/lib/summed_area.glsl makes them from its summed-area table;
 /// `side` is the longest side of a box in texels. Whole numbers are added in single precision alone: elsewhere the
 /// moments are as encode() gives them, and tracked precision knows by how much the steps move them.
@@ -19,7 +30,7 @@ class SummedMoments {
   SummedMoments(const ModelInput& input, int side, Encode encode)
       : size_(input.map.size),
         memory_{size_, store_bytes(input.spec.passes.back().store)},
-        steps_(find_steps(side)),
+        steps_(count_moment_steps<P>(side)),
         table_(static_cast<std::size_t>(size_ * size_)) {
     const EncodedMap<T, 2> map(input, 0, encode);
     for (int y = 0; y < size_; ++y)
@@ -50,8 +61,6 @@ class SummedMoments {
   MapMemory memory_;  ///< of the table
   P steps_;
   std::vector<Sums> table_;
-
-  static P find_steps(int side) { return std::min(P(16777216), std::floor(P(4e9) / static_cast<P>(side * side))); }
 
   /// What the table counts 1 as.
   P unit() const { return std::is_same_v<T, float> ? steps_ : P(1); }

@@ -13,7 +13,7 @@ class VsmSat {
   explicit VsmSat(const ModelInput& input)
       : variance_(input),
         radius_(static_cast<int>(number(input.values, "radius"))),
-        moments_(input, 2 * radius_ + 3, [this](const EncodeInput<T>& e) { return variance_.encode(e); }) {}
+        moments_(input, longest_box_side(radius_), [this](const EncodeInput<T>& e) { return variance_.encode(e); }) {}
 
   static Kernel kernel(const ParamValues& values) {
     return Kernel::make_box(2 * static_cast<int>(number(values, "radius")) + 1);

@@ -14,7 +14,8 @@ class Vssm {
   explicit Vssm(const ModelInput& input)
       : variance_(input),
         max_radius_(static_cast<int>(number(input.values, "max_radius"))),
-        moments_(input, 2 * max_radius_ + 3, [this](const EncodeInput<T>& e) { return variance_.encode(e); }) {}
+        moments_(input, longest_box_side(max_radius_),
+                 [this](const EncodeInput<T>& e) { return variance_.encode(e); }) {}
 
   /// Every receiver has a box of its own.
   static std::optional<Kernel> kernel(const ParamValues&) { return std::nullopt; }

@@ -69,7 +69,7 @@ void MapPasses::fail(const PassSpec& spec, const std::string& message) const {
 /// The compiler knows what a pass reads: it keeps the samplers of no other maps.
 void MapPasses::check_reads(std::size_t pass) const {
   for (std::size_t later = pass; later < passes_.size(); ++later) {
-    const bool own = later == pass && passes_[pass].steps > 1;
+    const bool own = later == pass && passes_[pass].spec.steps != PassSteps::kOnce;
     if (own || !passes_[pass].program.has(map_name(passes_[later].spec))) continue;
     fail(passes_[pass].spec,
          fmt::format("the pass '{}' reads the map '{}', which is not written yet: move its table before this one",

@@ -49,6 +49,7 @@ struct Case {
   std::string variant = {};  ///< "r16f, linear"
   Level level = Level::kGl;
   filters::ParamValues params = {};
+  std::vector<double> values = {};    ///< the only ones of the axis that it can take, ascending; empty: all
   std::vector<Theory> theories = {};  ///< none: no limit is known
   /// Explains from what was measured why a theory is not met; empty where no known reason applies. May be null.
   std::function<std::string(const Disagreement&)> explain = {};

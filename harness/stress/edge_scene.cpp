@@ -4,23 +4,26 @@
 #include <cmath>
 
 #include "filters/gaussian.h"
+#include "harness/stress/straight_edge.h"
 
 namespace shadowbench::stress {
 namespace {
 
-constexpr int kBetweenTexels = 7;  // receivers between the two texel centres at an edge, where there is no prefilter
+constexpr int kBetweenTexels = 7;     // receivers between the two texel centres at an edge, where there is no prefilter
+constexpr double kNearlyNone = 1e-6;  // of a kernel: so much is lost where its weights are added
+constexpr int kAcrossKernel = 31;     // receivers across an edge and a kernel: none falls on a texel's border
 
 /// A receiver's place across an edge.
 struct Place {
-  double texels;  ///< from the map's left side
+  double texels;  ///< from the edge
   double lit_share;
 };
 
-std::vector<Place> place_across(int radius, int edge) {
+std::vector<Place> place_across(int radius) {
   std::vector<Place> places;
   for (int i = 1; radius == 0 && i <= kBetweenTexels; ++i) {
     const double share = static_cast<double>(i) / (kBetweenTexels + 1);
-    places.push_back({edge - 0.5 + share, share});
+    places.push_back({share - 0.5, share});
   }
   if (radius == 0) return places;
   const std::vector<float> weights = filters::gaussian_weights(radius);
@@ -29,30 +32,56 @@ std::vector<Place> place_across(int radius, int edge) {
   // The kernel's right end moves over the edge, texel by texel.
   for (int i = 0; i < 2 * radius; ++i) {
     lit += static_cast<double>(weights[static_cast<std::size_t>(2 * radius - i)]);
-    places.push_back({edge - radius + i + 0.5, lit / sum});
+    places.push_back({i - radius + 0.5, lit / sum});
   }
   return places;
 }
 
-}  // namespace
+/// The share of the kernel's texels that lie right of the edge, every texel compared.
+std::vector<Place> place_across(const filters::Kernel& kernel) {
+  const double reach = kernel.half_width();
+  const int middle = 2 * static_cast<int>(std::ceil(reach)) + 1;  // the farthest kernel stays inside
+  SyntheticScene scene{2 * middle, make_split_depths(2 * middle, 0.0f, 1.0f), {}};
+  std::vector<double> offsets;
+  for (int i = 0; i < kAcrossKernel; ++i) {
+    offsets.push_back(reach * (2.0 * (i + 0.5) / kAcrossKernel - 1.0));
+    scene.receivers.push_back({static_cast<float>((middle + offsets.back()) / scene.size), scene.uv(middle), 0.5f});
+  }
+  const std::vector<double> shares = compare_whole_kernel(scene, kernel);
+  std::vector<Place> places;
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    if (shares[i] > kNearlyNone && shares[i] < 1.0 - kNearlyNone) places.push_back({offsets[i], shares[i]});
+  return places;
+}
 
-EdgeScene make_edge_scene(int radius_texels, const std::vector<EdgeDepths>& bands, int least_size) {
+EdgeScene make_bands_of_edges(const std::vector<Place>& places, int reach_texels, const std::vector<EdgeDepths>& bands,
+                              int least_size) {
   const int count = static_cast<int>(bands.size());
-  const int height = 2 * radius_texels + 2;  // of a band, so that no kernel leaves it
+  const int height = 2 * reach_texels + 2;  // of a band, so that no kernel leaves it
   EdgeScene edge;
-  edge.scene.size = std::max({least_size, count * height, 4 * radius_texels + 4});
-  const auto places = place_across(radius_texels, edge.scene.size / 2);
+  edge.scene.size = std::max({least_size, count * height, 4 * reach_texels + 4});
   edge.run = places.size();
   for (int b = 0; b < count; ++b) {
     const int middle = edge.scene.size * (2 * b + 1) / (2 * count);
     for (const Place& place : places) {
-      edge.scene.receivers.push_back({static_cast<float>(place.texels / edge.scene.size), edge.scene.uv(middle), 0.0f});
+      const double x = (edge.scene.size / 2 + place.texels) / edge.scene.size;
+      edge.scene.receivers.push_back({static_cast<float>(x), edge.scene.uv(middle), 0.0f});
       edge.lit_share.push_back(place.lit_share);
       edge.band.push_back(static_cast<std::size_t>(b));
     }
   }
   set_depths(edge, bands);
   return edge;
+}
+
+}  // namespace
+
+EdgeScene make_edge_scene(int radius_texels, const std::vector<EdgeDepths>& bands, int least_size) {
+  return make_bands_of_edges(place_across(radius_texels), radius_texels, bands, least_size);
+}
+
+EdgeScene make_edge_scene(const filters::Kernel& kernel, const std::vector<EdgeDepths>& bands) {
+  return make_bands_of_edges(place_across(kernel), static_cast<int>(std::ceil(kernel.half_width())), bands, 0);
 }
 
 void set_depths(EdgeScene& edge, const std::vector<EdgeDepths>& bands) {

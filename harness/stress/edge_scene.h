@@ -27,6 +27,10 @@ struct EdgeScene {
 /// radius 0 between them. The map has room for the kernel, and as many texels as the bands need, `least_size` or more.
 EdgeScene make_edge_scene(int radius_texels, const std::vector<EdgeDepths>& bands, int least_size = 64);
 
+/// Makes one for a filter that averages the map with `kernel` and blurs nothing before: receivers anywhere between
+/// texels across each edge, in the middle of a row.
+EdgeScene make_edge_scene(const filters::Kernel& kernel, const std::vector<EdgeDepths>& bands);
+
 /// Gives other depths to the same edges.
 void set_depths(EdgeScene& edge, const std::vector<EdgeDepths>& bands);
 

@@ -1,6 +1,7 @@
 #include "harness/stress/onset.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,12 +15,15 @@ namespace {
 
 constexpr int kMostHalvings = 60;
 
-/// The coarse samples, both ends among them, in the order of the search.
-std::vector<double> place_samples(const Axis& axis) {
+/// The coarse samples, both ends among them, in the order of the search. Of a case that can take a few values alone,
+/// those within the range.
+std::vector<double> place_samples(const Axis& axis, const Case& item) {
   const int count = std::max(axis.coarse_samples, 2);
   const auto [low, high] = axis.range;
   std::vector<double> values;
-  for (int i = 0; i < count; ++i) {
+  for (const double value : item.values)
+    if (value >= low && value <= high) values.push_back(value);
+  for (int i = 0; item.values.empty() && i < count; ++i) {
     const double share = static_cast<double>(i) / (count - 1);
     double value = axis.scale == Scale::kLog ? low * std::pow(high / low, share) : low + (high - low) * share;
     if (axis.whole) value = std::round(value);
@@ -69,7 +73,9 @@ class Observer {
 
 class Search {
  public:
-  Search(const Axis& axis, Observer& observer) : axis_(axis), observer_(observer), coarse_(place_samples(axis)) {
+  /// Observes the coarse samples: those between which there is nothing to be found where `only_coarse`.
+  Search(const Axis& axis, Observer& observer, std::vector<double> coarse, bool only_coarse)
+      : axis_(axis), observer_(observer), coarse_(std::move(coarse)), only_coarse_(only_coarse) {
     for (const double value : coarse_) observer_.at(value);
   }
 
@@ -80,7 +86,7 @@ class Search {
     if (first == coarse_.end()) return std::nullopt;
     if (first == coarse_.begin()) return records::StressOnset{*first, std::nullopt, observer_.at(*first).why};
     double before = *(first - 1), with = *first;
-    for (int i = 0; i < kMostHalvings && !is_narrow(before, with); ++i) {
+    for (int i = 0; i < kMostHalvings && !only_coarse_ && !is_narrow(before, with); ++i) {
       const double middle = halve(before, with);
       (observer_.at(middle).verdict >= verdict ? with : before) = middle;
     }
@@ -102,6 +108,7 @@ class Search {
   const Axis& axis_;
   Observer& observer_;
   std::vector<double> coarse_;
+  bool only_coarse_;
 
   bool is_narrow(double a, double b) const {
     if (axis_.whole) return std::abs(a - b) <= 1.0;
@@ -141,14 +148,20 @@ records::StressCase find_onsets(const Case& item, const Axis& axis) {
   record.params = measure::record_params(item.params);
   record.not_available = item.not_available;
   if (!item.observe) return record;
+  const std::vector<double> coarse = place_samples(axis, item);
+  if (coarse.empty()) {
+    record.not_available =
+        fmt::format("it takes {} {} alone, none of them in the range", axis.quantity, fmt::join(item.values, ", "));
+    return record;
+  }
   Observer observer(item);
   try {
-    observer.at(axis.from == SearchFrom::kLow ? axis.range.low : axis.range.high);
+    observer.at(coarse.front());
   } catch (const Error& error) {
     record.not_available = error.what();
     return record;
   }
-  Search search(axis, observer);
+  Search search(axis, observer, coarse, !item.values.empty());
   record.broken = search.find_first(Verdict::kBroken);
   record.degraded = search.find_first(Verdict::kDegraded);
   // A case that breaks at once was never merely degraded.

@@ -1,5 +1,7 @@
 #include "harness/stress/synthetic_scene.h"
 
+#include <cmath>
+
 #include "harness/stress/filter_stage.h"
 
 namespace shadowbench::stress {
@@ -79,6 +81,14 @@ std::unique_ptr<SyntheticLookup> make_gl_lookup(const AxisInputs& inputs, const 
 std::unique_ptr<SyntheticLookup> make_model_lookup(const AxisInputs& inputs, const filters::FilterRequest& request,
                                                    filters::Precision precision) {
   return std::make_unique<ModelLookup>(inputs, request, precision);
+}
+
+double look_at_one_depth(const AxisInputs& inputs, const filters::FilterRequest& request, float stored,
+                         float receiver) {
+  const int size = 2 * static_cast<int>(std::ceil(filters::radius_texels(request.spec, request.values))) + 6;
+  const auto texels = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
+  const SyntheticScene scene{size, std::vector<float>(texels, stored), {{0.5f, 0.5f, receiver}}};
+  return make_model_lookup(inputs, request, filters::Precision::kDouble)->look(scene, request.values).visibility.at(0);
 }
 
 std::shared_ptr<SyntheticLookup> make_lookup(const AxisInputs& inputs, const filters::FilterRequest& request,

@@ -52,6 +52,10 @@ std::unique_ptr<SyntheticLookup> make_gl_lookup(const AxisInputs& inputs, const 
 std::unique_ptr<SyntheticLookup> make_model_lookup(const AxisInputs& inputs, const filters::FilterRequest& request,
                                                    filters::Precision precision = filters::Precision::kFloat);
 
+/// What a filter's scalar model makes, in double, of a receiver before a map of one depth: the same for every size of
+/// map and for every place whose kernel lies inside. Requires a filter that has a model.
+double look_at_one_depth(const AxisInputs& inputs, const filters::FilterRequest& request, float stored, float receiver);
+
 /// Makes the lookup of a case. Requires that the case is available; see start_case().
 std::shared_ptr<SyntheticLookup> make_lookup(const AxisInputs& inputs, const filters::FilterRequest& request,
                                              Level level);

@@ -55,9 +55,17 @@ std::vector<std::string> remark_base(const records::StressCase& record, const st
   return {fmt::format("radius 0 is {}, within {:.2g}", base, *record.samples.front().measured)};
 }
 
+/// A radius of which the front matter lists the values takes no others; each of them is a shader of its own.
+std::vector<double> list_radii(const filters::ParamSpec& param) {
+  std::vector<double> radii;
+  for (const filters::ParamValue& choice : param.choices) radii.push_back(std::get<double>(choice));
+  std::ranges::sort(radii);
+  return radii;
+}
+
 Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, const std::string& param, Level level) {
-  Case item = start_case(inputs, request, request.spec.has_prefilter ? "blurred map" : "disk of comparisons", level,
-                         Reference::kModel);
+  Case item = start_case(inputs, request, averages_comparisons(request.spec) ? "disk of comparisons" : "blurred map",
+                         level, Reference::kModel);
   if (!item.is_available()) return item;
   item.params.erase(param);
   item.theories = {
@@ -65,12 +73,16 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, 
        "derived: a mean of n numbers with weights that sum to 1 is off by n unit round-offs of the largest at most",
        Verdict::kDegraded}};
   item.explain = explain_broken_throughout;
-  const std::shared_ptr<SyntheticLookup> exact = make_model_lookup(inputs, request, filters::Precision::kExtended);
-  item.observe = [request = request, param, lookup = make_lookup(inputs, request, level),
-                  exact](double radius) mutable {
+  item.values = list_radii(*request.spec.find_param(param));
+  item.observe = [&inputs, request = request, param, level, is_const = request.spec.find_param(param)->is_const,
+                  lookup = make_lookup(inputs, request, level),
+                  exact = std::shared_ptr(make_model_lookup(inputs, request, filters::Precision::kExtended))](
+                     double radius) mutable {
     request.values[param] = radius;
+    if (is_const) lookup = make_lookup(inputs, request, level);
     return observe_radius(request, radius, *lookup, *exact);
   };
+  if (!item.values.empty() && item.values.front() > 0.0) return item;
   filters::ParamValues without = request.values;
   without[param] = 0.0;
   const std::string base = name_base(request.spec, *filters::find_kernel(request.spec, without));

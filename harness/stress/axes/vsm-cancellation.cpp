@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "filters/store_format.h"
+#include "filters/summed_area.h"
 #include "harness/stress/edge_scene.h"
 
 namespace shadowbench::stress {
@@ -27,10 +28,35 @@ double store_rounding(filters::StorePrecision store) {
   return 0.0;
 }
 
-/// How far E[z^2] - E[z]^2 may be off, z in [0,1], where both moments are stored `stores` times and are sums of
-/// `taps` products. An error of the mean counts twice.
-double bound_variance_error(filters::StorePrecision store, int stores, int taps) {
-  return 3.0 * (stores * store_rounding(store) + taps * kSingleRounding);
+/// What the two moments go through between encode() and the formula.
+struct Route {
+  int stores = 1;          ///< how often they are rounded to the store
+  int roundings = 2;       ///< those of single precision on the way, each of a number of up to 1
+  double half_step = 0.0;  ///< the rounding to whole numbers
+};
+
+/// How far E[z^2] - E[z]^2 may be off, z in [0,1]. An error of the mean counts twice.
+double bound_variance_error(filters::StorePrecision store, const Route& route) {
+  return 3.0 * (route.stores * store_rounding(store) + route.half_step + route.roundings * kSingleRounding);
+}
+
+bool sums_areas(const filters::FilterSpec& spec) {
+  return !spec.passes.empty() && spec.passes.back().steps == filters::PassSteps::kPrefix &&
+         spec.passes.back().is_integer();
+}
+
+/// A blur stores its sums of products twice more. A summed-area table of whole numbers adds without error, but the
+/// larger the area, the fewer steps a texel may have: half a step is lost, and the product and the sum that round to it
+/// are rounded (2). Of the 16 windows that a box is made of, the 4 that differ in their ends across the edge have a
+/// weight here: the sum of each becomes a float, is divided by the steps and weighted (3); the 4 are added (3); so are
+/// their areas, after one product each (4); and one is divided by the other (1). The weights themselves round alike in
+/// both moments and in the area: they move the kernel, not the variance.
+Route find_route(const filters::FilterRequest& request) {
+  const int radius = filters::prefilter_radius_texels(request.spec, request.values);
+  if (radius > 0) return {3, 2 * (2 * radius + 1), 0.0};
+  if (!sums_areas(request.spec)) return {};
+  const auto widest = static_cast<int>(std::ceil(filters::radius_texels(request.spec, request.values)));
+  return {1, 2 + 3 + 3 + 4 + 1, 0.5 / filters::count_moment_steps<double>(filters::longest_box_side(widest))};
 }
 
 /// Spreads depths over the far half of the range, where squares are rounded most.
@@ -61,7 +87,7 @@ std::vector<EdgeDepths> make_bands(double ratio) {
 }
 
 /// An error e of the variance moves visibility by e / gap^2 at most. With a minimum m it cannot move by more than e /
-/// (4 m).
+/// (4 m). A filter that cuts the share b off the dark end stretches both by 1 / (1 - b), for which rounding has room.
 Theory make_theory(double error, double minimum, double bound, Verdict predicts) {
   Theory theory{std::nullopt, TheoryKind::kRounding, {}, kSource, predicts};
   if (minimum > 0.0 && error / (4.0 * minimum) < bound) {
@@ -96,6 +122,21 @@ std::string driven_param(const filters::FilterSpec& spec) {
   return spec.exponent.empty() ? spec.variance_floor : std::string();
 }
 
+/// Edges for the kernel that all receivers share; where each chooses its own, it is the narrowest without a light's
+/// size, one texel read between texels.
+EdgeScene make_edges(const filters::FilterRequest& request) {
+  const int radius = filters::prefilter_radius_texels(request.spec, request.values);
+  const auto kernel = filters::find_kernel(request.spec, request.values);
+  return radius > 0 || !kernel ? make_edge_scene(radius, make_bands(1.0)) : make_edge_scene(*kernel, make_bands(1.0));
+}
+
+/// The closed form is of Chebyshev's inequality. A filter that promises no such bound does more with the moments than
+/// that, and only its model knows what; null for others.
+std::shared_ptr<SyntheticLookup> make_exact_lookup(const AxisInputs& inputs, const filters::FilterRequest& request) {
+  if (request.spec.kind == filters::FilterKind::kBound || !filters::make_model(request.spec)) return nullptr;
+  return make_model_lookup(inputs, request, filters::Precision::kExtended);
+}
+
 Case make_filter_case(const AxisInputs& inputs, filters::FilterRequest request, const Setting& setting, Level level) {
   const auto& [store, minimum] = setting;
   const std::string param = driven_param(request.spec);
@@ -104,17 +145,17 @@ Case make_filter_case(const AxisInputs& inputs, filters::FilterRequest request, 
   if (!request.spec.bound_at_zero.empty()) request.values[request.spec.bound_at_zero] = 0.0;  // the formula's own error
   Case item = start_case(inputs, request, fmt::format("{}, {} {:g}", store, param, minimum), level);
   if (!item.is_available()) return item;
-  const int radius = filters::prefilter_radius_texels(request.spec, request.values);
-  const double error =
-      bound_variance_error(filters::store_precision(store), radius > 0 ? 3 : 1, radius > 0 ? 2 * (2 * radius + 1) : 2);
+  const double error = bound_variance_error(filters::store_precision(store), find_route(request));
   item.theories = {make_theory(error, minimum, kVisibleError, Verdict::kDegraded),
                    make_theory(error, minimum, kLargestFall, Verdict::kBroken)};
   item.explain = explain_unmet_bound;
-  item.observe = [lookup = make_lookup(inputs, request, level), edge = make_edge_scene(radius, make_bands(1.0)),
-                  values = request.values, minimum = minimum](double ratio) mutable {
+  item.observe = [lookup = make_lookup(inputs, request, level), exact = make_exact_lookup(inputs, request),
+                  edge = make_edges(request), values = request.values, minimum = minimum](double ratio) mutable {
     const std::vector<EdgeDepths> bands = make_bands(ratio);
     set_depths(edge, bands);
-    return judge(lookup->look(edge.scene, values), {expect_visibility(edge, bands, minimum), kVisibleError, edge.run});
+    const std::vector<double> expected =
+        exact ? exact->look(edge.scene, values).visibility : expect_visibility(edge, bands, minimum);
+    return judge(lookup->look(edge.scene, values), {expected, kVisibleError, edge.run});
   };
   return item;
 }
@@ -143,7 +184,7 @@ Observation observe_wall(double largest_variance, double ratio) {
 Case make_wall_case(const char* name, filters::StorePrecision store) {
   double largest = 0.0;
   for (int i = 0; i < kDepths; ++i) largest = std::max(largest, find_variance(place_depth(i, kDepths), store));
-  const double error = bound_variance_error(store, 1, kTaps);
+  const double error = bound_variance_error(store, {1, kTaps, 0.0});
   Case item{.variant = fmt::format("{}, {} taps of one depth, no minimum", name, kTaps), .level = Level::kArithmetic};
   const auto theory = [&](double leak, Verdict predicts) {
     return Theory{std::sqrt(leak / ((1.0 - leak) * error)), TheoryKind::kRounding,

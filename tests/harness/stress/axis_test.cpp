@@ -159,7 +159,7 @@ TEST(DescribeAxes, NamesThemAll) {
 
 /// Every case that runs without a GL keeps to its theory, or says why not.
 TEST(Axes, ModelsAndArithmetic_MeetTheirTheories) {
-  const AxisInputs inputs = make_inputs("vsm,esm");
+  const AxisInputs inputs = make_inputs("vsm,esm,vsm_sat,vssm");
   for (const char* id : {"esm-exponent", "warp-exponent", "vsm-cancellation"}) {
     const Axis axis = choose_axes(id)[0];
     for (const Case& item : axis.make_cases(inputs)) {
@@ -218,6 +218,27 @@ TEST(VsmCancellation, Wall_LeaksByTheVarianceThatIsNotThere) {
       find_case("vsm-cancellation", "16-bit unorm, 81 taps of one depth, no minimum", Level::kArithmetic)
           .observe(std::sqrt(1.0 / 2.3e-5));
   EXPECT_NEAR(*unorm.measured, 0.5, 0.06);
+}
+
+/// The bound on the table's roundings holds, and is no more than a factor of 3 away.
+TEST(VsmCancellation, SummedAreaTable_DegradesWithinItsBound_AndNearIt) {
+  const Axis axis = choose_axes("vsm-cancellation")[0];
+  for (const char* filter : {"vsm_sat", "vsm_sat:radius=31", "vssm", "vssm:max_radius=30"}) {
+    const Case item = find_case("vsm-cancellation", "rg32f, min_variance 0", Level::kModel, filter);
+    const double ratio = find_onsets(item, axis).degraded->value / *item.theories.at(0).onset;
+    EXPECT_GT(ratio, 1.0) << filter;
+    EXPECT_LT(ratio, 3.0) << filter;
+  }
+}
+
+/// Boxes of 9 texels leave a texel 24 bits, boxes of 65 texels 4e9 / 65^2 steps: half a step is 8.9 roundings then.
+TEST(VsmCancellation, SummedAreaTable_LosesBitsWithItsArea) {
+  const auto theory = [](const char* filter) {
+    return *find_case("vsm-cancellation", "rg32f, min_variance 0", Level::kModel, filter).theories.at(0).onset;
+  };
+  const double rounding = 0x1p-24, all_others = 13.5 * rounding;
+  EXPECT_NEAR(theory("vsm_sat") / theory("vsm_sat:radius=31"),
+              std::sqrt((all_others + 0.5 / 946745.0) / (all_others + 0.5 * rounding)), 1e-3);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "filters/base/error.h"
 #include "harness/scene/validate.h"
@@ -67,6 +68,32 @@ TEST(Position, AcneComesFarAway_AndNotRelativeToTheScene) {
   EXPECT_EQ(find_case(inputs, "position", "none", "floor, relative in double").observe(far).verdict, Verdict::kOk);
 }
 
+/// Visibility falls from 1 to 0.9 where a receiver lies e behind its own surface: exp(-80 e) of `esm`, and of `vsm`
+/// what bleed_reduction = 0.3 leaves of m / (m + e^2) = 0.93, m being 1e-5. A comparison tolerates nothing.
+TEST(Position, Theory_IsWhatTheFormulaTolerates) {
+  const AxisInputs inputs = make_gl_inputs("none,vsm,esm");
+  const auto theory = [&](const char* filter) {
+    return *find_case(inputs, "position", filter, "floor, as it is").theories.at(0).onset;
+  };
+  const double none = theory("none"), exponential = std::log(1.0 / 0.9) / 80.0,
+               variance = std::sqrt(1e-5 * (1.0 / 0.93 - 1.0));
+  EXPECT_NEAR(none, 32.0, 0.1);
+  EXPECT_NEAR((theory("esm") - none) / (theory("vsm") - none), exponential / variance, 0.01);
+  EXPECT_NEAR(theory("vsm") / none, 1.0 + variance / 2.09e-5, 0.5) << "the bias is 2.09e-5 of the depth range";
+}
+
+/// Measured limits lie beyond the theories, since not every pixel is off by a whole step, and near them.
+TEST(Position, SofteningFilters_DegradeNearTheirTheories) {
+  const AxisInputs inputs = make_gl_inputs("vsm,vsm_sat,evsm4,csm_conv,vssm");
+  const Axis axis = choose_axes("position")[0];
+  for (const filters::FilterRequest& request : inputs.filters) {
+    const Case item = find_case(inputs, "position", request.spec.id, "floor, as it is");
+    const double ratio = find_onsets(item, axis).degraded->value / *item.theories.at(0).onset;
+    EXPECT_GT(ratio, 0.9) << request.spec.id;
+    EXPECT_LT(ratio, 1.6) << request.spec.id;
+  }
+}
+
 TEST(Position, RemedyHolds_OnlyWhereItComesBeforeTheFloats) {
   const AxisInputs inputs = make_gl_inputs("none");
   EXPECT_EQ(find_case(inputs, "position", "none", "cubes, relative in double").observe(1e8).verdict, Verdict::kOk);
@@ -98,11 +125,18 @@ TEST(LightDirection, ShadowOfALeaningLight_IsWhereConstructionSays) {
 }
 
 TEST(MapSize, OneTexelIsAMap) {
-  for (const char* id : {"none", "pcf2x2", "poisson", "vsm", "esm"}) {
+  for (const char* id : {"none", "pcf2x2", "poisson", "vsm", "esm", "vsm_sat", "csm_conv"}) {
     const Observation seen = find_case(make_gl_inputs(id), "map-size", id, "half").observe(1.0);
     EXPECT_EQ(seen.verdict, Verdict::kOk) << id << ": " << seen.why;
     EXPECT_TRUE(seen.measured);
   }
+}
+
+/// Four terms of a Fourier series leave light behind an occluder, in a large map as in a small one.
+TEST(MapSize, WhatAFormulaLeavesOfTwoDepths_IsExpectedOfMapsOfEverySize) {
+  const AxisInputs inputs = make_gl_inputs("csm_conv");
+  const Case item = find_case(inputs, "map-size", "csm_conv", "half");
+  for (const double size : {256.0, 257.0, 512.0}) EXPECT_LT(item.observe(size).measured.value(), 1e-3) << size;
 }
 
 TEST(MapSize, AboveTheLimit_IsRefusedBeforeAnythingIsAllocated) {

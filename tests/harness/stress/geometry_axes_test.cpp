@@ -252,6 +252,18 @@ TEST(KernelRadius, RadiusZero_IsNamedForWhatItIs) {
   EXPECT_THAT(blurred.notes[0], HasSubstr("its formula on one texel"));
 }
 
+/// Its front matter lists radii 1, 2 and 3, and no other is a filter.
+TEST(KernelRadius, ListedRadii_AreTheOnlyOnesAskedFor) {
+  const Axis axis = choose_axes("kernel-radius")[0];
+  const records::StressCase found =
+      find_onsets(find_model_case("kernel-radius", make_inputs("gather_pcf"), "disk of comparisons"), axis);
+  ASSERT_EQ(found.samples.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(found.samples[i].value, static_cast<double>(i + 1));
+    EXPECT_LT(found.samples[i].measured.value(), 1e-5);
+  }
+}
+
 TEST(Taps, MoreOfThem_AreNearerToTheDisk) {
   const AxisInputs inputs = make_inputs("poisson");
   const records::StressCase found =

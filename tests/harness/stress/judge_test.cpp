@@ -90,5 +90,18 @@ TEST(EdgeScene, WithoutABlur_ReceiversStandBetweenTwoTexels) {
   }
 }
 
+/// A box of 7 texels beside an edge d texels away holds 1/2 + d / 7 of what lies on this side.
+TEST(EdgeScene, OfABox_HoldsTheShareOfItsAreaAcrossTheEdge) {
+  const EdgeScene edge = make_edge_scene(filters::Kernel::make_box(7), {{0.2f, 0.5f}, {0.3f, 0.6f}});
+  ASSERT_EQ(edge.lit_share.size(), 2 * edge.run);
+  EXPECT_GT(edge.run, 20u);
+  for (std::size_t i = 0; i < edge.lit_share.size(); ++i) {
+    const double offset = static_cast<double>(edge.scene.receivers[i].x) * edge.scene.size - edge.scene.size / 2;
+    EXPECT_NEAR(edge.lit_share[i], 0.5 + offset / 7.0, 1e-5) << i;
+    EXPECT_GT(edge.lit_share[i], 0.0);
+    EXPECT_LT(edge.lit_share[i], 1.0 - 1e-9) << "the other depth is not in this kernel";
+  }
+}
+
 }  // namespace
 }  // namespace shadowbench::stress

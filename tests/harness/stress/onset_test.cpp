@@ -60,6 +60,17 @@ TEST(FindOnsets, WholeNumbers_AreFoundExactly) {
   for (const records::StressSample& sample : found.samples) EXPECT_EQ(sample.value, std::round(sample.value));
 }
 
+TEST(FindOnsets, CaseOfAFewValues_IsAskedForThoseInTheRange_AndForNoneBetween) {
+  Case item = make_steps(3.0, 1e9);
+  item.values = {1.0, 2.0, 5.0, 2000.0};
+  const records::StressCase found = find_onsets(item, make_axis(1.0, 1000.0));
+  ASSERT_THAT(found.samples, SizeIs(3));
+  EXPECT_EQ(found.samples[2].value, 5.0);
+  EXPECT_EQ(found.degraded->value, 5.0);
+  EXPECT_EQ(*found.degraded->last_before, 2.0);
+  EXPECT_THAT(find_onsets(item, make_axis(6.0, 1000.0)).not_available, HasSubstr("value 1, 2, 5, 2000 alone"));
+}
+
 TEST(FindOnsets, FromTheHighEnd_FindsTheFirstChangeDownwards) {
   Axis axis = make_axis(1.0, 1000.0);
   axis.from = SearchFrom::kHigh;

@@ -67,7 +67,7 @@ TEST(GlLookup, MapThatTheGlCannotGive_IsAnError_AndSoNotAvailable) {
 
 /// Every case of the first axes that runs on this GL keeps to its theory, or says why not.
 TEST(Axes, GlCases_MeetTheirTheories) {
-  const AxisInputs inputs = make_gl_inputs("vsm,esm");
+  const AxisInputs inputs = make_gl_inputs("vsm,esm,vsm_sat,vssm");
   for (const char* id : {"esm-exponent", "vsm-cancellation"}) {
     const Axis axis = choose_axes(id)[0];
     for (const Case& item : axis.make_cases(inputs)) {
