@@ -8,6 +8,10 @@ namespace {
 
 constexpr GLuint kBaseColorUnit = 12;  // of lib/material.glsl
 
+/// Vertices before the first triangle, so that each vertex has two before it: a triangle's last corner reads the
+/// others.
+constexpr std::size_t kVerticesBefore = 2;
+
 struct GpuVertex {
   glm::vec3 position_ws;
   glm::vec3 shading_normal_ws;
@@ -31,6 +35,18 @@ void append_mesh(std::vector<GpuVertex>& vertices, const scene::Mesh& mesh) {
   }
 }
 
+void set_attributes(gl::VertexArray& array) {
+  const auto set = [&](GLuint location, int components, std::size_t offset, std::size_t vertices_back = 0) {
+    array.set_attribute(location, components, (kVerticesBefore - vertices_back) * sizeof(GpuVertex) + offset);
+  };
+  set(0, 3, offsetof(GpuVertex, position_ws));
+  set(1, 3, offsetof(GpuVertex, shading_normal_ws));
+  set(2, 3, offsetof(GpuVertex, face_normal_ws));
+  set(3, 2, offsetof(GpuVertex, uv));
+  set(4, 3, offsetof(GpuVertex, position_ws), 1);
+  set(5, 3, offsetof(GpuVertex, position_ws), 2);
+}
+
 gl::Texture upload(const scene::Texture& texture) {
   int levels = 1;
   for (int side = std::max(texture.width, texture.height); side > 1; side /= 2) ++levels;
@@ -47,21 +63,18 @@ gl::Texture upload(const scene::Texture& texture) {
 Geometry::Geometry(const scene::Scene& scene) {
   auto parts = std::make_shared<Parts>();
   parts->materials = scene.materials;
-  std::vector<GpuVertex> vertices;
+  std::vector<GpuVertex> vertices(kVerticesBefore);
+  const auto count = [&] { return static_cast<int>(vertices.size() - kVerticesBefore); };
   for (const scene::Mesh& mesh : scene.meshes) {
-    const int first = static_cast<int>(vertices.size());
+    const int first = count();
     append_mesh(vertices, mesh);
-    parts->ranges.push_back(
-        {first, static_cast<int>(vertices.size()) - first, mesh.material, mesh.casts_shadow, mesh.may_cull_front});
+    parts->ranges.push_back({first, count() - first, mesh.material, mesh.casts_shadow, mesh.may_cull_front});
   }
-  parts->triangles = static_cast<std::int64_t>(vertices.size() / 3);
+  parts->triangles = count() / 3;
   for (const scene::Texture& texture : scene.textures) parts->textures.push_back(upload(texture));
   parts->buffer.emplace_back("scene vertices", std::as_bytes(std::span(vertices)));
   parts->array.set_vertices(parts->buffer.front(), sizeof(GpuVertex));
-  parts->array.set_attribute(0, 3, offsetof(GpuVertex, position_ws));
-  parts->array.set_attribute(1, 3, offsetof(GpuVertex, shading_normal_ws));
-  parts->array.set_attribute(2, 3, offsetof(GpuVertex, face_normal_ws));
-  parts->array.set_attribute(3, 2, offsetof(GpuVertex, uv));
+  set_attributes(parts->array);
   parts_ = std::move(parts);
 }
 

@@ -15,7 +15,7 @@
 namespace shadowbench::truth {
 namespace {
 
-/// Roundings of a point that was interpolated from its triangle's corners, in units of the largest coordinate.
+/// Of the largest coordinates: see origin_offset().
 constexpr float kRoundings = 16.0f;
 
 bool has_area(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {

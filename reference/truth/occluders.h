@@ -37,8 +37,12 @@ struct Box {
   glm::vec3 max{-1.0f};
 };
 
-/// How far off a surface rays start: a bound on the rounding error of an interpolated point, from the largest
-/// coordinates of the point and of its scene. All in metres.
+/// How far off a surface rays start, from the largest coordinates of the point, P, and of its scene, S. All in metres.
+///
+/// With roundings of u = 2^-24 it is 16 u (P + S). A receiver lies within 8 u P of a point that shaders/gbuffer.frag
+/// makes of its triangle's corners: one of them, plus shares of two edges. On each axis these are 2 S at most, with
+/// three roundings, and the sum is P with one: sqrt(3) u (P + 6 S) in any direction. What is left, u (6 P + 5 S), is
+/// for the roundings of a ray that is tested against the triangle.
 float origin_offset(float largest_coordinate, float largest_of_scene);
 
 /// What the rays of a packet meet first.

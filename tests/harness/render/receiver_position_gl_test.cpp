@@ -1,0 +1,148 @@
+// Receivers are points of the triangles that the pixels show, so that no ray meets the surface that it leaves.
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "harness/measure/view_receivers.h"
+#include "harness/scene/occluders.h"
+#include "harness/scene/primitives.h"
+#include "reference/truth/visibility.h"
+#include "tests/harness/render/bench_fixture.h"
+
+namespace shadowbench::test {
+namespace {
+
+constexpr float kHalfSide = 0.7f;  ///< metres, of a square's or a box's side
+
+/// Shows scenes, and visits the receivers.
+class Viewer {
+ public:
+  Viewer(int width, int height) : gbuffer_(width, height) {}
+
+  /// Calls visit(position, normal, pixel) for each receiver; the pixel's rows count from the top.
+  template <class Visit>
+  void see(const scene::Scene& scene, const scene::Camera& camera, Visit visit) {
+    gbuffer_.draw(shaders_, render::Geometry(scene), scene, camera);
+    const truth::ReceiverImage image = measure::read_view_receivers(gbuffer_, scene.light).image;
+    for (std::size_t i = 0; i < image.points.size(); ++i) {
+      const int at = static_cast<int>(i);
+      const truth::ReceiverPoint& point = image.points[i];
+      if (point.counts) visit(point.position_ws, point.normal_ws, glm::ivec2(at % image.width, at / image.width));
+    }
+  }
+
+ private:
+  gl::Context& context_ = shared_context();
+  render::ShaderLibrary shaders_{options::find_resources().shaders};
+  render::GBuffer gbuffer_;
+};
+
+scene::Scene make_scene_of(std::vector<scene::Mesh> meshes) {
+  scene::Scene scene;
+  scene.materials.emplace_back();
+  scene.meshes = std::move(meshes);
+  return scene;
+}
+
+/// Two squares that meet at a right angle along the x axis: a floor on the side of +z, and a wall that faces it.
+scene::Scene make_valley() {
+  scene::Mesh floor = scene::make_plane(glm::vec2(2.0f * kHalfSide), 16), wall = floor;
+  for (scene::Vertex& v : floor.vertices) v.position_ws.z += kHalfSide;
+  for (scene::Vertex& v : wall.vertices)
+    v.position_ws = {v.position_ws.x, kHalfSide - v.position_ws.z, v.position_ws.y};
+  return make_scene_of({floor, wall});
+}
+
+/// Shows a scene to cameras in many places, each of which carries the light.
+template <class Visit>
+void look_around(scene::Scene scene, float first_angle, float last_angle, Visit visit) {
+  constexpr int kViews = 150;
+  Viewer viewer(240, 135);
+  for (int view = 0; view < kViews; ++view) {
+    const float share = static_cast<float>(view) / kViews, angle = glm::mix(first_angle, last_angle, share);
+    scene::Camera camera;
+    camera.position_ws = {4.0f * std::sin(angle), 0.5f + share, 4.0f * std::cos(angle)};
+    camera.forward_ws = glm::normalize(-camera.position_ws);
+    scene.light.kind = scene::Sun{.direction_ws = camera.forward_ws};
+    viewer.see(scene, camera, visit);
+  }
+}
+
+TEST(ReceiverPosition, SlatsSeenAtAGrazingAngle_LieInTheirPlane) {
+  const scene::Scene scene = load_builtin("stack");
+  constexpr double kTop = 2.49, kLargest = 3.5;
+  int seen = 0;
+  double farthest = 0.0;
+  Viewer(960, 540).see(scene, scene.cameras.front(), [&](const glm::vec3& position, const glm::vec3& normal, auto) {
+    const double height = static_cast<double>(position.y) - kTop;
+    if (normal.y < 0.999f || std::abs(height) > 0.01) return;
+    ++seen;
+    farthest = std::max(farthest, std::abs(height));
+  });
+  EXPECT_GT(seen, 200);
+  EXPECT_LE(farthest, 10.0 * 0x1p-24 * kLargest);  // 8 roundings of the position, and what its corners were rounded by
+}
+
+TEST(ReceiverPosition, EveryReceiver_LiesWhereItsPixelLooks) {
+  const scene::Scene scene = load_builtin("stack");
+  const glm::vec2 size(960.0f, 540.0f);
+  const glm::dmat4 clip(render::clip_from_world(scene.cameras.front(), scene.bounds(), 960.0 / 540.0));
+  double farthest = 0.0;
+  Viewer(960, 540).see(scene, scene.cameras.front(), [&](const glm::vec3& position, auto, const glm::ivec2& pixel) {
+    const glm::dvec4 place = clip * glm::dvec4(position, 1.0);
+    const glm::dvec2 at = glm::dvec2(0.5 + 0.5 * place.x / place.w, 0.5 - 0.5 * place.y / place.w) * glm::dvec2(size);
+    farthest = std::max(farthest, glm::distance(at, glm::dvec2(pixel) + 0.5));
+  });
+  EXPECT_LT(farthest, 1.0 / 64.0);
+}
+
+TEST(ReceiverPosition, SurfacesThatMeetInAValley_HaveNoPointBeyondEachOther) {
+  int seen = 0, beyond = 0;
+  look_around(make_valley(), -1.0f, 1.0f, [&](const glm::vec3& position, const glm::vec3& normal, auto) {
+    ++seen;
+    if (normal.y > 0.5f ? position.z <= 0.0f : position.y <= 0.0f) ++beyond;
+  });
+  EXPECT_GT(seen, 100000);
+  EXPECT_EQ(beyond, 0);
+}
+
+/// They are seen where edges that meet were moved apart.
+TEST(ReceiverPosition, BackFacesOfABox_AreSeenOutsideOfIt) {
+  int seen = 0, inside = 0;
+  const scene::Scene box = make_scene_of({scene::make_box(glm::vec3(2.0f * kHalfSide), 16)});
+  look_around(box, 0.0f, glm::two_pi<float>(), [&](const glm::vec3& position, const glm::vec3& normal, auto) {
+    if (glm::dot(position, normal) > 0.0f) return;
+    ++seen;
+    const glm::vec3 size = glm::abs(position);
+    if (std::max({size.x, size.y, size.z}) <= kHalfSide) ++inside;
+  });
+  EXPECT_GT(seen, 0);
+  EXPECT_EQ(inside, 0);
+}
+
+TEST(ReceiverPosition, RaysOfTheTruth_NeverMeetThePlaneThatTheyLeave) {
+  Viewer viewer(960, 540);
+  for (const std::string& name : scenes_of_all_lights()) {
+    SCOPED_TRACE(name);
+    const scene::Scene scene = load_builtin(name);
+    const truth::Occluders occluders(scene::list_occluders(scene));
+    const truth::AreaLight light = scene::make_area_light(scene.light);
+    int seen = 0, met = 0;
+    viewer.see(scene, scene.cameras.front(), [&](const glm::vec3& position, const glm::vec3& normal, auto) {
+      ++seen;
+      const glm::vec3 origin = occluders.offset_origin(position, normal);
+      const glm::vec3 way = light.centre_direction(glm::dvec3(origin));
+      truth::RayPacket ray;
+      ray.set(0, origin, way, light.reach());
+      const truth::PacketHits hits = occluders.find_nearest(ray);
+      const bool is_near = hits.distances[0] * glm::length(way) < 100.0f * glm::distance(origin, position);
+      if (is_near && std::abs(glm::dot(glm::normalize(hits.normal(0)), normal)) > 0.9999f) ++met;
+    });
+    EXPECT_GT(seen, 100000);
+    EXPECT_EQ(met, 0);
+  }
+}
+
+}  // namespace
+}  // namespace shadowbench::test
