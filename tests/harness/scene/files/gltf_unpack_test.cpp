@@ -147,7 +147,11 @@ GltfParts meshopt_parts(const Wave& wave, const std::string& index_mode = "TRIAN
   std::vector<std::int8_t> octahedral(4 * wave.vertex_count);
   meshopt_encodeFilterOct(octahedral.data(), wave.vertex_count, 4, 8, normals.data());
   std::vector<std::uint32_t> exponential(2 * wave.vertex_count);
+#if MESHOPTIMIZER_VERSION < 190
   meshopt_encodeFilterExp(exponential.data(), wave.vertex_count, 8, 15, wave.uvs.data());
+#else
+  meshopt_encodeFilterExp(exponential.data(), wave.vertex_count, 8, 15, wave.uvs.data(), meshopt_EncodeExpSharedVector);
+#endif
   add_meshopt(file, pack_attributes(wave.positions.data(), wave.vertex_count, 12, "NONE"));
   add_meshopt(file, pack_attributes(octahedral.data(), wave.vertex_count, 4, "OCTAHEDRAL"));
   add_meshopt(file, pack_attributes(exponential.data(), wave.vertex_count, 8, "EXPONENTIAL"));
