@@ -8,6 +8,7 @@
 
 #include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
+#include "filters/kernel_width.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/receiver_pixels.h"
@@ -30,7 +31,6 @@ namespace {
 constexpr double kFactors[] = {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
 constexpr double kTooLittle = 0.25, kTheory = 1.0, kTooMuch = 8.0;  // of the pictures
 constexpr double kPercentile = 0.95;
-constexpr const char* kPictureFilter = "tent3x3";  // where it is among the chosen
 
 /// One image of a mode, for its grid.
 struct Shot {
@@ -203,11 +203,14 @@ class BiasSweep {
     return shots;
   }
 
-  /// The filter whose images are shown.
+  /// The filter whose images are shown: the first that is wider than one fetch, for edges to be seen soft.
   const filters::FilterRequest* choose_shown(const std::vector<const filters::FilterRequest*>& usable) const {
-    const auto tent = std::find_if(usable.begin(), usable.end(),
-                                   [](const auto* request) { return request->spec.id == kPictureFilter; });
-    return tent != usable.end() ? *tent : usable.empty() ? nullptr : usable.front();
+    const auto is_wide = [](const filters::FilterRequest* request) {
+      return filters::find_kernel_sigma(request->spec, request->values) >
+             filters::width_classes().front().widest_texels;
+    };
+    const auto wide = std::ranges::find_if(usable, is_wide);
+    return wide != usable.end() ? *wide : usable.empty() ? nullptr : usable.front();
   }
 
   records::BiasModeRecord sweep_mode(const render::SweptMode& mode) {

@@ -34,9 +34,7 @@ int view_scene(const ViewArguments& arguments) {
   if (options.keeps_size) std::tie(options.run.width, options.run.height) = parse_picture_size(arguments.size);
   options.run.sizes = {{options.run.width, options.run.height}};
   options.filter_files.assign(arguments.filter_files.begin(), arguments.filter_files.end());
-  const std::string usual =
-      options.filter_files.empty() ? std::string("tent3x3") : options.filter_files.front().stem().string();
-  options.sides = {arguments.left.empty() ? usual : arguments.left, arguments.right};
+  options.sides = {arguments.left, arguments.right};
   if (!(arguments.scale >= 0.0 && arguments.scale <= kLargestScale))
     fail(fmt::format("--scale: {} is out of range: choose 0 .. {:g}; 0 asks the screen", arguments.scale,
                      kLargestScale));
@@ -67,7 +65,8 @@ Command make_view_command() {
   command.add("--ground", &a->ground, "put a floor under a model that stands by itself");
   command
       .add("--left", &a->left,
-           "what is seen on the left: a filter with parameters, or 'truth' (default: tent3x3, or your own filter)")
+           "what is seen on the left: a filter with parameters, or 'truth' (default: your own filter, or one of medium "
+           "width)")
       .names(ValueKind::kFilters);
   command.add("--right", &a->right, "what is seen on the right").names(ValueKind::kFilters);
   command.add("--filter-file", &a->filter_files, "a filter of your own, one GLSL file; may be repeated")

@@ -284,11 +284,10 @@ class Experiment {
     if (told_.insert(warning).second) warn(warning);
   }
 
+  /// The map of a sun has no behind, and a point light shines there too.
   void warn_of_tests_without_effect(const scene::Scene& scene) {
-    if (options_.range.behind_test || options_.worker) return;
-    warn(scene.name +
-         ": --behind-test off changes nothing: the light is directional, and only the map of a light that "
-         "stands in the scene has a behind");
+    if (options_.range.behind_test || options_.worker || std::holds_alternative<scene::Spot>(scene.light.kind)) return;
+    warn(scene.name + ": --behind-test off changes nothing: only a spot light has a behind, and this light is none");
   }
 
   void note_scene(const PlannedScene& planned) {

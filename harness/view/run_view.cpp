@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "filters/base/error.h"
+#include "filters/kernel_width.h"
 #include "harness/gl/timer/timer.h"
 #include "harness/view/gui.h"
 
@@ -14,6 +16,17 @@ namespace {
 constexpr double kSecondsOfRest = 0.1;  ///< between frames in which nothing moves
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// The user's own filter, or the first that is wider than one fetch and not for teaching.
+std::string choose_usual(const filters::Catalogue& catalogue, const ViewOptions& options) {
+  if (!options.filter_files.empty()) return options.filter_files.front().stem().string();
+  const auto is_usual = [](const filters::FilterSpec& spec) {
+    const auto sigma = filters::find_kernel_sigma(spec, filters::default_values(spec));
+    return !spec.teaching && sigma > filters::width_classes().front().widest_texels;
+  };
+  const auto usual = std::ranges::find_if(catalogue.filters(), is_usual);
+  return usual != catalogue.filters().end() ? usual->id : catalogue.filters().front().id;
+}
 
 /// A side that shows the truth keeps a filter, for when it shows one.
 Side make_side(const filters::Catalogue& catalogue, const std::string& text) {
@@ -48,8 +61,10 @@ void run_view(const ViewOptions& options) {
   filters::Catalogue catalogue = load_catalogue(options.run.resources.filters, options.filter_files);
   options::RunOptions run = options.run;
   run.reference = catalogue.parse_requests("none").front();
-  ViewState state = make_view_state(std::move(run), options.scene,
-                                    {make_side(catalogue, options.sides[0]), make_side(catalogue, options.sides[1])});
+  const auto make = [&](const std::string& text) {
+    return make_side(catalogue, text.empty() ? choose_usual(catalogue, options) : text);
+  };
+  ViewState state = make_view_state(std::move(run), options.scene, {make(options.sides[0]), make(options.sides[1])});
   check(state);
   const glm::ivec2 size =
       Gui::window_size({state.options.width, state.options.height}, options.scale > 0.0f ? options.scale : 1.0f);

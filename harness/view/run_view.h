@@ -15,7 +15,7 @@ inline constexpr const char* kTruthName = "truth";
 struct ViewOptions {
   options::RunOptions run;  ///< its `out` is where files are saved
   std::string scene;
-  std::array<std::string, kSides> sides;  ///< filters as `--filters` names them, or "truth"
+  std::array<std::string, kSides> sides;  ///< filters as `--filters` names them, or "truth"; empty: a usual one
   std::vector<std::filesystem::path> filter_files;
   bool keeps_size = false;     ///< the picture does not follow the window's size
   float scale = 0.0f;          ///< of text and widgets; 0: as the screen asks for

@@ -12,8 +12,8 @@ Every README has a scratch folder of its own, in which its commands run in the o
   CHEAPER are appended where the command does not have them itself; nothing else is changed.
 - A command must end with exit code 0. A comment behind it may say otherwise: `# exit code 1` wants 1, and
   `# exit code 1 where ...` (or `if ...`) takes 0 or 1.
-- `harness/setup.sh`, cmake, ctest and cpack are not run. It is checked that the script, its options and the presets
-  are there. Commands in NOT_RUN have to do with other programs, and are let pass.
+- `harness/setup.sh`, `tests/run.sh`, cmake, ctest and cpack are not run. It is checked that the scripts, their options
+  and the presets are there, those in `tests/run.sh` too. Commands in NOT_RUN have to do with other programs, and are let pass.
 
 Of the text around the commands it is checked that every relative link leads somewhere, with its heading; that every
 path of this tree in `code` exists; that every `--option` in `code` is one of the program's (or in OTHER_OPTIONS);
@@ -224,6 +224,10 @@ def check_build_command(words, presets):
     """Says what is wrong with a command of the build, which is not run; empty where nothing is, None for other commands."""
     if words[0] == "xvfb-run":
         words = [word for word in words[1:] if word != "-a"]
+    if words[0] == "tests/run.sh":
+        lines = (ROOT / words[0]).read_text(encoding="utf-8").replace("exec ", "").split("\n")
+        parts = (shlex.split(line, comments=True) for line in lines)
+        return next(filter(None, (check_build_command(part, presets) for part in parts if part)), "")
     if words[0] == "harness/setup.sh":
         script = (ROOT / words[0]).read_text(encoding="utf-8")
         return next((f"harness/setup.sh does not know {word}" for word in words[1:] if word not in script), "")

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Checks that the folders are what DESIGN says of them. Standard library only.
+"""Checks that the folders are what CONTRIBUTING.md says of them. Standard library only.
 
-An include runs from a room to one that stands before it in ROOMS, never back up. A room has a README, is one CMake target and
-one namespace, and holds at most 40 files (the filters' own do not count). No source has more than 500 lines.
+An include runs from a room to one that stands before it in ROOMS, never back up. A room is one CMake target and one namespace,
+with the folders inside it that are no rooms. Every folder of sources has a README and holds at most 40 files (the filters' own
+do not count). No source has more than 500 lines, none outside of REPLAYS names a filter, and none includes a library that
+belongs to another folder.
 """
 import argparse
 import pathlib
@@ -22,6 +24,10 @@ FORBIDDEN = {
     "harness/gpu": ["reference/"], "harness/tune": ["harness/bias"],
     "harness/stress": ["harness/bias", "harness/tune"], "harness/flicker": ["harness/bias", "harness/tune", "harness/stress"]}
 NAMESPACES = {"filters/base": "shadowbench"}
+# Libraries (as includes have them) and the folder that alone knows them.
+KNOWN_IN = {r"OpenImageIO/(?!hash\.h)": "report/images/", r"ft2build": "report/images/"}
+REPLAYS = "harness/stress/axes/"  # mistakes that were made with certain filters
+REFERENCE = "none"  # what every filter is compared with
 MOST_FILES = 40
 MOST_LINES = 500
 SOURCES = {".cpp", ".h"}
@@ -34,14 +40,28 @@ def room_of(path):
     return max(within, key=len) if within else None
 
 
+def check_names(root, name, text, faults):
+    filters = "|".join(path.stem for path in root.glob("filters/*.glsl") if path.stem != REFERENCE)
+    code = re.sub("//.*", "", text)
+    for found in re.findall(rf'"({filters})[":]', code) if not name.startswith(REPLAYS) else []:
+        faults.append(f"{name}: names the filter {found}")
+    for library, folder in KNOWN_IN.items():
+        if re.search(rf"#include <{library}", text) and not name.startswith(folder):
+            faults.append(f"{name}: includes what {folder} alone knows")
+
+
 def check_source(root, path, faults):
     name = path.relative_to(root).as_posix()
     text = path.read_text(encoding="utf-8")
     if path.suffix in COUNTED_LINES and text.count("\n") > MOST_LINES:
         faults.append(f"{name}: {text.count(chr(10))} lines; {MOST_LINES} are the most")
     room = room_of(name)
-    if path.suffix not in SOURCES or room is None:
+    if path.suffix not in SOURCES:
         return
+    if room is None:
+        faults.append(f"{name}: belongs to no room")
+        return
+    check_names(root, name, text, faults)
     wanted = NAMESPACES.get(room, "shadowbench::" + room.rsplit("/", 1)[-1])
     opened = set(re.findall(r"^namespace (shadowbench(?:::\w+)?) \{", text, re.MULTILINE))
     if opened - {wanted}:
@@ -63,8 +83,11 @@ def check_folder(root, folder, faults):
     own = [path for path in files if not (name == "filters" and folder.joinpath(path.stem + ".glsl").exists())]
     if len(own) > MOST_FILES:
         faults.append(f"{name}: {len(own)} files; {MOST_FILES} are the most")
-    if any(path.suffix in SOURCES for path in files) and not folder.joinpath("README.md").exists():
-        faults.append(f"{name}: has no README.md")
+    if any(path.suffix in SOURCES for path in files):
+        if not folder.joinpath("README.md").exists():
+            faults.append(f"{name}: has no README.md")
+        if folder.joinpath("CMakeLists.txt").exists() and name not in ROOMS:
+            faults.append(f"{name}: has a target of its own, and is no room")
 
 
 def main():
