@@ -22,7 +22,7 @@ radius = [1, 2]
 id = 'esm'
 """
 FILE = "an experiment.toml"
-WORDS = [FILE, "--gl", "osmesa", "--gpu", "none"]
+WORDS = [FILE, "--gl", "software", "--gpu", "none"]
 LONG = ["--map-size", "32,40,48,64,80,96"]  # long enough to be stopped in the middle
 
 # What two runs of one experiment need not share: the times, the load and the work that was done.

@@ -34,7 +34,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-SMALL = ["--size", "16x9", "--map-size", "16", "--rounds", "1", "--no-truth", "--no-grids", "--gl", "osmesa",
+SMALL = ["--size", "16x9", "--map-size", "16", "--rounds", "1", "--no-truth", "--no-grids", "--gl", "software",
          "--gpu", "none"]
 RUN = ["run", "--out", "out", "--scene", "cubes", "--filters", "none", *SMALL]
 DONE = {0}
@@ -54,11 +54,11 @@ WORDS = {"--map-format": ["d32", "", "D16 ", "r32f", "d16,d24"], "--fit": ["box"
          "--lights": ["0", "-1", "a", ""], "--gpu": ["", "nosuch", "navi21,navi21", "none,navi21", ","],
          "--light-name": ["nobody"], "--view": ["nowhere"]}
 # Commands that work without a further word take minutes: these words, which may be overruled, keep them short.
-SHORT = {"run": SMALL, "bias": ["--filters", "none", "--size", "96x54", "--map-size", "128", "--gl", "osmesa"],
-         "stress": ["--filters", "esm", "--axes", "esm-exponent", "--gl", "osmesa"],
-         "flicker": ["--filters", "none", "--frames", "2", "--size", "16x9", "--map-size", "16", "--gl", "osmesa"],
+SHORT = {"run": SMALL, "bias": ["--filters", "none", "--size", "96x54", "--map-size", "128", "--gl", "software"],
+         "stress": ["--filters", "esm", "--axes", "esm-exponent", "--gl", "software"],
+         "flicker": ["--filters", "none", "--frames", "2", "--size", "16x9", "--map-size", "16", "--gl", "software"],
          "submit": SMALL + ["--engine", "slurm", "--dry-run", "--no-probe", "--out", "s"],
-         "tune": ["--scene", "cubes", "--budget", "1", "--size", "16x9", "--map-size", "16", "--gl", "osmesa"]}
+         "tune": ["--scene", "cubes", "--budget", "1", "--size", "16x9", "--map-size", "16", "--gl", "software"]}
 COMMANDS = ["run", "list", "diff", "bias", "merge", "submit", "status", "advise", "tune", "stress", "regress", "flicker", "manual", "nosuch",
             ""]
 PIECES = ["--help", "--out", "out", "--scene", "cubes", "--filters", "none", "--fresh", "--json", "--yes", "-1", "..", "/",

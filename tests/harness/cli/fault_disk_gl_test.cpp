@@ -89,9 +89,11 @@ TEST_F(FaultDisk, FullCache_IsSaid_AndCostsNothingElse) {
 TEST_F(FaultDisk, FullDiskUnderTheDriversCache_SwitchesThatOff) {
   const auto shell = find_mounting_shell();
   if (!shell) GTEST_SKIP() << "no file system can be mounted here (neither as root nor with 'unshare -rm')";
-  const std::string script =
-      std::string("mkdir disk && mount -t tmpfs -o size=16k none disk || exit 98\nunset MESA_SHADER_CACHE_DISABLE\n") +
-      "export XDG_CACHE_HOME=$PWD/disk\nshadowbench " + kDiskRun + "--no-cache --out out 2>messages.txt\n";
+  const std::string script = std::string(
+                                 "mkdir disk && mount -t tmpfs -o size=16k none disk || exit 98\nunset "
+                                 "MESA_SHADER_CACHE_DISABLE MESA_SHADER_CACHE_DIR\n") +
+                             "export XDG_CACHE_HOME=$PWD/disk\nshadowbench " + kDiskRun +
+                             "--no-cache --out out 2>messages.txt\n";
   EXPECT_EQ(run_script(*shell, script), 0) << read_text(folder() / "messages.txt");
   EXPECT_THAT(read_text(folder() / "messages.txt"), HasSubstr("not used: the driver's cache of shaders in "));
   expect_same("whole", "out");

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "harness/gl/context/context.h"
 #include "tests/harness/cli/faults.h"
 
 namespace shadowbench::test {
@@ -42,7 +43,7 @@ TEST_F(FaultLimits, MemoryThatALargeModelDoesNotFitInto_IsAnInputErrorThatNamesT
   constexpr std::uintmax_t kVertices = 60'000'000;
   write_large_model(kVertices);
   constexpr const char* kRest =
-      " --gl osmesa --size 32x18 --map-size 16 --rounds 1 --filters none --no-attribution --out out";
+      " --gl software --size 32x18 --map-size 16 --rounds 1 --filters none --no-attribution --out out";
   for (const std::size_t mebibytes : {1600, 2200, 3400}) {
     const int code = run_limited(mebibytes, std::string("run --scene large.gltf") + kRest);
     EXPECT_EQ(code, 3) << mebibytes << " " << read_text(folder() / "script.txt");
@@ -65,7 +66,8 @@ TEST_F(FaultLimits, MemoryThatOtherThingsDoNotFitInto_IsSaidToo) {
 TEST_F(FaultLimits, MemoryThatIsTooSmallToStartIn_IsOneMessage) {
   if (kIsSanitized) GTEST_SKIP() << "address sanitizer needs more memory than a limit leaves";
   for (const std::size_t mebibytes : {600, 700, 800, 920, 1000}) {
-    EXPECT_EQ(run_limited(mebibytes, "run --scene cubes --gl osmesa --size 2048x2048 --filters none,vsm --out out"), 3)
+    EXPECT_EQ(run_limited(mebibytes, "run --scene cubes --gl software --size 2048x2048 --filters none,vsm --out out"),
+              3)
         << mebibytes;
     const std::string said = read_text(folder() / "script.txt");
     EXPECT_THAT(said, testing::HasSubstr("shadowbench: ")) << mebibytes;
@@ -80,13 +82,15 @@ TEST_F(FaultLimits, RefusedContext_IsOneMessage) {
     const char* backend;
     const char* word;
   };
+  const bool has_osmesa = gl::has_backend(gl::Backend::kOsmesa);
   const std::array refusals = {
       Refusal{"__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null", "egl", "egl: no device"},
       Refusal{"-u DISPLAY -u WAYLAND_DISPLAY", "glfw", "glfw: GLFW does not start"},
       Refusal{"-u WAYLAND_DISPLAY DISPLAY=:9999", "glfw", "glfw: GLFW does not start"},
-      Refusal{"MESA_GL_VERSION_OVERRIDE=2.1", "osmesa", "osmesa: OSMesa gives no OpenGL 4.5 core context"},
+      Refusal{"MESA_GL_VERSION_OVERRIDE=2.1", "software",
+              has_osmesa ? "osmesa: OSMesa gives no OpenGL 4.5 core context" : "egl in software: "},
       Refusal{"MESA_GL_VERSION_OVERRIDE=2.1 __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null DISPLAY=:9999", "auto",
-              "osmesa: OSMesa gives"}};
+              has_osmesa ? "osmesa: OSMesa gives" : "egl: no device"}};
   for (const Refusal& each : refusals) {
     std::vector<std::string> commands = {"run --scene cubes"};
     if (each.backend == std::string("glfw"))

@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-constexpr const char* kSmallLayers = "run --out out --size 128x72 --map-size 128 --rounds 2 ";
+constexpr const char* kSmallLayers = "run --out out --size 96x54 --map-size 64 --rounds 1 --no-grids ";
 
 class LayersRun : public ProgramTest {
  protected:
@@ -50,7 +50,7 @@ TEST_F(LayersRun, UsersFilters_GetWhatBuiltInOnesGet) {
       EXPECT_EQ(cell["status"], "ok") << cell["message"];
       EXPECT_LT(cell["attribution"]["numeric"]["rms"], 2e-3) << "the model follows the receivers to their layers";
       const int bytes = cell["filter"] == "vsm" ? 8 : 4;
-      EXPECT_EQ(cell["cost"]["map_bytes"], layers * 128 * 128 * bytes);
+      EXPECT_EQ(cell["cost"]["map_bytes"], layers * 64 * 64 * bytes);
     }
     EXPECT_EQ(find("none")["cost"]["passes"], 2 * layers);
     EXPECT_EQ(find("vsm")["stability"]["bound_exact_violations"], 0) << scene;

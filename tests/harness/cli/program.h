@@ -70,8 +70,9 @@ class ProgramTest : public ::testing::Test {
   }
 
   /// Expects one clear message with all the words, the exit code, and no report.
-  void expect_refusal(const std::string& arguments, int exit_code, const std::vector<std::string>& words) const {
-    const Outcome outcome = run(arguments);
+  void expect_refusal(const std::string& arguments, int exit_code, const std::vector<std::string>& words,
+                      const std::string& environment = "") const {
+    const Outcome outcome = run(arguments, environment);
     EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
     const std::size_t begin = outcome.err.rfind("shadowbench: ");
     ASSERT_NE(begin, std::string::npos) << outcome.err;

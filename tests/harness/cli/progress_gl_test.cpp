@@ -20,7 +20,7 @@ class ProgressOfARun : public ProgramTest {
  protected:
   std::vector<Line> draw(const std::string& options) const {
     const Outcome outcome =
-        run("run --out out --fresh --gl osmesa --scene cubes --size 64x36 --map-size 64 " + options);
+        run("run --out out --fresh --gl software --scene cubes --size 64x36 --map-size 64 " + options);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     std::vector<Line> lines;
     std::istringstream text(outcome.err);
@@ -58,7 +58,7 @@ TEST_F(ProgressOfARun, NamesEveryStep_AndEveryStepMovesIt) {
 TEST_F(ProgressOfARun, StartsAnewWithWhatIsLeft) {
   draw("--filters none --no-grids --rounds 1 --pad-texels 4");
   const Outcome outcome =
-      run("run --out out --gl osmesa --scene cubes --size 64x36 --map-size 64 --filters none,vsm --no-grids --rounds 1 "
+      run("run --out out --gl software --scene cubes --size 64x36 --map-size 64 --filters none,vsm --no-grids --rounds 1 "
           "--pad-texels 4");
   EXPECT_THAT(outcome.err, ::testing::HasSubstr("0.0 % · 1/2 cubes · 64 · vsm"));
   EXPECT_THAT(outcome.err, ::testing::HasSubstr("100.0 % · 2/2 done"));

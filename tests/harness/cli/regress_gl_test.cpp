@@ -21,7 +21,7 @@ class Regress : public ProgramTest {
   /// A run of two filters on one scene, small; no time counts.
   void draw(const std::string& out, const std::string& options = "--filters none,pcf2x2") const {
     const Outcome outcome =
-        run("run --gl osmesa --scene cubes --size 96x54 --rounds 1 --pad-texels 4 --uncertainty " + options +
+        run("run --gl software --scene cubes --size 96x54 --rounds 1 --pad-texels 4 --uncertainty " + options +
             (options.find("--map-size") == std::string::npos ? " --map-size 128" : "") + " --out " + out);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
@@ -30,10 +30,23 @@ class Regress : public ProgramTest {
     return run("regress " + out + " --baseline base " + options);
   }
 
+  /// A run and the baseline that was accepted from it: the first test that asks makes them, the others copy them.
   void make_baseline() {
+    if (std::filesystem::exists(made())) return copy(made(), folder());
     draw("a");
     ASSERT_EQ(compare("a", "--accept").exit_code, 0);
     ASSERT_EQ(compare("a").exit_code, 0);
+    copy(folder(), made());
+  }
+
+  static void TearDownTestSuite() { std::filesystem::remove_all(made()); }
+
+  static std::filesystem::path made() {
+    return std::filesystem::temp_directory_path() / ("shadowbench.baseline." + std::to_string(getpid()));
+  }
+
+  static void copy(const std::filesystem::path& from, const std::filesystem::path& to) {
+    std::filesystem::copy(from, to, std::filesystem::copy_options::recursive);
   }
 
   nlohmann::json report(const std::string& out) const {
@@ -47,11 +60,10 @@ class Regress : public ProgramTest {
     ASSERT_EQ(std::system((list + " > checksums.txt").c_str()), 0);
   }
 
-  /// Expects exit code 3, a message that names the damaged file, and one that is accepted afterwards.
+  /// Expects exit code 3 and a message that names the damaged file, and accepts the run.
   void expect_damage(const std::string& file, const std::string& what) const {
     expect_refusal("regress a --baseline base", 3, {"base: ", "not as it was accepted", file + " " + what, "--accept"});
     EXPECT_EQ(compare("a", "--accept").exit_code, 0) << file << " " << what;
-    EXPECT_EQ(compare("a").exit_code, 0) << file << " " << what;
   }
 
   void cut(const std::string& file) const {
@@ -158,12 +170,12 @@ TEST_F(Regress, UnreadableBaseline_Fails_AndCanBeReplaced) {
     seal();
     expect_failure("a", "unreadable");
     EXPECT_EQ(compare("a", "--accept").exit_code, 0) << file;
-    EXPECT_EQ(compare("a").exit_code, 0) << file;
     write(file, "");
     seal();
     expect_failure("a", "unreadable");
     EXPECT_EQ(compare("a", "--accept").exit_code, 0) << file;
   }
+  EXPECT_EQ(compare("a").exit_code, 0);
   std::filesystem::remove(folder() / "base/cubes/pcf2x2.exr");
   seal();
   expect_failure("a", "unreadable");
@@ -187,9 +199,12 @@ TEST_F(Regress, DamagedBaseline_IsRefused_AndMendedByAccept) {
     flip(std::string("base/") + file, 10);
     expect_damage(file, "has changed");
     std::filesystem::remove(folder() / "base" / file);
-    if (file != std::string("baseline.toml")) expect_damage(file, "is missing");
-    EXPECT_EQ(compare("a", "--accept").exit_code, 0);
+    if (file != std::string("baseline.toml"))
+      expect_damage(file, "is missing");
+    else
+      EXPECT_EQ(compare("a", "--accept").exit_code, 0);
   }
+  EXPECT_EQ(compare("a").exit_code, 0);
   write("base/baseline.toml", "");
   expect_damage("baseline.toml", "has changed");
   flip("base/checksums.txt", 70);

@@ -99,7 +99,7 @@ TEST_F(Suspects, AFilterThatReadsAsFarAsItDeclares_IsNone) {
 /// Every built-in filter on every scene, with parameters too that change what is read.
 TEST_F(Suspects, BuiltInFilters_AreNone) {
   const Outcome outcome =
-      run("run --out out --size 160x90 --map-size 1024 --rounds 1 --no-attribution --filters "
+      run("run --out out --size 160x90 --map-size 512 --rounds 1 --no-attribution --no-truth --no-grids --filters "
           "all,teaching,vsm:radius=0,esm:radius=8,esm:combine=log,poisson:radius=0,gather_pcf:radius=3,"
           "pcss:max_radius=20,dpcf:max_radius=20,poisson:radius=20,rotation=interleaved-gradient");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;

@@ -6,7 +6,7 @@
 
 namespace shadowbench::gl {
 
-/// Gives each test an OSMesa context of its own, and fails it for any GL error that it leaves behind.
+/// Gives each test a software context of its own, and fails it for any GL error that it leaves behind.
 class GlTest : public ::testing::Test {
  protected:
   Context& context() { return *choice_.context; }
@@ -14,7 +14,7 @@ class GlTest : public ::testing::Test {
   void TearDown() override { EXPECT_NO_THROW(context().require_no_gl_errors()); }
 
  private:
-  ContextChoice choice_ = create_context(Backend::kOsmesa);
+  ContextChoice choice_ = create_context(Backend::kSoftware);
 };
 
 }  // namespace shadowbench::gl

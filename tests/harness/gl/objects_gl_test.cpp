@@ -35,7 +35,7 @@ struct RoundTrip {
 
 class TextureRoundTrip : public ::testing::TestWithParam<RoundTrip> {
  private:
-  ContextChoice choice_ = create_context(Backend::kOsmesa);
+  ContextChoice choice_ = create_context(Backend::kSoftware);
 };
 
 TEST_P(TextureRoundTrip, Floats_ComeBackWithinTheFormatsStep) {

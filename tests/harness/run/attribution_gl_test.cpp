@@ -178,6 +178,7 @@ TEST_F(Attributed, TooMuchBias_OpensContactGaps) {
 /// They blur thin bars, and VSM and ESM fade towards contacts: neither comes from bias.
 TEST_F(Attributed, AlmostNoBias_LeavesWideFiltersWithoutContactGaps) {
   options_.sizes = {{480, 270}};
+  options_.attribution = false;
   options_.bias = render::BiasRule::none();
   options_.bias.constant.depth = 2e-5;
   for (const auto& cell : run("fence", "none,poisson:radius=8,vsm:radius=1,vsm,esm")) {

@@ -107,12 +107,21 @@ class Charts : public ::testing::TestWithParam<int> {
   void SetUp() override {
     if (!has_browser()) GTEST_SKIP() << "chromium is not installed";
   }
+
+  /// The page in a window of this test's width; the browser opens it once for all tests.
+  static const std::string& dom() {
+    static std::map<int, std::string> opened;
+    std::string& found = opened[GetParam()];
+    if (found.empty()) {
+      const records::TemporaryFolder folder("charts_" + std::to_string(GetParam()));
+      found = open_in_browser(folder.path(), GetParam());
+    }
+    return found;
+  }
 };
 
 TEST_P(Charts, AreDrawn_AndAnswerToThePointer) {
-  const records::TemporaryFolder folder("charts_" + std::to_string(GetParam()));
-  const std::string dom = open_in_browser(folder.path(), GetParam());
-  auto found = list_findings(dom);
+  auto found = list_findings(dom());
   EXPECT_EQ(found["overlaps"], "none");
   EXPECT_EQ(found["wide"], "false");
   EXPECT_EQ(found["tip"], "a detail &amp; more 0");
@@ -121,12 +130,12 @@ TEST_P(Charts, AreDrawn_AndAnswerToThePointer) {
   EXPECT_EQ(found["shown"], "1");    // the series that is hidden until then
   for (const char* text : {">0.05</text>", ">time of the lookup, ms</text>", ">vsm &lt;b&gt;</text>", ">label 1</text>",
                            "stroke-dasharray=\"6 4\"", "stroke-dasharray=\"2 3\""})
-    EXPECT_THAT(dom, HasSubstr(text));
+    EXPECT_THAT(dom(), HasSubstr(text));
 }
 
 TEST_P(Charts, AreSaved_AsSvgAndAsPng) {
   const records::TemporaryFolder folder("saved_" + std::to_string(GetParam()));
-  auto found = list_findings(open_in_browser(folder.path(), GetParam()));
+  auto found = list_findings(dom());
   pugi::xml_document svg;
   ASSERT_TRUE(svg.load_string(decode_hex(found["saved-example.d.svg"]).c_str()));
   EXPECT_STREQ(svg.first_child().name(), "svg");
