@@ -57,9 +57,9 @@ TEST_F(ProgressOfARun, NamesEveryStep_AndEveryStepMovesIt) {
 
 TEST_F(ProgressOfARun, StartsAnewWithWhatIsLeft) {
   draw("--filters none --no-grids --rounds 1 --pad-texels 4");
-  const Outcome outcome =
-      run("run --out out --gl software --scene cubes --size 64x36 --map-size 64 --filters none,vsm --no-grids --rounds 1 "
-          "--pad-texels 4");
+  const Outcome outcome = run(
+      "run --out out --gl software --scene cubes --size 64x36 --map-size 64 --filters none,vsm --no-grids --rounds 1 "
+      "--pad-texels 4");
   EXPECT_THAT(outcome.err, ::testing::HasSubstr("0.0 % · 1/2 cubes · 64 · vsm"));
   EXPECT_THAT(outcome.err, ::testing::HasSubstr("100.0 % · 2/2 done"));
 }
