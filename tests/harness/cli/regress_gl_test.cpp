@@ -266,7 +266,8 @@ TEST_F(Regress, AcceptThatIsKilledWhileItWrites_IsMadeWholeByTheNext) {
   for (const char* wait : {"0", "0.01", "0.02", "0.04"}) {
     std::filesystem::remove_all(folder() / "base");
     const std::string script = "cd '" + folder().string() + "'; " + accept +
-                               " & while [ ! -e base/baseline.toml ]; do :; done; sleep " + wait + "; kill -9 $!; wait";
+                               " & while [ ! -e base/baseline.toml ] && kill -0 \\$!; do :; done; sleep " + wait +
+                               "; kill -9 \\$!; wait";
     std::system(("bash -c \"" + script + "\" 2>/dev/null").c_str());
     EXPECT_EQ(compare("a", "--accept").exit_code, 0);
     EXPECT_EQ(compare("a").exit_code, 0);
