@@ -69,20 +69,21 @@ TEST_F(FaultSignal, ManyTimesAtRandomMoments_NothingIsLost) {
   const auto begin = std::chrono::steady_clock::now();
   const Outcome whole = run(command("whole"));
   ASSERT_EQ(whole.exit_code, 0) << whole.err;
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   std::filesystem::remove_all(cache_folder());
   std::mt19937 random(9);
-  std::uniform_real_distribution<double> moment(0.0, seconds);
+  std::uniform_real_distribution<double> moment(0.0, 1.0);
   int stops = 0, finished = 0;
   std::size_t kept = 0;
   while (stops < kStops) {
     const int signal = stops % 3 == 0 ? SIGINT : stops % 3 == 1 ? SIGTERM : SIGKILL;
     const pid_t pid = start(command("out"));
-    std::this_thread::sleep_for(std::chrono::duration<double>(moment(random)));
+    std::this_thread::sleep_for(std::chrono::duration<double>(moment(random) * seconds));
     kill(pid, signal);
     const Ending ending = wait_for(pid);
     if (ending.exit_code == 0) {
       ++finished;
+      seconds *= 0.8;  // the first run had shaders to compile, and perhaps a busier machine
       expect_equal_and_clear();
       kept = 0;
       continue;
