@@ -1,5 +1,6 @@
 # Parts of the program that need libraries of their own. SHADOWBENCH_WITH_<PART> is AUTO (there where its libraries are), ON
-# (configuring ends where one is missing) or OFF. A part that is there sets SHADOWBENCH_HAS_<PART>, in CMake and in C++.
+# (configuring ends where one is missing) or OFF. A part that is there sets SHADOWBENCH_HAS_<PART>; who has code of its own for
+# parts hands that on to C++ with shadowbench_define_parts().
 include_guard()
 
 function(shadowbench_add_part part what)
@@ -34,7 +35,14 @@ function(shadowbench_add_part part what)
                         "Install ${_arg_DEBIAN}, or configure with -DSHADOWBENCH_WITH_${part}=OFF to leave out ${what}.")
   endif()
   set(SHADOWBENCH_HAS_${part} TRUE PARENT_SCOPE)
-  target_compile_definitions(shadowbench_options INTERFACE SHADOWBENCH_HAS_${part})
+endfunction()
+
+function(shadowbench_define_parts target)
+  foreach(_part IN LISTS ARGN)
+    if(SHADOWBENCH_HAS_${_part})
+      target_compile_definitions(${target} PRIVATE SHADOWBENCH_HAS_${_part})
+    endif()
+  endforeach()
 endfunction()
 
 shadowbench_add_part(OSMESA "drawing in software with OSMesa" MODULES osmesa DEBIAN "libosmesa6-dev")

@@ -9,7 +9,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-PARTS = ("WINDOW", "OSMESA", "EGL", "GPU_ESTIMATES", "DRACO", "MESHOPT")
+PARTS = {"WINDOW": "run_view.cpp", "OSMESA": "context_osmesa.cpp", "EGL": "context_egl.cpp", "GPU_ESTIMATES": "null_device.cpp",
+         "DRACO": "gltf_draco.cpp", "MESHOPT": "gltf_meshopt.cpp"}
 EVERYTHING_LEFT_OUT_BUT_EGL = [f"-DSHADOWBENCH_WITH_{part}=OFF" for part in PARTS if part != "EGL"]
 
 
@@ -37,10 +38,10 @@ class Configuration:
         return [word for word in command.split() if word.startswith("-O")]
 
     def parts(self):
-        """The parts that the program is compiled with."""
+        """The parts whose own sources are compiled."""
         commands = json.loads((Path(self.folder.name) / "compile_commands.json").read_text(encoding="utf-8"))
-        command = next(each["command"] for each in commands if each["file"].endswith("harness/cli/main.cpp"))
-        return {word.removeprefix("-DSHADOWBENCH_HAS_") for word in command.split() if "-DSHADOWBENCH_HAS_" in word}
+        compiled = {Path(each["file"]).name for each in commands}
+        return {part for part, source in PARTS.items() if source in compiled}
 
 
 def check_flags(source):
