@@ -72,7 +72,7 @@ def check_package(build, folder):
     call("cpack", "-G", "DEB", "--config", build / "CPackConfig.cmake", "-B", folder / "package")
     packages = list((folder / "package").glob("*.deb"))
     expect(len(packages) == 1, f"cpack made {packages}")
-    expect(re.fullmatch(r"shadowbench_[\d.]+_[a-z0-9]+\.deb", packages[0].name), f"a package named {packages[0].name}")
+    expect(re.fullmatch(r"shadowbench_[\d.]+-[a-z0-9.]+_[a-z0-9]+\.deb", packages[0].name), f"a package named {packages[0].name}")
     depends = call("dpkg-deb", "--field", packages[0], "Depends")
     for package in OPENED_AT_RUN_TIME + LINKED:
         expect(re.search(rf"(^|, ){package}( |,|$)", depends), f"no dependency on {package} in: {depends}")
