@@ -16,6 +16,7 @@ namespace {
 std::vector<measure::MeasuredCell> measure(const std::string& scene_name, const std::string& filters,
                                            int map_size = 512, int width = 240, int height = 135) {
   static measure::Renderer renderer = measure::make_renderer(gl::Backend::kAuto, options::find_resources());
+  renderer.context->make_current();
   const scene::Scene scene = load_builtin(scene_name);
   options::RunOptions options;
   options.resources = options::find_resources();

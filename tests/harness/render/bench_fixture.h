@@ -111,9 +111,10 @@ class Bench {
   render::ImageTarget target_;
 };
 
-/// One context for all tests of a program.
+/// One context for all tests of a program, made current: a test before this one may have had one of its own.
 inline gl::Context& shared_context() {
   static gl::ContextChoice choice = gl::create_context(gl::Backend::kAuto);
+  choice.context->make_current();
   return *choice.context;
 }
 

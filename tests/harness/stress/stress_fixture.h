@@ -18,6 +18,7 @@ inline AxisInputs make_inputs(const std::string& filters = "") {
 /// Gives the one renderer of a test program.
 inline measure::Renderer& shared_renderer() {
   static measure::Renderer renderer = measure::make_renderer(gl::Backend::kAuto, options::find_resources());
+  renderer.context->make_current();
   return renderer;
 }
 

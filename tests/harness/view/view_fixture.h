@@ -17,6 +17,7 @@ class ViewTest : public ProgramTest {
  protected:
   static measure::Renderer& renderer() {
     static measure::Renderer only = measure::make_renderer(gl::Backend::kAuto, options::find_resources());
+    only.context->make_current();
     return only;
   }
 
