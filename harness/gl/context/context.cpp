@@ -22,6 +22,9 @@ constexpr std::array<std::pair<Backend, std::string_view>, 5> kNames = {{{Backen
                                                                          {Backend::kEgl, "egl"},
                                                                          {Backend::kGlfw, "glfw"}}};
 
+/// The context that is current; one is at a time in the whole process.
+Context* current = nullptr;
+
 std::string get_gl_string(GLenum name) {
   const auto* text = glGetString(name);
   return text == nullptr ? std::string() : reinterpret_cast<const char*>(text);
@@ -98,8 +101,15 @@ ContextChoice create_context(Backend backend) {
                   fmt::join(choice.refused, "; ")));
 }
 
+Context::~Context() {
+  if (current == this) current = nullptr;
+}
+
 void Context::make_current() {
+  // EGL refuses a thread that has a context of another library.
+  if (current != nullptr && current != this) std::exchange(current, nullptr)->release();
   bind();
+  current = this;
   if (gladLoadGL(loader()) == 0) throw Error(ErrorKind::kContext, "the GL functions cannot be loaded");
 }
 

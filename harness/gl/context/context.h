@@ -41,9 +41,10 @@ class Context {
  public:
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
-  virtual ~Context() = default;
+  virtual ~Context();
 
-  /// Makes this context current on the calling thread and points the loader at its functions.
+  /// Makes this context current on the calling thread, in place of the one before, and points the loader at its
+  /// functions.
   /// Throws Error(kContext).
   void make_current();
 
@@ -66,6 +67,7 @@ class Context {
 
  private:
   virtual void bind() = 0;
+  virtual void release() = 0;  ///< leaves the calling thread without a context; requires that this one is current
   virtual GLADloadfunc loader() const = 0;
   static void GLAPIENTRY record_message(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
                                         const GLchar* message, const void* context);

@@ -148,6 +148,11 @@ class EglContext : public Context {
       refuse_egl("the context cannot be made current");
   }
 
+  void release() override {
+    eglBindAPI(EGL_OPENGL_API);
+    eglMakeCurrent(owned_.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  }
+
   GLADloadfunc loader() const override { return &eglGetProcAddress; }
 
   Owned owned_;

@@ -55,6 +55,8 @@ void GlfwContext::Destroy::operator()(GLFWwindow* window) const { glfwDestroyWin
 
 void GlfwContext::bind() { glfwMakeContextCurrent(window_.get()); }
 
+void GlfwContext::release() { glfwMakeContextCurrent(nullptr); }
+
 GLADloadfunc GlfwContext::loader() const { return &glfwGetProcAddress; }
 
 std::unique_ptr<Context> create_glfw_context() { return std::make_unique<GlfwContext>(WindowShape{}); }

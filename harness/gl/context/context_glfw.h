@@ -37,6 +37,7 @@ class GlfwContext : public Context {
 
  private:
   void bind() override;
+  void release() override;
   GLADloadfunc loader() const override;
 
   GlfwLibrary library_;

@@ -53,6 +53,8 @@ class OsmesaContext : public Context {
       throw Error(ErrorKind::kContext, "OSMesa cannot make its context current");
   }
 
+  void release() override { OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0); }
+
   GLADloadfunc loader() const override {
     return [](const char* name) { return reinterpret_cast<GLADapiproc>(OSMesaGetProcAddress(name)); };
   }
