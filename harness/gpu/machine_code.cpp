@@ -44,17 +44,19 @@ void count_reads(std::string_view listing, records::ShaderFacts& facts) {
     listing.remove_prefix(std::min(line.size() + 1, listing.size()));
     const std::size_t begin = line.find_first_not_of(" \t");
     if (begin == std::string_view::npos) continue;
+    if (line.starts_with("/*")) facts.loops += line.find("loop-header") != line.npos ? 1 : 0;
     if (begin == 0) {
-      block = find_block(line).value_or(block);
+      if (!line.starts_with("/*")) block = find_block(line).value_or(block);
       continue;
     }
-    const std::string_view mnemonic = line.substr(begin, line.find_first_of(" \t", begin) - begin);
+    const std::size_t equals = line.find(" = "), word = equals == line.npos ? begin : equals + 3;
+    const std::string_view mnemonic = line.substr(word, line.find_first_of(" \t", word) - word);
     count_read(mnemonic, facts);
     const auto target = find_block(line);
     const bool is_branch = mnemonic.starts_with("s_branch") || mnemonic.starts_with("s_cbranch");
     if (is_branch && target && *target <= block) heads.insert(*target);
   }
-  facts.loops = static_cast<int>(heads.size());
+  facts.loops += static_cast<int>(heads.size());
 }
 
 }  // namespace shadowbench::gpu

@@ -132,8 +132,9 @@ void read_statistics(const vk::raii::Device& device, const vk::PipelineExecutabl
   facts.spilled_registers = spilled_scalars + spilled_vectors;
 }
 
-/// The listing of the machine code: the last of the texts that the driver gives. The headers' C++ functions leave no
-/// room for the texts themselves.
+/// The listing of the machine code, the last of the driver's texts that ends as every program does. Of GCN 1 and 2 it
+/// disassembles nothing without a program that Debian has not, and the compiler's last step stands in. The headers' C++
+/// functions leave no room for the texts themselves.
 std::string read_listing(const vk::raii::Device& device, const vk::PipelineExecutableInfoKHR& executable) {
   using Text = VkPipelineExecutableInternalRepresentationKHR;
   const Text empty = {
@@ -148,13 +149,14 @@ std::string read_listing(const vk::raii::Device& device, const vk::PipelineExecu
   read();
   texts.assign(count, empty);
   read();
-  if (texts.empty() || !texts.back().isText) fail("the Vulkan driver lists no machine code");
-  std::string listing(texts.back().dataSize, '\0');
-  texts.assign(count, empty);
-  texts.back().dataSize = listing.size();
-  texts.back().pData = listing.data();
+  std::vector<std::string> listings;
+  for (const Text& text : texts) listings.emplace_back(text.dataSize, '\0');
+  for (std::size_t i = 0; i < texts.size(); ++i) texts[i].pData = listings[i].data();
   read();
-  return listing.substr(0, listing.find('\0'));
+  for (std::size_t i = texts.size(); i-- > 0;)
+    if (texts[i].isText && listings[i].find("s_endpgm") != std::string::npos)
+      return listings[i].substr(0, listings[i].find('\0'));
+  fail("the Vulkan driver lists no machine code");
 }
 
 }  // namespace

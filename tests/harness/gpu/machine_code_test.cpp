@@ -47,6 +47,20 @@ TEST(MachineCode, ALoopIsABlockThatBranchesLeadBackTo) {
   EXPECT_EQ(facts.loops, 2);  // two branches lead back to BB1, one to BB4, and one forward
 }
 
+TEST(MachineCode, TheCompilersLastStep_HasResultsFirstAndNamesTheHeadsOfLoops) {
+  const records::ShaderFacts facts = count(
+      "After Spilling:\nACO shader stage: fragment_fs\nBB0\n"
+      "/* logical preds: / linear preds: / kind: uniform, top-level, loop-preheader, */\n"
+      "\t v1: %12 = image_sample_c (kill)%5, (kill)%7,  v1: undef, (kill)%37 1d\n"
+      "\t s2: %40 = p_branch BB1\nBB1\n"
+      "/* logical preds: BB0, BB2, / linear preds: BB0, BB2, / kind: uniform, loop-header, */\n"
+      "\t v4: %20,  v1: %21 = image_load %5, %6 2d\n"
+      "\ts_endpgm\n");
+  EXPECT_EQ(facts.compares, 1);
+  EXPECT_EQ(facts.loads, 1);
+  EXPECT_EQ(facts.loops, 1);
+}
+
 TEST(MachineCode, NothingIsNothing) { EXPECT_EQ(count(""), records::ShaderFacts()); }
 
 }  // namespace
