@@ -9,6 +9,8 @@
 #include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
+#include <type_traits>
 
 #include "filters/base/error.h"
 #include "harness/scene/files/file_bytes.h"
@@ -52,6 +54,34 @@ bool read_inside(std::vector<unsigned char>* bytes, std::string* failure, const 
     *failure += e.what();
     return false;
   }
+}
+
+bool measure_inside(std::size_t* bytes, std::string* failure, const std::string& path, void* user_data) {
+  std::vector<unsigned char> read;
+  if (!read_inside(&read, failure, path, user_data)) return false;
+  *bytes = read.size();
+  return true;
+}
+
+bool write_nothing(std::string* failure, const std::string&, const std::vector<unsigned char>&, void*) {
+  *failure += "nothing is written";
+  return false;
+}
+
+/// tinygltf 2.9 has one callback more than 2.5, and goes on with its own, which see every folder, where one is missing:
+/// it is asked whether it took ours.
+template <class Parser, class Callbacks>
+void set_callbacks(Parser& parser, Callbacks callbacks, FolderGuard& guard) {
+  callbacks.FileExists = &exists_inside;
+  callbacks.ExpandFilePath = &keep_path;
+  callbacks.ReadWholeFile = &read_inside;
+  callbacks.WriteWholeFile = &write_nothing;
+  callbacks.user_data = &guard;
+  if constexpr (requires { callbacks.GetFileSizeInBytes; }) callbacks.GetFileSizeInBytes = &measure_inside;
+  if constexpr (std::is_void_v<decltype(parser.SetFsCallbacks(callbacks))>)
+    parser.SetFsCallbacks(callbacks);
+  else if (!parser.SetFsCallbacks(callbacks))
+    throw std::logic_error("tinygltf does not take the callbacks that keep it in the model's folder");
 }
 
 /// Keeps an image encoded. Bytes from a buffer view are not touched: the parser has not checked their range.
@@ -217,13 +247,7 @@ tinygltf::Model parse_gltf(const fs::path& file) {
   FolderGuard guard{fs::absolute(file).lexically_normal().parent_path().string(), {}};
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(&keep_encoded, nullptr);
-  // By name: later versions have more members, which stay empty.
-  tinygltf::FsCallbacks callbacks{};
-  callbacks.FileExists = &exists_inside;
-  callbacks.ExpandFilePath = &keep_path;
-  callbacks.ReadWholeFile = &read_inside;
-  callbacks.user_data = &guard;
-  parser.SetFsCallbacks(callbacks);
+  set_callbacks(parser, tinygltf::FsCallbacks{}, guard);
   tinygltf::Model model;
   std::string failure;
   const bool parsed = parse_bytes(parser, &model, &failure, bytes, guard.folder);

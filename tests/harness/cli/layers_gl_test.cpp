@@ -58,7 +58,7 @@ TEST_F(LayersRun, UsersFilters_GetWhatBuiltInOnesGet) {
 }
 
 TEST_F(LayersRun, FitsAreAnAxis) {
-  const json cells = run_cells("--scene avenue --filters none --fit tight --fit view --fit cascades");
+  const json cells = run_cells("--grids --scene avenue --filters none --fit tight --fit view --fit cascades");
   std::set<std::string> fits, keys;
   for (const json& cell : cells) {
     fits.insert(cell["fit"]);
