@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <initializer_list>
 #include <memory>
 #include <new>
 #include <type_traits>
@@ -18,9 +17,9 @@
 namespace shadowbench::scene {
 namespace {
 
-/// The bytes of the tables that a mesh of so many faces, and of as many vertices at most, is decoded with.
-std::uint64_t table_bytes(std::initializer_list<std::uint32_t> counts, std::uint64_t tables) {
-  return 12 * std::uint64_t{std::max(counts)} * tables;
+/// The bytes of the tables that a mesh is decoded with, from the largest of its counts of faces, vertices and the like.
+std::uint64_t table_bytes(std::uint32_t largest_count, std::uint64_t tables) {
+  return 12 * std::uint64_t{largest_count} * tables;
 }
 
 /// A decoder of the library's that refuses claims it would allocate memory for.
@@ -58,7 +57,8 @@ class BoundedDecoder final : public Base {
       if (!ahead.Decode(&seams) || !draco::DecodeVarint(&symbols, &ahead) || !draco::DecodeVarint(&splits, &ahead))
         return 0;
     }
-    return table_bytes({vertices, faces, symbols, splits}, std::uint64_t{seams} + 1);
+    // Not handed on as a list: built by GCC 14, table_bytes() was seen to read other values than these from one.
+    return table_bytes(std::max({vertices, faces, symbols, splits}), std::uint64_t{seams} + 1);
   }
 
   bool fits(std::uint64_t bytes) {

@@ -196,6 +196,17 @@ void require_version_2(const tinygltf::Model& model, const std::string& where) {
   fail_input(fmt::format("this is glTF version '{}'; only 2.0 is read", version), where);
 }
 
+/// tinygltf 2.9 cuts a name at a zero character, where 2.5 does not find the file.
+void require_whole_names(const tinygltf::Model& model, const std::string& where) {
+  const auto require = [&](const std::string& uri) {
+    if (uri.find('\0') != std::string::npos)
+      fail_input(fmt::format("it refers to '{}...', a name with a zero character; rename the file", uri.c_str()),
+                 where);
+  };
+  for (const tinygltf::Buffer& buffer : model.buffers) require(buffer.uri);
+  for (const tinygltf::Image& image : model.images) require(image.uri);
+}
+
 /// Parses from memory, so that every byte comes through the guard.
 bool parse_bytes(tinygltf::TinyGLTF& parser, tinygltf::Model* model, std::string* failure,
                  const std::vector<unsigned char>& bytes, const std::string& folder) {
@@ -258,6 +269,7 @@ tinygltf::Model parse_gltf(const fs::path& file) {
   require_readable_extensions(model, where);
   if (!parsed || !failure.empty()) fail_input("not valid glTF: " + one_line(failure), where);
   require_version_2(model, where);
+  require_whole_names(model, where);
 #ifdef SHADOWBENCH_HAS_MESHOPT
   model = unpack_meshopt(std::move(model), where);
 #endif
