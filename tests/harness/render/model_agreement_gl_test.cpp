@@ -160,7 +160,7 @@ class ModelFormats : public ::testing::TestWithParam<FormatCase> {};
 TEST_P(ModelFormats, GlImageEqualsModel) {
   const auto& [scene_name, format, reversed, ratio] = GetParam();
   const scene::Scene scene = load_builtin(scene_name);
-  Bench bench(shared_context(), scene, 512, 480, 270, {format, {reversed, ratio}});
+  Bench bench(shared_context(), scene, 512, 240, 135, {format, {reversed, ratio}});
   for (const std::string& id : filter_ids()) {
     const filters::FilterRequest request = catalogue().parse_requests(id).front();
     const Agreement a = compare(bench, request);
