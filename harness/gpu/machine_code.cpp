@@ -44,7 +44,7 @@ void count_reads(std::string_view listing, records::ShaderFacts& facts) {
     listing.remove_prefix(std::min(line.size() + 1, listing.size()));
     const std::size_t begin = line.find_first_not_of(" \t");
     if (begin == std::string_view::npos) continue;
-    if (line.starts_with("/*")) facts.loops += line.find("loop-header") != line.npos ? 1 : 0;
+    if (line.starts_with("/*") && line.find("loop-header") != line.npos) heads.insert(block);
     if (begin == 0) {
       if (!line.starts_with("/*")) block = find_block(line).value_or(block);
       continue;
@@ -56,7 +56,7 @@ void count_reads(std::string_view listing, records::ShaderFacts& facts) {
     const bool is_branch = mnemonic.starts_with("s_branch") || mnemonic.starts_with("s_cbranch");
     if (is_branch && target && *target <= block) heads.insert(*target);
   }
-  facts.loops += static_cast<int>(heads.size());
+  facts.loops = static_cast<int>(heads.size());
 }
 
 }  // namespace shadowbench::gpu

@@ -55,6 +55,7 @@ TEST(MachineCode, TheCompilersLastStep_HasResultsFirstAndNamesTheHeadsOfLoops) {
       "\t s2: %40 = p_branch BB1\nBB1\n"
       "/* logical preds: BB0, BB2, / linear preds: BB0, BB2, / kind: uniform, loop-header, */\n"
       "\t v4: %20,  v1: %21 = image_load %5, %6 2d\n"
+      "\ts_cbranch_scc1 BB1\n"
       "\ts_endpgm\n");
   EXPECT_EQ(facts.compares, 1);
   EXPECT_EQ(facts.loads, 1);
