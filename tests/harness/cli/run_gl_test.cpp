@@ -140,8 +140,11 @@ TEST_F(Command, FilterWhoseLoopTheGlEnds_IsSuspect) {
       user_filter("many_turns.glsl"));
   const nlohmann::json document = results(folder());
   EXPECT_EQ(document["cells"][0]["status"], "ok");
-  EXPECT_EQ(document["cells"][1]["status"], "suspect");
-  EXPECT_THAT(document["cells"][1]["message"].get<std::string>(), testing::HasSubstr("this GL ends it without a word"));
+  // The llvmpipe of Mesa 22 ends loops, that of Mesa 25 does not.
+  const bool are_ended = run("list gl --measure").out.find("ended by the GL after") != std::string::npos;
+  EXPECT_EQ(document["cells"][1]["status"], are_ended ? "suspect" : "ok");
+  EXPECT_THAT(document["cells"][1]["message"].get<std::string>(),
+              testing::HasSubstr(are_ended ? "this GL ends it without a word" : ""));
 }
 
 TEST_F(Command, WhatAKilledRunLeft_IsRemovedByTheNext) {
