@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdlib>
 
 #include "filters/base/error.h"
 #include "harness/gl/context/context_backends.h"
@@ -28,6 +29,10 @@ int users = 0;
 }  // namespace
 
 GlfwLibrary::GlfwLibrary() {
+#ifdef GLFW_PLATFORM
+  // GLFW 3.4 asks Wayland first, whose library writes a line of its own where there is none.
+  if (std::getenv("WAYLAND_DISPLAY") == nullptr) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
   if (users == 0 && glfwInit() == GLFW_FALSE) refuse_glfw("GLFW does not start");
   ++users;
 }
