@@ -73,7 +73,7 @@ def test_sweep_equals_one_run(program, cluster, folder):
     odd.mkdir()
     sweep = Sweep(program, cluster, odd, ["--attribution", "--map-size", "64"], tasks=3, probe=True)
     sweep.submit("--time", 5, "--partition", "all", "--gres", "gpu:1", "--", "--comment=for all of us")
-    jobs = cluster.run("scontrol", "show", "job").stdout
+    jobs = cluster.run("scontrol", "show", "job").stdout.replace("gres/gpu", "gres:gpu")  # as Slurm 24 writes it
     for said in ("Comment=for all of us", "TimeLimit=00:05:00", "Partition=all", "gres:gpu:1"):
         assert said in jobs, f"sbatch did not hear {said}: {jobs}"
     sweep.wait()
