@@ -105,10 +105,10 @@ std::optional<BackgroundTruth::Shown> BackgroundTruth::take() {
   const int stages = picture_->stages;
   const std::size_t pixels = picture_->pixels;
   const auto now = std::chrono::steady_clock::now();
-  const bool shows_tiles = picture_->has_visibility && pixels != pixels_seen_ && now - shown_ >= kBetweenTiles;
+  const bool shows_tiles = pixels_seen_ != 0 && pixels != pixels_seen_ && now - shown_ >= kBetweenTiles;
   if (stages == stages_seen_ && !shows_tiles) return std::nullopt;
   stages_seen_ = stages;
-  pixels_seen_ = pixels;
+  if (picture_->has_visibility) pixels_seen_ = pixels;
   shown_ = now;
   Shown shown;
   shown.part = picture_->part;

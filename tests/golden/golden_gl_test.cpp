@@ -25,7 +25,7 @@ class Golden : public ProgramTest, public ::testing::WithParamInterface<std::str
     ProgramTest::SetUp();
     static const std::string chosen = list_chosen();
     static const Outcome drawn =
-        run("run golden --gl software --filters " + chosen + " --out '" + common().string() + "'");
+        run("run golden --grids --gl software --filters " + chosen + " --out '" + common().string() + "'");
     ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
     static const Outcome compared = compare(chosen);
     all_unchanged_ = compared.exit_code == 0;
@@ -83,9 +83,9 @@ TEST_P(Portable, TheSameBaselineHolds) {
   if (!gl::has_backend(gl::parse_backend(backend))) GTEST_SKIP() << "this build has no --gl " << backend;
   const std::string environment = make_environment(GetParam());
   const std::string some = "--scene fence --filters none,pcf2x2,poisson,esm,vsm";
-  const Outcome drawn = run("run golden --gl " + backend + " " + some + " --out out", environment);
+  const Outcome drawn = run("run golden --grids --gl " + backend + " " + some + " --out out", environment);
   if (drawn.exit_code == 128 + SIGSEGV &&
-      run("run golden --gl " + backend + " --scene fence --no-truth --filters none --out crash", environment)
+      run("run golden --grids --gl " + backend + " --scene fence --no-truth --filters none --out crash", environment)
               .exit_code == 128 + SIGSEGV) {
     GTEST_SKIP() << "this Mesa's llvmpipe crashes in its own code generator when it draws depth with vectors of "
                  << std::get<1>(GetParam()) << " bits";

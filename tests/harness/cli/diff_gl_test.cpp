@@ -10,10 +10,10 @@ namespace {
 using Recheck = ProgramTest;
 
 TEST_F(Recheck, DiffOfTheSavedPictures_GivesTheErrorsOfTheRun) {
-  ASSERT_EQ(
-      run("run --out out --size 96x54 --map-size 64 --rounds 1 --phases 1 --scene cubes --filters none,vsm:radius=6")
-          .exit_code,
-      0);
+  ASSERT_EQ(run("run --grids --out out --size 96x54 --map-size 64 --rounds 1 --phases 1 --scene cubes --filters "
+                "none,vsm:radius=6")
+                .exit_code,
+            0);
   const nlohmann::json results = nlohmann::json::parse(read_text(folder() / "out" / "results.json"));
   const char* labels[] = {"none", "vsm (radius=6)"};
   for (std::size_t i = 0; i < 2; ++i) {
@@ -34,7 +34,7 @@ TEST_F(Recheck, DiffOfTheSavedPictures_GivesTheErrorsOfTheRun) {
 TEST_F(Recheck, FlipOfTheSavedPictures_IsTheFlipOfTheRun) {
   // A user's filter is drawn by another process: its picture has been through a file already.
   write("copied.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/pcf2x2.glsl"));
-  ASSERT_EQ(run("run --out out --size 96x54 --map-size 64 --rounds 1 --scene cubes --filters pcf2x2,copied "
+  ASSERT_EQ(run("run --grids --out out --size 96x54 --map-size 64 --rounds 1 --scene cubes --filters pcf2x2,copied "
                 "--filter-file copied.glsl")
                 .exit_code,
             0);

@@ -8,7 +8,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr const char* kDiskRun = "run --size 96x54 --map-size 32 --rounds 1 --scene cubes --filters none,vsm ";
+constexpr const char* kDiskRun = "run --grids --size 96x54 --map-size 32 --rounds 1 --scene cubes --filters none,vsm ";
 constexpr const char* kAdvice = "free space";
 
 class FaultDisk : public FaultTest {

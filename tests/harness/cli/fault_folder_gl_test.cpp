@@ -30,7 +30,7 @@ class FaultFolder : public FaultTest {
 
 /// Each command that writes a folder.
 std::vector<std::string> list_commands() {
-  return {std::string("run ") + kSmallFolderRun,
+  return {std::string("run --grids ") + kSmallFolderRun,
           std::string("run --no-grids --fresh ") + kSmallFolderRun,
           "merge whole",
           "bias --scene cubes --filters none --map-size 64 --size 160x90",

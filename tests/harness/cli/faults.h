@@ -34,7 +34,7 @@ class FaultTest : public ProgramTest {
   /// Starts `shadowbench ARGUMENTS` in the test's folder and does not wait; its messages go to a file there.
   pid_t start(const std::string& arguments, const std::string& messages = "started.txt") const {
     const std::string command = "exec env XDG_CACHE_HOME='" + cache_folder().string() + "' '" SHADOWBENCH_PROGRAM "' " +
-                                without_gpus(arguments) + " >/dev/null 2>'" + messages + "' </dev/null";
+                                with_test_defaults(arguments) + " >/dev/null 2>'" + messages + "' </dev/null";
     const std::string where = folder().string();
     std::filesystem::remove(folder() / messages);  // a signal may come before the shell makes it anew
     const pid_t pid = fork();

@@ -92,7 +92,7 @@ TEST_F(LayersRun, EachOfSeveralLights_IsMeasuredByItself_UsersFiltersToo) {
 
 TEST_F(LayersRun, AllLightsAtOnce_AreDrawnWhereAllAreMeasured) {
   const std::string settings =
-      "run --out out --size 160x90 --map-size 128 --rounds 1 --scene three_lights --filters none";
+      "run --grids --out out --size 160x90 --map-size 128 --rounds 1 --scene three_lights --filters none";
   ASSERT_EQ(run(settings + " --light-name bulb").exit_code, 0);
   EXPECT_EQ(all()["cells"][0]["images"]["all_lights"], nullptr);
   ASSERT_EQ(run(settings).exit_code, 0) << "two lights more";

@@ -17,7 +17,7 @@ class Minification : public ProgramTest {
  protected:
   void measure(const char* out, int width, int height, const std::string& filters) const {
     const Outcome outcome = run(fmt::format(
-        "run --scene minified --size {}x{} --map-size 2048 --rounds 1 --no-attribution --out {} --filter-file "
+        "run --grids --scene minified --size {}x{} --map-size 2048 --rounds 1 --no-attribution --out {} --filter-file "
         "'{}/tests/user_filters/vsm_mips.glsl' --filters {}",
         width, height, out, SHADOWBENCH_SOURCE_DIR, filters));
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;

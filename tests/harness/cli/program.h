@@ -53,16 +53,23 @@ class ProgramTest : public ::testing::Test {
   /// Where the program keeps traced images: a folder of each test's own.
   std::filesystem::path cache_folder() const { return folder_ / "cache"; }
 
-  /// Runs that name no GPUs compile for none: it would take long with an empty cache.
-  static std::string without_gpus(const std::string& arguments) {
-    const bool adds = arguments.starts_with("run ") && arguments.find("--gpu") == std::string::npos;
-    return adds ? "run --gpu none" + arguments.substr(3) : arguments;
+  /// Runs that name no GPUs compile for none, and those that ask for no grids draw none: the one would take long with
+  /// an empty cache, the other is half of a small run.
+  static std::string with_test_defaults(const std::string& arguments) {
+    if (!arguments.starts_with("run ")) return arguments;
+    const auto lacks = [&](const char* option) { return arguments.find(option) == std::string::npos; };
+    return std::string("run") + (lacks("--gpu") ? " --gpu none" : "") + (lacks("grids") ? " --no-grids" : "") +
+           arguments.substr(3);
   }
 
   /// Runs `shadowbench ARGUMENTS` through the shell; `environment` as in "NAME=value NAME=value".
   Outcome run(const std::string& arguments, const std::string& environment = "") const {
+    return run_as_it_stands(with_test_defaults(arguments), environment);
+  }
+
+  Outcome run_as_it_stands(const std::string& arguments, const std::string& environment = "") const {
     const std::string command = "cd '" + folder_.string() + "' && XDG_CACHE_HOME='" + cache_folder().string() + "' " +
-                                environment + " '" SHADOWBENCH_PROGRAM "' " + without_gpus(arguments) +
+                                environment + " '" SHADOWBENCH_PROGRAM "' " + arguments +
                                 " >stdout.txt 2>stderr.txt </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder_ / "stdout.txt"),

@@ -17,7 +17,7 @@ nlohmann::json results(const std::filesystem::path& folder) {
 }
 
 TEST_F(Command, ByDefault_AllScenesAndEightFilters_WriteAValidReport) {
-  const Outcome outcome = run("run --out out --size 128x72 --map-size 128 --rounds 2");
+  const Outcome outcome = run_as_it_stands("run --gpu none --out out --size 128x72 --map-size 128 --rounds 2");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json document = results(folder());
   EXPECT_EQ(document["cells"].size(), 40u);
@@ -87,8 +87,8 @@ TEST_F(Command, PerspectiveDepthCoarserThanTheBias_IsWarnedOf) {
 TEST_F(Command, MapAndLightSettings_AreRecordedAndReachUserFilters) {
   write("copied.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/pcf2x2.glsl"));
   const std::string common =
-      "run --size 96x54 --map-size 64 --rounds 1 --scene cubes --no-truth --filters none,pcf2x2,copied --filter-file "
-      "copied.glsl ";
+      "run --grids --size 96x54 --map-size 64 --rounds 1 --scene cubes --no-truth --filters none,pcf2x2,copied "
+      "--filter-file copied.glsl ";
   ASSERT_EQ(run(common + "--out plain").exit_code, 0);
   const Outcome outcome =
       run(common +
@@ -123,7 +123,8 @@ TEST_F(Command, MapAndLightSettings_AreRecordedAndReachUserFilters) {
 
 TEST_F(Command, EndlessUserFilter_TimesOutAndTheRunGoesOn) {
   const Outcome outcome =
-      run("run --out out --size 320x180 --map-size 64 --rounds 2 --scene cubes --filters none,endless --cell-timeout 3 "
+      run("run --grids --out out --size 320x180 --map-size 64 --rounds 2 --scene cubes --filters none,endless "
+          "--cell-timeout 3 "
           "--filter-file " +
           user_filter("endless.glsl"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -164,7 +165,8 @@ TEST_F(Command, SameSeed_SamePictures) {
 }
 
 TEST_F(Command, SeveralMapSizes_DoNotShareFiles) {
-  ASSERT_EQ(run("run --out out --size 64x36 --map-size 64,128 --rounds 1 --scene cubes --filters none").exit_code, 0);
+  ASSERT_EQ(
+      run("run --grids --out out --size 64x36 --map-size 64,128 --rounds 1 --scene cubes --filters none").exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "cubes.map64.grid.png"));
   EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "cubes.map128.grid.png"));
   EXPECT_EQ(results(folder())["cells"].size(), 2u);
@@ -441,7 +443,8 @@ TEST_F(Command, BorderPage_IsDrawnWhereAskedFor_AndLeavesTheNextViewAsItWas) {
   text.replace(text.find("[camera]"), 8, "[[camera]]");
   write("views.toml", text + "[[camera]]\nname = \"second\"\nposition = [0, 12, 0.1]\ntarget = [0, 0, 0]\n");
   const std::string arguments =
-      "run --out out --size 64x36 --map-size 64 --rounds 1 --scene views.toml --filters none,vsm --border repeat ";
+      "run --grids --out out --size 64x36 --map-size 64 --rounds 1 --scene views.toml --filters none,vsm --border "
+      "repeat ";
   const auto picture = [&] { return read_text(folder() / "out" / "images" / "views.second.none.visibility.png"); };
   ASSERT_EQ(run(arguments).exit_code, 0);
   const std::string without = picture();
@@ -455,7 +458,7 @@ TEST_F(Command, BorderPage_IsDrawnWhereAskedFor_AndLeavesTheNextViewAsItWas) {
 
 TEST_F(Command, BorderPage_OfAReversedMap_IsTheSame) {
   const std::string arguments =
-      " --size 160x90 --map-size 128 --rounds 1 --scene edge --filters none --no-truth --border-page";
+      " --grids --size 160x90 --map-size 128 --rounds 1 --scene edge --filters none --no-truth --border-page";
   ASSERT_EQ(run("run --out usual" + arguments).exit_code, 0);
   ASSERT_EQ(run("run --out reversed --reversed-depth" + arguments).exit_code, 0);
   const Outcome outcome = run("diff usual/edge.borders.png reversed/edge.borders.png --metric rmse --json");

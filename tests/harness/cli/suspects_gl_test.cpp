@@ -16,9 +16,9 @@ class Suspects : public ProgramTest {
  protected:
   /// Runs a file of the folder of wrong filters beside three others, and gives its cell.
   nlohmann::json measure(const std::string& filter) const {
-    const Outcome outcome =
-        run("run --out out --scene cubes --size 160x90 --map-size 256 --rounds 1 --filters none,pcf2x2,tent3x3," +
-            filter + " --filter-file " + user_filter("wrong/" + filter + ".glsl"));
+    const Outcome outcome = run(
+        "run --grids --out out --scene cubes --size 160x90 --map-size 256 --rounds 1 --filters none,pcf2x2,tent3x3," +
+        filter + " --filter-file " + user_filter("wrong/" + filter + ".glsl"));
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr(filter + " is suspect: "));
     EXPECT_THAT(read_text(folder() / "out" / "index.html"), HasSubstr(filter + " is suspect: "));

@@ -48,7 +48,7 @@ class Sweep : public ProgramTest {
   void run_and_kill(const std::string& arguments, int cells) const {
     const std::string script =
         "cd '" + folder().string() + "'\nXDG_CACHE_HOME='" + cache_folder().string() + "' '" SHADOWBENCH_PROGRAM "' " +
-        without_gpus(arguments) +
+        with_test_defaults(arguments) +
         " >/dev/null 2>&1 &\ni=0\nwhile [ $i -lt 3000 ] && [ $(ls out/cells 2>/dev/null | wc -l) -lt " +
         std::to_string(cells) + " ]; do sleep 0.02; i=$((i+1)); done\nkill -9 $!\nwait\n";
     EXPECT_EQ(std::system(("sh '" + write("kill.sh", script).string() + "'").c_str()), 0);

@@ -63,9 +63,9 @@ TEST_F(UserKernel, AloneInARun_HasTheMapsPicturesAsWell) {
     EXPECT_EQ(cells.size(), 1u);
     return read_text(folder() / "out" / cells[0]["images"]["depth_map"].get<std::string>());
   };
-  const std::string alone = picture("--filters mine --filter-file mine.glsl");
+  const std::string alone = picture("--grids --filters mine --filter-file mine.glsl");
   std::filesystem::remove_all(folder() / "out");
-  EXPECT_EQ(alone, picture("--filters tent5x5"));
+  EXPECT_EQ(alone, picture("--grids --filters tent5x5"));
 }
 
 TEST_F(UserKernel, Declared_GivesWidthAndAttribution_WithNumericErrorInTheEstimators) {

@@ -104,7 +104,9 @@ class ModelAgreement : public ::testing::TestWithParam<std::tuple<std::string, s
   Agreement run(const std::string& parameters = "") {
     const auto& [scene_name, filter] = GetParam();
     const scene::Scene scene = load_builtin(scene_name);
-    Bench bench(shared_context(), scene, 1024, 320, 180);
+    // Cascades and warps of the deep scene take the models longest; with sizes that are no power of two, texels are not
+    // exact.
+    Bench bench(shared_context(), scene, scene_name.starts_with("avenue") ? 512 : 1024, 320, 180);
     Agreement a = compare(bench, catalogue().parse_requests(filter + parameters).front());
     const bool curved = is_curved(bench.frustum().shape);
     a.is_even = bench.map().settings().curve.is_linear() && !curved;
