@@ -21,8 +21,9 @@ class Regress : public ProgramTest {
   /// A run of two filters on one scene, small; no time counts.
   void draw(const std::string& out, const std::string& options = "--filters none,pcf2x2") const {
     const Outcome outcome =
-        run("run --grids --gl software --scene cubes --size 96x54 --rounds 1 --pad-texels 4 --uncertainty " + options +
-            (options.find("--map-size") == std::string::npos ? " --map-size 128" : "") + " --out " + out);
+        run("run --gl software --scene cubes --size 96x54 --rounds 1 --pad-texels 4 --uncertainty " + options +
+            (options.find("--map-size") == std::string::npos ? " --map-size 128" : "") +
+            (options.find("--no-grids") == std::string::npos ? " --grids" : "") + " --out " + out);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
 
