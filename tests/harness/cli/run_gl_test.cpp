@@ -124,8 +124,7 @@ TEST_F(Command, MapAndLightSettings_AreRecordedAndReachUserFilters) {
 TEST_F(Command, EndlessUserFilter_TimesOutAndTheRunGoesOn) {
   const Outcome outcome =
       run("run --grids --out out --size 320x180 --map-size 64 --rounds 2 --scene cubes --filters none,endless "
-          "--cell-timeout 3 "
-          "--filter-file " +
+          "--cell-timeout 3 --filter-file " +
           user_filter("endless.glsl"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json document = results(folder());
