@@ -3,14 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <span>
 
-#include "filters/base/error.h"
-#include "harness/scene/mesh_tools.h"
-#include "harness/scene/validate.h"
-#include "harness/stress/slab_scene.h"
 #include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
@@ -189,108 +184,6 @@ std::vector<Case> make_overflow_cases(const AxisInputs& inputs) {
   return cases;
 }
 
-/// Poisons a scene before it is validated, as a reader of files may.
-using PoisonScene = std::function<void(scene::Scene&, int count, double value)>;
-
-void poison_vertices(scene::Scene& scene, int count, double value) {
-  std::vector<scene::Vertex>& vertices = scene.meshes.front().vertices;
-  for (int i = 0; i < count; ++i)
-    vertices[static_cast<std::size_t>(i * 7) % vertices.size()].position_ws[i % 3] = static_cast<float>(value);
-}
-
-void poison_matrix(scene::Scene& scene, int count, double value) {
-  glm::dmat4 matrix(1.0);
-  for (int i = 0; i < std::min(count, 12); ++i) matrix[i % 4][i / 4] = value;
-  scene.meshes.front() = scene::transform_mesh(std::move(scene.meshes.front()), matrix);
-}
-
-struct ScenePlace {
-  const char* name;
-  PoisonScene poison;
-};
-
-std::vector<ScenePlace> list_places() {
-  return {{"vertices", poison_vertices},
-          {"an object's matrix", poison_matrix},
-          {"the light's direction",
-           [](scene::Scene& scene, int count, double value) {
-             scene.light = scene::turn_light(
-                 scene.light,
-                 [&](glm::vec3 v) {
-                   v[count % 3] = static_cast<float>(value);
-                   return v;
-                 });
-           }},
-          {"the camera's position",
-           [](scene::Scene& scene, int count, double value) {
-             scene.cameras.front().position_ws[count % 3] = static_cast<float>(value);
-           }}};
-}
-
-/// A poisonous number. A scene that holds it must be refused, or else become a finite scene.
-struct SceneInput {
-  const char* name;
-  double value;
-  bool refused;
-};
-
-constexpr SceneInput kSceneInputs[] = {{"NaN in a scene", std::numeric_limits<double>::quiet_NaN(), true},
-                                       {"infinity in a scene", std::numeric_limits<double>::infinity(), true},
-                                       {"denormals in a scene", static_cast<double>(kDenormal), false}};
-
-bool is_finite(const scene::Scene& scene) {
-  return std::ranges::all_of(
-      scene.meshes,
-      [](const scene::Mesh& mesh) {
-        return std::ranges::all_of(
-            mesh.vertices,
-            [](const scene::Vertex& v) {
-              return std::isfinite(glm::dot(v.position_ws, v.position_ws)) &&
-                     std::abs(glm::length(v.normal_ws) - 1.0f) < 1e-3f;
-            });
-      });
-}
-
-Observation observe_place(const SceneInput& input, const ScenePlace& place, int count) {
-  scene::Scene scene = make_slab_scene({});
-  place.poison(scene, count, input.value);
-  try {
-    const scene::Scene checked = scene::validate(std::move(scene), "poisoned scene");
-    if (input.refused) return {Verdict::kBroken, 1.0, fmt::format("it is accepted in {}", place.name)};
-    if (!is_finite(checked))
-      return {Verdict::kBroken, 1.0, fmt::format("what is made of it in {} is not finite", place.name)};
-  } catch (const Error& error) {
-    // A scene that denormals leave nothing of may be refused as empty.
-    if (error.kind() != ErrorKind::kInput) return {Verdict::kBroken, 1.0, error.what()};
-  }
-  return {Verdict::kOk, 0.0, {}};
-}
-
-Observation observe_input(const SceneInput& input, int count) {
-  for (const ScenePlace& place : list_places()) {
-    Observation seen = observe_place(input, place, count);
-    if (seen.verdict != Verdict::kOk) return seen;
-  }
-  return {Verdict::kOk, 0.0, {}};
-}
-
-std::vector<std::string> remark_refusal(const SceneInput& input, const records::StressCase& record) {
-  if (record.broken || record.samples.empty()) return {};
-  return {input.refused ? "in vertices, matrices, the light and the camera it is refused as the scene is loaded"
-                        : "accepted as the scene is loaded, or refused where no triangle keeps an area; nothing that "
-                          "is not finite comes of it"};
-}
-
-Case make_input_case(const SceneInput& input) {
-  Case item{.variant = input.name, .level = Level::kArithmetic};
-  item.theories = {{std::nullopt, TheoryKind::kQuantum,
-                    input.refused ? "none: it is refused" : "none: they are numbers", "by definition",
-                    Verdict::kBroken}};
-  item.remark = [input](const records::StressCase& record) { return remark_refusal(input, record); };
-  item.observe = [input](double number) { return observe_input(input, static_cast<int>(number)); };
-  return item;
-}
-
 std::vector<Case> make_cases(const AxisInputs& inputs) {
   std::vector<Case> cases = make_gl_cases(inputs, [](const AxisInputs& all, const filters::FilterRequest& request) {
     return make_map_case(all, request, {not_numbers()});
@@ -302,7 +195,6 @@ std::vector<Case> make_cases(const AxisInputs& inputs) {
       cases.push_back(make_map_case(inputs, request, {kind, Level::kModel}));
   }
   append(cases, make_overflow_cases(inputs));
-  for (const SceneInput& input : kSceneInputs) cases.push_back(make_input_case(input));
   return cases;
 }
 
@@ -311,8 +203,8 @@ std::vector<Case> make_cases(const AxisInputs& inputs) {
 Axis make_poisoned_input_axis() {
   using namespace poisoned_input;
   Axis axis;
-  axis.title = "Poisoned input: not a number, infinity, denormals";
-  axis.quantity = "poisoned texels; of a scene: poisoned numbers";
+  axis.title = "Poisoned maps: not a number, infinity, denormals";
+  axis.quantity = "poisoned texels";
   axis.range = {1.0, 64.0};
   axis.limits = {1.0, 4096.0};
   axis.coarse_samples = 7;
@@ -320,9 +212,7 @@ Axis make_poisoned_input_axis() {
   axis.measured = "share harmed of the receivers whose kernel holds poison";
   axis.measured_scale = Scale::kLinear;
   axis.bound = 0.0;
-  axis.broken_when =
-      "a receiver is harmed whose kernel holds no poison; of scenes: poison is accepted, or what was made of it is not "
-      "finite";
+  axis.broken_when = "a receiver is harmed whose kernel holds no poison";
   axis.make_cases = make_cases;
   return axis;
 }

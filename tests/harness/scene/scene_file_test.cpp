@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <glm/gtc/constants.hpp>
 
 #include "test_files.h"
@@ -301,6 +303,33 @@ TEST(SceneFileTest, KeyOfManyDots_DoesNotExhaustTheStack) {
   const Complaint c = complaint_about(kBase + key + " = 1\n");
   EXPECT_THAT(c.message, HasSubstr("256 dots"));
   EXPECT_EQ(c.line, "12");
+}
+
+/// Wherever a file may say it, what is no number is refused by the name of its key.
+TEST(SceneFileTest, NotANumberOrInfinity_IsRefusedByItsKey) {
+  for (const std::string key : {"direction", "position", "target", "size", "center", "rotation_deg", "scale"}) {
+    for (const std::string number : {"nan", "inf", "-inf"}) {
+      const std::string base(kBase), line = "\n" + key + " = [1, " + number + ", 1]\n";
+      const std::size_t at = std::min(base.find("\n" + key + " "), base.size() - 1);
+      const std::string text = base.substr(0, at) + line + base.substr(std::min(base.find('\n', at + 1), base.size()));
+      EXPECT_THAT(complaint_about(text).message, AllOf(HasSubstr("'" + key + "'"), HasSubstr(number))) << key;
+    }
+  }
+}
+
+TEST(SceneFileTest, DenormalNumbers_BecomeAFiniteScene_OrAreRefused) {
+  for (const std::string list : {"[0, -1, 0]", "[0, 2, 5]", "[0, 0, 0]", "[1, 2, 3]", "[0, 1, 0]"}) {
+    try {
+      const Scene scene = load_text(replaced(kBase, list, "[1e-40, -1e-40, 1e-40]"));
+      for (const Vertex& v : scene.meshes.at(0).vertices) {
+        EXPECT_TRUE(std::isfinite(glm::dot(v.position_ws, v.position_ws))) << list;
+        EXPECT_NEAR(glm::length(v.normal_ws), 1.0f, 1e-3f) << list;
+      }
+      EXPECT_NEAR(glm::length(to_light(scene.light, {})), 1.0f, 1e-3f) << list;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kInput) << list;
+    }
+  }
 }
 
 TEST(SceneFileTest, ListsInMessages_AreShortAndOnOneLine) {

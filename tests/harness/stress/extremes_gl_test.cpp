@@ -1,4 +1,4 @@
-// What the axes of extreme scenes, maps and input measure, and that they see what is wrong.
+// What the axes of extreme maps measure, and that they see what is wrong.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -6,11 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters/base/error.h"
-#include "harness/scene/validate.h"
-#include "harness/stress/drawn_scene.h"
 #include "harness/stress/onset.h"
-#include "harness/stress/slab_scene.h"
 #include "tests/harness/stress/stress_fixture.h"
 
 namespace shadowbench::stress {
@@ -53,76 +49,7 @@ std::string name_axis(const ::testing::TestParamInfo<const char*>& info) {
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ExtremeAxis,
-                         ::testing::Values("position", "scale", "map-edge", "map-size", "light-direction",
-                                           "poisoned-input"),
-                         name_axis);
-
-TEST(Position, AcneComesFarAway_AndNotRelativeToTheScene) {
-  const AxisInputs inputs = make_gl_inputs("none,vsm");
-  const double far = 200.0;
-  const Observation acne = find_case(inputs, "position", "none", "floor, as it is").observe(far);
-  EXPECT_EQ(acne.verdict, Verdict::kDegraded);
-  EXPECT_THAT(acne.why, HasSubstr("0 brighter"));
-  EXPECT_EQ(find_case(inputs, "position", "vsm", "floor, as it is").observe(far).verdict, Verdict::kOk);
-  EXPECT_EQ(find_case(inputs, "position", "none", "floor, relative in double").observe(far).verdict, Verdict::kOk);
-}
-
-/// Visibility falls from 1 to 0.9 where a receiver lies e behind its own surface: exp(-80 e) of `esm`, and of `vsm`
-/// what bleed_reduction = 0.3 leaves of m / (m + e^2) = 0.93, m being 1e-5. A comparison tolerates nothing.
-TEST(Position, Theory_IsWhatTheFormulaTolerates) {
-  const AxisInputs inputs = make_gl_inputs("none,vsm,esm");
-  const auto theory = [&](const char* filter) {
-    return *find_case(inputs, "position", filter, "floor, as it is").theories.at(0).onset;
-  };
-  const double none = theory("none"), exponential = std::log(1.0 / 0.9) / 80.0,
-               variance = std::sqrt(1e-5 * (1.0 / 0.93 - 1.0));
-  EXPECT_NEAR(none, 32.0, 0.1);
-  EXPECT_NEAR((theory("esm") - none) / (theory("vsm") - none), exponential / variance, 0.01);
-  EXPECT_NEAR(theory("vsm") / none, 1.0 + variance / 2.09e-5, 0.5) << "the bias is 2.09e-5 of the depth range";
-}
-
-/// Measured limits lie beyond the theories, since not every pixel is off by a whole step, and near them.
-TEST(Position, SofteningFilters_DegradeNearTheirTheories) {
-  const AxisInputs inputs = make_gl_inputs("vsm,vsm_sat,evsm4,csm_conv,vssm");
-  const Axis axis = choose_axes("position")[0];
-  for (const filters::FilterRequest& request : inputs.filters) {
-    const Case item = find_case(inputs, "position", request.spec.id, "floor, as it is");
-    const double ratio = find_onsets(item, axis).degraded->value / *item.theories.at(0).onset;
-    EXPECT_GT(ratio, 0.9) << request.spec.id;
-    EXPECT_LT(ratio, 1.6) << request.spec.id;
-  }
-}
-
-TEST(Position, RemedyHolds_OnlyWhereItComesBeforeTheFloats) {
-  const AxisInputs inputs = make_gl_inputs("none");
-  EXPECT_EQ(find_case(inputs, "position", "none", "cubes, relative in double").observe(1e8).verdict, Verdict::kOk);
-  EXPECT_NE(find_case(inputs, "position", "none", "cubes, relative too late").observe(1e6).verdict, Verdict::kOk);
-}
-
-TEST(Scale, ScalesTheScene) {
-  const Case item = find_case(make_gl_inputs("none"), "scale", "none", "cubes");
-  EXPECT_EQ(item.observe(3.0).verdict, Verdict::kOk);
-  EXPECT_THROW(item.observe(1e13), Error) << "farther than scenes may reach";
-}
-
-TEST(LightDirection, ShadowOfALeaningLight_IsWhereConstructionSays) {
-  const AxisInputs inputs = make_gl_inputs("none");
-  SceneDrawer drawer(inputs, inputs.filters[0]);
-  const SlabSetting setting{.light_local = {0.3, -1.0, 0.1}};
-  const Drawing drawing = drawer.draw(scene::validate(make_slab_scene(setting), "test"));
-  int lit = 0, dark = 0;
-  for (std::size_t i = 0; i < drawing.visibility.size(); ++i) {
-    const auto expected = drawing.position[i].w == 0.0f
-                              ? std::nullopt
-                              : find_slab_visibility(setting, glm::dvec3(drawing.position[i]), 0.1);
-    if (!expected) continue;
-    EXPECT_EQ(static_cast<double>(drawing.visibility[i]), *expected);
-    ++(*expected > 0.5 ? lit : dark);
-  }
-  EXPECT_GT(lit, 5000);
-  EXPECT_GT(dark, 500);
-}
+INSTANTIATE_TEST_SUITE_P(All, ExtremeAxis, ::testing::Values("map-edge", "map-size", "poisoned-input"), name_axis);
 
 TEST(MapSize, OneTexelIsAMap) {
   for (const char* id : {"none", "pcf2x2", "poisson", "vsm", "esm", "vsm_sat", "csm_conv"}) {
