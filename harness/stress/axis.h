@@ -1,21 +1,39 @@
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "harness/stress/axis_inputs.h"
-#include "harness/stress/verdict.h"
+#include "filters/catalogue.h"
+#include "harness/measure/renderer.h"
+#include "harness/options/options.h"
+#include "harness/options/progress.h"
+#include "report/records/stress_record.h"
 
 namespace shadowbench::stress {
 
-using Range = records::StressRange;
 using Exhibit = records::StressExhibit;
+using Range = records::StressRange;
+using Theory = records::StressTheory;
 using TheoryKind = records::StressTheoryKind;
+using Verdict = records::StressVerdict;
 
-/// How an axis is sampled, and how values are drawn.
-enum class Scale { kLinear, kLog };
+/// What axes make their cases from. It outlives all cases.
+struct AxisInputs {
+  measure::Renderer* renderer = nullptr;  ///< null: there is no GL, and cases that need one are not available
+  options::Resources resources;
+  std::vector<filters::FilterRequest> filters;  ///< the chosen ones, each with its parameter values
+  std::uint32_t seed = 1;
+  std::filesystem::path cache;            ///< for traced truth; empty: nothing is kept
+  std::filesystem::path out;              ///< where exhibits write their pictures
+  options::Progress* progress = nullptr;  ///< for exhibits' notes; may be null
+};
+
+/// Names the parameter of a filter that an axis drives, from what the front matter declares; empty: it has none.
+using DrivenParam = std::string (*)(const filters::FilterSpec&);
 
 /// From which end of the range the first change of a verdict is looked for.
 enum class SearchFrom { kLow, kHigh };
@@ -27,13 +45,11 @@ enum class Level {
   kArithmetic  ///< the axis' own few lines, in the precision that is tested
 };
 
-/// A limit that is known before anything is measured.
-struct Theory {
-  std::optional<double> onset;  ///< value of the axis; empty: theory says that there is none
-  TheoryKind kind = TheoryKind::kOverflow;
-  std::string formula;                  ///< with its numbers: "ln(65504) / 1 = 11.09"
-  std::string source;                   ///< author, year, title, equation; or "derived"
-  Verdict predicts = Verdict::kBroken;  ///< the verdict that the case reaches at `onset`
+/// What a case saw at one value of its axis.
+struct Observation {
+  Verdict verdict = Verdict::kOk;
+  std::optional<double> measured;  ///< what the axis says it measures; empty where it is not finite
+  std::string why;                 ///< what decided the verdict, in words with the number; empty for kOk
 };
 
 /// A theory, and the first value at which the verdict that it predicts was observed.
@@ -64,28 +80,17 @@ struct Case {
 };
 
 /// One way to drive filters to where their numbers break. Each lives in axes/<id>.cpp as `Axis make_<id>_axis()`, where
-/// '-' in the id is written '_'. CMake finds it there.
-struct Axis {
-  std::string id;  ///< the file's name; axis_table() sets it
-  std::string title;
-  std::string quantity;  ///< "exponent c"
-  std::string unit;      ///< empty: a pure number
-  Scale scale = Scale::kLog;
-  Range range;   ///< by default
+/// '-' in the id is written '_'. CMake finds it there, and axis_table() sets the id.
+struct Axis : records::StressAxisText {
   Range limits;  ///< the widest that --range may ask for
   int coarse_samples = 25;
   bool whole = false;  ///< values are whole numbers
   SearchFrom from = SearchFrom::kLow;
 
-  std::string measured;       ///< what observations measure: "largest error of visibility"
-  std::string measured_unit;  ///< empty: a pure number
-  Scale measured_scale = Scale::kLog;
-  double bound = 0.0;       ///< a measured value above it is `degraded`
-  std::string broken_when;  ///< in words: "infinities in the map; NaN, all lit or all dark"
-
   DrivenParam driven_param = nullptr;  ///< of an axis that drives a parameter of filters; else null
   std::function<std::vector<Case>(const AxisInputs&)> make_cases;
-  std::function<std::vector<Exhibit>(const AxisInputs&)> make_exhibits;  ///< its own tables and pictures; may be null
+  /// Its own tables and pictures, which need a GL; may be null.
+  std::function<std::vector<Exhibit>(const AxisInputs&)> make_exhibits;
 };
 
 /// Names a level: "GL", "model", "arithmetic".

@@ -7,30 +7,34 @@
 #include "filters/model.h"
 
 namespace shadowbench::stress {
-namespace {
 
-/// What a case lacks; empty where it has everything.
-std::string explain_absence(const AxisInputs& inputs, const filters::FilterRequest& request, Level level,
-                            Reference reference) {
-  const bool has_model = filters::make_model(request.spec) != nullptr;
-  if (level == Level::kGl && !inputs.renderer) return "there is no GL";
-  if (level == Level::kModel && !has_model) return "the filter has no scalar model";
-  return reference == Reference::kModel && !has_model ? "the filter has no scalar model to be held against" : "";
+std::string find_exponent(const filters::FilterSpec& spec) {
+  return spec.holds_moments ? std::string() : spec.exponent;
 }
 
-}  // namespace
+bool is_set_by_user(const filters::FilterRequest& request, const std::string& param) {
+  return std::ranges::find(request.set_by_user, param) != request.set_by_user.end();
+}
 
-Case start_case(const AxisInputs& inputs, const filters::FilterRequest& request, std::string variant, Level level,
-                Reference reference) {
+std::vector<std::string> list_choices(const filters::FilterRequest& request, const std::string& param) {
+  const filters::ParamSpec* spec = request.spec.find_param(param);
+  if (!spec) return {};
+  if (is_set_by_user(request, param)) return {filters::to_string(request.values.at(param))};
+  std::vector<std::string> choices;
+  for (const filters::ParamValue& choice : spec->choices) choices.push_back(filters::to_string(choice));
+  return choices;
+}
+
+Case start_case(const AxisInputs& inputs, const filters::FilterRequest& request, std::string variant, Level level) {
   Case item{.filter = request.spec.id, .variant = std::move(variant), .level = level};
-  item.not_available = explain_absence(inputs, request, level, reference);
-  if (item.is_available()) item.params = request.values;
+  if (level == Level::kGl && !inputs.renderer)
+    item.not_available = "there is no GL";
+  else if (!filters::make_model(request.spec))
+    item.not_available = filters::kNoModel;
+  else
+    item.params = request.values;
   return item;
 }
-
-Case make_absent_case(std::string reason) { return {.variant = "filters", .not_available = std::move(reason)}; }
-
-void append(std::vector<Case>& cases, std::vector<Case> more) { std::ranges::move(more, std::back_inserter(cases)); }
 
 Observation judge_by_bounds(double measured, double degraded_over, double broken_over,
                             const std::function<std::string(double bound)>& describe) {
@@ -43,10 +47,6 @@ double find_largest_measured(const records::StressCase& record) {
   double largest = 0.0;
   for (const records::StressSample& sample : record.samples) largest = std::max(largest, sample.measured.value_or(0.0));
   return largest;
-}
-
-bool is_ok_throughout(const records::StressCase& record) {
-  return !record.degraded && !record.broken && !record.samples.empty();
 }
 
 std::string explain_broken_throughout(const Disagreement& missed) {

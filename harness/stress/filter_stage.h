@@ -5,7 +5,7 @@
 
 #include "harness/render/filter_passes.h"
 #include "harness/render/image_target.h"
-#include "harness/stress/axis_inputs.h"
+#include "harness/stress/axis.h"
 
 namespace shadowbench::stress {
 

@@ -9,7 +9,6 @@
 
 #include "report/images/color_values.h"
 #include "report/images/figures/figure.h"
-#include "report/images/picture_io.h"
 
 namespace shadowbench::stress {
 namespace {
@@ -113,10 +112,6 @@ class HeatMapDrawing {
 images::Image draw_heat_map(const HeatMap& map) {
   assert(map.values.channels == 1 && map.curve);
   return HeatMapDrawing(map).draw();
-}
-
-void write_heat_map(const std::filesystem::path& path, const HeatMap& map) {
-  images::write_display_png(path, draw_heat_map(map));
 }
 
 }  // namespace shadowbench::stress

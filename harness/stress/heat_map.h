@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -31,8 +30,5 @@ struct HeatMap {
 
 /// Draws a heat map: a value of 0 is nearly white.
 images::Image draw_heat_map(const HeatMap& map);
-
-/// Writes it as a PNG. Throws Error(kOutput).
-void write_heat_map(const std::filesystem::path& path, const HeatMap& map);
 
 }  // namespace shadowbench::stress

@@ -25,7 +25,7 @@ std::vector<double> place_samples(const Axis& axis, const Case& item) {
     if (value >= low && value <= high) values.push_back(value);
   for (int i = 0; item.values.empty() && i < count; ++i) {
     const double share = static_cast<double>(i) / (count - 1);
-    double value = axis.scale == Scale::kLog ? low * std::pow(high / low, share) : low + (high - low) * share;
+    double value = axis.log ? low * std::pow(high / low, share) : low + (high - low) * share;
     if (axis.whole) value = std::round(value);
     if (i == 0) value = low;
     if (i == count - 1) value = high;
@@ -117,7 +117,7 @@ class Search {
   }
 
   double halve(double a, double b) const {
-    const double middle = axis_.scale == Scale::kLog ? std::sqrt(a * b) : 0.5 * (a + b);
+    const double middle = axis_.log ? std::sqrt(a * b) : 0.5 * (a + b);
     return axis_.whole ? std::clamp(std::round(middle), std::min(a, b) + 1.0, std::max(a, b) - 1.0) : middle;
   }
 };
@@ -181,8 +181,7 @@ std::vector<records::StressLimit> compare(const Case& item, const records::Stres
   if (!record.not_available.empty()) return limits;
   for (const Theory& theory : item.theories) {
     const records::StressOnset* met = records::find_onset(record, theory.predicts);
-    records::StressLimit limit{theory.onset, theory.kind, theory.predicts, theory.formula, theory.source, {}, {},
-                               {},           {}};
+    records::StressLimit limit{theory, {}, {}, {}, {}};
     if (met) limit.measured = met->value;
     if (limit.onset && met && met->last_before) limit.ratio = met->value / *limit.onset;
     if (!agrees(limit, met, axis)) {

@@ -20,22 +20,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-records::StressAxis make_record(const Axis& axis) {
-  records::StressAxis record;
-  record.id = axis.id;
-  record.title = axis.title;
-  record.quantity = axis.quantity;
-  record.unit = axis.unit;
-  record.log = axis.scale == Scale::kLog;
-  record.range = axis.range;
-  record.measured = axis.measured;
-  record.measured_unit = axis.measured_unit;
-  record.bound = axis.bound;
-  record.measured_log = axis.measured_scale == Scale::kLog;
-  record.broken_when = axis.broken_when;
-  return record;
-}
-
 std::vector<Axis> read_axes(const StressOptions& options) {
   std::vector<Axis> axes = choose_axes(options.axes);
   for (const std::string& range : options.ranges) apply_range(axes, range);
@@ -94,7 +78,7 @@ class StressRun {
   }
 
   records::StressAxis drive(const Axis& axis, std::vector<Case>& cases) {
-    records::StressAxis record = make_record(axis);
+    records::StressAxis record{axis, {}, {}};
     for (const Case& item : cases) {
       progress_.show(done_, fmt::format("{} · {}", axis.id, describe(item)));
       records::StressCase found = find_onsets(item, axis);

@@ -1,13 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "filters/model.h"
-#include "harness/render/filter_passes.h"
+#include "harness/scene/lights/light_fit.h"
 #include "harness/stress/case_tools.h"
 
 namespace shadowbench::stress {
@@ -35,30 +34,25 @@ struct LookupResult {
   std::int64_t broken_texels = 0;  ///< of the encoded map: overflown; 0 for models, which keep their map
 };
 
-/// A filter that is looked up in synthetic scenes. It is compiled once.
-class SyntheticLookup {
- public:
-  virtual ~SyntheticLookup() = default;
-  /// Takes numeric parameters that are not const; texts, such as the store, stay those of the construction.
-  virtual LookupResult look(const SyntheticScene& scene, const filters::ParamValues& values) = 0;
-};
+/// A filter that is looked up in synthetic scenes, compiled once. Takes numeric parameters that are not const; texts,
+/// such as the store, stay those of the construction.
+using SyntheticLookup = std::function<LookupResult(const SyntheticScene& scene, const filters::ParamValues& values)>;
 
 /// Looks up by the passes of harness/render: encode, blur, lookup.
 /// Requires inputs.renderer, which outlives the lookup. Nothing is compiled or allocated before the first look, which
 /// throws Error as render::FilterPasses and render::ShadowMap.
-std::unique_ptr<SyntheticLookup> make_gl_lookup(const AxisInputs& inputs, const filters::FilterRequest& request);
+SyntheticLookup make_gl_lookup(const AxisInputs& inputs, const filters::FilterRequest& request);
 
 /// Looks up by the filter's scalar model. Requires a filter that has one.
-std::unique_ptr<SyntheticLookup> make_model_lookup(const AxisInputs& inputs, const filters::FilterRequest& request,
-                                                   filters::Precision precision = filters::Precision::kFloat);
+SyntheticLookup make_model_lookup(const AxisInputs& inputs, const filters::FilterRequest& request,
+                                  filters::Precision precision = filters::Precision::kFloat);
 
 /// What a filter's scalar model makes, in double, of a receiver before a map of one depth: the same for every size of
 /// map and for every place whose kernel lies inside. Requires a filter that has a model.
 double look_at_one_depth(const AxisInputs& inputs, const filters::FilterRequest& request, float stored, float receiver);
 
 /// Makes the lookup of a case. Requires that the case is available; see start_case().
-std::shared_ptr<SyntheticLookup> make_lookup(const AxisInputs& inputs, const filters::FilterRequest& request,
-                                             Level level);
+SyntheticLookup make_lookup(const AxisInputs& inputs, const filters::FilterRequest& request, Level level);
 
 /// What an observation is held against.
 struct Expected {

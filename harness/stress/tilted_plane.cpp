@@ -4,9 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "filters/model.h"
-#include "harness/stress/filter_stage.h"
-
 namespace shadowbench::stress {
 namespace {
 
@@ -89,102 +86,34 @@ Acne measure(const std::vector<float>& visibility) {
   return acne;
 }
 
-/// Remembers how the plane lies.
-class Plane : public TiltedPlane {
- public:
-  double rounding_m() const override { return kRoundings * 0x1p-24 * find_depth_range_m(tilt_); }
-
- protected:
-  PlaneTilt tilt_;
-};
-
-class GlPlane final : public Plane {
- public:
-  GlPlane(const AxisInputs& inputs, filters::FilterRequest request)
-      : seed_(inputs.seed), stage_(inputs, std::move(request)) {}
-
-  void tilt(const PlaneTilt& tilt) override {
-    tilt_ = tilt;
-    stage_.resize({kPlaneMapTexels, kReceivers, kReceivers});
-    stage_.map().draw(stage_.shaders(), render::Geometry(make_plane_scene(tilt)), make_plane_frustum(tilt));
-    std::vector<glm::vec3> receivers;
-    for (const glm::dvec2& place : place_receivers()) receivers.emplace_back(find_point(tilt, place));
-    stage_.upload_receivers(receivers, {0.0f, 1.0f, 0.0f});
-  }
-
-  Acne find_acne(double bias_m) override {
-    const scene::LightFrustum frustum = make_plane_frustum(tilt_);
-    render::Bias bias;
-    bias.constant_depth = bias_m / frustum.depth_range_ws;
-    return measure(stage_.look_up({frustum, 0.0, bias, seed_, {}}, stage_.request().values));
-  }
-
- private:
-  std::uint32_t seed_;
-  FilterStage stage_;
-};
-
-class ModelPlane final : public Plane {
- public:
-  explicit ModelPlane(filters::FilterRequest request)
-      : request_(std::move(request)), model_(filters::make_model(request_.spec)) {}
-
-  void tilt(const PlaneTilt& tilt) override {
-    tilt_ = tilt;
-    map_ = {kPlaneMapTexels, {}};
-    for (int y = 0; y < kPlaneMapTexels; ++y) {
-      for (int x = 0; x < kPlaneMapTexels; ++x) {
-        map_.stored.push_back(
-            static_cast<float>(find_depth({(x + 0.5) * kPlaneTexel_m - 0.5, (y + 0.5) * kPlaneTexel_m - 0.5})));
-      }
-    }
-  }
-
-  Acne find_acne(double bias_m) override {
-    const auto lookup = model_->prepare({request_.spec, request_.values, map_, {}}, filters::Precision::kFloat);
-    std::vector<float> visibility;
-    for (const glm::dvec2& place : place_receivers())
-      visibility.push_back(static_cast<float>(lookup->at(make_receiver(place, bias_m)).visibility));
-    return measure(visibility);
-  }
-
- private:
-  filters::FilterRequest request_;
-  std::unique_ptr<filters::Model> model_;
-  filters::DepthMap map_;
-
-  double find_depth(const glm::dvec2& place) const {
-    const double along = tilt_.diagonal ? (place.x - place.y) / std::numbers::sqrt2 : place.x;
-    return 0.5 + along * tangent(tilt_) / find_depth_range_m(tilt_);
-  }
-
-  filters::Receiver make_receiver(const glm::dvec2& place, double bias_m) const {
-    filters::Receiver receiver;
-    receiver.uv = glm::vec2(place + 0.5);
-    receiver.depth_unbiased = static_cast<float>(find_depth(place));
-    receiver.depth = static_cast<float>(find_depth(place) - bias_m / find_depth_range_m(tilt_));
-    return receiver;
-  }
-};
-
 }  // namespace
 
 double find_gain_m(const PlaneTilt& tilt, double reach_texels) {
   return reach_texels * kPlaneTexel_m * tangent(tilt) * (tilt.diagonal ? std::numbers::sqrt2 : 1.0);
 }
 
-std::unique_ptr<TiltedPlane> make_gl_plane(const AxisInputs& inputs, const filters::FilterRequest& request) {
-  return std::make_unique<GlPlane>(inputs, request);
+double TiltedPlane::rounding_m() const { return kRoundings * 0x1p-24 * find_depth_range_m(tilt_); }
+
+void TiltedPlane::tilt(const PlaneTilt& tilt) {
+  tilt_ = tilt;
+  stage_.resize({kPlaneMapTexels, kReceivers, kReceivers});
+  stage_.map().draw(stage_.shaders(), render::Geometry(make_plane_scene(tilt)), make_plane_frustum(tilt));
+  std::vector<glm::vec3> receivers;
+  for (const glm::dvec2& place : place_receivers()) receivers.emplace_back(find_point(tilt, place));
+  stage_.upload_receivers(receivers, {0.0f, 1.0f, 0.0f});
 }
 
-std::unique_ptr<TiltedPlane> make_model_plane(const filters::FilterRequest& request) {
-  return std::make_unique<ModelPlane>(request);
+Acne TiltedPlane::find_acne(double bias_m) {
+  const scene::LightFrustum frustum = make_plane_frustum(tilt_);
+  render::Bias bias;
+  bias.constant_depth = bias_m / frustum.depth_range_ws;
+  return measure(stage_.look_up({frustum, 0.0, bias, seed_, {}}, stage_.request().values));
 }
 
-std::optional<double> find_needed_bias(TiltedPlane& plane, double theory_m) {
-  const auto has_acne = [&](double bias_m) { return plane.find_acne(bias_m).mean_shadow > kLeastAcne; };
+std::optional<double> TiltedPlane::find_needed_bias(double theory_m) {
+  const auto has_acne = [&](double bias_m) { return find_acne(bias_m).mean_shadow > kLeastAcne; };
   if (!has_acne(0.0)) return 0.0;
-  double low = 0.0, high = 2.0 * theory_m + plane.rounding_m();
+  double low = 0.0, high = 2.0 * theory_m + rounding_m();
   if (has_acne(high)) return std::nullopt;
   while (high - low > 1e-3 * high) {
     const double middle = 0.5 * (low + high);

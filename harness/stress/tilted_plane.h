@@ -1,9 +1,8 @@
 #pragma once
 
-#include <memory>
 #include <optional>
 
-#include "harness/stress/axis_inputs.h"
+#include "harness/stress/filter_stage.h"
 
 namespace shadowbench::stress {
 
@@ -30,24 +29,27 @@ struct Acne {
 /// An empty plane without end, with receivers all over it, between texels too. Every shadow on it is acne.
 class TiltedPlane {
  public:
-  virtual ~TiltedPlane() = default;
-  /// Draws the plane's map.
-  virtual void tilt(const PlaneTilt& tilt) = 0;
+  /// Requires inputs.renderer, which outlives the plane.
+  TiltedPlane(const AxisInputs& inputs, filters::FilterRequest request)
+      : seed_(inputs.seed), stage_(inputs, std::move(request)) {}
+
+  /// Draws the plane's map. Throws Error as render::FilterPasses and render::ShadowMap.
+  void tilt(const PlaneTilt& tilt);
+
   /// Looks the receivers up, moved towards the light by a bias in metres. Call after tilt().
-  virtual Acne find_acne(double bias_m) = 0;
+  Acne find_acne(double bias_m);
+
+  /// Finds the least bias without acne, in metres, to a thousandth of `theory_m`; empty where twice that is not enough.
+  /// Call after tilt().
+  std::optional<double> find_needed_bias(double theory_m);
+
   /// The error in metres that single precision leaves in a depth.
-  virtual double rounding_m() const = 0;
+  double rounding_m() const;
+
+ private:
+  std::uint32_t seed_;
+  FilterStage stage_;
+  PlaneTilt tilt_;
 };
-
-/// Requires inputs.renderer, which outlives the plane. Throws Error as render::FilterPasses and render::ShadowMap, at
-/// tilt().
-std::unique_ptr<TiltedPlane> make_gl_plane(const AxisInputs& inputs, const filters::FilterRequest& request);
-
-/// Computes the map's depths at the texels' centres, and looks them up by the filter's scalar model. Requires a filter
-/// that has one.
-std::unique_ptr<TiltedPlane> make_model_plane(const filters::FilterRequest& request);
-
-/// Finds the least bias without acne, in metres, to a thousandth of `theory_m`; empty where twice that is not enough.
-std::optional<double> find_needed_bias(TiltedPlane& plane, double theory_m);
 
 }  // namespace shadowbench::stress

@@ -55,13 +55,17 @@ struct StressOnset {
   std::string why;                    ///< what decided the verdict at `value`
 };
 
-/// A theoretical limit of a case, and the measured one beside it.
-struct StressLimit {
-  std::optional<double> onset;  ///< value of the axis; empty: theory knows no limit
+/// A limit that is known before anything is measured.
+struct StressTheory {
+  std::optional<double> onset;  ///< value of the axis; empty: theory says that there is none
   StressTheoryKind kind = StressTheoryKind::kOverflow;
+  std::string formula;                                ///< with its numbers: "ln(65504) / 1 = 11.09"
+  std::string source;                                 ///< author, year, title, equation; or "derived"
   StressVerdict predicts = StressVerdict::kBroken;  ///< the verdict that the case reaches at `onset`
-  std::string formula;
-  std::string source;
+};
+
+/// A theoretical limit of a case, and the measured one beside it.
+struct StressLimit : StressTheory {
   std::optional<double> measured;  ///< the first value with that verdict; empty: none in the range
   std::optional<double> ratio;     ///< measured / onset; empty where one of the two is empty
   StressAgreement agreement = StressAgreement::kAgrees;
@@ -95,19 +99,24 @@ struct StressExhibit {
   std::vector<Picture> pictures;
 };
 
-/// One axis with all its cases.
-struct StressAxis {
-  std::string id;
+/// What is said of an axis before anything is measured.
+struct StressAxisText {
+  std::string id;  ///< the name of its file
   std::string title;
-  std::string quantity;
-  std::string unit;  ///< empty: a pure number
-  bool log = false;
+  std::string quantity;  ///< "exponent c"
+  std::string unit;      ///< empty: a pure number
+  bool log = true;       ///< how the axis is sampled, and values are drawn; else linear
   StressRange range;
-  std::string measured;  ///< what samples measure
-  std::string measured_unit;
-  double bound = 0.0;  ///< an error above it is `degraded`
-  bool measured_log = false;
-  std::string broken_when;  ///< a description in words
+
+  std::string measured;       ///< what samples measure: "largest error of visibility"
+  std::string measured_unit;  ///< empty: a pure number
+  bool measured_log = true;
+  double bound = 0.0;       ///< a measured value above it is `degraded`
+  std::string broken_when;  ///< in words: "infinities in the map; NaN, all lit or all dark"
+};
+
+/// One axis with all its cases.
+struct StressAxis : StressAxisText {
   std::vector<StressCase> cases;
   std::vector<StressExhibit> exhibits;
 };

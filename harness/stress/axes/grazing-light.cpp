@@ -11,6 +11,7 @@
 #include "harness/stress/case_tools.h"
 #include "harness/stress/heat_map.h"
 #include "harness/stress/tilted_plane.h"
+#include "report/images/picture_io.h"
 
 namespace shadowbench::stress {
 namespace grazing_light {
@@ -51,7 +52,7 @@ std::vector<Theory> make_theories(const Reach& reach, bool diagonal) {
 Observation observe_plane(TiltedPlane& plane, const PlaneTilt& tilt, const Reach& reach) {
   plane.tilt(tilt);
   const double theory = find_gain_m(tilt, reach.texels());
-  const std::optional<double> needed = find_needed_bias(plane, theory);
+  const std::optional<double> needed = plane.find_needed_bias(theory);
   if (!needed)
     return {Verdict::kBroken, std::nullopt,
             fmt::format("acne under twice the bias that theory asks for, {:.3g} texels", theory / kPlaneTexel_m)};
@@ -84,38 +85,26 @@ std::vector<std::string> remark_ratio(const records::StressCase& record, const R
 
 Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, bool diagonal, Level level) {
   const char* variant = diagonal ? "light along the diagonal" : "light along a row";
-  Case item = start_case(inputs, request, variant, level, Reference::kModel);
+  Case item = start_case(inputs, request, variant, level);
   if (!item.is_available()) return item;
   const Reach reach = find_reach(request);
   item.theories = make_theories(reach, diagonal);
-  const std::shared_ptr<TiltedPlane> plane =
-      level == Level::kGl ? make_gl_plane(inputs, request) : make_model_plane(request);
+  const auto plane = std::make_shared<TiltedPlane>(inputs, request);
   item.observe = [plane, reach, diagonal](double angle) { return observe_plane(*plane, {angle, diagonal}, reach); };
-  if (level == Level::kGl)
-    item.remark = [reach, diagonal](const records::StressCase& record) {
-      return remark_ratio(record, reach, diagonal);
-    };
+  item.remark = [reach, diagonal](const records::StressCase& record) { return remark_ratio(record, reach, diagonal); };
   return item;
 }
 
-std::vector<filters::FilterRequest> list_comparisons(const AxisInputs& inputs) {
-  std::vector<filters::FilterRequest> chosen;
-  std::ranges::copy_if(inputs.filters, std::back_inserter(chosen),
-                       [](const auto& request) { return request.spec.kind == filters::FilterKind::kComparison; });
-  return chosen;
+bool compares(const filters::FilterRequest& request) { return request.spec.kind == filters::FilterKind::kComparison; }
+
+/// Lists how the light falls: along the diagonal or not.
+std::vector<bool> list_ways(const filters::FilterRequest& request) {
+  return compares(request) ? std::vector{false, true} : std::vector<bool>();
 }
 
-/// Models are observed only where there is no GL: beside it they would draw the same lines.
+/// Models would draw the same lines beside the GL's.
 std::vector<Case> make_cases(const AxisInputs& inputs) {
-  std::vector<Case> cases;
-  for (const filters::FilterRequest& request : list_comparisons(inputs)) {
-    for (const bool diagonal : {false, true}) {
-      cases.push_back(make_case(inputs, request, diagonal, Level::kGl));
-      if (!inputs.renderer) cases.push_back(make_case(inputs, request, diagonal, Level::kModel));
-    }
-  }
-  if (cases.empty()) cases.push_back(make_absent_case("no chosen filter is of kind comparison"));
-  return cases;
+  return make_filter_cases(inputs, list_ways, make_case, "no chosen filter is of kind comparison", {Level::kGl});
 }
 
 constexpr int kColumns = 110, kRows = 60;
@@ -123,10 +112,10 @@ constexpr double kHighestBias = 12.0;  // texels
 
 /// Measures the share of receivers with acne, a column for each angle. More bias never brings more acne: above the
 /// first bias without acne nothing needs to be drawn.
-images::Image measure_acne(TiltedPlane& plane, bool diagonal) {
+images::Image measure_acne(TiltedPlane& plane) {
   images::Image acne(kColumns, kRows, 1);
   for (int x = 0; x < kColumns; ++x) {
-    plane.tilt({90.0 * (x + 0.5) / kColumns, diagonal});
+    plane.tilt({90.0 * (x + 0.5) / kColumns, false});
     for (int y = kRows - 1; y >= 0; --y) {
       const Acne seen = plane.find_acne(kHighestBias * (kRows - y - 0.5) / kRows * kPlaneTexel_m);
       *acne.at(x, y) = static_cast<float>(seen.share);
@@ -142,27 +131,26 @@ std::string describe_growth(TiltedPlane& plane, const std::string& label, const 
   for (const double angle : {45.0, 80.0, 89.0}) {
     const PlaneTilt tilt{angle, false};
     plane.tilt(tilt);
-    const std::optional<double> needed = find_needed_bias(plane, find_gain_m(tilt, reach.texels()));
+    const std::optional<double> needed = plane.find_needed_bias(find_gain_m(tilt, reach.texels()));
     if (needed) needs.push_back(fmt::format("{:.3g} texels of bias at {:g} degrees", *needed / kPlaneTexel_m, angle));
   }
   return fmt::format("{} needs {}: a bias that is enough at one angle is far from it at the next.", label,
                      fmt::join(needs, ", "));
 }
 
-/// Chooses the filter with the widest kernel, whose curve is the farthest from all others'.
-const filters::FilterRequest* choose_shown(const std::vector<filters::FilterRequest>& chosen) {
+/// Chooses the comparison with the widest kernel, whose curve is the farthest from all others'.
+const filters::FilterRequest* choose_shown(const AxisInputs& inputs) {
   const filters::FilterRequest* shown = nullptr;
-  for (const filters::FilterRequest& request : chosen)
-    if (filters::find_kernel(request.spec, request.values) &&
+  for (const filters::FilterRequest& request : inputs.filters)
+    if (compares(request) && filters::find_kernel(request.spec, request.values) &&
         (!shown || find_reach(request).texels() > find_reach(*shown).texels()))
       shown = &request;
   return shown;
 }
 
 std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
-  const std::vector<filters::FilterRequest> chosen = list_comparisons(inputs);
-  const filters::FilterRequest* shown = choose_shown(chosen);
-  if (!inputs.renderer || !shown) return {};
+  const filters::FilterRequest* shown = choose_shown(inputs);
+  if (!shown) return {};
   const Reach reach = find_reach(*shown);
   HeatMap map;
   map.title = "Acne over angle and bias";
@@ -172,8 +160,8 @@ std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
   map.x = {
       "angle between the light and the plane's normal, degrees", {0.0, 90.0}, {0, 10, 20, 30, 40, 50, 60, 70, 80, 90}};
   map.y = {"bias, texels along the light", {0.0, kHighestBias}, {0, 2, 4, 6, 8, 10, 12}};
-  const auto plane = make_gl_plane(inputs, *shown);
-  map.values = measure_acne(*plane, false);
+  TiltedPlane plane(inputs, *shown);
+  map.values = measure_acne(plane);
   map.scale = 1.0;
   map.curve = [reach](double angle) {
     return angle < 90.0 ? find_gain_m({angle, false}, reach.texels()) / kPlaneTexel_m
@@ -182,9 +170,9 @@ std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
   Exhibit exhibit;
   exhibit.id = "acne";
   exhibit.title = map.title;
-  exhibit.sentences = {describe_growth(*plane, shown->label(), reach)};
+  exhibit.sentences = {describe_growth(plane, shown->label(), reach)};
   exhibit.pictures = {{"stress.acne.png", fmt::format("{}: acne, and the bias that theory asks for", shown->label())}};
-  write_heat_map(inputs.out / exhibit.pictures.front().file, map);
+  images::write_display_png(inputs.out / exhibit.pictures.front().file, draw_heat_map(map));
   return {exhibit};
 }
 
@@ -196,7 +184,7 @@ Axis make_grazing_light_axis() {
   axis.title = "Grazing light: the bias that an empty plane takes";
   axis.quantity = "angle between the light and the plane's normal";
   axis.unit = "degrees";
-  axis.scale = Scale::kLinear;
+  axis.log = false;
   axis.range = {0.0, 89.99};
   axis.limits = {0.0, 89.999};
   axis.coarse_samples = 37;

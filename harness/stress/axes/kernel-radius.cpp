@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "harness/stress/straight_edge.h"
+#include "harness/stress/edge_scene.h"
 
 namespace shadowbench::stress {
 namespace kernel_radius {
@@ -12,8 +12,7 @@ constexpr double kSamplerStep = 1.0 / 128.0;  // GPUs interpolate a comparison w
 /// Lists the parameter that is the radius of a filter's kernel; nothing where the radius is no parameter, or only
 /// limits what each receiver chooses.
 std::vector<std::string> list_radius_params(const filters::FilterRequest& request) {
-  const auto model = filters::make_model(request.spec);
-  if (model && !model->kernel(request.values)) return {};
+  if (!filters::find_kernel(request.spec, request.values)) return {};
   const auto* param = std::get_if<std::string>(&request.spec.radius_texels);
   return param ? std::vector{*param} : std::vector<std::string>();
 }
@@ -33,17 +32,17 @@ std::string name_base(const filters::FilterSpec& spec, const filters::Kernel& ke
 /// The filter's own arithmetic in extended precision; without a radius the base comparison, which needs none of
 /// the filter's code.
 std::vector<double> expect_visibility(const filters::FilterRequest& request, double radius, const SyntheticScene& scene,
-                                      SyntheticLookup& exact) {
-  if (radius > 0.0 || !averages_comparisons(request.spec)) return exact.look(scene, request.values).visibility;
+                                      const SyntheticLookup& exact) {
+  if (radius > 0.0 || !averages_comparisons(request.spec)) return exact(scene, request.values).visibility;
   return compare_whole_kernel(scene, *filters::find_kernel(request.spec, request.values));
 }
 
 /// `request` has the radius among its values.
-Observation observe_radius(const filters::FilterRequest& request, double radius, SyntheticLookup& lookup,
-                           SyntheticLookup& exact) {
+Observation observe_radius(const filters::FilterRequest& request, double radius, const SyntheticLookup& lookup,
+                           const SyntheticLookup& exact) {
   const SyntheticScene scene = make_straight_edge(radius);
-  Observation seen = judge_edge(lookup.look(scene, request.values), expect_visibility(request, radius, scene, exact),
-                                kVisibleError, request.spec.kind);
+  Observation seen =
+      judge_edge(lookup(scene, request.values), expect_visibility(request, radius, scene, exact), request.spec.kind);
   if (radius > 0.0 || seen.verdict == Verdict::kBroken || seen.measured.value_or(1.0) <= kSamplerStep) return seen;
   return {
       Verdict::kBroken, seen.measured,
@@ -64,8 +63,8 @@ std::vector<double> list_radii(const filters::ParamSpec& param) {
 }
 
 Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, const std::string& param, Level level) {
-  Case item = start_case(inputs, request, averages_comparisons(request.spec) ? "disk of comparisons" : "blurred map",
-                         level, Reference::kModel);
+  Case item =
+      start_case(inputs, request, averages_comparisons(request.spec) ? "disk of comparisons" : "blurred map", level);
   if (!item.is_available()) return item;
   item.params.erase(param);
   item.theories = {
@@ -76,11 +75,10 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, 
   item.values = list_radii(*request.spec.find_param(param));
   item.observe = [&inputs, request = request, param, level, is_const = request.spec.find_param(param)->is_const,
                   lookup = make_lookup(inputs, request, level),
-                  exact = std::shared_ptr(make_model_lookup(inputs, request, filters::Precision::kExtended))](
-                     double radius) mutable {
+                  exact = make_model_lookup(inputs, request, filters::Precision::kExtended)](double radius) mutable {
     request.values[param] = radius;
     if (is_const) lookup = make_lookup(inputs, request, level);
-    return observe_radius(request, radius, *lookup, *exact);
+    return observe_radius(request, radius, lookup, exact);
   };
   if (!item.values.empty() && item.values.front() > 0.0) return item;
   filters::ParamValues without = request.values;
@@ -103,7 +101,7 @@ Axis make_kernel_radius_axis() {
   axis.title = "Kernel radius, from none to half the map";
   axis.quantity = "radius of the kernel";
   axis.unit = "texels";
-  axis.scale = Scale::kLinear;
+  axis.log = false;
   axis.range = {0.0, kWidestRadius};
   axis.limits = axis.range;
   axis.coarse_samples = 17;

@@ -81,14 +81,14 @@ Observation judge_bleeding(const LookupResult& seen) {
 
 /// Explains a filter whose exact arithmetic says the same as what was drawn: it does not follow the formula, and is not
 /// wrong by rounding.
-std::string explain_by_model(const Disagreement& missed, SyntheticLookup& exact, const filters::FilterRequest& request,
-                             int occluders) {
+std::string explain_by_model(const Disagreement& missed, const SyntheticLookup& exact,
+                             const filters::FilterRequest& request, int occluders) {
   if (std::string words = explain_broken_throughout(missed); !words.empty()) return words;
   if (!missed.measured && !missed.theory.onset) return {};
   const double ratio = missed.measured ? *missed.measured : *missed.theory.onset;
   const LayerScene layers =
       make_layer_scene(filters::prefilter_radius_texels(request.spec, request.values), make_stack(occluders, ratio));
-  const std::vector<double> visibility = exact.look(layers.scene, request.values).visibility;
+  const std::vector<double> visibility = exact(layers.scene, request.values).visibility;
   const double largest = *std::ranges::max_element(visibility);
   if (missed.measured ? std::abs(largest / kBound - 1.0) > 0.1 : largest > kBound) return {};
   return fmt::format(
@@ -111,15 +111,11 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, 
       return std::vector<std::string>{
           "its front matter tells of no formula: there is nothing to hold it against but truth"};
     };
-  if (filters::make_model(request.spec)) {
-    const std::shared_ptr<SyntheticLookup> exact = make_model_lookup(inputs, request, filters::Precision::kExtended);
-    item.explain = [exact, request, occluders](const Disagreement& missed) {
-      return explain_by_model(missed, *exact, request, occluders);
-    };
-  }
+  item.explain = [exact = make_model_lookup(inputs, request, filters::Precision::kExtended), request, occluders](
+                     const Disagreement& missed) { return explain_by_model(missed, exact, request, occluders); };
   item.observe = [lookup = make_lookup(inputs, request, level), values = request.values, radius,
                   occluders](double ratio) {
-    return judge_bleeding(lookup->look(make_layer_scene(radius, make_stack(occluders, ratio)).scene, values));
+    return judge_bleeding(lookup(make_layer_scene(radius, make_stack(occluders, ratio)).scene, values));
   };
   return item;
 }

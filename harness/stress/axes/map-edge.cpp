@@ -139,20 +139,19 @@ class WiderMap {
  public:
   WiderMap(const AxisInputs& inputs, const filters::FilterRequest& request)
       : values_(request.values), margin_(2 * filters::prefilter_radius_texels(request.spec, request.values)) {
-    if (margin_ > 0 && filters::make_model(request.spec))
-      lookup_ = make_model_lookup(inputs, request, filters::Precision::kDouble);
+    if (margin_ > 0) lookup_ = make_model_lookup(inputs, request, filters::Precision::kDouble);
   }
 
   /// The largest difference of what is seen of a map of occluders; 0 where there is nothing to hold it against.
   double find_difference(const std::vector<glm::vec3>& receivers, const std::vector<double>& seen) const {
     if (!lookup_) return 0.0;
-    return find_largest_error(seen, lookup_->look(widen(receivers), values_).visibility);
+    return find_largest_error(seen, lookup_(widen(receivers), values_).visibility);
   }
 
  private:
   filters::ParamValues values_;
   int margin_;
-  std::shared_ptr<SyntheticLookup> lookup_;
+  SyntheticLookup lookup_;
 
   SyntheticScene widen(const std::vector<glm::vec3>& receivers) const {
     SyntheticScene scene;
@@ -172,7 +171,7 @@ class WiderMap {
 
 /// Looks along one border.
 struct Looker {
-  std::shared_ptr<SyntheticLookup> lookup;
+  SyntheticLookup lookup;
   filters::FilterRequest request;
   std::shared_ptr<const WiderMap> wider;
   Place where = Place::kFloor;
@@ -180,7 +179,7 @@ struct Looker {
 
   std::vector<double> look(double outside) {
     scene.receivers = place(where, outside);
-    return lookup->look(scene, request.values).visibility;
+    return lookup(scene, request.values).visibility;
   }
 
   Observation observe(double outside) {
@@ -226,7 +225,7 @@ Observation observe_all(std::vector<Looker>& lookers, double outside) {
 }
 
 std::vector<std::string> remark(const records::StressCase& record) {
-  if (!is_ok_throughout(record)) return {};
+  if (record.samples.empty() || record.degraded || record.broken) return {};
   return {"lit outside the map, beyond its far plane and behind the light, and no line along the border"};
 }
 
@@ -236,8 +235,7 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request) 
   item.theories = {{std::nullopt, TheoryKind::kSlope, "none: what the map does not hold is lit",
                     "by definition: border = encode of depth 1", Verdict::kDegraded}};
   item.remark = remark;
-  const std::shared_ptr<SyntheticLookup> orthographic = make_gl_lookup(inputs, request),
-                                         perspective = make_gl_lookup(inputs, request);
+  const SyntheticLookup orthographic = make_gl_lookup(inputs, request), perspective = make_gl_lookup(inputs, request);
   std::vector<Looker> lookers;
   const auto wider = std::make_shared<const WiderMap>(inputs, request);
   for (const Place where : kPlaces)
@@ -254,12 +252,12 @@ Axis make_map_edge_axis() {
   axis.title = "Receivers across the map's border, its far plane, and behind the light";
   axis.quantity = "distance outside";
   axis.unit = "texels";
-  axis.scale = Scale::kLinear;
+  axis.log = false;
   axis.range = {-4.0, 8.0};
   axis.limits = {-24.0, 24.0};
   axis.coarse_samples = 49;
   axis.measured = "missing light, or unevenness along the border";
-  axis.measured_scale = Scale::kLinear;
+  axis.measured_log = false;
   axis.bound = kBound;
   axis.broken_when = "visibility is not finite, or off by more than 0.1";
   axis.make_cases = [](const AxisInputs& inputs) { return make_gl_cases(inputs, make_case); };

@@ -27,29 +27,20 @@ SyntheticScene make_halves(int size) {
   return scene;
 }
 
-/// What a filter makes of a kernel that holds one depth alone, whatever the size of the map.
-struct Halves {
-  double dark = 0.0;  ///< before the occluder
-  double lit = 1.0;   ///< before the receivers' own surface
-};
-
-/// A comparison is dark or lit. What other filters are is what their formula makes of the two depths: a truncated
-/// series of waves, for instance, leaves light behind an occluder. Without a model it is taken for a comparison.
-Halves find_halves(const AxisInputs& inputs, const filters::FilterRequest& request) {
-  if (!filters::make_model(request.spec)) return {};
-  return {look_at_one_depth(inputs, request, kOccluder, kReceiver),
-          look_at_one_depth(inputs, request, kReceiver, kReceiver)};
-}
-
-/// Keeps the receivers whose kernel meets neither the edge in the middle nor the border, and gives their visibility.
-std::vector<double> keep_clear(SyntheticScene& scene, double reach_texels, const Halves& halves) {
+/// Keeps the receivers whose kernel meets neither the edge in the middle nor the border, and gives their visibility: a
+/// comparison is dark or lit. What other filters are is what their formula makes of the two depths: a truncated series
+/// of waves, for instance, leaves light behind an occluder.
+std::vector<double> keep_clear(SyntheticScene& scene, const AxisInputs& inputs, const filters::FilterRequest& request) {
+  const double reach_texels = filters::radius_texels(request.spec, request.values) + 1.0,
+               dark = look_at_one_depth(inputs, request, kOccluder, kReceiver),
+               lit = look_at_one_depth(inputs, request, kReceiver, kReceiver);
   std::vector<glm::vec3> kept;
   std::vector<double> expected;
   for (const glm::vec3& receiver : scene.receivers) {
     const double x = static_cast<double>(receiver.x) * scene.size, edge = (scene.size + 1) / 2;
     if (std::min({x, scene.size - x, std::abs(x - edge)}) <= reach_texels) continue;
     kept.push_back(receiver);
-    expected.push_back(x < edge ? halves.dark : halves.lit);
+    expected.push_back(x < edge ? dark : lit);
   }
   scene.receivers = std::move(kept);
   return expected;
@@ -58,13 +49,12 @@ std::vector<double> keep_clear(SyntheticScene& scene, double reach_texels, const
 /// The lookup is made for each size and given up again, and with it the map.
 Observation observe(const AxisInputs& inputs, const filters::FilterRequest& request, int size) {
   SyntheticScene scene = make_halves(size);
-  const double reach = filters::radius_texels(request.spec, request.values) + 1.0;
-  const bool modelled = size <= kLargestModelled && filters::make_model(request.spec) != nullptr;
   const std::vector<double> expected =
-      modelled ? make_model_lookup(inputs, request, filters::Precision::kDouble)->look(scene, request.values).visibility
-               : keep_clear(scene, reach, find_halves(inputs, request));
-  if (scene.receivers.empty()) return {};  // without a model, a map that is smaller than the kernel tells nothing
-  return judge(make_gl_lookup(inputs, request)->look(scene, request.values), {expected, kVisibleError, 0});
+      size <= kLargestModelled
+          ? make_model_lookup(inputs, request, filters::Precision::kDouble)(scene, request.values).visibility
+          : keep_clear(scene, inputs, request);
+  if (scene.receivers.empty()) return {};  // the kernel meets the edge or the border everywhere
+  return judge(make_gl_lookup(inputs, request)(scene, request.values), {expected, kVisibleError, 0});
 }
 
 Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request) {
@@ -126,7 +116,6 @@ std::string try_size(const AxisInputs& inputs, int size, int limit) {
 }
 
 std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
-  if (!inputs.renderer) return {};
   const int limit = inputs.renderer->context->info().max_texture_size;
   Exhibit exhibit;
   exhibit.id = "limit";

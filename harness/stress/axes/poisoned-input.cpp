@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "harness/render/shadow_map.h"
 #include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
@@ -161,7 +162,7 @@ Case make_map_case(const AxisInputs& inputs, const filters::FilterRequest& reque
                   reach = find_reach(request), scene = make_scene()](double number) {
     const int count = static_cast<int>(number);
     const auto look = [&](float Drop::*part) {
-      return lookup->look(poison(scene, count, setting.poison, part), values).visibility;
+      return lookup(poison(scene, count, setting.poison, part), values).visibility;
     };
     const std::vector<double> harmless = look(&Drop::harmless);
     const std::vector<bool> reached = find_reached(count, reach, setting.border_is_poison ? reach : 0);
@@ -194,7 +195,7 @@ std::vector<Case> make_cases(const AxisInputs& inputs) {
     for (const Poison& kind : {not_numbers(), infinities()})
       cases.push_back(make_map_case(inputs, request, {kind, Level::kModel}));
   }
-  append(cases, make_overflow_cases(inputs));
+  for (Case& item : make_overflow_cases(inputs)) cases.push_back(std::move(item));
   return cases;
 }
 
@@ -210,7 +211,7 @@ Axis make_poisoned_input_axis() {
   axis.coarse_samples = 7;
   axis.whole = true;
   axis.measured = "share harmed of the receivers whose kernel holds poison";
-  axis.measured_scale = Scale::kLinear;
+  axis.measured_log = false;
   axis.bound = 0.0;
   axis.broken_when = "a receiver is harmed whose kernel holds no poison";
   axis.make_cases = make_cases;

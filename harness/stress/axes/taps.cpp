@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/stress/straight_edge.h"
+#include "harness/stress/edge_scene.h"
 
 namespace shadowbench::stress {
 namespace taps {
@@ -41,16 +41,15 @@ SyntheticScene make_scene(const filters::FilterRequest& request) {
 Observation observe_taps(const AxisInputs& inputs, const filters::FilterRequest& request, Level level) {
   const SyntheticScene scene = make_scene(request);
   const std::vector<double> expected =
-      make_model_lookup(inputs, request, filters::Precision::kExtended)->look(scene, request.values).visibility;
-  return judge_edge(make_lookup(inputs, request, level)->look(scene, request.values), expected, kVisibleError,
-                    request.spec.kind);
+      make_model_lookup(inputs, request, filters::Precision::kExtended)(scene, request.values).visibility;
+  return judge_edge(make_lookup(inputs, request, level)(scene, request.values), expected, request.spec.kind);
 }
 
 /// How far the taps are from the kernel that they stand for, root mean square over an edge.
 double find_noise(const AxisInputs& inputs, const filters::FilterRequest& request) {
   const SyntheticScene scene = make_scene(request);
   const std::vector<double> seen =
-      make_model_lookup(inputs, request, filters::Precision::kDouble)->look(scene, request.values).visibility;
+      make_model_lookup(inputs, request, filters::Precision::kDouble)(scene, request.values).visibility;
   const std::vector<double> whole = compare_whole_kernel(scene, *filters::find_kernel(request.spec, request.values));
   double sum = 0.0;
   for (std::size_t i = 0; i < seen.size(); ++i) sum += (seen[i] - whole[i]) * (seen[i] - whole[i]);
@@ -77,7 +76,7 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, 
                Level level) {
   const std::string variant =
       fmt::format("{} at radius {:g}", param.name, filters::radius_texels(request.spec, request.values));
-  Case item = start_case(inputs, request, variant, level, Reference::kModel);
+  Case item = start_case(inputs, request, variant, level);
   if (!item.is_available()) return item;
   item.params.erase(param.name);
   item.theories = {{std::nullopt, TheoryKind::kRounding, "none: more taps add more numbers, none of them above 1",

@@ -132,8 +132,8 @@ EdgeScene make_edges(const filters::FilterRequest& request) {
 
 /// The closed form is of Chebyshev's inequality. A filter that promises no such bound does more with the moments than
 /// that, and only its model knows what; null for others.
-std::shared_ptr<SyntheticLookup> make_exact_lookup(const AxisInputs& inputs, const filters::FilterRequest& request) {
-  if (request.spec.kind == filters::FilterKind::kBound || !filters::make_model(request.spec)) return nullptr;
+SyntheticLookup make_exact_lookup(const AxisInputs& inputs, const filters::FilterRequest& request) {
+  if (request.spec.kind == filters::FilterKind::kBound) return nullptr;
   return make_model_lookup(inputs, request, filters::Precision::kExtended);
 }
 
@@ -154,8 +154,8 @@ Case make_filter_case(const AxisInputs& inputs, filters::FilterRequest request, 
     const std::vector<EdgeDepths> bands = make_bands(ratio);
     set_depths(edge, bands);
     const std::vector<double> expected =
-        exact ? exact->look(edge.scene, values).visibility : expect_visibility(edge, bands, minimum);
-    return judge(lookup->look(edge.scene, values), {expected, kVisibleError, edge.run});
+        exact ? exact(edge.scene, values).visibility : expect_visibility(edge, bands, minimum);
+    return judge(lookup(edge.scene, values), {expected, kVisibleError, edge.run});
   };
   return item;
 }

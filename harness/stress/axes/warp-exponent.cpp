@@ -77,17 +77,17 @@ std::string driven_param(const filters::FilterSpec& spec) { return spec.holds_mo
 /// Makes a case of one store, held against the filter's own model in double precision.
 Case make_filter_case(const AxisInputs& inputs, filters::FilterRequest request, const std::string& store, Level level) {
   request.values["store"] = store;
-  Case item = start_case(inputs, request, store, level, Reference::kModel);
+  Case item = start_case(inputs, request, store, level);
   if (!item.is_available()) return item;
   const std::string param = driven_param(request.spec);
   item.params.erase(param);
   // A model has no map that could overflow: what it makes of an infinite moment is light.
   if (level == Level::kGl) item.theories = {make_filter_theory(store)};
-  const std::shared_ptr<SyntheticLookup> lookup = make_lookup(inputs, request, level),
-                                         exact = make_model_lookup(inputs, request, filters::Precision::kDouble);
-  item.observe = [lookup, exact, values = request.values, param, scene = make_ramp_scene()](double c) mutable {
+  item.observe = [lookup = make_lookup(inputs, request, level),
+                  exact = make_model_lookup(inputs, request, filters::Precision::kDouble), values = request.values,
+                  param, scene = make_ramp_scene()](double c) mutable {
     values[param] = c;
-    return judge(lookup->look(scene, values), {exact->look(scene, values).visibility, kVisibleError, 0});
+    return judge(lookup(scene, values), {exact(scene, values).visibility, kVisibleError, 0});
   };
   return item;
 }
@@ -101,8 +101,9 @@ std::vector<Case> make_cases(const AxisInputs& inputs) {
   for (const auto& [name, store] : {std::pair("32-bit float", filters::StorePrecision::kSingle),
                                     std::pair("16-bit float", filters::StorePrecision::kHalf)})
     for (const int taps : {1, kTaps}) cases.push_back(make_moment_case({name, store, taps}));
-  append(cases, make_filter_cases(inputs, list_stores, make_filter_case,
-                                  "no chosen filter's front matter declares 'exponent' with 'moments'"));
+  for (Case& item : make_filter_cases(inputs, list_stores, make_filter_case,
+                                      "no chosen filter's front matter declares 'exponent' with 'moments'"))
+    cases.push_back(std::move(item));
   return cases;
 }
 
@@ -110,11 +111,11 @@ std::vector<Case> make_cases(const AxisInputs& inputs) {
 /// and the limit is 5.54. Kernels here are as wide as those of the default run.
 std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
   const auto has_moments = [](const filters::FilterRequest& request) { return request.spec.holds_moments; };
-  if (!inputs.renderer || std::ranges::none_of(inputs.filters, has_moments)) return {};
-  const Mistake mistake{"steps",
-                        "teach_evsm:radius=1,c=10,store=rg16f",
-                        {"teach_evsm:radius=1,c=5.54,store=rg16f", "teach_evsm:radius=1,c=10"},
-                        {"vsm:radius=1", "poisson:radius=1"}};
+  if (std::ranges::none_of(inputs.filters, has_moments)) return {};
+  const Mistake mistake{
+      "steps",
+      {"teach_evsm:radius=1,c=10,store=rg16f", "teach_evsm:radius=1,c=5.54,store=rg16f", "teach_evsm:radius=1,c=10"},
+      {"vsm:radius=1", "poisson:radius=1"}};
   return {replay(inputs, mistake, "evsm-mistake")};
 }
 

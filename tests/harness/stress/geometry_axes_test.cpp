@@ -5,64 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "harness/stress/case_tools.h"
+#include "harness/stress/edge_scene.h"
 #include "harness/stress/heat_map.h"
 #include "harness/stress/layer_stack.h"
-#include "harness/stress/onset.h"
-#include "harness/stress/straight_edge.h"
-#include "harness/stress/tilted_plane.h"
 #include "tests/harness/stress/stress_fixture.h"
 
 namespace shadowbench::stress {
 namespace {
 
 using ::testing::HasSubstr;
-
-/// The bias that a filter's model needs on a plane, in texels.
-double find_model_bias(const std::string& filter, const PlaneTilt& tilt) {
-  const auto plane = make_model_plane(make_inputs(filter).filters[0]);
-  plane->tilt(tilt);
-  return find_needed_bias(*plane, find_gain_m(tilt, 4.0)).value() / kPlaneTexel_m;
-}
-
-/// NUMBERS: s (r + 1) tan(angle), by sqrt 2 on the diagonal; the nearest texel's centre is half a texel away at most.
-TEST(TiltedPlane, ModelNeeds_WhatThePlaneGainsOverTheKernel) {
-  for (const auto& [filter, reach] :
-       {std::pair("none", 0.5), std::pair("pcf2x2", 1.0), std::pair("tent3x3", 1.5), std::pair("box4x4", 2.0)}) {
-    for (const double angle : {10.0, 45.0, 80.0, 89.9}) {
-      const double gain = reach * std::tan(angle * std::numbers::pi / 180.0);
-      EXPECT_NEAR(find_model_bias(filter, {angle, false}) / gain, 1.0, 0.03) << filter << " " << angle;
-      EXPECT_NEAR(find_model_bias(filter, {angle, true}) / (gain * std::numbers::sqrt2), 1.0, 0.06)
-          << filter << " " << angle;
-    }
-  }
-}
-
-TEST(TiltedPlane, FacingTheLight_NeedsNoBias) { EXPECT_EQ(find_model_bias("tent3x3", {0.0, false}), 0.0); }
-
-TEST(TiltedPlane, TwiceTheTheory_IsTheMostThatIsTried) {
-  const auto plane = make_model_plane(make_inputs("box4x4").filters[0]);
-  const PlaneTilt tilt{60.0, false};
-  plane->tilt(tilt);
-  EXPECT_FALSE(find_needed_bias(*plane, find_gain_m(tilt, 0.5)));
-}
-
-TEST(TiltedPlane, AcneGrowsAsTheBiasShrinks) {
-  const auto plane = make_model_plane(make_inputs("tent3x3").filters[0]);
-  const PlaneTilt tilt{70.0, false};
-  plane->tilt(tilt);
-  const double theory = find_gain_m(tilt, 1.5);
-  const Acne none = plane->find_acne(0.0), half = plane->find_acne(0.5 * theory),
-             enough = plane->find_acne(1.01 * theory);
-  EXPECT_NEAR(none.mean_shadow, 0.5, 0.02);
-  EXPECT_GT(none.share, half.share);
-  EXPECT_GT(half.share, half.mean_shadow);
-  EXPECT_EQ(enough.mean_shadow, 0.0);
-  EXPECT_EQ(enough.share, 0.0);
-}
 
 /// NUMBERS: occluders at .1 and .6, half each, receiver at .7.
 TEST(LayerStack, Chebyshev_OfTwoOccluders) {
@@ -85,8 +39,8 @@ TEST(LayerScene, SharesAreThoseOfTheFiltersKernel) {
     for (const int count : {2, 4, 16}) {
       const LayerStack stack = make_layer_stack(count, 0.2, 0.5, 0.9);
       const LayerScene layers = make_layer_scene(radius, stack);
-      const auto seen = make_model_lookup(inputs, inputs.filters[0], filters::Precision::kExtended)
-                            ->look(layers.scene, inputs.filters[0].values)
+      const auto seen = make_model_lookup(inputs, inputs.filters[0], filters::Precision::kExtended)(
+                            layers.scene, inputs.filters[0].values)
                             .visibility;
       for (std::size_t i = 0; i < seen.size(); ++i) {
         EXPECT_NEAR(std::accumulate(layers.shares[i].begin(), layers.shares[i].end(), 0.0), 1.0, 1e-12);
@@ -110,17 +64,17 @@ TEST(StraightEdge, WithoutAKernel_IsTheRampBetweenTwoTexels) {
 /// A kernel that met the border, which is deeper than all else, would light an exponential map up.
 TEST(StraightEdge, WidestKernel_StaysWithinTheMap) {
   const AxisInputs inputs = make_inputs(fmt::format("esm:radius={}", kWidestRadius));
-  const auto seen = make_model_lookup(inputs, inputs.filters[0], filters::Precision::kExtended)
-                        ->look(make_straight_edge(kWidestRadius), inputs.filters[0].values)
+  const auto seen = make_model_lookup(inputs, inputs.filters[0], filters::Precision::kExtended)(
+                        make_straight_edge(kWidestRadius), inputs.filters[0].values)
                         .visibility;
   for (const double v : seen) EXPECT_NEAR(v, 0.5, 0.02);
 }
 
 TEST(StraightEdge, FiltersThatFall_AreBroken_UnlessTheyAreStochastic) {
   const LookupResult falling{{0.0, 0.6, 0.4, 1.0}, 0};
-  EXPECT_EQ(judge_edge(falling, falling.visibility, 0.02, filters::FilterKind::kBound).verdict, Verdict::kBroken);
-  EXPECT_EQ(judge_edge(falling, falling.visibility, 0.02, filters::FilterKind::kComparison).verdict, Verdict::kBroken);
-  EXPECT_EQ(judge_edge(falling, falling.visibility, 0.02, filters::FilterKind::kStochastic).verdict, Verdict::kOk);
+  EXPECT_EQ(judge_edge(falling, falling.visibility, filters::FilterKind::kBound).verdict, Verdict::kBroken);
+  EXPECT_EQ(judge_edge(falling, falling.visibility, filters::FilterKind::kComparison).verdict, Verdict::kBroken);
+  EXPECT_EQ(judge_edge(falling, falling.visibility, filters::FilterKind::kStochastic).verdict, Verdict::kOk);
 }
 
 HeatMap make_heat_map() {
@@ -163,21 +117,8 @@ TEST(HeatMap, HighValuesLieAbove_AndTheCurveWhereItSays) {
 /// Every case that runs without a GL keeps to its theory.
 TEST(GeometryAxes, Models_MeetTheirTheories) {
   const AxisInputs inputs = make_inputs("none,tent3x3,teach4x4,poisson,vsm:bleed_reduction=0,slope_variance=0,esm");
-  for (const char* id : {"grazing-light", "light-bleeding", "kernel-radius", "taps"}) {
-    const Axis axis = choose_axes(id)[0];
-    int limits = 0;
-    for (const Case& item : axis.make_cases(inputs)) {
-      const records::StressCase found = find_onsets(item, axis);
-      EXPECT_EQ(found.not_available.empty(), item.level == Level::kModel) << id << " " << found.not_available;
-      for (const records::StressLimit& limit : compare(item, found, axis)) {
-        EXPECT_EQ(limit.agreement, records::StressAgreement::kAgrees)
-            << id << " " << item.filter << " " << item.variant << ": theory " << limit.onset.value_or(-1.0)
-            << ", measured " << limit.measured.value_or(-1.0);
-        ++limits;
-      }
-    }
-    EXPECT_GT(limits, 0) << id;
-  }
+  for (const char* id : {"light-bleeding", "kernel-radius", "taps"})
+    expect_theories_met(choose_axes(id)[0], inputs, Level::kModel, false);
 }
 
 Case find_model_case(const std::string& axis, const AxisInputs& inputs, const std::string& variant) {

@@ -13,11 +13,11 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-Axis make_axis(double low, double high, Scale scale = Scale::kLog) {
+Axis make_axis(double low, double high, bool log = true) {
   Axis axis;
   axis.id = "test";
   axis.quantity = "value";
-  axis.scale = scale;
+  axis.log = log;
   axis.range = axis.limits = {low, high};
   axis.coarse_samples = 9;
   return axis;
@@ -46,7 +46,7 @@ TEST(FindOnsets, FindsBothToOnePercent_OnALogarithmicAxis) {
 }
 
 TEST(FindOnsets, FindsToOnePercent_OnALinearAxisThatBeginsAtZero) {
-  const records::StressCase found = find_onsets(make_steps(0.037, 61.0), make_axis(0.0, 90.0, Scale::kLinear));
+  const records::StressCase found = find_onsets(make_steps(0.037, 61.0), make_axis(0.0, 90.0, false));
   EXPECT_NEAR(found.degraded->value, 0.037, 0.00037);
   EXPECT_NEAR(found.broken->value, 61.0, 0.61);
 }

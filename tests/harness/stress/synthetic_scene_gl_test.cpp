@@ -4,7 +4,6 @@
 
 #include "filters/base/error.h"
 #include "harness/stress/edge_scene.h"
-#include "harness/stress/onset.h"
 #include "tests/harness/stress/stress_fixture.h"
 
 namespace shadowbench::stress {
@@ -24,7 +23,7 @@ SyntheticScene make_scene() {
 
 TEST(GlLookup, ReceiversSeeTheTexelsTheyStandIn) {
   const AxisInputs inputs = make_gl_inputs("none");
-  const LookupResult result = make_gl_lookup(inputs, inputs.filters[0])->look(make_scene(), inputs.filters[0].values);
+  const LookupResult result = make_gl_lookup(inputs, inputs.filters[0])(make_scene(), inputs.filters[0].values);
   EXPECT_THAT(result.visibility, ::testing::ElementsAre(0.0, 1.0, 1.0, 0.0));
   EXPECT_EQ(result.broken_texels, 0);
 }
@@ -33,8 +32,8 @@ TEST(GlLookup, EqualsTheModel_ForEveryFilterThatHasOne) {
   const AxisInputs inputs = make_gl_inputs("");
   for (const filters::FilterRequest& request : inputs.filters) {
     const EdgeScene edge = make_edge_scene(4, {{0.3f, 0.6f}});
-    const LookupResult gl = make_gl_lookup(inputs, request)->look(edge.scene, request.values);
-    const LookupResult model = make_model_lookup(inputs, request)->look(edge.scene, request.values);
+    const LookupResult gl = make_gl_lookup(inputs, request)(edge.scene, request.values);
+    const LookupResult model = make_model_lookup(inputs, request)(edge.scene, request.values);
     for (std::size_t i = 0; i < gl.visibility.size(); ++i)
       EXPECT_NEAR(gl.visibility[i], model.visibility[i], 2e-3) << request.spec.id << " " << i;  // csm_conv: half floats
   }
@@ -44,10 +43,10 @@ TEST(GlLookup, TakesAnotherSceneAndOtherValues) {
   const AxisInputs inputs = make_gl_inputs("esm:radius=0");
   filters::ParamValues values = inputs.filters[0].values;
   const auto lookup = make_gl_lookup(inputs, inputs.filters[0]);
-  EXPECT_EQ(lookup->look(make_scene(), values).visibility.size(), 4u);
-  EXPECT_EQ(lookup->look(make_edge_scene(0, {{0.3f, 0.6f}}).scene, values).broken_texels, 0);
+  EXPECT_EQ(lookup(make_scene(), values).visibility.size(), 4u);
+  EXPECT_EQ(lookup(make_edge_scene(0, {{0.3f, 0.6f}}).scene, values).broken_texels, 0);
   values["c"] = 500.0;
-  EXPECT_GT(lookup->look(make_scene(), values).broken_texels, 0);
+  EXPECT_GT(lookup(make_scene(), values).broken_texels, 0);
 }
 
 TEST(GlLookup, MapThatTheGlCannotGive_IsAnError_AndSoNotAvailable) {
@@ -55,9 +54,9 @@ TEST(GlLookup, MapThatTheGlCannotGive_IsAnError_AndSoNotAvailable) {
   SyntheticScene scene = make_scene();
   scene.size = inputs.renderer->context->info().max_texture_size * 2;
   Case item;
-  item.observe = [lookup = std::shared_ptr(make_gl_lookup(inputs, inputs.filters[0])), scene,
+  item.observe = [lookup = make_gl_lookup(inputs, inputs.filters[0]), scene,
                   values = inputs.filters[0].values](double) {
-    lookup->look(scene, values);
+    lookup(scene, values);
     return Observation{};
   };
   Axis axis;
@@ -67,20 +66,8 @@ TEST(GlLookup, MapThatTheGlCannotGive_IsAnError_AndSoNotAvailable) {
 
 /// Every case of the first axes that runs on this GL keeps to its theory, or says why not.
 TEST(Axes, GlCases_MeetTheirTheories) {
-  const AxisInputs inputs = make_gl_inputs("vsm,esm,vsm_sat,vssm");
-  for (const char* id : {"esm-exponent", "vsm-cancellation"}) {
-    const Axis axis = choose_axes(id)[0];
-    for (const Case& item : axis.make_cases(inputs)) {
-      if (item.level != Level::kGl) continue;
-      const records::StressCase found = find_onsets(item, axis);
-      EXPECT_EQ(found.not_available, "");
-      for (const records::StressLimit& limit : compare(item, found, axis)) {
-        EXPECT_NE(limit.agreement, records::StressAgreement::kDisagrees)
-            << id << " " << item.variant << ": theory " << limit.onset.value_or(-1.0) << ", measured "
-            << limit.measured.value_or(-1.0);
-      }
-    }
-  }
+  for (const char* id : {"esm-exponent", "vsm-cancellation"})
+    expect_theories_met(choose_axes(id)[0], make_gl_inputs("vsm,esm,vsm_sat,vssm"), Level::kGl, true);
 }
 
 /// Annen et al.: exp(c z) overflows at c = 88.72 in 32-bit and 11.09 in 16-bit floats, where depth reaches 1.

@@ -29,10 +29,17 @@ records::StressCase make_case() {
                   {20.0, records::StressVerdict::kBroken, std::nullopt, "7 texels overflowed"}};
   item.degraded = records::StressOnset{11.0, 1.0, "error 0.05"};
   item.broken = records::StressOnset{20.0, 11.0, "7 texels overflowed"};
-  item.limits = {{11.09, records::StressTheoryKind::kOverflow, records::StressVerdict::kBroken, "ln(65504)", "derived",
-                  20.0, 1.803, records::StressAgreement::kDisagrees, ""},
-                 {std::nullopt, records::StressTheoryKind::kRounding, records::StressVerdict::kDegraded, "none",
-                  "derived", 11.0, std::nullopt, records::StressAgreement::kExplained, "the blur adds"}};
+  item.limits = {
+      {{11.09, records::StressTheoryKind::kOverflow, "ln(65504)", "derived", records::StressVerdict::kBroken},
+       20.0,
+       1.803,
+       records::StressAgreement::kDisagrees,
+       ""},
+      {{std::nullopt, records::StressTheoryKind::kRounding, "none", "derived", records::StressVerdict::kDegraded},
+       11.0,
+       std::nullopt,
+       records::StressAgreement::kExplained,
+       "the blur adds"}};
   item.notes = {"broken at 20, but ok again at 30"};
   return item;
 }
