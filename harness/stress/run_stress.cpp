@@ -101,10 +101,11 @@ class StressRun {
 
   void warn() {
     for (const records::StressAxis& axis : record_.axes) {
-      for (const std::string& sentence : pages::describe_disagreements(axis))
+      for (const std::string& sentence : pages::describe_limits(axis, records::StressAgreement::kDisagrees))
         progress_.note(fmt::format("warning: {}: {}", axis.id, sentence));
-      for (const std::string& sentence : pages::describe_absences(axis))
-        progress_.note(fmt::format("{}: not available: {}", axis.id, sentence));
+      for (const records::StressCase& item : axis.cases)
+        if (!item.not_available.empty())
+          progress_.note(fmt::format("{}: not available: {}: {}", axis.id, label_of(item), item.not_available));
     }
   }
 };

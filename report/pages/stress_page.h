@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,29 +19,17 @@ records::TextTable make_limit_table(const records::StressRecord& record);
 /// are none, and that were not met.
 std::vector<std::string> describe_out_of_sight(const records::StressRecord& record);
 
-/// The limits of an axis that are not what theory says: those explained, and those that are not.
-std::vector<std::string> describe_explanations(const records::StressAxis& axis);
-std::vector<std::string> describe_disagreements(const records::StressAxis& axis);
-
-/// The cases of an axis that were not measured, with the reason.
-std::vector<std::string> describe_absences(const records::StressAxis& axis);
-
-/// What else was seen on an axis: verdicts that got better again, and remarks of the axis.
-std::vector<std::string> describe_notes(const records::StressAxis& axis);
-
-/// Says in a sentence what an axis measures, over which range, and what its verdicts mean.
-std::string describe_axis(const records::StressAxis& axis);
+/// The limits of an axis that compare so with theory: in words, with the reason or that there is none.
+std::vector<std::string> describe_limits(const records::StressAxis& axis, records::StressAgreement agreement);
 
 /// Writes the table of all limits, with what it leaves out, for a terminal.
 std::string make_limit_text(const records::StressRecord& record);
 
-/// Whether an axis has anything to draw: one observation or more.
-bool has_stress_chart(const records::StressAxis& axis);
-
 /// Draws what was measured over an axis' quantity: a line per case, the same colour for the levels of one variant, the
 /// model's dashed; broken points filled, at the upper edge where nothing finite was measured; the bound dashed,
-/// and the theoretical limits dotted. Zeros are left out where the scale is logarithmic.
-page::Chart make_stress_chart(const records::StressAxis& axis);
+/// and the theoretical limits dotted. Zeros are left out where the scale is logarithmic. Nothing where
+/// nothing was observed.
+std::optional<page::Chart> make_stress_chart(const records::StressAxis& axis);
 
 /// Makes the page of `shadowbench stress`.
 page::Page make_stress_page(const records::StressRecord& record);

@@ -148,11 +148,11 @@ TEST(StressTables, LimitsThatNobodyExpectsToSee_AreCountedInstead) {
 TEST(StressPage, DisagreementsAreSaid_ExplainedOnesWithTheReason) {
   const records::StressRecord record = make_record();
   EXPECT_EQ(records::count_disagreements(record), 1);
-  ASSERT_THAT(describe_disagreements(record.axes[0]), SizeIs(1));
-  EXPECT_THAT(describe_disagreements(record.axes[0])[0],
+  ASSERT_THAT(describe_limits(record.axes[0], records::StressAgreement::kDisagrees), SizeIs(1));
+  EXPECT_THAT(describe_limits(record.axes[0], records::StressAgreement::kDisagrees)[0],
               AllOf(HasSubstr("broken at 20, where theory says 11.09 (ln(65504))"), HasSubstr("nothing explains it")));
-  ASSERT_THAT(describe_explanations(record.axes[0]), SizeIs(1));
-  EXPECT_THAT(describe_explanations(record.axes[0])[0],
+  ASSERT_THAT(describe_limits(record.axes[0], records::StressAgreement::kExplained), SizeIs(1));
+  EXPECT_THAT(describe_limits(record.axes[0], records::StressAgreement::kExplained)[0],
               AllOf(HasSubstr("degraded at 11, where theory says none"), HasSubstr("the blur adds")));
 }
 
@@ -229,7 +229,7 @@ TEST(StressPage, TerminalShowsTheLimits_AndWhatTheyLeaveOut) {
 }
 
 TEST(StressChart, HasCasesTheoryAndBound_BrokenAtTheTopWhereNothingIsMeasured) {
-  const page::Chart chart = make_stress_chart(make_record().axes[0]);
+  const page::Chart chart = make_stress_chart(make_record().axes[0]).value();
   EXPECT_EQ(chart.id, "stress.esm-exponent");
   EXPECT_TRUE(chart.x.log && chart.y.log);
   ASSERT_THAT(chart.series, SizeIs(4));
@@ -251,7 +251,7 @@ TEST(StressChart, LevelsOfAVariant_ShareTheirColour_TheModelIsDashed) {
   records::StressAxis axis = make_record().axes[0];
   axis.cases[1] = axis.cases[0];
   axis.cases[1].level = "model";
-  const page::Chart chart = make_stress_chart(axis);
+  const page::Chart chart = make_stress_chart(axis).value();
   const auto model = std::ranges::find(chart.series, "esm: r16f, linear (model)", &page::ChartSeries::title);
   ASSERT_NE(model, chart.series.end());
   EXPECT_EQ(model->color, chart.series[0].color);
@@ -270,7 +270,7 @@ TEST(StressChart, AtMostSixCases_AreShown_TheWorstAndNone) {
     axis.cases.push_back(axis.cases.back());
     axis.cases.back().level = "model";
   }
-  EXPECT_THAT(page::list_shown(make_stress_chart(axis)),
+  EXPECT_THAT(page::list_shown(make_stress_chart(axis).value()),
               ::testing::ElementsAre("none: r16f, linear (GL)", "f4: r16f, linear (GL)", "f5: r16f, linear (GL)",
                                      "f6: r16f, linear (GL)", "f7: r16f, linear (GL)", "f8: r16f, linear (GL)",
                                      "bound, 0.02", "theoretical limits"));
@@ -279,7 +279,7 @@ TEST(StressChart, AtMostSixCases_AreShown_TheWorstAndNone) {
 TEST(StressChart, CaseWithNothingMeasured_IsNotDrawn) {
   records::StressAxis axis = make_record().axes[0];
   axis.cases.erase(axis.cases.begin());
-  EXPECT_FALSE(has_stress_chart(axis));
+  EXPECT_FALSE(make_stress_chart(axis));
 }
 
 }  // namespace
