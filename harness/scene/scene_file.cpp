@@ -10,7 +10,6 @@
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/scene_object.h"
-#include "harness/scene/toml_reader.h"
 #include "harness/scene/validate.h"
 
 namespace shadowbench::scene {
@@ -162,14 +161,12 @@ Camera read_camera(const TomlTable& table) {
 }
 
 Scene load_scene(const std::filesystem::path& file, double aspect, const std::optional<SkyAngles>& light) {
-  const toml::table document = parse_toml_file(file);
-  const TomlTable root(document, "the scene", file.string());
+  const TomlTable root = read_toml(file, "the scene");
   return SceneBuilder(root, file).build({.aspect = aspect, .light = light});
 }
 
 std::string read_scene_title(const std::filesystem::path& file) {
-  const toml::table document = parse_toml_file(file);
-  return TomlTable(document, "the scene", file.string()).string("title");
+  return read_toml(file, "the scene").string("title");
 }
 
 }  // namespace shadowbench::scene

@@ -4,11 +4,10 @@
 #include <optional>
 #include <string>
 
+#include "filters/base/toml.h"
 #include "harness/scene/scene.h"
 
 namespace shadowbench::scene {
-
-class TomlTable;
 
 /// Reads and validates a scene file.
 ///

@@ -80,7 +80,7 @@ const std::map<std::string, Shape>& shapes() {
 
 glm::dvec3 read_scale(const TomlTable& object) {
   constexpr Range kScale{-1e6, 1e6};
-  const glm::dvec3 scale = object.has("scale") && object.is_number("scale")
+  const glm::dvec3 scale = object.has("scale") && object.find("scale")->as<double>()
                                ? glm::dvec3(object.number("scale", kScale))
                                : object.vec3("scale", kScale, glm::dvec3(1.0));
   if (scale.x * scale.y * scale.z != 0.0) return scale;

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "harness/scene/scene.h"
-#include "harness/scene/toml_reader.h"
 
 namespace shadowbench::scene {
 

@@ -1,13 +1,14 @@
 #include "harness/scene/scene_writer.h"
 
+#include <toml++/toml.h>
+
 #include <string_view>
 #include <utility>
 
+#include "filters/base/toml.h"
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/framing.h"
 #include "harness/scene/scene_file.h"
-#include "harness/scene/toml_reader.h"
-#include "harness/scene/toml_writer.h"
 #include "harness/scene/validate.h"
 
 namespace shadowbench::scene {
@@ -63,7 +64,7 @@ Value settle_by(Value value, std::string title, const Write& write, const Read& 
   for (int turn = 0; turn < kMostTurns; ++turn) {
     const TomlEntries written = write(value);
     const toml::table table = make_table(written);
-    value = read(TomlTable(table, title, {}));
+    value = read(TomlTable(table, title));
     if (write(value) == written) break;
   }
   return value;

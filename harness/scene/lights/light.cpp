@@ -13,7 +13,6 @@
 #include "filters/base/error.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/scene.h"
-#include "harness/scene/toml_reader.h"
 
 namespace shadowbench::scene {
 namespace {

@@ -8,18 +8,21 @@
 #include <variant>
 #include <vector>
 
+#include "filters/base/toml.h"
 #include "harness/scene/lights/beam.h"
 #include "reference/truth/area_light.h"
 
 namespace shadowbench::scene {
 
-class TomlTable;
 struct FitRequest;
 struct FitRule;
 struct LightFrustum;
 struct MapWindow;
 struct Scene;
 struct Texture;
+
+/// A part of a linear colour.
+inline constexpr Range kColor{0.0, 1.0};
 
 /// Maps unit vectors.
 using LightTurn = std::function<glm::vec3(const glm::vec3&)>;

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "harness/scene/lights/perspective_fit.h"
-#include "harness/scene/toml_reader.h"
 #include "harness/scene/validate.h"
 
 namespace shadowbench::scene {

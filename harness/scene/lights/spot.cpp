@@ -11,7 +11,6 @@
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/lights/perspective_fit.h"
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/toml_reader.h"
 #include "harness/scene/validate.h"
 
 namespace shadowbench::scene {

@@ -11,7 +11,6 @@
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/lights/warp.h"
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/toml_reader.h"
 #include "harness/scene/validate.h"
 #include "harness/scene/view_clip.h"
 
