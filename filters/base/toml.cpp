@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -323,6 +324,19 @@ TomlTable read_toml(const std::filesystem::path& file, std::string title) {
 
 toml::table parse_toml_file(const std::filesystem::path& file) {
   return parse(read_text(file), {.file = file.string()});
+}
+
+double write_number(float value) {
+  const std::string text = fmt::format("{}", value);
+  double number = 0.0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+toml::array write_numbers(std::span<const float> values) {
+  toml::array array;
+  for (const float value : values) array.push_back(write_number(value));
+  return array;
 }
 
 std::string write_toml(const toml::table& document) {

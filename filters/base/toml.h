@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,6 +17,7 @@
 
 // The header of toml++ costs seconds wherever it is included.
 namespace toml::inline v3 {
+class array;
 class node;
 class table;
 }  // namespace toml::inline v3
@@ -145,6 +147,10 @@ class TomlTable : public TomlValue {
 /// Parses a file. Throws kInput, with the line, where it is missing or malformed.
 TomlTable read_toml(const std::filesystem::path& file, std::string title);
 toml::table parse_toml_file(const std::filesystem::path& file);
+
+/// Numbers for a file: the shortest decimals that are read back as the same floats.
+double write_number(float value);
+toml::array write_numbers(std::span<const float> values);
 
 /// Writes a document for people: numbers with as few digits as are read back as the same, the values of a table before
 /// the tables in it, a list on one line. Requires keys that need no quotes.
