@@ -177,7 +177,8 @@ TomlTable::TomlTable(std::string_view text, std::string title, TomlOrigin origin
 TomlTable::TomlTable(toml::table table, std::string title, TomlOrigin origin)
     : TomlValue(std::make_shared<const Document>(Document{std::move(table), std::move(origin)}), std::move(title)) {}
 
-void TomlTable::require_known_keys(const std::vector<std::string>& known) const {
+void TomlTable::require_known_keys(std::vector<std::string> known, const std::vector<std::string>& more) const {
+  known.insert(known.end(), more.begin(), more.end());
   for (const TomlValue& each : entries())
     if (std::ranges::find(known, each.key()) == known.end())
       throw each.error(

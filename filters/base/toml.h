@@ -91,8 +91,8 @@ class TomlTable : public TomlValue {
   TomlTable(std::string_view text, std::string title, TomlOrigin origin);
   TomlTable(toml::table table, std::string title, TomlOrigin origin = {});
 
-  /// Throws for the first key that is not in `known`, with the nearest one that is.
-  void require_known_keys(const std::vector<std::string>& known) const;
+  /// Throws for the first key that is not among these, with the nearest one that is.
+  void require_known_keys(std::vector<std::string> known, const std::vector<std::string>& more = {}) const;
   bool has(std::string_view key) const { return find(key).has_value(); }
   std::optional<TomlValue> find(std::string_view key) const;
   /// All that it holds, by key.

@@ -24,9 +24,7 @@ class ExperimentReader {
       : folder_(file.parent_path()), root_(read_toml(file, "the experiment")) {}
 
   Experiment read(const std::vector<std::string>& keys) {
-    std::vector<std::string> known = keys;
-    known.insert(known.end(), {"title", "filter"});
-    root_.require_known_keys(known);
+    root_.require_known_keys(keys, {"title", "filter"});
     Experiment experiment;
     experiment.title = root_.string("title", std::string());
     for (const std::string& key : keys)

@@ -97,31 +97,24 @@ glm::dvec3 read_scale(const TomlTable& object) {
   throw object.error("scale", fmt::format("'scale' in {} must not be 0", object.title()));
 }
 
-/// The keys that every [[object]] of a scene file may have.
-const std::vector<std::string>& common_object_keys() {
-  static const std::vector<std::string> keys{"shape",          "name",   "material",     "casts_shadow",
-                                             "may_cull_front", "center", "rotation_deg", "scale"};
-  return keys;
+/// Refuses the keys of an [[object]] that neither all have nor one of its shape.
+void require_object_keys(const TomlTable& object, const std::vector<std::string>& own) {
+  object.require_known_keys(
+      {"shape", "name", "material", "casts_shadow", "may_cull_front", "center", "rotation_deg", "scale"}, own);
 }
 
 /// The shapes that an [[object]] may have, "model" included.
-const std::vector<std::string>& object_shapes() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const auto& [name, shape] : shapes()) all.push_back(name);
-    all.emplace_back("model");
-    return all;
-  }();
-  return names;
+std::vector<std::string> object_shapes() {
+  std::vector<std::string> all;
+  for (const auto& [name, shape] : shapes()) all.push_back(name);
+  all.emplace_back("model");
+  return all;
 }
 
 /// Makes the mesh of an [[object]] that is not a model, in its own space.
 Mesh make_shape(const TomlTable& object) {
-  const std::string name = object.choice("shape", object_shapes());
-  const Shape& shape = shapes().at(name);
-  std::vector<std::string> known = common_object_keys();
-  known.insert(known.end(), shape.keys.begin(), shape.keys.end());
-  object.require_known_keys(known);
+  const Shape& shape = shapes().at(object.string("shape"));
+  require_object_keys(object, shape.keys);
   return shape.make(object);
 }
 
@@ -155,23 +148,25 @@ class SceneBuilder {
   }
 
  private:
+  void take_name(const std::string& name, const std::string& kind, const TomlTable& table) {
+    if (!names_[kind].insert(name).second)
+      throw table.error("name", fmt::format("two {} have the name '{}'", kind, name));
+  }
+
   void add_camera(const TomlTable& table) {
     const Camera camera = read_camera(table);
-    for (const Camera& other : scene_.cameras)
-      if (other.name == camera.name)
-        throw table.error("name", fmt::format("two cameras have the name '{}'", camera.name));
+    take_name(camera.name, "cameras", table);
     scene_.cameras.push_back(camera);
   }
 
   void add_lights(const std::vector<TomlTable>& tables) {
     if (tables.empty()) throw root_.error("light", "the scene has no [light]");
-    std::set<std::string> names;
     for (const TomlTable& table : tables) {
       scene_.other_lights.push_back(read_light(table));
       const std::string& name = scene_.other_lights.back().name;
       if (tables.size() > 1 && name.empty())
         throw table.error("name", table.title() + " has no 'name': of several lights each needs one");
-      if (!names.insert(name).second) throw table.error("name", fmt::format("two lights have the name '{}'", name));
+      take_name(name, "lights", table);
     }
     scene_.light = std::move(scene_.other_lights.front());
     scene_.other_lights.erase(scene_.other_lights.begin());
@@ -182,10 +177,7 @@ class SceneBuilder {
     Material material;
     material.name = table.string("name");
     material.base_color = glm::vec4(glm::vec3(table.vec3("color", kColor)), 1.0f);
-    for (const Material& other : scene_.materials) {
-      if (other.name != material.name) continue;
-      throw table.error("name", fmt::format("two materials have the name '{}'", material.name));
-    }
+    take_name(material.name, "materials", table);
     scene_.materials.push_back(material);
     named_materials_.push_back(material.name);
   }
@@ -223,9 +215,7 @@ class SceneBuilder {
   }
 
   MeshFile read_model_object(const TomlTable& table) const {
-    std::vector<std::string> known = common_object_keys();
-    known.emplace_back("file");
-    table.require_known_keys(known);
+    require_object_keys(table, {"file"});
     return import_mesh_file(table.file("file"));
   }
 
@@ -250,7 +240,8 @@ class SceneBuilder {
   const TomlTable& root_;
   std::filesystem::path file_;
   Scene scene_;
-  std::vector<std::string> named_materials_;  ///< the first of the scene's materials
+  std::map<std::string, std::set<std::string>> names_;  ///< of each kind of things
+  std::vector<std::string> named_materials_;            ///< the first of the scene's materials
   int default_material_ = -1;
   std::size_t corner_count_ = 0;
 };

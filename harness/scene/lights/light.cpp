@@ -53,9 +53,8 @@ std::vector<LightNumber> list_numbers(Light& light) {
 
 std::string write_vector(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
-void require_light_keys(const TomlTable& table, std::vector<std::string> own) {
-  own.insert(own.begin(), {"type", "name", "color", "intensity"});
-  table.require_known_keys(own);
+void require_light_keys(const TomlTable& table, const std::vector<std::string>& own) {
+  table.require_known_keys({"type", "name", "color", "intensity"}, own);
 }
 
 std::vector<LightSlider> list_sliders(Light& light) {

@@ -58,7 +58,7 @@ struct LightNumber {
 };
 
 /// Refuses the keys of a [light] that neither all lights have nor one of this kind.
-void require_light_keys(const TomlTable& table, std::vector<std::string> own);
+void require_light_keys(const TomlTable& table, const std::vector<std::string>& own);
 
 /// "1 2 3", for texts that name a light.
 std::string write_vector(const glm::vec3& v);

@@ -12,7 +12,7 @@ namespace shadowbench::scene {
 namespace {
 
 Beam make_face_beam(const PointLight& point, int face) {
-  Beam beam = make_beam(point);
+  Beam beam = *find_beam(point);
   beam.axis_ws = glm::dvec3(0.0);
   beam.axis_ws[face / 2] = face % 2 == 0 ? 1.0 : -1.0;
   return beam;
@@ -76,13 +76,13 @@ PointLight checked_light(const PointLight& point, const std::string& where) {
              where);
 }
 
-Beam make_beam(const PointLight& point) {
+std::optional<Beam> find_beam(const PointLight& point) {
   constexpr double kEveryCosine = -2.0;
-  return {glm::dvec3(point.position_ws),
-          {0.0, -1.0, 0.0},
-          kEveryCosine,
-          kEveryCosine,
-          static_cast<double>(point.reference_m)};
+  return Beam{glm::dvec3(point.position_ws),
+              {0.0, -1.0, 0.0},
+              kEveryCosine,
+              kEveryCosine,
+              static_cast<double>(point.reference_m)};
 }
 
 truth::AreaLight make_area_light(const PointLight& point) {
@@ -92,8 +92,6 @@ truth::AreaLight make_area_light(const PointLight& point) {
 glm::vec3 to_light(const PointLight& point, const glm::vec3& point_ws) {
   return glm::normalize(point.position_ws - point_ws);
 }
-
-std::optional<Beam> find_beam(const PointLight& point) { return make_beam(point); }
 
 double light_size(const PointLight& point) { return 2.0 * static_cast<double>(point.radius_m); }
 

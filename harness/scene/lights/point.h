@@ -14,12 +14,9 @@ struct PointLight {
 /// The point light that a scene file describes. Throws kInput.
 PointLight read_point(const TomlTable& table);
 
-/// A beam without an edge; its axis says nothing.
-Beam make_beam(const PointLight& point);
-
 /// What light.h asks of every kind.
 glm::vec3 to_light(const PointLight& point, const glm::vec3& point_ws);
-std::optional<Beam> find_beam(const PointLight& point);
+std::optional<Beam> find_beam(const PointLight& point);  ///< without an edge; its axis says nothing
 double light_size(const PointLight& point);
 truth::AreaLight make_area_light(const PointLight& point);
 void turn_light(PointLight& point, const LightTurn& turn);

@@ -60,11 +60,11 @@ Spot read_spot(const TomlTable& table) {
   return spot;
 }
 
-Beam make_beam(const Spot& spot) {
+std::optional<Beam> find_beam(const Spot& spot) {
   const glm::dvec3 way = glm::dvec3(spot.target_ws) - glm::dvec3(spot.position_ws);
   const auto half_cosine = [](float degrees) { return std::cos(0.5 * glm::radians(static_cast<double>(degrees))); };
-  return {glm::dvec3(spot.position_ws), glm::normalize(way), half_cosine(spot.inner_cone_deg),
-          half_cosine(spot.cone_deg), glm::length(way)};
+  return Beam{glm::dvec3(spot.position_ws), glm::normalize(way), half_cosine(spot.inner_cone_deg),
+              half_cosine(spot.cone_deg), glm::length(way)};
 }
 
 double light_size(const Spot& spot) {
@@ -73,7 +73,7 @@ double light_size(const Spot& spot) {
 }
 
 truth::AreaLight make_area_light(const Spot& spot) {
-  const Beam beam = make_beam(spot);
+  const Beam beam = *find_beam(spot);
   if (is_rectangle(spot)) {
     const glm::dmat3 axes = glm::transpose(light_rotation(beam.axis_ws));
     return truth::AreaLight::make_rectangle(beam.position_ws, 0.5 * static_cast<double>(spot.size_m.x) * axes[0],
@@ -83,8 +83,6 @@ truth::AreaLight make_area_light(const Spot& spot) {
 }
 
 glm::vec3 to_light(const Spot& spot, const glm::vec3& point_ws) { return glm::normalize(spot.position_ws - point_ws); }
-
-std::optional<Beam> find_beam(const Spot& spot) { return make_beam(spot); }
 
 void turn_light(Spot& spot, const LightTurn& turn) {
   const glm::vec3 way = spot.target_ws - spot.position_ws;
@@ -131,7 +129,7 @@ int count_layers(const Spot&, const MapWindow*, const FitRule&) { return 1; }
 
 std::vector<LightFrustum> fit_layers(const Spot& spot, const MapWindow*, const Scene& scene,
                                      const FitRequest& request) {
-  const Beam beam = make_beam(spot);
+  const Beam beam = *find_beam(spot);
   const double tangent = pad_tangent(std::tan(0.5 * glm::radians(static_cast<double>(spot.cone_deg))), request);
   return {fit_perspective(beam, tangent, find_extent(scene, look_along(beam), tangent), request)};
 }

@@ -25,9 +25,6 @@ inline constexpr float kWidestCone_deg = 170.0f;
 /// The spot that a scene file describes. Throws kInput.
 Spot read_spot(const TomlTable& table);
 
-/// Its cone.
-Beam make_beam(const Spot& spot);
-
 /// What light.h asks of every kind.
 glm::vec3 to_light(const Spot& spot, const glm::vec3& point_ws);
 std::optional<Beam> find_beam(const Spot& spot);
