@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "harness/scene/lights/fit_rule.h"
-#include "harness/scene/lights/map_shape.h"
 #include "harness/scene/scene.h"
 #include "harness/scene/view_clip.h"
 #include "reference/truth/visibility.h"
@@ -71,6 +70,33 @@ struct PerspectiveMap {
   double distance(const glm::dvec3& point_ws) const { return glm::dot(point_ws - beam.position_ws, beam.axis_ws); }
 };
 
+/// How a point's place in the map follows from its place in the world; lib/map_shape.glsl does the same.
+enum class MapShape {
+  kPlane,        ///< a projection, that of the sun or of a lamp
+  kWarped,       ///< a projection of the sun's map, with depth that stays linear
+  kLogarithmic,  ///< the same, with v as the logarithm of w
+  kParaboloid,   ///< half of all directions around a lamp
+};
+
+/// A map that is none of the light's own: the depths are written by the fragment shader.
+inline bool is_curved(MapShape shape) { return shape != MapShape::kPlane; }
+
+/// v = scale log(w) + offset.
+struct LogCurve {
+  double scale = 0.0;
+  double offset = 0.0;
+
+  bool operator==(const LogCurve&) const = default;
+};
+
+/// Where the directions of half a sphere lie in the map: in a circle.
+struct Paraboloid {
+  glm::dvec2 center{0.5};
+  double radius = 0.5;
+
+  bool operator==(const Paraboloid&) const = default;
+};
+
 /// The frustum of a light's square map: orthographic, over casters and receivers, or a perspective one around a cone.
 struct LightFrustum {
   glm::dmat4 light_from_world{1.0};     ///< rigid; looks along -z
@@ -107,6 +133,9 @@ double count_used_texels(const FitRequest& request);
 /// Sets the matrices of a perspective map whose half side is `tangent` times the distance; `shift_clip` moves it along
 /// its axes.
 void set_perspective(LightFrustum& frustum, double tangent, const glm::dvec2& shift_clip);
+
+/// How the place of a point in a light's map, texels, changes with the point.
+truth::TexelGradients find_gradients(const LightFrustum& frustum, const glm::dvec3& point_ws);
 
 /// Where a filter's kernel lies in the world.
 truth::MapGrid make_map_grid(const LightFrustum& frustum);
