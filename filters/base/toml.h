@@ -89,6 +89,7 @@ class TomlTable : public TomlValue {
 
   /// Parses a text, of which messages speak as `title`. Throws, with the line, where it is malformed.
   TomlTable(std::string_view text, std::string title, TomlOrigin origin);
+  /// Takes a table that was put together.
   TomlTable(toml::table table, std::string title, TomlOrigin origin = {});
 
   /// Throws for the first key that is not among these, with the nearest one that is.
