@@ -33,6 +33,16 @@ std::string to_string(FilterKind kind) {
   return "other";
 }
 
+Ends ends_of(const ParamSpec& param) {
+  if (param.choices.empty()) return {*param.min, *param.max};
+  Ends ends{std::get<double>(param.choices.front()), std::get<double>(param.choices.front())};
+  for (const ParamValue& choice : param.choices) {
+    ends.smallest = std::min(ends.smallest, std::get<double>(choice));
+    ends.largest = std::max(ends.largest, std::get<double>(choice));
+  }
+  return ends;
+}
+
 std::string to_string(const ParamValue& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
   if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";

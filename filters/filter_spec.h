@@ -114,6 +114,13 @@ std::string to_string(FilterKind kind);
 /// Writes a value as the command line would take it.
 std::string to_string(const ParamValue& value);
 
+/// The least and the greatest value that a numeric parameter may take, by its range or by its choices.
+struct Ends {
+  double smallest;
+  double largest;
+};
+Ends ends_of(const ParamSpec& param);
+
 /// A numeric parameter's value. Requires that the parameter exists and is a number.
 double number(const ParamValues& values, const std::string& name);
 

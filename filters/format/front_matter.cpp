@@ -2,25 +2,17 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdint>
-#include <fstream>
-#include <iterator>
 #include <limits>
-#include <sstream>
 
-#include "filters/base/error.h"
 #include "filters/base/input_file.h"
-#include "filters/base/toml_depth.h"
+#include "filters/base/toml.h"
 #include "filters/disk_points.h"
-#include "filters/format/front_matter_reader.h"
+#include "filters/format/declared_kernel.h"
 #include "filters/format/glsl_words.h"
-#include "filters/format/kernel_reader.h"
-#include "filters/format/passes.h"
 #include "filters/store_format.h"
 
 namespace shadowbench::filters {
@@ -29,62 +21,96 @@ namespace {
 constexpr std::string_view kOpen = "/*+++";
 constexpr std::string_view kClose = "+++*/";
 constexpr double kMostDiskPoints = 4096.0;
+constexpr std::size_t kMostPasses = 6;  // as many texture units are free
 
 int count_lines(std::string_view text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
-FilterKind read_kind(const FrontMatterReader& reader, const toml::table& root) {
-  reader.text(root, "kind", true);
+FilterKind read_kind(const TomlTable& root) {
   std::vector<std::pair<std::string, FilterKind>> kinds;
   for (const FilterKind kind :
        {FilterKind::kComparison, FilterKind::kBound, FilterKind::kStochastic, FilterKind::kOther})
     kinds.emplace_back(to_string(kind), kind);
-  return reader.choose<FilterKind>(root, "kind", kinds);
+  return root.choose("kind", kinds);
 }
 
-void check_default(const FrontMatterReader& reader, const toml::node& node, const ParamSpec& param) {
+/// The tables `[key.NAME]` in the order of the file, each with its name as key: the author's order is the one that
+/// people read. A name must be one that GLSL takes, and not among those taken, to which it is added.
+std::vector<TomlTable> read_named_tables(const TomlTable& root, const std::string& key,
+                                         std::vector<std::string>& taken) {
+  std::vector<TomlTable> found;
+  const auto outer = root.find(key);
+  if (!outer) return found;
+  const auto none = [&] { return fmt::format("'{0}' must hold tables: [{0}.NAME]", key); };
+  const auto named = outer->as_table(key);
+  if (!named) throw outer->error(none());
+  for (const TomlValue& each : named->entries()) {
+    auto table = each.as_table(fmt::format("[{}.{}]", key, each.key()));
+    if (!table) throw each.error(none());
+    found.push_back(*std::move(table));
+  }
+  std::ranges::sort(found, {}, &TomlTable::line);
+  for (const TomlTable& table : found) {
+    if (!is_identifier(table.key()))
+      throw table.error(fmt::format("{}: '{}' cannot be a name in GLSL", table.title(), table.key()));
+    if (std::ranges::find(taken, table.key()) != taken.end())
+      throw table.error(
+          fmt::format("{}: '{}' is the name of something else; choose another", table.title(), table.key()));
+    taken.push_back(table.key());
+  }
+  return found;
+}
+
+ParamValue read_value(const TomlValue& value) {
+  if (const auto flag = value.as<bool>()) return *flag;
+  if (const auto text = value.as<std::string>()) return *text;
+  if (const auto number = value.as<double>(); number && std::isfinite(*number)) return *number;
+  throw value.must_be("a finite number, a string, true or false");
+}
+
+void check_default(const TomlValue& given, const ParamSpec& param) {
   if (!param.choices.empty()) {
     for (const ParamValue& choice : param.choices)
       if (choice.index() != param.default_value.index())
-        reader.fail(&node, fmt::format("the default of '{}' and its choices are of different types", param.name));
+        throw given.error(fmt::format("the default of '{}' and its choices are of different types", param.name));
     if (std::find(param.choices.begin(), param.choices.end(), param.default_value) == param.choices.end())
-      reader.fail(&node, fmt::format("the default of '{}' is not one of its choices", param.name));
+      throw given.error(fmt::format("the default of '{}' is not one of its choices", param.name));
     return;
   }
   const auto* value = std::get_if<double>(&param.default_value);
   if (!value) {
     if (std::holds_alternative<std::string>(param.default_value))
-      reader.fail(&node, fmt::format("'{}' is a text and needs 'choices'", param.name));
+      throw given.error(fmt::format("'{}' is a text and needs 'choices'", param.name));
     return;
   }
   if (!param.min || !param.max)
-    reader.fail(&node, fmt::format("'{}' is a number and needs 'min' and 'max'", param.name));
+    throw given.error(fmt::format("'{}' is a number and needs 'min' and 'max'", param.name));
   if (*param.min > *param.max)
-    reader.fail(&node, fmt::format("'{}' has min {} above max {}", param.name, *param.min, *param.max));
+    throw given.error(fmt::format("'{}' has min {} above max {}", param.name, *param.min, *param.max));
   if (*value < *param.min || *value > *param.max) {
-    reader.fail(&node,
-                fmt::format("the default of '{}' is {}, outside {} .. {}", param.name, *value, *param.min, *param.max));
+    throw given.error(
+        fmt::format("the default of '{}' is {}, outside {} .. {}", param.name, *value, *param.min, *param.max));
   }
 }
 
-ParamSpec read_param(const FrontMatterReader& reader, const std::string& name, const toml::table& table) {
-  reader.check_keys(table, {"default", "min", "max", "choices", "unit", "text", "const"},
-                    fmt::format("[param.{}]", name));
-  const toml::node* default_node = table.get("default");
-  if (!default_node) reader.fail(&table, fmt::format("[param.{}] lacks 'default'", name));
+ParamSpec read_param(const TomlTable& table) {
+  table.require_known_keys({"default", "min", "max", "choices", "unit", "text", "const"});
+  const auto given = table.find("default");
+  if (!given) throw table.error(fmt::format("{} lacks 'default'", table.title()));
   ParamSpec param;
-  param.name = name;
-  param.default_value = reader.value(*default_node, "'default'");
-  param.integer = default_node->is_integer();
-  param.min = reader.finite(table, "min");
-  param.max = reader.finite(table, "max");
-  param.unit = reader.text(table, "unit", false);
-  param.text = reader.text(table, "text", true);
-  if (const toml::node* choices = table.get("choices")) {
-    if (!choices->as_array()) reader.fail(choices, "'choices' must be a list");
-    for (const toml::node& item : *choices->as_array()) param.choices.push_back(reader.value(item, "a choice"));
+  param.name = table.key();
+  param.default_value = read_value(*given);
+  param.integer = given->as<std::int64_t>().has_value();
+  if (table.has("min")) param.min = table.number("min", kFinite);
+  if (table.has("max")) param.max = table.number("max", kFinite);
+  param.unit = table.string("unit", "");
+  param.text = table.string("text");
+  if (const auto choices = table.find("choices")) {
+    const auto list = choices->as_list();
+    if (!list) throw choices->must_be("a list");
+    for (const TomlValue& each : *list) param.choices.push_back(read_value(each));
   }
-  param.is_const = reader.flag(table, "const") || std::holds_alternative<std::string>(param.default_value);
-  check_default(reader, *default_node, param);
+  param.is_const = table.boolean("const", false) || std::holds_alternative<std::string>(param.default_value);
+  check_default(*given, param);
   return param;
 }
 
@@ -101,54 +127,52 @@ void add_list_param(FilterSpec& spec, const std::string& name, std::vector<Param
   spec.params.push_back(param);
 }
 
-void read_texts_param(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec,
-                      const std::string& name, const std::vector<std::string>& known, const char* text) {
-  const std::vector<std::string> values = reader.texts(root, name);
-  for (const std::string& value : values) {
-    if (std::find(known.begin(), known.end(), value) != known.end()) continue;
-    reader.fail_unknown(root.get(name), name, value, known);
-  }
+void read_texts_param(const TomlTable& root, FilterSpec& spec, const std::string& name,
+                      const std::vector<std::string>& known, const char* text) {
+  const std::vector<std::string> values = root.strings(name, std::vector<std::string>());
+  for (const std::string& value : values)
+    if (std::find(known.begin(), known.end(), value) == known.end()) throw root.unknown(name, value, known);
   add_list_param(spec, name, {values.begin(), values.end()}, text);
 }
 
-void read_samples(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
-  const toml::node* node = root.get("samples");
-  if (!node) return;
-  spec.samples_line = reader.line_of(node);
+void read_samples(const TomlTable& root, FilterSpec& spec) {
+  const auto given = root.find("samples");
+  if (!given) return;
+  spec.samples_line = given->line();
   std::vector<ParamValue> values;
-  const auto take = [&](const toml::node& item) {
-    const auto count = item.value_exact<std::int64_t>();
+  for (const TomlValue& each : given->as_list().value_or(std::vector{*given})) {
+    const auto count = each.as<std::int64_t>();
     if (!count || *count < 1 || *count > 16 || !std::has_single_bit(static_cast<std::uint64_t>(*count)))
-      reader.fail(&item, "'samples' must be 1, 2, 4, 8 or 16, or a list of such numbers");
+      throw each.error("'samples' must be 1, 2, 4, 8 or 16, or a list of such numbers");
     values.emplace_back(static_cast<double>(*count));
-  };
-  if (const toml::array* list = node->as_array())
-    for (const toml::node& item : *list) take(item);
-  else
-    take(*node);
-  if (values.empty()) reader.fail(node, "'samples' is an empty list");
+  }
+  if (values.empty()) throw given->error("'samples' is an empty list");
   add_list_param(spec, "samples", std::move(values), "samples of depth a texel; encode() is asked for each");
 }
 
-std::variant<double, std::string> read_number_or_param(const FrontMatterReader& reader, const toml::table& root,
-                                                       const FilterSpec& spec, const std::string& key,
+/// The numeric parameter that a key names; empty without the key.
+std::string read_param_name(const TomlTable& root, const FilterSpec& spec, const std::string& key) {
+  const std::string name = root.string(key, "");
+  const ParamSpec* param = spec.find_param(name);
+  if (!name.empty() && (!param || !std::holds_alternative<double>(param->default_value)))
+    throw root.error(key, fmt::format("'{}' names '{}', which is not a numeric parameter", key, name));
+  return name;
+}
+
+std::variant<double, std::string> read_number_or_param(const TomlTable& root, const FilterSpec& spec,
+                                                       const std::string& key,
                                                        std::variant<double, std::string> fallback) {
-  const toml::node* node = root.get(key);
-  if (!node) return fallback;
-  if (const auto name = node->value_exact<std::string>()) {
-    const ParamSpec* param = spec.find_param(*name);
-    if (!param || !std::holds_alternative<double>(param->default_value))
-      reader.fail(node, fmt::format("'{}' names '{}', which is not a numeric parameter", key, *name));
-    return *name;
-  }
-  const auto value = reader.finite(root, key);
-  if (*value < 0.0) reader.fail(node, fmt::format("'{}' must not be negative", key));
-  return *value;
+  const auto given = root.find(key);
+  if (!given) return fallback;
+  if (!given->as<std::string>().value_or("").empty()) return read_param_name(root, spec, key);
+  const double value = given->number(kFinite);
+  if (value < 0.0) throw given->error(fmt::format("'{}' must not be negative", key));
+  return value;
 }
 
 /// A filter that says how texels combine asks for the Gaussian prefilter; its radius is the kernel's.
-void read_prefilter(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
-  if (!root.contains("combine")) return;
+void read_prefilter(const TomlTable& root, FilterSpec& spec) {
+  if (!root.has("combine")) return;
   const auto* name = std::get_if<std::string>(&spec.radius_texels);
   const ParamSpec* param = name ? spec.find_param(*name) : nullptr;
   const bool whole = param
@@ -157,131 +181,143 @@ void read_prefilter(const FrontMatterReader& reader, const toml::table& root, Fi
                                std::floor(std::get<double>(spec.radius_texels)) == std::get<double>(spec.radius_texels);
   const Ends ends = param ? ends_of(*param) : Ends{0.0, name ? 0.0 : std::get<double>(spec.radius_texels)};
   if (!whole || ends.largest > kMaxPrefilterRadius || ends.smallest < 0.0) {
-    reader.fail(root.get("combine"), fmt::format("'combine' asks for the prefilter, whose radius is 'radius_texels': "
-                                                 "that must be a whole number, or an integer parameter, within 0 .. {}",
-                                                 kMaxPrefilterRadius));
+    throw root.error("combine", fmt::format("'combine' asks for the prefilter, whose radius is 'radius_texels': "
+                                            "that must be a whole number, or an integer parameter, within 0 .. {}",
+                                            kMaxPrefilterRadius));
   }
   spec.has_prefilter = true;
 }
 
-/// The numeric parameter that a key names; empty without the key.
-std::string read_param_name(const FrontMatterReader& reader, const toml::table& root, const FilterSpec& spec,
-                            const std::string& key) {
-  const std::string name = reader.text(root, key, false);
-  const ParamSpec* param = spec.find_param(name);
-  if (!name.empty() && (!param || !std::holds_alternative<double>(param->default_value)))
-    reader.fail(root.get(key), fmt::format("'{}' names '{}', which is not a numeric parameter", key, name));
-  return name;
-}
-
 /// What the encoded map holds: `--stability` and warnings judge its numbers by that.
-void read_stored(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
-  spec.holds_moments = reader.flag(root, "moments");
-  spec.exponent = read_param_name(reader, root, spec, "exponent");
-  spec.variance_floor = read_param_name(reader, root, spec, "variance_floor");
+void read_stored(const TomlTable& root, FilterSpec& spec) {
+  spec.holds_moments = root.boolean("moments", false);
+  spec.exponent = read_param_name(root, spec, "exponent");
+  spec.variance_floor = read_param_name(root, spec, "variance_floor");
   if (!spec.variance_floor.empty() && !spec.holds_moments)
-    reader.fail(root.get("variance_floor"), "'variance_floor' needs 'moments = true': only moments have a variance");
+    throw root.error("variance_floor", "'variance_floor' needs 'moments = true': only moments have a variance");
   if (!spec.holds_moments) return;
-  for (const std::string& store : reader.texts(root, "store")) {
+  for (const std::string& store : root.strings("store", std::vector<std::string>())) {
     if (store_channels(store) >= 2) continue;
-    reader.fail(
-        root.get("moments"),
+    throw root.error(
+        "moments",
         fmt::format("'moments' takes channels in pairs, a mean and the mean of its square, and the store '{}' has one",
                     store));
   }
 }
 
 /// One of the patterns, or a parameter whose choices are all patterns.
-std::string read_pattern(const FrontMatterReader& reader, const toml::table& table, const FilterSpec& spec) {
-  if (!table.contains("pattern")) return disk_patterns().front();
-  const std::string name = reader.text(table, "pattern", true);
+std::string read_pattern(const TomlTable& table, const FilterSpec& spec) {
+  const std::string name = table.string("pattern", disk_patterns().front());
   const auto is_pattern = [](const ParamValue& value) {
     return std::ranges::find(disk_patterns(), to_string(value)) != disk_patterns().end();
   };
   const ParamSpec* param = spec.find_param(name);
   if (param ? param->choices.empty() || !std::ranges::all_of(param->choices, is_pattern) : !is_pattern(name)) {
-    reader.fail(table.get("pattern"), fmt::format("'pattern' is '{}', which is neither of {} nor a parameter that "
-                                                  "chooses among them",
-                                                  name, fmt::join(disk_patterns(), ", ")));
+    throw table.error("pattern", fmt::format("'pattern' is '{}', which is neither of {} nor a parameter that "
+                                             "chooses among them",
+                                             name, fmt::join(disk_patterns(), ", ")));
   }
   return name;
 }
 
-DiskTable read_disk(const FrontMatterReader& reader, const std::string& name, const toml::table& table,
-                    const FilterSpec& spec) {
-  reader.check_keys(table, {"count", "seed", "pattern"}, fmt::format("[disk.{}]", name));
+DiskTable read_disk(const TomlTable& table, const FilterSpec& spec) {
+  table.require_known_keys({"count", "seed", "pattern"});
   DiskTable disk;
-  disk.name = name;
-  disk.count = reader.text(table, "count", true);
+  disk.name = table.key();
+  disk.count = table.string("count");
   const ParamSpec* param = spec.find_param(disk.count);
-  if (!param || !param->integer || !param->is_const) {
-    reader.fail(table.get("count"),
-                fmt::format("'count' names '{}', which is not a const integer parameter", disk.count));
-  }
+  if (!param || !param->integer || !param->is_const)
+    throw table.error("count", fmt::format("'count' names '{}', which is not a const integer parameter", disk.count));
   if (const double most = ends_of(*param).largest; most > kMostDiskPoints) {
-    reader.fail(table.get("count"), fmt::format("'count' names '{}', which may be up to {}: at most {} points are made",
-                                                disk.count, most, kMostDiskPoints));
+    throw table.error("count", fmt::format("'count' names '{}', which may be up to {}: at most {} points are made",
+                                           disk.count, most, kMostDiskPoints));
   }
-  disk.seed = reader.whole(table, "seed", 0, std::numeric_limits<unsigned>::max());
-  disk.pattern = read_pattern(reader, table, spec);
+  disk.seed = static_cast<unsigned>(table.whole("seed", {0, std::numeric_limits<unsigned>::max()}, 1));
+  disk.pattern = read_pattern(table, spec);
   return disk;
 }
 
 /// Gives the names that the file took.
-std::vector<std::string> read_root(const FrontMatterReader& reader, const toml::table& root, FilterSpec& spec) {
+std::vector<std::string> read_root(const TomlTable& root, FilterSpec& spec) {
   std::vector<std::string> names;
-  reader.check_keys(
-      root,
-      {"title", "source", "kind", "store", "combine", "sample", "samples", "claims", "radius_texels", "bias_texels",
-       "teaching", "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk", "kernel", "pass"},
-      "the front matter");
-  spec.title = reader.text(root, "title", true);
-  spec.source = reader.text(root, "source", true);
-  spec.kind = read_kind(reader, root);
-  spec.claims = reader.texts(root, "claims");
-  spec.teaching = reader.flag(root, "teaching");
-  for (const auto& [name, table] : reader.named_tables(root, "param", names))
-    spec.params.push_back(read_param(reader, name, *table));
-  read_texts_param(reader, root, spec, "store", encode_formats(), "format of the encoded map");
-  read_texts_param(reader, root, spec, "combine", {"linear", "log"},
+  root.require_known_keys({"title", "source", "kind", "store", "combine", "sample", "samples", "claims",
+                           "radius_texels", "bias_texels", "teaching", "moments", "exponent", "variance_floor",
+                           "bound_at_zero", "param", "disk", "kernel", "pass"});
+  spec.title = root.string("title");
+  spec.source = root.string("source");
+  spec.kind = read_kind(root);
+  spec.claims = root.strings("claims", std::vector<std::string>());
+  spec.teaching = root.boolean("teaching", false);
+  for (const TomlTable& table : read_named_tables(root, "param", names)) spec.params.push_back(read_param(table));
+  read_texts_param(root, spec, "store", encode_formats(), "format of the encoded map");
+  read_texts_param(root, spec, "combine", {"linear", "log"},
                    "how the prefilter adds texels; log: log-sum-exp, read with the nearest texel");
-  read_texts_param(reader, root, spec, "sample", {"linear", "nearest"}, "how the encoded map is read");
-  read_samples(reader, root, spec);
-  spec.radius_texels = read_number_or_param(reader, root, spec, "radius_texels", 0.0);
-  spec.bias_texels = read_number_or_param(reader, root, spec, "bias_texels", spec.radius_texels);
-  read_prefilter(reader, root, spec);
-  read_stored(reader, root, spec);
-  spec.bound_at_zero = read_param_name(reader, root, spec, "bound_at_zero");
+  read_texts_param(root, spec, "sample", {"linear", "nearest"}, "how the encoded map is read");
+  read_samples(root, spec);
+  spec.radius_texels = read_number_or_param(root, spec, "radius_texels", 0.0);
+  spec.bias_texels = read_number_or_param(root, spec, "bias_texels", spec.radius_texels);
+  read_prefilter(root, spec);
+  read_stored(root, spec);
+  spec.bound_at_zero = read_param_name(root, spec, "bound_at_zero");
   if (!spec.bound_at_zero.empty() && spec.kind != FilterKind::kBound)
-    reader.fail(root.get("bound_at_zero"), "'bound_at_zero' needs 'kind = \"bound\"'");
-  for (const auto& [name, table] : reader.named_tables(root, "disk", names))
-    spec.disks.push_back(read_disk(reader, name, *table, spec));
-  if (const toml::node* kernel = root.get("kernel")) spec.kernel = read_kernel(reader, *kernel, spec);
+    throw root.error("bound_at_zero", "'bound_at_zero' needs 'kind = \"bound\"'");
+  for (const TomlTable& table : read_named_tables(root, "disk", names)) spec.disks.push_back(read_disk(table, spec));
+  if (const auto kernel = root.find("kernel")) spec.kernel = read_kernel(*kernel, spec);
   return names;
 }
 
-void inspect_body(const FrontMatterReader& reader, const toml::table& root, const std::vector<std::string>& names,
-                  FilterSpec& spec) {
+PassSpec read_pass(const TomlTable& table, std::string_view code) {
+  table.require_known_keys({"store", "steps", "size", "anisotropy"});
+  PassSpec pass;
+  pass.name = table.key();
+  pass.line = table.line();
+  pass.store = table.choice("store", pass_formats());
+  pass.steps = table.choose<PassSteps>("steps",
+                                       {{"once", PassSteps::kOnce},
+                                        {"axes", PassSteps::kAxes},
+                                        {"prefix", PassSteps::kPrefix},
+                                        {"levels", PassSteps::kLevels}},
+                                       "once");
+  pass.half = table.choose<bool>("size", {{"full", false}, {"half", true}}, "full");
+  pass.anisotropy = table.integer("anisotropy", {1, 16}, 1);
+  if (pass.anisotropy > 1 && (pass.steps != PassSteps::kLevels || pass.is_integer()))
+    throw table.error("anisotropy", "'anisotropy' needs steps = \"levels\" and a store that is no integer");
+  if (!has_function(code, pass.texel_type(), pass.name))
+    throw table.error(
+        fmt::format("the GLSL lacks '{} {}(PassInput p)', which writes this map", pass.texel_type(), pass.name));
+  return pass;
+}
+
+/// Reads the tables `[pass.NAME]`, in the order of the file. `code` is the filter's GLSL without comments, and `taken`
+/// has the names of its parameters and tables of points.
+void read_passes(const TomlTable& root, std::string_view code, std::vector<std::string> taken, FilterSpec& spec) {
+  taken.insert(taken.end(), {"depth", "map", "stored", "compare", "compare_nearest", "encode", "visibility"});
+  for (const TomlTable& table : read_named_tables(root, "pass", taken)) spec.passes.push_back(read_pass(table, code));
+  if (spec.passes.size() > kMostPasses)
+    throw root.error("pass", fmt::format("{} passes are declared; {} are the most", spec.passes.size(), kMostPasses));
+}
+
+void inspect_body(const TomlTable& root, const std::vector<std::string>& names, FilterSpec& spec) {
   const std::string code = strip_comments(spec.body);
-  read_passes(reader, root, code, names, spec);
+  read_passes(root, code, names, spec);
   spec.has_encode = has_function(code, "vec4", "encode");
   for (const char* sampler : {"map_depth", "map_compare", "map_compare_nearest", "map_stored"})
     spec.uses_samplers = spec.uses_samplers || has_word(code, sampler);
   for (const PassSpec& pass : spec.passes)
     spec.uses_samplers = spec.uses_samplers || has_word(code, "map_" + pass.name);
   spec.reads_unwritten = !spec.has_encode && (has_word(code, "fetch_map") || has_word(code, "map_stored"));
-  if (!has_function(code, "float", "visibility")) reader.fail(nullptr, "the GLSL lacks 'float visibility(Receiver r)'");
-  const bool stores = root.contains("store");
+  if (!has_function(code, "float", "visibility")) throw root.error("the GLSL lacks 'float visibility(Receiver r)'");
+  const bool stores = root.has("store");
   if (stores && !spec.has_encode)
-    reader.fail(root.get("store"), "'store' is given, but the GLSL lacks 'vec4 encode(EncodeInput e)'");
+    throw root.error("store", "'store' is given, but the GLSL lacks 'vec4 encode(EncodeInput e)'");
   if (!stores && spec.has_encode)
-    reader.fail(nullptr, "the GLSL has encode(), but the front matter lacks 'store', the format it writes");
+    throw root.error("the GLSL has encode(), but the front matter lacks 'store', the format it writes");
   for (const char* key : {"combine", "sample"})
-    if (root.contains(key) && !stores)
-      reader.fail(root.get(key), fmt::format("'{}' needs 'store': a depth map is not prefiltered", key));
+    if (root.has(key) && !stores)
+      throw root.error(key, fmt::format("'{}' needs 'store': a depth map is not prefiltered", key));
   for (const char* key : {"moments", "exponent", "samples"})
-    if (root.contains(key) && !stores)
-      reader.fail(root.get(key), fmt::format("'{}' says what is stored, and needs 'store'", key));
+    if (root.has(key) && !stores)
+      throw root.error(key, fmt::format("'{}' says what is stored, and needs 'store'", key));
 }
 
 }  // namespace
@@ -298,38 +334,24 @@ FilterSpec parse_filter(const std::string& text, const std::filesystem::path& pa
   spec.path = path.string();
   const std::size_t begin = open + kOpen.size();
   const int first_line = 1 + count_lines(std::string_view(text).substr(0, begin));
-  const FrontMatterReader reader(spec.path, first_line);
-  const std::string front_matter = text.substr(begin, close - begin);
-  if (const int line = find_too_deep_key(front_matter); line > 0)
-    reader.fail_at(line, fmt::format("a key has more than {} dots", kMostDots));
-  toml::table root;
-  try {
-    root = toml::parse(front_matter);
-  } catch (const toml::parse_error& error) {
-    reader.fail_at(static_cast<int>(error.source().begin.line),
-                   fmt::format("malformed front matter: {}", error.description()));
-  }
-  const std::vector<std::string> names = read_root(reader, root, spec);
+  const TomlTable root(std::string_view(text).substr(begin, close - begin), "the front matter",
+                       {spec.path, first_line, ErrorKind::kFilter});
+  const std::vector<std::string> names = read_root(root, spec);
   spec.body = text.substr(close + kClose.size());
   spec.body_first_line = 1 + count_lines(std::string_view(text).substr(0, close));
-  inspect_body(reader, root, names, spec);
+  inspect_body(root, names, spec);
   return spec;
 }
 
 FilterSpec load_filter(const std::filesystem::path& path) {
-  require_plain_file(path, 4 * kMebibyte, ErrorKind::kFilter);
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  if (file) text << file.rdbuf();
-  if (!file || std::filesystem::is_directory(path))
-    throw Error(ErrorKind::kFilter, "cannot read this filter file: check the path and its permissions", path.string());
+  const std::vector<unsigned char> bytes = read_file_bytes(path, 4 * kMebibyte, ErrorKind::kFilter);
   if (!is_identifier(path.stem().string())) {
     throw Error(
         ErrorKind::kFilter,
         fmt::format("'{}' cannot be a filter's id: rename the file to letters, digits and '_'", path.stem().string()),
         path.string());
   }
-  return parse_filter(text.str(), path);
+  return parse_filter({bytes.begin(), bytes.end()}, path);
 }
 
 }  // namespace shadowbench::filters

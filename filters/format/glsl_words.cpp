@@ -1,6 +1,9 @@
 #include "filters/format/glsl_words.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <vector>
 
 namespace shadowbench::filters {
 namespace {
@@ -20,8 +23,7 @@ std::size_t end_of_comment(const std::string& glsl, std::size_t start) {
   return line ? close : close + 2;
 }
 
-}  // namespace
-
+/// Where the word stands by itself next, from `start` on; npos where it does not.
 std::size_t find_word(std::string_view code, std::string_view word, std::size_t start) {
   for (std::size_t at = code.find(word, start); at != std::string_view::npos; at = code.find(word, at + 1)) {
     const std::size_t end = at + word.size();
@@ -31,6 +33,7 @@ std::size_t find_word(std::string_view code, std::string_view word, std::size_t 
   return std::string_view::npos;
 }
 
+/// The text with every comment turned into as many blanks as it has characters, and its line ends.
 std::string blank_comments(const std::string& glsl) {
   std::string code = glsl;
   for (std::size_t i = 0; i < code.size(); ++i) {
@@ -42,6 +45,56 @@ std::string blank_comments(const std::string& glsl) {
   }
   return code;
 }
+
+/// Where a loop's condition is; empty where there is none to be found.
+struct Condition {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+/// The parenthesis that closes the one at `open`, and the semicolons directly inside.
+struct Parentheses {
+  std::size_t close = std::string::npos;
+  std::vector<std::size_t> semicolons;
+};
+
+Parentheses match(const std::string& code, std::size_t open) {
+  Parentheses found;
+  int depth = 0;
+  for (std::size_t i = open; i < code.size(); ++i) {
+    if (code[i] == '(') ++depth;
+    if (code[i] == ';' && depth == 1) found.semicolons.push_back(i);
+    if (code[i] != ')' || --depth > 0) continue;
+    found.close = i;
+    return found;
+  }
+  return found;
+}
+
+/// Whether it holds a single `=`, which no comparison is.
+bool declares(std::string_view condition) {
+  for (std::size_t i = 0; i < condition.size(); ++i) {
+    if (condition[i] != '=') continue;
+    if (i + 1 < condition.size() && condition[i + 1] == '=') {
+      ++i;
+      continue;
+    }
+    if (i == 0 || std::string_view("<>!").find(condition[i - 1]) == std::string_view::npos) return true;
+  }
+  return false;
+}
+
+Condition find_condition(const std::string& code, std::size_t after_word, bool is_for) {
+  const std::size_t open = code.find_first_not_of(" \t\r\n", after_word);
+  if (open == std::string::npos || code[open] != '(') return {};
+  const Parentheses inner = match(code, open);
+  if (inner.close == std::string::npos) return {};
+  if (!is_for) return {open + 1, inner.close};
+  if (inner.semicolons.size() != 2) return {};
+  return {inner.semicolons[0] + 1, inner.semicolons[1]};
+}
+
+}  // namespace
 
 std::string strip_comments(const std::string& glsl) {
   std::string code;
@@ -68,7 +121,6 @@ bool has_word(std::string_view code, std::string_view word) {
   return find_word(code, word, 0) != std::string_view::npos;
 }
 
-/// Whether the code declares `type name(`.
 bool has_function(std::string_view code, std::string_view type, std::string_view name) {
   for (std::size_t at = find_word(code, name, 0); at != std::string_view::npos; at = find_word(code, name, at + 1)) {
     const std::size_t after = code.find_first_not_of(kBlank, at + name.size());
@@ -85,6 +137,28 @@ bool has_function(std::string_view code, std::string_view type, std::string_view
 bool is_identifier(const std::string& name) {
   return !name.empty() && is_letter(name.front()) && std::ranges::all_of(name, is_word_character) &&
          !name.starts_with("gl_") && name.find("__") == std::string::npos;
+}
+
+CountedLoops count_loops(const std::string& glsl) {
+  const std::string code = blank_comments(glsl);
+  CountedLoops counted;
+  std::size_t copied = 0;
+  for (std::size_t at = 0; at < code.size();) {
+    const std::size_t next_for = find_word(code, "for", at), next_while = find_word(code, "while", at);
+    const std::size_t word = std::min(next_for, next_while);
+    if (word == std::string::npos) break;
+    const bool is_for = word == next_for;
+    at = word + (is_for ? 3 : 5);
+    const Condition condition = find_condition(code, at, is_for);
+    const std::string text = code.substr(condition.begin, condition.end - condition.begin);
+    const bool is_empty = text.find_first_not_of(" \t\r\n") == std::string::npos;
+    if (condition.end == 0 || declares(text) || (is_empty && !is_for)) continue;
+    counted.body += glsl.substr(copied, condition.begin - copied);
+    counted.body += fmt::format(" count_turn({}, {})", counted.loops++, is_empty ? "true" : text);
+    copied = at = condition.end;
+  }
+  counted.body += glsl.substr(copied);
+  return counted;
 }
 
 }  // namespace shadowbench::filters

@@ -11,12 +11,6 @@ namespace shadowbench::filters {
 /// The text with every comment turned into a blank.
 std::string strip_comments(const std::string& glsl);
 
-/// The same with as many blanks as the comment has characters, and its line ends.
-std::string blank_comments(const std::string& glsl);
-
-/// Where the word stands by itself next, from `start` on; npos where it does not.
-std::size_t find_word(std::string_view code, std::string_view word, std::size_t start);
-
 /// The text with every run of blanks between other characters as one: a line's end where it holds one, or a space.
 std::string squeeze_blanks(std::string_view text);
 
@@ -28,5 +22,15 @@ bool has_function(std::string_view code, std::string_view type, std::string_view
 
 /// Whether GLSL takes this for a name of one's own.
 bool is_identifier(const std::string& name);
+
+/// A filter's GLSL in which loops count.
+struct CountedLoops {
+  std::string body;  ///< with as many lines as before
+  int loops = 0;
+};
+
+/// Wraps the condition of every `for` and `while` as `count_turn(INDEX, condition)`, of lib/map_access.glsl. A
+/// condition that declares something is left as it is, and so is what does not look like a loop.
+CountedLoops count_loops(const std::string& glsl);
 
 }  // namespace shadowbench::filters

@@ -74,16 +74,20 @@ FactsRequest read_request(const std::filesystem::path& file) {
   }
 }
 
-json answer(NullDevice& device, const FactsRequest& request, const PassSource& pass) {
+json to_json(const FactsAnswer& answer) {
+  return answer.refused.empty() ? json{{"facts", to_json(answer.facts)}} : json{{"refused", answer.refused}};
+}
+
+FactsAnswer answer(NullDevice& device, const FactsRequest& request, const PassSource& pass) {
   const std::filesystem::path file = cached_file(request, device.driver(), pass);
   if (!request.cache.empty())
-    if (const auto cached = read_cached(file)) return {{"facts", to_json(*cached)}};
+    if (const auto cached = read_cached(file)) return {*cached, ""};
   try {
     const records::ShaderFacts facts = device.compile(pass.fragment, pass.format);
     if (!request.cache.empty()) write_cached(file, facts);
-    return {{"facts", to_json(facts)}};
+    return {facts, ""};
   } catch (const Error& error) {
-    return {{"refused", error.what()}};
+    return {{}, error.what()};
   }
 }
 
@@ -102,14 +106,12 @@ void answer_request(const std::filesystem::path& request_file, const std::filesy
   NullDevice device(request.family);
   std::ofstream stream(answers, std::ios::app);
   for (const PassSource& pass : request.passes)
-    if (!(stream << dump(answer(device, request, pass)) << std::flush))
+    if (!(stream << dump(to_json(answer(device, request, pass))) << std::flush))
       throw Error(ErrorKind::kOutput, "the file cannot be written; check the free space", answers.string());
 }
 
 void write_answer(const std::filesystem::path& file, const FactsAnswer& answer) {
-  const json written =
-      answer.refused.empty() ? json{{"facts", to_json(answer.facts)}} : json{{"refused", answer.refused}};
-  write_text_file(file, dump(written));
+  write_text_file(file, dump(to_json(answer)));
 }
 
 std::vector<FactsAnswer> read_answers(const std::filesystem::path& answers) {

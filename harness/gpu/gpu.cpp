@@ -7,19 +7,19 @@
 #include <cmath>
 
 #include "filters/base/nearest_name.h"
-#include "harness/scene/toml_reader.h"
+#include "filters/base/toml.h"
 
 namespace shadowbench::gpu {
 namespace {
 
 /// The numbers that a constant may be.
-scene::Range find_range(std::string_view key) {
+Range find_range(std::string_view key) {
   if (key.starts_with("rate_")) return {1e-3, 1.0};
   if (key == "line_bytes") return {16.0, 4096.0};
   return {1e-3, 1e6};
 }
 
-Constant read_constant(const scene::TomlTable& file, const char* key) {
+Constant read_constant(const TomlTable& file, const char* key) {
   const auto table = file.table(key);
   if (!table) throw file.error(key, fmt::format("the table [{}] is missing; it holds a value and its source", key));
   table->require_known_keys({"value", "source"});
@@ -29,8 +29,7 @@ Constant read_constant(const scene::TomlTable& file, const char* key) {
 }  // namespace
 
 Gpu load_gpu(const std::filesystem::path& file) {
-  const toml::table root = scene::parse_toml_file(file);
-  const scene::TomlTable table(root, "the GPU's file", file.string());
+  const TomlTable table = read_toml(file, "the GPU's file");
   Gpu gpu;
   std::vector<std::string> keys = {"title", "driver"};
   visit_constants(gpu, [&](const char* key, const Constant&) { keys.emplace_back(key); });
@@ -38,6 +37,7 @@ Gpu load_gpu(const std::filesystem::path& file) {
   gpu.name = file.stem().string();
   gpu.title = table.string("title");
   gpu.families = table.strings("driver");
+  if (gpu.families.empty()) throw table.find("driver")->must_be("a string or a list of strings");
   visit_constants(gpu, [&](const char* key, Constant& constant) { constant = read_constant(table, key); });
   const double line = gpu.line_bytes.value;
   if (line != std::floor(line) || !std::has_single_bit(static_cast<unsigned>(line)))

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "harness/gpu/spirv.h"
+#include "harness/gl/shader_source.h"
 #include "report/records/records.h"
 
 namespace shadowbench::gpu {

@@ -9,8 +9,8 @@
 
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
+#include "filters/base/toml.h"
 #include "filters/kernel_width.h"
-#include "harness/scene/toml_reader.h"
 
 namespace shadowbench::options {
 namespace {
@@ -20,101 +20,80 @@ constexpr int kMostSteps = 10'000;
 
 class ExperimentReader {
  public:
-  explicit ExperimentReader(const std::filesystem::path& file) : file_(file), root_(scene::parse_toml_file(file)) {}
+  explicit ExperimentReader(const std::filesystem::path& file)
+      : folder_(file.parent_path()), root_(read_toml(file, "the experiment")) {}
 
   Experiment read(const std::vector<std::string>& keys) {
-    const scene::TomlTable table(root_, "the experiment", file_.string());
-    std::vector<std::string> known = keys;
-    known.insert(known.end(), {"title", "filter"});
-    table.require_known_keys(known);
+    root_.require_known_keys(keys, {"title", "filter"});
     Experiment experiment;
-    experiment.title = table.string("title", std::string());
+    experiment.title = root_.string("title", std::string());
     for (const std::string& key : keys)
-      if (table.has(key)) experiment.settings.push_back(read_setting(key));
-    for (const toml::node& node : filter_nodes()) experiment.filters.push_back(read_filter(node));
-    if (root_.contains("filters") && !experiment.filters.empty())
-      fail(*root_.get("filters"), "'filters' and [[filter]] both name filters: keep one of them");
+      if (const auto value = root_.find(key)) experiment.settings.push_back(read_setting(*value));
+    if (const auto filter = root_.find("filter"); filter && filter->as_table(""))
+      throw filter->error("'filter' must be tables, each headed [[filter]]");
+    for (const TomlTable& table : root_.tables("filter")) experiment.filters.push_back(read_filter(table));
+    if (root_.has("filters") && !experiment.filters.empty())
+      throw root_.error("filters", "'filters' and [[filter]] both name filters: keep one of them");
     return experiment;
   }
 
  private:
-  std::filesystem::path file_;
-  toml::table root_;
-
-  std::string where(const toml::node& node) const {
-    return fmt::format("{}:{}", file_.string(), node.source().begin.line);
-  }
-
-  [[noreturn]] void fail(const toml::node& node, const std::string& message) const {
-    throw Error(ErrorKind::kInput, message, where(node));
-  }
-
-  const toml::array& filter_nodes() const {
-    static const toml::array none;
-    const toml::node* node = root_.get("filter");
-    if (!node) return none;
-    if (const toml::array* tables = node->as_array(); tables && tables->is_array_of_tables()) return *tables;
-    fail(*node, "'filter' must be tables, each headed [[filter]]");
-  }
+  std::filesystem::path folder_;
+  TomlTable root_;
 
   /// Writes one value as it stands on a command line.
-  std::string read_value(const toml::node& node, const std::string& key) const {
-    if (const auto* text = node.as_string()) return text->get();
-    if (const auto* whole = node.as_integer()) return fmt::format("{}", whole->get());
-    if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
-    if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
-    fail(node, fmt::format("'{}' must be a text, a number, true or false, or a list of such", key));
+  static std::string read_value(const TomlValue& value) {
+    if (const auto text = value.as<std::string>()) return *text;
+    if (const auto whole = value.as<std::int64_t>()) return fmt::format("{}", *whole);
+    if (const auto number = value.as<double>()) return fmt::format("{}", *number);
+    if (const auto flag = value.as<bool>()) return *flag ? "true" : "false";
+    throw value.error(fmt::format("'{}' must be a text, a number, true or false, or a list of such", value.key()));
   }
 
-  std::vector<std::string> read_values(const toml::node& node, const std::string& key) const {
-    const toml::array* list = node.as_array();
-    if (!list) return {read_value(node, key)};
+  static std::vector<std::string> read_values(const TomlValue& value) {
     std::vector<std::string> values;
-    for (const toml::node& each : *list) values.push_back(read_value(each, key));
-    if (values.empty())
-      fail(node, fmt::format("'{}' is an empty list: nothing would be run; name a value, or leave the key out", key));
-    return values;
+    for (const TomlValue& each : value.as_list().value_or(std::vector{value})) values.push_back(read_value(each));
+    if (!values.empty()) return values;
+    throw value.error(
+        fmt::format("'{}' is an empty list: nothing would be run; name a value, or leave the key out", value.key()));
   }
 
   /// A file named in an experiment lies beside it.
   std::string resolve(const std::string& name) const {
     const std::filesystem::path path(name);
-    return path.has_extension() && path.is_relative() ? (file_.parent_path() / path).string() : name;
+    return path.has_extension() && path.is_relative() ? (folder_ / path).string() : name;
   }
 
-  ExperimentSetting read_setting(const std::string& key) const {
-    const toml::node& node = *root_.get(key);
-    ExperimentSetting setting{"--" + key, read_values(node, key), where(node)};
+  ExperimentSetting read_setting(const TomlValue& value) const {
+    ExperimentSetting setting{"--" + value.key(), read_values(value), value.where()};
     std::replace(setting.option.begin(), setting.option.end(), '_', '-');
-    if (key != "scene" && key != "filter_file") return setting;
-    for (std::string& value : setting.values) value = resolve(value);
+    if (value.key() != "scene" && value.key() != "filter_file") return setting;
+    for (std::string& each : setting.values) each = resolve(each);
     return setting;
   }
 
-  SweptFilter read_filter(const toml::node& node) const {
-    const toml::table& entries = *node.as_table();
-    const scene::TomlTable table(entries, "[[filter]]", file_.string());
-    SweptFilter filter{table.string("id"), {}, where(node)};
-    for (const auto& [key, value] : entries)
-      if (key.str() != "id") filter.params.push_back(read_param(std::string(key.str()), value));
+  static SweptFilter read_filter(const TomlTable& table) {
+    SweptFilter filter{table.string("id"), {}, table.where()};
+    for (const TomlValue& each : table.entries())
+      if (each.key() != "id") filter.params.push_back(read_param(each));
     return filter;
   }
 
-  SweptParam read_param(const std::string& name, const toml::node& node) const {
-    const toml::table* range = node.as_table();
-    if (!range) return {name, {}, false, 0, read_values(node, name)};
-    const scene::TomlTable table(*range, name, file_.string());
-    table.require_known_keys({"linear", "log", "count"});
+  static SweptParam read_param(const TomlValue& value) {
+    const std::string& name = value.key();
+    const auto table = value.as_table(name);
+    if (!table) return {name, {}, false, 0, read_values(value)};
+    table->require_known_keys({"linear", "log", "count"});
     SweptParam param;
     param.name = name;
-    param.logarithmic = table.has("log");
-    if (param.logarithmic == table.has("linear"))
-      fail(node, fmt::format("'{}' needs 'linear' or 'log', one of them: the range's two ends", name));
-    const glm::dvec2 ends = table.vec2(param.logarithmic ? "log" : "linear", scene::kAnyNumber);
+    param.logarithmic = table->has("log");
+    if (param.logarithmic == table->has("linear"))
+      throw value.error(fmt::format("'{}' needs 'linear' or 'log', one of them: the range's two ends", name));
+    const glm::dvec2 ends = table->vec2(param.logarithmic ? "log" : "linear", kAnyNumber);
     if (param.logarithmic && !(std::min(ends.x, ends.y) > 0.0))
-      fail(node, fmt::format("'{}': the ends of a logarithmic range must be more than 0", name));
+      throw value.error(fmt::format("'{}': the ends of a logarithmic range must be more than 0", name));
     param.range = {ends.x, ends.y};
-    param.count = table.integer("count", {2, kMostSteps});
+    param.count = table->integer("count", {2, kMostSteps});
     return param;
   }
 };

@@ -8,7 +8,7 @@
 #include <regex>
 
 #include "filters/base/error.h"
-#include "filters/format/loops.h"
+#include "filters/format/glsl_words.h"
 #include "filters/noise/blue_noise.h"
 #include "harness/render/filter_glsl.h"
 

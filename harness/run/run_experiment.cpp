@@ -19,7 +19,7 @@
 #include "harness/run/run_progress.h"
 #include "harness/run/task_run.h"
 #include "harness/run/time_floor.h"
-#include "harness/scene/closed_mesh.h"
+#include "harness/scene/mesh_tools.h"
 #include "reference/truth/occluders.h"
 #include "report/analysis/repeat.h"
 #include "report/analysis/summary.h"

@@ -1,14 +1,123 @@
 #include "harness/scene/complete.h"
 
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "harness/scene/framing.h"
 #include "harness/scene/validate.h"
-#include "harness/scene/view_choice.h"
 
 namespace shadowbench::scene {
 namespace {
+
+constexpr double kPictureAspect = 16.0 / 9.0;
+constexpr std::size_t kMostTriangles = std::size_t{1} << 20;
+constexpr double kHighCameraDeg = 40.0;
+constexpr double kLowSunDeg = 35.0;
+
+/// The usual place in the sky, then others all around, then the same at another elevation.
+std::vector<SkyAngles> look_around(const SkyAngles& usual, double other_elevation_deg) {
+  constexpr int kTurns = 8;
+  std::vector<SkyAngles> places;
+  for (const double elevation_deg : {usual.elevation_deg, other_elevation_deg})
+    for (int i = 0; i < kTurns; ++i)
+      places.push_back({std::fmod(usual.azimuth_deg + 360.0 * i / kTurns, 360.0), elevation_deg});
+  return places;
+}
+
+/// What is framed: the scene without its triangles.
+Scene without_triangles(const Scene& scene) {
+  Scene shape;
+  shape.cameras = scene.cameras;
+  shape.light = scene.light;
+  shape.other_lights = scene.other_lights;
+  for (const Mesh& mesh : scene.meshes) shape.meshes.emplace_back().vertices = mesh.vertices;
+  return shape;
+}
+
+/// The same with one vertex at most for each cell of a lattice: it is framed quickly, and but for 1/32 as the scene is.
+Scene thinned(Scene shape) {
+  constexpr int kCells = 32;
+  const Bounds bounds = shape.bounds();
+  const glm::dvec3 low(bounds.min), size = glm::max(glm::dvec3(bounds.max) - low, 1e-30);
+  std::vector<bool> taken(std::size_t{kCells} * kCells * kCells);
+  const auto is_taken = [&](const Vertex& vertex) {
+    const glm::dvec3 place =
+        glm::min(static_cast<double>(kCells) * (glm::dvec3(vertex.position_ws) - low) / size, kCells - 1.0);
+    const glm::uvec3 cell(place);
+    const std::size_t i = (std::size_t{cell.x} * kCells + cell.y) * kCells + cell.z;
+    const bool known = taken[i];
+    taken[i] = true;
+    return known;
+  };
+  for (Mesh& mesh : shape.meshes) std::erase_if(mesh.vertices, is_taken);
+  return shape;
+}
+
+/// Counts edges in views of one scene.
+class ViewSearch {
+ public:
+  ViewSearch(const Scene& scene, const ViewFreedom& free) : free_(free), meter_(scene) {}
+
+  /// Counts under one sun for each place of the camera. `shape` is what is framed: the scene, or its outline.
+  std::vector<EdgeCount> count(Scene& shape, const SkyAngles& sun, const std::vector<SkyAngles>& cameras) {
+    if (free_.sun) shape.light = place_in_sky(shape.light, sun);
+    std::vector<Light> lights = shape.other_lights;
+    lights.push_back(shape.light);
+    std::optional<Mesh> floor;
+    if (free_.ground_y) floor = make_floor(place_floor(shape, *free_.ground_y));
+    meter_.set_floor(floor ? &*floor : nullptr);
+    std::vector<EdgeCount> counts(cameras.size());
+    tbb::parallel_for(std::size_t{0}, cameras.size(), [&](std::size_t i) {
+      const std::vector<Camera> views =
+          free_.camera ? std::vector{frame_camera(shape, cameras[i], kPictureAspect, free_.ground_y)} : shape.cameras;
+      for (const Camera& view : views) counts[i] += meter_.count(view, lights, kPictureAspect);
+    });
+    return counts;
+  }
+
+ private:
+  ViewFreedom free_;
+  EdgeMeter meter_;
+};
+
+/// Whether the light shines towards the camera: the sides of things that it sees would be those in shadow.
+bool is_against_light(const glm::dvec3& forward, const glm::dvec3& to_light) {
+  constexpr double kMost = 0.25;  // of the light's direction that is level and ahead
+  return glm::dot(glm::normalize(glm::dvec2(forward.x, forward.z)), glm::dvec2(to_light.x, to_light.z)) > kMost;
+}
+
+/// The cameras to try under one sun.
+struct Attempt {
+  SkyAngles sun;
+  std::vector<SkyAngles> cameras;
+};
+
+/// All views worth a try; the usual one comes first, whatever it is.
+std::vector<Attempt> list_attempts(const Scene& scene, const ViewFreedom& free, const ViewAngles& usual) {
+  const Bounds bounds = scene.bounds();
+  const glm::vec3 center = 0.5f * (bounds.min + bounds.max);
+  std::vector<Attempt> attempts;
+  for (const SkyAngles& sun : free.sun ? look_around(usual.sun, kLowSunDeg) : std::vector{usual.sun}) {
+    Attempt& attempt = attempts.emplace_back(Attempt{sun, {}});
+    const glm::dvec3 light = to_light(free.sun ? place_in_sky(scene.light, sun) : scene.light, center);
+    for (const SkyAngles& camera :
+         free.camera ? look_around(usual.camera, kHighCameraDeg) : std::vector{usual.camera}) {
+      const glm::dvec3 forward = light_direction(camera.azimuth_deg, camera.elevation_deg);
+      const bool is_usual = attempts.size() == 1 && attempt.cameras.empty();
+      if (is_usual || !free.camera || (!is_against_light(forward, light) && !would_be_thin(bounds, camera)))
+        attempt.cameras.push_back(camera);
+    }
+  }
+  return attempts;
+}
+
+std::string name_angles(const SkyAngles& angles) {
+  return fmt::format("azimuth {}, elevation {}", angles.azimuth_deg, angles.elevation_deg);
+}
 
 Scene with_floor(Scene scene, float ground_y) {
   Material material;
@@ -44,6 +153,48 @@ Scene with_chosen_view(Scene scene, const ViewFreedom& free, double aspect) {
 }
 
 }  // namespace
+
+ViewChoice choose_view(const Scene& scene, const ViewFreedom& free) {
+  const ViewAngles usual = usual_view(scene.bounds());
+  ViewChoice choice;
+  choice.angles = usual;
+  if (scene.triangle_count() > kMostTriangles) return choice;
+  ViewSearch search(scene, free);
+  Scene shape = without_triangles(scene);
+  Scene outline = thinned(shape);
+  double best = -1.0;
+  for (const auto& [sun, cameras] : list_attempts(scene, free, usual)) {
+    const std::vector<EdgeCount> counts = search.count(outline, sun, cameras);
+    choice.tried += static_cast<int>(counts.size());
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      if (!(counts[i].share() > best)) continue;
+      best = counts[i].share();
+      choice.angles = {cameras[i], sun};
+    }
+  }
+  // The outline is framed a little otherwise: what is said, and that it is no worse, holds for the scene itself.
+  choice.usual_edges = search.count(shape, usual.sun, {usual.camera}).front();
+  choice.edges = search.count(shape, choice.angles.sun, {choice.angles.camera}).front();
+  choice.is_usual = !(choice.edges.share() > choice.usual_edges.share());
+  if (choice.is_usual) choice.angles = usual, choice.edges = choice.usual_edges;
+  return choice;
+}
+
+std::string describe_choice(const ViewChoice& choice, const ViewFreedom& free) {
+  std::string text;
+  if (free.camera) text = "camera from " + name_angles(choice.angles.camera);
+  if (free.sun) text += (free.camera ? "; " : "") + ("sun from " + name_angles(choice.angles.sun));
+  if (choice.tried == 0)
+    return fmt::format("{}: the usual view; no other is tried with more than {} triangles", text, kMostTriangles);
+  if (!choice.shows_edges())
+    return fmt::format(
+        "{}: the usual view, since none of {} that were tried shows the edge of a shadow: all filters will look alike; "
+        "{}set camera and light in its file",
+        text, choice.tried, free.ground_y ? "" : "add a floor (--ground), or ");
+  const auto percent = [](const EdgeCount& edges) { return fmt::format("{:.1f} %", 100.0 * edges.share()); };
+  return fmt::format("{}: edges of shadows touch {} of the picture's surfaces ({})", text, percent(choice.edges),
+                     choice.is_usual ? "the usual view" : percent(choice.usual_edges) + " in the usual view");
+}
 
 Scene complete(Scene scene, const Completion& completion, const std::string& where) {
   ViewFreedom free{.camera = scene.cameras.empty(), .sun = completion.needs_sun && !completion.light};

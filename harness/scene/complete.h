@@ -1,11 +1,47 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
-#include "harness/scene/scene.h"
+#include "harness/scene/framing.h"
+#include "harness/scene/shadow_edges.h"
 
 namespace shadowbench::scene {
+
+/// The view that was chosen for a scene, and what it shows.
+struct ViewChoice {
+  ViewAngles angles;
+  EdgeCount edges{};
+  bool is_usual = true;
+  EdgeCount usual_edges{};  ///< in the usual view
+  int tried = 0;            ///< views; none in a scene of too many triangles
+
+  /// Whether the edge of any shadow is seen; of a view that was not tried nothing is known.
+  bool shows_edges() const { return tried == 0 || edges.at_edge > 0; }
+};
+
+/// What may be chosen of a scene.
+struct ViewFreedom {
+  bool camera = false;              ///< else the cameras of the scene
+  bool sun = false;                 ///< else the lights of the scene
+  std::optional<float> ground_y{};  ///< of a floor that will be added
+};
+
+/// Chooses camera and sun so that edges of shadows touch as many of the surfaces as they can (EdgeCount::share).
+///
+/// Tried are eight directions of the camera in two heights with each of eight directions of the sun in two heights, or
+/// what of it is free. Views towards the light, and those that would be thin (would_be_thin), are left out. The usual
+/// view is the first, whatever it is, and stays the choice unless another is better; of equal ones the first is taken.
+/// What is counted is a picture of 16:9, so that the directions do not depend on a picture's size. Of several cameras
+/// or lights of the scene itself all are counted. A scene of more than 2^20 triangles gets the usual view.
+///
+/// Requires validated geometry, and cameras where they are not free. Cost: 0.6 s of CPU time for 300 000 triangles, 1.0
+/// s with a floor.
+ViewChoice choose_view(const Scene& scene, const ViewFreedom& free);
+
+/// The choice in words, for the user; where no edge is seen, with what to do.
+std::string describe_choice(const ViewChoice& choice, const ViewFreedom& free);
 
 /// What a scene gets beside its geometry.
 struct Completion {

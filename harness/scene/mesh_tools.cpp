@@ -1,5 +1,6 @@
 #include "harness/scene/mesh_tools.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -20,6 +21,8 @@ glm::vec3 normalize_or_keep_zero(const glm::dvec3& v) {
   const double length = glm::length(v);
   return length > 0.0 ? glm::vec3(v / length) : glm::vec3(0.0f);
 }
+
+using Place = std::tuple<float, float, float>;
 
 /// Where more faces meet, a tree sums their normals, since to compare each with each would take their square.
 constexpr std::size_t kFewFaces = 64;
@@ -53,6 +56,17 @@ struct Meeting {
     return sum;
   }
 };
+
+/// Numbers the places of a mesh's vertices, the same for vertices at the same place.
+std::vector<int> number_places(const Mesh& mesh) {
+  std::map<Place, int> numbers;
+  std::vector<int> places;
+  for (const Vertex& vertex : mesh.vertices) {
+    const glm::vec3 p = vertex.position_ws + 0.0f;  // -0 becomes 0
+    places.push_back(numbers.emplace(Place(p.x, p.y, p.z), static_cast<int>(numbers.size())).first->second);
+  }
+  return places;
+}
 
 Mesh without_geometry(const Mesh& mesh) {
   Mesh copy;
@@ -107,9 +121,9 @@ Mesh with_smooth_normals(const Mesh& mesh, double crease_deg) {
   const std::vector<FaceNormal> faces = face_normals(mesh);
   const auto position_of = [&](std::size_t corner) {
     const glm::vec3& p = mesh.vertices[mesh.indices[corner]].position_ws;
-    return std::tuple(p.x, p.y, p.z);
+    return Place(p.x, p.y, p.z);
   };
-  std::map<std::tuple<float, float, float>, Meeting> meetings;
+  std::map<Place, Meeting> meetings;
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) meetings[position_of(i)].faces.push_back(i / 3);
 
   Mesh smooth = with_flat_normals(mesh);
@@ -134,6 +148,21 @@ Mesh without_unused_vertices(Mesh mesh) {
   }
   mesh.vertices = std::move(used);
   return mesh;
+}
+
+bool is_closed(const Mesh& mesh) {
+  const std::vector<int> places = number_places(mesh);
+  std::map<std::pair<int, int>, int> balance;  // edges of lower to higher number count up, the others down
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const int corner[] = {places[mesh.indices[i]], places[mesh.indices[i + 1]], places[mesh.indices[i + 2]]};
+    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
+    for (int k = 0; k < 3; ++k) {
+      const int a = corner[k], b = corner[(k + 1) % 3];
+      balance[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+    }
+  }
+  return !balance.empty() &&
+         std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
 }
 
 glm::dvec3 axis_least_parallel(const glm::dvec3& direction) {

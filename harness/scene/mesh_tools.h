@@ -23,6 +23,11 @@ Mesh with_smooth_normals(const Mesh& mesh, double crease_deg);
 /// Drops vertices that no triangle uses. Requires indices in range.
 Mesh without_unused_vertices(Mesh mesh);
 
+/// Whether a mesh encloses a volume: every edge belongs to two triangles that run along it in opposite directions.
+/// Corners at the same place count as one; triangles without area are passed over. Only of such a mesh does something
+/// stay in a shadow map when the faces towards the light are culled. Cost: one hash table entry per edge.
+bool is_closed(const Mesh& mesh);
+
 /// Returns twice the area of a triangle times its unit normal, computed in double precision.
 glm::dvec3 area_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 

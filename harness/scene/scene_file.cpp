@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <functional>
+#include <glm/gtc/matrix_transform.hpp>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -9,14 +12,121 @@
 #include "harness/scene/complete.h"
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/scene_object.h"
-#include "harness/scene/toml_reader.h"
+#include "harness/scene/primitives.h"
 #include "harness/scene/validate.h"
 
 namespace shadowbench::scene {
 namespace {
 
+/// The most corners that the shapes of one scene may have, three per triangle: about 4 million triangles.
+constexpr std::size_t kMostShapeCorners = std::size_t{3} << 22;
 constexpr Range kFovDeg{0.01, 179.0};
+constexpr Range kCells{1, 512};
+constexpr Range kSegments{3, 1024};
+constexpr Range kCount{1, 10000};
+constexpr Range kDegrees{-36000, 36000};
+
+/// One shape: the keys it reads beside the common ones, and how it is made.
+struct Shape {
+  std::vector<std::string> keys;
+  std::function<Mesh(const TomlTable&)> make;
+};
+
+/// Throws where all bars together would have too many triangles, judged by one of them.
+void require_few_corners(Bars bars, const TomlTable& object) {
+  const int count = std::exchange(bars.count, 1);
+  const std::size_t corners = make_bars(bars).indices.size() * static_cast<std::size_t>(count);
+  if (corners <= kMostShapeCorners) return;
+  throw object.error(
+      "count", fmt::format("the {} bars in {} would have {} triangles; shapes may have {}: lower 'count' or 'cells'",
+                           count, object.title(), corners / 3, kMostShapeCorners / 3));
+}
+
+Mesh make_bars_of(const TomlTable& object) {
+  Bars bars;
+  bars.count = object.integer("count", kCount);
+  bars.bar_width_m = object.number_f("bar_width", kPositive);
+  bars.spacing_m = object.number_f("spacing", kPositive);
+  bars.length_m = object.number_f("length", kPositive);
+  bars.direction = object.choose<BarDirection>(
+      "direction",
+      {{"vertical", BarDirection::kVertical}, {"horizontal", BarDirection::kHorizontal}, {"both", BarDirection::kBoth}},
+      "vertical");
+  bars.cells = object.integer("cells", kCells, bars.cells);
+  if (bars.spacing_m <= bars.bar_width_m) {
+    throw object.error("spacing", fmt::format("'spacing' in {} must be more than 'bar_width', {}, but is {}",
+                                              object.title(), bars.bar_width_m, bars.spacing_m));
+  }
+  require_few_corners(bars, object);
+  return make_bars(bars);
+}
+
+Mesh make_cylinder_of(const TomlTable& object) {
+  const CylinderCells cut{object.integer("segments", kSegments, 48), object.integer("cells", kCells, 8)};
+  return make_cylinder(object.number_f("radius", kPositive), object.number_f("height", kPositive), cut);
+}
+
+const std::map<std::string, Shape>& shapes() {
+  static const std::map<std::string, Shape> all{
+      {"plane",
+       {{"size", "cells"},
+        [](const TomlTable& o) {
+          return make_plane(glm::vec2(o.vec2("size", kPositive)), o.integer("cells", kCells, 16));
+        }}},
+      {"box",
+       {{"size", "cells"},
+        [](const TomlTable& o) {
+          return make_box(glm::vec3(o.vec3("size", kPositive)), o.integer("cells", kCells, 8));
+        }}},
+      {"sphere",
+       {{"radius", "segments"},
+        [](const TomlTable& o) {
+          return make_sphere(o.number_f("radius", kPositive), o.integer("segments", kSegments, 96));
+        }}},
+      {"cylinder", {{"radius", "height", "segments", "cells"}, make_cylinder_of}},
+      {"bars", {{"count", "bar_width", "spacing", "length", "direction", "cells"}, make_bars_of}}};
+  return all;
+}
+
+glm::dvec3 read_scale(const TomlTable& object) {
+  constexpr Range kScale{-1e6, 1e6};
+  const glm::dvec3 scale = object.has("scale") && object.find("scale")->as<double>()
+                               ? glm::dvec3(object.number("scale", kScale))
+                               : object.vec3("scale", kScale, glm::dvec3(1.0));
+  if (scale.x * scale.y * scale.z != 0.0) return scale;
+  throw object.error("scale", fmt::format("'scale' in {} must not be 0", object.title()));
+}
+
+/// Refuses the keys of an [[object]] that neither all have nor one of its shape.
+void require_object_keys(const TomlTable& object, const std::vector<std::string>& own) {
+  object.require_known_keys(
+      {"shape", "name", "material", "casts_shadow", "may_cull_front", "center", "rotation_deg", "scale"}, own);
+}
+
+/// The shapes that an [[object]] may have, "model" included.
+std::vector<std::string> object_shapes() {
+  std::vector<std::string> all;
+  for (const auto& [name, shape] : shapes()) all.push_back(name);
+  all.emplace_back("model");
+  return all;
+}
+
+/// Makes the mesh of an [[object]] that is not a model, in its own space.
+Mesh make_shape(const TomlTable& object) {
+  const Shape& shape = shapes().at(object.string("shape"));
+  require_object_keys(object, shape.keys);
+  return shape.make(object);
+}
+
+/// The transform that scale, then rotation_deg (about x, then y, then z), then center describe.
+glm::dmat4 world_from_object(const TomlTable& object) {
+  const glm::dvec3 angles = glm::radians(object.vec3("rotation_deg", kDegrees, glm::dvec3(0.0)));
+  glm::dmat4 world = glm::translate(glm::dmat4(1.0), object.vec3("center", kAnyNumber, glm::dvec3(0.0)));
+  world = glm::rotate(world, angles.z, glm::dvec3(0.0, 0.0, 1.0));
+  world = glm::rotate(world, angles.y, glm::dvec3(0.0, 1.0, 0.0));
+  world = glm::rotate(world, angles.x, glm::dvec3(1.0, 0.0, 0.0));
+  return glm::scale(world, read_scale(object));
+}
 
 /// Builds a scene from its tables; materials come before the objects that use them.
 class SceneBuilder {
@@ -38,23 +148,25 @@ class SceneBuilder {
   }
 
  private:
+  void take_name(const std::string& name, const std::string& kind, const TomlTable& table) {
+    if (!names_[kind].insert(name).second)
+      throw table.error("name", fmt::format("two {} have the name '{}'", kind, name));
+  }
+
   void add_camera(const TomlTable& table) {
     const Camera camera = read_camera(table);
-    for (const Camera& other : scene_.cameras)
-      if (other.name == camera.name)
-        throw table.error("name", fmt::format("two cameras have the name '{}'", camera.name));
+    take_name(camera.name, "cameras", table);
     scene_.cameras.push_back(camera);
   }
 
   void add_lights(const std::vector<TomlTable>& tables) {
     if (tables.empty()) throw root_.error("light", "the scene has no [light]");
-    std::set<std::string> names;
     for (const TomlTable& table : tables) {
       scene_.other_lights.push_back(read_light(table));
       const std::string& name = scene_.other_lights.back().name;
       if (tables.size() > 1 && name.empty())
         throw table.error("name", table.title() + " has no 'name': of several lights each needs one");
-      if (!names.insert(name).second) throw table.error("name", fmt::format("two lights have the name '{}'", name));
+      take_name(name, "lights", table);
     }
     scene_.light = std::move(scene_.other_lights.front());
     scene_.other_lights.erase(scene_.other_lights.begin());
@@ -65,10 +177,7 @@ class SceneBuilder {
     Material material;
     material.name = table.string("name");
     material.base_color = glm::vec4(glm::vec3(table.vec3("color", kColor)), 1.0f);
-    for (const Material& other : scene_.materials) {
-      if (other.name != material.name) continue;
-      throw table.error("name", fmt::format("two materials have the name '{}'", material.name));
-    }
+    take_name(material.name, "materials", table);
     scene_.materials.push_back(material);
     named_materials_.push_back(material.name);
   }
@@ -106,9 +215,7 @@ class SceneBuilder {
   }
 
   MeshFile read_model_object(const TomlTable& table) const {
-    std::vector<std::string> known = common_object_keys();
-    known.emplace_back("file");
-    table.require_known_keys(known);
+    require_object_keys(table, {"file"});
     return import_mesh_file(table.file("file"));
   }
 
@@ -133,7 +240,8 @@ class SceneBuilder {
   const TomlTable& root_;
   std::filesystem::path file_;
   Scene scene_;
-  std::vector<std::string> named_materials_;  ///< the first of the scene's materials
+  std::map<std::string, std::set<std::string>> names_;  ///< of each kind of things
+  std::vector<std::string> named_materials_;            ///< the first of the scene's materials
   int default_material_ = -1;
   std::size_t corner_count_ = 0;
 };
@@ -162,14 +270,10 @@ Camera read_camera(const TomlTable& table) {
 }
 
 Scene load_scene(const std::filesystem::path& file, double aspect, const std::optional<SkyAngles>& light) {
-  const toml::table document = parse_toml_file(file);
-  const TomlTable root(document, "the scene", file.string());
+  const TomlTable root = read_toml(file, "the scene");
   return SceneBuilder(root, file).build({.aspect = aspect, .light = light});
 }
 
-std::string read_scene_title(const std::filesystem::path& file) {
-  const toml::table document = parse_toml_file(file);
-  return TomlTable(document, "the scene", file.string()).string("title");
-}
+std::string read_scene_title(const std::filesystem::path& file) { return read_toml(file, "the scene").string("title"); }
 
 }  // namespace shadowbench::scene

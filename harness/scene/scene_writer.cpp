@@ -1,13 +1,14 @@
 #include "harness/scene/scene_writer.h"
 
+#include <toml++/toml.h>
+
 #include <string_view>
 #include <utility>
 
+#include "filters/base/toml.h"
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/framing.h"
 #include "harness/scene/scene_file.h"
-#include "harness/scene/toml_reader.h"
-#include "harness/scene/toml_writer.h"
 #include "harness/scene/validate.h"
 
 namespace shadowbench::scene {
@@ -15,23 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-toml::array make_array(const std::vector<double>& values) {
-  toml::array array;
-  for (const double value : values) array.push_back(value);
-  return array;
-}
-
-toml::table make_table(const TomlEntries& entries) {
-  toml::table table;
-  for (const auto& [key, entry] : entries)
-    if (const auto* list = std::get_if<std::vector<double>>(&entry))
-      table.insert(key, make_array(*list));
-    else if (const auto* text = std::get_if<std::string>(&entry))
-      table.insert(key, *text);
-    else
-      table.insert(key, std::get<double>(entry));
-  return table;
-}
+toml::array write_vec3(const glm::vec3& v) { return write_numbers(std::span(&v.x, 3)); }
 
 /// Degrees that are read back as the same angle: few digits where these do.
 double write_angle(float radians) {
@@ -40,20 +25,19 @@ double write_angle(float radians) {
   return static_cast<float>(glm::radians(brief)) == radians ? brief : exact;
 }
 
-TomlEntries write_camera(const Camera& camera) {
-  const std::vector<double> position = write_numbers(camera.position_ws);
-  std::vector<double> target = position;
+toml::table write_camera(const Camera& camera) {
+  toml::array target;
   for (int axis = 0; axis < 3; ++axis)
-    target[static_cast<std::size_t>(axis)] += static_cast<double>(camera.forward_ws[axis]);
-  TomlEntries entries = {{"name", camera.name},
-                         {"position", position},
-                         {"target", std::move(target)},
-                         {"up", write_numbers(camera.up_ws)}};
+    target.push_back(write_number(camera.position_ws[axis]) + static_cast<double>(camera.forward_ws[axis]));
+  toml::table table{{"name", camera.name},
+                    {"position", write_vec3(camera.position_ws)},
+                    {"target", std::move(target)},
+                    {"up", write_vec3(camera.up_ws)}};
   if (camera.orthographic_height_m > 0.0f)
-    entries["orthographic_height"] = write_number(camera.orthographic_height_m);
+    table.insert("orthographic_height", write_number(camera.orthographic_height_m));
   else
-    entries["vertical_fov_deg"] = write_angle(camera.vertical_fov_rad);
-  return entries;
+    table.insert("vertical_fov_deg", write_angle(camera.vertical_fov_rad));
+  return table;
 }
 
 /// Reads what was written until it is what was written.
@@ -61,9 +45,8 @@ template <class Value, class Write, class Read>
 Value settle_by(Value value, std::string title, const Write& write, const Read& read) {
   constexpr int kMostTurns = 4;  // one or two are needed
   for (int turn = 0; turn < kMostTurns; ++turn) {
-    const TomlEntries written = write(value);
-    const toml::table table = make_table(written);
-    value = read(TomlTable(table, title, {}));
+    const toml::table written = write(value);
+    value = read(TomlTable(written, title));
     if (write(value) == written) break;
   }
   return value;
@@ -117,21 +100,19 @@ toml::table write_floor(const Floor& floor, const std::string& material) {
       {"shape", "plane"},
       {"name", "ground"},
       {"material", material},
-      {"size", make_array({write_number(floor.size_m.x), write_number(floor.size_m.y)})},
-      {"center", make_array({double{floor.center_ws.x}, double{floor.center_ws.y}, double{floor.center_ws.z}})},
+      {"size", write_numbers(std::span(&floor.size_m.x, 2))},
+      {"center", toml::array{double{floor.center_ws.x}, double{floor.center_ws.y}, double{floor.center_ws.z}}},
       {"cells", kFloorCells}};
 }
 
 toml::table write_model(const ShownScene& shown, const fs::path& file) {
   const Scene& scene = *shown.scene;
-  toml::table document{{"title", scene.title},
-                       {"background", make_array(write_numbers(scene.background))},
-                       {"model", name_from(shown.source, file)}};
+  toml::table document{
+      {"title", scene.title}, {"background", write_vec3(scene.background)}, {"model", name_from(shown.source, file)}};
   if (!scene.floor) return document;
   const Material& material = scene.materials[static_cast<std::size_t>(scene.meshes.back().material)];
-  document.insert("material",
-                  toml::array{toml::table{{"name", material.name},
-                                          {"color", make_array(write_numbers(glm::vec3(material.base_color)))}}});
+  document.insert("material", toml::array{toml::table{{"name", material.name},
+                                                      {"color", write_vec3(glm::vec3(material.base_color))}}});
   document.insert("object", toml::array{write_floor(*scene.floor, material.name)});
   return document;
 }
@@ -158,9 +139,9 @@ std::string write_scene(const ShownScene& shown, const fs::path& file) {
     document = std::move(moved.document());
   }
   toml::array cameras, lights;
-  for (const Camera& camera : shown.cameras) cameras.push_back(make_table(write_camera(camera)));
+  for (const Camera& camera : shown.cameras) cameras.push_back(write_camera(camera));
   for (std::size_t i = 0; i < shown.lights.size(); ++i) {
-    toml::table light = make_table(write_light(shown.lights[i]));
+    toml::table light = write_light(shown.lights[i]);
     if (find_cookie(shown.lights[i]) && i < cookies.size()) light.insert("cookie", cookies[i]);
     lights.push_back(std::move(light));
   }
@@ -181,8 +162,7 @@ Light settle(const Light& light) {
     if (auto* spot = std::get_if<Spot>(&settled.kind)) spot->cookie = std::get<Spot>(light.kind).cookie;
     return settled;
   };
-  return settle_by(
-      light, "light '" + light.name + "'", [](const Light& each) { return write_light(each); }, read);
+  return settle_by(light, "light '" + light.name + "'", write_light, read);
 }
 
 }  // namespace shadowbench::scene

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "harness/scene/occluders.h"
+#include "harness/scene/view_clip.h"
 #include "reference/truth/visibility.h"
 
 namespace shadowbench::scene {
@@ -21,18 +22,14 @@ struct PixelRay {
 
 /// The rays of a camera's pixels, row by row from the top.
 std::vector<PixelRay> make_rays(const Camera& camera, int width, int height) {
-  const bool is_flat = camera.orthographic_height_m > 0.0f;
-  const double half_height = is_flat ? 0.5 * static_cast<double>(camera.orthographic_height_m)
-                                     : std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad));
-  const glm::dvec3 origin(camera.position_ws), forward(camera.forward_ws);
-  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(camera.up_ws)));
-  const glm::dvec3 up = glm::cross(right, forward);
-  const double step = 2.0 * half_height / height;
+  const ViewAxes view(camera);
+  const bool is_flat = view.half_height > 0.0;
+  const double step = 2.0 * (is_flat ? view.half_height : view.tangent) / height;
   std::vector<PixelRay> rays;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const glm::dvec3 across = step * ((x + 0.5 - 0.5 * width) * right + (0.5 * height - y - 0.5) * up);
-      rays.push_back(is_flat ? PixelRay{origin + across, forward} : PixelRay{origin, forward + across});
+      const glm::dvec3 across = step * ((x + 0.5 - 0.5 * width) * view.right + (0.5 * height - y - 0.5) * view.up);
+      rays.push_back(is_flat ? PixelRay{view.eye + across, view.forward} : PixelRay{view.eye, view.forward + across});
     }
   }
   return rays;

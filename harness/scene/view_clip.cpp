@@ -1,7 +1,5 @@
 #include "harness/scene/view_clip.h"
 
-#include <cmath>
-
 namespace shadowbench::scene {
 namespace {
 
@@ -10,20 +8,6 @@ struct HalfSpace {
   glm::dvec3 normal;
   double offset;
   double distance(const glm::dvec3& p) const { return glm::dot(normal, p) + offset; }
-};
-
-struct ViewAxes {
-  explicit ViewAxes(const Camera& camera)
-      : eye(camera.position_ws),
-        forward(camera.forward_ws),
-        right(glm::normalize(glm::cross(forward, glm::dvec3(camera.up_ws)))),
-        up(glm::cross(right, forward)),
-        half_height(0.5 * static_cast<double>(camera.orthographic_height_m)),
-        tangent(std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad))) {}
-
-  glm::dvec3 eye, forward, right, up;
-  double half_height;  ///< of an orthographic camera; else 0
-  double tangent;
 };
 
 std::vector<HalfSpace> bound_view(const Camera& camera, double aspect, const std::optional<DepthSpan>& span) {

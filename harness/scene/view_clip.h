@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
@@ -13,6 +14,21 @@ namespace shadowbench::scene {
 struct DepthSpan {
   double near_m = 0.0;
   double far_m = 0.0;
+};
+
+/// Where a camera stands, its axes, and how far it sees aside.
+struct ViewAxes {
+  explicit ViewAxes(const Camera& camera)
+      : eye(camera.position_ws),
+        forward(camera.forward_ws),
+        right(glm::normalize(glm::cross(forward, glm::dvec3(camera.up_ws)))),
+        up(glm::cross(right, forward)),
+        half_height(0.5 * static_cast<double>(camera.orthographic_height_m)),
+        tangent(std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad))) {}
+
+  glm::dvec3 eye, forward, right, up;
+  double half_height;  ///< of an orthographic camera; else 0
+  double tangent;      ///< of half the angle of view of another one
 };
 
 /// How far along its axis a camera sees a point, metres.

@@ -1,16 +1,17 @@
 #include "harness/view/save.h"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <set>
 #include <system_error>
 
 #include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
+#include "filters/base/toml.h"
 #include "harness/gl/pixel_format.h"
 #include "harness/scene/load.h"
 #include "harness/scene/scene_writer.h"
-#include "harness/scene/toml_writer.h"
 
 namespace shadowbench::view {
 namespace {
@@ -114,7 +115,7 @@ std::string write_experiment(const ViewState& state, const fs::path& file) {
   add_map(table, options);
   add_lookup(table, options);
   add_filters(table, state, file);
-  return scene::write_toml(table);
+  return write_toml(table);
 }
 
 void save_experiment(const ViewState& state, const fs::path& file) {

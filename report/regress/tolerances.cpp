@@ -1,16 +1,11 @@
 #include "report/regress/tolerances.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <toml++/toml.h>
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 
-#include "filters/base/error.h"
-#include "filters/base/input_file.h"
-#include "filters/base/nearest_name.h"
+#include "filters/base/toml.h"
 #include "report/regress/compared_metrics.h"
 
 namespace shadowbench::regress {
@@ -36,84 +31,24 @@ Tolerance tolerate(metrics::MetricBaseline baseline) {
   return {0.0, "a count: it does not depend on rounding"};
 }
 
-/// Reads one file and says where in it something is wrong.
-class ToleranceReader {
- public:
-  explicit ToleranceReader(const std::filesystem::path& file) : file_(file.string()), root_(parse()) {}
+Tolerance read_tolerance(const TomlTable& table) {
+  table.require_known_keys({"limit", "reason"});
+  const auto limit = table.find("limit"), reason = table.find("reason");
+  const double number = limit ? limit->as<double>().value_or(-1.0) : -1.0;
+  if (!(number >= 0.0))
+    throw table.error(
+        fmt::format("the tolerance of {} needs a limit of 0 or more; 'inf' compares it with nothing", table.key()));
+  const std::string text = reason ? reason->as<std::string>().value_or("") : "";
+  if (text.empty())
+    throw table.error(fmt::format("the tolerance of {} needs a reason: what limits the filter there", table.key()));
+  return {number, text};
+}
 
-  Tolerances read() const {
-    Tolerances tolerances;
-    for (const auto& [key, node] : root_) {
-      const std::string name(key.str());
-      if (name == "all")
-        read_filter(tolerances, "", node);
-      else if (name == "filter")
-        read_filters(tolerances, node);
-      else
-        fail(node, fmt::format("'{}' is not known here: write [all.\"METRIC\"] or [filter.ID.\"METRIC\"]", name));
-    }
-    return tolerances;
-  }
-
- private:
-  std::string file_;
-  toml::table root_;
-
-  toml::table parse() const {
-    if (std::filesystem::is_directory(file_))
-      throw Error(ErrorKind::kInput, "this is a folder, and should be the file of the tolerances; remove it", file_);
-    require_plain_file(file_, 16 * kMebibyte);
-    try {
-      return toml::parse_file(file_);
-    } catch (const toml::parse_error& error) {
-      const auto line = error.source().begin.line;
-      throw Error(ErrorKind::kInput, std::string(error.description()),
-                  line > 0 ? fmt::format("{}:{}", file_, line) : file_);
-    }
-  }
-
-  [[noreturn]] void fail(const toml::node& node, const std::string& message) const {
-    throw Error(ErrorKind::kInput, message, fmt::format("{}:{}", file_, node.source().begin.line));
-  }
-
-  const toml::table& table(const toml::node& node, const std::string& name) const {
-    if (const toml::table* found = node.as_table()) return *found;
-    fail(node, fmt::format("'{}' must be a table", name));
-  }
-
-  void read_filters(Tolerances& tolerances, const toml::node& node) const {
-    for (const auto& [key, each] : table(node, "filter")) read_filter(tolerances, std::string(key.str()), each);
-  }
-
-  void read_filter(Tolerances& tolerances, const std::string& filter, const toml::node& node) const {
-    for (const auto& [key, each] : table(node, filter)) {
-      const std::string metric(key.str());
-      require_known(metric, each);
-      tolerances.set(filter, metric, read_tolerance(metric, table(each, metric)));
-    }
-  }
-
-  void require_known(const std::string& metric, const toml::node& node) const {
-    const std::vector<std::string>& known = list_limited_metrics();
-    if (std::find(known.begin(), known.end(), metric) != known.end()) return;
-    fail(node, fmt::format("there is no metric '{}'{}; known: {}", metric, did_you_mean(metric, known),
-                           fmt::join(known, ", ")));
-  }
-
-  Tolerance read_tolerance(const std::string& metric, const toml::table& values) const {
-    for (const auto& [key, node] : values)
-      if (key.str() != "limit" && key.str() != "reason")
-        fail(node, fmt::format("'{}' is not known: a tolerance has a limit and a reason", std::string(key.str())));
-    const auto limit = values["limit"].value<double>();
-    if (!limit || !(*limit >= 0.0))
-      fail(values,
-           fmt::format("the tolerance of {} needs a limit of 0 or more; 'inf' compares it with nothing", metric));
-    const auto reason = values["reason"].value<std::string>();
-    if (!reason || reason->empty())
-      fail(values, fmt::format("the tolerance of {} needs a reason: what limits the filter there", metric));
-    return {*limit, *reason};
-  }
-};
+void read_filter(Tolerances& tolerances, const std::string& filter, const TomlTable& table) {
+  table.require_known_keys(list_limited_metrics());
+  for (const TomlValue& each : table.entries())
+    tolerances.set(filter, each.key(), read_tolerance(*table.table(each.key())));
+}
 
 std::string quote(const std::string& text) {
   std::string quoted = "\"";
@@ -170,7 +105,17 @@ const std::vector<std::string>& list_limited_metrics() {
   return names;
 }
 
-Tolerances read_tolerances(const std::filesystem::path& file) { return ToleranceReader(file).read(); }
+Tolerances read_tolerances(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file))
+    fail_input("this is a folder, and should be the file of the tolerances; remove it", file.string());
+  const TomlTable root = read_toml(file, "the tolerances");
+  root.require_known_keys({"all", "filter"});
+  Tolerances tolerances;
+  if (const auto all = root.table("all")) read_filter(tolerances, "", *all);
+  if (const auto filters = root.table("filter"))
+    for (const TomlValue& each : filters->entries()) read_filter(tolerances, each.key(), *filters->table(each.key()));
+  return tolerances;
+}
 
 std::string write_tolerances(const Tolerances& tolerances) {
   std::string text =

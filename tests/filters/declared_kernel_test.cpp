@@ -87,7 +87,7 @@ TEST(DeclaredKernel, ThatIsNone_IsRefused_WithItsLine) {
   expect_refused("kernel = 'box:2.5'", 14, "whole number within 1 .. 129");
   expect_refused("[kernel]\nshape = 'gaussian:65'", 15, "within 0 .. 64");
   expect_refused("[kernel]\nread = 'nearest'", 14, "either 'shape' or 'weights'");
-  expect_refused("[kernel]\nshape = 'box:3'\nread = 'cubic'", 16, "known: bilinear, nearest");
+  expect_refused("[kernel]\nshape = 'box:3'\nread = 'cubic'", 16, "expected one of: bilinear, nearest");
   expect_refused("[kernel]\nshape = 'disk:3'\nread = 'nearest'", 16, "a box, a gaussian, or weights");
   expect_refused("[kernel]\nweigths = [1]", 15, "did you mean 'weights'");
 }

@@ -1,6 +1,6 @@
-#include "filters/format/loops.h"
-
 #include <gtest/gtest.h>
+
+#include "filters/format/glsl_words.h"
 
 namespace shadowbench::filters {
 namespace {

@@ -3,12 +3,10 @@
 #include <filesystem>
 #include <optional>
 #include <string_view>
-#include <vector>
+
+#include "filters/base/input_file.h"
 
 namespace shadowbench::scene {
-
-/// Reads a whole file. Throws kInput where it is missing, not a regular file or unreadable.
-std::vector<unsigned char> read_file_bytes(const std::filesystem::path& file);
 
 /// Resolves a reference that a file in `folder` makes; percent signs must be decoded already. Returns nothing if it
 /// would leave that folder: by "../x" or "/etc/passwd", by a symbolic link, or by a NUL that hides its end. Links that

@@ -1,11 +1,11 @@
 #include "harness/scene/lights/light.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <glm/gtx/rotate_vector.hpp>
 
@@ -13,7 +13,6 @@
 #include "filters/base/error.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/scene.h"
-#include "harness/scene/toml_reader.h"
 
 namespace shadowbench::scene {
 namespace {
@@ -37,44 +36,42 @@ std::optional<MapWindow> read_map_window(const TomlTable& table) {
   return window;
 }
 
-/// How a kind is read from a scene file; listed in the order of LightKind.
-struct KindReader {
-  std::string_view type;
-  const std::vector<std::string>& (*keys)();
-  LightKind (*read)(const TomlTable& table);
-};
-
-const std::array<KindReader, 3>& list_readers() {
-  static const std::array<KindReader, 3> readers = {
-      {{"directional", sun_keys, [](const TomlTable& table) -> LightKind { return read_sun(table); }},
-       {"spot", spot_keys, [](const TomlTable& table) -> LightKind { return read_spot(table); }},
-       {"point", point_keys, [](const TomlTable& table) -> LightKind { return read_point(table); }}}};
+/// How kinds are read from a scene file, in the order of LightKind.
+const std::vector<std::pair<std::string, LightKind (*)(const TomlTable&)>>& list_readers() {
+  static const std::vector<std::pair<std::string, LightKind (*)(const TomlTable&)>> readers = {
+      {"directional", [](const TomlTable& table) -> LightKind { return read_sun(table); }},
+      {"spot", [](const TomlTable& table) -> LightKind { return read_spot(table); }},
+      {"point", [](const TomlTable& table) -> LightKind { return read_point(table); }}};
   return readers;
-}
-
-}  // namespace
-
-double write_number(float value) {
-  const std::string text = fmt::format("{}", value);
-  double number = 0.0;
-  std::from_chars(text.data(), text.data() + text.size(), number);
-  return number;
-}
-
-std::vector<double> write_numbers(const glm::vec3& v) {
-  return {write_number(v.x), write_number(v.y), write_number(v.z)};
-}
-
-std::string write_vector(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
-
-std::vector<LightNumber> list_coordinates(const std::string& name, glm::vec3& place_ws) {
-  return {{name + " x", "m", &place_ws.x, 0.0f, -1.0f},
-          {name + " y", "m", &place_ws.y, 0.0f, -1.0f},
-          {name + " z", "m", &place_ws.z, 0.0f, -1.0f}};
 }
 
 std::vector<LightNumber> list_numbers(Light& light) {
   return std::visit([](auto& kind) { return list_numbers(kind); }, light.kind);
+}
+
+}  // namespace
+
+std::string write_vector(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
+
+void require_light_keys(const TomlTable& table, const std::vector<std::string>& own) {
+  table.require_known_keys({"type", "name", "color", "intensity"}, own);
+}
+
+std::vector<LightSlider> list_sliders(Light& light) {
+  constexpr const char* kAxes[][3] = {{""}, {" u", " v"}, {" x", " y", " z"}};
+  std::vector<LightSlider> sliders;
+  for (const NumberRole role : {NumberRole::kSize, NumberRole::kAngle, NumberRole::kPlace}) {
+    for (const LightNumber& number : list_numbers(light)) {
+      const bool moves = number.slider || role == NumberRole::kPlace;
+      if (number.role != role || !number.is_used || !moves) continue;
+      std::string name = number.key.substr(0, number.key.find("_deg"));
+      std::ranges::replace(name, '_', ' ');
+      for (std::size_t i = 0; i < number.values.size(); ++i)
+        sliders.push_back({name + kAxes[number.values.size() - 1][i], role == NumberRole::kAngle ? "degrees" : "m",
+                           &number.values[i], number.slider});
+    }
+  }
+  return sliders;
 }
 
 glm::vec3 to_light(const Light& light, const glm::vec3& point_ws) {
@@ -124,36 +121,37 @@ std::vector<Light> make_light_ring(const Light& first, int count) {
 }
 
 Light read_light(const TomlTable& table) {
-  std::vector<std::string> types;
-  for (const KindReader& each : list_readers()) types.emplace_back(each.type);
-  const std::string type = table.choice("type", types, types.front());
-  const KindReader& reader = *std::ranges::find(list_readers(), type, &KindReader::type);
-  std::vector<std::string> keys = reader.keys();
-  keys.insert(keys.begin(), {"type", "name", "color", "intensity"});
-  table.require_known_keys(keys);
   Light light;
+  light.kind = table.choose("type", list_readers(), "directional")(table);
   light.name = table.string("name", light.name);
-  light.kind = reader.read(table);
   light.color = glm::vec3(table.vec3("color", kColor, glm::dvec3(1.0)));
   light.intensity = table.number_f("intensity", {0.0, 1000.0}, 1.0);
   light.map_window = read_map_window(table);
   return light;
 }
 
-TomlEntries write_light(const Light& light) {
-  TomlEntries entries = std::visit([](const auto& kind) { return write_light(kind); }, light.kind);
-  if (!light.name.empty()) entries["name"] = light.name;
-  entries["type"] = std::string(list_readers()[light.kind.index()].type);
-  entries["color"] = write_numbers(light.color);
-  entries["intensity"] = write_number(light.intensity);
-  if (!light.map_window) return entries;
+toml::table write_light(Light light) {
+  if (auto* spot = std::get_if<Spot>(&light.kind))
+    spot->inner_cone_deg = std::min(spot->inner_cone_deg, spot->cone_deg);
+  toml::table table{{"type", list_readers()[light.kind.index()].first},
+                    {"color", write_numbers(std::span(&light.color.x, 3))},
+                    {"intensity", write_number(light.intensity)}};
+  for (const LightNumber& number : list_numbers(light)) {
+    if (!number.is_used) continue;
+    if (number.values.size() > 1)
+      table.insert(number.key, write_numbers(number.values));
+    else
+      table.insert(number.key, write_number(number.values.front()));
+  }
+  if (!light.name.empty()) table.insert("name", light.name);
+  if (!light.map_window) return table;
   const MapWindow& window = *light.map_window;
-  entries["map_center"] = std::vector{window.center_ws.x, window.center_ws.y, window.center_ws.z};
-  entries["map_width"] = window.width_m;
-  if (!window.planes) return entries;
-  entries["map_near"] = window.planes->near_m;
-  entries["map_far"] = window.planes->far_m;
-  return entries;
+  table.insert("map_center", toml::array{window.center_ws.x, window.center_ws.y, window.center_ws.z});
+  table.insert("map_width", window.width_m);
+  if (!window.planes) return table;
+  table.insert("map_near", window.planes->near_m);
+  table.insert("map_far", window.planes->far_m);
+  return table;
 }
 
 std::optional<LightKind> make_gltf_light(std::string_view type, const glm::dmat4& world_from_node,
@@ -189,14 +187,23 @@ std::string describe_light(const Light& light) {
   return std::visit([](const auto& kind) { return describe_light(kind); }, light.kind);
 }
 
-LightMetadata light_metadata(const Light& light) {
-  return std::visit([](const auto& kind) { return light_metadata(kind); }, light.kind);
+LightMetadata light_metadata(Light light) {
+  constexpr const char* kUnits[] = {"_ws", "_ws", "_m", "_m", ""};  // of NumberRole; an angle's key names its own
+  LightMetadata metadata;
+  for (const LightNumber& number : list_numbers(light)) {
+    auto& said = metadata["light_" + number.key + kUnits[static_cast<int>(number.role)]];
+    if (number.values.size() > 1)
+      said = fmt::format("{}", fmt::join(number.values, " "));
+    else
+      said = static_cast<double>(number.values.front());
+  }
+  return metadata;
 }
 
-std::vector<std::string> list_light_content(const Light& light) {
-  std::vector<std::string> content = {
-      fmt::format("{} {} {} {}", light.kind.index(), write_vector(light.color), light.intensity,
-                  std::visit([](const auto& kind) { return light_content(kind); }, light.kind))};
+std::vector<std::string> list_light_content(Light light) {
+  std::string text = fmt::format("{} {} {}", light.kind.index(), write_vector(light.color), light.intensity);
+  for (const LightNumber& number : list_numbers(light)) text += fmt::format(" {}", fmt::join(number.values, " "));
+  std::vector<std::string> content = {std::move(text)};
   if (const Texture* cookie = find_cookie(light)) {
     ContentHash texels;
     texels.add_values(std::span<const std::uint8_t>(cookie->rgba));

@@ -70,11 +70,19 @@ std::vector<Light> make_light_ring(const Light& first, int count);
 /// Reads the [light] of a scene file. Throws kInput.
 Light read_light(const TomlTable& table);
 
-/// The numbers of a light beside its direction: its size first. They stay those of this light.
-std::vector<LightNumber> list_numbers(Light& light);
+/// A number of a light that may be changed by hand.
+struct LightSlider {
+  std::string name;  ///< "size u", "position x"
+  std::string unit;
+  float* value = nullptr;      ///< of the light that was asked
+  std::optional<Range> range;  ///< none: any number
+};
+
+/// The numbers of a light beside its direction: its size first.
+std::vector<LightSlider> list_sliders(Light& light);
 
 /// What the [light] of a scene file says of it, but for its cookie, whose file it does not know.
-TomlEntries write_light(const Light& light);
+toml::table write_light(Light light);
 
 /// Returns the light of a glTF node, or nothing for a type that is not modelled. A spot's cones are given as half
 /// angles, radians; glTF knows no size of lamps, so that it gets that of one without `radius` in a scene file.
@@ -92,9 +100,9 @@ Light checked_light(Light light, const std::string& where);
 std::string describe_light(const Light& light);
 
 /// What a picture's metadata say of the light.
-LightMetadata light_metadata(const Light& light);
+LightMetadata light_metadata(Light light);
 
 /// All that a result depends on, as text for the name of a cell.
-std::vector<std::string> list_light_content(const Light& light);
+std::vector<std::string> list_light_content(Light light);
 
 }  // namespace shadowbench::scene

@@ -2,11 +2,10 @@
 
 #include <glm/glm.hpp>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "harness/scene/lights/fit_rule.h"
-#include "harness/scene/lights/layer_share.h"
-#include "harness/scene/lights/map_shape.h"
 #include "harness/scene/scene.h"
 #include "harness/scene/view_clip.h"
 #include "reference/truth/visibility.h"
@@ -27,6 +26,39 @@ struct FitRequest {
   std::optional<DepthSpan> seen = {};  ///< the depths that pixels show, for cascades that split these
 };
 
+/// The depths along the camera's axis that a cascade serves, metres. It fades in and out linearly, as its neighbours
+/// fade out and in: the shares of all cascades add up to 1 everywhere.
+struct ViewSlice {
+  double fade_in_begin = 0.0;
+  double fade_in_end = 0.0;
+  double fade_out_begin = 0.0;
+  double fade_out_end = 0.0;
+  double end_m = 0.0;  ///< what it was fitted to; the last slice also serves what lies beyond
+
+  bool operator==(const ViewSlice&) const = default;
+};
+
+/// The directions that a face of a cube serves: those that are longest along its axis. Of directions that are as long
+/// along two axes, x goes before y, and y before z.
+struct CubeFace {
+  int index = 0;  ///< +x, -x, +y, -y, +z, -z
+
+  bool operator==(const CubeFace&) const = default;
+};
+
+inline constexpr int kCubeFaces = 6;
+inline constexpr int kHalfSpheres = 2;
+
+/// The directions that one of two paraboloids serves. One that is level is the first's.
+struct HalfSphere {
+  bool is_upper = false;  ///< the second; the first is the lower
+
+  bool operator==(const HalfSphere&) const = default;
+};
+
+/// What a layer of a light's map serves of the receivers: all of them, or a share.
+using LayerShare = std::variant<std::monostate, ViewSlice, CubeFace, HalfSphere>;
+
 /// What the map of a light in the scene is drawn through. Depth is linear in the distance along the light's axis, as
 /// all filters see it; the map stores the depth of the projection, a filters::DepthCurve with far_over_near().
 struct PerspectiveMap {
@@ -36,6 +68,33 @@ struct PerspectiveMap {
 
   double far_over_near() const { return far_m / near_m; }
   double distance(const glm::dvec3& point_ws) const { return glm::dot(point_ws - beam.position_ws, beam.axis_ws); }
+};
+
+/// How a point's place in the map follows from its place in the world; lib/map_shape.glsl does the same.
+enum class MapShape {
+  kPlane,        ///< a projection, that of the sun or of a lamp
+  kWarped,       ///< a projection of the sun's map, with depth that stays linear
+  kLogarithmic,  ///< the same, with v as the logarithm of w
+  kParaboloid,   ///< half of all directions around a lamp
+};
+
+/// A map that is none of the light's own: the depths are written by the fragment shader.
+inline bool is_curved(MapShape shape) { return shape != MapShape::kPlane; }
+
+/// v = scale log(w) + offset.
+struct LogCurve {
+  double scale = 0.0;
+  double offset = 0.0;
+
+  bool operator==(const LogCurve&) const = default;
+};
+
+/// Where the directions of half a sphere lie in the map: in a circle.
+struct Paraboloid {
+  glm::dvec2 center{0.5};
+  double radius = 0.5;
+
+  bool operator==(const Paraboloid&) const = default;
 };
 
 /// The frustum of a light's square map: orthographic, over casters and receivers, or a perspective one around a cone.
@@ -74,6 +133,9 @@ double count_used_texels(const FitRequest& request);
 /// Sets the matrices of a perspective map whose half side is `tangent` times the distance; `shift_clip` moves it along
 /// its axes.
 void set_perspective(LightFrustum& frustum, double tangent, const glm::dvec2& shift_clip);
+
+/// How the place of a point in a light's map, texels, changes with the point.
+truth::TexelGradients find_gradients(const LightFrustum& frustum, const glm::dvec3& point_ws);
 
 /// Where a filter's kernel lies in the world.
 truth::MapGrid make_map_grid(const LightFrustum& frustum);

@@ -4,16 +4,16 @@
 #include <glm/glm.hpp>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "harness/scene/lights/beam.h"
+#include "filters/base/toml.h"
 #include "reference/truth/area_light.h"
 
 namespace shadowbench::scene {
 
-class TomlTable;
 struct FitRequest;
 struct FitRule;
 struct LightFrustum;
@@ -21,30 +21,44 @@ struct MapWindow;
 struct Scene;
 struct Texture;
 
+/// The cone that a lamp in the scene lights.
+struct Beam {
+  glm::dvec3 position_ws{0.0};
+  glm::dvec3 axis_ws{0.0, -1.0, 0.0};  ///< the way the light travels, unit length
+  double cos_inner = 1.0;              ///< full strength within this angle of the axis
+  double cos_outer = 0.0;              ///< none beyond this one
+  double reference_m = 1.0;            ///< where its strength is 1
+
+  /// The share of the cone's light that goes to a point, 0 .. 1: the square of a ramp between both angles, of cosines.
+  /// Source: Khronos, KHR_lights_punctual, "Inner and Outer Cone Angles". 0 for the light's own place.
+  double cone_at(const glm::dvec3& point_ws) const;
+};
+
+/// A part of a linear colour.
+inline constexpr Range kColor{0.0, 1.0};
+
 /// Maps unit vectors.
 using LightTurn = std::function<glm::vec3(const glm::vec3&)>;
 
 /// What a picture's metadata say of a light, by name.
 using LightMetadata = std::map<std::string, std::variant<double, std::string>>;
 
-/// A number of a light that may be changed.
+/// What a number of a light is. It tells the unit that a picture's metadata write behind its name, and the order of the
+/// window's sliders: sizes, angles, places.
+enum class NumberRole { kDirection, kPlace, kSize, kReach, kAngle };
+
+/// A number of a light, or those of a vector. Scene files, metadata, names of cells and sliders say what the list of
+/// its kind has.
 struct LightNumber {
-  std::string name;
-  std::string unit;
-  float* value = nullptr;  ///< of the light that was asked
-  float min = 0.0f;
-  float max = 0.0f;  ///< less than `min`: any number
+  std::string key;  ///< in a scene file: "cone_deg"
+  NumberRole role;
+  std::span<float> values;        ///< of the light that was asked
+  std::optional<Range> slider{};  ///< what it may be set to; a place may be anything
+  bool is_used = true;            ///< else the light has another in its place, a size for a radius
 };
 
-/// The coordinates of a place, each any number.
-std::vector<LightNumber> list_coordinates(const std::string& name, glm::vec3& place_ws);
-
-/// What a table of a scene file says, by key.
-using TomlEntries = std::map<std::string, std::variant<double, std::string, std::vector<double>>>;
-
-/// Numbers for a scene file: the shortest decimals that are read back as the same floats.
-double write_number(float value);
-std::vector<double> write_numbers(const glm::vec3& v);
+/// Refuses the keys of a [light] that neither all lights have nor one of this kind.
+void require_light_keys(const TomlTable& table, const std::vector<std::string>& own);
 
 /// "1 2 3", for texts that name a light.
 std::string write_vector(const glm::vec3& v);

@@ -6,14 +6,13 @@
 #include <cmath>
 
 #include "harness/scene/lights/perspective_fit.h"
-#include "harness/scene/toml_reader.h"
 #include "harness/scene/validate.h"
 
 namespace shadowbench::scene {
 namespace {
 
 Beam make_face_beam(const PointLight& point, int face) {
-  Beam beam = make_beam(point);
+  Beam beam = *find_beam(point);
   beam.axis_ws = glm::dvec3(0.0);
   beam.axis_ws[face / 2] = face % 2 == 0 ? 1.0 : -1.0;
   return beam;
@@ -57,12 +56,8 @@ std::vector<LightFrustum> fit_paraboloids(const PointLight& point, const Scene& 
 
 }  // namespace
 
-const std::vector<std::string>& point_keys() {
-  static const std::vector<std::string> keys = {"position", "radius", "reference"};
-  return keys;
-}
-
 PointLight read_point(const TomlTable& table) {
+  require_light_keys(table, {"position", "radius", "reference"});
   PointLight point;
   point.position_ws = glm::vec3(table.vec3("position", kAnyNumber));
   point.radius_m = table.number_f("radius", {0.0, 1000.0}, static_cast<double>(point.radius_m));
@@ -81,13 +76,13 @@ PointLight checked_light(const PointLight& point, const std::string& where) {
              where);
 }
 
-Beam make_beam(const PointLight& point) {
+std::optional<Beam> find_beam(const PointLight& point) {
   constexpr double kEveryCosine = -2.0;
-  return {glm::dvec3(point.position_ws),
-          {0.0, -1.0, 0.0},
-          kEveryCosine,
-          kEveryCosine,
-          static_cast<double>(point.reference_m)};
+  return Beam{glm::dvec3(point.position_ws),
+              {0.0, -1.0, 0.0},
+              kEveryCosine,
+              kEveryCosine,
+              static_cast<double>(point.reference_m)};
 }
 
 truth::AreaLight make_area_light(const PointLight& point) {
@@ -97,8 +92,6 @@ truth::AreaLight make_area_light(const PointLight& point) {
 glm::vec3 to_light(const PointLight& point, const glm::vec3& point_ws) {
   return glm::normalize(point.position_ws - point_ws);
 }
-
-std::optional<Beam> find_beam(const PointLight& point) { return make_beam(point); }
 
 double light_size(const PointLight& point) { return 2.0 * static_cast<double>(point.radius_m); }
 
@@ -117,25 +110,9 @@ std::string describe_light(const PointLight& point) {
 }
 
 std::vector<LightNumber> list_numbers(PointLight& point) {
-  std::vector<LightNumber> numbers = {{"radius", "m", &point.radius_m, 0.0f, 1.0f}};
-  for (LightNumber& each : list_coordinates("position", point.position_ws)) numbers.push_back(each);
-  return numbers;
-}
-
-TomlEntries write_light(const PointLight& point) {
-  return {{"position", write_numbers(point.position_ws)},
-          {"radius", write_number(point.radius_m)},
-          {"reference", write_number(point.reference_m)}};
-}
-
-LightMetadata light_metadata(const PointLight& point) {
-  return {{"light_position_ws", write_vector(point.position_ws)},
-          {"light_reference_m", static_cast<double>(point.reference_m)},
-          {"light_radius_m", static_cast<double>(point.radius_m)}};
-}
-
-std::string light_content(const PointLight& point) {
-  return fmt::format("{} {} {}", write_vector(point.position_ws), point.radius_m, point.reference_m);
+  return {{"position", NumberRole::kPlace, {&point.position_ws.x, 3}},
+          {"radius", NumberRole::kSize, {&point.radius_m, 1}, Range{0.0, 1.0}},
+          {"reference", NumberRole::kReach, {&point.reference_m, 1}}};
 }
 
 int count_layers(const PointLight&, const MapWindow*, const FitRule& rule) {

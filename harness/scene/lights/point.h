@@ -11,16 +11,12 @@ struct PointLight {
   float reference_m = 1.0f;  ///< where its light is as strong as a sun's
 };
 
-/// The keys of a point light in a scene file, and the light that they describe. Throws kInput.
-const std::vector<std::string>& point_keys();
+/// The point light that a scene file describes. Throws kInput.
 PointLight read_point(const TomlTable& table);
-
-/// A beam without an edge; its axis says nothing.
-Beam make_beam(const PointLight& point);
 
 /// What light.h asks of every kind.
 glm::vec3 to_light(const PointLight& point, const glm::vec3& point_ws);
-std::optional<Beam> find_beam(const PointLight& point);
+std::optional<Beam> find_beam(const PointLight& point);  ///< without an edge; its axis says nothing
 double light_size(const PointLight& point);
 truth::AreaLight make_area_light(const PointLight& point);
 void turn_light(PointLight& point, const LightTurn& turn);
@@ -28,9 +24,6 @@ void aim_light(PointLight& point, const glm::vec3& center_ws);
 PointLight checked_light(const PointLight& point, const std::string& where);
 std::string describe_light(const PointLight& point);
 std::vector<LightNumber> list_numbers(PointLight& point);
-TomlEntries write_light(const PointLight& point);
-LightMetadata light_metadata(const PointLight& point);
-std::string light_content(const PointLight& point);
 int count_layers(const PointLight& point, const MapWindow* window, const FitRule& rule);
 std::vector<LightFrustum> fit_layers(const PointLight& point, const MapWindow* window, const Scene& scene,
                                      const FitRequest& request);

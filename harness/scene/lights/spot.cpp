@@ -11,7 +11,6 @@
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/lights/perspective_fit.h"
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/toml_reader.h"
 #include "harness/scene/validate.h"
 
 namespace shadowbench::scene {
@@ -41,13 +40,8 @@ double Beam::cone_at(const glm::dvec3& point_ws) const {
   return ramp * ramp;
 }
 
-const std::vector<std::string>& spot_keys() {
-  static const std::vector<std::string> keys = {"position", "target", "cone_deg", "inner_cone_deg",
-                                                "radius",   "size",   "cookie"};
-  return keys;
-}
-
 Spot read_spot(const TomlTable& table) {
+  require_light_keys(table, {"position", "target", "cone_deg", "inner_cone_deg", "radius", "size", "cookie"});
   Spot spot;
   spot.position_ws = glm::vec3(table.vec3("position", kAnyNumber));
   spot.target_ws = glm::vec3(table.vec3("target", kAnyNumber));
@@ -66,11 +60,11 @@ Spot read_spot(const TomlTable& table) {
   return spot;
 }
 
-Beam make_beam(const Spot& spot) {
+std::optional<Beam> find_beam(const Spot& spot) {
   const glm::dvec3 way = glm::dvec3(spot.target_ws) - glm::dvec3(spot.position_ws);
   const auto half_cosine = [](float degrees) { return std::cos(0.5 * glm::radians(static_cast<double>(degrees))); };
-  return {glm::dvec3(spot.position_ws), glm::normalize(way), half_cosine(spot.inner_cone_deg),
-          half_cosine(spot.cone_deg), glm::length(way)};
+  return Beam{glm::dvec3(spot.position_ws), glm::normalize(way), half_cosine(spot.inner_cone_deg),
+              half_cosine(spot.cone_deg), glm::length(way)};
 }
 
 double light_size(const Spot& spot) {
@@ -79,7 +73,7 @@ double light_size(const Spot& spot) {
 }
 
 truth::AreaLight make_area_light(const Spot& spot) {
-  const Beam beam = make_beam(spot);
+  const Beam beam = *find_beam(spot);
   if (is_rectangle(spot)) {
     const glm::dmat3 axes = glm::transpose(light_rotation(beam.axis_ws));
     return truth::AreaLight::make_rectangle(beam.position_ws, 0.5 * static_cast<double>(spot.size_m.x) * axes[0],
@@ -89,8 +83,6 @@ truth::AreaLight make_area_light(const Spot& spot) {
 }
 
 glm::vec3 to_light(const Spot& spot, const glm::vec3& point_ws) { return glm::normalize(spot.position_ws - point_ws); }
-
-std::optional<Beam> find_beam(const Spot& spot) { return make_beam(spot); }
 
 void turn_light(Spot& spot, const LightTurn& turn) {
   const glm::vec3 way = spot.target_ws - spot.position_ws;
@@ -124,48 +116,20 @@ std::string describe_light(const Spot& spot) {
 }
 
 std::vector<LightNumber> list_numbers(Spot& spot) {
-  std::vector<LightNumber> numbers;
-  if (is_rectangle(spot))
-    numbers = {{"size u", "m", &spot.size_m.x, 0.01f, 2.0f}, {"size v", "m", &spot.size_m.y, 0.01f, 2.0f}};
-  else
-    numbers = {{"radius", "m", &spot.radius_m, 0.0f, 1.0f}};
-  numbers.push_back({"cone", "degrees", &spot.cone_deg, 1.0f, kWidestCone_deg});
-  for (LightNumber& each : list_coordinates("position", spot.position_ws)) numbers.push_back(each);
-  for (LightNumber& each : list_coordinates("target", spot.target_ws)) numbers.push_back(each);
-  return numbers;
-}
-
-TomlEntries write_light(const Spot& spot) {
-  TomlEntries entries = {{"position", write_numbers(spot.position_ws)},
-                         {"target", write_numbers(spot.target_ws)},
-                         {"cone_deg", write_number(spot.cone_deg)},
-                         {"inner_cone_deg", write_number(std::min(spot.inner_cone_deg, spot.cone_deg))}};
-  if (is_rectangle(spot))
-    entries["size"] = std::vector{write_number(spot.size_m.x), write_number(spot.size_m.y)};
-  else
-    entries["radius"] = write_number(spot.radius_m);
-  return entries;
-}
-
-LightMetadata light_metadata(const Spot& spot) {
-  return {{"light_position_ws", write_vector(spot.position_ws)},
-          {"light_target_ws", write_vector(spot.target_ws)},
-          {"light_cone_deg", static_cast<double>(spot.cone_deg)},
-          {"light_inner_cone_deg", static_cast<double>(spot.inner_cone_deg)},
-          {"light_radius_m", static_cast<double>(spot.radius_m)},
-          {"light_size_m", fmt::format("{} {}", spot.size_m.x, spot.size_m.y)}};
-}
-
-std::string light_content(const Spot& spot) {
-  return fmt::format("{} {} {} {} {} {} {}", write_vector(spot.position_ws), write_vector(spot.target_ws),
-                     spot.radius_m, spot.cone_deg, spot.inner_cone_deg, spot.size_m.x, spot.size_m.y);
+  const bool flat = is_rectangle(spot);
+  return {{"position", NumberRole::kPlace, {&spot.position_ws.x, 3}},
+          {"target", NumberRole::kPlace, {&spot.target_ws.x, 3}},
+          {"radius", NumberRole::kSize, {&spot.radius_m, 1}, Range{0.0, 1.0}, !flat},
+          {"cone_deg", NumberRole::kAngle, {&spot.cone_deg, 1}, Range{1.0, double{kWidestCone_deg}}},
+          {"inner_cone_deg", NumberRole::kAngle, {&spot.inner_cone_deg, 1}},
+          {"size", NumberRole::kSize, {&spot.size_m.x, 2}, Range{0.01, 2.0}, flat}};
 }
 
 int count_layers(const Spot&, const MapWindow*, const FitRule&) { return 1; }
 
 std::vector<LightFrustum> fit_layers(const Spot& spot, const MapWindow*, const Scene& scene,
                                      const FitRequest& request) {
-  const Beam beam = make_beam(spot);
+  const Beam beam = *find_beam(spot);
   const double tangent = pad_tangent(std::tan(0.5 * glm::radians(static_cast<double>(spot.cone_deg))), request);
   return {fit_perspective(beam, tangent, find_extent(scene, look_along(beam), tangent), request)};
 }

@@ -22,12 +22,8 @@ struct Spot {
 /// A cone must be narrower than a half-space: its map is drawn through one perspective.
 inline constexpr float kWidestCone_deg = 170.0f;
 
-/// The keys of a spot in a scene file, and the spot that they describe. Throws kInput.
-const std::vector<std::string>& spot_keys();
+/// The spot that a scene file describes. Throws kInput.
 Spot read_spot(const TomlTable& table);
-
-/// Its cone.
-Beam make_beam(const Spot& spot);
 
 /// What light.h asks of every kind.
 glm::vec3 to_light(const Spot& spot, const glm::vec3& point_ws);
@@ -39,9 +35,6 @@ void aim_light(Spot& spot, const glm::vec3& center_ws);
 Spot checked_light(const Spot& spot, const std::string& where);
 std::string describe_light(const Spot& spot);
 std::vector<LightNumber> list_numbers(Spot& spot);
-TomlEntries write_light(const Spot& spot);
-LightMetadata light_metadata(const Spot& spot);
-std::string light_content(const Spot& spot);
 int count_layers(const Spot& spot, const MapWindow* window, const FitRule& rule);
 std::vector<LightFrustum> fit_layers(const Spot& spot, const MapWindow* window, const Scene& scene,
                                      const FitRequest& request);

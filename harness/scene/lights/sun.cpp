@@ -11,7 +11,6 @@
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/lights/warp.h"
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/toml_reader.h"
 #include "harness/scene/validate.h"
 #include "harness/scene/view_clip.h"
 
@@ -198,13 +197,9 @@ glm::dvec3 light_direction(double azimuth_deg, double elevation_deg) {
                      std::cos(elevation) * std::cos(azimuth));
 }
 
-const std::vector<std::string>& sun_keys() {
-  static const std::vector<std::string> keys = {"direction",  "azimuth_deg", "elevation_deg", "angular_diameter_deg",
-                                                "map_center", "map_width",   "map_near",      "map_far"};
-  return keys;
-}
-
 Sun read_sun(const TomlTable& table) {
+  require_light_keys(table, {"direction", "azimuth_deg", "elevation_deg", "angular_diameter_deg", "map_center",
+                             "map_width", "map_near", "map_far"});
   const glm::vec3 direction(read_sun_direction(table));
   return {direction, table.number_f("angular_diameter_deg", {0.0, 90.0}, 0.53)};
 }
@@ -235,21 +230,8 @@ Sun checked_light(const Sun& given, const std::string& where) {
 std::string describe_light(const Sun& sun) { return fmt::format("a sun of {:.3g} degrees", sun.angular_diameter_deg); }
 
 std::vector<LightNumber> list_numbers(Sun& sun) {
-  return {{"angular diameter", "degrees", &sun.angular_diameter_deg, 0.0f, 20.0f}};
-}
-
-TomlEntries write_light(const Sun& sun) {
-  return {{"direction", write_numbers(sun.direction_ws)},
-          {"angular_diameter_deg", write_number(sun.angular_diameter_deg)}};
-}
-
-LightMetadata light_metadata(const Sun& sun) {
-  return {{"light_direction_ws", write_vector(sun.direction_ws)},
-          {"light_angular_diameter_deg", static_cast<double>(sun.angular_diameter_deg)}};
-}
-
-std::string light_content(const Sun& sun) {
-  return fmt::format("{} {}", write_vector(sun.direction_ws), sun.angular_diameter_deg);
+  return {{"direction", NumberRole::kDirection, {&sun.direction_ws.x, 3}},
+          {"angular_diameter_deg", NumberRole::kAngle, {&sun.angular_diameter_deg, 1}, Range{0.0, 20.0}}};
 }
 
 namespace {

@@ -19,8 +19,7 @@ struct SkyAngles {
 /// The way light travels that comes from a place in the sky, see SkyAngles.
 glm::dvec3 light_direction(double azimuth_deg, double elevation_deg);
 
-/// The keys of a sun in a scene file, those of its map window included, and the sun that they describe. Throws kInput.
-const std::vector<std::string>& sun_keys();
+/// The sun that a scene file describes, but for its map window. Throws kInput.
 Sun read_sun(const TomlTable& table);
 
 /// An orthographic frustum over these receivers, in world space, with the casters between them and the light; without
@@ -38,9 +37,6 @@ void aim_light(Sun& sun, const glm::vec3& center_ws);
 Sun checked_light(const Sun& sun, const std::string& where);
 std::string describe_light(const Sun& sun);
 std::vector<LightNumber> list_numbers(Sun& sun);
-TomlEntries write_light(const Sun& sun);
-LightMetadata light_metadata(const Sun& sun);
-std::string light_content(const Sun& sun);
 int count_layers(const Sun& sun, const MapWindow* window, const FitRule& rule);
 std::vector<LightFrustum> fit_layers(const Sun& sun, const MapWindow* window, const Scene& scene,
                                      const FitRequest& request);

@@ -121,16 +121,14 @@ void SettingsPanel::show_light() {
   scene::Light light = state.scene.light;
   if (turned || raised) light = scene::place_in_sky(light, {azimuth, elevation});
   bool changed = turned || raised;
-  for (const scene::LightNumber& number : scene::list_numbers(light)) {
+  for (const scene::LightSlider& number : scene::list_sliders(light)) {
     const std::string name = "light." + number.name;
-    if (number.max < number.min) {
+    if (!number.range) {
       changed |= widgets_.drag(name, number.name, number.unit, *number.value, 0.02f);
       continue;
     }
     double value = static_cast<double>(*number.value);
-    if (!widgets_.slide(name, number.name,
-                        {static_cast<double>(number.min), static_cast<double>(number.max), false, false, number.unit},
-                        value))
+    if (!widgets_.slide(name, number.name, {number.range->min, number.range->max, false, false, number.unit}, value))
       continue;
     *number.value = static_cast<float>(value);
     changed = true;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "harness/scene/closed_mesh.h"
+#include "harness/scene/mesh_tools.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {

@@ -40,7 +40,7 @@ Point point_of(const Mesh& mesh, std::size_t i) {
 }
 
 /// Every edge is walked once in each direction.
-bool is_closed(const Mesh& mesh) {
+bool has_no_open_edge(const Mesh& mesh) {
   std::map<std::pair<Point, Point>, int> walks;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -77,7 +77,7 @@ TEST(PrimitivesTest, Plane_FacesUpAndHasItsAreaAndCells) {
 TEST(PrimitivesTest, Box_IsClosedFacesOutwardAndHasItsSize) {
   const Mesh box = make_box({1.0f, 2.0f, 0.25f}, 8);
   expect_sound(box);
-  EXPECT_TRUE(is_closed(box));
+  EXPECT_TRUE(has_no_open_edge(box));
   EXPECT_NEAR(volume_of(box), 0.5, 1e-6);
   EXPECT_NEAR(area_of(box), 2.0 * (2.0 + 0.5 + 0.25), 1e-6);
 }
@@ -90,7 +90,7 @@ TEST(PrimitivesTest, Box_HasNearlySquareCells) {
 TEST(PrimitivesTest, Sphere_IsClosedFacesOutwardAndNearsItsVolume) {
   const Mesh sphere = make_sphere(2.0f, 96);
   expect_sound(sphere);
-  EXPECT_TRUE(is_closed(sphere));
+  EXPECT_TRUE(has_no_open_edge(sphere));
   EXPECT_NEAR(volume_of(sphere) / (32.0 / 3.0 * std::numbers::pi), 1.0, 5e-3);
   for (const Vertex& v : sphere.vertices) EXPECT_NEAR(glm::length(v.position_ws), 2.0f, 1e-5f);
 }
@@ -98,14 +98,14 @@ TEST(PrimitivesTest, Sphere_IsClosedFacesOutwardAndNearsItsVolume) {
 TEST(PrimitivesTest, Cylinder_IsClosedFacesOutwardAndNearsItsVolume) {
   const Mesh cylinder = make_cylinder(0.5f, 3.0f, {.segments = 64, .cells = 6});
   expect_sound(cylinder);
-  EXPECT_TRUE(is_closed(cylinder));
+  EXPECT_TRUE(has_no_open_edge(cylinder));
   EXPECT_NEAR(volume_of(cylinder) / (0.75 * std::numbers::pi), 1.0, 5e-3);
 }
 
 TEST(PrimitivesTest, Bars_AreAsManyAsCountedAndSpacedAsSaid) {
   const Mesh bars = make_bars({.count = 3, .bar_width_m = 0.1f, .spacing_m = 0.5f, .length_m = 2.0f});
   expect_sound(bars);
-  EXPECT_TRUE(is_closed(bars));
+  EXPECT_TRUE(has_no_open_edge(bars));
   EXPECT_NEAR(volume_of(bars), 3 * 0.1 * 0.1 * 2.0, 1e-6);
   Bounds box;
   for (const Vertex& v : bars.vertices) box.add(v.position_ws);

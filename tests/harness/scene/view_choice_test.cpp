@@ -1,7 +1,5 @@
 // Camera and sun of a scene that has none: chosen by the edges of shadows, and never in place of what was given.
 
-#include "harness/scene/view_choice.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -99,7 +99,7 @@ TEST(SpotFit, NothingInTheCone_AndThingsAtTheLamp_StillGiveAFrustum) {
 }
 
 TEST(Beam, FadesFromTheInnerConeToTheOuter) {
-  const Beam beam = make_beam({{0.0f, 2.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 60.0f, 40.0f, 0.0f});
+  const Beam beam = *find_beam(Spot{{0.0f, 2.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 60.0f, 40.0f, 0.0f});
   const auto at = [&](double degrees) { return beam.cone_at({2.0 * std::tan(glm::radians(degrees)), 0.0, 0.0}); };
   EXPECT_EQ(at(0.0), 1.0);
   EXPECT_EQ(at(19.9), 1.0);
