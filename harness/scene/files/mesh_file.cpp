@@ -10,8 +10,6 @@
 #include <utility>
 
 #include "filters/base/error.h"
-#include "harness/scene/files/gltf_file.h"
-#include "harness/scene/files/obj_file.h"
 #include "harness/scene/files/picture_header.h"
 
 namespace shadowbench::scene {

@@ -1,5 +1,3 @@
-#include "harness/scene/files/obj_file.h"
-
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
@@ -18,6 +16,7 @@
 #include "filters/base/error.h"
 #include "filters/base/split_list.h"
 #include "harness/scene/files/file_bytes.h"
+#include "harness/scene/files/mesh_file.h"
 #include "harness/scene/mesh_tools.h"
 
 namespace shadowbench::scene {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "harness/scene/files/obj_file.h"
+#include "harness/scene/files/mesh_file.h"
 #include "tests/harness/scene/test_files.h"
 
 namespace shadowbench::scene {
