@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,5 +53,15 @@ Scene add_mesh_file(Scene scene, MeshFile file);
 /// `others` are decoded already, 2^28 (1 GiB). Throws kInput, with `name` and `where`, for anything else.
 Texture decode_texture(const std::vector<unsigned char>& bytes, const std::string& name, const std::string& where,
                        const std::vector<Texture>& others);
+
+/// What a picture's header says of its size, pixels.
+struct PictureSize {
+  std::uint64_t width = 0;
+  std::uint64_t height = 0;
+};
+
+/// Reads the size from the header of a PNG, JPEG, BMP, GIF or TGA picture, without decoding it; nothing where the bytes
+/// are no such picture. The formats must be told apart as the decoder does it, or a picture would be decoded unchecked.
+std::optional<PictureSize> read_picture_size(std::span<const unsigned char> bytes);
 
 }  // namespace shadowbench::scene

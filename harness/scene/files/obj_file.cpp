@@ -133,10 +133,11 @@ class EarClipper {
 class ObjText {
  public:
   ObjText(std::string text, std::string where) : text_(std::move(text)), where_(std::move(where)) {
-    for (Line line; line.begin < text_.size(); line.begin = line.end + 1, ++line.number) {
-      line.end = std::min(text_.find('\n', line.begin), text_.size());
+    for (Line line; line.begin < text_.size(); ++line.number) {
+      line.end = std::min(text_.find_first_of("\r\n", line.begin), text_.size());
       line.known = vertices_.size();
       read(line);
+      line.begin = line.end + (text_.compare(line.end, 2, "\r\n") == 0 ? 2 : 1);  // whatever system wrote the file
     }
   }
 
@@ -230,17 +231,6 @@ class ObjText {
   }
 };
 
-/// Ends each line as the checks and the parser expect it, whatever system wrote the file.
-std::string with_newlines(const std::string& text) {
-  std::string lines;
-  for (std::size_t i = 0; i < text.size(); ++i)
-    if (text[i] != '\r')
-      lines += text[i];
-    else if (i + 1 == text.size() || text[i + 1] != '\n')
-      lines += '\n';
-  return lines;
-}
-
 /// A parsed file: attributes, shapes and materials as the parser names them.
 struct ObjData {
   tinyobj::attrib_t attributes;
@@ -252,7 +242,7 @@ struct ObjData {
 ObjData parse_obj(const std::filesystem::path& file) {
   const std::string where = file.string();
   const std::vector<unsigned char> bytes = read_file_bytes(file);
-  const ObjText text(with_newlines({bytes.begin(), bytes.end()}), where);
+  const ObjText text({bytes.begin(), bytes.end()}, where);
   LibraryReader libraries(file.parent_path(), where);
   ObjData data;
   std::string failure;
