@@ -157,7 +157,7 @@ class RangeScan {
       const bool ends = i + 1 == values.size() || !is_good(values[i + 1]);
       if (ends) range.intervals.back().high = i + 1 == values.size() ? values[i] : find_edge(values[i], values[i + 1]);
     }
-    for (const ValueInterval& interval : range.intervals)
+    for (const records::Interval& interval : range.intervals)
       range.share += scale_.measure_share(interval.low, interval.high);
     return range;
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "harness/tune/param_scale.h"
+#include "report/records/records.h"
 
 namespace shadowbench::tune {
 
@@ -19,16 +20,11 @@ struct Evaluation {
   double error = 0.0;
 };
 
-struct ValueInterval {
-  double low = 0.0;
-  double high = 0.0;
-};
-
 /// Where one parameter may lie, the others at their best, for the error to stay near the best.
 struct GoodRange {
-  std::vector<ValueInterval> intervals;  ///< ascending; more than one where the range has holes
-  double share = 0.0;                    ///< of the scaled range that they take, [0,1]
-  bool no_effect = false;                ///< the error is the same all over the range
+  std::vector<records::Interval> intervals;  ///< ascending; more than one where the range has holes
+  double share = 0.0;                        ///< of the scaled range that they take, [0,1]
+  bool no_effect = false;                    ///< the error is the same all over the range
 };
 
 struct SearchSettings {

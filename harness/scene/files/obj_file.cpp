@@ -231,39 +231,24 @@ class ObjText {
   }
 };
 
-/// A parsed file: attributes, shapes and materials as the parser names them.
-struct ObjData {
-  tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;
-  std::vector<tinyobj::material_t> materials;
-  std::string warning;
-};
-
-ObjData parse_obj(const std::filesystem::path& file) {
-  const std::string where = file.string();
-  const std::vector<unsigned char> bytes = read_file_bytes(file);
-  const ObjText text({bytes.begin(), bytes.end()}, where);
-  LibraryReader libraries(file.parent_path(), where);
-  ObjData data;
-  std::string failure;
-  std::istringstream stream(text.with_triangles());
-  const bool parsed = tinyobj::LoadObj(&data.attributes, &data.shapes, &data.materials, &data.warning, &failure,
-                                       &stream, &libraries, true);
-  if (parsed && failure.empty()) return data;
-  fail_input("not a valid .obj file: " + failure.substr(0, failure.find('\n')), where);
-}
-
-/// Builds a model from a parsed file, part by part.
+/// Builds a model from a file, part by part.
 class ObjImporter {
  public:
-  ObjImporter(ObjData source, std::filesystem::path file)
-      : source_(std::move(source)), file_(std::move(file)), where_(file_.string()) {}
+  explicit ObjImporter(std::filesystem::path file) : file_(std::move(file)), where_(file_.string()) {
+    const std::vector<unsigned char> bytes = read_file_bytes(file_);
+    std::istringstream text(ObjText({bytes.begin(), bytes.end()}, where_).with_triangles());
+    LibraryReader libraries(file_.parent_path(), where_);
+    std::string failure;
+    const bool parsed =
+        tinyobj::LoadObj(&attributes_, &shapes_, &materials_, &warning_, &failure, &text, &libraries, true);
+    if (!parsed || !failure.empty()) fail("not a valid .obj file: " + failure.substr(0, failure.find('\n')));
+  }
 
   MeshFile import() {
-    for (const tinyobj::material_t& material : source_.materials) add_material(material);
+    for (const tinyobj::material_t& material : materials_) add_material(material);
     result_.materials.push_back({.name = "default"});
-    for (const tinyobj::shape_t& shape : source_.shapes) add_shape(shape);
-    std::istringstream warnings(source_.warning);
+    for (const tinyobj::shape_t& shape : shapes_) add_shape(shape);
+    std::istringstream warnings(warning_);
     for (std::string line; std::getline(warnings, line);)
       if (!line.empty()) result_.warnings.push_back(line);
     return std::move(result_);
@@ -299,8 +284,8 @@ class ObjImporter {
     for (std::size_t i = 0; i < shape.mesh.indices.size(); ++i) {
       const std::size_t face = i / 3;
       const int wanted = face < shape.mesh.material_ids.size() ? shape.mesh.material_ids[face] : -1;
-      const bool known = wanted >= 0 && static_cast<std::size_t>(wanted) < source_.materials.size();
-      const int material = known ? wanted : static_cast<int>(source_.materials.size());
+      const bool known = wanted >= 0 && static_cast<std::size_t>(wanted) < materials_.size();
+      const int material = known ? wanted : static_cast<int>(materials_.size());
       Mesh& mesh = mesh_of[material];
       mesh.material = material;
       mesh.indices.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
@@ -314,7 +299,7 @@ class ObjImporter {
   }
 
   Vertex read_corner(const tinyobj::index_t& corner, const std::string& name) const {
-    const tinyobj::attrib_t& all = source_.attributes;
+    const tinyobj::attrib_t& all = attributes_;
     const auto check = [&](int index, std::size_t count, const char* what) {
       if (index >= 0 && static_cast<std::size_t>(index) < count) return static_cast<std::size_t>(index);
       fail(fmt::format("a face of '{}' uses {} {}, but there are {}", name, what, index + 1, count));
@@ -333,15 +318,18 @@ class ObjImporter {
     return vertex;
   }
 
-  ObjData source_;
   std::filesystem::path file_;
   std::string where_;
+  tinyobj::attrib_t attributes_;
+  std::vector<tinyobj::shape_t> shapes_;
+  std::vector<tinyobj::material_t> materials_;
+  std::string warning_;
   MeshFile result_;
   std::map<std::string, int> texture_of_name_;
 };
 
 }  // namespace
 
-MeshFile import_obj(const std::filesystem::path& file) { return ObjImporter(parse_obj(file), file).import(); }
+MeshFile import_obj(const std::filesystem::path& file) { return ObjImporter(file).import(); }
 
 }  // namespace shadowbench::scene
