@@ -25,7 +25,8 @@ void add_engine_options(Command& command, SubmitArguments& a) {
   command.add("--engine", &a.engine.engine, "what distributes the tasks: 'slurm', or 'parallel', which is GNU parallel")
       .one_of(submit::list_engines())
       .require();
-  command.add("--tasks", &a.tasks, "into how many tasks to split (default: one for every ten cells, at most 1000)");
+  command.add("--tasks", &a.tasks,
+              "into how many tasks to split (default: twice the square root of the number of cells, at most 1000)");
   command.add("--time", &a.engine.time, "time limit of a task, as sbatch takes it");
   command.add("--partition", &a.engine.partition, "partition of the jobs, as sbatch takes it");
   command.add("--gres", &a.engine.gres, "what a node must have, as sbatch takes it, such as gpu:1");

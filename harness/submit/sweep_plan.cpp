@@ -1,6 +1,7 @@
 #include "harness/submit/sweep_plan.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <tuple>
@@ -13,9 +14,8 @@
 namespace shadowbench::submit {
 namespace {
 
-constexpr int kCellsOfATask = 10;
 /// Schedulers take arrays of 1000 unless they are told otherwise.
-constexpr int kMostTasks = 1000;
+constexpr double kMostTasks = 1000.0;
 
 using Ranges = std::vector<options::CellRange>;
 
@@ -82,7 +82,7 @@ Ranges join_views(const std::vector<Ranges>& views, const options::CellRange& wh
 SweepPlan plan_sweep(const options::RunOptions& options, int tasks) {
   const run::RunPlan plan = list_all_cells(options);
   const CellNames cells = name_cells(plan);
-  const int usual = std::min((plan.cells + kCellsOfATask - 1) / kCellsOfATask, kMostTasks);
+  const int usual = static_cast<int>(std::min(std::ceil(2.0 * std::sqrt(plan.cells)), kMostTasks));
   SweepPlan made;
   for (const options::CellRange& range : split_evenly(plan.cells, tasks > 0 ? tasks : usual))
     made.tasks.push_back(make_task(TaskKind::kCells, made.tasks.size() + 1, {range}, cells));

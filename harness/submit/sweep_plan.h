@@ -15,7 +15,8 @@ struct SweepPlan {
 };
 
 /// Plans a sweep: lists all cells of the experiment, and splits them into `tasks` tasks, or as many as there are cells;
-/// 0: ten cells to a task, or more where that makes too many tasks for a scheduler.
+/// 0: twice the square root of the number of cells, at most 1000, so that few starts are paid for, and many machines
+/// have tasks to choose from.
 /// Neighbouring views are traced by one task; a view that several fits of the map show is traced once.
 /// Throws Error as run::make_plan(). Cost: the loading of all scenes.
 SweepPlan plan_sweep(const options::RunOptions& options, int tasks);

@@ -47,9 +47,9 @@ TEST_F(Submit, TasksDoneByHand_AndMerged_EqualTheWhole) {
   EXPECT_THAT(run(kDry).out, ::testing::StartsWith("nothing is left to do\n"));
 }
 
-TEST_F(Submit, WithoutANumberOfTasks_HasOneForTenCells) {
+TEST_F(Submit, WithoutANumberOfTasks_HasTwiceTheSquareRootOfItsCells) {
   static_assert(kCells == 48);
-  EXPECT_THAT(run(kDry).out, HasSubstr("5 tasks of 48 cells\n"));
+  EXPECT_THAT(run(kDry).out, HasSubstr("14 tasks of 48 cells\n"));
 }
 
 TEST_F(Submit, ATaskGoesOnWhereItStopped) {
