@@ -6,7 +6,7 @@
 #include "harness/cli/commands.h"
 #include "harness/cli/interruption.h"
 #include "harness/run/merge.h"
-#include "harness/submit/merge_sweep.h"
+#include "harness/submit/sweep_jobs.h"
 #include "harness/submit/sweep_folder.h"
 
 namespace shadowbench::cli {

@@ -8,7 +8,7 @@
 #include "harness/cli/progress_bar.h"
 #include "harness/cli/run_options.h"
 #include "harness/run/run_experiment.h"
-#include "harness/submit/run_task.h"
+#include "harness/submit/sweep_jobs.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::cli {

@@ -17,8 +17,6 @@ namespace fs = std::filesystem;
 struct SubmitArguments : RunArguments {
   submit::EngineOptions engine;
   std::string tasks;
-  std::string times_of;
-  bool probe = true;
   bool dry_run = false;
 };
 
@@ -28,15 +26,10 @@ void add_engine_options(Command& command, SubmitArguments& a) {
       .one_of(submit::list_engines())
       .require();
   command.add("--tasks", &a.tasks,
-              "into how many tasks to split (default: so many that each takes about ten minutes, at most 1000)");
+              "into how many tasks to split (default: twice the square root of the number of cells, at most 1000)");
   command.add("--time", &a.engine.time, "time limit of a task, as sbatch takes it");
   command.add("--partition", &a.engine.partition, "partition of the jobs, as sbatch takes it");
   command.add("--gres", &a.engine.gres, "what a node must have, as sbatch takes it, such as gpu:1");
-  command
-      .add("--times-of", &a.times_of,
-           "report folder of an earlier run, whose cells say what cells take, in place of a probe")
-      .names(ValueKind::kFolder);
-  command.add("--probe", &a.probe, "measure two cells of every filter first (default)").with_opposite();
   command.add("--dry-run", &a.dry_run, "write the scripts and print the commands; submit nothing");
 }
 
@@ -57,8 +50,7 @@ std::vector<std::string> list_task_words(const std::vector<std::string>& words) 
     const std::string name = words[i].substr(0, words[i].find('='));
     const auto option = std::ranges::find(own.options, name, &Option::name);
     if (option != own.options.end() && !option->is_flag() && name == words[i]) ++i;  // its value
-    const bool is_own =
-        option != own.options.end() || name == "--no-probe" || std::ranges::count(kOfEveryTask, name) > 0;
+    const bool is_own = option != own.options.end() || std::ranges::count(kOfEveryTask, name) > 0;
     if (!is_own) kept.push_back(words[i]);
   }
   return kept;
@@ -105,11 +97,10 @@ int submit(const CommandLine& line, SubmitArguments& a) {
   options.title = title;
   const std::unique_ptr<options::Progress> progress = make_progress();
   for (const std::string& note : options.notes) progress->note("note: " + note);
-  const submit::SubmitRequest request{
-      .engine = a.engine,
-      .split = {a.tasks.empty() ? 0 : parse_count(a.tasks, "--tasks"), a.times_of, a.probe},
-      .jobs = make_job_plan(options, a, line.words()),
-      .dry_run = a.dry_run};
+  const submit::SubmitRequest request{.engine = a.engine,
+                                      .tasks = a.tasks.empty() ? 0 : parse_count(a.tasks, "--tasks"),
+                                      .jobs = make_job_plan(options, a, line.words()),
+                                      .dry_run = a.dry_run};
   const Interruption interruption(options.out, "the same command goes on");
   for (const std::string& each : submit::submit_sweep(options, request, *progress)) fmt::print("{}\n", each);
   fmt::print("'shadowbench status {}' says how far it is\n", a.out);
@@ -121,7 +112,7 @@ int submit(const CommandLine& line, SubmitArguments& a) {
 Command make_submit_command() {
   Command command{"submit", "Measure an experiment on many machines: on Slurm, or with GNU parallel"};
   command.about =
-      "Splits the experiment into tasks of about equal cost, writes scripts that one can read into the folder, and "
+      "Splits the experiment into tasks of equally many cells, writes scripts that one can read into the folder, and "
       "submits them: truth is traced first, once, then the tasks measure their cells, then the report is written. "
       "'shadowbench status' says how far it is. The same command again submits what is left.\n"
       "Words after -- go to sbatch, or to parallel, as they are.\n"

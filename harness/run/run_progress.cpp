@@ -16,7 +16,7 @@ constexpr double kFixedMegapixels = 0.05;
 /// The seconds that a step takes for one cell, roughly, on two cores: only their ratios count, and only until the first
 /// step of a kind is done. Those of pictures grow with their pixels, those of adaptive timing with its budget.
 double presume_cost(const options::RunOptions& options, Work kind) {
-  const double megapixels = count_megapixels(options.width, options.height);
+  const double megapixels = kFixedMegapixels + 1e-6 * options.width * options.height;
   const double frames = 1.0 + std::accumulate(options.lights.begin(), options.lights.end(), 0.0);
   switch (kind) {
     case Work::kDrawing:
@@ -39,8 +39,6 @@ double presume_cost(const options::RunOptions& options, Work kind) {
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace
-
-double count_megapixels(int width, int height) { return kFixedMegapixels + 1e-6 * width * height; }
 
 RunProgress::RunProgress(options::Progress& shown) : shown_(shown), meter_(now_s) {}
 

@@ -9,9 +9,6 @@
 
 namespace shadowbench::run {
 
-/// Megapixels of a picture, and a little more, which a picture of any size costs.
-double count_megapixels(int width, int height);
-
 /// Weighs a run's steps, and shows how far it is: whenever something else is under way, or a thousandth more is done.
 class RunProgress {
  public:

@@ -7,7 +7,6 @@
 #include "filters/base/error.h"
 #include "filters/base/temporary_files.h"
 #include "harness/submit/engine.h"
-#include "harness/submit/shell.h"
 #include "harness/submit/sign_of_life.h"
 #include "harness/submit/sweep_status.h"
 

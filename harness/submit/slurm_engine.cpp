@@ -10,7 +10,6 @@
 #include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
 #include "harness/submit/engine.h"
-#include "harness/submit/shell.h"
 
 namespace shadowbench::submit {
 namespace {

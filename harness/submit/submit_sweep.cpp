@@ -10,6 +10,7 @@
 #include "filters/base/error.h"
 #include "harness/run/run_plan.h"
 #include "harness/submit/sign_of_life.h"
+#include "harness/submit/sweep_plan.h"
 #include "harness/submit/sweep_status.h"
 
 namespace shadowbench::submit {
@@ -36,9 +37,9 @@ void require_free(const fs::path& out) {
 /// Whether a task may have begun: a plan that nobody submitted can be made anew.
 bool was_submitted(const fs::path& out) { return is_sweep(out) && (!read_sweep(out).jobs.empty() || has_cells(out)); }
 
-void plan_folder(const options::RunOptions& options, const SplitRule& rule, options::Progress& progress) {
+void plan_folder(const options::RunOptions& options, int tasks) {
   require_free(options.out);
-  const SweepPlan plan = plan_sweep(options, rule, progress);
+  const SweepPlan plan = plan_sweep(options, tasks);
   if (was_submitted(options.out))
     throw Error(ErrorKind::kUsage,
                 "--out: meanwhile another 'submit' was given this folder; the same command submits what it leaves",
@@ -87,15 +88,8 @@ std::string count_tasks(const std::vector<int>& tasks) {
 
 std::string describe_tasks(const SweepStatus& status, const std::vector<int>& tasks) {
   std::size_t cells = 0;
-  double seconds = 0.0;
-  for (const int number : tasks) {
-    const SweepTask& task = status.tasks[static_cast<std::size_t>(number - 1)].task;
-    cells += task.keys.size();
-    seconds = std::max(seconds, task.seconds);
-  }
-  std::string text = fmt::format("{} of {} cell{}", count_tasks(tasks), cells, cells == 1 ? "" : "s");
-  if (seconds > 0.0) text += fmt::format(", {:.0f} s at most each on a machine like this", seconds);
-  return text;
+  for (const int number : tasks) cells += status.tasks[static_cast<std::size_t>(number - 1)].task.keys.size();
+  return fmt::format("{} of {} cell{}", count_tasks(tasks), cells, cells == 1 ? "" : "s");
 }
 
 std::string describe_job(const std::string& job) { return job.empty() ? "" : "job " + job + ": "; }
@@ -128,10 +122,9 @@ std::vector<std::string> submit_sweep(const options::RunOptions& options, Submit
   const std::unique_ptr<Engine> engine = make_engine(request.engine, out);
   if (was_submitted(out)) {
     require_same(options, read_sweep(out));
-    if (request.split.tasks > 0 || !request.split.earlier_run.empty())
-      progress.note("note: --tasks and --times-of change nothing: the tasks stay as they were submitted first");
+    if (request.tasks > 0) progress.note("note: --tasks changes nothing: the tasks stay as they were submitted first");
   } else {
-    plan_folder(options, request.split, progress);
+    plan_folder(options, request.tasks);
   }
   const QueuedTasks queued = engine->find_queued(out, read_sweep(out).jobs);
   SweepStatus status = read_status(out);  // after that: what ends meanwhile is finished here

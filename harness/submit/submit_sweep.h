@@ -6,14 +6,13 @@
 #include "harness/options/options.h"
 #include "harness/options/progress.h"
 #include "harness/submit/engine.h"
-#include "harness/submit/sweep_plan.h"
 
 namespace shadowbench::submit {
 
 /// What the user asks of a submission.
 struct SubmitRequest {
   EngineOptions engine;
-  SplitRule split;
+  int tasks = 0;         ///< into how many to split; 0: see plan_sweep()
   JobPlan jobs;          ///< but for its tasks
   bool dry_run = false;  ///< write the scripts, and submit nothing
 };

@@ -13,7 +13,21 @@
 #include "report/records/json_io.h"
 #include "report/records/json_values.h"
 
+namespace shadowbench::options {
+
+inline void to_json(nlohmann::json& to, const CellRange& range) { to = {range.begin, range.end}; }
+inline void from_json(const nlohmann::json& from, CellRange& range) { range = {from.at(0), from.at(1)}; }
+
+}  // namespace shadowbench::options
+
 namespace shadowbench::submit {
+
+NLOHMANN_JSON_SERIALIZE_ENUM(TaskKind, {{TaskKind::kCells, "tasks"}, {TaskKind::kTruth, "truth"}})
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepTask, kind, number, ranges, keys, content)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SubmittedJobs, engine, truth, cells, merge)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Sweep, title, settings, command, scene_cells, cells, truths, tasks, jobs)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TaskFailure, exit_code, message)
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -22,8 +36,6 @@ using nlohmann::json;
 /// Version of all files of a sweep.
 constexpr int kSchemaVersion = 1;
 constexpr const char *kTaskFile = "task.json", *kResultFile = "result.json", *kFailureFile = "failure.json";
-
-const char* name_of(TaskKind kind) { return kind == TaskKind::kTruth ? "truth" : "tasks"; }
 
 void write_json(const fs::path& file, json content) {
   content["schema_version"] = kSchemaVersion;
@@ -51,6 +63,12 @@ auto read_json(const fs::path& file, const Read& read) {
   }
 }
 
+template <class T>
+T read_as(const fs::path& file) {
+  return read_json(
+      file, [](const json& content) { return content.get<T>(); });
+}
+
 bool is_there(const fs::path& file) {
   std::error_code ignored;
   return fs::exists(file, ignored);
@@ -59,68 +77,20 @@ bool is_there(const fs::path& file) {
 }  // namespace
 
 fs::path task_folder(const fs::path& out, TaskKind kind, int number) {
-  return out / name_of(kind) / std::to_string(number);
+  return out / json(kind).get<std::string>() / std::to_string(number);
 }
 
 bool is_sweep(const fs::path& out) { return is_there(out / run::kSweepFile); }
 
-void write_sweep(const fs::path& out, const Sweep& sweep) {
-  json jobs = json::array();
-  for (const SubmittedJobs& each : sweep.jobs)
-    jobs.push_back({{"engine", each.engine}, {"truth", each.truth}, {"cells", each.cells}, {"merge", each.merge}});
-  write_json(out / run::kSweepFile, {{"title", sweep.title},
-                                     {"settings", sweep.settings},
-                                     {"command", sweep.command},
-                                     {"scene_cells", sweep.scene_cells},
-                                     {"cells", sweep.cells},
-                                     {"truths", sweep.truths},
-                                     {"tasks", sweep.tasks},
-                                     {"jobs", jobs}});
-}
+void write_sweep(const fs::path& out, const Sweep& sweep) { write_json(out / run::kSweepFile, sweep); }
 
-Sweep read_sweep(const fs::path& out) {
-  return read_json(
-      out / run::kSweepFile,
-      [](const json& content) {
-        Sweep sweep{.title = content.at("title"),
-                    .settings = content.at("settings"),
-                    .command = content.at("command"),
-                    .scene_cells = content.at("scene_cells"),
-                    .cells = content.at("cells"),
-                    .truths = content.at("truths"),
-                    .tasks = content.at("tasks"),
-                    .jobs = {}};
-        for (const json& each : content.at("jobs"))
-          sweep.jobs.push_back({each.at("engine"), each.at("truth"), each.at("cells"), each.at("merge")});
-        return sweep;
-      });
-}
+Sweep read_sweep(const fs::path& out) { return read_as<Sweep>(out / run::kSweepFile); }
 
 void write_task(const fs::path& out, const SweepTask& task) {
-  json ranges = json::array();
-  for (const options::CellRange& range : task.ranges) ranges.push_back({range.begin, range.end});
-  write_json(task_folder(out, task.kind, task.number) / kTaskFile, {{"kind", name_of(task.kind)},
-                                                                    {"number", task.number},
-                                                                    {"ranges", ranges},
-                                                                    {"keys", task.keys},
-                                                                    {"content", task.content},
-                                                                    {"seconds", task.seconds}});
+  write_json(task_folder(out, task.kind, task.number) / kTaskFile, task);
 }
 
-SweepTask read_task(const fs::path& folder) {
-  return read_json(
-      folder / kTaskFile,
-      [](const json& content) {
-        SweepTask task{.kind = content.at("kind") == name_of(TaskKind::kTruth) ? TaskKind::kTruth : TaskKind::kCells,
-                       .number = content.at("number"),
-                       .ranges = {},
-                       .keys = content.at("keys"),
-                       .content = content.at("content"),
-                       .seconds = content.at("seconds")};
-        for (const json& range : content.at("ranges")) task.ranges.push_back({range.at(0), range.at(1)});
-        return task;
-      });
-}
+SweepTask read_task(const fs::path& folder) { return read_as<SweepTask>(folder / kTaskFile); }
 
 void write_result(const fs::path& folder, const records::RunRecord& run) {
   write_json(folder / kResultFile, {{"run", records::to_json(run)}});
@@ -141,15 +111,11 @@ records::RunRecord read_result(const fs::path& folder) {
   return read_json(file, [&](const json& content) { return records::run_from_json(content.at("run"), file.string()); });
 }
 
-void write_failure(const fs::path& folder, const TaskFailure& failure) {
-  write_json(folder / kFailureFile, {{"exit_code", failure.exit_code}, {"message", failure.message}});
-}
+void write_failure(const fs::path& folder, const TaskFailure& failure) { write_json(folder / kFailureFile, failure); }
 
 std::optional<TaskFailure> read_failure(const fs::path& folder) {
   if (!is_there(folder / kFailureFile)) return std::nullopt;
-  return read_json(folder / kFailureFile, [](const json& content) {
-    return TaskFailure{content.at("exit_code"), content.at("message")};
-  });
+  return read_as<TaskFailure>(folder / kFailureFile);
 }
 
 void remove_failure(const fs::path& folder) {

@@ -23,7 +23,6 @@ struct SweepTask {
   std::vector<options::CellRange> ranges;
   std::vector<std::string> keys;  ///< of its cells, in the plan's order
   std::string content;            ///< see options::Part
-  double seconds = 0.0;           ///< that it is expected to take; 0: nobody knows
 };
 
 /// The jobs that one submission made.

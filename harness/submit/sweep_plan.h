@@ -1,20 +1,11 @@
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "harness/options/options.h"
-#include "harness/options/progress.h"
 #include "harness/submit/sweep_folder.h"
 
 namespace shadowbench::submit {
-
-/// How a sweep is to be split.
-struct SplitRule {
-  int tasks = 0;                      ///< 0: so many that each takes about ten minutes
-  std::filesystem::path earlier_run;  ///< a report folder whose cells say what cells take; empty: a probe says it
-  bool probe = true;                  ///< measure some cells first where no earlier run says what they take
-};
 
 /// A sweep and all its tasks.
 struct SweepPlan {
@@ -23,10 +14,15 @@ struct SweepPlan {
   std::vector<SweepTask> tasks;
 };
 
-/// Plans a sweep: lists all cells of the experiment, expects what they take, and splits them into tasks.
+/// Plans a sweep: lists all cells of the experiment, and splits them into `tasks` tasks, or as many as there are cells;
+/// 0: twice the square root of the number of cells, at most 1000, so that few starts are paid for, and many machines
+/// have tasks to choose from.
 /// Neighbouring views are traced by one task; a view that several fits of the map show is traced once.
-/// Throws Error as run::make_plan(), and Error(kInput) where the earlier run cannot be read. Cost: the loading of all
-/// scenes, and of a probe the time of at most two cells of every filter.
-SweepPlan plan_sweep(const options::RunOptions& options, const SplitRule& rule, options::Progress& progress);
+/// Throws Error as run::make_plan(). Cost: the loading of all scenes.
+SweepPlan plan_sweep(const options::RunOptions& options, int tasks);
+
+/// Splits so many things into stretches whose lengths differ by one at most, none of them empty: `parts`, or as many as
+/// there are things. Neighbours in a plan share scene, view and map, so that a stretch of cells sets up few of them.
+std::vector<options::CellRange> split_evenly(int things, int parts);
 
 }  // namespace shadowbench::submit

@@ -109,8 +109,11 @@ int count_measured(const SweepStatus& status) {
 }
 
 json task_json(const TaskStatus& status) {
-  return {{"task", status.task.number}, {"state", name_of(status.state)}, {"cells", status.task.keys.size()},
-          {"measured", status.cells},   {"message", status.message},      {"expected_s", status.task.seconds}};
+  return {{"task", status.task.number},
+          {"state", name_of(status.state)},
+          {"cells", status.task.keys.size()},
+          {"measured", status.cells},
+          {"message", status.message}};
 }
 
 }  // namespace

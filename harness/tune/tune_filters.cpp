@@ -237,13 +237,9 @@ class Tuner {
     for (std::size_t i = 0; i < scales.size(); ++i) {
       const SearchedParam& param = scales[i].param();
       const GoodRange& range = result.ranges[i];
-      records::TunedParamRecord& to = record.searched.emplace_back();
-      to = {param.name,       filter.request.spec.find_param(param.name)->unit,
-            scales[i].name(), param.min,
-            param.max,        param.default_value,
-            result.best[i],   {},
-            range.share,      range.no_effect};
-      for (const ValueInterval& interval : range.intervals) to.good.push_back({interval.low, interval.high});
+      record.searched.push_back({param.name, filter.request.spec.find_param(param.name)->unit, scales[i].name(),
+                                 param.min, param.max, param.default_value, result.best[i], range.intervals,
+                                 range.share, range.no_effect});
     }
   }
 

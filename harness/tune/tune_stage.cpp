@@ -1,11 +1,13 @@
 #include "harness/tune/tune_stage.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "filters/base/error.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/map_limits.h"
@@ -15,6 +17,17 @@
 
 namespace shadowbench::tune {
 namespace {
+
+using metrics::ErrorStats;
+
+constexpr TuneMetric kMetrics[] = {
+    {"rmse", TuneMetricKind::kStatistic, &ErrorStats::rmse},
+    {"mae", TuneMetricKind::kStatistic, &ErrorStats::mae},
+    {"p95", TuneMetricKind::kStatistic, &ErrorStats::p95},
+    {"flip", TuneMetricKind::kFlip, nullptr},
+    {"leak", TuneMetricKind::kLeak, nullptr},
+    {"acne", TuneMetricKind::kAcne, nullptr},
+};
 
 /// The pictures of one view.
 struct Shot {
@@ -49,6 +62,19 @@ double score_shot(const TuneMetric& metric, const Shot& shot, const TuneStage::V
 bool is_artefact(TuneMetricKind kind) { return kind == TuneMetricKind::kAcne || kind == TuneMetricKind::kLeak; }
 
 }  // namespace
+
+const TuneMetric& find_tune_metric(const std::string& name) {
+  for (const TuneMetric& metric : kMetrics)
+    if (metric.name == name) return metric;
+  throw Error(ErrorKind::kUsage, fmt::format("--metric: nothing is tuned for '{}'; choose {}", name,
+                                             fmt::join(list_tune_metrics(), ", ")));
+}
+
+std::vector<std::string> list_tune_metrics() {
+  std::vector<std::string> names;
+  for (const TuneMetric& metric : kMetrics) names.emplace_back(metric.name);
+  return names;
+}
 
 TuneStage::TuneStage(measure::Renderer& renderer, const TuneSettings& settings, truth::TruthCache& cache,
                      const scene::Scene& scene, const std::vector<TuneView>& views,

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <exception>
+#include <map>
 #include <nlopt.hpp>
+#include <set>
 
 namespace shadowbench::tune {
 namespace {
@@ -14,6 +17,41 @@ constexpr double kSmallestStep = 1e-3;  // likewise
 constexpr int kRepeatsPerSetting = 50;  // places that round to known settings cost nothing, but must not go on for ever
 constexpr int kRangeRounds = 3;
 constexpr double kWorthAnotherRound = 0.01;  // relative
+constexpr int kScanSteps = 16;
+constexpr double kFinestStep = 1.0 / 256.0;  // of the scaled range
+constexpr double kSameError = 1e-9;          // relative
+
+/// Draws settings, each once: settings that round to the same values are one.
+class SettingsDrawn {
+ public:
+  SettingsDrawn(const Objective& objective, const std::function<void(const Evaluation&)>& on_evaluation)
+      : objective_(objective), on_evaluation_(on_evaluation) {}
+
+  double error(const std::vector<double>& values, const char* stage) {
+    const auto found = errors_.find(values);
+    if (found != errors_.end()) return found->second;
+    const double error = objective_(values);
+    errors_.emplace(values, error);
+    if (best_.empty() || error < best_error_) {
+      best_ = values;
+      best_error_ = error;
+    }
+    if (on_evaluation_) on_evaluation_({count(), stage, values, error});
+    return error;
+  }
+
+  bool knows(const std::vector<double>& values) const { return errors_.contains(values); }
+  int count() const { return static_cast<int>(errors_.size()); }
+  const std::vector<double>& best() const { return best_; }
+  double best_error() const { return best_error_; }
+
+ private:
+  const Objective& objective_;
+  const std::function<void(const Evaluation&)>& on_evaluation_;
+  std::map<std::vector<double>, double> errors_;
+  std::vector<double> best_;
+  double best_error_ = 0.0;
+};
 
 std::vector<double> list_defaults(const std::vector<ParamScale>& params) {
   std::vector<double> defaults;
@@ -92,20 +130,80 @@ class Search {
   }
 };
 
-}  // namespace
+/// Scans one parameter, the others at `best`, at 17 places evenly over its scale (an integer with fewer values: at all
+/// of them) and bisects between good and bad neighbours to 1/256 of the scale, or to neighbouring integers. What is
+/// narrower than 1/16 of the scale, and does not hold the best, may be missed.
+class RangeScan {
+ public:
+  RangeScan(const std::vector<ParamScale>& params, std::size_t which, const std::vector<double>& best, double tolerance,
+            SettingsDrawn& drawn)
+      : scale_(params[which]),
+        which_(which),
+        best_(best),
+        drawn_(drawn),
+        best_error_(drawn.error(best, "range")),
+        limit_(best_error_ * (1.0 + tolerance)) {}
 
-double SettingsDrawn::error(const std::vector<double>& values, const char* stage) {
-  const auto found = errors_.find(values);
-  if (found != errors_.end()) return found->second;
-  const double error = objective_(values);
-  errors_.emplace(values, error);
-  if (best_.empty() || error < best_error_) {
-    best_ = values;
-    best_error_ = error;
+  GoodRange run() {
+    const std::vector<double> values = list_values();
+    GoodRange range;
+    range.no_effect = std::all_of(values.begin(), values.end(), [&](double value) {
+      return std::abs(error(value) - best_error_) <= kSameError * std::max(std::abs(best_error_), kSameError);
+    });
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!is_good(values[i])) continue;
+      if (i == 0 || !is_good(values[i - 1]))
+        range.intervals.push_back({i == 0 ? values[i] : find_edge(values[i], values[i - 1]), values[i]});
+      const bool ends = i + 1 == values.size() || !is_good(values[i + 1]);
+      if (ends) range.intervals.back().high = i + 1 == values.size() ? values[i] : find_edge(values[i], values[i + 1]);
+    }
+    for (const records::Interval& interval : range.intervals)
+      range.share += scale_.measure_share(interval.low, interval.high);
+    return range;
   }
-  if (on_evaluation_) on_evaluation_({count(), stage, values, error});
-  return error;
-}
+
+ private:
+  const ParamScale& scale_;
+  std::size_t which_;
+  std::vector<double> best_;
+  SettingsDrawn& drawn_;
+  double best_error_;
+  double limit_;
+
+  double error(double value) {
+    std::vector<double> values = best_;
+    values[which_] = value;
+    return drawn_.error(values, "range");
+  }
+
+  bool is_good(double value) { return error(value) <= limit_; }
+
+  /// Values to scan, ascending: the best one's own among them.
+  std::vector<double> list_values() const {
+    const SearchedParam& param = scale_.param();
+    std::set<double> values = {best_[which_]};
+    if (param.integer && param.max - param.min <= kScanSteps)
+      for (double value = param.min; value <= param.max; value += 1.0) values.insert(value);
+    else
+      for (int step = 0; step <= kScanSteps; ++step)
+        values.insert(scale_.to_value(static_cast<double>(step) / kScanSteps));
+    return {values.begin(), values.end()};
+  }
+
+  /// The last good value on the way from a good to a bad one.
+  double find_edge(double good, double bad) {
+    for (;;) {
+      const double unit_good = scale_.to_unit(good), unit_bad = scale_.to_unit(bad);
+      const bool whole = scale_.param().integer;
+      if (whole ? std::abs(good - bad) <= 1.0 : std::abs(unit_good - unit_bad) <= kFinestStep) return good;
+      const double middle = whole ? std::floor(0.5 * (good + bad)) : scale_.to_value(0.5 * (unit_good + unit_bad));
+      if (middle == good || middle == bad) return good;  // rounding leaves nothing between
+      (is_good(middle) ? good : bad) = middle;
+    }
+  }
+};
+
+}  // namespace
 
 SearchResult search_parameters(const std::vector<ParamScale>& params, const SearchSettings& settings,
                                const Objective& objective) {
@@ -120,7 +218,7 @@ SearchResult search_parameters(const std::vector<ParamScale>& params, const Sear
     result.best_error = drawn.best_error();
     result.ranges.clear();
     for (std::size_t i = 0; i < params.size(); ++i)
-      result.ranges.push_back(find_good_range(params, i, result.best, settings.tolerance, drawn));
+      result.ranges.push_back(RangeScan(params, i, result.best, settings.tolerance, drawn).run());
   }
   result.default_error = drawn.error(list_defaults(params), "range");
   result.evaluations = drawn.count();

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "harness/tune/param_scale.h"
+#include "report/records/records.h"
 
 namespace shadowbench::tune {
 
@@ -20,16 +20,11 @@ struct Evaluation {
   double error = 0.0;
 };
 
-struct ValueInterval {
-  double low = 0.0;
-  double high = 0.0;
-};
-
 /// Where one parameter may lie, the others at their best, for the error to stay near the best.
 struct GoodRange {
-  std::vector<ValueInterval> intervals;  ///< ascending; more than one where the range has holes
-  double share = 0.0;                    ///< of the scaled range that they take, [0,1]
-  bool no_effect = false;                ///< the error is the same all over the range
+  std::vector<records::Interval> intervals;  ///< ascending; more than one where the range has holes
+  double share = 0.0;                        ///< of the scaled range that they take, [0,1]
+  bool no_effect = false;                    ///< the error is the same all over the range
 };
 
 struct SearchSettings {
@@ -47,40 +42,14 @@ struct SearchResult {
   int evaluations = 0;            ///< those of the good ranges included
 };
 
-/// Draws settings, each once: settings that round to the same values are one.
-class SettingsDrawn {
- public:
-  SettingsDrawn(const Objective& objective, const std::function<void(const Evaluation&)>& on_evaluation)
-      : objective_(objective), on_evaluation_(on_evaluation) {}
-
-  double error(const std::vector<double>& values, const char* stage);
-  bool knows(const std::vector<double>& values) const { return errors_.contains(values); }
-  int count() const { return static_cast<int>(errors_.size()); }
-  const std::vector<double>& best() const { return best_; }
-  double best_error() const { return best_error_; }
-
- private:
-  const Objective& objective_;
-  const std::function<void(const Evaluation&)>& on_evaluation_;
-  std::map<std::vector<double>, double> errors_;
-  std::vector<double> best_;
-  double best_error_ = 0.0;
-};
-
 /// Finds the values that make the objective least. First the default is drawn, then, on scaled parameters (ParamScale),
 /// DIRECT-L over the whole range with up to 60 % of the budget, then Subplex from the best with the rest, both from
-/// NLopt. Deterministic. The result is never worse than the default. Last come the good ranges (find_good_range());
+/// NLopt. Deterministic. The result is never worse than the default. Last come the good ranges;
 /// where they find something better than the best by more than 1 %, that becomes the best, and they are looked for
 /// anew, at most twice. Requires at least one parameter and a budget of 1 or more. Throws what the objective throws.
 /// Source: Gablonsky and Kelley 2001, A Locally-Biased Form of the DIRECT Algorithm, J. Global Optimization 21; Rowan
 /// 1990, Functional Stability Analysis of Numerical Algorithms (Subplex).
 SearchResult search_parameters(const std::vector<ParamScale>& params, const SearchSettings& settings,
                                const Objective& objective);
-
-/// Scans one parameter, the others at `best`, at 17 places evenly over its scale (an integer with fewer values: at all
-/// of them) and bisects between good and bad neighbours to 1/256 of the scale, or to neighbouring integers. What is
-/// narrower than 1/16 of the scale, and does not hold the best, may be missed.
-GoodRange find_good_range(const std::vector<ParamScale>& params, std::size_t which, const std::vector<double>& best,
-                          double tolerance, SettingsDrawn& drawn);
 
 }  // namespace shadowbench::tune

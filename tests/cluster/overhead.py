@@ -77,7 +77,7 @@ def main():
               f"{split.processor_s / whole.processor_s:.3f} of the processor time, {split.wall_s / whole.wall_s:.3f} of the wall time")
         print(f"a task: {(split.processor_s - whole.processor_s) / tasks:.2f} s of processor time, "
               f"{(split.wall_s - whole.wall_s) / tasks:.2f} s of wall time beside its cells")
-        print(f"planning, with the probe: {planning.processor_s:.1f} s of processor time, {planning.wall_s:.1f} s of wall time")
+        print(f"planning: {planning.processor_s:.1f} s of processor time, {planning.wall_s:.1f} s of wall time")
 
 
 if __name__ == "__main__":

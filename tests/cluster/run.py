@@ -71,7 +71,7 @@ def test_cluster_runs_an_array_and_what_depends_on_it(program, cluster, folder):
 def test_sweep_equals_one_run(program, cluster, folder):
     odd = folder / "it's 5%j"  # no shell and no pattern of Slurm's may read this name
     odd.mkdir()
-    sweep = Sweep(program, cluster, odd, ["--attribution", "--map-size", "64"], tasks=3, probe=True)
+    sweep = Sweep(program, cluster, odd, ["--attribution", "--map-size", "64"], tasks=3)
     sweep.submit("--time", 5, "--partition", "all", "--gres", "gpu:1", "--", "--comment=for all of us")
     jobs = cluster.run("scontrol", "show", "job").stdout.replace("gres/gpu", "gres:gpu")  # as Slurm 24 writes it
     for said in ("Comment=for all of us", "TimeLimit=00:05:00", "Partition=all", "gres:gpu:1"):

@@ -60,10 +60,10 @@ def expect_same_report(first, second):
 class Sweep:
     """An experiment in `folder` which is submitted into `folder`/out."""
 
-    def __init__(self, program, cluster, folder, words=(), tasks=2, probe=False):
+    def __init__(self, program, cluster, folder, words=(), tasks=2):
         self.program, self.cluster, self.folder, self.out = program, cluster, folder, folder / "out"
         self.words = [*WORDS, *map(str, words)]
-        self.options = ["--engine", "slurm", "--tasks", tasks, "--probe" if probe else "--no-probe"]
+        self.options = ["--engine", "slurm", "--tasks", tasks]
         self.environment = dict(cluster.environment, XDG_CACHE_HOME=str(folder / "cache"))
         (folder / FILE).write_text(EXPERIMENT)
 

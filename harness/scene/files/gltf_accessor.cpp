@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
-#include <functional>
-#include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "filters/base/error.h"
@@ -40,31 +40,52 @@ Span checked_view(const tinygltf::Model& model, int index, const std::string& ow
   return checked_span(model, view, fmt::format("{}: buffer view {}", owner, index), where);
 }
 
+/// A type that glTF 2.0 knows for the components of an element.
+struct ComponentType {
+  int code = 0;
+  std::size_t bytes = 0;
+  double largest = 1.0;  ///< what stands for 1 where integers are normalized
+  bool is_unsigned = false;
+  double (*load)(const unsigned char* bytes) = nullptr;
+};
+
+template <class T>
+double load(const unsigned char* bytes) {
+  T value;
+  std::memcpy(&value, bytes, sizeof value);
+  return static_cast<double>(value);
+}
+
+template <class T>
+constexpr ComponentType describe(int code, double largest) {
+  return {code, sizeof(T), largest, std::is_unsigned_v<T>, &load<T>};
+}
+
+constexpr std::array kComponentTypes{describe<std::int8_t>(TINYGLTF_COMPONENT_TYPE_BYTE, 127.0),
+                                     describe<std::uint8_t>(TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, 255.0),
+                                     describe<std::int16_t>(TINYGLTF_COMPONENT_TYPE_SHORT, 32767.0),
+                                     describe<std::uint16_t>(TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, 65535.0),
+                                     describe<std::uint32_t>(TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, 1.0),
+                                     describe<float>(TINYGLTF_COMPONENT_TYPE_FLOAT, 1.0)};
+
+const ComponentType& find_type(int code, const std::string& owner, const std::string& where) {
+  const auto found = std::ranges::find(kComponentTypes, code, &ComponentType::code);
+  if (found != kComponentTypes.end()) return *found;
+  fail_input(fmt::format("{} has component type {}, which glTF 2.0 does not know", owner, code), where);
+}
+
 /// How elements lie in a checked span; all of them lie inside it.
 struct Elements {
   const unsigned char* data = nullptr;  ///< null: all zero
   std::size_t count = 0;
   std::size_t stride = 0;
-  int component_type = 0;
+  const ComponentType* type = nullptr;
   std::size_t components = 0;
 };
 
-std::size_t component_size(int component_type, const std::string& owner, const std::string& where) {
-  switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
-    default:
-      fail_input(fmt::format("{} has component type {}, which glTF 2.0 does not know", owner, component_type), where);
-  }
-}
-
 /// Checks that `layout.count` elements from `offset` lie inside the span, and points the layout at the first.
 Elements place(Elements layout, Span span, std::size_t offset, const std::string& owner, const std::string& where) {
-  const std::size_t element_size = component_size(layout.component_type, owner, where) * layout.components;
+  const std::size_t element_size = layout.type->bytes * layout.components;
   if (layout.stride == 0) layout.stride = element_size;
   if (layout.stride < element_size) {
     fail_input(fmt::format("{} has a stride of {} bytes for elements of {}", owner, layout.stride, element_size),
@@ -89,8 +110,8 @@ Elements checked_elements(const tinygltf::Model& model, int index, int component
     fail_input(fmt::format("{} must have {} component(s) per element", owner, components), where);
   if (accessor.count > kMostElements)
     fail_input(fmt::format("{} has {} elements; at most {} are read", owner, accessor.count, kMostElements), where);
-  Elements elements{nullptr, accessor.count, 0, accessor.componentType, static_cast<std::size_t>(components)};
-  component_size(accessor.componentType, owner, where);
+  Elements elements{nullptr, accessor.count, 0, &find_type(accessor.componentType, owner, where),
+                    static_cast<std::size_t>(components)};
   if (accessor.bufferView < 0 && accessor.count > kMostZeros) {
     fail_input(fmt::format("{} has {} elements and no buffer view; at most {} such zeros are read", owner,
                            accessor.count, kMostZeros),
@@ -102,44 +123,12 @@ Elements checked_elements(const tinygltf::Model& model, int index, int component
   return place(elements, span, accessor.byteOffset, owner, where);
 }
 
-template <typename T>
-T load(const unsigned char* bytes) {
-  T value;
-  std::memcpy(&value, bytes, sizeof value);
-  return value;
-}
-
-double load_component(const unsigned char* bytes, int component_type) {
-  switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return load<std::int8_t>(bytes);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return load<std::uint8_t>(bytes);
-    case TINYGLTF_COMPONENT_TYPE_SHORT: return load<std::int16_t>(bytes);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load<std::uint16_t>(bytes);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return load<std::uint32_t>(bytes);
-    default: return static_cast<double>(load<float>(bytes));
-  }
-}
-
-double largest_value(int component_type) {
-  switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return 127.0;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 255.0;
-    case TINYGLTF_COMPONENT_TYPE_SHORT: return 32767.0;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 65535.0;
-    default: return 1.0;
-  }
-}
-
 std::vector<double> load_all(const Elements& elements) {
   std::vector<double> values(elements.count * elements.components, 0.0);
   if (!elements.data) return values;
-  const std::size_t step = component_size(elements.component_type, "", "");
-  for (std::size_t i = 0; i < elements.count; ++i) {
-    for (std::size_t c = 0; c < elements.components; ++c) {
-      values[i * elements.components + c] =
-          load_component(elements.data + i * elements.stride + c * step, elements.component_type);
-    }
-  }
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = elements.type->load(elements.data + i / elements.components * elements.stride +
+                                    i % elements.components * elements.type->bytes);
   return values;
 }
 
@@ -154,10 +143,10 @@ std::vector<double> with_sparse_values(std::vector<double> values, const tinyglt
       std::cmp_less(sparse.indices.byteOffset, 0) || std::cmp_less(sparse.values.byteOffset, 0))
     fail_input(fmt::format("{} has a count or offset out of range", owner), where);
   const auto count = static_cast<std::size_t>(sparse.count);
-  const Elements slots = place({nullptr, count, 0, sparse.indices.componentType, 1},
+  const Elements slots = place({nullptr, count, 0, &find_type(sparse.indices.componentType, owner, where), 1},
                                checked_view(model, sparse.indices.bufferView, owner, where),
                                static_cast<std::size_t>(sparse.indices.byteOffset), owner, where);
-  const Elements news = place({nullptr, count, 0, base.component_type, base.components},
+  const Elements news = place({nullptr, count, 0, base.type, base.components},
                               checked_view(model, sparse.values.bufferView, owner, where),
                               static_cast<std::size_t>(sparse.values.byteOffset), owner, where);
   const std::vector<double> slot_values = load_all(slots);
@@ -172,42 +161,44 @@ std::vector<double> with_sparse_values(std::vector<double> values, const tinyglt
   return values;
 }
 
-std::vector<double> read_values(const tinygltf::Model& model, int index, int components, const std::string& where) {
+/// What an accessor holds, as numbers.
+struct Values {
+  std::vector<double> all;
+  ComponentType type;
+  bool is_normalized = false;
+};
+
+Values read_values(const tinygltf::Model& model, int index, int components, const std::string& where) {
   const Elements elements = checked_elements(model, index, components, where);
-  const tinygltf::Accessor& accessor = find_element(model.accessors, index, "there is no accessor", where);
+  const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
   std::vector<double> values = load_all(elements);
   if (accessor.sparse.isSparse) values = with_sparse_values(std::move(values), model, accessor, elements, where);
-  return values;
+  return {std::move(values), *elements.type, accessor.normalized};
 }
 
 }  // namespace
 
 std::vector<float> read_floats(const tinygltf::Model& model, int accessor, int components, const std::string& where) {
-  const std::vector<double> values = read_values(model, accessor, components, where);
-  const tinygltf::Accessor& source = find_element(model.accessors, accessor, "there is no accessor", where);
-  const double scale = source.normalized ? 1.0 / largest_value(source.componentType) : 1.0;
+  const Values values = read_values(model, accessor, components, where);
+  const double scale = 1.0 / values.type.largest;
   std::vector<float> floats;
-  floats.reserve(values.size());
-  for (const double value : values)
-    floats.push_back(static_cast<float>(source.normalized ? std::max(value * scale, -1.0) : value));
+  floats.reserve(values.all.size());
+  for (const double value : values.all)
+    floats.push_back(static_cast<float>(values.is_normalized ? std::max(value * scale, -1.0) : value));
   return floats;
 }
 
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor, const std::string& where) {
-  const std::vector<double> values = read_values(model, accessor, 1, where);
-  const int type = find_element(model.accessors, accessor, "there is no accessor", where).componentType;
-  const bool is_unsigned = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
-                           type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-                           type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-  if (!is_unsigned) {
+  const Values values = read_values(model, accessor, 1, where);
+  if (!values.type.is_unsigned) {
     fail_input(fmt::format("accessor {} holds indices, but its component type {} is not an "
                            "unsigned integer",
-                           accessor, type),
+                           accessor, values.type.code),
                where);
   }
   std::vector<std::uint32_t> indices;
-  indices.reserve(values.size());
-  for (const double value : values) indices.push_back(static_cast<std::uint32_t>(value));
+  indices.reserve(values.all.size());
+  for (const double value : values.all) indices.push_back(static_cast<std::uint32_t>(value));
   return indices;
 }
 

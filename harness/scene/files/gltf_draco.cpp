@@ -12,7 +12,6 @@
 #include "filters/base/error.h"
 #include "harness/scene/files/gltf_accessor.h"
 #include "harness/scene/files/gltf_parse.h"
-#include "harness/scene/files/gltf_unpack.h"
 
 namespace shadowbench::scene {
 namespace {

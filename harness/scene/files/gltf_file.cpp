@@ -1,5 +1,3 @@
-#include "harness/scene/files/gltf_file.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,6 +9,7 @@
 #include "filters/base/error.h"
 #include "harness/scene/files/gltf_accessor.h"
 #include "harness/scene/files/gltf_parse.h"
+#include "harness/scene/files/mesh_file.h"
 #include "harness/scene/mesh_tools.h"
 
 namespace shadowbench::scene {
@@ -190,9 +189,11 @@ class GltfImporter {
   }
 
   int material_of(const tinygltf::Primitive& primitive) {
+    if (primitive.material >= 0) {
+      find_element(source_.materials, primitive.material, "there is no material", where_);
+      return primitive.material;
+    }
     const auto count = source_.materials.size();
-    if (primitive.material >= 0 && static_cast<std::size_t>(primitive.material) < count) return primitive.material;
-    if (primitive.material >= 0) fail(fmt::format("there is no material {} (of {})", primitive.material, count));
     if (result_.materials.size() == count) {
       result_.materials.push_back({.name = "default"});
       texcoords_.emplace_back();

@@ -14,7 +14,6 @@
 
 #include "filters/base/error.h"
 #include "harness/scene/files/file_bytes.h"
-#include "harness/scene/files/gltf_unpack.h"
 
 namespace shadowbench::scene {
 namespace {

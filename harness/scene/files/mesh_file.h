@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +28,23 @@ bool is_mesh_file(const std::filesystem::path& file);
 /// Reads a file by its extension. Throws kInput where it is missing, malformed or of another kind.
 MeshFile import_mesh_file(const std::filesystem::path& file);
 
+/// Reads a glTF 2.0 file (.gltf or .glb): its default scene, node transforms applied.
+///
+/// Reads triangles, strips and fans with indices of any type, quantised and compressed ones (EXT_meshopt_compression,
+/// KHR_draco_mesh_compression) too, base colour factor and texture, transformed by KHR_texture_transform, alpha masks,
+/// perspective and orthographic cameras, and the lights of KHR_lights_punctual (their colour; all have intensity 1,
+/// because every picture has the same exposure). Missing normals become flat ones.
+/// Warns about what it leaves out: blending, other lights, skins, morph targets, lines and points.
+/// Throws kInput for a file that is malformed, refers outside its folder, or requires an extension that is not read.
+MeshFile import_gltf(const std::filesystem::path& file);
+
+/// Reads a Wavefront .obj file and the diffuse colours and textures of its material library.
+///
+/// Polygons become triangles. Corners without a normal get the mean of the faces around them that turn by less than
+/// 45 degrees. A missing material library is a warning; a reference outside the file's folder an error.
+/// Throws kInput, with the line, for a coordinate that is not a finite number or an index out of range.
+MeshFile import_obj(const std::filesystem::path& file);
+
 /// Adds geometry, materials, textures and warnings to a scene, but neither cameras nor lights.
 Scene add_mesh_file(Scene scene, MeshFile file);
 
@@ -33,5 +53,15 @@ Scene add_mesh_file(Scene scene, MeshFile file);
 /// `others` are decoded already, 2^28 (1 GiB). Throws kInput, with `name` and `where`, for anything else.
 Texture decode_texture(const std::vector<unsigned char>& bytes, const std::string& name, const std::string& where,
                        const std::vector<Texture>& others);
+
+/// What a picture's header says of its size, pixels.
+struct PictureSize {
+  std::uint64_t width = 0;
+  std::uint64_t height = 0;
+};
+
+/// Reads the size from the header of a PNG, JPEG, BMP, GIF or TGA picture, without decoding it; nothing where the bytes
+/// are no such picture. The formats must be told apart as the decoder does it, or a picture would be decoded unchecked.
+std::optional<PictureSize> read_picture_size(std::span<const unsigned char> bytes);
 
 }  // namespace shadowbench::scene

@@ -1,25 +1,29 @@
-#include "harness/scene/files/obj_file.h"
-
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <optional>
 #include <sstream>
 #include <utility>
 
 #include "filters/base/error.h"
 #include "filters/base/split_list.h"
-#include "harness/scene/files/big_faces.h"
 #include "harness/scene/files/file_bytes.h"
+#include "harness/scene/files/mesh_file.h"
 #include "harness/scene/mesh_tools.h"
 
 namespace shadowbench::scene {
 namespace {
 
 constexpr double kCreaseDeg = 45.0;
+constexpr std::size_t kMostCorners = 2048;  // of a face
 
 /// Reads material libraries from the model's own folder only.
 class LibraryReader : public tinyobj::MaterialReader {
@@ -47,95 +51,204 @@ class LibraryReader : public tinyobj::MaterialReader {
   std::string where_;
 };
 
-/// Throws unless the word is a finite number; the parser would read it as 0.
-void require_number(const std::string& word, std::size_t line, const std::string& where) {
-  double value = 0.0;
+/// A number that the whole word is; nothing where it is none, or out of range.
+template <class T>
+std::optional<T> parse(const std::string& word) {
+  T value{};
   const char* start = word.data() + (word.starts_with('+') ? 1 : 0);
   const char* end = word.data() + word.size();
   const auto [stop, problem] = std::from_chars(start, end, value);
-  if (problem == std::errc() && stop == end && std::isfinite(value)) return;
-  fail_input(fmt::format("'{}' is not a finite number", word), fmt::format("{}:{}", where, line));
+  return problem == std::errc() && stop == end ? std::optional(value) : std::nullopt;
 }
 
-/// Throws unless each part of a corner, as in 1/2/3 or 1//3, is empty or an index; the parser would read it as another.
-void require_indices(const std::string& corner, std::size_t line, const std::string& where) {
-  for (const std::string& part : split_list(corner, "/")) {
-    int index = 0;
-    const char* start = part.data() + (part.starts_with('+') ? 1 : 0);
-    const char* end = part.data() + part.size();
-    const auto [stop, problem] = std::from_chars(start, end, index);
-    if (part.empty() || (problem == std::errc() && stop == end)) continue;
-    fail_input(fmt::format("'{}' is not an index: whole numbers are, up to {}", part, std::numeric_limits<int>::max()),
-               fmt::format("{}:{}", where, line));
+/// The polygon along the axis in which it is largest, counter-clockwise.
+std::vector<glm::dvec2> flatten(const std::vector<glm::dvec3>& corners) {
+  glm::dvec3 normal(0.0);  // Newell's: twice the area, seen along each axis
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    normal += glm::cross(corners[i] - corners[0], corners[(i + 1) % corners.size()] - corners[0]);
+  const glm::dvec3 size = glm::abs(normal);
+  const int z = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  std::vector<glm::dvec2> flat;
+  for (const glm::dvec3& corner : corners)
+    flat.emplace_back(normal[z] < 0.0 ? -corner[(z + 1) % 3] : corner[(z + 1) % 3], corner[(z + 2) % 3]);
+  return flat;
+}
+
+double cross(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// What is left of a polygon while ears are cut off it. A convex one becomes a fan.
+/// Source: Eberly 2002, Triangulation by Ear Clipping.
+class EarClipper {
+ public:
+  explicit EarClipper(const std::vector<glm::dvec3>& corners) : places_(flatten(corners)), left_(corners.size()) {
+    std::iota(left_.begin(), left_.end(), std::size_t{0});
   }
-}
 
-/// Checks the coordinates of all v, vn and vt lines, and the indices of all f, l and p lines.
-void require_numbers(const std::string& text, const std::string& where) {
-  std::istringstream lines(text);
-  std::string line;
-  for (std::size_t number = 1; std::getline(lines, line); ++number) {
-    std::istringstream words(line.substr(0, line.find('#')));
-    std::string word;
-    words >> word;
-    if (word == "f" || word == "l" || word == "p")
-      while (words >> word) require_indices(word, number, where);
-    if (word != "v" && word != "vn" && word != "vt") continue;
-    const std::size_t least = word == "vt" ? 1 : 3;
-    std::size_t count = 0;
-    for (; words >> word; ++count) require_number(word, number, where);
-    if (count >= least) continue;
-    fail_input(fmt::format("expected at least {} numbers, found {}", least, count),
-               fmt::format("{}:{}", where, number));
+  /// Corners 3i to 3i+2 are those of triangle i. A polygon that touches or crosses itself gives some that overlap.
+  std::vector<std::size_t> clip() {
+    std::vector<std::size_t> triangles;
+    std::size_t first = 0, misses = 0;
+    while (left_.size() > 2) {
+      if (misses < left_.size() && !is_ear(first)) {
+        first = (first + 1) % left_.size();
+        ++misses;
+        continue;
+      }
+      triangles.insert(triangles.end(), {corner(first), corner(first + 1), corner(first + 2)});
+      const std::size_t tip = (first + 1) % left_.size();
+      left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(tip));
+      if (tip < first) --first;
+      misses = 0;
+    }
+    return triangles;
   }
-}
 
-/// Ends each line as the checks and the parser expect it, whatever system wrote the file.
-std::string with_newlines(const std::string& text) {
-  std::string lines;
-  for (std::size_t i = 0; i < text.size(); ++i)
-    if (text[i] != '\r')
-      lines += text[i];
-    else if (i + 1 == text.size() || text[i + 1] != '\n')
-      lines += '\n';
-  return lines;
-}
+ private:
+  std::vector<glm::dvec2> places_;
+  std::vector<std::size_t> left_;
 
-/// A parsed file: attributes, shapes and materials as the parser names them.
-struct ObjData {
-  tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;
-  std::vector<tinyobj::material_t> materials;
-  std::string warning;
+  /// Counts from the first again behind the last.
+  std::size_t corner(std::size_t i) const { return left_[i < left_.size() ? i : i - left_.size()]; }
+  const glm::dvec2& place(std::size_t i) const { return places_[corner(i)]; }
+
+  /// Whether no other corner lies in the triangle that begins at one; only those can that turn clockwise.
+  bool is_ear(std::size_t first) const {
+    const glm::dvec2 &a = place(first), &b = place(first + 1), &c = place(first + 2);
+    if (cross(a, b, c) < 0.0) return false;
+    for (std::size_t other = 3; other < left_.size(); ++other) {
+      const std::size_t i = (first + other) % left_.size();
+      const glm::dvec2& p = place(i);
+      const bool is_in = cross(a, b, p) >= 0.0 && cross(b, c, p) >= 0.0 && cross(c, a, p) >= 0.0;
+      const bool is_blunt = is_in && cross(place(i + left_.size() - 1), p, place(i + 1)) < 0.0;
+      if (is_blunt && p != a && p != b && p != c) return false;
+    }
+    return true;
+  }
 };
 
-ObjData parse_obj(const std::filesystem::path& file) {
-  const std::string where = file.string();
-  const std::vector<unsigned char> bytes = read_file_bytes(file);
-  std::string text = with_newlines({bytes.begin(), bytes.end()});
-  require_numbers(text, where);
-  text = split_big_faces(std::move(text), where);
-  LibraryReader libraries(file.parent_path(), where);
-  ObjData data;
-  std::string failure;
-  std::istringstream stream(text);
-  const bool parsed = tinyobj::LoadObj(&data.attributes, &data.shapes, &data.materials, &data.warning, &failure,
-                                       &stream, &libraries, true);
-  if (parsed && failure.empty()) return data;
-  fail_input("not a valid .obj file: " + failure.substr(0, failure.find('\n')), where);
-}
+/// The text of a file as the parser is to see it: its numbers are checked, and of its polygons, of which the parser
+/// loses parts, triangles are made.
+class ObjText {
+ public:
+  ObjText(std::string text, std::string where) : text_(std::move(text)), where_(std::move(where)) {
+    for (Line line; line.begin < text_.size(); ++line.number) {
+      line.end = std::min(text_.find_first_of("\r\n", line.begin), text_.size());
+      line.known = vertices_.size();
+      read(line);
+      line.begin = line.end + (text_.compare(line.end, 2, "\r\n") == 0 ? 2 : 1);  // whatever system wrote the file
+    }
+  }
 
-/// Builds a model from a parsed file, part by part.
+  std::string with_triangles() const {
+    std::string text;
+    std::size_t done = 0;
+    for (const Line& polygon : polygons_) {
+      text.append(text_, done, polygon.begin - done).append(write_triangles(polygon));
+      done = polygon.end;
+    }
+    return text.append(text_, done);
+  }
+
+ private:
+  struct Line {
+    std::size_t begin = 0, end = 0;  ///< in the text
+    std::size_t number = 1;
+    std::size_t known = 0;  ///< vertices before it, from which an index below 0 counts back
+  };
+
+  std::string text_, where_;
+  std::vector<glm::dvec3> vertices_;
+  std::vector<Line> polygons_;  ///< faces of more than four corners
+
+  [[noreturn]] void fail(const Line& line, const std::string& message) const {
+    fail_input(message, fmt::format("{}:{}", where_, line.number));
+  }
+
+  std::vector<std::string> list_words(const Line& line) const {
+    const std::string text = text_.substr(line.begin, line.end - line.begin);
+    std::istringstream words(text.substr(0, text.find('#')));
+    return {std::istream_iterator<std::string>(words), {}};
+  }
+
+  void read(const Line& line) {
+    const std::vector<std::string> words = list_words(line);
+    const std::string kind = words.empty() ? "" : words.front();
+    if (kind == "f" || kind == "l" || kind == "p")
+      for (std::size_t i = 1; i < words.size(); ++i) require_indices(line, words[i]);
+    if (kind == "f") note_polygon(line, words.size() - 1);
+    if (kind == "v" || kind == "vn" || kind == "vt") read_numbers(line, words);
+  }
+
+  /// Throws unless each part of a corner, as in 1/2/3 or 1//3, is empty or an index; the parser would read it as
+  /// another.
+  void require_indices(const Line& line, const std::string& corner) const {
+    for (const std::string& part : split_list(corner, "/"))
+      if (!part.empty() && !parse<int>(part))
+        fail(line,
+             fmt::format("'{}' is not an index: whole numbers are, up to {}", part, std::numeric_limits<int>::max()));
+  }
+
+  void note_polygon(const Line& line, std::size_t corners) {
+    if (corners > kMostCorners)
+      fail(line, fmt::format("this face has {} corners; at most {} are read: triangulate it in the modelling program",
+                             corners, kMostCorners));
+    if (corners > 4) polygons_.push_back(line);
+  }
+
+  /// Throws unless all are finite numbers; the parser would read anything else as 0.
+  void read_numbers(const Line& line, const std::vector<std::string>& words) {
+    std::vector<double> numbers;
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      const std::optional<double> number = parse<double>(words[i]);
+      if (!number || !std::isfinite(*number)) fail(line, fmt::format("'{}' is not a finite number", words[i]));
+      numbers.push_back(*number);
+    }
+    const std::size_t least = words.front() == "vt" ? 1 : 3;
+    if (numbers.size() < least)
+      fail(line, fmt::format("expected at least {} numbers, found {}", least, numbers.size()));
+    if (words.front() == "v") vertices_.emplace_back(numbers[0], numbers[1], numbers[2]);
+  }
+
+  std::string write_triangles(const Line& polygon) const {
+    const std::vector<std::string> words = list_words(polygon);
+    std::vector<glm::dvec3> corners;
+    for (std::size_t i = 1; i < words.size(); ++i) corners.push_back(find_vertex(polygon, words[i]));
+    std::string lines;
+    const std::vector<std::size_t> triangles = EarClipper(corners).clip();
+    for (std::size_t i = 0; i < triangles.size(); i += 3)
+      lines += fmt::format("{}f {} {} {}", i > 0 ? "\n" : "", words[triangles[i] + 1], words[triangles[i + 1] + 1],
+                           words[triangles[i + 2] + 1]);
+    return lines;
+  }
+
+  const glm::dvec3& find_vertex(const Line& line, const std::string& corner) const {
+    const long index = std::strtol(corner.c_str(), nullptr, 10);
+    const long at = index < 0 ? static_cast<long>(line.known) + index : index - 1;
+    if (at >= 0 && static_cast<std::size_t>(at) < vertices_.size()) return vertices_[static_cast<std::size_t>(at)];
+    fail(line, fmt::format("a face uses vertex {}, but there are {}", index, vertices_.size()));
+  }
+};
+
+/// Builds a model from a file, part by part.
 class ObjImporter {
  public:
-  ObjImporter(ObjData source, std::filesystem::path file)
-      : source_(std::move(source)), file_(std::move(file)), where_(file_.string()) {}
+  explicit ObjImporter(std::filesystem::path file) : file_(std::move(file)), where_(file_.string()) {
+    const std::vector<unsigned char> bytes = read_file_bytes(file_);
+    std::istringstream text(ObjText({bytes.begin(), bytes.end()}, where_).with_triangles());
+    LibraryReader libraries(file_.parent_path(), where_);
+    std::string failure;
+    const bool parsed =
+        tinyobj::LoadObj(&attributes_, &shapes_, &materials_, &warning_, &failure, &text, &libraries, true);
+    if (!parsed || !failure.empty()) fail("not a valid .obj file: " + failure.substr(0, failure.find('\n')));
+  }
 
   MeshFile import() {
-    for (const tinyobj::material_t& material : source_.materials) add_material(material);
+    for (const tinyobj::material_t& material : materials_) add_material(material);
     result_.materials.push_back({.name = "default"});
-    for (const tinyobj::shape_t& shape : source_.shapes) add_shape(shape);
-    std::istringstream warnings(source_.warning);
+    for (const tinyobj::shape_t& shape : shapes_) add_shape(shape);
+    std::istringstream warnings(warning_);
     for (std::string line; std::getline(warnings, line);)
       if (!line.empty()) result_.warnings.push_back(line);
     return std::move(result_);
@@ -171,8 +284,8 @@ class ObjImporter {
     for (std::size_t i = 0; i < shape.mesh.indices.size(); ++i) {
       const std::size_t face = i / 3;
       const int wanted = face < shape.mesh.material_ids.size() ? shape.mesh.material_ids[face] : -1;
-      const bool known = wanted >= 0 && static_cast<std::size_t>(wanted) < source_.materials.size();
-      const int material = known ? wanted : static_cast<int>(source_.materials.size());
+      const bool known = wanted >= 0 && static_cast<std::size_t>(wanted) < materials_.size();
+      const int material = known ? wanted : static_cast<int>(materials_.size());
       Mesh& mesh = mesh_of[material];
       mesh.material = material;
       mesh.indices.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
@@ -186,7 +299,7 @@ class ObjImporter {
   }
 
   Vertex read_corner(const tinyobj::index_t& corner, const std::string& name) const {
-    const tinyobj::attrib_t& all = source_.attributes;
+    const tinyobj::attrib_t& all = attributes_;
     const auto check = [&](int index, std::size_t count, const char* what) {
       if (index >= 0 && static_cast<std::size_t>(index) < count) return static_cast<std::size_t>(index);
       fail(fmt::format("a face of '{}' uses {} {}, but there are {}", name, what, index + 1, count));
@@ -205,15 +318,18 @@ class ObjImporter {
     return vertex;
   }
 
-  ObjData source_;
   std::filesystem::path file_;
   std::string where_;
+  tinyobj::attrib_t attributes_;
+  std::vector<tinyobj::shape_t> shapes_;
+  std::vector<tinyobj::material_t> materials_;
+  std::string warning_;
   MeshFile result_;
   std::map<std::string, int> texture_of_name_;
 };
 
 }  // namespace
 
-MeshFile import_obj(const std::filesystem::path& file) { return ObjImporter(parse_obj(file), file).import(); }
+MeshFile import_obj(const std::filesystem::path& file) { return ObjImporter(file).import(); }
 
 }  // namespace shadowbench::scene

@@ -9,7 +9,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr const char* kDry = "submit e.toml --gpu none --engine slurm --no-probe --dry-run --out out ";
+constexpr const char* kDry = "submit e.toml --gpu none --engine slurm --dry-run --out out ";
 
 class Submit : public Sweep {
  protected:
@@ -47,6 +47,11 @@ TEST_F(Submit, TasksDoneByHand_AndMerged_EqualTheWhole) {
   EXPECT_THAT(run(kDry).out, ::testing::StartsWith("nothing is left to do\n"));
 }
 
+TEST_F(Submit, WithoutANumberOfTasks_HasTwiceTheSquareRootOfItsCells) {
+  static_assert(kCells == 48);
+  EXPECT_THAT(run(kDry).out, HasSubstr("14 tasks of 48 cells\n"));
+}
+
 TEST_F(Submit, ATaskGoesOnWhereItStopped) {
   ASSERT_EQ(run(std::string(kDry) + "--tasks 2").exit_code, 0);
   ASSERT_EQ(do_task("tasks/1").exit_code, 0);
@@ -64,7 +69,7 @@ TEST_F(Submit, ATaskGoesOnWhereItStopped) {
 /// What one task has compiled, another takes: its own driver, which is none, is not asked.
 TEST_F(Submit, TasksShareWhatTheyCompile) {
   const std::string words = "e.toml --gpu navi21 ";
-  ASSERT_EQ(run("submit " + words + "--engine slurm --no-probe --dry-run --out out --tasks 4").exit_code, 0);
+  ASSERT_EQ(run("submit " + words + "--engine slurm --dry-run --out out --tasks 4").exit_code, 0);
   const auto do_it = [&](const std::string& task, const std::string& environment) {
     const std::string out = (folder() / "out").string();
     return run("run " + words + "--no-grids --cache out/cache --out '" + out + "' --task out/tasks/" + task,
@@ -110,7 +115,7 @@ TEST_F(Submit, JobsThatAreEnding_AreWaitedFor) {
   write_tool("scancel", "");
   write_tool("squeue", "echo asked >> '" + bin.string() + "/asked'; test $(grep -c . '" + bin.string() +
                            "/asked') -gt 2 || echo 2 COMPLETING");
-  const std::string words = "submit e.toml --gpu none --no-probe --engine slurm --tasks 3 --out out";
+  const std::string words = "submit e.toml --gpu none --engine slurm --tasks 3 --out out";
   const std::string path = "PATH='" + bin.string() + "':/usr/bin:/bin";
   EXPECT_THAT(run(words, path).out, HasSubstr("job 77: 3 tasks of"));
   EXPECT_FALSE(std::filesystem::exists(bin / "asked"));
@@ -156,7 +161,6 @@ TEST_F(Submit, BadWords_AreRefused) {
   expect_refusal("submit e.toml --engine slurm --tasks 0 --out out", 2, {"--tasks", "'0'"});
   expect_refusal("submit e.toml --engine slurm --grids --out out", 2, {"--grids"});
   expect_refusal("submit e.toml --engine slurm --shard 1/2 --out out", 2, {"--shard"});
-  expect_refusal("submit e.toml --engine slurm --times-of nosuch --out out", 3, {"nosuch"});
   expect_refusal("submit e.toml --engine slurm --out out -- --array=1-9%4", 2, {"--array", "arraytaskthrottle"});
   expect_refusal("submit e.toml --engine slurm --out out -- -a1-9", 2, {"-a", "arraytaskthrottle"});
   expect_refusal("submit e.toml --engine parallel --time 3 --out out", 2, {"--time", "--engine slurm"});
@@ -168,7 +172,7 @@ TEST_F(Submit, BadWords_AreRefused) {
 
 /// Without Slurm, or where it refuses, nothing is queued, and the same command goes on.
 TEST_F(Submit, WithoutItsEngine_IsRefused) {
-  const std::string words = "submit e.toml --gpu none --no-probe --out out --engine ";
+  const std::string words = "submit e.toml --gpu none --out out --engine ";
   for (const char* engine : {"slurm", "parallel"}) {
     const Outcome outcome = run(words + engine, "PATH=/nowhere");
     EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
@@ -179,18 +183,18 @@ TEST_F(Submit, WithoutItsEngine_IsRefused) {
 
 /// No line of options can hold some characters.
 TEST_F(Submit, WhatSlurmCannotBeTold_IsRefused_OrReplaced) {
-  const Outcome outcome = run("submit e.toml --gpu none --no-probe --dry-run --engine slurm --out 'a \"b\"'");
+  const Outcome outcome = run("submit e.toml --gpu none --dry-run --engine slurm --out 'a \"b\"'");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("double quote"));
   EXPECT_FALSE(std::filesystem::exists(folder() / "a \"b\"")) << "nothing was planned there";
   std::filesystem::copy_file(folder() / "e.toml", folder() / "my \"e\".toml");
-  EXPECT_EQ(run("submit 'my \"e\".toml' --gpu none --no-probe --dry-run --engine slurm --out out").exit_code, 0);
+  EXPECT_EQ(run("submit 'my \"e\".toml' --gpu none --dry-run --engine slurm --out out").exit_code, 0);
   EXPECT_THAT(read_text(folder() / "out" / "submit.sbatch"), HasSubstr("#SBATCH --job-name=\"my _e_-tasks\"\n"));
 }
 
 TEST_F(Submit, Scripts_TakeOddFoldersAndPassWordsOn) {
   const Outcome outcome =
-      run("submit e.toml --gpu none --no-probe --dry-run --engine slurm --tasks 3 --time 1:30 --partition fast "
+      run("submit e.toml --gpu none --dry-run --engine slurm --tasks 3 --time 1:30 --partition fast "
           "--gres gpu:1 --cache 'my cache' --out \"it's 100%\" -- --comment='two words' --qos low");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("'--comment=two words' --qos low"));

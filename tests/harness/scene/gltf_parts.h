@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/scene/files/gltf_file.h"
+#include "harness/scene/files/mesh_file.h"
 #include "harness/scene/validate.h"
 #include "tests/harness/scene/test_files.h"
 

@@ -4,8 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/scene/files/gltf_file.h"
-#include "harness/scene/files/obj_file.h"
+#include "harness/scene/files/mesh_file.h"
 #include "test_files.h"
 
 namespace shadowbench::scene {

@@ -1,4 +1,4 @@
-#include "harness/scene/files/gltf_file.h"
+#include "harness/scene/files/mesh_file.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/scene/files/gltf_file.h"
+#include "harness/scene/files/mesh_file.h"
 #include "tests/harness/scene/gltf_parts.h"
 
 namespace shadowbench::scene {

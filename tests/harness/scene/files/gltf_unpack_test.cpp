@@ -1,4 +1,4 @@
-#include "harness/scene/files/gltf_unpack.h"
+#include "harness/scene/files/gltf_parse.h"
 
 #include <dlfcn.h>
 #include <draco/compression/expert_encode.h>

@@ -1,4 +1,4 @@
-#include "harness/scene/files/obj_file.h"
+#include "harness/scene/files/mesh_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "harness/submit/shell.h"
+#include "harness/submit/engine.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,19 @@
-#include "harness/submit/run_task.h"
+#include "harness/submit/sweep_jobs.h"
 
 #include <fmt/format.h>
 
 #include <cstring>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "filters/base/error.h"
+#include "harness/run/merge.h"
 #include "harness/run/run_experiment.h"
 #include "harness/submit/sign_of_life.h"
-#include "harness/submit/sweep_folder.h"
+#include "harness/submit/sweep_status.h"
+#include "report/files/folder_lock.h"
+#include "report/pages/write_report.h"
 
 namespace shadowbench::submit {
 namespace {
@@ -43,6 +48,30 @@ void note_failed_task(const std::filesystem::path& folder, const std::exception&
 void note_stopped_task(const std::filesystem::path& folder, int signal) {
   remove_sign_of_life(folder);
   write_failure(folder, {kSignalCode + signal, fmt::format("stopped by signal {} ({})", signal, strsignal(signal))});
+}
+
+void merge_sweep(const std::filesystem::path& out) {
+  const SweepStatus status = read_status(out);
+  if (!status.is_measured())
+    throw Error(ErrorKind::kLimit,
+                fmt::format("not all cells are measured, so there is no report yet:\n{}'shadowbench submit' with the "
+                            "same words submits what is left",
+                            describe_status(status)),
+                out.string());
+  const files::FolderLock lock(out);
+  std::vector<std::string> keys;
+  std::vector<records::RunRecord> runs;
+  for (const TaskStatus& each : status.tasks) {
+    keys.insert(keys.end(), each.task.keys.begin(), each.task.keys.end());
+    runs.push_back(read_result(task_folder(out, TaskKind::kCells, each.task.number)));
+  }
+  for (const TaskStatus& each : status.truths)
+    if (each.state == TaskState::kFinished)
+      runs.push_back(read_result(task_folder(out, TaskKind::kTruth, each.task.number)));
+  records::RunRecord whole = run::join_runs(runs);
+  whole.command = status.sweep.command;
+  whole.experiment = {status.sweep.title, status.sweep.settings, status.sweep.cells, 1, 1};
+  pages::write_report(out, std::move(whole), keys);
 }
 
 }  // namespace shadowbench::submit
