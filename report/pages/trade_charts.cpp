@@ -7,8 +7,6 @@
 
 #include "report/analysis/cell_group.h"
 #include "report/files/file_name.h"
-#include "report/page/chart_style.h"
-#include "report/pages/large_run.h"
 #include "report/records/format.h"
 
 namespace shadowbench::pages {

@@ -10,6 +10,10 @@
 
 namespace shadowbench::pages {
 
+/// A run of more cells than this has a page without what nobody could look through: the tables and bars of every scene
+/// and map, and what is beaten in the charts of fronts. The CSV files have all of it.
+inline constexpr std::size_t kMostCellsInDetail = 2000;
+
 /// Draws the fronts of every scope, error and cost. Members are filled and joined; tied cells are hollow, dominated
 /// ones hollow and faint. Those, and curves over the width, are left out of a run of more than kMostCellsInDetail
 /// cells.

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 
-#include "report/analysis/front_words.h"
+#include "filters/kernel_width.h"
 #include "report/analysis/growth.h"
 #include "report/analysis/machines/machine_kinds.h"
-#include "report/pages/column_list.h"
 #include "report/pages/fronts_csv.h"
-#include "report/pages/large_run.h"
+#include "report/pages/text_tables.h"
 #include "report/pages/trade_charts.h"
 #include "report/records/format.h"
 
@@ -44,6 +43,31 @@ constexpr const char* kMapsNote =
     "the fastest). As accurate: the RMSE is not clearly larger. Other views are taken to have the error and the cost "
     "of the one that was measured.";
 
+/// How fronts are read: what dominated and tied mean, what the intervals are, how scenes are combined, and what each of
+/// `costs` is.
+std::vector<std::string> explain_fronts(const std::vector<analysis::Measure>& costs) {
+  std::vector<std::string> sentences = {
+      fmt::format(
+          "Only filters whose kernels are about equally wide are compared: a wider kernel makes a softer shadow, "
+          "and is no worse filter. A kernel's width is its standard deviation along an axis, in texels; each "
+          "class has a front of its own: {}.",
+          filters::describe_classes()),
+      "A cell of the front beats another of its class, which is then dominated, where it costs no more, its error is "
+      "not clearly larger, and one of the two is clearly less. A cell is tied with one of the front where neither is "
+      "clearly less. Clearly: errors that differ by more than half the wider 95 % interval over the phases of the "
+      "map's "
+      "grid, times whose 95 % intervals do not overlap, everything else where the numbers differ. Of several that beat "
+      "a "
+      "cell, the cheapest is named."};
+  const auto explain = [&](const analysis::Measure& measure) {
+    sentences.push_back(
+        fmt::format("{}: {}. All scenes together: {}.", measure.name, measure.meaning, measure.over_scenes));
+  };
+  std::ranges::for_each(analysis::list_error_measures(), explain);
+  std::ranges::for_each(costs, explain);
+  return sentences;
+}
+
 void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                 const Trade& trade) {
   blocks.emplace_back(page::Paragraph{kFrontsNote, true});
@@ -51,7 +75,7 @@ void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector
     blocks.emplace_back(page::Paragraph{fmt::format(kLargeNote, kMostCellsInDetail), true});
   blocks.emplace_back(make_front_choice(trade.scopes, cells, run.gl));
   blocks.emplace_back(page::Details{"How to read the fronts",
-                                    {page::Sentences{{}, analysis::explain_fronts(trade.scopes.front().costs)},
+                                    {page::Sentences{{}, explain_fronts(trade.scopes.front().costs)},
                                      page::Links{"All fronts, cell by cell:", {{"fronts.csv", "fronts.csv"}}}}});
   blocks.emplace_back(explain_columns("fronts.csv", list_front_columns()));
 }

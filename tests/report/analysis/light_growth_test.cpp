@@ -120,7 +120,7 @@ TEST(LightGrowth, TellsHowFarTimesAreFromALine) {
 TEST(LightGrowth, IsSaidInASentence_WithItsClock) {
   EXPECT_EQ(summarize_lights(make_lit_charts(make_lit_cells()), make_run().gl),
             "Each further light costs 1 ms (CPU) (none, casters still, cubes · view main · 960 × 540 · map 1024) to "
-            "9.81 (esm, casters moving, cubes · view main · 960 × 540 · map 1024); 3 of 6 pairs of filters change "
+            "9.9 (esm, casters moving, cubes · view main · 960 × 540 · map 1024); 3 of 6 pairs of filters change "
             "order between numbers of lights, or between casters that stand still and that move.");
 }
 

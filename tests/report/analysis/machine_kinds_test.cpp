@@ -188,7 +188,7 @@ TEST(MixedMachines, WhatNeedsMilliseconds_IsSilent) {
   ASSERT_THAT(list_map_families(cells), Not(IsEmpty()));
   EXPECT_THAT(list_map_families(withheld), IsEmpty());
   for (records::CellRecord& cell : cells) cell.fit = "tight";
-  ASSERT_THAT(make_growth_table(cells).header, SizeIs(3));
+  ASSERT_THAT(make_growth_table(cells).header, SizeIs(2));
   EXPECT_THAT(make_growth_table(*withhold_mixed_times(cells)).header, SizeIs(1));
 }
 
