@@ -12,9 +12,8 @@
 
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
-#include "report/analysis/accuracy.h"
+#include "report/analysis/cell_group.h"
 #include "report/analysis/machines/machine_kinds.h"
-#include "report/analysis/summary.h"
 #include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
@@ -84,30 +83,15 @@ std::vector<const records::CellRecord*> choose_cells(const std::vector<records::
   return chosen;
 }
 
-// Says why a value cannot be had, or nothing where it can.
-std::optional<std::string> find_gap(const std::vector<const records::CellRecord*>& cells, const LimitSpec& spec,
-                                    const Advice& advice) {
+// Says why a value cannot be had; empty where it can.
+std::string find_gap(const std::vector<const records::CellRecord*>& cells, const LimitSpec& spec, LightMotion light,
+                     const std::vector<Place>& places) {
   for (const records::CellRecord* cell : cells) {
-    if (spec.read(*cell, advice.request.light)) continue;
-    return fmt::format("no {} on {}: {}", spec.field, describe_place(place_of(*cell), advice.places),
+    if (spec.read(*cell, light)) continue;
+    return fmt::format("no {} on {}: {}", spec.field, describe_place(place_of(*cell), places),
                        records::explain_absence(*cell, spec.field));
   }
-  return std::nullopt;
-}
-
-bool has_nothing_to_see(const records::CellRecord& cell, const LimitSpec& spec, LightMotion light) {
-  return !spec.read(cell, light) && records::is_nothing_to_see(records::explain_absence(cell, spec.field));
-}
-
-// Says why a limit cannot be judged: a value is missing, or there is nothing to see anywhere.
-std::optional<std::string> find_limit_gap(const Configuration& configuration, const LimitSpec& spec,
-                                          const Advice& advice) {
-  std::vector<const records::CellRecord*> telling = configuration.cells;
-  std::erase_if(telling,
-                [&](const records::CellRecord* cell) { return has_nothing_to_see(*cell, spec, advice.request.light); });
-  if (!telling.empty()) return find_gap(telling, spec, advice);
-  return fmt::format("no {} anywhere: {}", spec.field,
-                     records::explain_absence(*configuration.cells.front(), spec.field));
+  return {};
 }
 
 // What the filter of a configuration claims; nothing where nobody knows.
@@ -118,7 +102,7 @@ std::optional<std::vector<std::string>> find_claims(const Configuration& configu
   return known != request.claims.end() ? std::optional(known->second) : std::nullopt;
 }
 
-std::optional<std::string> find_missing_cell(const Configuration& configuration, const std::vector<Place>& places) {
+std::string find_missing_cell(const Configuration& configuration, const std::vector<Place>& places) {
   for (const Place& place : places) {
     const auto cell = std::ranges::find_if(configuration.cells, [&](const auto* c) { return place_of(*c) == place; });
     if (cell == configuration.cells.end()) return "not measured on " + describe_place(place, places);
@@ -127,26 +111,14 @@ std::optional<std::string> find_missing_cell(const Configuration& configuration,
                          describe_place(place, places), records::describe_status(**cell));
     }
   }
-  return std::nullopt;
+  return {};
 }
 
-Verdict judge_limit(const std::vector<const records::CellRecord*>& cells, const Demand& demand, LightMotion light) {
-  Verdict verdict{true, -kInfinity};
-  const bool is_rmse = demand.spec->field == kRmse;
-  for (const records::CellRecord* cell : cells) {
-    if (!demand.spec->read(*cell, light)) {
-      verdict.nothing_to_see.push_back(cell);
-      continue;
-    }
-    const double value = *demand.spec->read(*cell, light);
-    if (value > *verdict.worst) {
-      verdict.worst = value;
-      verdict.where = cell;
-    }
-    if (is_rmse && demand.most - value < find_rmse_reach(*cell)) verdict.uncertain = cell;
-  }
-  verdict.kept = *verdict.worst <= demand.most;
-  if (!verdict.kept) verdict.uncertain = nullptr;
+Verdict judge_claim(const Configuration& configuration, const std::string& claim, const AdviceRequest& request) {
+  if (const auto claims = find_claims(configuration, request)) return {std::ranges::count(*claims, claim) > 0};
+  Verdict verdict;
+  verdict.absent = fmt::format("the run does not say what '{}' claims, and it is no built-in filter",
+                               configuration.cells.front()->filter);
   return verdict;
 }
 
@@ -165,26 +137,17 @@ records::Interval combine(double mean, const std::vector<double>& values,
 
 std::variant<Candidate, Unjudged> judge(const Configuration& configuration, const Advice& advice) {
   const AdviceRequest& request = advice.request;
-  if (const auto gap = find_missing_cell(configuration, advice.places)) return Unjudged{configuration, *gap, {}};
+  if (std::string gap = find_missing_cell(configuration, advice.places); !gap.empty())
+    return Unjudged{configuration, std::move(gap), {}};
   Candidate candidate{configuration, {}, {}};
-  for (std::size_t i = 0; i < request.demands.size(); ++i) {
-    const Demand& demand = request.demands[i];
-    if (demand.spec) {
-      if (const auto gap = find_limit_gap(configuration, *demand.spec, advice)) return Unjudged{configuration, *gap, i};
-      candidate.verdicts.push_back(judge_limit(configuration.cells, demand, request.light));
-      continue;
-    }
-    const auto claims = find_claims(configuration, request);
-    if (!claims) {
-      return Unjudged{configuration,
-                      fmt::format("the run does not say what '{}' claims, and it is no built-in filter",
-                                  configuration.cells.front()->filter),
-                      i};
-    }
-    candidate.verdicts.push_back({std::ranges::count(*claims, demand.claim) > 0, {}});
+  for (const Demand& demand : request.demands) {
+    Verdict verdict = demand.spec ? judge_limit(configuration, demand, request.light, advice.places)
+                                  : judge_claim(configuration, demand.claim, request);
+    if (!verdict.absent.empty()) return Unjudged{configuration, verdict.absent, candidate.verdicts.size()};
+    candidate.verdicts.push_back(std::move(verdict));
   }
-  if (const auto gap = find_gap(configuration.cells, cost_spec(request.cheapest), advice))
-    return Unjudged{configuration, *gap, {}};
+  std::string gap = find_gap(configuration.cells, cost_spec(request.cheapest), request.light, advice.places);
+  if (!gap.empty()) return Unjudged{configuration, std::move(gap), {}};
   candidate.cost = *measure_cost(configuration.cells, request.cheapest, request.light);
   return candidate;
 }
@@ -215,19 +178,23 @@ std::vector<std::size_t> list_failed(const Candidate& candidate) {
 
 Obstacle find_obstacle(const Advice& advice, std::size_t demand) {
   Obstacle obstacle;
-  double least = kInfinity;
   for (std::size_t i = 0; i < advice.failing.size(); ++i) {
-    const Verdict& verdict = advice.failing[i].verdicts[demand];
-    if (verdict.kept) continue;
+    if (advice.failing[i].verdicts[demand].kept) continue;
     ++obstacle.failing;
-    if (list_failed(advice.failing[i]).size() > 1) continue;
-    ++obstacle.alone;
-    // The cheaper of two that are as near comes first. A claim has no size: there every one is as near.
-    if (obstacle.nearest && verdict.worst.value_or(0.0) >= least) continue;
-    least = verdict.worst.value_or(0.0);
-    obstacle.nearest = i;
+    if (list_failed(advice.failing[i]).size() == 1) obstacle.alone.push_back(i);
   }
   for (const Unjudged& unjudged : advice.unjudged) obstacle.unknown += unjudged.demand == demand;
+  // The cheaper of two that are as near comes first. A claim has no size: there every one is as near.
+  std::ranges::stable_sort(obstacle.alone, {},
+                           [&](std::size_t i) { return advice.failing[i].verdicts[demand].worst.value_or(0.0); });
+  const Candidate* last = advice.keeping.empty() ? nullptr : &advice.keeping.front();
+  for (const std::size_t i : obstacle.alone) {
+    const Candidate& next = advice.failing[i];
+    if (!last || next.cost.mean >= last->cost.mean || compare_costs(next, *last, advice.request.cheapest).tied)
+      continue;
+    obstacle.buys.push_back(i);
+    last = &next;
+  }
   return obstacle;
 }
 
@@ -247,30 +214,6 @@ std::optional<std::size_t> find_closest(const Advice& advice) {
     return std::pair(list_failed(candidate).size(), measure_excess(candidate, advice.request.demands));
   };
   return static_cast<std::size_t>(std::ranges::min_element(advice.failing, {}, key) - advice.failing.begin());
-}
-
-// The candidates that fail this demand alone, those that fail it by least first.
-std::vector<std::size_t> list_held_back(const Advice& advice, std::size_t demand) {
-  std::vector<std::size_t> held;
-  for (std::size_t i = 0; i < advice.failing.size(); ++i)
-    if (list_failed(advice.failing[i]) == std::vector{demand}) held.push_back(i);
-  const auto worst = [&](std::size_t i) { return advice.failing[i].verdicts[demand].worst.value_or(0.0); };
-  std::ranges::stable_sort(held, {}, worst);
-  return held;
-}
-
-bool is_cheaper(const Candidate& candidate, const Candidate& than, CostKind kind) {
-  return candidate.cost.mean < than.cost.mean && !compare_costs(candidate, than, kind).tied;
-}
-
-void add_relaxations(Advice& advice, std::size_t demand) {
-  const CostKind kind = advice.request.cheapest;
-  const Candidate* last = &advice.keeping.front();
-  for (const std::size_t i : list_held_back(advice, demand)) {
-    if (!is_cheaper(advice.failing[i], *last, kind)) continue;
-    last = &advice.failing[i];
-    advice.relaxations.push_back({demand, i, compare_costs(*last, advice.keeping.front(), kind)});
-  }
 }
 
 void require_gpu(const std::vector<records::CellRecord>& cells, const std::string& gpu) {
@@ -299,6 +242,30 @@ std::optional<records::Interval> find_interval(const records::CellRecord& cell, 
 }
 
 }  // namespace
+
+Verdict judge_limit(const Configuration& configuration, const Demand& demand, LightMotion light,
+                    const std::vector<Place>& places) {
+  Verdict verdict;
+  const LimitSpec& spec = *demand.spec;
+  std::vector<const records::CellRecord*> telling;
+  for (const records::CellRecord* cell : configuration.cells) {
+    const bool tells =
+        spec.read(*cell, light) || !records::is_nothing_to_see(records::explain_absence(*cell, spec.field));
+    (tells ? telling : verdict.nothing_to_see).push_back(cell);
+  }
+  verdict.absent = telling.empty() ? fmt::format("no {} anywhere: {}", spec.field,
+                                                 records::explain_absence(*configuration.cells.front(), spec.field))
+                                   : find_gap(telling, spec, light, places);
+  if (!verdict.absent.empty()) return verdict;
+  const auto value_of = [&](const records::CellRecord* cell) { return *spec.read(*cell, light); };
+  verdict.where = *std::ranges::max_element(telling, {}, value_of);
+  verdict.worst = value_of(verdict.where);
+  verdict.kept = *verdict.worst <= demand.most;
+  for (const records::CellRecord* cell : telling)
+    if (verdict.kept && spec.field == kRmse && demand.most - value_of(cell) < find_rmse_reach(*cell))
+      verdict.uncertain = cell;
+  return verdict;
+}
 
 std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& cells, const CostKind& kind,
                                  LightMotion light) {
@@ -363,10 +330,7 @@ Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest
   }
   sort_by_cost(advice.keeping, advice.request);
   sort_by_cost(advice.failing, advice.request);
-  for (std::size_t i = 0; i < request.demands.size(); ++i) {
-    advice.obstacles.push_back(find_obstacle(advice, i));
-    if (!advice.keeping.empty()) add_relaxations(advice, i);
-  }
+  for (std::size_t i = 0; i < request.demands.size(); ++i) advice.obstacles.push_back(find_obstacle(advice, i));
   advice.closest = find_closest(advice);
   return advice;
 }

@@ -28,13 +28,18 @@ struct AdviceRequest {
 /// How a configuration stands to one demand.
 struct Verdict {
   bool kept = false;
-  std::optional<double> worst;                 ///< over the places; empty for a claim
+  std::optional<double> worst = {};            ///< over the places; empty for a claim
   const records::CellRecord* where = nullptr;  ///< the cell with the worst value
   /// Cells that have nothing on which the limit could be broken; it counts as kept there.
   std::vector<const records::CellRecord*> nothing_to_see = {};
   /// A cell that keeps a limit on the RMSE by less than the RMSE is uncertain; null: there is none.
   const records::CellRecord* uncertain = nullptr;
+  std::string absent = {};  ///< why it cannot be judged; empty where it can
 };
+
+/// Judges a configuration by a limit, on its cells, which are of `places`.
+Verdict judge_limit(const Configuration& configuration, const Demand& demand, LightMotion light,
+                    const std::vector<Place>& places);
 
 /// A cost over all places, each counting the same. What is known of each place's value (its quartiles, its interval as
 /// frame_interval() gives it, or that of its ratio) adds up in quadrature, for the places are measured independently.
@@ -86,19 +91,12 @@ std::pair<int, int> size_of(const Configuration& configuration);
 /// they are ratios under different settings.
 CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind);
 
-/// How far one demand is in the way.
+/// How far one demand is in the way. Indices are into Advice::failing.
 struct Obstacle {
-  std::size_t failing = 0;             ///< judged configurations that fail it
-  std::size_t alone = 0;               ///< those of them that keep all the others
-  std::size_t unknown = 0;             ///< configurations that have no value for it
-  std::optional<std::size_t> nearest;  ///< index into Advice::failing: fails this demand only, and by the least
-};
-
-/// A configuration that one demand alone keeps from being the cheapest.
-struct Relaxation {
-  std::size_t demand = 0;
-  std::size_t candidate = 0;  ///< index into `failing`
-  CostGap saving;             ///< against the advised one
+  std::size_t failing = 0;         ///< judged configurations that fail it
+  std::size_t unknown = 0;         ///< configurations that have no value for it
+  std::vector<std::size_t> alone;  ///< those that fail it alone, the one that fails it by the least first
+  std::vector<std::size_t> buys;   ///< of these, those that cost less than the advised one and all before them
 };
 
 /// What can be said about a choice.
@@ -109,9 +107,7 @@ struct Advice {
   std::vector<Candidate> keeping;  ///< all demands, cheapest first: the first is advised, the second the runner-up
   std::vector<Candidate> failing;  ///< cheapest first
   std::vector<Unjudged> unjudged;
-  std::vector<Obstacle> obstacles;  ///< one per demand
-  std::vector<Relaxation>
-      relaxations;  ///< grouped by demand; within one, each needs a looser limit than the one before it and costs less
+  std::vector<Obstacle> obstacles;     ///< one per demand
   std::optional<std::size_t> closest;  ///< index into `failing`: fails the fewest demands, among those by the least
 };
 

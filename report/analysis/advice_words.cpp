@@ -8,7 +8,6 @@
 #include <cmath>
 #include <set>
 
-#include "report/analysis/summary.h"
 #include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
@@ -82,11 +81,12 @@ std::string count_ties(const Advice& advice) {
 
 std::string describe_obstacle(const Advice& advice, std::size_t i) {
   const Obstacle& obstacle = advice.obstacles[i];
-  const Candidate& nearest = advice.failing[*obstacle.nearest];
+  const Candidate& nearest = advice.failing[obstacle.alone.front()];
   const auto worst = nearest.verdicts[i].worst;
   const std::string way = worst ? format_limit(*worst) + " would let" : "without it there is";
-  return fmt::format("{} ({} {} it alone; {} {}{})", describe_demand(advice.request.demands[i]), obstacle.alone,
-                     obstacle.alone > 1 ? "fail" : "fails", way, nearest.configuration.label, worst ? " through" : "");
+  return fmt::format("{} ({} {} it alone; {} {}{})", describe_demand(advice.request.demands[i]), obstacle.alone.size(),
+                     obstacle.alone.size() > 1 ? "fail" : "fails", way, nearest.configuration.label,
+                     worst ? " through" : "");
 }
 
 std::string list_settings_that_vary(const std::set<std::string>& values) {
@@ -182,17 +182,15 @@ std::string format_cost(double value, const CostKind& cost, const records::GlRec
   return fmt::format("{} us estimated on {}", records::format_number(value), cost.gpu);
 }
 
-std::string format_limit(double value) {
+std::string format_limit(double value, double most) {
   if (std::nearbyint(value) == value) return fmt::format("{:.0f}", value);
-  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
-  std::string text = fmt::format("{:.3g}", value);
-  for (int steps = 1; std::stod(text) < value; ++steps) text = fmt::format("{:.3g}", value + steps * unit);
-  return text;
-}
-
-std::string format_kept(double value, double most) {
-  std::string text = records::format_number(value);
-  for (int digits = 4; std::stod(text) > most && digits <= 17; ++digits) text = fmt::format("{:.{}g}", value, digits);
+  std::string text;
+  for (int digits = 3; digits <= 17; ++digits) {
+    const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) + 1.0 - digits);
+    text = fmt::format("{:.{}g}", value, digits);
+    for (int steps = 1; std::stod(text) < value; ++steps) text = fmt::format("{:.{}g}", value + steps * unit, digits);
+    if (std::stod(text) <= most) return text;
+  }
   return text;
 }
 
@@ -241,7 +239,7 @@ std::string describe_failure(const Advice& advice) {
     return fmt::format("none of {} configurations can be judged: {}", total, fmt::join(count_unjudged(advice), "; "));
   std::vector<std::string> obstacles;
   for (std::size_t i = 0; i < advice.obstacles.size(); ++i)
-    if (advice.obstacles[i].alone > 0) obstacles.push_back(describe_obstacle(advice, i));
+    if (!advice.obstacles[i].alone.empty()) obstacles.push_back(describe_obstacle(advice, i));
   return fmt::format("none of {} configurations keeps the limits; {}", total,
                      obstacles.empty() ? "no single one is in the way: " + describe_closest(advice)
                                        : fmt::format("in the way: {}", fmt::join(obstacles, ", ")));

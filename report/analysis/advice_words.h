@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,11 +11,9 @@ namespace shadowbench::analysis {
 /// Writes a cost for people, with its unit: "4.39 ms (CPU)", "1.09 × none", "4194304 bytes", "4 fetches".
 std::string format_cost(double value, const CostKind& cost, const records::GlRecord& gl);
 
-/// Writes a number that is no smaller than the value, with three significant digits: as a limit it lets the value pass.
-std::string format_limit(double value);
-
-/// Writes a value that keeps a limit, with as many digits, three or more, as show that it does.
-std::string format_kept(double value, double most);
+/// Writes a number that is no smaller than the value, with three significant digits or, where it would be beyond
+/// `most`, as many as keep it: as a limit it lets the value pass, and as a value it shows that it keeps one.
+std::string format_limit(double value, double most = std::numeric_limits<double>::infinity());
 
 /// Says behind a cost what it is paid for: " a frame, moving light"; empty where that is not time.
 std::string describe_frame(const AdviceRequest& request);

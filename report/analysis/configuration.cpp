@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "filters/base/split_list.h"
-#include "report/analysis/summary.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
 #include "report/records/json_values.h"

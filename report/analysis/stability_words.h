@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "report/analysis/cell_group.h"
-#include "report/analysis/summary.h"
 
 namespace shadowbench::analysis {
 

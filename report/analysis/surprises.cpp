@@ -9,10 +9,8 @@
 #include <string_view>
 
 #include "reference/metrics/metric_table.h"
-#include "report/analysis/accuracy.h"
 #include "report/analysis/advice.h"
 #include "report/analysis/cell_group.h"
-#include "report/analysis/summary.h"
 #include "report/records/absence.h"
 #include "report/records/error_parts.h"
 #include "report/records/format.h"

@@ -8,7 +8,6 @@
 
 #include "filters/kernel_width.h"
 #include "report/analysis/cell_group.h"
-#include "report/analysis/summary.h"
 #include "report/files/file_name.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"

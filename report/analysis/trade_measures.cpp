@@ -6,11 +6,10 @@
 #include <cmath>
 #include <set>
 
-#include "report/analysis/accuracy.h"
+#include "report/analysis/cell_group.h"
 #include "report/analysis/configuration.h"
 #include "report/analysis/limits.h"
 #include "report/analysis/machines/machine_kinds.h"
-#include "report/analysis/summary.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
 

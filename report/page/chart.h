@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,20 @@ enum class LineStyle {
 
 /// The mark at a point.
 enum class Mark { kNone, kCircle, kSquare, kTriangle, kDiamond, kTriangleDown, kCross };
+
+/// The colour of lines that belong to no filter.
+inline constexpr const char* kInk = "#1c1f24";
+
+/// How a filter is drawn in charts.
+struct ChartStyle {
+  const char* color;  ///< "#rrggbb", on white
+  Mark mark;
+};
+
+/// The style of the filter at a place in list_filters(): colours that people of every colour vision tell apart,
+/// and marks that change with them, so that 35 filters have styles of their own. Source of the colours: Okabe and Ito
+/// 2008, Color Universal Design; without their yellow, which is faint on white.
+ChartStyle style_of(std::size_t filter);
 
 /// A point with its intervals, and what is said of it.
 struct ChartPoint {

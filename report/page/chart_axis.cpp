@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/analysis/summary.h"
 #include "report/analysis/trade_measures.h"
 
 namespace shadowbench::page {

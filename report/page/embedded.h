@@ -7,10 +7,10 @@ namespace shadowbench::page {
 /// The style sheet of every page: report/page/page.css and viewer.css.
 std::string_view page_style();
 
-/// The scripts that fill the mounts of a run's page: values.js, viewer.js, table.js and answer.js.
+/// The scripts that fill the mounts of a run's page, from base.js to start.js, as one.
 std::string_view run_script();
 
-/// The script that draws the charts of a page: report/page/charts.js.
+/// The scripts that draw the charts of a page: base.js, chart_drawing.js and charts.js, as one.
 std::string_view chart_script();
 
 }  // namespace shadowbench::page

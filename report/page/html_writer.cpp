@@ -80,7 +80,10 @@ std::string html_data(std::string_view id, std::string_view line) {
   return html.append("</script>\n");
 }
 
-std::string html_script(std::string_view script) { return fmt::format("<script>\n{}</script>\n", script); }
+/// What several files of a script declare is theirs alone.
+std::string html_script(std::string_view script) {
+  return fmt::format("<script>\n(() => {{\n\"use strict\";\n{}}})();\n</script>\n", script);
+}
 
 /// Packs the charts of a page for charts.js. Texts that many points share are kept once, and named by their place. Each
 /// chart is written once it is packed: as JSON values, the charts of a large run take ten times the memory.

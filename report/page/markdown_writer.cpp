@@ -11,12 +11,6 @@
 namespace shadowbench::page {
 namespace {
 
-/// Counts characters as a terminal shows them: bytes of UTF-8 that begin one.
-std::size_t count_shown(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
-}
-
 std::string write_link(const std::string& path, const std::string& text) {
   return fmt::format("[{}]({})", escape_markdown(text), files::encode_url_path(path));
 }
@@ -118,6 +112,11 @@ std::string escape_markdown(std::string_view text) {
 bool is_number_like(std::string_view field) {
   if (!field.empty() && (field[0] == '-' || field[0] == '+')) field.remove_prefix(1);
   return !field.empty() && std::isdigit(static_cast<unsigned char>(field[0]));
+}
+
+std::size_t count_shown(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
 }
 
 std::string write_markdown_table(const records::TextTable& table) {

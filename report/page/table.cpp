@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 
 #include "report/page/blocks.h"
 #include "report/records/format.h"
@@ -44,6 +45,13 @@ void show_most_telling(Chart& chart, std::vector<std::pair<double, std::string>>
       series.hidden = series.hidden || series.title == weights_and_titles[i].second;
   if (weights_and_titles.size() > kMostShown)
     chart.notes.emplace_back("pale in the key: hidden; click a name to show or hide its curve");
+}
+
+ChartStyle style_of(std::size_t filter) {
+  static constexpr std::array kColors = {"#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
+  static constexpr std::array kMarks = {Mark::kCircle, Mark::kSquare, Mark::kTriangle, Mark::kDiamond,
+                                        Mark::kTriangleDown};
+  return {kColors[filter % kColors.size()], kMarks[filter % kMarks.size()]};
 }
 
 }  // namespace shadowbench::page

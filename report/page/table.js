@@ -1,161 +1,188 @@
-"use strict";
 // The table of a run: configurations by scenes, of the measure that the reader chooses.
-(() => {
-  const holder = document.querySelector(".numbers"), shadowbench = window.shadowbench, { element, format, link } = shadowbench;
-  if (!holder || !shadowbench.data) return;
-  const { run } = shadowbench.data;
-  const kHeat = 5, kMany = 25;
+const startTable = (holder) => {
+  const kShades = 5;
+  const kMany = 25;
   const kWorst = { more: "the least value", zero: "the value farthest from 0" };
-  const cells = run.configurations.map(() => []);
-  for (const cell of run.cells) cells[cell.configuration][cell.place] = cell;
-  shadowbench.light = "moving";  // of which the answer and the table say the cost
+  const kMarks = {
+    best: [" ★", "the best of its class of width and settings"],
+    tied: [" ≈", "cannot be told from the best of its class and settings"],
+  };
   const state = { measure: "error.rmse", sort: "cost", down: false, text: "", wide: "" };
-  const measures = run.measures.filter((measure) => run.cells.some((cell) => cell.values_of[measure.id] !== null));
-  if (measures.length > 0 && !measures.some((measure) => measure.id === state.measure)) state.measure = measures[0].id;
-  const measureOf = () => measures.find((measure) => measure.id === state.measure);
-  const valueOf = (index, place) => (cells[index][place] ? cells[index][place].values_of[state.measure] ?? null : null);
+  const measures = run.measures.filter(({ id }) => run.cells.some((cell) => cell.values_of[id] !== null));
+  if (measures.length > 0 && !measures.some(({ id }) => id === state.measure)) state.measure = measures[0].id;
+  const kNone = { title: "nothing was measured", text: "", unit: "" };
+  const measureOf = () => measures.find(({ id }) => id === state.measure) ?? kNone;
+  const valueOf = (index, place) => cellAt(index, place)?.values_of[state.measure] ?? null;
   // The smaller, the better; of a measure that is neither good nor bad, the value itself.
-  const rankOf = (value) => ({ more: -value, zero: Math.abs(value) })[measureOf()?.better] ?? value;
-  const worstOf = (index) => run.places.reduce((worst, _, place) => {
-    const value = valueOf(index, place);
-    return worst === null || (value !== null && rankOf(value) > rankOf(worst)) ? value : worst;
-  }, null);
+  const rankOf = (value) => ({ more: -value, zero: Math.abs(value) })[measureOf().better] ?? value;
+  const worstOf = (index) => {
+    const values = run.places.map((_, place) => valueOf(index, place)).filter((value) => value !== null);
+    return values.length > 0 ? values.reduce((worst, value) => (rankOf(value) > rankOf(worst) ? value : worst)) : null;
+  };
   const timeOf = () => `time_ms.${shadowbench.light}`;
-  const costOf = (index) => run.configurations[index][timeOf()]?.mean ?? null;
 
-  const columns = () => {
-    const unit = measureOf()?.unit;
+  // Texts stand at the left, and numbers, which have a unit, at the right.
+  const listColumns = () => {
+    const { title, text, unit, better } = measureOf();
+    const of = (name) => (index) => run.configurations[index][name];
+    const filter = "a filter, with the parameters and settings that tell it from the others";
+    const width = "class of the kernel's standard deviation: errors are compared within one class";
+    const cost = run.measures.find(({ id }) => id === timeOf()).text;
+    const places = run.places.map((place, at) => ({
+      id: `place${at}`,
+      title: place.title,
+      text: `${title} on ${place.title}: ${text}`,
+      of: (index) => valueOf(index, at),
+      unit,
+      place: at,
+    }));
     return [
-      { id: "filter", title: "filter", text: "a filter, with the parameters and settings that tell it from the others", of: (i) => run.configurations[i].label, name: true },
-      { id: "class", title: "width", text: "class of the kernel's standard deviation: errors are compared within one class", of: (i) => run.configurations[i].class || "–", key: (i) => run.configurations[i].sigma },
-      { id: "cost", title: `${shadowbench.light} light, ${run.unit}`, text: run.measures.find(({ id }) => id === timeOf()).text, of: costOf, unit: "" },
-      ...run.places.map((place, at) => ({ id: `place${at}`, title: place.title, text: `${measureOf()?.title} on ${place.title}: ${measureOf()?.text}`, of: (i) => valueOf(i, at), unit, place: at })),
-      { id: "worst", title: "worst", text: `${kWorst[measureOf()?.better] ?? "the largest value"} over the scenes`, of: worstOf, unit },
+      { id: "filter", title: "filter", text: filter, of: of("label") },
+      { id: "class", title: "width", text: width, of: (index) => of("class")(index) || "–", key: of("sigma") },
+      { id: "cost", title: `${shadowbench.light} light, ${run.unit}`, text: cost, of: of(timeOf()), unit: "" },
+      ...places,
+      {
+        id: "worst",
+        title: "worst",
+        text: `${kWorst[better] ?? "the largest value"} over the scenes`,
+        of: worstOf,
+        unit,
+      },
     ];
+  };
+  const areTied = (cell, best, gap) => {
+    const [own, least] = [cell, best].map(({ intervals }) => intervals[state.measure]);
+    if (own && least) return own[0] <= least[1];
+    return state.measure === "error.rmse" && gap <= Math.max(cell.reach, best.reach);
   };
   // In a column: the best of each class of width under the same settings, if there are two to compare, and what cannot
   // be told from it, whether or not their rows are shown.
-  const findMarks = (column) => {
-    const marks = new Map(), groups = new Map();
-    if (column.place === undefined || measureOf()?.better === "neither") return marks;
+  const findMarks = ({ place, of }) => {
+    const marks = new Map();
+    const groups = new Map();
+    if (place === undefined || measureOf().better === "neither") return marks;
     for (const [i, { class: width, surroundings, teaching }] of run.configurations.entries()) {
-      if (teaching || !width || cells[i][column.place]?.status !== "ok" || column.of(i) === null) continue;
+      if (teaching || !width || cellAt(i, place)?.status !== "ok" || of(i) === null) continue;
       const group = `${width} ${surroundings}`;
       groups.set(group, [...(groups.get(group) ?? []), i]);
     }
+    const rank = (i) => rankOf(of(i));
     for (const group of groups.values()) {
       if (group.length < 2) continue;
-      const rank = (i) => rankOf(column.of(i)), best = group.reduce((least, i) => (rank(i) < rank(least) ? i : least));
+      const best = group.reduce((least, i) => (rank(i) < rank(least) ? i : least));
       for (const i of group) {
-        if (rank(i) === rank(best)) marks.set(i, "best");
-        else if (areTied(cells[i][column.place], cells[best][column.place], rank(i) - rank(best))) marks.set(i, "tied");
+        if (rank(i) === rank(best)) marks.set(i, kMarks.best);
+        else if (areTied(cellAt(i, place), cellAt(best, place), rank(i) - rank(best))) marks.set(i, kMarks.tied);
       }
     }
     return marks;
   };
-  const areTied = (cell, best, gap) => {
-    const [own, least] = [cell, best].map(({ intervals }) => intervals[state.measure]);
-    return own && least ? own[0] <= least[1] : state.measure === "error.rmse" && gap <= Math.max(cell.reach, best.reach);
-  };
-  const listRows = () => {
-    const wanted = state.text.toLowerCase();
-    const rows = run.configurations.map((_, i) => i).filter((i) => (!state.wide || run.configurations[i].class === state.wide) &&
-      `${run.configurations[i].label} ${run.configurations[i].params}`.toLowerCase().includes(wanted));
-    const column = columns().find((each) => each.id === state.sort) || columns()[0];
+  const listRows = (columns) => {
+    const isWanted = (i) => {
+      const { label, params, class: width } = run.configurations[i];
+      const isFound = `${label} ${params}`.toLowerCase().includes(state.text.toLowerCase());
+      return isFound && (!state.wide || width === state.wide);
+    };
+    const { key, of } = columns.find(({ id }) => id === state.sort) ?? columns[0];
     const order = (a, b) => {
-      const [x, y] = [a, b].map(column.key ?? column.of);
+      const [x, y] = [a, b].map(key ?? of);
       if (x === null || y === null) return (x === null) - (y === null);
       return (state.down ? -1 : 1) * (typeof x === "string" ? x.localeCompare(y) : x - y);
     };
-    return rows.sort(order);
+    return [...run.configurations.keys()].filter(isWanted).sort(order);
   };
 
+  holder.replaceChildren();
   const controls = element(holder, "div", { className: "controls" });
-  const scroll = element(holder, "div", { className: "scroll", tabIndex: 0, role: "region", "aria-label": "All numbers" });
+  const region = { className: "scroll", tabIndex: 0, role: "region", "aria-label": "All numbers" };
+  const scroll = element(holder, "div", region);
   const note = element(holder, "p", { className: "note" });
   let key = "";
-  const addField = (text, name, properties) => {
-    const label = element(controls, "label", {}, text);
-    return element(label, name, properties);
-  };
-  const chooser = addField("Show ", "select", { name: "measure" });
-  for (const measure of measures) element(chooser, "option", { value: measure.id }, measure.title);
-  chooser.value = state.measure;
-  const search = addField("Filter ", "input", { type: "search", name: "filter", placeholder: "name or parameter" });
-  const wide = addField("Width ", "select", { name: "width" });
-  for (const [value, title] of [["", "any"], ...run.classes.map((name) => [name, name])]) element(wide, "option", { value }, title);
+  const shown = measures.map(({ id, title }) => [id, title]);
+  const chooser = addSelect(controls, "Show", shown, { name: "measure" }, (measure) => change({ measure }));
+  const field = { type: "search", name: "filter", placeholder: "name or parameter" };
+  const search = element(element(controls, "label", {}, "Filter "), "input", field);
+  const classes = [["", "any"], ...run.classes.map((name) => [name, name])];
+  const wide = addSelect(controls, "Width", classes, { name: "width" }, (value) => change({ wide: value }));
 
-  const addHead = (row, column) => {
-    const sorted = state.sort === column.id;
-    const head = element(row, "th", { scope: "col", className: column.unit === undefined ? "s" : "n", "aria-sort": sorted ? (state.down ? "descending" : "ascending") : "none" });
-    const button = element(head, "button", { type: "button", title: column.text }, column.title + (sorted ? (state.down ? " ▼" : " ▲") : ""));
-    button.addEventListener("focus", () => { note.textContent = `${column.title}: ${column.text}.`; });
-    button.addEventListener("blur", () => { note.textContent = key; });
-    button.addEventListener("click", () => {
-      change({ down: sorted && !state.down, sort: column.id });
-      scroll.querySelectorAll("th button")[columns().findIndex((each) => each.id === column.id)].focus();
-    });
+  const addHead = (row, { id, title, text, unit }, at) => {
+    const sorted = state.sort === id;
+    const [direction, arrow] = state.down ? ["descending", " ▼"] : ["ascending", " ▲"];
+    const className = unit === undefined ? "s" : "n";
+    const head = element(row, "th", { scope: "col", className, "aria-sort": sorted ? direction : "none" });
+    const sort = () => {
+      change({ down: sorted && !state.down, sort: id });
+      scroll.querySelectorAll("th button")[at].focus();
+    };
+    const button = addButton(head, title + (sorted ? arrow : ""), sort, text);
+    button.addEventListener("focus", () => (note.textContent = `${title}: ${text}.`));
+    button.addEventListener("blur", () => (note.textContent = key));
   };
   const addCell = (row, column, index, heat, mark) => {
-    const value = column.of(index), cell = column.place === undefined ? null : cells[index][column.place];
-    const made = element(row, column.name ? "th" : "td", { className: column.unit === undefined ? "s" : "n" });
-    if (column.name) made.scope = "row";
+    const { id, of, unit, place } = column;
+    const made = element(row, id === "filter" ? "th" : "td", { className: unit === undefined ? "s" : "n" });
     if (heat !== null) made.classList.add(`heat${heat}`);
-    if (column.name) return element(made, "bdi", {}, value);
-    const text = typeof value === "string" ? value : format(value, column.unit);
-    const shown = cell && shadowbench.openViewer && cell.picture
-      ? element(made, "button", { type: "button", title: `${run.configurations[index].label} on ${run.places[column.place].title}: look closer` }, text)
-      : element(made, "span", {}, text);
-    if (shown.type === "button") shown.addEventListener("click", () => shadowbench.openViewer({ place: column.place, left: -1, right: index }));
-    if (mark) element(made, "span", { className: "mark", title: mark === "best" ? "the best of its class of width and settings" : "cannot be told from the best of its class and settings" }, mark === "best" ? " ★" : " ≈");
+    if (id === "filter") {
+      made.scope = "row";
+      return element(made, "bdi", {}, of(index));
+    }
+    const cell = place === undefined ? null : cellAt(index, place);
+    const text = unit === undefined ? of(index) : format(of(index), unit);
+    const title = `${run.configurations[index].label} on ${run.places[place]?.title}: look closer`;
+    const open = () => shadowbench.openViewer({ place, left: kTruth, right: index });
+    if (cell?.picture) addButton(made, text, open, title);
+    else element(made, "span", {}, text);
+    if (mark) element(made, "span", { className: "mark", title: mark[1] }, mark[0]);
     if (cell && cell.status !== "ok") element(made, "span", { className: "mark", title: cell.status }, " !");
+  };
+  // Shades of a column, from its best to its worst value.
+  const makeShades = (rows, { id, of, unit }) => {
+    if (unit === undefined || id === "cost") return () => null;
+    const ranks = rows.map(of).filter(Number.isFinite).map(rankOf);
+    const least = Math.min(...ranks);
+    const most = Math.max(...ranks);
+    const shade = (value) => Math.round(((rankOf(value) - least) / (most - least)) * (kShades - 1));
+    return (value) => (value === null || !(most > least) ? null : shade(value));
   };
   const draw = () => {
     scroll.replaceChildren();
-    const table = element(scroll, "table"), rows = listRows(), all = columns();
-    element(table, "caption", {}, `${measureOf()?.title ?? "nothing was measured"}: ${measureOf()?.text ?? ""}`);
-    addHeadRow(table, all);
-    const body = element(table, "tbody"), marks = all.map(findMarks);
-    const scales = all.map((column) => (column.unit === undefined || column.id === "cost" ? null : makeScale(rows, column)));
-    rows.forEach((index, at) => {
+    const table = element(scroll, "table");
+    const columns = listColumns();
+    const rows = listRows(columns);
+    element(table, "caption", {}, `${measureOf().title}: ${measureOf().text}`);
+    const head = element(element(table, "thead"), "tr");
+    columns.forEach((column, at) => addHead(head, column, at));
+    const body = element(table, "tbody");
+    const marks = columns.map(findMarks);
+    const shades = columns.map((column) => makeShades(rows, column));
+    for (const [at, index] of rows.entries()) {
       const row = element(body, "tr", { className: at >= kMany ? "beyond" : "" });
-      all.forEach((column, i) => addCell(row, column, index, scales[i] ? scales[i](column.of(index)) : null, marks[i].get(index)));
-    });
+      columns.forEach((column, i) => addCell(row, column, index, shades[i](column.of(index)), marks[i].get(index)));
+    }
     const many = rows.length > kMany ? ` Print has the first ${kMany} of ${rows.length} rows.` : "";
-    key = `${rows.length} of ${run.configurations.length} configurations. ★ best of its class of width and settings, ≈ cannot be told from it, ! suspect or not finished.${many}`;
+    const marked = "★ best of its class of width and settings, ≈ cannot be told from it, ! suspect or not finished.";
+    key = `${rows.length} of ${run.configurations.length} configurations. ${marked}${many}`;
     note.textContent = key;
-  };
-  const addHeadRow = (table, all) => {
-    const row = element(element(table, "thead"), "tr");
-    all.forEach((column) => addHead(row, column));
-  };
-  // Shades of a column, from its best to its worst value.
-  const makeScale = (rows, column) => {
-    const values = rows.map(column.of).filter((value) => value !== null && Number.isFinite(value)).map(rankOf);
-    const least = Math.min(...values), most = Math.max(...values);
-    return (value) => (value === null || !(most > least) ? null : Math.round(((rankOf(value) - least) / (most - least)) * (kHeat - 1)));
   };
   const change = (changes) => {
     Object.assign(state, changes);
-    link.write("table", [state.measure, state.sort, state.down ? "down" : "up", state.wide, state.text]);
+    writeLink("table", [state.measure, state.sort, state.down ? "down" : "up", state.wide, state.text]);
     draw();
   };
   const openLink = () => {
-    const [measure, sort, direction, width = "", text = ""] = link.read("table") ?? [];
+    const [measure, sort, direction, width = "", text = ""] = readLink("table") ?? [];
     if (measure === undefined) return;
     Object.assign(state, { down: direction === "down", text });
     if (measures.some(({ id }) => id === measure)) state.measure = measure;
-    if (columns().some(({ id }) => id === sort)) state.sort = sort;
-    if (run.classes.includes(width) || width === "") state.wide = width;
+    if (listColumns().some(({ id }) => id === sort)) state.sort = sort;
+    if (width === "" || run.classes.includes(width)) state.wide = width;
     [chooser.value, search.value, wide.value] = [state.measure, state.text, state.wide];
     draw();
   };
-  chooser.addEventListener("change", () => change({ measure: chooser.value }));
+  chooser.value = state.measure;
   search.addEventListener("input", () => change({ text: search.value }));
-  wide.addEventListener("change", () => change({ wide: wide.value }));
   window.addEventListener("hashchange", openLink);
-  [...holder.children].forEach((child) => { if (![controls, scroll, note].includes(child)) child.remove(); });
   shadowbench.drawTable = draw;
   draw();
   openLink();
-})();
+};

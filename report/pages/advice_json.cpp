@@ -2,7 +2,6 @@
 #include <optional>
 
 #include "report/analysis/advice_words.h"
-#include "report/analysis/summary.h"
 #include "report/pages/advice_text.h"
 #include "report/records/absence.h"
 #include "report/records/cell_key.h"
@@ -162,14 +161,17 @@ Json unjudged_json(const analysis::Advice& advice) {
 
 Json relaxed_json(const analysis::Advice& advice) {
   Json list = Json::array();
-  for (const analysis::Relaxation& step : advice.relaxations) {
-    const analysis::Candidate& candidate = advice.failing[step.candidate];
-    Json json = verdict_json(advice.request.demands[step.demand], candidate.verdicts[step.demand]);
-    json["label"] = candidate.configuration.label;
-    json["cost"] = candidate.cost.mean;
-    json["saves"] = step.saving.difference;
-    json["basis"] = name_of(step.saving.basis);
-    list.push_back(json);
+  for (std::size_t i = 0; i < advice.obstacles.size(); ++i) {
+    for (const std::size_t bought : advice.obstacles[i].buys) {
+      const analysis::Candidate& candidate = advice.failing[bought];
+      const auto saving = analysis::compare_costs(candidate, advice.keeping.front(), advice.request.cheapest);
+      Json json = verdict_json(advice.request.demands[i], candidate.verdicts[i]);
+      json["label"] = candidate.configuration.label;
+      json["cost"] = candidate.cost.mean;
+      json["saves"] = saving.difference;
+      json["basis"] = name_of(saving.basis);
+      list.push_back(json);
+    }
   }
   return list;
 }
@@ -178,12 +180,12 @@ Json obstacle_json(const analysis::Advice& advice, std::size_t i) {
   const analysis::Obstacle& obstacle = advice.obstacles[i];
   Json json = demand_json(advice.request.demands[i]);
   json["fail"] = obstacle.failing;
-  json["fail_alone"] = obstacle.alone;
+  json["fail_alone"] = obstacle.alone.size();
   json["no_value"] = obstacle.unknown;
   std::optional<std::string> label;
   std::optional<double> worst;
-  if (obstacle.nearest) {
-    const analysis::Candidate& nearest = advice.failing[*obstacle.nearest];
+  if (!obstacle.alone.empty()) {
+    const analysis::Candidate& nearest = advice.failing[obstacle.alone.front()];
     label = nearest.configuration.label;
     worst = nearest.verdicts[i].worst;
   }

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "report/analysis/accuracy.h"
 #include "report/analysis/advice_words.h"
-#include "report/analysis/summary.h"
+#include "report/analysis/cell_group.h"
+#include "report/page/markdown.h"
 #include "report/records/format.h"
 
 namespace shadowbench::pages {
@@ -17,23 +17,17 @@ constexpr std::size_t kColumns = 100;
 
 using Row = std::vector<std::string>;
 
-// Columns on a terminal: every code point of ours takes one.
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      text, [](char c) { return (c & 0xc0) != 0x80; }));
-}
-
 std::string align(const std::vector<Row>& rows) {
   std::vector<std::size_t> widths;
   for (const Row& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], page::count_shown(row[i]));
   }
   std::string text;
   for (const Row& row : rows) {
     std::string line = " ";
     for (std::size_t i = 0; i < row.size(); ++i)
-      line += fmt::format(" {}{} ", row[i], std::string(widths[i] - width_of(row[i]), ' '));
+      line += fmt::format(" {}{} ", row[i], std::string(widths[i] - page::count_shown(row[i]), ' '));
     line.resize(line.find_last_not_of(' ') + 1);
     text += line + "\n";
   }
@@ -47,7 +41,7 @@ std::string wrap(const std::string& text) {
   while (begin < text.size()) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
     const std::string word = text.substr(begin, end - begin);
-    if (!line.empty() && width_of(line) + 1 + width_of(word) > kColumns) {
+    if (!line.empty() && page::count_shown(line) + 1 + page::count_shown(word) > kColumns) {
       result += line + "\n";
       line.assign(1, ' ');
     }
@@ -80,7 +74,7 @@ Row describe_limit(const analysis::Demand& demand, const analysis::Verdict& verd
                    const analysis::Advice& advice) {
   if (!verdict.worst) return {analysis::describe_demand(demand), "claimed"};
   const bool is_time = demand.spec == &analysis::cost_spec(analysis::CostKind::kTime);
-  const std::string worst = analysis::format_kept(*verdict.worst, demand.most);
+  const std::string worst = analysis::format_limit(*verdict.worst, demand.most);
   return {analysis::describe_demand(demand), is_time ? fmt::format("{} {}", worst, records::time_unit(run.gl)) : worst,
           place_name(*verdict.where, advice), remark(demand, verdict, advice.request.light)};
 }
@@ -127,30 +121,28 @@ std::string describe_second(const records::RunRecord& run, const analysis::Advic
                           analysis::describe_runner_up(advice, run.gl)));
 }
 
-Row describe_relaxation(const records::RunRecord& run, const analysis::Advice& advice,
-                        const analysis::Relaxation& step) {
-  const analysis::Demand& demand = advice.request.demands[step.demand];
-  const analysis::Candidate& candidate = advice.failing[step.candidate];
-  const auto worst = candidate.verdicts[step.demand].worst;
+Row describe_relaxation(const records::RunRecord& run, const analysis::Advice& advice, std::size_t demand,
+                        const analysis::Candidate& candidate) {
+  const std::string limit = analysis::describe_demand(advice.request.demands[demand]);
+  const auto worst = candidate.verdicts[demand].worst;
   const analysis::CostKind kind = advice.request.cheapest;
-  const double of = candidate.cost.mean + step.saving.difference;
-  const double share = of > 0.0 ? step.saving.difference / of : 0.0;
-  return {
-      worst ? fmt::format("{} -> {}", analysis::describe_demand(demand), analysis::format_limit(*worst))
-            : "without " + analysis::describe_demand(demand),
-      fmt::format("saves {} ({:.0f} %)", analysis::format_cost(step.saving.difference, kind, run.gl), 100.0 * share),
-      candidate.configuration.label};
+  const double of = advice.keeping.front().cost.mean;
+  const double saved = analysis::compare_costs(candidate, advice.keeping.front(), kind).difference;
+  return {worst ? fmt::format("{} -> {}", limit, analysis::format_limit(*worst)) : "without " + limit,
+          fmt::format("saves {} ({:.0f} %)", analysis::format_cost(saved, kind, run.gl),
+                      of > 0.0 ? 100.0 * saved / of : 0.0),
+          candidate.configuration.label};
 }
 
 std::string list_relaxations(const records::RunRecord& run, const analysis::Advice& advice) {
-  if (advice.request.demands.empty()) return "";
-  if (advice.relaxations.empty()) return "Relaxing one limit alone buys nothing.\n";
+  const auto buys_nothing = [](const analysis::Obstacle& each) { return each.buys.empty(); };
+  if (advice.obstacles.empty()) return "";
+  if (std::ranges::all_of(advice.obstacles, buys_nothing)) return "Relaxing one limit alone buys nothing.\n";
   std::vector<Row> rows;
-  for (std::size_t i = 0; i < advice.request.demands.size(); ++i) {
-    const std::size_t before = rows.size();
-    for (const analysis::Relaxation& step : advice.relaxations)
-      if (step.demand == i) rows.push_back(describe_relaxation(run, advice, step));
-    if (rows.size() == before)
+  for (std::size_t i = 0; i < advice.obstacles.size(); ++i) {
+    for (const std::size_t bought : advice.obstacles[i].buys)
+      rows.push_back(describe_relaxation(run, advice, i, advice.failing[bought]));
+    if (buys_nothing(advice.obstacles[i]))
       rows.push_back({analysis::describe_demand(advice.request.demands[i]), "relaxing it alone buys nothing"});
   }
   return fmt::format("A relaxed limit buys:\n{}", align(rows));
@@ -161,9 +153,9 @@ std::string list_obstacles(const analysis::Advice& advice) {
   for (std::size_t i = 0; i < advice.obstacles.size(); ++i) {
     const analysis::Obstacle& obstacle = advice.obstacles[i];
     Row row = {analysis::describe_demand(advice.request.demands[i]), fmt::format("{}", obstacle.failing),
-               fmt::format("{}", obstacle.alone), fmt::format("{}", obstacle.unknown)};
-    if (obstacle.nearest) {
-      const analysis::Candidate& nearest = advice.failing[*obstacle.nearest];
+               fmt::format("{}", obstacle.alone.size()), fmt::format("{}", obstacle.unknown)};
+    if (!obstacle.alone.empty()) {
+      const analysis::Candidate& nearest = advice.failing[obstacle.alone.front()];
       const auto worst = nearest.verdicts[i].worst;
       row.push_back((worst ? analysis::format_limit(*worst) : "none") + ": " + nearest.configuration.label);
     }

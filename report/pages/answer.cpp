@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include "report/analysis/advice_words.h"
-#include "report/analysis/summary.h"
 #include "report/records/format.h"
 
 namespace shadowbench::pages {
@@ -15,19 +14,9 @@ namespace {
 constexpr const char* kRmse = "error.rmse";
 constexpr double kAllowance = 1.25;  // of the least RMSE
 
-/// The largest RMSE of a configuration; nothing where a cell has none or is not ok.
-std::optional<double> find_worst(const analysis::Configuration& configuration) {
-  double worst = 0.0;
-  for (const records::CellRecord* cell : configuration.cells) {
-    if (!cell->error.rmse || cell->status != records::CellStatus::kOk) return std::nullopt;
-    worst = std::max(worst, *cell->error.rmse);
-  }
-  return worst;
-}
-
-double round_up(double value) {
-  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
-  return std::stod(fmt::format("{:.2g}", std::ceil(value / unit) * unit));
+bool can_advise(const std::vector<records::CellRecord>& cells) {
+  return std::ranges::any_of(
+      cells, [](const records::CellRecord& cell) { return !cell.teaching.value_or(false); });
 }
 
 std::string describe_limits(const analysis::Advice& advice, const analysis::Candidate& best) {
@@ -35,7 +24,7 @@ std::string describe_limits(const analysis::Advice& advice, const analysis::Cand
   for (std::size_t i = 0; i < advice.request.demands.size(); ++i) {
     const analysis::Verdict& verdict = best.verdicts[i];
     text += fmt::format("; {} at worst, on {}, where {} is the limit",
-                        analysis::format_kept(*verdict.worst, advice.request.demands[i].most),
+                        analysis::format_limit(*verdict.worst, advice.request.demands[i].most),
                         analysis::describe_place(analysis::place_of(*verdict.where), advice.places),
                         records::format_number(advice.request.demands[i].most));
   }
@@ -60,26 +49,22 @@ page::Sentences describe_choice(const records::RunRecord& run, const analysis::A
 }  // namespace
 
 analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& cells) {
-  std::vector<const records::CellRecord*> all;
-  for (const records::CellRecord& cell : cells)
-    if (!cell.teaching.value_or(false)) all.push_back(&cell);
-  std::optional<double> least;
-  const std::size_t places = analysis::list_places(all).size();
-  for (const analysis::Configuration& configuration : analysis::list_configurations(all))
-    if (const auto worst = find_worst(configuration); worst && configuration.cells.size() == places)
-      least = std::min(least.value_or(*worst), *worst);
   analysis::AdviceRequest request;
+  if (!can_advise(cells)) return request;
   const auto spec = std::ranges::find(analysis::limit_table(), kRmse, &analysis::LimitSpec::field);
-  if (least) request.demands.push_back({&*spec, *least > 0.0 ? round_up(kAllowance * *least) : 0.0, {}});
+  request.demands.push_back({&*spec, std::numeric_limits<double>::infinity(), {}});
+  const std::vector<analysis::Candidate> judged = analysis::advise(cells, request).keeping;
+  if (judged.empty()) return {};
+  const auto worst_of = [](const analysis::Candidate& each) { return *each.verdicts.front().worst; };
+  const double least = worst_of(*std::ranges::min_element(judged, {}, worst_of));
+  request.demands.front().most = std::stod(analysis::format_limit(kAllowance * least));
   return request;
 }
 
 page::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                                   const analysis::AdviceRequest& request) {
   page::Section section{"answer", "Which filter?", {}};
-  const bool can_advise =
-      std::ranges::any_of(cells, [](const records::CellRecord& cell) { return !cell.teaching.value_or(false); });
-  if (!can_advise) {
+  if (!can_advise(cells)) {
     section.blocks = {page::Paragraph{
         cells.empty() ? "The run holds no cell." : "The run has filters for teaching alone, which are not advised."}};
     return section;

@@ -7,7 +7,6 @@
 #include <set>
 #include <tuple>
 
-#include "report/page/chart_style.h"
 #include "report/pages/write_page.h"
 #include "report/records/csv.h"
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/page/chart_style.h"
 #include "report/pages/write_page.h"
 #include "report/records/format.h"
 

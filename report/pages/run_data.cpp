@@ -4,17 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "filters/kernel_width.h"
 #include "reference/metrics/metric_table.h"
-#include "report/analysis/accuracy.h"
+#include "report/analysis/advice_words.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/machines/machine_kinds.h"
-#include "report/analysis/summary.h"
 #include "report/analysis/trade.h"
 #include "report/analysis/trade_measures.h"
 #include "report/files/file_name.h"
-#include "report/page/chart_style.h"
+#include "report/page/chart.h"
 #include "report/records/absence.h"
 #include "report/records/error_parts.h"
 #include "report/records/format.h"
@@ -23,6 +23,8 @@ namespace shadowbench::pages {
 namespace {
 
 using nlohmann::json;
+
+bool is_advised(const records::CellRecord& cell) { return !cell.teaching.value_or(false); }
 
 /// What a frame costs, by the names that the page's scripts have for it: milliseconds, or ratios to `none` where
 /// several kinds of machine measured the cells.
@@ -110,16 +112,6 @@ json list_intervals(const records::CellRecord& cell, const analysis::CostKind& f
   return intervals;
 }
 
-/// The fields of a limit that have nothing to be measured on.
-json list_nothing(const records::CellRecord& cell) {
-  json fields = json::array();
-  for (const analysis::LimitSpec& spec : analysis::limit_table())
-    if (spec.metric && !spec.metric->read(cell) &&
-        records::is_nothing_to_see(records::explain_absence(cell, spec.field)))
-      fields.push_back(spec.field);
-  return fields;
-}
-
 /// What most of a cell's error comes from, in words; empty where that cannot be said.
 std::string find_cause(const records::CellRecord& cell) {
   const auto shares = records::list_shares(cell);
@@ -137,7 +129,6 @@ json make_cell(const records::CellRecord& cell, std::size_t configuration, std::
           {"place", place},
           {"status", cell.status == records::CellStatus::kOk ? "ok" : records::describe_status(cell)},
           {"values_of", list_values(cell, gpus, frame)},
-          {"nothing", list_nothing(cell)},
           {"reach", analysis::find_rmse_reach(cell)},
           {"intervals", list_intervals(cell, frame)},
           {"cause", find_cause(cell)},
@@ -145,18 +136,88 @@ json make_cell(const records::CellRecord& cell, std::size_t configuration, std::
           {"values", path_of(cell.images.values)}};
 }
 
-/// What a frame takes over the places; null where a cell was not timed.
+constexpr std::pair<const char*, analysis::LightMotion> kLights[] = {{"moving", analysis::LightMotion::kMoving},
+                                                                     {"still", analysis::LightMotion::kStatic}};
+
+std::size_t find_index(const std::vector<analysis::Place>& places, const records::CellRecord& cell) {
+  return static_cast<std::size_t>(std::ranges::find(places, analysis::place_of(cell)) - places.begin());
+}
+
+/// The worst value, the number that as a limit lets it pass, its place, and those with nothing to see; or why there is
+/// none.
+json describe_worst(const analysis::Verdict& verdict, const std::vector<analysis::Place>& places) {
+  if (!verdict.absent.empty()) return verdict.absent;
+  json unseen = json::array();
+  for (const records::CellRecord* cell : verdict.nothing_to_see) unseen.push_back(find_index(places, *cell));
+  return {{"value", *verdict.worst},
+          {"limit", std::stod(analysis::format_limit(*verdict.worst))},
+          {"place", find_index(places, *verdict.where)},
+          {"unseen", std::move(unseen)}};
+}
+
+/// How a configuration stands to everything that may be limited, by the names of the measures.
+json list_worst(const analysis::Configuration& configuration, const std::vector<analysis::Place>& places,
+                const analysis::CostKind& frame) {
+  json worst = json::object();
+  for (const analysis::LimitSpec& spec : analysis::limit_table()) {
+    if (!spec.metric && frame == analysis::CostKind::kRatio) continue;
+    for (const auto& [name, light] : kLights) {
+      if (spec.metric && light == analysis::LightMotion::kStatic) continue;
+      worst[spec.metric ? spec.field : fmt::format("{}.{}", spec.field, name)] =
+          describe_worst(analysis::judge_limit(configuration, {&spec, 0.0, {}}, light, places), places);
+    }
+  }
+  return worst;
+}
+
+/// The ranks behind one whose costs cannot be told from its own, as pairs of the first and the one after the last.
+json list_ties(const analysis::Advice& advice, std::size_t rank) {
+  json ranges = json::array();
+  std::size_t end = 0;
+  for (std::size_t other = rank + 1; other < advice.keeping.size(); ++other) {
+    const auto gap = analysis::compare_costs(advice.keeping[rank], advice.keeping[other], advice.request.cheapest);
+    if (!gap.tied || gap.basis == analysis::Basis::kNone) continue;
+    if (end != other) ranges.push_back({other, other});
+    ranges.back()[1] = end = other + 1;
+  }
+  return ranges;
+}
+
+/// What advise() says without limits, by light and class of width: configurations in the order of their costs, with
+/// their ties, and why others are not judged.
+json list_advice(const std::vector<records::CellRecord>& cells, const json& classes,
+                 const std::vector<analysis::Configuration>& configurations) {
+  std::map<const records::CellRecord*, std::size_t> indices;
+  for (std::size_t i = 0; i < configurations.size(); ++i)
+    for (const records::CellRecord* cell : configurations[i].cells) indices[cell] = i;
+  const auto index_of = [&](const auto& each) { return indices.at(each.configuration.cells.front()); };
+  json all = json::object();
+  for (const auto& [name, light] : kLights) {
+    for (const std::string wide : classes) {
+      analysis::AdviceRequest request;
+      request.light = light;
+      request.width_class = wide;
+      const analysis::Advice advice = analysis::advise(cells, request);
+      json order = json::array(), unjudged = json::array();
+      for (std::size_t rank = 0; rank < advice.keeping.size(); ++rank)
+        order.push_back({{"index", index_of(advice.keeping[rank])}, {"tied", list_ties(advice, rank)}});
+      for (const analysis::Unjudged& each : advice.unjudged)
+        unjudged.push_back({{"index", index_of(each)}, {"gap", each.reason}});
+      all[name][wide] = {{"order", std::move(order)}, {"unjudged", std::move(unjudged)}};
+    }
+  }
+  return all;
+}
+
+/// The mean of what a frame takes over the places; null where a cell was not timed.
 json describe_cost(const analysis::Configuration& configuration, const analysis::CostKind& frame,
                    analysis::LightMotion light) {
   const auto cost = analysis::measure_cost(configuration.cells, frame, light);
-  if (!cost) return nullptr;
-  const auto list = [](const records::Interval& interval) { return json::array({interval.low, interval.high}); };
-  return {
-      {"mean", cost->mean}, {"ci95", cost->ci95 ? list(*cost->ci95) : json()}, {"quartiles", list(cost->quartiles)}};
+  return cost ? json(cost->mean) : json();
 }
 
 json make_configuration(const analysis::Configuration& configuration, const std::vector<std::string>& filters,
-                        const analysis::CostKind& frame) {
+                        const std::vector<analysis::Place>& places, const analysis::CostKind& frame) {
   const records::CellRecord& cell = *configuration.cells.front();
   const page::ChartStyle style =
       page::style_of(static_cast<std::size_t>(std::ranges::find(filters, cell.filter) - filters.begin()));
@@ -172,6 +233,7 @@ json make_configuration(const analysis::Configuration& configuration, const std:
           {"teaching", cell.teaching.value_or(false)},
           {"surroundings", configuration.surroundings},
           {"color", style.color},
+          {"worst", list_worst(configuration, places, frame)},
           {kMoving, describe_cost(configuration, frame, analysis::LightMotion::kMoving)},
           {kStill, describe_cost(configuration, frame, analysis::LightMotion::kStatic)}};
 }
@@ -197,7 +259,7 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
             {"cells", json::array()}};
   for (const auto& each : filters::width_classes())
     if (std::ranges::any_of(cells, [&](const records::CellRecord& cell) {
-          return !cell.teaching.value_or(false) && cell.kernel.width_class == each.name;
+          return is_advised(cell) && cell.kernel.width_class == each.name;
         }))
       data["classes"].push_back(each.name);
   for (const analysis::Demand& demand : request.demands) data["limits"][demand.spec->field] = demand.most;
@@ -209,13 +271,16 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
                                                   : json{{"picture", path_of(shown->images.truth_picture)},
                                                          {"values", path_of(shown->images.truth_values)}});
   }
-  for (const analysis::Configuration& configuration : analysis::list_configurations(all)) {
-    for (const records::CellRecord* cell : configuration.cells) {
-      const auto place = std::ranges::find(places, analysis::place_of(*cell)) - places.begin();
-      data["cells"].push_back(
-          make_cell(*cell, data["configurations"].size(), static_cast<std::size_t>(place), gpus, frame));
-    }
-    data["configurations"].push_back(make_configuration(configuration, filters, frame));
+  const std::vector<analysis::Configuration> configurations = analysis::list_configurations(all);
+  for (const analysis::Configuration& configuration : configurations) {
+    for (const records::CellRecord* cell : configuration.cells)
+      data["cells"].push_back(make_cell(*cell, data["configurations"].size(), find_index(places, *cell), gpus, frame));
+    data["configurations"].push_back(make_configuration(configuration, filters, places, frame));
+  }
+  if (std::ranges::any_of(cells, is_advised)) {
+    json classes = data["classes"];
+    classes.push_back("");
+    data["advice"] = list_advice(cells, classes, configurations);
   }
   return data;
 }

@@ -14,10 +14,9 @@
 #include "report/analysis/trade_measures.h"
 #include "report/images/attribution_bar.h"
 #include "report/pages/answer.h"
-#include "report/pages/column_list.h"
-#include "report/pages/large_run.h"
 #include "report/pages/run_data.h"
 #include "report/pages/text_tables.h"
+#include "report/pages/trade_charts.h"
 #include "report/records/error_parts.h"
 #include "report/records/format.h"
 

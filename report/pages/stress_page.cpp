@@ -7,7 +7,6 @@
 #include <map>
 #include <utility>
 
-#include "report/page/chart_style.h"
 #include "report/page/markdown.h"
 #include "report/pages/write_page.h"
 #include "report/records/format.h"

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "reference/metrics/metric_table.h"
-#include "report/analysis/accuracy.h"
 #include "report/analysis/cell_group.h"
 #include "report/records/error_parts.h"
 #include "report/records/format.h"
@@ -133,6 +132,12 @@ records::TextTable make_accuracy_table(const analysis::CellGroup& group) {
     row.push_back(format_shares(cell));
   }
   return table;
+}
+
+page::Details explain_columns(const std::string& file, const std::vector<records::CsvColumn>& columns) {
+  page::Facts facts;
+  for (const records::CsvColumn& column : columns) facts.items.push_back({column.name, column.meaning});
+  return {"Columns of " + file, {facts}};
 }
 
 }  // namespace shadowbench::pages

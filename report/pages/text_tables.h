@@ -5,6 +5,8 @@
 
 #include "report/analysis/cell_group.h"
 #include "report/analysis/machines/machine_kinds.h"
+#include "report/page/blocks.h"
+#include "report/records/csv_tables.h"
 #include "report/records/text_table.h"
 
 namespace shadowbench::pages {
@@ -16,5 +18,8 @@ records::TextTable make_cost_table(const analysis::CellGroup& group, const recor
 
 /// Makes the table of how wrong a group's cells are and why, for people, one row per cell.
 records::TextTable make_accuracy_table(const analysis::CellGroup& group);
+
+/// What the columns of a CSV file mean, for readers who unfold it.
+page::Details explain_columns(const std::string& file, const std::vector<records::CsvColumn>& columns);
 
 }  // namespace shadowbench::pages

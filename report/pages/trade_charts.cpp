@@ -6,14 +6,14 @@
 #include <span>
 
 #include "report/analysis/cell_group.h"
-#include "report/page/chart_style.h"
-#include "report/pages/large_run.h"
+#include "report/files/file_name.h"
 #include "report/records/format.h"
 
 namespace shadowbench::pages {
 namespace {
 
 using Configuration = analysis::TradeConfiguration;
+using analysis::LightMotion;
 using page::ChartSeries;
 
 /// An axis over all configurations of a scope that have the measure.
@@ -193,104 +193,122 @@ class FrontChart {
                 : analysis::list_width_series(scope_.configurations, front_.configurations);
 };
 
-const analysis::Estimate& time_of(const analysis::WidthPoint& point, analysis::LightState light) {
-  return light == analysis::LightState::kStill ? point.still : point.moving;
-}
-
-/// A logarithmic axis for the times that series have on the y axis.
-page::ChartAxis choose_time_axis(const std::vector<ChartSeries>& series) {
-  std::vector<double> times, ends;
+/// A logarithmic axis for what series have on the y axis.
+page::ChartAxis choose_y_axis(const std::vector<ChartSeries>& series) {
+  std::vector<double> values, ends;
   for (const ChartSeries& each : series) {
     for (const page::ChartPoint& point : each.points) {
-      times.push_back(point.y.value);
+      values.push_back(point.y.value);
       ends.insert(ends.end(), {point.y.low, point.y.high});
     }
   }
-  return page::choose_log_axis(times, ends);
+  return page::choose_log_axis(values, ends);
 }
 
-ChartSeries make_width_series(const analysis::WidthCurve& curve, analysis::LightState light,
-                              const page::ChartStyle& style) {
-  ChartSeries series = start_series(curve.label, style);
-  series.line = curve.prefiltered ? page::LineStyle::kSolid : page::LineStyle::kDashed;
-  for (const analysis::WidthPoint& p : curve.points)
-    series.points.push_back({exactly(p.sigma_texels), time_of(p, light)});
-  return series;
-}
+/// Time or ratio over the kernel's width or over lights, of one state of the light.
+class CurveChart {
+ public:
+  CurveChart(const analysis::CostChart& chart, LightMotion light, const records::GlRecord& gl)
+      : chart_(chart), light_(light), gl_(gl) {}
 
-ChartSeries make_crossings(const analysis::WidthChart& chart, analysis::LightState light) {
-  ChartSeries series;
-  series.color = page::kInk;
-  series.mark = page::Mark::kCross;
-  for (const analysis::CurveComparison& each : analysis::compare_curves(chart, light)) {
-    for (const analysis::WidthPoint& p : each.crossings) {
-      const std::string width = records::format_number(p.sigma_texels);
-      series.points.push_back({exactly(p.sigma_texels),
-                               time_of(p, light),
-                               width,
-                               {chart.curves[each.prefiltered].label + " × " + chart.curves[each.taps].label,
-                                fmt::format("kernel {} texels", width)}});
-    }
+  page::Chart make(const std::vector<std::string>& filters) const {
+    page::Chart made;
+    const char* state = light_ == LightMotion::kStatic ? "still" : "moving";
+    made.id = fmt::format("{}.map{}.{}.{}", chart_.scope_id, chart_.map_size, is_lights_ ? "lights" : "width", state);
+    made.title = chart_.title;
+    made.x_name = is_lights_ ? "lights, each with a map of its own" : "kernel's width (standard deviation), texels";
+    made.y_name = is_lights_ ? fmt::format("time of a frame, ms: {}", records::describe_clock(gl_))
+                             : analysis::name_axis(cost_, gl_);
+    for (const analysis::CostCurve& curve : chart_.curves)
+      made.series.push_back(make_series(curve, style_among(filters, curve.filter)));
+    made.x = make_x_axis();
+    made.y = choose_y_axis(made.series);
+    made.series.push_back(is_lights_ ? make_proportion(made.y) : make_crossings());
+    if (!is_lights_) made.notes = {"solid: prefiltered", "dashed: read at every lookup"};
+    return made;
   }
-  if (!series.points.empty()) series.title = "crossing";
-  return series;
-}
 
-page::Chart make_width_chart(const analysis::WidthChart& chart, analysis::LightState light,
-                             const std::vector<std::string>& filters, const records::GlRecord& gl) {
-  const bool still = light == analysis::LightState::kStill;
-  const analysis::Measure& cost = chart.costs[still ? analysis::kStillCost : analysis::kMovingCost];
+ private:
+  page::ChartAxis make_x_axis() const {
+    if (!is_lights_) return page::choose_axis(places_, {}, page::TickKind::kNumber);
+    page::ChartAxis axis{true, places_.front() / 1.12, places_.back() * 1.12, {}};
+    for (const double count : places_) axis.ticks.push_back({count, fmt::format("{}", count)});
+    return axis;
+  }
+
+  std::string say_place(double at) const {
+    return is_lights_ ? fmt::format("lights: {}", at) : fmt::format("kernel {} texels", records::format_number(at));
+  }
+
+  std::string say_cost(const analysis::Estimate& cost) const {
+    return is_lights_ ? fmt::format("time of a frame: {} ms", analysis::format_estimate(cost_, cost))
+                      : say_value(cost_, cost, gl_);
+  }
+
+  ChartSeries make_series(const analysis::CostCurve& curve, const page::ChartStyle& style) const {
+    ChartSeries series = start_series(curve.label, style);
+    series.line = is_lights_ || curve.prefiltered ? page::LineStyle::kSolid : page::LineStyle::kDashed;
+    for (const analysis::CurvePoint& p : curve.points)
+      series.points.push_back(
+          {exactly(p.at), p.cost[light_], {}, {curve.label, say_place(p.at), say_cost(p.cost[light_])}});
+    return series;
+  }
+
+  ChartSeries make_crossings() const {
+    ChartSeries series;
+    series.color = page::kInk;
+    series.mark = page::Mark::kCross;
+    for (const analysis::CurveComparison& each : analysis::compare_curves(chart_))
+      for (const auto& [width, cost] : each.crossings[light_])
+        series.points.push_back(
+            {exactly(width),
+             exactly(cost),
+             records::format_number(width),
+             {chart_.curves[each.a].label + " × " + chart_.curves[each.b].label, say_place(width)}});
+    if (!series.points.empty()) series.title = "crossing";
+    return series;
+  }
+
+  /// What grows in proportion, from the corner of the chart on.
+  ChartSeries make_proportion(const page::ChartAxis& y) const {
+    const double from = places_.front(), to = std::min(places_.back(), from * y.high / y.low);
+    ChartSeries line = start_line("in proportion", "#9aa0a8", page::LineStyle::kSolid);
+    line.points = {{exactly(from), exactly(y.low)}, {exactly(to), exactly(y.low * to / from)}};
+    return line;
+  }
+
+  const analysis::CostChart& chart_;
+  LightMotion light_;
+  const records::GlRecord& gl_;
+  const std::vector<double> places_ = analysis::list_measured({&chart_, 1});
+  const bool is_lights_ = chart_.axis == analysis::CurveAxis::kLights;
+  const analysis::Measure& cost_ =
+      chart_.costs[light_ == LightMotion::kStatic ? analysis::kStillCost : analysis::kMovingCost];
+};
+
+/// The maps of a filter: RMSE over what a frame costs in which the map is drawn, a curve for each fit.
+page::Chart make_map_chart(const analysis::MapFamily& family, const records::GlRecord& gl) {
   page::Chart made;
-  made.id = fmt::format("{}.map{}.width.{}", chart.scope_id, chart.map_size, still ? "still" : "moving");
-  made.title = chart.title;
-  made.x_name = "kernel's width (standard deviation), texels";
-  made.y_name = analysis::name_axis(cost, gl);
-  std::vector<double> widths;
-  for (const analysis::WidthCurve& curve : chart.curves) {
-    made.series.push_back(make_width_series(curve, light, style_among(filters, curve.filter)));
-    for (page::ChartPoint& point : made.series.back().points) {
-      widths.push_back(point.x.value);
-      point.details = {curve.label, fmt::format("kernel {} texels", records::format_number(point.x.value)),
-                       say_value(cost, point.y, gl)};
+  made.title = fmt::format("{} on {}", family.name, family.place);
+  made.id = "maps." + files::make_file_stem(made.title);
+  made.x_name = fmt::format("time of map, prefilter and lookup, ms: {}", records::describe_clock(gl));
+  made.y_name = "RMSE to the area truth";
+  std::vector<double> costs, ends;
+  for (const analysis::MapUse& map : family.maps) {
+    const analysis::Estimate cost = map.frame();
+    costs.push_back(cost.value);
+    ends.insert(ends.end(), {cost.low, cost.high});
+    auto series = std::ranges::find(made.series, map.fit, &ChartSeries::title);
+    if (series == made.series.end()) {
+      made.series.push_back(start_series(map.fit, page::style_of(made.series.size())));
+      series = std::prev(made.series.end());
+      series->line = page::LineStyle::kSolid;
     }
+    series->points.push_back({cost, map.rmse, fmt::format("{}", map.size)});
   }
-  made.x = page::choose_axis(widths, {}, page::TickKind::kNumber);
-  made.y = choose_time_axis(made.series);
-  made.series.push_back(make_crossings(chart, light));
-  made.notes = {"solid: prefiltered", "dashed: read at every lookup"};
+  made.x = page::choose_axis(costs, ends, page::TickKind::kNumber);
+  made.y = choose_y_axis(made.series);
   return made;
-}
-
-ChartSeries make_light_series(const analysis::LightCurve& curve, analysis::LightState light,
-                              const page::ChartStyle& style) {
-  const bool still = light == analysis::LightState::kStill;
-  ChartSeries series = start_series(still ? curve.label : "", style);
-  series.filled = still;
-  series.line = still ? page::LineStyle::kSolid : page::LineStyle::kDashed;
-  for (const analysis::LightPoint& p : curve.points) {
-    const analysis::Estimate& time = analysis::frame_time(p, light);
-    series.points.push_back(
-        {exactly(p.count),
-         time,
-         {},
-         {fmt::format("{}, casters {}", curve.label, still ? "still" : "moving"), fmt::format("lights: {}", p.count),
-          fmt::format("time of a frame: {} ms", analysis::format_time(time))}});
-  }
-  return series;
-}
-
-page::ChartAxis make_count_axis(const std::vector<int>& counts) {
-  page::ChartAxis axis{true, counts.front() / 1.12, counts.back() * 1.12, {}};
-  for (const int count : counts) axis.ticks.push_back({count, fmt::format("{}", count)});
-  return axis;
-}
-
-/// What grows in proportion, from the corner of the chart on.
-ChartSeries make_proportion(const analysis::LightChart& chart, const page::ChartAxis& y) {
-  const double from = chart.counts.front(), to = std::min<double>(chart.counts.back(), from * y.high / y.low);
-  ChartSeries line = start_line("in proportion", "#9aa0a8", page::LineStyle::kSolid);
-  line.points = {{exactly(from), exactly(y.low)}, {exactly(to), exactly(y.low * to / from)}};
-  return line;
 }
 
 }  // namespace
@@ -315,33 +333,24 @@ page::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& sco
   return choice;
 }
 
-page::ChartChoice make_width_choice(const std::vector<analysis::WidthChart>& charts,
+page::ChartChoice make_curve_choice(const std::string& id, const std::vector<analysis::CostChart>& charts,
                                     const std::vector<std::string>& filters, const records::GlRecord& gl) {
-  page::ChartChoice choice{
-      "width", {{"where", {}}, {"light", {"still: lookup", "moving: map, prefilter, lookup"}}}, {}};
-  for (const analysis::WidthChart& chart : charts) {
+  page::ChartChoice choice{id, {{"where", {}}, {"light", {"still: lookup", "moving: map, prefilter, lookup"}}}, {}};
+  for (const analysis::CostChart& chart : charts) {
     choice.selectors[0].options.push_back(chart.title);
-    for (const analysis::LightState light : {analysis::LightState::kStill, analysis::LightState::kMoving})
-      choice.charts.push_back(make_width_chart(chart, light, filters, gl));
+    for (const LightMotion light : analysis::kBothLights)
+      choice.charts.push_back(CurveChart(chart, light, gl).make(filters));
   }
   return choice;
 }
 
-page::Chart make_light_chart(const analysis::LightChart& chart, const std::vector<std::string>& filters,
-                             const records::GlRecord& gl) {
-  page::Chart made;
-  made.id = fmt::format("{}.map{}.lights", chart.scope_id, chart.map_size);
-  made.title = chart.title;
-  made.x_name = "lights, each with a map of its own";
-  made.y_name = fmt::format("time of a frame, ms: {}", records::describe_clock(gl));
-  made.x = make_count_axis(chart.counts);
-  for (const analysis::LightCurve& curve : chart.curves)
-    for (const analysis::LightState light : {analysis::LightState::kStill, analysis::LightState::kMoving})
-      made.series.push_back(make_light_series(curve, light, style_among(filters, curve.filter)));
-  made.y = choose_time_axis(made.series);
-  made.series.push_back(make_proportion(chart, made.y));
-  made.notes = {"solid, filled: casters still", "dashed, hollow: casters moving"};
-  return made;
+page::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const records::GlRecord& gl) {
+  page::ChartChoice choice{"maps", {{"filter", {}}}, {}};
+  for (const analysis::MapFamily& family : families) {
+    choice.charts.push_back(make_map_chart(family, gl));
+    choice.selectors[0].options.push_back(choice.charts.back().title);
+  }
+  return choice;
 }
 
 }  // namespace shadowbench::pages

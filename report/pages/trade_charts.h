@@ -3,12 +3,16 @@
 #include <string>
 #include <vector>
 
-#include "report/analysis/crossover.h"
-#include "report/analysis/light_growth.h"
+#include "report/analysis/cost_curves.h"
+#include "report/analysis/maps/map_family.h"
 #include "report/analysis/trade.h"
 #include "report/page/chart.h"
 
 namespace shadowbench::pages {
+
+/// A run of more cells than this has a page without what nobody could look through: the tables and bars of every scene
+/// and map, and what is beaten in the charts of fronts. The CSV files have all of it.
+inline constexpr std::size_t kMostCellsInDetail = 2000;
 
 /// Draws the fronts of every scope, error and cost. Members are filled and joined; tied cells are hollow, dominated
 /// ones hollow and faint. Those, and curves over the width, are left out of a run of more than kMostCellsInDetail
@@ -16,13 +20,12 @@ namespace shadowbench::pages {
 page::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& scopes,
                                     const std::vector<records::CellRecord>& cells, const records::GlRecord& gl);
 
-/// Draws time over kernel width for every chart and state of the light, crossings marked.
-page::ChartChoice make_width_choice(const std::vector<analysis::WidthChart>& charts,
+/// Draws what a frame costs over the kernel's width, crossings marked, or over lights, for every chart and state of the
+/// light; over lights both axes are logarithmic, and in proportion is the slope of the grey line.
+page::ChartChoice make_curve_choice(const std::string& id, const std::vector<analysis::CostChart>& charts,
                                     const std::vector<std::string>& filters, const records::GlRecord& gl);
 
-/// Draws the time of a frame over its lights, still and moving. Both axes are logarithmic: in proportion is the slope
-/// of the grey line. Requires two counts or more.
-page::Chart make_light_chart(const analysis::LightChart& chart, const std::vector<std::string>& filters,
-                             const records::GlRecord& gl);
+/// Draws RMSE over the cost of a frame for the maps of every family, a curve for each fit.
+page::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const records::GlRecord& gl);
 
 }  // namespace shadowbench::pages

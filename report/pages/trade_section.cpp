@@ -4,12 +4,11 @@
 
 #include <algorithm>
 
-#include "report/analysis/front_words.h"
+#include "filters/kernel_width.h"
 #include "report/analysis/growth.h"
 #include "report/analysis/machines/machine_kinds.h"
-#include "report/pages/column_list.h"
 #include "report/pages/fronts_csv.h"
-#include "report/pages/large_run.h"
+#include "report/pages/text_tables.h"
 #include "report/pages/trade_charts.h"
 #include "report/records/format.h"
 
@@ -26,8 +25,8 @@ constexpr const char* kLargeNote =
     "The run has more than {} cells: beaten ones, and the lines from narrow to wide kernels, are left out of these "
     "charts. fronts.csv has them.";
 constexpr const char* kCrossoversNote =
-    "A width counts where both were measured, or one was and the other is interpolated between its neighbours; "
-    "cheaper is said where the 95 % intervals do not overlap. Crosses mark where the medians meet.";
+    "A width counts where both were measured, or one was and the other is interpolated between its neighbours; cheaper "
+    "and dearer are said where the 95 % intervals do not overlap. Crosses mark where the medians meet.";
 constexpr const char* kLightsNote =
     "Light 0 is the scene's; the others are it, turned about the vertical in equal steps, each with a frustum, a depth "
     "map and an encoded map of its own. Still: maps and prefilters are kept, and each light is looked up; moving: all "
@@ -35,13 +34,39 @@ constexpr const char* kLightsNote =
     "the reference under as many lights, times its median (quartiles where the run does not hold the reference); "
     "cheaper is said where these do not overlap. Growth is fitted to each filter's own medians, in brackets what its "
     "quartiles allow: each number of lights is timed in rounds of its own, and drift of the machine between them is in "
-    "the growth, not in the order. Linear: no median is more than 10 % off the line.";
+    "the growth, not in the order. Off a line: how far a median is at most.";
 constexpr const char* kMapsNote =
     "A map that is fitted to the scene (tight, sphere) serves every camera, and can be kept while light and casters "
     "stand still; every other fit follows a camera, and is drawn anew for each and whenever it moves. Cost: medians of "
     "map, prefilter and whole lookup, added. Each map is timed in rounds of its own: cheaper is said where costs "
-    "differ by more than the passes' quartiles do, and than empty lookups do between the maps. As accurate: the RMSE "
-    "is not clearly larger. Other views are taken to have the error and the cost of the one that was measured.";
+    "differ by more than the passes' quartiles do, and than empty lookups do between the maps (drift: the slowest over "
+    "the fastest). As accurate: the RMSE is not clearly larger. Other views are taken to have the error and the cost "
+    "of the one that was measured.";
+
+/// How fronts are read: what dominated and tied mean, what the intervals are, how scenes are combined, and what each of
+/// `costs` is.
+std::vector<std::string> explain_fronts(const std::vector<analysis::Measure>& costs) {
+  std::vector<std::string> sentences = {
+      fmt::format(
+          "Only filters whose kernels are about equally wide are compared: a wider kernel makes a softer shadow, "
+          "and is no worse filter. A kernel's width is its standard deviation along an axis, in texels; each "
+          "class has a front of its own: {}.",
+          filters::describe_classes()),
+      "A cell of the front beats another of its class, which is then dominated, where it costs no more, its error is "
+      "not clearly larger, and one of the two is clearly less. A cell is tied with one of the front where neither is "
+      "clearly less. Clearly: errors that differ by more than half the wider 95 % interval over the phases of the "
+      "map's "
+      "grid, times whose 95 % intervals do not overlap, everything else where the numbers differ. Of several that beat "
+      "a "
+      "cell, the cheapest is named."};
+  const auto explain = [&](const analysis::Measure& measure) {
+    sentences.push_back(
+        fmt::format("{}: {}. All scenes together: {}.", measure.name, measure.meaning, measure.over_scenes));
+  };
+  std::ranges::for_each(analysis::list_error_measures(), explain);
+  std::ranges::for_each(costs, explain);
+  return sentences;
+}
 
 void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                 const Trade& trade) {
@@ -50,54 +75,61 @@ void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector
     blocks.emplace_back(page::Paragraph{fmt::format(kLargeNote, kMostCellsInDetail), true});
   blocks.emplace_back(make_front_choice(trade.scopes, cells, run.gl));
   blocks.emplace_back(page::Details{"How to read the fronts",
-                                    {page::Sentences{{}, analysis::explain_fronts(trade.scopes.front().costs)},
+                                    {page::Sentences{{}, explain_fronts(trade.scopes.front().costs)},
                                      page::Links{"All fronts, cell by cell:", {{"fronts.csv", "fronts.csv"}}}}});
   blocks.emplace_back(explain_columns("fronts.csv", list_front_columns()));
 }
 
-void add_widths(Blocks& blocks, const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                const Trade& trade) {
-  if (!trade.width_charts.empty()) {
-    blocks.emplace_back(page::Heading{"From which width of the kernel on a prefiltered map pays"});
-    blocks.emplace_back(page::Sentences{{}, analysis::describe_crossovers(trade.width_charts)});
-    blocks.emplace_back(page::Paragraph{kCrossoversNote, true});
-    blocks.emplace_back(make_width_choice(trade.width_charts, analysis::list_filters(cells), run.gl));
-  }
-  const auto growth = analysis::describe_growth(cells);
-  if (growth.empty()) return;
-  blocks.emplace_back(page::Heading{"How times grow"});
-  blocks.emplace_back(page::Sentences{{}, growth});
+/// A heading, a sentence, charts, a table that is folded away, and how it is read.
+void add_finding(Blocks& blocks, const char* heading, const std::string& sentence, page::ChartChoice charts,
+                 std::vector<page::Table> tables, const char* note) {
+  blocks.emplace_back(page::Heading{heading});
+  if (!sentence.empty()) blocks.emplace_back(page::Paragraph{sentence});
+  if (!charts.charts.empty()) blocks.emplace_back(std::move(charts));
+  page::Details details{"Table, and how to read it", {}};
+  for (page::Table& table : tables)
+    if (!table.table.rows.empty()) details.blocks.emplace_back(std::move(table));
+  details.blocks.emplace_back(page::Paragraph{note, true});
+  blocks.emplace_back(std::move(details));
 }
 
-void add_lights(Blocks& blocks, const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                const std::vector<analysis::LightChart>& charts) {
+void add_widths(Blocks& blocks, const records::RunRecord& run, const std::vector<std::string>& filters,
+                const std::vector<analysis::CostChart>& charts) {
   if (charts.empty()) return;
-  page::Sentences sentences{{}, analysis::describe_light_growth(charts, run.gl)};
-  for (std::string& sentence : analysis::describe_light_order(charts)) sentences.items.push_back(std::move(sentence));
-  blocks.emplace_back(page::Heading{"How a frame's cost grows with its lights"});
-  blocks.emplace_back(std::move(sentences));
-  blocks.emplace_back(page::Paragraph{kLightsNote, true});
-  for (const analysis::LightChart& chart : charts) {
-    if (chart.counts.size() > 1) blocks.emplace_back(make_light_chart(chart, analysis::list_filters(cells), run.gl));
-    blocks.emplace_back(
-        page::Table{fmt::format("{}: time of a frame, ms: {}", chart.title, records::describe_clock(run.gl)),
-                    analysis::make_light_table(chart)});
-  }
+  add_finding(blocks, "From which width of the kernel on a prefiltered map pays", analysis::summarize_widths(charts),
+              make_curve_choice("width", charts, filters, run.gl),
+              {{"Prefiltered maps against many taps, widths in texels", analysis::make_comparison_table(charts)}},
+              kCrossoversNote);
+}
+
+void add_growth(Blocks& blocks, const std::vector<records::CellRecord>& cells) {
+  records::TextTable table = analysis::make_growth_table(cells);
+  if (table.header.size() < 2) return;
+  blocks.emplace_back(page::Heading{"How times grow"});
+  blocks.emplace_back(page::Table{"Time grows as the size to the power of: 1 is in proportion, 0 not at all", table});
+}
+
+void add_lights(Blocks& blocks, const records::RunRecord& run, const std::vector<std::string>& filters,
+                const std::vector<analysis::CostChart>& charts) {
+  if (charts.empty()) return;
+  std::vector<analysis::CostChart> drawn = charts;
+  std::erase_if(drawn, [](const analysis::CostChart& chart) {
+    return analysis::list_measured({&chart, 1}).size() < 2;
+  });
+  add_finding(
+      blocks, "How a frame's cost grows with its lights", analysis::summarize_lights(charts, run.gl),
+      make_curve_choice("lights", drawn, filters, run.gl),
+      {{fmt::format("Time of a frame, ms: {}", records::describe_clock(run.gl)), analysis::make_light_table(charts)},
+       {"Filters that change order", analysis::make_comparison_table(charts)}},
+      kLightsNote);
 }
 
 void add_maps(Blocks& blocks, const records::RunRecord& run, const std::vector<analysis::MapFamily>& families) {
-  const page::Sentences findings[] = {
-      {"Layers against one map of as many bytes, drawn in every frame:", analysis::describe_layers(families)},
-      {"One map for all views against one for each, drawn in every frame:",
-       analysis::describe_sharing(families, run.gl)},
-      {"Light and casters stand still, and the camera moves:", analysis::describe_caching(families, run.gl)}};
-  if (std::ranges::all_of(findings, [](const page::Sentences& each) { return each.items.empty(); })) return;
-  blocks.emplace_back(page::Heading{"Which map: one for all, one for each view, or layers"});
-  for (std::string& warning : analysis::describe_drift(families))
-    blocks.emplace_back(page::Paragraph{std::move(warning)});
-  for (const page::Sentences& each : findings)
-    if (!each.items.empty()) blocks.emplace_back(each);
-  blocks.emplace_back(page::Paragraph{kMapsNote, true});
+  const std::string sentence = analysis::summarize_maps(families, run.gl);
+  if (sentence.empty()) return;
+  add_finding(
+      blocks, "Which map: one for all, one for each view, or layers", sentence, make_map_choice(families, run.gl),
+      {{"Each filter's maps, the map drawn in every frame", analysis::make_map_table(families, run.gl)}}, kMapsNote);
 }
 
 }  // namespace
@@ -118,11 +150,13 @@ std::optional<Trade> make_trade(const std::vector<records::CellRecord>& measured
 page::Section make_trade_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                                  const Trade& trade) {
   page::Section section{"trade", "The trade: what less error costs", {}};
+  const std::vector<std::string> filters = analysis::list_filters(cells);
   if (trade.has_fronts) {
     add_fronts(section.blocks, run, cells, trade);
-    add_widths(section.blocks, run, cells, trade);
+    add_widths(section.blocks, run, filters, trade.width_charts);
+    add_growth(section.blocks, cells);
   }
-  add_lights(section.blocks, run, cells, trade.light_charts);
+  add_lights(section.blocks, run, filters, trade.light_charts);
   add_maps(section.blocks, run, trade.map_families);
   return section;
 }

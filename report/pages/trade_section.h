@@ -3,8 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "report/analysis/crossover.h"
-#include "report/analysis/light_growth.h"
+#include "report/analysis/cost_curves.h"
 #include "report/analysis/maps/map_family.h"
 #include "report/analysis/trade.h"
 #include "report/page/blocks.h"
@@ -15,8 +14,8 @@ namespace shadowbench::pages {
 struct Trade {
   std::vector<analysis::TradeScope> scopes;
   bool has_fronts = false;  ///< has_trade(); without it there is only what lights and maps cost
-  std::vector<analysis::WidthChart> width_charts;
-  std::vector<analysis::LightChart> light_charts;
+  std::vector<analysis::CostChart> width_charts;
+  std::vector<analysis::CostChart> light_charts;
   std::vector<analysis::MapFamily> map_families;
 };
 
@@ -25,7 +24,8 @@ struct Trade {
 std::optional<Trade> make_trade(const std::vector<records::CellRecord>& cells);
 
 /// Makes the section that shows the trade: fronts, crossovers, growth with sizes and with lights, and maps. `cells` are
-/// those that may be compared.
+/// those that may be compared. Of each finding but the fronts it has a table, a chart where there is something to draw,
+/// and at most a sentence.
 page::Section make_trade_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                                  const Trade& trade);
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "report/analysis/accuracy.h"
+#include "report/analysis/cell_group.h"
 #include "report/analysis/configuration.h"
 
 namespace shadowbench::analysis {

@@ -8,6 +8,7 @@
 
 #include "report/analysis/front.h"
 #include "report/records/records.h"
+#include "report/records/text_table.h"
 
 namespace shadowbench::analysis {
 
@@ -74,12 +75,10 @@ struct Caching {
 /// Judges every map that follows its camera; nothing where none is shared.
 std::vector<Caching> find_caching(const MapFamily& family);
 
-/// Write what these find, one sentence for each family and number of bytes, or family.
-std::vector<std::string> describe_layers(const std::vector<MapFamily>& families);
-std::vector<std::string> describe_sharing(const std::vector<MapFamily>& families, const records::GlRecord& gl);
-std::vector<std::string> describe_caching(const std::vector<MapFamily>& families, const records::GlRecord& gl);
+/// Makes a table of the maps of all families, and of what is found of each.
+records::TextTable make_map_table(const std::vector<MapFamily>& families, const records::GlRecord& gl);
 
-/// Warns of the family between whose maps the machine's speed changed most, where it did.
-std::vector<std::string> describe_drift(const std::vector<MapFamily>& families);
+/// Sums up in a sentence what is found; empty where nothing is.
+std::string summarize_maps(const std::vector<MapFamily>& families, const records::GlRecord& gl);
 
 }  // namespace shadowbench::analysis

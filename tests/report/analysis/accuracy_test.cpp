@@ -1,7 +1,6 @@
-#include "report/analysis/accuracy.h"
-
 #include <gmock/gmock.h>
 
+#include "report/analysis/cell_group.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::analysis {

@@ -1,7 +1,6 @@
-#include "report/analysis/light_growth.h"
-
 #include <gmock/gmock.h>
 
+#include "report/analysis/cost_curves.h"
 #include "report/pages/trade_section.h"
 #include "report/pages/write_report.h"
 #include "report/records/format.h"
@@ -59,7 +58,7 @@ std::vector<records::CellRecord> make_lit_cells(int map_size = 1024) {
           make_lit_cell("esm", {{1.6, 1.501, 1.4, 1.4}, {4.5, 4.5, 4.5, 4.5}}, map_size)};
 }
 
-std::vector<LightChart> make_lit_charts(const std::vector<records::CellRecord>& cells) {
+std::vector<CostChart> make_lit_charts(const std::vector<records::CellRecord>& cells) {
   return make_light_charts(cells, make_trade_scopes(cells));
 }
 
@@ -67,39 +66,38 @@ TEST(LightGrowth, Times_AreRatiosTimesTheReference) {
   const auto charts = make_lit_charts(make_lit_cells());
   ASSERT_THAT(charts, SizeIs(1));
   EXPECT_EQ(charts[0].title, "cubes · view main · 960 × 540 · map 1024");
-  EXPECT_THAT(charts[0].counts, ElementsAre(1, 2, 4, 8));
-  const LightPoint& point = charts[0].curves[2].points[3];
-  EXPECT_EQ(point.count, 8);
-  EXPECT_NEAR(point.still.value, 12.0, 1e-9);
-  EXPECT_NEAR(point.still.low, 0.99 * 12.0, 1e-9);
-  EXPECT_NEAR(point.moving.high, 1.01 * 64.0, 1e-9);
-  EXPECT_EQ(point.maps_bytes, 8 * 4194304);
+  EXPECT_THAT(list_measured(charts), ElementsAre(1.0, 2.0, 4.0, 8.0));
+  const CurvePoint& point = charts[0].curves[2].points[3];
+  EXPECT_EQ(point.at, 8.0);
+  EXPECT_NEAR(point.cost.still.value, 12.0, 1e-9);
+  EXPECT_NEAR(point.cost.still.low, 0.99 * 12.0, 1e-9);
+  EXPECT_NEAR(point.cost.moving.high, 1.01 * 64.0, 1e-9);
+  EXPECT_EQ(charts[0].curves[2].maps_bytes, 8 * 4194304);
 }
 
 TEST(LightGrowth, WithoutTheReference_TimesAreMediansAndQuartiles) {
   std::vector<records::CellRecord> cells = make_lit_cells();
   cells.erase(cells.begin());
-  const LightPoint point = make_lit_charts(cells)[0].curves[1].points[3];
-  EXPECT_NEAR(point.still.value, 1.1 * 12.0, 1e-9);
-  EXPECT_NEAR(point.still.low, 1.1 * 12.0 - 0.5, 1e-9);
+  const CurvePoint point = make_lit_charts(cells)[0].curves[1].points[3];
+  EXPECT_NEAR(point.cost.still.value, 1.1 * 12.0, 1e-9);
+  EXPECT_NEAR(point.cost.still.low, 1.1 * 12.0 - 0.5, 1e-9);
 }
 
 TEST(LightGrowth, IsTheSlopeAndTheExponent) {
-  const LightCurve curve{"vsm",
-                         "vsm",
-                         {{1, {}, {}, {3, 3, 3}, {2, 2, 2}, 0},
-                          {4, {}, {}, {9, 9, 9}, {4, 4, 4}, 0},
-                          {16, {}, {}, {33, 33, 33}, {8, 8, 8}, 0}}};
-  EXPECT_NEAR(find_light_growth(curve, LightState::kStill).per_light_ms.value, 2.0, 1e-12);
-  EXPECT_EQ(find_light_growth(curve, LightState::kStill).per_light_ms.low,
-            find_light_growth(curve, LightState::kStill).per_light_ms.high);
-  EXPECT_NEAR(find_light_growth(curve, LightState::kMoving).exponent.value, 0.5, 1e-12);
+  const CostCurve curve{
+      "vsm",
+      "vsm",
+      {{1, {}, {{2, 2, 2}, {3, 3, 3}}}, {4, {}, {{4, 4, 4}, {9, 9, 9}}}, {16, {}, {{8, 8, 8}, {33, 33, 33}}}}};
+  EXPECT_NEAR(find_light_growth(curve, LightMotion::kStatic).per_light_ms.value, 2.0, 1e-12);
+  EXPECT_EQ(find_light_growth(curve, LightMotion::kStatic).per_light_ms.low,
+            find_light_growth(curve, LightMotion::kStatic).per_light_ms.high);
+  EXPECT_NEAR(find_light_growth(curve, LightMotion::kMoving).exponent.value, 0.5, 1e-12);
 }
 
 /// No times within the quartiles give a slope or an exponent outside.
 TEST(LightGrowth, HasTheIntervalThatQuartilesAllow) {
-  const LightCurve curve{"vsm", "vsm", {{1, {}, {}, {2, 1, 4}, {}, 0}, {4, {}, {}, {8, 4, 16}, {}, 0}}};
-  const LightGrowth growth = find_light_growth(curve, LightState::kStill);
+  const CostCurve curve{"vsm", "vsm", {{1, {}, {{}, {2, 1, 4}}}, {4, {}, {{}, {8, 4, 16}}}}};
+  const LightGrowth growth = find_light_growth(curve, LightMotion::kStatic);
   EXPECT_NEAR(growth.per_light_ms.value, 2.0, 1e-12);
   EXPECT_NEAR(growth.per_light_ms.low, 0.0, 1e-12);
   EXPECT_NEAR(growth.per_light_ms.high, 5.0, 1e-12);
@@ -110,104 +108,93 @@ TEST(LightGrowth, HasTheIntervalThatQuartilesAllow) {
 
 /// 3, 6 and 15 ms under 1, 2 and 4 lights: the line 8 + 57 / 14 (n - 7 / 3) is 0.57 ms above the first.
 TEST(LightGrowth, TellsHowFarTimesAreFromALine) {
-  LightCurve curve{
-      "vsm", "vsm", {{1, {}, {}, {3, 3, 3}, {}, 0}, {2, {}, {}, {6, 6, 6}, {}, 0}, {4, {}, {}, {15, 15, 15}, {}, 0}}};
-  EXPECT_NEAR(*find_light_growth(curve, LightState::kStill).off_line,
+  CostCurve curve{"vsm", "vsm", {{1, {}, {{}, {3, 3, 3}}}, {2, {}, {{}, {6, 6, 6}}}, {4, {}, {{}, {15, 15, 15}}}}};
+  EXPECT_NEAR(*find_light_growth(curve, LightMotion::kStatic).off_line,
               std::abs(8.0 - 57.0 / 14.0 * 4.0 / 3.0 - 3.0) / 3.0, 1e-12);
-  curve.points[2].still_spread = {12, 12, 12};
-  EXPECT_NEAR(*find_light_growth(curve, LightState::kStill).off_line, 0.0, 1e-12);
+  curve.points[2].spread.still = {12, 12, 12};
+  EXPECT_NEAR(*find_light_growth(curve, LightMotion::kStatic).off_line, 0.0, 1e-12);
   curve.points.pop_back();
-  EXPECT_EQ(find_light_growth(curve, LightState::kStill).off_line, std::nullopt) << "two points are always on a line";
+  EXPECT_EQ(find_light_growth(curve, LightMotion::kStatic).off_line, std::nullopt) << "two points are always on a line";
 }
 
-TEST(LightGrowth, IsSaidOfEveryFilter_StillAndMoving_WithItsClock) {
-  const auto words = describe_light_growth(make_lit_charts(make_lit_cells()), make_run().gl);
-  ASSERT_THAT(words, SizeIs(8));
-  EXPECT_EQ(words[1],
-            "Each further light costs 3.3 ms (CPU) on cubes with poisson, casters still: linear within 0.0 % (1 to 8 "
-            "lights, picture 960 × 540, map 1024).");
-  EXPECT_THAT(words[6], HasSubstr("costs 8.8 ms (CPU) on cubes with vsm, casters moving"));
+TEST(LightGrowth, IsSaidInASentence_WithItsClock) {
+  EXPECT_EQ(summarize_lights(make_lit_charts(make_lit_cells()), make_run().gl),
+            "Each further light costs 1 ms (CPU) (none, casters still, cubes · view main · 960 × 540 · map 1024) to "
+            "9.9 (esm, casters moving, cubes · view main · 960 × 540 · map 1024); 3 of 6 pairs of filters change "
+            "order between numbers of lights, or between casters that stand still and that move.");
 }
 
-TEST(LightGrowth, IsSaidOfAllPlacesInOneSentence_AndWhereItIsNotLinear) {
+TEST(LightGrowth, OfAllPlaces_IsInOneTable_AndWhereItIsNotLinear) {
   std::vector<records::CellRecord> cells = make_lit_cells();
   for (records::CellRecord cell : make_lit_cells()) {
     cell.scene = "bulb";
     if (cell.filter == "vsm") cell.lights->back().still_ms.median *= 2.0;
     cells.push_back(cell);
   }
-  const auto words = describe_light_growth(make_lit_charts(cells), make_run().gl);
-  ASSERT_THAT(words, SizeIs(8));
-  EXPECT_EQ(words[2],
-            "Each further light costs 1.65 ms (CPU) on cubes, 3.6 on bulb with vsm, casters still: linear within 0.0 % "
-            "on cubes; not linear on bulb (125.2 % off a line) (1 to 8 lights, picture 960 × 540, map 1024).");
+  const auto row_of = [&](std::size_t row) { return make_light_table(make_lit_charts(cells)).rows.at(row); };
+  EXPECT_THAT(row_of(4)[2], HasSubstr("cubes"));
+  EXPECT_THAT(row_of(4)[7], HasSubstr("1.65 ["));
+  EXPECT_EQ(row_of(4)[9], "0.0 %");
+  EXPECT_THAT(row_of(12)[2], HasSubstr("bulb"));
+  EXPECT_THAT(row_of(12)[7], HasSubstr("3.6 ["));
+  EXPECT_EQ(row_of(12)[9], "125.2 %");
   for (records::CellRecord& cell : cells) cell.lights->resize(2);
-  EXPECT_THAT(describe_light_growth(make_lit_charts(cells), make_run().gl)[2], Not(HasSubstr("linear")));
+  EXPECT_EQ(row_of(4)[7], records::kNothing) << "two counts are always on a line";
 }
 
 TEST(LightGrowth, OfOneCount_IsNotSaid) {
   std::vector<records::CellRecord> cells = make_lit_cells();
   for (records::CellRecord& cell : cells) cell.lights->resize(1);
-  EXPECT_THAT(describe_light_growth(make_lit_charts(cells), make_run().gl), IsEmpty());
+  EXPECT_EQ(summarize_lights(make_lit_charts(cells), make_run().gl), "");
   const page::Section section = pages::make_trade_section(make_run(), cells, *pages::make_trade(cells));
-  for (const page::Block& block : section.blocks) EXPECT_FALSE(std::holds_alternative<page::Chart>(block));
-  EXPECT_EQ(make_light_table(make_lit_charts(cells)[0]).rows[0][3], records::kNothing);
+  for (const page::Block& block : section.blocks) {
+    const auto* choice = std::get_if<page::ChartChoice>(&block);
+    EXPECT_FALSE(choice && choice->id == "lights");
+  }
+  EXPECT_EQ(make_light_table(make_lit_charts(cells)).rows[0][4], records::kNothing);
 }
 
 TEST(LightOrder, OverlappingTimes_AreNotApart) {
-  const auto comparisons = compare_light_curves(make_lit_charts(make_lit_cells())[0]);
+  const auto comparisons = compare_curves(make_lit_charts(make_lit_cells())[0]);
   ASSERT_THAT(comparisons, SizeIs(6));
-  const LightComparison& vsm_esm = comparisons[5];
-  EXPECT_THAT(vsm_esm.counts, ElementsAre(1, 2, 4, 8));
-  EXPECT_THAT(vsm_esm.still, ElementsAre(-1, 0, 1, 1));
-  EXPECT_THAT(vsm_esm.moving, ElementsAre(-1, -1, -1, -1));
+  const CurveComparison& vsm_esm = comparisons[5];
+  EXPECT_THAT(vsm_esm.at, ElementsAre(1.0, 2.0, 4.0, 8.0));
+  EXPECT_THAT(vsm_esm.signs.still, ElementsAre(-1, 0, 1, 1));
+  EXPECT_THAT(vsm_esm.signs.moving, ElementsAre(-1, -1, -1, -1));
   EXPECT_TRUE(vsm_esm.changes());
   EXPECT_FALSE(comparisons[0].changes());
 }
 
-TEST(LightOrder, SaysWhereOneOvertakesAnother_AndNoMore) {
-  const auto words = describe_light_order(make_lit_charts(make_lit_cells()));
-  ASSERT_THAT(words, SizeIs(4));
-  EXPECT_EQ(words[0],
-            "esm is cheaper than poisson with casters still at each of 1, 2, 4, 8 lights; with casters moving at none "
-            "of 1, 2, 4, 8 lights (dearer at 1, "
-            "2, 4, 8): cubes, picture 960 × 540, map 1024.");
-  EXPECT_EQ(words[1],
-            "vsm is cheaper than esm with casters still at 1 light, of 1, 2, 4, 8 (dearer at 4, 8, not to be told "
-            "apart at 2); with casters moving at each "
-            "of 1, 2, 4, 8 lights: cubes, picture 960 × 540, map 1024.");
-  EXPECT_THAT(words[2], HasSubstr("vsm is cheaper than poisson with casters still at each of"));
-  EXPECT_THAT(words[3], HasSubstr("Of 6 pairs of filters, over all numbers of lights, casters still and moving, 3 "
-                                  "change order, 3 keep it wherever the two can be told apart:"));
+TEST(LightOrder, TableHasWhereOneOvertakesAnother_AndNoMore) {
+  const records::TextTable table = make_comparison_table(make_lit_charts(make_lit_cells()));
+  constexpr const char* kWhere = "cubes · view main · 960 × 540 · map 1024";
+  EXPECT_THAT(table.header, ElementsAre("filter", "other filter", "where", "lights compared",
+                                        "still, the first is cheaper at", "still, the first is dearer at",
+                                        "moving, the first is cheaper at", "moving, the first is dearer at"));
+  ASSERT_THAT(table.rows, SizeIs(3));
+  EXPECT_THAT(table.rows[0], ElementsAre("poisson", "vsm", kWhere, "1, 2, 4, 8", records::kNothing, "1, 2, 4, 8",
+                                         "1, 2, 4, 8", records::kNothing));
+  EXPECT_THAT(table.rows[1][1], "esm");
+  EXPECT_THAT(table.rows[2],
+              ElementsAre("vsm", "esm", kWhere, "1, 2, 4, 8", "1", "4, 8", "1, 2, 4, 8", records::kNothing));
 }
 
-TEST(LightOrder, FromAnyNumberOn_IsSaidAsThat) {
+TEST(LightOrder, OfNumbersThatOneLacks_IsNotSaid) {
   const std::vector<records::CellRecord> cells = {make_lit_cell("none", {{1, 1, 1, 1}, {1, 1, 1, 1}}),
-                                                  make_lit_cell("vsm", {{2, 2, 2, 2}, {2, 2, 2, 2}}),
-                                                  make_lit_cell("esm", {{2.5, 2.0, 1.5, 1.5}, {2.5, 2.01, 2.0, 1.5}})};
-  const auto words = describe_light_order(make_lit_charts(cells));
-  ASSERT_THAT(words, SizeIs(2));
-  EXPECT_THAT(words[0], HasSubstr("vsm is cheaper than esm with casters still at 1 light, of 1, 2, 4, 8 (dearer at 4, "
-                                  "8, not to be told apart at 2)"));
-  std::vector<records::CellRecord> turned = cells;
-  for (records::LightCountRecord& each : *turned[2].lights) each.still_ratio = make_ratio(each.count > 1 ? 2.5 : 1.5);
-  for (records::LightCountRecord& each : *turned[2].lights) each.moving_ratio = make_ratio(each.count > 1 ? 1.5 : 2.5);
-  EXPECT_THAT(describe_light_order(make_lit_charts(turned))[0],
-              HasSubstr("esm is cheaper than vsm with casters still at 1 light, of 1, 2, 4, 8 (dearer at 2, 4, 8); "
-                        "with casters moving from 2 lights on, of 1, 2, 4, 8 (dearer at 1)"));
+                                                  make_lit_cell("vsm", {{2, 2}, {2, 2}}),
+                                                  make_lit_cell("esm", {{3, 3, 3}, {1.5, 1.5, 1.5}})};
+  EXPECT_EQ(make_comparison_table(make_lit_charts(cells)).rows.at(0)[3], "1, 2");
 }
 
-TEST(LightOrder, WhereNothingChanges_ThatIsSaid_OfEveryMapAtOnce) {
+TEST(LightOrder, WhereNothingChanges_TheTableIsEmpty_OnEveryMap) {
   std::vector<records::CellRecord> cells;
   for (const int map_size : {512, 1024}) {
     cells.push_back(make_lit_cell("none", {{1, 1}, {1, 1}}, map_size));
     cells.push_back(make_lit_cell("vsm", {{2, 2}, {2, 2}}, map_size));
     cells.push_back(make_lit_cell("esm", {{2.01, 2.01}, {2.01, 2.01}}, map_size));
   }
-  EXPECT_THAT(describe_light_order(make_lit_charts(cells)),
-              ElementsAre("Of 3 pairs of filters, over all numbers of lights, casters still and moving, none changes "
-                          "its order, 2 keep it wherever the two can be told "
-                          "apart, 1 cannot be told apart anywhere: cubes, picture 960 × 540, map 512, 1024."));
+  EXPECT_THAT(make_comparison_table(make_lit_charts(cells)).rows, IsEmpty());
+  EXPECT_THAT(summarize_lights(make_lit_charts(cells), make_run().gl), HasSubstr("; 0 of 6 pairs of filters change"));
 }
 
 TEST(LightCharts, HoldOnlyWhatWasTimed_WithParametersThatTell) {
@@ -222,20 +209,22 @@ TEST(LightCharts, HoldOnlyWhatWasTimed_WithParametersThatTell) {
   EXPECT_EQ(charts[0].curves[0].label, "none");
   EXPECT_EQ(charts[0].curves[2].label, "vsm (radius 4)");
   EXPECT_EQ(charts[0].curves[3].label, "vsm (radius 8)");
-  EXPECT_EQ(make_light_table(charts[0]).rows[6][4], records::kNothing) << "4 lights were not timed with it";
+  EXPECT_EQ(make_light_table({charts[0]}).rows[6][5], records::kNothing) << "4 lights were not timed with it";
   for (records::CellRecord& cell : cells) cell.lights.reset();
   EXPECT_THAT(make_lit_charts(cells), IsEmpty());
 }
 
 TEST(LightTable, HasBothStates) {
-  const records::TextTable table = make_light_table(make_lit_charts(make_lit_cells())[0]);
-  EXPECT_THAT(table.header, ElementsAre("filter", "casters", "1 light", "2 lights", "4 lights", "8 lights",
-                                        "ms per added light", "exponent", "MiB of maps at the most lights"));
+  const records::TextTable table = make_light_table(make_lit_charts(make_lit_cells()));
+  EXPECT_THAT(table.header,
+              ElementsAre("filter", "casters", "where", "1 light", "2 lights", "4 lights", "8 lights",
+                          "ms per added light", "exponent", "off a line", "MiB of maps at the most lights"));
   ASSERT_THAT(table.rows, SizeIs(8));
-  EXPECT_THAT(table.rows[4], ElementsAre("vsm", "still", "1.5 [1.48, 1.52]", "3 [2.97, 3.03]", "6 [5.94, 6.06]",
-                                         "12 [11.9, 12.1]", "1.65 [1.49, 1.81]", "1.00 [0.84, 1.21]", "32"));
+  EXPECT_THAT(table.rows[4], ElementsAre("vsm", "still", "cubes · view main · 960 × 540 · map 1024", "1.5 [1.48, 1.52]",
+                                         "3 [2.97, 3.03]", "6 [5.94, 6.06]", "12 [11.9, 12.1]", "1.65 [1.49, 1.81]",
+                                         "1.00 [0.84, 1.21]", "0.0 %", "32"));
   EXPECT_THAT(table.rows[5][1], "moving");
-  EXPECT_THAT(table.rows[5][5], HasSubstr("64 ["));
+  EXPECT_THAT(table.rows[5][6], HasSubstr("64 ["));
 }
 
 std::filesystem::path write(const TemporaryFolder& folder, const std::vector<records::CellRecord>& cells) {
@@ -248,16 +237,17 @@ std::filesystem::path write(const TemporaryFolder& folder, const std::vector<rec
   return folder.path();
 }
 
-TEST(LightSection, ShowsChartTableAndSentences) {
+TEST(LightSection, ShowsChartTableAndSentence) {
   const TemporaryFolder folder("light_section");
   const auto out = write(folder, make_lit_cells());
   const std::string page = read_text(out / "index.html"), summary = read_text(out / "summary.md");
-  for (const char* text : {"with its lights</h3>", "vsm is cheaper than poisson", "Each further light costs",
-                           "time of a frame, ms: CPU time (software rasteriser)",
-                           "<figure class=\"chart\" id=\"cubes.main.960x540.map1024.lights\">",
-                           "lights, each with a map of its own", "dashed, hollow: casters moving", "linear within"})
+  for (const char* text :
+       {"with its lights</h3>", "Filters that change order", "Each further light costs",
+        "time of a frame, ms: CPU time (software rasteriser)", "<figure class=\"chart\" id=\"lights\">",
+        "cubes.main.960x540.map1024.lights.moving", "lights, each with a map of its own", "in proportion"})
     EXPECT_THAT(page, HasSubstr(text));
-  for (const char* text : {"vsm is cheaper than poisson", "| vsm     | still   | 1.5 \\[1.48, 1.52\\] |"})
+  for (const char* text :
+       {"3 of 6 pairs of filters change order", "| vsm     | still   | cubes ", "| 1.5 \\[1.48, 1.52\\] "})
     EXPECT_THAT(summary, HasSubstr(text));
 }
 

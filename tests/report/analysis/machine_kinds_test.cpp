@@ -6,9 +6,8 @@
 
 #include "filters/base/error.h"
 #include "report/analysis/advice_words.h"
-#include "report/analysis/crossover.h"
+#include "report/analysis/cost_curves.h"
 #include "report/analysis/growth.h"
-#include "report/analysis/light_growth.h"
 #include "report/analysis/maps/map_family.h"
 #include "report/analysis/surprises.h"
 #include "report/analysis/trade.h"
@@ -160,13 +159,13 @@ TEST(MixedMachines, AdviceComparesNoRatiosOfTwoMaps) {
 /// same, whatever measured what.
 TEST(MixedMachines, CrossoversFollowRatios) {
   std::vector<records::CellRecord> cells = make_crossing_cells("cubes");
-  const auto expected = describe_crossovers(make_width_charts(cells, make_trade_scopes(cells)));
-  ASSERT_THAT(expected, Not(IsEmpty()));
+  const auto expected = make_comparison_table(make_width_charts(cells, make_trade_scopes(cells)));
+  ASSERT_THAT(expected.rows, Not(IsEmpty()));
   for (std::size_t i = 0; i < cells.size(); ++i)
     cells[i] = move_to(cells[i], make_kind(i % 2 == 0 ? "A slow CPU" : "A fast CPU"), i % 2 == 0 ? 10.0 : 0.1);
   const auto withheld = *withhold_mixed_times(cells);
   const auto charts = make_width_charts(withheld, make_trade_scopes(withheld));
-  EXPECT_EQ(describe_crossovers(charts), expected);
+  EXPECT_EQ(make_comparison_table(charts).rows, expected.rows);
   EXPECT_TRUE(charts.at(0).costs[kStillCost].is_ratio);
 }
 
@@ -189,8 +188,8 @@ TEST(MixedMachines, WhatNeedsMilliseconds_IsSilent) {
   ASSERT_THAT(list_map_families(cells), Not(IsEmpty()));
   EXPECT_THAT(list_map_families(withheld), IsEmpty());
   for (records::CellRecord& cell : cells) cell.fit = "tight";
-  ASSERT_THAT(describe_growth(cells), Not(IsEmpty()));
-  EXPECT_THAT(describe_growth(*withhold_mixed_times(cells)), IsEmpty());
+  ASSERT_THAT(make_growth_table(cells).header, SizeIs(2));
+  EXPECT_THAT(make_growth_table(*withhold_mixed_times(cells)).header, SizeIs(1));
 }
 
 TEST(MixedMachines, NoTimeIsWastedThere) {

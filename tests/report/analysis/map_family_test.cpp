@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <map>
+
 #include "report/page/blocks.h"
 #include "report/pages/trade_section.h"
 #include "tests/report/records/synthetic.h"
@@ -116,30 +118,49 @@ TEST(MapLayers, AreComparedAtAsManyBytes_MapPrefilterAndLookupCounted) {
   EXPECT_EQ(found[0].cost_sign, 1);
 }
 
+/// A column of the table of all maps: by the column's header, the text of each map.
+std::map<std::string, std::string> read_column(const std::vector<MapFamily>& families, const std::string& header) {
+  const TextTable table = make_map_table(families, make_run().gl);
+  const auto column = std::ranges::find(table.header, header) - table.header.begin();
+  std::map<std::string, std::string> texts;
+  for (const auto& row : table.rows) texts[row[2]] = row.at(static_cast<std::size_t>(column));
+  return texts;
+}
+
+constexpr const char* kErrorRatio = "RMSE of layers of as many bytes, as a ratio to it";
+constexpr const char* kCostRatio = "their cost, as a ratio to its";
+constexpr const char* kSharing = "cheaper for all views than a map for each";
+constexpr const char* kCaching = "a kept map as accurate saves of its frame, ms (CPU)";
+
 TEST(MapLayers, OfSeveralTheMostAccurateIsCompared) {
   std::vector<CellRecord> cells = make_deep_cells();
   cells.push_back(make_map_cell({"cascades:count=4,split=0,blend=0.1,depths=all", 1024, 4, 0.06, 1.0, 1.0}));
-  EXPECT_THAT(
-      describe_layers(list_map_families(cells)),
-      ElementsAre("vsm on avenue, 16 MiB: 4 layers of 1024 (cascades:count=4,split=1,blend=0.1,depths=all) against one "
-                  "map of 2048; less error costs time: tight (RMSE × 0.4, cost × 1.85), view (0.403, 2)."));
+  auto errors = read_column(list_map_families(cells), kErrorRatio);
+  EXPECT_EQ(errors.at("tight 2048"), "0.4, less");
+  EXPECT_EQ(errors.at("view 2048"), "0.403, less");
+  EXPECT_EQ(errors.at("tight 1024"), kNothing);
+  auto costs = read_column(list_map_families(cells), kCostRatio);
+  EXPECT_EQ(costs.at("tight 2048"), "1.85, more");
+  EXPECT_EQ(costs.at("view 2048"), "2, more");
   cells.push_back(make_map_cell({"psm", 2048, 1, 0.03, 2.0, 1.0}));
-  EXPECT_THAT(describe_layers(list_map_families(cells))[0],
-              HasSubstr("view (0.403, 2); the one map wins both: psm (1.33, 8.33)."));
+  EXPECT_EQ(read_column(list_map_families(cells), kErrorRatio).at("psm 2048"), "1.33, more");
+  EXPECT_EQ(read_column(list_map_families(cells), kCostRatio).at("psm 2048"), "8.33, more");
 }
 
 TEST(MapLayers, WhoWinsIsSaid) {
   const auto say = [](double rmse, double ms) {
-    return describe_layers(list_map_families(
-        make_map_cells({{"tight", 2048, 1, 0.1, 6.0, 2.0}, {kCascades, 1024, 4, rmse, ms - 2.0, 2.0}})))[0];
+    const auto families = list_map_families(
+        make_map_cells({{"tight", 2048, 1, 0.1, 6.0, 2.0}, {kCascades, 1024, 4, rmse, ms - 2.0, 2.0}}));
+    return read_column(families, kErrorRatio).at("tight 2048") + "; " +
+           read_column(families, kCostRatio).at("tight 2048");
   };
-  EXPECT_THAT(say(0.05, 4.0), HasSubstr("; the layers win both: tight"));
-  EXPECT_THAT(say(0.05, 8.0), HasSubstr("; less error, costs cannot be told apart: tight"));
-  EXPECT_THAT(say(0.1005, 4.0), HasSubstr("; less cost, errors cannot be told apart: tight"));
-  EXPECT_THAT(say(0.1005, 8.0), HasSubstr("; cannot be told apart: tight"));
-  EXPECT_THAT(say(0.2, 8.0), HasSubstr("; more error, costs cannot be told apart: tight"));
-  EXPECT_THAT(say(0.2, 9.0), HasSubstr("; the one map wins both: tight"));
-  EXPECT_THAT(say(0.2, 4.0), HasSubstr("; less time costs error: tight"));
+  EXPECT_EQ(say(0.05, 4.0), "0.5, less; 0.5, less");
+  EXPECT_EQ(say(0.05, 8.0), "0.5, less; 1, not apart");
+  EXPECT_EQ(say(0.1005, 4.0), "1, not apart; 0.5, less");
+  EXPECT_EQ(say(0.1005, 8.0), "1, not apart; 1, not apart");
+  EXPECT_EQ(say(0.2, 8.0), "2, more; 1, not apart");
+  EXPECT_EQ(say(0.2, 9.0), "2, more; 1.12, more");
+  EXPECT_EQ(say(0.2, 4.0), "2, more; 0.5, less");
 }
 
 /// 4.04 + 1.01 V < V (3.96 + 0.99) from V = 2 on; 12.12 + 1.515 V < V 12.375 likewise.
@@ -151,10 +172,10 @@ TEST(MapSharing, IsCheaperFromTheViewsThatPayForItsMap) {
   EXPECT_EQ(found[0].from_views, 2);
   EXPECT_EQ(found[1].own, 4u) << "as accurate is the view's map of 2048, which is cheaper than the cascades";
   EXPECT_EQ(found[1].from_views, 2);
-  EXPECT_EQ(
-      describe_sharing({family}, make_run().gl)[1],
-      "vsm on avenue: a tight map of 2048 for all views costs 12 ms (CPU) and 1.5 for each view, and the cheapest own "
-      "map as accurate (view map of 2048, RMSE 0.0992 against 0.1) 12.5 for each: sharing is cheaper from 2 views on.");
+  EXPECT_EQ(read_column({family}, kSharing).at("tight 2048"), "from 2 views on, against view 2048");
+  EXPECT_EQ(read_column({family}, "map and prefilter, ms (CPU)").at("tight 2048"), "12");
+  EXPECT_EQ(read_column({family}, "lookup, ms (CPU)").at("tight 2048"), "1.5");
+  EXPECT_EQ(read_column({family}, "RMSE").at("view 2048"), "0.0992");
 }
 
 /// A dear shared map of 100 ms against 11 less 1: from 11 views on, by what the quartiles allow.
@@ -171,8 +192,7 @@ TEST(MapSharing, TakesAsManyViewsAsTheSmallerOwnMapIsCheaper) {
 
 TEST(MapSharing, WithoutOwnMapsAsAccurate_ThatIsSaid) {
   const auto families = list_map_families(make_map_cells({{"tight", 1024, 1, 0.05}, {"view", 1024, 1, 0.1}}));
-  EXPECT_THAT(describe_sharing(families, make_run().gl)[0],
-              HasSubstr("; no map of a view's own is as accurate (RMSE 0.05)."));
+  EXPECT_EQ(read_column(families, kSharing).at("tight 1024"), "no own map is as accurate");
 }
 
 TEST(MapCaching, SavesTheMap_WhereTheKeptOneIsAsAccurate) {
@@ -183,19 +203,25 @@ TEST(MapCaching, SavesTheMap_WhereTheKeptOneIsAsAccurate) {
   EXPECT_NEAR(found[0].saved_ms, 5.0 - 1.5, 1e-12);
   EXPECT_EQ(found[1].cached, std::nullopt) << "cascades";
   EXPECT_EQ(found[2].cached, 3u) << "0.0992 is not clearly less than 0.1";
-  EXPECT_THAT(
-      describe_caching({family}, make_run().gl),
-      ElementsAre("vsm on avenue: map and prefilter are 80 to 88 % of a frame in which the view's own map is drawn; a "
-                  "kept map is as accurate as the view map of 1024 from the tight map of 2048 on, and saves 3.5 of 5 "
-                  "ms (CPU) a frame; as the view map of 2048 from the tight map of 2048 on, and saves 11 of 12.5 ms "
-                  "(CPU) a frame; no kept map measured (RMSE 0.1 at best) is as accurate as the other (RMSE 0.04)."));
+  auto saved = read_column({family}, kCaching);
+  EXPECT_EQ(saved.at("view 1024"), "3.5, tight 2048");
+  EXPECT_EQ(saved.at("view 2048"), "11, tight 2048");
+  EXPECT_EQ(saved.at(std::string(kCascades) + " 1024"), "no kept map is as accurate");
+  EXPECT_EQ(saved.at("tight 2048"), kNothing) << "it is kept itself";
+}
+
+TEST(MapTable, IsSummedUpInASentence) {
+  EXPECT_EQ(summarize_maps(list_map_families(make_deep_cells()), make_run().gl),
+            "Of maps of several fits, layers have less error than one map of as many bytes in 2 of 2 comparisons, and "
+            "less cost in 0; for all views 2 of 2 maps are cheaper than one for each view, from 2 on at the earliest; "
+            "a kept map saves up to 11 ms (CPU) of a frame.");
 }
 
 TEST(MapCaching, ThatCannotBeTold_IsNoSaving) {
   const auto families =
       list_map_families(make_map_cells({{"tight", 1024, 1, 0.1, 4.0, 5.0}, {"view", 1024, 1, 0.1005, 4.0, 1.0}}));
   EXPECT_FALSE(find_caching(families[0])[0].pays);
-  EXPECT_THAT(describe_caching(families, make_run().gl)[0], HasSubstr("saves nothing that can be told."));
+  EXPECT_EQ(read_column(families, kCaching).at("view 1024"), "nothing that can be told, tight 1024");
 }
 
 /// Empty lookups over one map should take as long: where they do not, costs are told apart by more than that alone.
@@ -206,11 +232,8 @@ TEST(MapFamily, DriftOfTheMachine_WidensTimes) {
   const auto families = list_map_families(make_map_cells(maps));
   EXPECT_NEAR(families[0].drift, 2.0, 1e-12) << "cascades look up four times, which tells nothing";
   EXPECT_EQ(compare_layers(families[0])[0].cost_sign, 0);
-  EXPECT_THAT(describe_drift(families),
-              ElementsAre("The machine's speed changed between the maps: of vsm on avenue, lookups that read no map "
-                          "differ by a factor of 2. Costs of different maps are told apart only where they differ by "
-                          "more."));
-  EXPECT_THAT(describe_drift(list_map_families(make_deep_cells())), IsEmpty());
+  EXPECT_EQ(read_column(families, "drift").at("view 2048"), "2");
+  EXPECT_EQ(read_column(list_map_families(make_deep_cells()), "drift").at("view 2048"), "1");
 }
 
 std::string write_trade(const std::vector<CellRecord>& cells) {

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include "report/analysis/front_words.h"
 #include "report/pages/fronts_csv.h"
 #include "trade_cells.h"
 

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "report/page/chart_style.h"
+#include "report/page/chart.h"
 
 namespace shadowbench::page {
 namespace {

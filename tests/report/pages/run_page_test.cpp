@@ -7,7 +7,7 @@
 #include <set>
 
 #include "report/images/picture_io.h"
-#include "report/pages/large_run.h"
+#include "report/pages/trade_charts.h"
 #include "report/pages/write_report.h"
 #include "report/records/json_io.h"
 #include "tests/report/records/synthetic.h"
@@ -146,7 +146,13 @@ TEST(RunPage, BeginsWithTheChoice_ItsReasonAndTheRunnerUp) {
   const nlohmann::json data = read_data(page);
   EXPECT_EQ(data["limits"], nlohmann::json({{"error.rmse", 0.05}})) << "a quarter above the least";
   EXPECT_EQ(data["cells"][1]["values_of"]["error.rmse"], 0.05);
-  EXPECT_EQ(data["configurations"][2]["time_ms.moving"]["mean"], 6.0);
+  EXPECT_EQ(data["configurations"][2]["time_ms.moving"], 6.0);
+  EXPECT_EQ(data["configurations"][1]["worst"]["error.rmse"],
+            nlohmann::json({{"value", 0.05}, {"limit", 0.05}, {"place", 0}, {"unseen", nlohmann::json::array()}}));
+  const nlohmann::json& advice = data["advice"]["moving"][""];
+  EXPECT_EQ(advice["order"][0], nlohmann::json({{"index", 0}, {"tied", nlohmann::json::array()}}));
+  EXPECT_TRUE(advice["unjudged"].empty());
+  EXPECT_TRUE(data["advice"]["moving"].contains("medium")) << "as with --class";
 }
 
 TEST(RunPage, WithoutErrorsOrTimes_SaysWhatCanBeSaid) {

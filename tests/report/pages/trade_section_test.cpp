@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "report/pages/large_run.h"
 #include "report/pages/run_page.h"
+#include "report/pages/trade_charts.h"
 #include "report/pages/write_report.h"
 #include "report/records/json_io.h"
 #include "tests/report/analysis/trade_cells.h"
