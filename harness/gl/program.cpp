@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cctype>
 #include <stdexcept>
 
@@ -64,24 +63,15 @@ std::string_view get_base_name(std::string_view name) { return name.substr(0, na
 Program::Program(std::string_view label, const ShaderSource& vertex, const ShaderSource& fragment,
                  std::optional<ErrorKind> blame, const std::optional<ShaderSource>& geometry)
     : label_(label), handle_(label) {
-  std::vector<Stage> stages = {Stage{GL_VERTEX_SHADER, &vertex}, Stage{GL_FRAGMENT_SHADER, &fragment}};
-  if (geometry) stages.insert(stages.begin() + 1, Stage{GL_GEOMETRY_SHADER, &*geometry});
-  link(stages, blame);
-}
-
-Program::Program(std::string_view label, const ShaderSource& compute, std::optional<ErrorKind> blame)
-    : label_(label), handle_(label) {
-  const std::array stages = {Stage{GL_COMPUTE_SHADER, &compute}};
-  link(stages, blame);
-}
-
-void Program::link(std::span<const Stage> stages, std::optional<ErrorKind> blame) {
   std::vector<Shader> shaders;
-  for (const Stage& stage : stages) {
-    shaders.push_back(compile(label_, stage.type, *stage.source, blame));
+  const auto attach = [&](GLenum type, const ShaderSource& source) {
+    shaders.push_back(compile(label_, type, source, blame));
     glAttachShader(id(), shaders.back().id());
-    sources_.push_back(*stage.source);
-  }
+    sources_.push_back(source);
+  };
+  attach(GL_VERTEX_SHADER, vertex);
+  if (geometry) attach(GL_GEOMETRY_SHADER, *geometry);
+  attach(GL_FRAGMENT_SHADER, fragment);
   glLinkProgram(id());
   for (const Shader& shader : shaders) glDetachShader(id(), shader.id());
   GLint ok = GL_FALSE;
@@ -91,7 +81,7 @@ void Program::link(std::span<const Stage> stages, std::optional<ErrorKind> blame
   glGetProgramiv(id(), GL_INFO_LOG_LENGTH, &log_length);
   // A link error belongs to no single stage; the last stage is where a filter's code is.
   fail(fmt::format("the GLSL of '{}' does not link", label_), read_log(id(), glGetProgramInfoLog, log_length),
-       stages.back().source->files, blame);
+       fragment.files, blame);
 }
 
 void Program::use() const { glUseProgram(id()); }

@@ -24,10 +24,7 @@ class Program {
   Program(std::string_view label, const ShaderSource& vertex, const ShaderSource& fragment,
           std::optional<ErrorKind> blame = std::nullopt, const std::optional<ShaderSource>& geometry = std::nullopt);
 
-  /// Compiles and links a compute shader; throws likewise.
-  Program(std::string_view label, const ShaderSource& compute, std::optional<ErrorKind> blame = std::nullopt);
-
-  /// Makes it the program of the next draw or dispatch.
+  /// Makes it the program of the next draw.
   void use() const;
 
   /// Sets a uniform; of an array, the first elements. One that the sources name but the compiler dropped is ignored.
@@ -55,12 +52,6 @@ class Program {
   GLuint id() const { return handle_.id(); }
 
  private:
-  struct Stage {
-    GLenum type;
-    const ShaderSource* source;
-  };
-
-  void link(std::span<const Stage> stages, std::optional<ErrorKind> blame);
   GLint location(std::string_view name);
 
   std::string label_;

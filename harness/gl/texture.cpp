@@ -60,8 +60,6 @@ void Texture::set_wrap(GLenum mode) {
   glTextureParameteri(id(), GL_TEXTURE_WRAP_T, static_cast<GLint>(mode));
 }
 
-void Texture::set_border(const glm::vec4& color) { glTextureParameterfv(id(), GL_TEXTURE_BORDER_COLOR, &color[0]); }
-
 void Texture::set_last_level(int level) { glTextureParameteri(id(), GL_TEXTURE_MAX_LEVEL, level); }
 
 void Texture::set_compare(GLenum function) {

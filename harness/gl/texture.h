@@ -24,7 +24,6 @@ class Texture {
   void set_filter(GLenum minify, GLenum magnify);
   /// Sets the wrap mode of both axes, e.g. GL_CLAMP_TO_BORDER.
   void set_wrap(GLenum mode);
-  void set_border(const glm::vec4& color);
   /// Hides the mip levels above this one from reading.
   void set_last_level(int level);
   /// Compares on sampling, with GL_LEQUAL for instance; GL_NONE turns that off.

@@ -170,14 +170,12 @@ ModelLayer CellAnalyser::read_layer(const filters::FilterRequest& request, const
 ModelImages CellAnalyser::evaluate(MeasuredCell& cell) {
   std::vector<ModelLayer> layers;
   for (const scene::LightFrustum& layer : light_.layers) layers.push_back(read_layer(cell.request, layer));
-  const double tangent = options_.bias.plane_max_tangent();
+  const ModelView view{options_.width, options_.height, options_.seed, options_.bias.plane_max_tangent()};
   std::vector<CacheShape> caches;
   for (const gpu::Gpu& gpu : options_.gpus) caches.push_back(find_cache(gpu));
   if (!caches.empty())
-    cell.fetched_bytes =
-        count_map_traffic(cell.request, layers, tangent, options_.seed, options_.width, options_.height, caches)
-            .value_or(std::vector<double>());
-  return evaluate_model(cell.request, layers, tangent, options_.seed, options_.width, options_.height);
+    cell.fetched_bytes = count_map_traffic(cell.request, layers, view, caches).value_or(std::vector<double>());
+  return evaluate_model(cell.request, layers, view);
 }
 
 void CellAnalyser::attribute(MeasuredCell& cell) {

@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 #include "filters/kernel_width.h"
 #include "filters/model.h"
 #include "harness/measure/filter_setup.h"
-#include "harness/measure/phases.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/suspects.h"
-#include "harness/measure/timing/empty_lookup.h"
 #include "harness/measure/timing/light_timing.h"
 #include "harness/measure/timing/statistics.h"
 #include "harness/measure/timing/timing.h"
@@ -167,9 +166,17 @@ class SceneBench {
     listener_.begin(options::Work::kTiming, filters.size(), "times");
     const double timings = 1.0 + static_cast<double>(options_.lights.size());
     const EmptyLookups empty = make_empty_lookups(renderer_, options_, *task_.scene, light_, pointers);
-    const RoundTimes times = time_rounds(
-        pointers, reference, empty.passes, [&] { assets_.redraw(light_); }, light_.map, gbuffer_, renderer_.timer,
-        options_.rounds, options_.seed, drawn_ms_, [&](double part) { listener_.advance(part / timings); });
+    const RoundTimes times = time_rounds({.filters = pointers,
+                                          .empties = empty.passes,
+                                          .draw_map = [&] { assets_.redraw(light_); },
+                                          .map = light_.map,
+                                          .gbuffer = gbuffer_,
+                                          .timer = renderer_.timer},
+                                         {.reference = reference,
+                                          .limits = options_.rounds,
+                                          .seed = options_.seed,
+                                          .drawn_ms = drawn_ms_,
+                                          .on_part = [&](double part) { listener_.advance(part / timings); }});
     result.timed_ms = times.spent_ms;
     for (std::size_t i = 0; i < filters.size(); ++i) {
       set_times(result.cells[i].record, times, i, reference, times.empties[empty.of_filter[i]]);
@@ -246,6 +253,9 @@ void set_kernel(records::CellRecord& record, const filters::FilterRequest& reque
         fmt::format("kernels of more than {:.2f} texels have none", filters::width_classes().back().widest_texels);
 }
 
+/// Moves a part of a texel in [0,1) to [-1/2, 1/2): the grid is the same.
+double center_shift(double shift) { return shift < 0.5 ? shift : shift - 1.0; }
+
 }  // namespace
 
 records::ParamMap record_params(const filters::ParamValues& values) {
@@ -290,6 +300,17 @@ records::CellRecord make_record(const options::RunOptions& options, const SceneT
 SceneMeasurement measure_scene(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
                                SceneAssets& assets, const options::StepListener& listener) {
   return SceneBench(renderer, options, task, assets, listener).run();
+}
+
+std::vector<glm::dvec2> list_phase_shifts(int count) {
+  std::vector<double> places;
+  for (int i = 0; i < count; ++i) places.push_back(std::fmod(i * std::numbers::phi, 1.0));
+  std::vector<glm::dvec2> shifts;
+  for (int i = 0; i < count; ++i) {
+    const auto rank = std::ranges::count_if(places, [&](double place) { return place < places[shifts.size()]; });
+    shifts.emplace_back(center_shift(static_cast<double>(i) / count), center_shift(static_cast<double>(rank) / count));
+  }
+  return shifts;
 }
 
 }  // namespace shadowbench::measure

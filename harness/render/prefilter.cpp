@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "filters/base/error.h"
-#include "filters/gaussian.h"
+#include "filters/kernel.h"
 #include "harness/render/filter_glsl.h"
 
 namespace shadowbench::render {

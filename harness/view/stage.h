@@ -7,7 +7,7 @@
 
 #include "harness/measure/renderer.h"
 #include "harness/measure/scene_assets.h"
-#include "harness/measure/timing/empty_lookup.h"
+#include "harness/measure/filter_setup.h"
 #include "harness/render/filter_passes.h"
 #include "harness/view/view_state.h"
 #include "report/images/image.h"

@@ -6,7 +6,6 @@
 #include <cassert>
 #include <iterator>
 
-#include "reference/metrics/metric_rows.h"
 
 namespace shadowbench::metrics {
 

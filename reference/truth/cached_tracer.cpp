@@ -3,17 +3,20 @@
 #include <fmt/format.h>
 
 #include "filters/base/content_hash.h"
-#include "reference/truth/version.h"
+#include "reference/truth/embree.h"
 
 namespace shadowbench::truth {
 namespace {
 
+/// Names the code that traces: it changes with the sources of this folder and of the kernels, and with Embree's
+/// version.
+constexpr const char* kVersion = SHADOWBENCH_TRUTH_SOURCES " Embree " RTC_VERSION_STRING;
 constexpr std::size_t kTracedLayers = 4;
 constexpr std::size_t kViewLayers = kTracedLayers + 2;
 
 std::string name_geometry(const std::vector<OccluderMesh>& meshes) {
   ContentHash hash;
-  hash.add(truth_version());
+  hash.add(kVersion);
   for (const OccluderMesh& mesh : meshes) {
     hash.add_values(std::span<const glm::vec3>(mesh.positions));
     hash.add_values(std::span<const std::uint32_t>(mesh.indices));

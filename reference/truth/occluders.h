@@ -31,6 +31,15 @@ struct OccluderMesh {
   std::optional<CutOut> cut_out;
 };
 
+/// Finds the hits on a mesh that lie in its holes.
+struct HoleTest {
+  CutOut cut_out;
+  std::vector<std::uint32_t> indices;  ///< three per triangle that is traced
+
+  /// Whether a point of a triangle, given by the weights of its second and third corner, is a hole.
+  bool is_hole(std::uint32_t triangle, float u, float v) const;
+};
+
 /// An axis-aligned box; empty while min > max.
 struct Box {
   glm::vec3 min{1.0f};

@@ -47,9 +47,8 @@ struct GlSurvey {
 /// Finds out what this GL does. Requires: `context` is current. Cost: under 2 s on a software rasteriser.
 GlSurvey survey_gl(Context& context);
 
-/// Returns the weight bits of hardware PCF for one depth format: the cheap part of `survey_gl`.
-/// Shape: GL_DEPTH_COMPONENT16, 24 or 32F. Returns at most WeightPrecision::kMaxBits.
-int measure_pcf_weight_bits(Context& context, GLenum depth_format);
+/// Measures the weights of hardware PCF on a map of GL_DEPTH_COMPONENT16, 24 or 32F: the cheap part of `survey_gl`.
+WeightPrecision measure_pcf_weights(Context& context, GLenum depth_format);
 
 /// Returns GlSurvey::loop_turns. Cost: a few milliseconds.
 int measure_loop_turns(Context& context);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/gl/framebuffer.h"
+#include "harness/gl/objects.h"
 #include "harness/gl/fullscreen.h"
 #include "harness/gl/program.h"
 

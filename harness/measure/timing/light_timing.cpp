@@ -86,15 +86,14 @@ void LightFrameBench::look_up(std::size_t filter) {
 
 RoundTimes LightFrameBench::time(const std::function<void(double part)>& on_part) {
   const gl::TimerKind timer = renderer_.timer;
-  std::vector<TimedFilter> timed;
+  TimedPasses timed{.draw_map = [&] { return gl::time_ms(timer, [&] { draw_maps(); }); }};
   for (std::size_t i = 0; i < frame_.filters.size(); ++i) {
     std::function<void()> prefilters;
     if (frame_.filters[i]->has_prefilter()) prefilters = [this, i] { prefilter(i); };
-    timed.push_back(make_timed(timer, prefilters, [this, i] { look_up(i); }));
+    timed.filters.push_back(make_timed(timer, prefilters, [this, i] { look_up(i); }));
   }
   return run_rounds(
-      timed, frame_.reference, [&] { return gl::time_ms(timer, [&] { draw_maps(); }); }, options_.rounds, options_.seed,
-      0.0, {}, on_part);
+      timed, {.reference = frame_.reference, .limits = options_.rounds, .seed = options_.seed, .on_part = on_part});
 }
 
 std::vector<std::vector<float>> LightFrameBench::draw(std::size_t filter) {

@@ -148,17 +148,14 @@ Program make_vertex_program() {
                  make_source("flat in vec3 v_color;\nout vec4 o;\nvoid main() { o = vec4(v_color, 1.0); }\n"));
 }
 
-TEST_F(GlTest, VertexArray_FeedsInterleavedAttributesByIndex) {
+TEST_F(GlTest, VertexArray_FeedsInterleavedAttributes) {
   const std::array vertices = {Vertex{{9, 9}, {0, 0, 0}}, Vertex{{-1, -1}, {1, 2, 3}}, Vertex{{3, -1}, {1, 2, 3}},
                                Vertex{{-1, 3}, {4, 5, 6}}};
-  const std::array<std::uint32_t, 3> indices = {1, 2, 3};
   const Buffer vertex_buffer("vertices", std::as_bytes(std::span(vertices)));
-  const Buffer index_buffer("indices", std::as_bytes(std::span(indices)));
   VertexArray array("triangle");
   array.set_vertices(vertex_buffer, sizeof(Vertex));
   array.set_attribute(0, 2, offsetof(Vertex, position));
   array.set_attribute(3, 3, offsetof(Vertex, color));
-  array.set_indices(index_buffer);
   const Program program = make_vertex_program();
   Texture target("target", GL_RGBA32F, 1, 1);
   Framebuffer framebuffer("target");
@@ -166,24 +163,8 @@ TEST_F(GlTest, VertexArray_FeedsInterleavedAttributesByIndex) {
   framebuffer.bind();
   program.use();
   array.bind();
-  glDrawElements(GL_TRIANGLES, 3, GL_UNSIGNED_INT, nullptr);
+  glDrawArrays(GL_TRIANGLES, 1, 3);
   EXPECT_THAT(target.read_floats(4), ElementsAre(4, 5, 6, 1));
-}
-
-TEST_F(GlTest, ComputeProgram_WritesABuffer) {
-  SourceOptions options;
-  options.main_file = "main";
-  options.pieces = {{"main",
-                     "layout(local_size_x = 4) in;\nlayout(std430, binding = 0) buffer B { uint values[]; };\n"
-                     "void main() { values[gl_GlobalInvocationID.x] = gl_GlobalInvocationID.x * 3u; }\n",
-                     "main.comp", 1}};
-  Program program("compute", build_source(options));
-  Buffer buffer("values", 4 * sizeof(std::uint32_t));
-  buffer.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
-  program.use();
-  glDispatchCompute(1, 1, 1);
-  const auto bytes = buffer.read();
-  EXPECT_THAT(std::span(reinterpret_cast<const std::uint32_t*>(bytes.data()), 4), ElementsAre(0u, 3u, 6u, 9u));
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ TEST_F(GlTest, Functions_OfLlvmpipe_AreAsGoodAsMeasuredBefore) {
 }
 
 TEST_F(GlTest, PcfWeightBits_AreThoseOfTheWholeMeasurement) {
-  EXPECT_EQ(measure_pcf_weight_bits(context(), GL_DEPTH_COMPONENT24), WeightPrecision::kMaxBits);
+  EXPECT_EQ(measure_pcf_weights(context(), GL_DEPTH_COMPONENT24).bits, WeightPrecision::kMaxBits);
 }
 
 TEST_F(GlTest, Text_SaysWhatWasMeasured) {
