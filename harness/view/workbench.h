@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,12 +11,34 @@
 #include "filters/catalogue.h"
 #include "harness/measure/renderer.h"
 #include "harness/view/background_truth.h"
-#include "harness/view/file_watch.h"
 #include "harness/view/side_measurement.h"
 #include "harness/view/stage.h"
 #include "harness/view/view_state.h"
 
 namespace shadowbench::view {
+
+/// Sees when files are saved, by looking at them.
+class FileWatch {
+ public:
+  /// Looks at these files from now on; those it looks at already go on to count from what they were.
+  void watch(const std::vector<std::filesystem::path>& files);
+
+  /// Whether any has changed since it was last asked: written, replaced, or come back after it was gone.
+  bool has_changed();
+
+ private:
+  /// What tells a file's states apart; two saves within a clock's tick differ in size or in their inode, mostly.
+  struct Stamp {
+    std::filesystem::file_time_type written{};
+    std::uintmax_t bytes = 0;
+    bool is_there = false;
+    bool operator==(const Stamp&) const = default;
+  };
+
+  std::map<std::filesystem::path, Stamp> files_;
+
+  static Stamp read_stamp(const std::filesystem::path& file);
+};
 
 /// How long a saved file may go unseen.
 inline constexpr double kSecondsBetweenLooks = 0.1;

@@ -28,12 +28,6 @@ float key_axis(const Window& window, int plus, int minus) {
   return (window.is_held(plus) ? 1.0f : 0.0f) - (window.is_held(minus) ? 1.0f : 0.0f);
 }
 
-Changes camera_changes() {
-  Changes changes;
-  changes.camera = true;
-  return changes;
-}
-
 }  // namespace
 
 void PictureInput::take(const PicturePlace& place, Look& look, double seconds) {
@@ -85,9 +79,7 @@ void PictureInput::drag(const PicturePlace& place, Look& look, const glm::vec2& 
     const float metres = height / (place.magnified * static_cast<float>(place.pixels.y));
     return set_camera(fly(camera, {-by.x * metres, by.y * metres, 0.0f}));
   }
-  Changes changes;
-  changes.light = true;
-  bench_.change(changes, [&](ViewSettings& settings) {
+  bench_.change({.light = true}, [&](ViewSettings& settings) {
     scene::Light& light = settings.lights[settings.light];
     light = move_in_sky(light, kLightPerPixel_deg * static_cast<double>(by.x),
                         -kLightPerPixel_deg * static_cast<double>(by.y));
@@ -108,7 +100,7 @@ void PictureInput::fly_by_keys(double seconds) {
 
 void PictureInput::set_camera(const scene::Camera& camera) {
   bench_.change(
-      camera_changes(), [&](ViewSettings& settings) { settings.cameras[settings.camera] = camera; });
+      {.camera = true}, [&](ViewSettings& settings) { settings.cameras[settings.camera] = camera; });
 }
 
 glm::vec3 PictureInput::find_pivot(const glm::vec2& pixel) const {

@@ -25,18 +25,6 @@ std::size_t find_index(const std::vector<std::string>& names, const std::string&
   return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin()) % names.size();
 }
 
-Changes light_changes() {
-  Changes changes;
-  changes.light = true;
-  return changes;
-}
-
-Changes map_changes() {
-  Changes changes;
-  changes.map = true;
-  return changes;
-}
-
 /// The range of a mode's amount, by the unit that it is given in.
 Widgets::Range bias_range(const std::string& key) {
   if (key == "depth") return {1e-6, 0.1, true, false, "depth"};
@@ -135,7 +123,7 @@ void SettingsPanel::show_light() {
     *number.value = static_cast<float>(value);
     changed = true;
   }
-  if (changed) bench_.change(light_changes(), [&](ViewSettings& settings) { settings.lights[settings.light] = light; });
+  if (changed) bench_.change({.light = true}, [&](ViewSettings& settings) { settings.lights[settings.light] = light; });
 }
 
 void SettingsPanel::show_map() {
@@ -147,19 +135,19 @@ void SettingsPanel::show_map() {
   if (std::ranges::find(sizes, own) == sizes.end()) sizes.insert(sizes.begin(), own);
   std::size_t size = find_index(sizes, own);
   if (widgets_.choose("map_size", "texels a side", sizes, size))
-    bench_.change(map_changes(),
+    bench_.change({.map = true},
                   [&](ViewSettings& settings) { settings.options.map_sizes = {std::stoi(sizes[size])}; });
   const std::vector<std::string> formats = {"d16", "d24", "d32f"};
   std::size_t format = 0;
   for (std::size_t i = 0; i < formats.size(); ++i)
     if (gl::parse_depth_format(formats[i]).internal_format == state.options.map.format) format = i;
   if (widgets_.choose("map_format", "format", formats, format))
-    bench_.change(map_changes(), [&](ViewSettings& settings) {
+    bench_.change({.map = true}, [&](ViewSettings& settings) {
       settings.options.map.format = gl::parse_depth_format(formats[format]).internal_format;
     });
   bool reversed = state.options.map.curve.reversed;
   if (widgets_.tick("reversed_depth", "reversed depth", reversed))
-    bench_.change(map_changes(), [&](ViewSettings& settings) { settings.options.map.curve.reversed = reversed; });
+    bench_.change({.map = true}, [&](ViewSettings& settings) { settings.options.map.curve.reversed = reversed; });
   show_fit();
   show_bias();
 }
@@ -169,10 +157,10 @@ void SettingsPanel::show_fit() {
   const std::vector<std::string> fits = scene::list_fit_names();
   std::size_t fit = find_index(fits, std::string(scene::name_of(state.options.fit.mode)));
   if (widgets_.choose("fit", "fit", fits, fit, "What the light's map encloses."))
-    bench_.change(map_changes(), [&](ViewSettings& settings) { set_fit(settings, fits[fit]); });
+    bench_.change({.map = true}, [&](ViewSettings& settings) { set_fit(settings, fits[fit]); });
   bool snap = state.options.snap;
   if (widgets_.tick("snap", "snap to texels", snap, "Keeps the map's texels fixed in the world while the view moves."))
-    bench_.change(light_changes(), [&](ViewSettings& settings) { settings.options.snap = snap; });
+    bench_.change({.light = true}, [&](ViewSettings& settings) { settings.options.snap = snap; });
 }
 
 void SettingsPanel::show_bias() {
@@ -194,24 +182,22 @@ void SettingsPanel::show_bias() {
   std::vector<std::string> wanted;
   if (modes[chosen] != "default")
     wanted = {has_amount ? fmt::format("{}:{}={}", mode->name, mode->key, bias_amount_) : modes[chosen]};
-  bench_.change(map_changes(), [&](ViewSettings& settings) { set_bias(settings, wanted); });
+  bench_.change({.map = true}, [&](ViewSettings& settings) { set_bias(settings, wanted); });
 }
 
 void SettingsPanel::show_camera() {
   if (!begin_section("Camera", false)) return;
   const ViewState& state = bench_.state();
-  Changes changes;
-  changes.camera = true;
   std::vector<std::string> names;
   for (const scene::Camera& camera : state.cameras) names.push_back(camera.name);
   std::size_t chosen = state.camera;
   if (widgets_.choose("camera", "camera", names, chosen))
-    bench_.change(changes, [&](ViewSettings& settings) { settings.camera = chosen; });
+    bench_.change({.camera = true}, [&](ViewSettings& settings) { settings.camera = chosen; });
   const scene::Camera& camera = state.active_camera();
   double fov = glm::degrees(static_cast<double>(camera.vertical_fov_rad));
   if (camera.orthographic_height_m <= 0.0f &&
       widgets_.slide("fov", "field of view", {5.0, 120.0, false, false, "degrees"}, fov, "Vertical."))
-    bench_.change(changes, [&](ViewSettings& settings) {
+    bench_.change({.camera = true}, [&](ViewSettings& settings) {
       settings.cameras[settings.camera].vertical_fov_rad = static_cast<float>(glm::radians(fov));
     });
   ImGui::TextDisabled("at %.3g %.3g %.3g", static_cast<double>(camera.position_ws.x),
