@@ -17,8 +17,6 @@
 #include "report/files/folder_lock.h"
 #include "report/pages/write_page.h"
 #include "report/regress/accept.h"
-#include "report/regress/junit.h"
-#include "report/regress/regress_page.h"
 #include "report/regress/regress_picture.h"
 #include "report/regress/regress_text.h"
 
@@ -157,7 +155,7 @@ class Regression {
         comparison = regress::compare_cell(cell, *expected, images, tolerances_);
       } catch (const Error& error) {
         file_name_ = {};
-        comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, error.what()});
+        comparison.add(Outcome::kUnreadable, error.what());
       }
     } else {
       add_unknown(comparison, cell);
@@ -174,11 +172,11 @@ class Regression {
     const auto unreadable = index_.unreadable.find(file);
     if (unreadable != index_.unreadable.end()) named_unreadable_.insert(file);
     if (unreadable != index_.unreadable.end())
-      comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, unreadable->second});
+      comparison.add(Outcome::kUnreadable, unreadable->second);
     else if (!cell.unreadable.empty())
-      comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, cell.unreadable});
+      comparison.add(Outcome::kUnreadable, cell.unreadable);
     else
-      comparison.add(Outcome::kExtra, {"", {}, {}, {}, "the baseline has no such cell"});
+      comparison.add(Outcome::kExtra, "the baseline has no such cell");
   }
 
   void compare_truth(const ActualTruth& truth) {
@@ -188,9 +186,9 @@ class Regression {
     Comparison comparison = name_truth(truth.record);
     TruthImages expected;
     if (!known.unreadable.empty()) {
-      comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, known.unreadable});
+      comparison.add(Outcome::kUnreadable, known.unreadable);
     } else if (found == known.by_key.end()) {
-      comparison.add(Outcome::kExtra, {"", {}, {}, {}, "the baseline has no truth of this view"});
+      comparison.add(Outcome::kExtra, "the baseline has no truth of this view");
     } else {
       expected = found->second;
       comparison = regress::compare_truth(truth, expected, tolerances_.find(kTruthName, kLevel).limit);
@@ -213,7 +211,7 @@ class Regression {
     for (const BaselineCell& cell : index_.cells) {
       if (seen_.contains(cell.key)) continue;
       Comparison comparison = name_comparison(cell);
-      comparison.add(Outcome::kMissing, {"", {}, {}, {}, "the run has no such cell"});
+      comparison.add(Outcome::kMissing, "the run has no such cell");
       if (options_.remove_missing) accepter_.drop(comparison);
       report_.comparisons.push_back(std::move(comparison));
     }
@@ -230,7 +228,7 @@ class Regression {
         comparison.scene = scene;
         comparison.filter = comparison.label = kTruthName;
         comparison.settings = key;
-        comparison.add(Outcome::kMissing, {"", {}, {}, {}, "the run has no such truth"});
+        comparison.add(Outcome::kMissing, "the run has no such truth");
         if (options_.remove_missing) accepter_.drop(comparison);
         report_.comparisons.push_back(std::move(comparison));
       }
@@ -260,14 +258,14 @@ class Regression {
       comparison.scene = path.parent_path().string();
       comparison.filter = comparison.label = path.filename().string();
       comparison.settings = "all cells of the file";
-      comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, reason});
+      comparison.add(Outcome::kUnreadable, reason);
       report_.comparisons.push_back(std::move(comparison));
     }
   }
 
   void accept() {
     const records::RunRecord& run = run_.run();
-    report_.accepted = accepter_.write({run.seed, run.gl.renderer, "", run.commit});
+    report_.accepted = accepter_.write({.seed = run.seed, .renderer = run.gl.renderer, .commit = run.commit});
     report_.left = baseline_.damage();
   }
 };
@@ -284,19 +282,6 @@ void remove_old_pictures(const std::filesystem::path& out) {
     std::error_code ignored;
     if (name == name.filename() && name.extension() == ".png") std::filesystem::remove(out / name, ignored);
   }
-}
-
-/// Sums a comparison up. A difference that was accepted is no failure; one that could not be accepted is.
-std::string describe_failure(const RegressReport& report) {
-  if (!report.left.empty())
-    return fmt::format(
-        "{} stays damaged, and the run has nothing to put there: {}; restore it, or remove it and "
-        "accept again",
-        report.options.baseline.string(), describe_damage(report.left));
-  if (report.failed() == 0) return "";
-  if (report.options.accept)
-    return fmt::format("{} could not be accepted; {}", report.failed(), describe_worst(report));
-  return fmt::format("{}; worst: {}", describe_counts(report), describe_worst(report));
 }
 
 }  // namespace

@@ -81,7 +81,10 @@ RunCells::RunCells(const std::filesystem::path& folder, const Selection& selecti
 
 Origin RunCells::origin() const {
   const records::RunRecord& run = results_.run;
-  return {run.seed, run.gl.renderer, fmt::format("{}, {} cores", run.machine.cpu, run.machine.cores), run.commit};
+  return {.seed = run.seed,
+          .renderer = run.gl.renderer,
+          .machine = fmt::format("{}, {} cores", run.machine.cpu, run.machine.cores),
+          .commit = run.commit};
 }
 
 void RunCells::visit(const std::function<void(const ActualCell&)>& on_cell,
