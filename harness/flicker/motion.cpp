@@ -77,8 +77,13 @@ std::vector<scene::LightFrustum> fit_frames(Motion motion, const scene::Scene& s
                                             const MapFollowing& following) {
   std::vector<scene::LightFrustum> frusta;
   for (const Frame& frame : frames) {
-    frusta.push_back(scene::fit_light(scene, {fit_of(motion), following.map_size, following.pad_texels, following.snap,
-                                              &frame.camera, following.aspect, &frame.light}));
+    frusta.push_back(scene::fit_light(scene, {.mode = fit_of(motion),
+                                              .map_size = following.map_size,
+                                              .pad_texels = following.pad_texels,
+                                              .snap = following.snap,
+                                              .camera = &frame.camera,
+                                              .aspect = following.aspect,
+                                              .light = &frame.light}));
   }
   return frusta;
 }

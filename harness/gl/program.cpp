@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <stdexcept>
 
@@ -55,9 +56,6 @@ bool contains_word(std::string_view text, std::string_view word) {
   return false;
 }
 
-// "lights[0].color" is declared as `lights`.
-std::string_view get_base_name(std::string_view name) { return name.substr(0, name.find_first_of(".[")); }
-
 }  // namespace
 
 Program::Program(std::string_view label, const ShaderSource& vertex, const ShaderSource& fragment,
@@ -93,9 +91,11 @@ GLint Program::location(std::string_view name) {
   if (known != locations_.end()) return known->second;
   const GLint found = glGetUniformLocation(id(), std::string(name).c_str());
   if (found < 0) {
-    bool declared = false;
-    for (const ShaderSource& source : sources_) declared = declared || contains_word(source.text, get_base_name(name));
-    if (!declared) throw std::logic_error(fmt::format("program '{}' has no uniform '{}'", label_, name));
+    const std::string_view base =
+        name.substr(0, name.find_first_of(".["));  // "lights[0].color" is declared as `lights`
+    const auto declares = [&](const ShaderSource& source) { return contains_word(source.text, base); };
+    if (std::ranges::none_of(sources_, declares))
+      throw std::logic_error(fmt::format("program '{}' has no uniform '{}'", label_, name));
   }
   locations_.emplace(name, found);
   return found;

@@ -12,6 +12,8 @@
 namespace shadowbench::gl {
 namespace {
 
+constexpr std::string_view kErrorWord = "error: ";  ///< which the caller's sentence has already
+
 struct Complaint {
   std::string where;  ///< "file:line"
   std::string text;   ///< from the word error or warning on
@@ -43,10 +45,6 @@ std::optional<Place> find_place(const std::string& line) {
   return std::nullopt;
 }
 
-bool contains_error(std::string_view line) {
-  return line.find("error") != std::string_view::npos || line.starts_with("ERROR");
-}
-
 // Takes the file from the line number, or from the driver's index where the number says nothing.
 std::optional<std::string> locate(const Place& place, const std::vector<std::string>& files) {
   if (place.index < 0 || place.line < 0) return std::nullopt;
@@ -64,12 +62,6 @@ std::optional<Complaint> parse_line(const std::string& line, const std::vector<s
   return Complaint{*where, text, error};
 }
 
-// "error: x" without the word, which the caller's sentence has already.
-std::string strip_error_word(const std::string& text) {
-  constexpr std::string_view kWord = "error: ";
-  return text.starts_with(kWord) ? text.substr(kWord.size()) : text;
-}
-
 }  // namespace
 
 ShaderLog translate_log(std::string_view log, const std::vector<std::string>& files) {
@@ -82,10 +74,13 @@ ShaderLog translate_log(std::string_view log, const std::vector<std::string>& fi
     while (!line.empty() && (line.back() == '\r' || line.back() == '\0' || line.back() == ' ')) line.pop_back();
     if (line.empty()) continue;
     const auto complaint = parse_line(line, files);
-    const bool first_error = result.message.empty() && (complaint ? complaint->error : contains_error(line));
+    const bool first_error =
+        result.message.empty() &&
+        (complaint ? complaint->error : (line.find("error") != std::string::npos || line.starts_with("ERROR")));
     if (first_error) {
       result.where = complaint ? complaint->where : "";
-      result.message = complaint ? strip_error_word(complaint->text) : line;
+      result.message = complaint ? complaint->text : line;
+      if (complaint && complaint->text.starts_with(kErrorWord)) result.message.erase(0, kErrorWord.size());
     } else {
       others += complaint ? fmt::format("\n{}: {}", complaint->where, complaint->text) : "\n" + line;
     }

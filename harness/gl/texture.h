@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <span>
 #include <string_view>
 #include <vector>

@@ -44,7 +44,11 @@ ModelImages evaluate_model(const filters::FilterRequest& request, const std::vec
   if (model) images.model.assign(pixels, 1.0);
   std::atomic<std::int64_t> excused = 0;
   for (const ModelLayer& layer : layers) {
-    const filters::ModelInput input{request.spec, request.values, layer.map, {}, view.seed, view.plane_max_tangent};
+    const filters::ModelInput input{.spec = request.spec,
+                                    .values = request.values,
+                                    .map = layer.map,
+                                    .seed = view.seed,
+                                    .plane_max_tangent = view.plane_max_tangent};
     const auto lookup = model ? model->prepare(input, filters::Precision::kDouble) : nullptr;
     const auto closer =
         kernel ? std::optional<filters::PercentageCloser>(std::in_place, *kernel, layer.map, view.plane_max_tangent)

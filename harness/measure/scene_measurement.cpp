@@ -19,17 +19,11 @@
 #include "harness/render/filter_passes.h"
 #include "harness/render/receivers.h"
 #include "harness/render/shade_pass.h"
-#include "report/analysis/summary.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
 
 namespace shadowbench::measure {
 namespace {
-
-std::int64_t count_not_finite(const images::Image& image) {
-  return std::count_if(
-      image.texels.begin(), image.texels.end(), [](float v) { return !std::isfinite(v); });
-}
 
 /// Everything that one task draws with.
 class SceneBench {
@@ -53,7 +47,9 @@ class SceneBench {
       listener_.begin(options::Work::kDrawing, 1, request.label());
       filters.push_back(make_passes(request));
       result.cells.push_back(draw(*filters.back()));
-      count_passes(result, *filters.back());
+      const int prefilter = filters.back()->prefilter_passes();
+      result.passes_run += 1 + prefilter;
+      result.passes_skipped += std::max(0, 3 - prefilter);
       stability.warn(result.cells.back(), *filters.back());
       if (options_.stability) stability.measure(result.cells.back(), *filters.back());
       if (options_.uncertainty)
@@ -94,12 +90,17 @@ class SceneBench {
     cell.visibility = render::read_image(target_.texture(), 1);
     cell.picture =
         render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera, options_.range);
-    cell.record.nan = count_not_finite(cell.visibility);
+    cell.record.nan = std::ranges::count_if(cell.visibility.texels, [](float v) { return !std::isfinite(v); });
     if (receivers_ < 0) receivers_ = render::count_receivers(renderer_.shaders, gbuffer_, filter.light());
     cell.record.receivers = receivers_;
     cell.cost = filter.measure_cost(renderer_.shaders, gbuffer_, light_.map);
     cell.passes = filter.list_passes(gl::pixel_format(options_.map.format).bytes_per_texel);
-    set_cost(cell.record, cell.cost);
+    cell.record.cost = {.fetches = cell.cost.fetches,
+                        .bytes_per_texel = cell.cost.bytes_per_texel,
+                        .passes = cell.cost.passes,
+                        .map_bytes = cell.cost.map_bytes,
+                        .prefilter_texels = cell.cost.prefilter_texels};
+    if (!cell.cost.fetches) cell.record.absent["cost.fetches"] = "the filter reads the map's samplers itself";
     check_drawing(cell, cell.cost, *renderer_.context);
     return cell;
   }
@@ -122,11 +123,6 @@ class SceneBench {
     return image;
   }
 
-  static void set_cost(records::CellRecord& record, const render::FilterCost& cost) {
-    record.cost = {cost.fetches, cost.bytes_per_texel, cost.passes, cost.map_bytes, cost.prefilter_texels};
-    if (!cost.fetches) record.absent["cost.fetches"] = "the filter reads the map's samplers itself";
-  }
-
   /// A map that holds depth in steps shadows surfaces by up to half a step, in the light's face as on a slope.
   void warn_of_coarse_depth(SceneMeasurement& result) const {
     float farthest = 0.0f;
@@ -145,18 +141,11 @@ class SceneBench {
     for (MeasuredCell& cell : result.cells) cell.record.warnings.push_back(warning);
   }
 
-  static void count_passes(SceneMeasurement& result, const render::FilterPasses& filter) {
-    const int prefilter = filter.prefilter_passes();
-    result.passes_run += 1 + prefilter;
-    result.passes_skipped += std::max(0, 3 - prefilter);
-  }
-
   void time(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
     std::vector<render::FilterPasses*> pointers;
     for (const auto& filter : filters) pointers.push_back(filter.get());
-    const auto asked = std::find_if(
-        task_.filters.begin(), task_.filters.end(),
-        [&](const filters::FilterRequest& request) { return filters::is_same(request, options_.reference); });
+    const auto asked = std::ranges::find_if(
+        task_.filters, [&](const auto& request) { return filters::is_same(request, options_.reference); });
     const auto reference = static_cast<std::size_t>(asked - task_.filters.begin());
     std::unique_ptr<render::FilterPasses> added;
     if (asked == task_.filters.end()) {
@@ -285,9 +274,16 @@ records::CellRecord make_record(const options::RunOptions& options, const SceneT
   if (options.light) record.light = describe_light(*options.light);
   const render::BiasRule& bias = options.bias;
   const auto amount = [](const render::BiasAmount& a) { return records::BiasAmountRecord{a.depth, a.texels, a.world}; };
-  record.bias = {amount(bias.constant),      amount(bias.slope),  bias.plane_texels,       bias.plane_kernels,
-                 amount(bias.normal_offset), bias.receiver_plane, bias.map.polygon_factor, bias.map.polygon_units,
-                 bias.map.cull_front,        bias.map.midpoint};
+  record.bias = {.constant = amount(bias.constant),
+                 .slope = amount(bias.slope),
+                 .plane_texels = bias.plane_texels,
+                 .plane_kernels = bias.plane_kernels,
+                 .normal_offset = amount(bias.normal_offset),
+                 .receiver_plane = bias.receiver_plane,
+                 .polygon_factor = bias.map.polygon_factor,
+                 .polygon_units = bias.map.polygon_units,
+                 .front_cull = bias.map.cull_front,
+                 .midpoint = bias.map.midpoint};
   record.range = {filters::to_string(options.range.border), options.range.far_test, options.range.behind_test};
   if (!options.stability)
     record.absent["stability"] = record.absent["images.stability"] = "the run was made without --stability";

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "harness/measure/mean_flip.h"
 #include "reference/metrics/error_stats.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "filters/model.h"
 #include "filters/random.h"
@@ -21,8 +20,12 @@ images::Image bound_rounding(const DrawnTask& drawn, const filters::Model& model
   images::Image image(options.width, options.height, 1);
   for (const render::LightSetup& layer : filter.light()) {
     const filters::DepthMap map = light.map.read(layer.frustum.layer);
-    const auto tracked = model.prepare({request.spec, request.values, map, measure_accuracy(drawn.renderer),
-                                        options.seed, options.bias.plane_max_tangent()},
+    const auto tracked = model.prepare({.spec = request.spec,
+                                        .values = request.values,
+                                        .map = map,
+                                        .accuracy = measure_accuracy(drawn.renderer),
+                                        .seed = options.seed,
+                                        .plane_max_tangent = options.bias.plane_max_tangent()},
                                        filters::Precision::kTracked);
     const auto receivers =
         render::read_receivers(drawn.renderer.shaders, drawn.assets.gbuffer(*drawn.task.camera), layer);

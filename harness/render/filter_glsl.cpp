@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
 
 #include "filters/disk_points.h"
@@ -103,13 +102,11 @@ vec4 fetch_{name}_grad(Receiver r, vec2 offset_texels, vec2 along_x, vec2 along_
 }}
 )";
 
-int texel_bits(const std::string& store) { return 8 * gl::parse_pixel_format(store).bytes_per_texel; }
-
 std::string declare_pass_map(const PassSpec& spec, GLuint unit) {
   const bool has_levels = spec.steps == PassSteps::kLevels;
   const char* level = has_levels ? "level" : "0";
   const char* texels = spec.half ? "2.0" : "1.0";  // of the depth map along one of level 0
-  const int bits = texel_bits(spec.store);
+  const int bits = 8 * gl::parse_pixel_format(spec.store).bytes_per_texel;
   // What a prefix sum holds has come from anywhere: how far off it is read says nothing.
   const std::string count = spec.steps == PassSteps::kPrefix
                                 ? fmt::format("COUNT_LOAD(counted_uv / map_texel_uv, 0.0, {})", bits)

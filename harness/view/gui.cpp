@@ -10,7 +10,6 @@
 
 #include "filters/base/error.h"
 #include "harness/view/panels/times_panel.h"
-#include "harness/view/save.h"
 #include "report/images/picture_io.h"
 
 namespace shadowbench::view {
@@ -35,13 +34,6 @@ constexpr std::pair<const char*, const char*> kGestures[] = {
     {"W A S D, E, Q", "fly ahead, left, back, right, up, down; Shift: faster"},
     {"Ctrl + click on a slider", "type a number"}};
 
-ImVec2 to_imgui(const glm::vec2& v) { return {v.x, v.y}; }
-
-std::string name_side(const Workbench& bench, std::size_t side) {
-  const Side& shown = bench.state().sides[side];
-  return shown.truth ? "ray-traced truth" : shown.filter.spec.id;
-}
-
 /// A path in `folder` without an extension, which no file of any extension has yet: "cubes-1".
 std::filesystem::path find_free_stem(const std::filesystem::path& folder, const std::string& name) {
   const auto is_taken = [&](const std::string& stem) {
@@ -62,7 +54,7 @@ void draw_caption(const glm::vec2& corner, const std::string& text) {
   const float edge = 0.3f * ImGui::GetFontSize();
   list->AddRectFilled({corner.x - edge, corner.y - edge}, {corner.x + size.x + edge, corner.y + size.y + edge},
                       kCaptionBack, 3.0f);
-  list->AddText(to_imgui(corner), kCaptionInk, text.c_str());
+  list->AddText({corner.x, corner.y}, kCaptionInk, text.c_str());
 }
 
 }  // namespace
@@ -188,7 +180,7 @@ void Gui::draw_picture() {
   render::DisplayPass::clear_window(window, glm::vec3(0.08f));
   const glm::ivec2 corner(static_cast<int>(at.corner.x), window.y - static_cast<int>(at.corner.y) - size.y);
   display_.draw(bench_.renderer().shaders, {shown_[0].values, shown_[1].values},
-                {corner, size, glm::vec2(0.0f), at.magnified, at.divider_column(look_)});
+                {.corner = corner, .size = size, .magnified = at.magnified, .divider = at.divider_column(look_)});
   draw_divider();
   lay_out_captions();
   lay_out_faults();
@@ -223,7 +215,8 @@ void Gui::lay_out_captions() {
   const float edge = 0.6f * ImGui::GetFontSize();
   for (std::size_t side = 0; side < kSides; ++side) {
     if (look_.sharing == Sharing::kFlip && side != look_.flipped_to) continue;
-    std::string text = name_side(bench_, side);
+    const Side& named = bench_.state().sides[side];
+    std::string text = named.truth ? "ray-traced truth" : named.filter.spec.id;
     const render::DisplayedValues& values = shown_[side].values;
     if (!shown_[side].absent.empty())
       text += ": " + shown_[side].absent;
@@ -282,8 +275,7 @@ void Gui::save_picture(const std::filesystem::path& stem) {
   for (std::size_t side = 0; side < kSides; ++side)
     shown[side] = layers_.show(Layers::list()[look_.layer], side, look_.error_scale, {0, size.x}).values;
   render::ImageTarget target("saved picture", GL_RGBA8, size.x, size.y);
-  display_.draw(bench_.renderer().shaders, shown,
-                {glm::ivec2(0), size, glm::vec2(0.0f), 1.0f, place().divider_column(look_)}, target);
+  display_.draw(bench_.renderer().shaders, shown, {.size = size, .divider = place().divider_column(look_)}, &target);
   std::vector<images::Part> parts;
   for (std::size_t side = 0; side < kSides; ++side) {
     const std::string name = kSideNames[side];

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 

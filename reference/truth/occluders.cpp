@@ -33,16 +33,13 @@ float read_alpha(const CutOut& cut_out, glm::vec2 uv) {
 /// Of the largest coordinates: see origin_offset().
 constexpr float kRoundings = 16.0f;
 
-bool has_area(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-  const glm::dvec3 normal = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
-  return glm::dot(normal, normal) > 0.0;
-}
-
 std::vector<std::uint32_t> keep_triangles_with_area(const OccluderMesh& mesh) {
   std::vector<std::uint32_t> kept;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const std::uint32_t a = mesh.indices[i], b = mesh.indices[i + 1], c = mesh.indices[i + 2];
-    if (has_area(mesh.positions[a], mesh.positions[b], mesh.positions[c])) kept.insert(kept.end(), {a, b, c});
+    const std::uint32_t* corner = &mesh.indices[i];
+    const glm::dvec3 a(mesh.positions[corner[0]]), b(mesh.positions[corner[1]]), c(mesh.positions[corner[2]]);
+    const glm::dvec3 normal = glm::cross(b - a, c - a);
+    if (glm::dot(normal, normal) > 0.0) kept.insert(kept.end(), corner, corner + 3);
   }
   return kept;
 }

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "report/analysis/summary.h"
 #include "report/records/format.h"
 #include "report/regress/noise_test.h"
 

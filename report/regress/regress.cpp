@@ -65,7 +65,7 @@ class Regression {
     find_missing();
     find_missing_truths();
     name_unreadable_files();
-    std::stable_sort(report_.comparisons.begin(), report_.comparisons.end(), is_worse);
+    std::ranges::stable_sort(report_.comparisons, is_worse);
     report_.options = options_;
     report_.accept_command = make_accept_command(options_);
     if (options_.accept) accept();
@@ -110,13 +110,12 @@ class Regression {
   /// A misspelt name would take cells out of the comparison, and nobody would notice.
   template <class Name>
   void require_known(const std::vector<std::string>& chosen, const char* option, const Name& name_of_cell) const {
-    std::vector<std::string> known;
-    for (const records::CellRecord& cell : run_.all_cells()) known.push_back(name_of_cell(cell));
-    for (const BaselineCell& cell : index_.cells) known.push_back(name_of_cell(cell));
-    std::sort(known.begin(), known.end());
-    known.erase(std::unique(known.begin(), known.end()), known.end());
+    std::set<std::string> names;
+    for (const records::CellRecord& cell : run_.all_cells()) names.insert(name_of_cell(cell));
+    for (const BaselineCell& cell : index_.cells) names.insert(name_of_cell(cell));
+    const std::vector<std::string> known(names.begin(), names.end());
     for (const std::string& name : chosen) {
-      if (std::binary_search(known.begin(), known.end(), name)) continue;
+      if (names.contains(name)) continue;
       throw Error(ErrorKind::kInput, fmt::format("{}: neither the run nor the baseline has '{}'{}; they have: {}",
                                                  option, name, did_you_mean(name, known), fmt::join(known, ", ")));
     }
@@ -129,8 +128,7 @@ class Regression {
   }
 
   const BaselineCell* find(const std::string& key) const {
-    const auto found = std::find_if(index_.cells.begin(), index_.cells.end(),
-                                    [&](const BaselineCell& cell) { return cell.key == key; });
+    const auto found = std::ranges::find(index_.cells, key, &BaselineCell::key);
     return found == index_.cells.end() ? nullptr : &*found;
   }
 
@@ -160,9 +158,7 @@ class Regression {
     } else {
       add_unknown(comparison, cell);
     }
-    if (options_.accept) accepter_.take(comparison, cell);
-    draw(comparison, images.visibility, cell.images.visibility);
-    report_.comparisons.push_back(std::move(comparison));
+    conclude(std::move(comparison), cell, images.visibility, cell.images.visibility);
   }
 
   void add_unknown(Comparison& comparison, const ActualCell& cell) {
@@ -193,27 +189,34 @@ class Regression {
       expected = found->second;
       comparison = regress::compare_truth(truth, expected, tolerances_.find(kTruthName, kLevel).limit);
     }
-    if (options_.accept) accepter_.take(comparison, truth);
-    draw(comparison, expected.area, truth.images.area);
+    conclude(std::move(comparison), truth, expected.area, truth.images.area);
+  }
+
+  /// Takes over and draws what was compared, where that is wanted; `Actual` is a cell or a truth.
+  template <class Actual>
+  void conclude(Comparison comparison, const Actual& actual, const images::Image& expected,
+                const images::Image& drawn) {
+    if (options_.accept) accepter_.take(comparison, actual);
+    const bool moved = comparison.outcome == Outcome::kChanged || comparison.outcome == Outcome::kLessAccurate;
+    if (moved && pictures_ < kMostPictures) {
+      ++pictures_;
+      comparison.picture =
+          files::make_file_stem(fmt::format("{}.{}.{}", comparison.scene, comparison.label, comparison.key)) + ".png";
+      write_regress_picture(options_.out / *comparison.picture, comparison, expected, drawn);
+    }
     report_.comparisons.push_back(std::move(comparison));
   }
 
-  void draw(Comparison& comparison, const images::Image& expected, const images::Image& actual) {
-    const bool moved = comparison.outcome == Outcome::kChanged || comparison.outcome == Outcome::kLessAccurate;
-    if (!moved || pictures_ >= kMostPictures) return;
-    ++pictures_;
-    comparison.picture =
-        files::make_file_stem(fmt::format("{}.{}.{}", comparison.scene, comparison.label, comparison.key)) + ".png";
-    write_regress_picture(options_.out / *comparison.picture, comparison, expected, actual);
+  void add_missing(Comparison comparison, const char* what) {
+    comparison.add(Outcome::kMissing, what);
+    if (options_.remove_missing) accepter_.drop(comparison);
+    report_.comparisons.push_back(std::move(comparison));
   }
 
   void find_missing() {
     for (const BaselineCell& cell : index_.cells) {
       if (seen_.contains(cell.key)) continue;
-      Comparison comparison = name_comparison(cell);
-      comparison.add(Outcome::kMissing, "the run has no such cell");
-      if (options_.remove_missing) accepter_.drop(comparison);
-      report_.comparisons.push_back(std::move(comparison));
+      add_missing(name_comparison(cell), "the run has no such cell");
     }
   }
 
@@ -228,9 +231,7 @@ class Regression {
         comparison.scene = scene;
         comparison.filter = comparison.label = kTruthName;
         comparison.settings = key;
-        comparison.add(Outcome::kMissing, "the run has no such truth");
-        if (options_.remove_missing) accepter_.drop(comparison);
-        report_.comparisons.push_back(std::move(comparison));
+        add_missing(std::move(comparison), "the run has no such truth");
       }
     }
   }
@@ -287,14 +288,10 @@ void remove_old_pictures(const std::filesystem::path& out) {
 }  // namespace
 
 int RegressReport::count(Outcome outcome) const {
-  return static_cast<int>(std::count_if(
-      comparisons.begin(), comparisons.end(), [&](const Comparison& each) { return each.outcome == outcome; }));
+  return static_cast<int>(std::ranges::count(comparisons, outcome, &Comparison::outcome));
 }
 
-int RegressReport::failed() const {
-  return static_cast<int>(std::count_if(
-      comparisons.begin(), comparisons.end(), [](const Comparison& each) { return each.failed(); }));
-}
+int RegressReport::failed() const { return static_cast<int>(std::ranges::count_if(comparisons, &Comparison::failed)); }
 
 RegressOutcome run_regress(const RegressOptions& options) {
   remove_old_pictures(options.out);

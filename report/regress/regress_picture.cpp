@@ -7,7 +7,6 @@
 #include <functional>
 #include <vector>
 
-#include "report/analysis/summary.h"
 #include "report/images/color_values.h"
 #include "report/images/figures/figure.h"
 #include "report/images/figures/fit_worst.h"

@@ -27,7 +27,7 @@ std::string quote_word(const std::string& word) {
   const auto plain = [](unsigned char c) {
     return std::isalnum(c) || std::string("_-./:=,+@%").find(static_cast<char>(c)) != std::string::npos;
   };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
   std::string quoted = "'";
   for (const char c : word) {
     if (c == '\'') quoted += "'\\'";
@@ -111,8 +111,7 @@ std::string describe_counts(const RegressReport& report) {
 
 /// Names the worst cell and what is wrong with it, in a line. Requires one that failed.
 std::string describe_worst(const RegressReport& report) {
-  const Comparison& worst = *std::find_if(report.comparisons.begin(), report.comparisons.end(),
-                                          [](const Comparison& each) { return each.failed(); });
+  const Comparison& worst = *std::ranges::find_if(report.comparisons, &Comparison::failed);
   return fmt::format("{} is {}: {}", name_cell(worst), name_of(worst.outcome), worst.findings.front().text);
 }
 

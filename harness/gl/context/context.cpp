@@ -160,14 +160,10 @@ void Context::initialise(GlInfo info, std::chrono::steady_clock::time_point star
   info_.software = info_.software || looks_like_software(info_.renderer);
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &info_.max_texture_size);
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-  record_errors();
-  info_.creation_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-void Context::record_errors() {
   glEnable(GL_DEBUG_OUTPUT);
   glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
   glDebugMessageCallback(&Context::record_message, this);
+  info_.creation_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 void GLAPIENTRY Context::record_message(GLenum source, GLenum type, GLuint, GLenum severity, GLsizei length,
@@ -175,7 +171,7 @@ void GLAPIENTRY Context::record_message(GLenum source, GLenum type, GLuint, GLen
   if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;
   if (type != GL_DEBUG_TYPE_ERROR && type != GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) return;
   if (severity != GL_DEBUG_SEVERITY_HIGH && severity != GL_DEBUG_SEVERITY_MEDIUM) return;
-  // The pointer is the `this` of record_errors; GL hands it back as const.
+  // The pointer is the `this` of initialise(); GL hands it back as const.
   auto* self = const_cast<Context*>(static_cast<const Context*>(context));
   self->errors_.push_back(length < 0 ? std::string(message) : std::string(message, static_cast<std::size_t>(length)));
 }

@@ -1,6 +1,5 @@
 #include "harness/measure/timing/light_timing.h"
 
-#include <cassert>
 #include <map>
 #include <memory>
 
@@ -66,10 +65,6 @@ void LightFrameBench::prepare_filters(const std::vector<scene::Light>& lights) {
   }
 }
 
-void LightFrameBench::draw_maps() {
-  for (LightMap& map : maps_) assets_.redraw(map);
-}
-
 void LightFrameBench::prefilter(std::size_t filter) {
   for (std::size_t i = 0; i < maps_.size(); ++i) {
     frame_.filters[filter]->turn_to(prepared_[filter][i]);
@@ -86,7 +81,11 @@ void LightFrameBench::look_up(std::size_t filter) {
 
 RoundTimes LightFrameBench::time(const std::function<void(double part)>& on_part) {
   const gl::TimerKind timer = renderer_.timer;
-  TimedPasses timed{.draw_map = [&] { return gl::time_ms(timer, [&] { draw_maps(); }); }};
+  TimedPasses timed{.draw_map = [&] {
+    return gl::time_ms(timer, [&] {
+      for (LightMap& map : maps_) assets_.redraw(map);
+    });
+  }};
   for (std::size_t i = 0; i < frame_.filters.size(); ++i) {
     std::function<void()> prefilters;
     if (frame_.filters[i]->has_prefilter()) prefilters = [this, i] { prefilter(i); };

@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <set>
 #include <span>
 
 #include "filters/map_reader.h"
@@ -12,17 +13,6 @@
 
 namespace shadowbench::view {
 namespace {
-
-glm::ivec2 to_texel(std::size_t index, int size) {
-  const auto side = static_cast<std::size_t>(size);
-  return {static_cast<int>(index % side), static_cast<int>(index / side)};
-}
-
-void sort_unique(std::vector<glm::ivec2>& texels) {
-  const auto less = [](const glm::ivec2& a, const glm::ivec2& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; };
-  std::ranges::sort(texels, less);
-  texels.erase(std::unique(texels.begin(), texels.end()), texels.end());
-}
 
 constexpr float kLargestSide = 400.0f;
 constexpr ImU32 kReceiverInk = IM_COL32(255, 60, 60, 255);
@@ -45,7 +35,8 @@ void MapPanel::lay_out(Look& look, const std::optional<glm::ivec2>& pixel, std::
       contents.push_back(fmt::format("{} stores: channel {}", passes->request().spec.id, channel + 1));
   content_ = std::min(content_, contents.size() - 1);
   widgets_.choose("map.content", "content", contents, content_);
-  widgets_.slide("map.zoom", "zoom", {1.0, 128.0, true, false, ""}, zoom_, "Around the receiver under the pointer.");
+  widgets_.slide("map.zoom", "zoom", {.min = 1.0, .max = 128.0, .logarithmic = true}, zoom_,
+                 "Around the receiver under the pointer.");
   // What stands above and below the map takes ten lines.
   const float room = ImGui::GetIO().DisplaySize.y - 60.0f * scale - 10.0f * ImGui::GetTextLineHeightWithSpacing();
   const float side_pixels = std::clamp(room, 100.0f * scale, kLargestSide * scale);
@@ -82,7 +73,7 @@ void MapPanel::show_map(int side_pixels, int layer) {
   const glm::dvec2 first = glm::clamp(centre - 0.5 * shown, glm::dvec2(0.0), glm::dvec2(texels - shown));
   const auto magnified = static_cast<float>(side_pixels / shown);
   display_.draw(bench_.renderer().shaders, {values, values},
-                {glm::ivec2(0), glm::ivec2(side_pixels), glm::vec2(first), magnified, 0.0f}, *target_);
+                {.size = glm::ivec2(side_pixels), .first_pixel = glm::vec2(first), .magnified = magnified}, &*target_);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   widgets_.show("map.image", target_->texture());
   draw_footprint({corner.x, corner.y}, side_pixels, first);
@@ -179,12 +170,11 @@ FootprintFinder::Prepared* FootprintFinder::prepare(std::size_t side, int layer)
   if (!model) return nullptr;
   prepared = std::make_unique<Prepared>(Prepared{request, map.read(layer), std::move(model), nullptr});
   const ViewState& state = bench_.state();
-  prepared->lookup = prepared->model->prepare({prepared->request.spec,
-                                               prepared->request.values,
-                                               prepared->map,
-                                               {},
-                                               state.options.seed,
-                                               state.options.bias.plane_max_tangent()},
+  prepared->lookup = prepared->model->prepare({.spec = prepared->request.spec,
+                                               .values = prepared->request.values,
+                                               .map = prepared->map,
+                                               .seed = state.options.seed,
+                                               .plane_max_tangent = state.options.bias.plane_max_tangent()},
                                               filters::Precision::kFloat);
   return prepared.get();
 }
@@ -194,9 +184,11 @@ void FootprintFinder::add_reads(Footprint& footprint, std::size_t side) {
   if (prepared == nullptr) return;
   filters::ReadLog log;
   const filters::ModelResult result = prepared->lookup->at(footprint.receiver);
-  for (const filters::TexelRead& read : log.reads())
-    footprint.reads.push_back(to_texel(read.texel, bench_.state().map_size()));
-  sort_unique(footprint.reads);
+  const auto size = static_cast<std::size_t>(bench_.state().map_size());
+  std::set<std::size_t> texels;  // row by row
+  for (const filters::TexelRead& read : log.reads()) texels.insert(read.texel);
+  for (const std::size_t texel : texels)
+    footprint.reads.emplace_back(static_cast<int>(texel % size), static_cast<int>(texel / size));
   if (result.disk_radius_texels > 0.0) {
     footprint.half_width_texels = result.disk_radius_texels + 1.0;  // read through 2x2 texels
     footprint.is_disk = true;

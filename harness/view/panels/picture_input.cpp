@@ -94,7 +94,8 @@ void PictureInput::fly_by_keys(double seconds) {
            key_axis(window_, GLFW_KEY_W, GLFW_KEY_S)};
   is_flying_ = way != glm::vec3(0.0f);
   if (!is_flying_) return;
-  const float speed = kFlightsPerSecond * scene_size() * (io.KeyShift ? kFaster : 1.0f);
+  const scene::Bounds bounds = bench_.state().scene.bounds();
+  const float speed = kFlightsPerSecond * glm::length(bounds.max - bounds.min) * (io.KeyShift ? kFaster : 1.0f);
   set_camera(fly(bench_.state().active_camera(), way * speed * static_cast<float>(std::min(seconds, 0.1))));
 }
 
@@ -107,11 +108,6 @@ glm::vec3 PictureInput::find_pivot(const glm::vec2& pixel) const {
   if (const auto place = bench_.stage().find_surface(glm::ivec2(pixel))) return glm::vec3(*place);
   const scene::Bounds bounds = bench_.state().scene.bounds();
   return 0.5f * (bounds.min + bounds.max);
-}
-
-float PictureInput::scene_size() const {
-  const scene::Bounds bounds = bench_.state().scene.bounds();
-  return glm::length(bounds.max - bounds.min);
 }
 
 }  // namespace shadowbench::view

@@ -4,7 +4,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <map>
 
 #include "filters/base/error.h"
 #include "harness/gl/pixel_format.h"
@@ -27,8 +26,8 @@ std::size_t find_index(const std::vector<std::string>& names, const std::string&
 
 /// The range of a mode's amount, by the unit that it is given in.
 Widgets::Range bias_range(const std::string& key) {
-  if (key == "depth") return {1e-6, 0.1, true, false, "depth"};
-  return {0.0, 10.0, false, false, key};
+  if (key == "depth") return {.min = 1e-6, .max = 0.1, .logarithmic = true, .unit = key};
+  return {.max = 10.0, .unit = key};
 }
 
 }  // namespace
@@ -54,7 +53,7 @@ void SettingsPanel::show_look(Look& look) {
   if (widgets_.choose("sharing", "sides", {"divider", "one at a time (Space)"}, sharing))
     look.sharing = sharing == 0 ? Sharing::kDivider : Sharing::kFlip;
   double scale = static_cast<double>(look.error_scale);
-  if (widgets_.slide("error_scale", "full colour at", {0.001, 1.0, true, false, ""}, scale,
+  if (widgets_.slide("error_scale", "full colour at", {.min = 0.001, .logarithmic = true}, scale,
                      "The error of visibility that gets the full red or blue."))
     look.error_scale = static_cast<float>(scale);
 }
@@ -103,9 +102,10 @@ void SettingsPanel::show_light() {
   }
   const scene::SkyAngles at = find_in_sky(state.scene.light);
   double azimuth = at.azimuth_deg, elevation = at.elevation_deg;
-  const bool turned =
-      widgets_.slide("azimuth", "azimuth", {-180.0, 180.0, false, false, "degrees"}, azimuth, "0 is +z, 90 is +x.");
-  const bool raised = widgets_.slide("elevation", "elevation", {-90.0, 90.0, false, false, "degrees"}, elevation);
+  const bool turned = widgets_.slide("azimuth", "azimuth", {.min = -180.0, .max = 180.0, .unit = "degrees"}, azimuth,
+                                     "0 is +z, 90 is +x.");
+  const bool raised =
+      widgets_.slide("elevation", "elevation", {.min = -90.0, .max = 90.0, .unit = "degrees"}, elevation);
   scene::Light light = state.scene.light;
   if (turned || raised) light = scene::place_in_sky(light, {azimuth, elevation});
   bool changed = turned || raised;
@@ -116,9 +116,10 @@ void SettingsPanel::show_light() {
       continue;
     }
     double value = static_cast<double>(*number.value);
-    if (!widgets_.slide(name, number.name,
-                        {static_cast<double>(number.min), static_cast<double>(number.max), false, false, number.unit},
-                        value))
+    if (!widgets_.slide(
+            name, number.name,
+            {.min = static_cast<double>(number.min), .max = static_cast<double>(number.max), .unit = number.unit},
+            value))
       continue;
     *number.value = static_cast<float>(value);
     changed = true;
@@ -196,7 +197,7 @@ void SettingsPanel::show_camera() {
   const scene::Camera& camera = state.active_camera();
   double fov = glm::degrees(static_cast<double>(camera.vertical_fov_rad));
   if (camera.orthographic_height_m <= 0.0f &&
-      widgets_.slide("fov", "field of view", {5.0, 120.0, false, false, "degrees"}, fov, "Vertical."))
+      widgets_.slide("fov", "field of view", {.min = 5.0, .max = 120.0, .unit = "degrees"}, fov, "Vertical."))
     bench_.change({.camera = true}, [&](ViewSettings& settings) {
       settings.cameras[settings.camera].vertical_fov_rad = static_cast<float>(glm::radians(fov));
     });

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -137,7 +136,10 @@ bool Widgets::parameter(const std::string& name, const filters::ParamSpec& spec,
   const double usual = std::get<double>(spec.default_value);
   const bool is_linear = *spec.min >= *spec.max ||
                          tune::ParamScale({spec.name, *spec.min, *spec.max, usual, spec.integer}).name() == "linear";
-  return slide(name, spec.name, {*spec.min, *spec.max, !is_linear, spec.integer, spec.unit}, *number, help);
+  return slide(
+      name, spec.name,
+      {.min = *spec.min, .max = *spec.max, .logarithmic = !is_linear, .integer = spec.integer, .unit = spec.unit},
+      *number, help);
 }
 
 }  // namespace shadowbench::view

@@ -24,7 +24,7 @@ class Widgets {
     double max = 1.0;
     bool logarithmic = false;
     bool integer = false;
-    std::string unit;
+    std::string unit = {};
   };
 
   /// A number within a range; one typed in (Ctrl and a click) stays within it.
