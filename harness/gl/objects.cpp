@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "filters/base/error.h"
-#include "harness/gl/gl_error.h"
+#include "harness/gl/handle.h"
 
 namespace shadowbench::gl {
 

@@ -6,8 +6,6 @@
 #include <cctype>
 #include <stdexcept>
 
-#include "harness/gl/shader_log.h"
-
 namespace shadowbench::gl {
 namespace {
 
@@ -91,8 +89,7 @@ GLint Program::location(std::string_view name) {
   if (known != locations_.end()) return known->second;
   const GLint found = glGetUniformLocation(id(), std::string(name).c_str());
   if (found < 0) {
-    const std::string_view base =
-        name.substr(0, name.find_first_of(".["));  // "lights[0].color" is declared as `lights`
+    const std::string_view base = name.substr(0, name.find_first_of(".["));  // `lights` of "lights[0].color"
     const auto declares = [&](const ShaderSource& source) { return contains_word(source.text, base); };
     if (std::ranges::none_of(sources_, declares))
       throw std::logic_error(fmt::format("program '{}' has no uniform '{}'", label_, name));
@@ -123,24 +120,8 @@ void Program::set(std::string_view name, const glm::vec4& value) {
   glProgramUniform4fv(id(), location(name), 1, &value[0]);
 }
 
-void Program::set(std::string_view name, const glm::mat3& value) {
-  glProgramUniformMatrix3fv(id(), location(name), 1, GL_FALSE, &value[0][0]);
-}
-
 void Program::set(std::string_view name, const glm::mat4& value) {
   glProgramUniformMatrix4fv(id(), location(name), 1, GL_FALSE, &value[0][0]);
-}
-
-void Program::set(std::string_view name, std::span<const float> values) {
-  if (!values.empty()) glProgramUniform1fv(id(), location(name), static_cast<GLsizei>(values.size()), values.data());
-}
-
-void Program::set(std::string_view name, std::span<const glm::vec2> values) {
-  if (!values.empty()) glProgramUniform2fv(id(), location(name), static_cast<GLsizei>(values.size()), &values[0][0]);
-}
-
-void Program::set(std::string_view name, std::span<const glm::vec4> values) {
-  if (!values.empty()) glProgramUniform4fv(id(), location(name), static_cast<GLsizei>(values.size()), &values[0][0]);
 }
 
 }  // namespace shadowbench::gl

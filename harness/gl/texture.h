@@ -55,7 +55,7 @@ class Texture {
   GLuint id() const { return handle_.id(); }
 
  private:
-  void require_count(std::size_t count, int channels) const;
+  void upload(std::size_t count, int channels, GLenum type, const void* texels);
 
   Handle<GL_TEXTURE> handle_;
   const PixelFormat* format_;

@@ -6,7 +6,7 @@
 #include <glslang/SPIRV/GlslangToSpv.h>
 
 #include "filters/base/error.h"
-#include "harness/gl/shader_log.h"
+#include "harness/gl/shader_source.h"
 
 namespace shadowbench::gpu {
 namespace {

@@ -28,6 +28,14 @@ std::optional<scene::DepthSpan> find_seen_depths(const render::GBuffer& gbuffer)
   return span.far_m > 0.0 ? std::optional(span) : std::nullopt;
 }
 
+/// The half-width in texels of the widest kernel of these filters.
+double largest_radius_texels(const std::vector<filters::FilterRequest>& requests) {
+  double largest = 0.0;
+  for (const auto& request : requests)
+    largest = std::max(largest, filters::radius_texels(request.spec, request.values));
+  return largest;
+}
+
 }  // namespace
 
 std::vector<scene::LightFrustum> fit_map_layers(const options::RunOptions& options, const MapFit& fit,
@@ -138,13 +146,6 @@ SceneTruth SceneAssets::make_truth(const scene::Camera& camera) {
   truth.area_picture = shaded(truth.area);
   truth.area_seen = view_picture(images::round_to_half(truth.area_picture));
   return truth;
-}
-
-double largest_radius_texels(const std::vector<filters::FilterRequest>& requests) {
-  double largest = 0.0;
-  for (const auto& request : requests)
-    largest = std::max(largest, filters::radius_texels(request.spec, request.values));
-  return largest;
 }
 
 double largest_padding_texels(const std::vector<filters::FilterRequest>& requests) {

@@ -91,9 +91,6 @@ void require_one_layer(const LightMap& light, const std::string& command, const 
 /// Reads a map back as a picture of linear depth, rows top to bottom.
 images::Image read_linear_depth(const render::ShadowMap& map);
 
-/// The half-width in texels of the widest kernel of these filters.
-double largest_radius_texels(const std::vector<filters::FilterRequest>& requests);
-
 /// The padding that the widest kernel of these filters needs, in whole texels.
 double largest_padding_texels(const std::vector<filters::FilterRequest>& requests);
 

@@ -9,14 +9,14 @@
 
 #include "filters/kernel_width.h"
 #include "filters/model.h"
+#include "filters/random.h"
 #include "harness/measure/filter_setup.h"
+#include "harness/measure/receiver_pixels.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/suspects.h"
 #include "harness/measure/timing/light_timing.h"
 #include "harness/measure/timing/statistics.h"
 #include "harness/measure/timing/timing.h"
-#include "harness/measure/uncertainty.h"
-#include "harness/render/filter_passes.h"
 #include "harness/render/receivers.h"
 #include "harness/render/shade_pass.h"
 #include "report/records/cell_key.h"
@@ -52,8 +52,7 @@ class SceneBench {
       result.passes_skipped += std::max(0, 3 - prefilter);
       stability.warn(result.cells.back(), *filters.back());
       if (options_.stability) stability.measure(result.cells.back(), *filters.back());
-      if (options_.uncertainty)
-        result.cells.back().uncertainty = measure_uncertainty({renderer_, options_, task_, assets_}, *filters.back());
+      if (options_.uncertainty) result.cells.back().uncertainty = measure_uncertainty(*filters.back());
       if (options_.truth || options_.worker) result.cells.back().unbiased = draw_unbiased(*filters.back());
     }
     time(result, filters);
@@ -101,7 +100,7 @@ class SceneBench {
                         .map_bytes = cell.cost.map_bytes,
                         .prefilter_texels = cell.cost.prefilter_texels};
     if (!cell.cost.fetches) cell.record.absent["cost.fetches"] = "the filter reads the map's samplers itself";
-    check_drawing(cell, cell.cost, *renderer_.context);
+    check_drawing(cell, *renderer_.context);
     return cell;
   }
 
@@ -121,6 +120,68 @@ class SceneBench {
     filter.retune(renderer_.shaders, values, own);
     if (biased_map) assets_.redraw(light_);
     return image;
+  }
+
+  /// Measures how far rounding can move each pixel (filters with a scalar model), and how far other seeds move it
+  /// (stochastic filters). Requires that the filter's map was made. The passes keep the run's own seed. Cost: the
+  /// scalar model with its running error bound for every receiver, and images::kSpreadSeeds lookups.
+  images::UncertaintyImages measure_uncertainty(render::FilterPasses& filter) {
+    images::UncertaintyImages uncertainty;
+    const filters::FilterSpec& spec = filter.request().spec;
+    if (spec.kind == filters::FilterKind::kStochastic) uncertainty = spread_seeds(filter);
+    if (const auto model = filters::make_model(spec)) uncertainty.rounding = bound_rounding(*model, filter);
+    return uncertainty;
+  }
+
+  /// Bounds what the same computation in single precision may make of each pixel.
+  images::Image bound_rounding(const filters::Model& model, const render::FilterPasses& filter) {
+    images::Image image(options_.width, options_.height, 1);
+    for (const render::LightSetup& layer : filter.light()) {
+      const filters::DepthMap map = light_.map.read(layer.frustum.layer);
+      const auto tracked = model.prepare({.spec = filter.request().spec,
+                                          .values = filter.request().values,
+                                          .map = map,
+                                          .accuracy = measure_accuracy(renderer_),
+                                          .seed = options_.seed,
+                                          .plane_max_tangent = options_.bias.plane_max_tangent()},
+                                         filters::Precision::kTracked);
+      const auto receivers = render::read_receivers(renderer_.shaders, gbuffer_, layer);
+      visit_in_parallel(receivers.size(), [&](std::size_t i) {
+        const filters::ModelResult result = tracked->at(receivers[i]);
+        const float of_share = receivers[i].layer_share < 1.0f ? 0x1p-23f : 0.0f;
+        const float bound = result.bound < 1.0 ? static_cast<float>(result.bound) + of_share : 1.0f;
+        float& pixel = image.texels[find_pixel(receivers[i], options_.width, options_.height)];
+        pixel = result.excused ? images::kMayFlip : pixel + receivers[i].layer_share * bound;
+      });
+    }
+    return image;
+  }
+
+  /// Mean and deviation of each pixel over a sample of seeds.
+  images::UncertaintyImages spread_seeds(render::FilterPasses& filter) {
+    const render::LightLayers own = filter.light();
+    images::UncertaintyImages spread;
+    spread.seed_mean = spread.seed_deviation = images::Image(options_.width, options_.height, 1);
+    std::vector<double> sum(spread.seed_mean.texels.size()), squares(sum.size());
+    for (std::uint32_t i = 1; i <= static_cast<std::uint32_t>(images::kSpreadSeeds); ++i) {
+      render::LightLayers other = own;
+      for (render::LightSetup& layer : other) layer.seed = filters::hash_bits(own.front().seed + i);
+      filter.retune(renderer_.shaders, filter.request().values, other);
+      const images::Image image = draw_visibility(filter, light_.map, gbuffer_, target_);
+      for (std::size_t p = 0; p < sum.size(); ++p) {
+        const double value = static_cast<double>(image.texels[p]);
+        sum[p] += value;
+        squares[p] += value * value;
+      }
+    }
+    filter.retune(renderer_.shaders, filter.request().values, own);
+    for (std::size_t p = 0; p < sum.size(); ++p) {
+      const double n = images::kSpreadSeeds, mean = sum[p] / n;
+      spread.seed_mean.texels[p] = static_cast<float>(mean);
+      spread.seed_deviation.texels[p] =
+          static_cast<float>(std::sqrt(std::max(squares[p] - n * mean * mean, 0.0) / (n - 1.0)));
+    }
+    return spread;
   }
 
   /// A map that holds depth in steps shadows surfaces by up to half a step, in the light's face as on a slope.

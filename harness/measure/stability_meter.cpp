@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "filters/model.h"
 #include "filters/percentage_closer.h"
 #include "filters/store_format.h"
 #include "harness/measure/filter_setup.h"

@@ -10,9 +10,7 @@
 #include <exception>
 #include <new>
 #include <stop_token>
-#include <thread>
 #include <utility>
-#include <vector>
 
 namespace shadowbench::view {
 namespace {

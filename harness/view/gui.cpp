@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "filters/base/error.h"
-#include "harness/view/panels/times_panel.h"
 #include "report/images/picture_io.h"
 
 namespace shadowbench::view {

@@ -4,7 +4,6 @@
 
 #include "filters/base/error.h"
 #include "filters/format/front_matter.h"
-#include "harness/measure/filter_setup.h"
 #include "harness/render/shade_pass.h"
 
 namespace shadowbench::view {

@@ -194,11 +194,9 @@ bool Workbench::draw() {
 
 FileWatch::Stamp FileWatch::read_stamp(const std::filesystem::path& file) {
   std::error_code missing;
-  Stamp stamp;
-  stamp.written = std::filesystem::last_write_time(file, missing);
-  if (!missing) stamp.bytes = std::filesystem::file_size(file, missing);
-  stamp.is_there = !missing;
-  return stamp.is_there ? stamp : Stamp();
+  const auto written = std::filesystem::last_write_time(file, missing);
+  const std::uintmax_t bytes = missing ? 0 : std::filesystem::file_size(file, missing);
+  return missing ? std::nullopt : Stamp({written, bytes});
 }
 
 void FileWatch::watch(const std::vector<std::filesystem::path>& files) {
@@ -215,7 +213,7 @@ bool FileWatch::has_changed() {
   for (auto& [file, stamp] : files_) {
     const Stamp now = read_stamp(file);
     // An editor that replaces a file leaves none for a moment: what is not there yet is no change.
-    if (!now.is_there || now == stamp) continue;
+    if (!now || now == stamp) continue;
     stamp = now;
     changed = true;
   }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,13 +26,9 @@ class FileWatch {
   bool has_changed();
 
  private:
-  /// What tells a file's states apart; two saves within a clock's tick differ in size or in their inode, mostly.
-  struct Stamp {
-    std::filesystem::file_time_type written{};
-    std::uintmax_t bytes = 0;
-    bool is_there = false;
-    bool operator==(const Stamp&) const = default;
-  };
+  /// What tells a file's states apart, nothing of one that is not there; two saves within a clock's tick differ in size
+  /// or in their inode, mostly.
+  using Stamp = std::optional<std::pair<std::filesystem::file_time_type, std::uintmax_t>>;
 
   std::map<std::filesystem::path, Stamp> files_;
 

@@ -1,10 +1,8 @@
 #include "reference/truth/occluders.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <limits>
 #include <new>
 #include <stdexcept>
 #include <string>

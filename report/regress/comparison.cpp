@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "report/records/format.h"
 #include "report/regress/noise_test.h"
@@ -267,16 +266,8 @@ std::string find_obstacle(const TruthImages& actual, const TruthImages& expected
 }  // namespace
 
 std::string name_of(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::kSame: return "same";
-    case Outcome::kSlower: return "slower";
-    case Outcome::kChanged: return "changed";
-    case Outcome::kLessAccurate: return "less accurate";
-    case Outcome::kExtra: return "extra";
-    case Outcome::kMissing: return "missing";
-    case Outcome::kUnreadable: return "unreadable";
-  }
-  return "";
+  constexpr const char* kNames[] = {"same", "slower", "changed", "less accurate", "extra", "missing", "unreadable"};
+  return kNames[static_cast<std::size_t>(outcome)];
 }
 
 void Comparison::add(Outcome worse, Finding finding) {

@@ -41,7 +41,4 @@ struct PixelChange {
 /// Compares images of one size. A pixel may differ by `tolerance` and the rounding bounds of both.
 PixelChange compare_pixels(const CellImages& actual, const CellImages& expected, double tolerance);
 
-/// Gives actual less expected.
-images::Image subtract(const images::Image& actual, const images::Image& expected);
-
 }  // namespace shadowbench::regress

@@ -43,11 +43,8 @@ class Regression {
     const bool known = baseline_.exists();
     if (options.accept) lock_.emplace(options.baseline);
     report_.damaged = baseline_.check();
-    if (known && !options.accept) require_sound();
-    if (known)
-      tolerances_ = read_tolerances(baseline_.tolerance_file());
-    else if (!options.accept)
-      fail_without_baseline();
+    if (!options.accept) require_sound(known);
+    if (known) tolerances_ = read_tolerances(baseline_.tolerance_file());
     index_ = baseline_.read_index();
     require_known(
         options.selection.filters, "--filters", [](const auto& cell) { return cell.filter; });
@@ -68,7 +65,11 @@ class Regression {
     std::ranges::stable_sort(report_.comparisons, is_worse);
     report_.options = options_;
     report_.accept_command = make_accept_command(options_);
-    if (options_.accept) accept();
+    if (options_.accept) {
+      const records::RunRecord& run = run_.run();
+      report_.accepted = accepter_.write({.seed = run.seed, .renderer = run.gl.renderer, .commit = run.commit});
+      report_.left = baseline_.damage();
+    }
     return std::move(report_);
   }
 
@@ -89,22 +90,17 @@ class Regression {
   std::pair<std::string, std::string> file_name_;
   int pictures_ = 0;
 
-  [[noreturn]] void fail_without_baseline() const {
-    throw Error(
-        ErrorKind::kInput,
-        fmt::format("there is no baseline here (no baseline.toml); make one: {}", make_accept_command(options_)),
-        options_.baseline.string());
-  }
-
   /// What a damaged file says is no expectation, and a limit that it has lost would pass anything.
-  void require_sound() const {
-    if (report_.damaged.empty()) return;
-    throw Error(
-        ErrorKind::kInput,
-        fmt::format("this baseline is not as it was accepted: {}; restore it, or, if that was meant or accepting "
-                    "was stopped: {}",
-                    describe_damage(report_.damaged), make_accept_command(options_)),
-        options_.baseline.string());
+  void require_sound(bool is_known) const {
+    const auto refuse = [&](const std::string& why) {
+      throw Error(ErrorKind::kInput, why + make_accept_command(options_), options_.baseline.string());
+    };
+    if (!is_known) refuse("there is no baseline here (no baseline.toml); make one: ");
+    if (!report_.damaged.empty())
+      refuse(
+          fmt::format("this baseline is not as it was accepted: {}; restore it, or, if that was meant or accepting "
+                      "was stopped: ",
+                      describe_damage(report_.damaged)));
   }
 
   /// A misspelt name would take cells out of the comparison, and nobody would notice.
@@ -166,13 +162,11 @@ class Regression {
         (std::filesystem::path(files::make_file_stem(cell.record.scene)) / files::make_file_stem(cell.record.filter))
             .string();
     const auto unreadable = index_.unreadable.find(file);
-    if (unreadable != index_.unreadable.end()) named_unreadable_.insert(file);
-    if (unreadable != index_.unreadable.end())
-      comparison.add(Outcome::kUnreadable, unreadable->second);
-    else if (!cell.unreadable.empty())
-      comparison.add(Outcome::kUnreadable, cell.unreadable);
-    else
-      comparison.add(Outcome::kExtra, "the baseline has no such cell");
+    const bool is_known = unreadable != index_.unreadable.end();
+    if (is_known) named_unreadable_.insert(file);
+    const std::string reason = is_known ? unreadable->second : cell.unreadable;
+    comparison.add(reason.empty() ? Outcome::kExtra : Outcome::kUnreadable,
+                   reason.empty() ? "the baseline has no such cell" : reason);
   }
 
   void compare_truth(const ActualTruth& truth) {
@@ -214,10 +208,8 @@ class Regression {
   }
 
   void find_missing() {
-    for (const BaselineCell& cell : index_.cells) {
-      if (seen_.contains(cell.key)) continue;
-      add_missing(name_comparison(cell), "the run has no such cell");
-    }
+    for (const BaselineCell& cell : index_.cells)
+      if (!seen_.contains(cell.key)) add_missing(name_comparison(cell), "the run has no such cell");
   }
 
   void find_missing_truths() {
@@ -262,12 +254,6 @@ class Regression {
       comparison.add(Outcome::kUnreadable, reason);
       report_.comparisons.push_back(std::move(comparison));
     }
-  }
-
-  void accept() {
-    const records::RunRecord& run = run_.run();
-    report_.accepted = accepter_.write({.seed = run.seed, .renderer = run.gl.renderer, .commit = run.commit});
-    report_.left = baseline_.damage();
   }
 };
 

@@ -5,7 +5,6 @@
 #include <sys/statvfs.h>
 
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -15,7 +14,7 @@
 
 #include "filters/base/error.h"
 #include "harness/gl/context/context_backends.h"
-#include "harness/gl/gl_error.h"
+#include "harness/gl/handle.h"
 
 namespace shadowbench::gl {
 namespace {

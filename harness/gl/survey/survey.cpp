@@ -5,13 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/glm.hpp>
 #include <numbers>
 #include <span>
-
-#include "harness/gl/objects.h"
-#include "harness/gl/program.h"
-#include "harness/gl/survey/survey_shader.h"
 
 namespace shadowbench::gl {
 namespace {
@@ -348,6 +343,24 @@ std::string describe_survey(const GlInfo& info, const GlSurvey& measured) {
               : fmt::format("  loops                 ended by the GL after {} turns, without a word\n",
                             measured.loop_turns);
   return text;
+}
+
+SurveyShader::SurveyShader(const std::string& fragment, glm::ivec2 size, GLenum format)
+    : program_(fragment, FullscreenTriangle::vertex_source(), embedded_source(fragment)),
+      target_(fragment, format, size.x, size.y),
+      framebuffer_(fragment) {
+  framebuffer_.attach_color(0, target_);
+}
+
+void SurveyShader::draw() {
+  framebuffer_.bind();
+  program_.use();
+  triangle_.draw();
+}
+
+std::vector<float> SurveyShader::run() {
+  draw();
+  return target_.read_floats(target_.format().channels);
 }
 
 }  // namespace shadowbench::gl

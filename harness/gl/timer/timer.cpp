@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "harness/gl/objects.h"
-#include "harness/gl/survey/survey_shader.h"
+#include "harness/gl/survey/survey.h"
 
 namespace shadowbench::gl {
 namespace {

@@ -139,12 +139,8 @@ class Rounds {
 }  // namespace
 
 std::string name_of(StopReason reason) {
-  switch (reason) {
-    case StopReason::kRounds: return "rounds";
-    case StopReason::kPrecise: return "precise";
-    case StopReason::kBudget: return "budget";
-  }
-  return {};
+  constexpr const char* kNames[] = {"rounds", "precise", "budget"};
+  return kNames[static_cast<std::size_t>(reason)];
 }
 
 std::vector<double> add_moving(const std::vector<double>& map, const FilterTimes& times) {

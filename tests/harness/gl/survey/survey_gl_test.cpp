@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "harness/gl/survey/survey.h"
-#include "harness/gl/survey/survey_shader.h"
 #include "tests/harness/gl/gl_fixture.h"
 
 namespace shadowbench::gl {
