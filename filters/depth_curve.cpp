@@ -6,16 +6,6 @@
 
 namespace shadowbench::filters {
 
-double depth_of_distance(double distance_m, const DepthPlanes& planes, bool reversed) {
-  return DepthCurve{reversed, planes.far_m / planes.near_m}.store((distance_m - planes.near_m) /
-                                                                  (planes.far_m - planes.near_m));
-}
-
-double distance_of_depth(double depth, const DepthPlanes& planes, bool reversed) {
-  const double z = DepthCurve{reversed, planes.far_m / planes.near_m}.linear(depth);
-  return planes.near_m + z * (planes.far_m - planes.near_m);
-}
-
 double depth_quantum(double depth, const DepthFormat& format) {
   if (!format.is_float) return 1.0 / (std::exp2(format.bits) - 1.0);
   // Depth below the smallest normal number is 0 on most GLs.
@@ -26,11 +16,6 @@ double depth_quantum(double depth, const DepthFormat& format) {
 double depth_step(double depth, const DepthCurve& curve, const DepthFormat& format) {
   const double ratio = curve.far_over_near, distance = 1.0 + (ratio - 1.0) * depth;  // in units of the near plane's
   return distance * distance / ratio * depth_quantum(curve.store(depth), format);
-}
-
-double distance_step(double distance_m, const DepthPlanes& planes, const DepthFormat& format, bool reversed) {
-  const double range_m = planes.far_m - planes.near_m;
-  return range_m * depth_step((distance_m - planes.near_m) / range_m, {reversed, planes.far_m / planes.near_m}, format);
 }
 
 }  // namespace shadowbench::filters

@@ -37,20 +37,6 @@ struct DepthCurve {
   bool is_lit(float reference, float stored) const { return reversed ? reference >= stored : reference <= stored; }
 };
 
-/// The planes between which a perspective projection has depth; metres, 0 < near < far.
-struct DepthPlanes {
-  double near_m = 0.1;
-  double far_m = 100.0;
-};
-
-/// The depth in [0,1] that a perspective projection stores for a distance along its axis: f / (f - n) (1 - n / d);
-/// reversed: 1 minus that, n (f - d) / ((f - n) d). Source: OpenGL 4.5 core specification, section 13.6, with a
-/// zero-to-one depth range.
-double depth_of_distance(double distance_m, const DepthPlanes& planes, bool reversed);
-
-/// The distance that a stored depth stands for; the inverse of depth_of_distance().
-double distance_of_depth(double depth, const DepthPlanes& planes, bool reversed);
-
 /// How a format stores depth.
 struct DepthFormat {
   int bits = 32;
@@ -64,8 +50,5 @@ double depth_quantum(double depth, const DepthFormat& format);
 /// By how much two depths must differ at a depth for a format to tell them apart: (1 + (R - 1) z)^2 / R times the
 /// format's quantum at what is stored.
 double depth_step(double depth, const DepthCurve& curve, const DepthFormat& format);
-
-/// The same in metres at a distance: d^2 (f - n) / (n f) times the quantum.
-double distance_step(double distance_m, const DepthPlanes& planes, const DepthFormat& format, bool reversed);
 
 }  // namespace shadowbench::filters

@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "filters/gaussian.h"
 #include "filters/map_reader.h"
 #include "filters/model.h"
 

@@ -18,19 +18,13 @@ double find_reach(const std::variant<double, std::string>& half_width, const Par
 }  // namespace
 
 const ParamSpec* FilterSpec::find_param(const std::string& name) const {
-  for (const ParamSpec& param : params)
-    if (param.name == name) return &param;
-  return nullptr;
+  const auto found = std::ranges::find(params, name, &ParamSpec::name);
+  return found == params.end() ? nullptr : &*found;
 }
 
 std::string to_string(FilterKind kind) {
-  switch (kind) {
-    case FilterKind::kComparison: return "comparison";
-    case FilterKind::kBound: return "bound";
-    case FilterKind::kStochastic: return "stochastic";
-    case FilterKind::kOther: return "other";
-  }
-  return "other";
+  constexpr const char* kNames[] = {"comparison", "stochastic", "bound", "other"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 Ends ends_of(const ParamSpec& param) {

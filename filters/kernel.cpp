@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 
 #include "filters/disk_points.h"
-#include "filters/gaussian.h"
 
 namespace shadowbench::filters {
 namespace {
@@ -112,6 +112,20 @@ std::string Kernel::name() const {
   if (atoms_.empty()) return text + fmt::format(" * disk {}", disk_radius_);
   for (const Atom& atom : atoms_) text += fmt::format(" {}:{}", atom.offset, atom.weight);
   return text;
+}
+
+std::vector<float> gaussian_weights(int radius_texels) {
+  if (radius_texels == 0) return {1.0f};
+  std::vector<double> exact;
+  double sum = 0.0;
+  for (int i = -radius_texels; i <= radius_texels; ++i) {
+    const double deviations = 2.0 * i / radius_texels;
+    exact.push_back(std::exp(-0.5 * deviations * deviations));
+    sum += exact.back();
+  }
+  std::vector<float> weights;
+  for (const double weight : exact) weights.push_back(static_cast<float>(weight / sum));
+  return weights;
 }
 
 }  // namespace shadowbench::filters

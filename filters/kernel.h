@@ -13,6 +13,12 @@ enum class Reconstruction {
   kTexel,     ///< every texel by the part of the shape that lies over it: the unit box per axis
 };
 
+/// The weights of the prefilter for texels -radius .. radius; they sum to 1.
+///
+/// A Gaussian with a standard deviation of half the radius, so that the outermost weight is e^-2 of the middle one;
+/// radius 0 is one texel. Shared by the shaders (as a uniform) and the models.
+std::vector<float> gaussian_weights(int radius_texels);
+
 /// The kernel that a filter averages the map with, in texels around the receiver: a shape convolved with the
 /// reconstruction. It has two faces: weights on the texel grid for a receiver somewhere between texels (K), and a
 /// continuous density (k) that rays can sample. Both sum to 1 and are symmetric.

@@ -36,10 +36,6 @@ std::vector<std::string> list_class_names() {
   return names;
 }
 
-bool is_class(const std::string& width) {
-  return std::ranges::find(width_classes(), width, &WidthClass::name) != width_classes().end();
-}
-
 /// What a width stands for, in texels.
 double parse_width(const FilterSpec& spec, const std::string& width) {
   for (const WidthClass& each : width_classes())
@@ -108,10 +104,11 @@ double solve_radius(const FilterSpec& spec, const ParamValues& values, const std
     refuse_width(spec, width,
                  fmt::format("no '{}' gives this; choose a class ({}) or {:.3g} .. {:.3g} texels", *name,
                              fmt::join(list_class_names(), ", "), sigma_at(low), sigma_at(high)));
+  const bool is_class = std::ranges::count(width_classes(), width, &WidthClass::name) > 0;
   const auto distance = [&](double radius) {
     const double sigma_texels = sigma_at(radius);
     const WidthClass* its_class = find_width_class(sigma_texels);
-    const double strays = is_class(width) && (!its_class || its_class->name != width) ? 1e3 : 0.0;
+    const double strays = is_class && (!its_class || its_class->name != width) ? 1e3 : 0.0;
     return strays + std::abs(std::log(sigma_texels / wanted));
   };
   if (param.integer || !param.choices.empty()) return *std::ranges::min_element(radii, {}, distance);

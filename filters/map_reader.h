@@ -3,17 +3,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <type_traits>
 #include <vector>
 
-#include "filters/model_input.h"
+#include "filters/depth_map.h"
+#include "filters/filter_spec.h"
 #include "filters/receiver.h"
 #include "filters/scalar.h"
 #include "filters/store_format.h"
 
 namespace shadowbench::filters {
+
+/// Everything a model may look at besides the receiver.
+struct ModelInput {
+  const FilterSpec& spec;
+  const ParamValues& values;       ///< complete
+  const DepthMap& map;             ///< must outlive what is prepared from it
+  GlAccuracy accuracy = {};        ///< used by Precision::kTracked only
+  std::uint32_t seed = 0;          ///< of the run: rotations
+  double plane_max_tangent = 0.0;  ///< with receiver-plane bias: steeper planes are treated as this steep; 0: without
+};
 
 /// What happened while one receiver was looked up.
 struct Tally {

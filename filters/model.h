@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "filters/kernel.h"
-#include "filters/model_input.h"
+#include "filters/map_reader.h"
 #include "filters/receiver.h"
 
 namespace shadowbench::filters {
@@ -72,11 +72,54 @@ std::optional<Kernel> find_kernel(const FilterSpec& spec, const ParamValues& val
 /// Why a filter has no kernel.
 const char* explain_no_kernel(const FilterSpec& spec);
 
+// What filters' sources instantiate.
+
+inline double value_of(float x) { return static_cast<double>(x); }
+inline double value_of(double x) { return x; }
+inline double value_of(long double x) { return static_cast<double>(x); }
+inline double value_of(const Tracked& x) { return x.value; }
+template <class T>
+double bound_of(const T&) {
+  return 0.0;
+}
+inline double bound_of(const Tracked& x) { return x.bound; }
+
+template <class Filter>
+class TemplatedLookup final : public Lookup {
+ public:
+  explicit TemplatedLookup(const ModelInput& input) : filter_(input) {}
+
+  ModelResult at(const Receiver& receiver) const override {
+    Tally tally;
+    const auto visibility = filter_.visibility(receiver, tally);
+    return {value_of(visibility), bound_of(visibility), tally.excused, tally.disk_radius_texels};
+  }
+
+ private:
+  Filter filter_;
+};
+
+template <template <class> class Filter>
+class TemplatedModel final : public Model {
+ public:
+  std::unique_ptr<Lookup> prepare(const ModelInput& input, Precision precision) const override {
+    switch (precision) {
+      case Precision::kFloat: return std::make_unique<TemplatedLookup<Filter<float>>>(input);
+      case Precision::kDouble: return std::make_unique<TemplatedLookup<Filter<double>>>(input);
+      case Precision::kExtended: return std::make_unique<TemplatedLookup<Filter<long double>>>(input);
+      case Precision::kTracked: return std::make_unique<TemplatedLookup<Filter<Tracked>>>(input);
+    }
+    return nullptr;
+  }
+
+  std::optional<Kernel> kernel(const ParamValues& values) const override { return Filter<double>::kernel(values); }
+};
+
 /// Wraps `Filter<T>`, a class made from a ModelInput with `T visibility(const Receiver&, Tally&) const` and
 /// `static Kernel kernel(const ParamValues&)`, or an optional one, as a Model.
 template <template <class> class Filter>
-std::unique_ptr<Model> make_templated_model();
+std::unique_ptr<Model> make_templated_model() {
+  return std::make_unique<TemplatedModel<Filter>>();
+}
 
 }  // namespace shadowbench::filters
-
-#include "filters/model_impl.h"

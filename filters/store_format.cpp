@@ -40,12 +40,8 @@ int store_bytes(const std::string& format) {
 }
 
 double largest_number(StorePrecision precision) {
-  switch (precision) {
-    case StorePrecision::kSingle: return static_cast<double>(std::numeric_limits<float>::max());
-    case StorePrecision::kHalf: return kLargestHalf;
-    case StorePrecision::kUnorm16: return 1.0;
-  }
-  return 1.0;
+  if (precision == StorePrecision::kSingle) return static_cast<double>(std::numeric_limits<float>::max());
+  return precision == StorePrecision::kHalf ? kLargestHalf : 1.0;
 }
 
 float round_to_store(float value, StorePrecision precision) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "filters/encoded_map.h"
-#include "filters/model_impl.h"
+#include "filters/model.h"
 
 namespace shadowbench::filters {
 

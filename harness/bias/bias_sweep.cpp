@@ -123,9 +123,6 @@ class BiasSweep {
   }
 
   void describe() {
-    const auto count = [](const std::vector<std::uint8_t>& mask) {
-      return static_cast<long>(std::count(mask.begin(), mask.end(), 1));
-    };
     record_.scene = scene_.name;
     record_.title = scene_.title;
     record_.view = camera().name;
@@ -144,8 +141,8 @@ class BiasSweep {
     record_.depth_range_m = light_.frustum().depth_range_ws;
     record_.gap_above = metrics::kArtefactLimits.contact_gap_above;
     record_.acne_below = metrics::kArtefactLimits.acne_below;
-    record_.acne_receivers = count(masks_.acne);
-    record_.contact_receivers = count(masks_.contact_gap);
+    record_.acne_receivers = std::ranges::count(masks_.acne, 1);
+    record_.contact_receivers = std::ranges::count(masks_.contact_gap, 1);
     record_.fewest_receivers = metrics::kFewestReceivers;
   }
 
@@ -179,7 +176,10 @@ class BiasSweep {
 
   Shot shoot(const render::SweptMode& mode, const filters::FilterRequest& request, std::optional<double> factor,
              double setting) {
-    Shot shot{{factor, setting, {}, {}}, draw(request, mode.make_rule(setting))};
+    Shot shot;
+    shot.visibility = draw(request, mode.make_rule(setting));
+    shot.point.factor = factor;
+    shot.point.setting = setting;
     const std::vector<float>& image = shot.visibility.texels;
     shot.point.acne = metrics::rate_below(image, masks_.acne, metrics::kArtefactLimits.acne_below);
     shot.point.contact_gap = metrics::rate_contact_gap(image, find_unbiased(request).texels, masks_.contact_gap);
@@ -214,7 +214,10 @@ class BiasSweep {
   }
 
   records::BiasModeRecord sweep_mode(const render::SweptMode& mode) {
-    records::BiasModeRecord record{mode.name, mode.key, mode.meaning, {}, {}, {}, {}};
+    records::BiasModeRecord record;
+    record.mode = mode.name;
+    record.key = mode.key;
+    record.meaning = mode.meaning;
     std::vector<const filters::FilterRequest*> usable;
     for (const filters::FilterRequest& request : options_.filters) {
       const std::string reason = explain_left_out(mode.make_rule(0.0), request.spec);

@@ -32,13 +32,6 @@ bool lies_inside(const glm::dvec3& place, double map_size, double pad_texels) {
 
 double leave_out_whole(double texels) { return texels - std::round(texels); }
 
-std::optional<double> take_median(std::vector<double> values) {
-  if (values.empty()) return std::nullopt;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 std::string_view name_of(Motion motion) { return kNames[static_cast<std::size_t>(motion)]; }
@@ -77,8 +70,13 @@ std::vector<scene::LightFrustum> fit_frames(Motion motion, const scene::Scene& s
                                             const MapFollowing& following) {
   std::vector<scene::LightFrustum> frusta;
   for (const Frame& frame : frames) {
-    frusta.push_back(scene::fit_light(scene, {fit_of(motion), following.map_size, following.pad_texels, following.snap,
-                                              &frame.camera, following.aspect, &frame.light}));
+    frusta.push_back(scene::fit_light(scene, {.mode = fit_of(motion),
+                                              .map_size = following.map_size,
+                                              .pad_texels = following.pad_texels,
+                                              .snap = following.snap,
+                                              .camera = &frame.camera,
+                                              .aspect = following.aspect,
+                                              .light = &frame.light}));
   }
   return frusta;
 }
@@ -111,7 +109,10 @@ std::optional<double> measure_grid_move(const truth::ReceiverImage& receivers, c
       before = now;
     }
   }
-  return take_median(std::move(moves));
+  if (moves.empty()) return std::nullopt;
+  const auto middle = moves.begin() + static_cast<std::ptrdiff_t>(moves.size() / 2);
+  std::ranges::nth_element(moves, middle);
+  return *middle;
 }
 
 int count_resizes(const std::vector<scene::LightFrustum>& frusta) {

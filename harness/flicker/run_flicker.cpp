@@ -46,10 +46,6 @@ records::FlickerMotion describe_motion(Motion motion, double step) {
   return record;
 }
 
-records::FlickerFilter make_record(const std::string& label, const metrics::FlickerStats& stats) {
-  return {label, stats.change, stats.flicker, stats.returning, stats.not_finite, stats.step_change};
-}
-
 images::Image to_image(const metrics::FlickerStats& stats, const options::RunOptions& options) {
   images::Image image(options.width, options.height, 1);
   image.texels = stats.by_pixel;
@@ -141,11 +137,20 @@ class FlickerRun {
       records::FlickerVariant& variant = record.variants.emplace_back(describe_variant(v == 1, frusta[v], mask));
       stats.push_back(bench_.measure(frusta[v], mask, truth, show(record.id + (variant.snap ? " · snapped" : ""))));
       for (std::size_t i = 0; i < stats[v].size(); ++i)
-        variant.filters.push_back(make_record(options_.run.filters[i].label(), stats[v][i]));
+        variant.filters.push_back({.filter = options_.run.filters[i].label(),
+                                   .change = stats[v][i].change,
+                                   .flicker = stats[v][i].flicker,
+                                   .returning = stats[v][i].returning,
+                                   .not_finite = stats[v][i].not_finite,
+                                   .step_change = stats[v][i].step_change});
     }
     const metrics::FlickerStats& any = stats.front().front();
     record.receivers = any.receivers;
-    record.truth = {truth.traced, any.truth_change, any.truth_returning, truth.noise, any.truth_step_change};
+    record.truth = {.moves = truth.traced,
+                    .change = any.truth_change,
+                    .returning = any.truth_returning,
+                    .noise = truth.noise,
+                    .step_change = any.truth_step_change};
     write_picture(record, stats);
     return record;
   }

@@ -1,6 +1,5 @@
 #include "harness/gl/fullscreen.h"
 
-#include "harness/gl/embedded_shaders.h"
 
 namespace shadowbench::gl {
 

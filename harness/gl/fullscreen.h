@@ -1,7 +1,7 @@
 #pragma once
 
 #include "harness/gl/shader_source.h"
-#include "harness/gl/vertex_array.h"
+#include "harness/gl/objects.h"
 
 namespace shadowbench::gl {
 

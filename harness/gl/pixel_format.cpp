@@ -35,11 +35,10 @@ constexpr std::array kFormats = {
     PixelFormat{GL_DEPTH_COMPONENT32F, "d32f", 1, 4, true},
 };
 
-template <class Filter>
-const PixelFormat& find_by_name(std::string_view name, const char* kind, Filter is_wanted) {
+const PixelFormat& find_by_name(std::string_view name, const char* kind, bool depth_only) {
   std::vector<std::string_view> known;
   for (const PixelFormat& format : kFormats) {
-    if (!is_wanted(format)) continue;
+    if (depth_only && !format.depth) continue;
     if (format.name == name) return format;
     known.push_back(format.name);
   }
@@ -63,14 +62,8 @@ const PixelFormat& pixel_format(GLenum internal_format) {
   return *found;
 }
 
-const PixelFormat& parse_pixel_format(std::string_view name) {
-  return find_by_name(
-      name, "texture", [](const PixelFormat&) { return true; });
-}
+const PixelFormat& parse_pixel_format(std::string_view name) { return find_by_name(name, "texture", false); }
 
-const PixelFormat& parse_depth_format(std::string_view name) {
-  return find_by_name(
-      name, "depth", [](const PixelFormat& format) { return format.depth; });
-}
+const PixelFormat& parse_depth_format(std::string_view name) { return find_by_name(name, "depth", true); }
 
 }  // namespace shadowbench::gl

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cctype>
 #include <stdexcept>
-
-#include "harness/gl/shader_log.h"
 
 namespace shadowbench::gl {
 namespace {
@@ -56,32 +54,20 @@ bool contains_word(std::string_view text, std::string_view word) {
   return false;
 }
 
-// "lights[0].color" is declared as `lights`.
-std::string_view get_base_name(std::string_view name) { return name.substr(0, name.find_first_of(".[")); }
-
 }  // namespace
 
 Program::Program(std::string_view label, const ShaderSource& vertex, const ShaderSource& fragment,
                  std::optional<ErrorKind> blame, const std::optional<ShaderSource>& geometry)
     : label_(label), handle_(label) {
-  std::vector<Stage> stages = {Stage{GL_VERTEX_SHADER, &vertex}, Stage{GL_FRAGMENT_SHADER, &fragment}};
-  if (geometry) stages.insert(stages.begin() + 1, Stage{GL_GEOMETRY_SHADER, &*geometry});
-  link(stages, blame);
-}
-
-Program::Program(std::string_view label, const ShaderSource& compute, std::optional<ErrorKind> blame)
-    : label_(label), handle_(label) {
-  const std::array stages = {Stage{GL_COMPUTE_SHADER, &compute}};
-  link(stages, blame);
-}
-
-void Program::link(std::span<const Stage> stages, std::optional<ErrorKind> blame) {
   std::vector<Shader> shaders;
-  for (const Stage& stage : stages) {
-    shaders.push_back(compile(label_, stage.type, *stage.source, blame));
+  const auto attach = [&](GLenum type, const ShaderSource& source) {
+    shaders.push_back(compile(label_, type, source, blame));
     glAttachShader(id(), shaders.back().id());
-    sources_.push_back(*stage.source);
-  }
+    sources_.push_back(source);
+  };
+  attach(GL_VERTEX_SHADER, vertex);
+  if (geometry) attach(GL_GEOMETRY_SHADER, *geometry);
+  attach(GL_FRAGMENT_SHADER, fragment);
   glLinkProgram(id());
   for (const Shader& shader : shaders) glDetachShader(id(), shader.id());
   GLint ok = GL_FALSE;
@@ -91,7 +77,7 @@ void Program::link(std::span<const Stage> stages, std::optional<ErrorKind> blame
   glGetProgramiv(id(), GL_INFO_LOG_LENGTH, &log_length);
   // A link error belongs to no single stage; the last stage is where a filter's code is.
   fail(fmt::format("the GLSL of '{}' does not link", label_), read_log(id(), glGetProgramInfoLog, log_length),
-       stages.back().source->files, blame);
+       fragment.files, blame);
 }
 
 void Program::use() const { glUseProgram(id()); }
@@ -103,9 +89,10 @@ GLint Program::location(std::string_view name) {
   if (known != locations_.end()) return known->second;
   const GLint found = glGetUniformLocation(id(), std::string(name).c_str());
   if (found < 0) {
-    bool declared = false;
-    for (const ShaderSource& source : sources_) declared = declared || contains_word(source.text, get_base_name(name));
-    if (!declared) throw std::logic_error(fmt::format("program '{}' has no uniform '{}'", label_, name));
+    const std::string_view base = name.substr(0, name.find_first_of(".["));  // `lights` of "lights[0].color"
+    const auto declares = [&](const ShaderSource& source) { return contains_word(source.text, base); };
+    if (std::ranges::none_of(sources_, declares))
+      throw std::logic_error(fmt::format("program '{}' has no uniform '{}'", label_, name));
   }
   locations_.emplace(name, found);
   return found;
@@ -133,24 +120,8 @@ void Program::set(std::string_view name, const glm::vec4& value) {
   glProgramUniform4fv(id(), location(name), 1, &value[0]);
 }
 
-void Program::set(std::string_view name, const glm::mat3& value) {
-  glProgramUniformMatrix3fv(id(), location(name), 1, GL_FALSE, &value[0][0]);
-}
-
 void Program::set(std::string_view name, const glm::mat4& value) {
   glProgramUniformMatrix4fv(id(), location(name), 1, GL_FALSE, &value[0][0]);
-}
-
-void Program::set(std::string_view name, std::span<const float> values) {
-  if (!values.empty()) glProgramUniform1fv(id(), location(name), static_cast<GLsizei>(values.size()), values.data());
-}
-
-void Program::set(std::string_view name, std::span<const glm::vec2> values) {
-  if (!values.empty()) glProgramUniform2fv(id(), location(name), static_cast<GLsizei>(values.size()), &values[0][0]);
-}
-
-void Program::set(std::string_view name, std::span<const glm::vec4> values) {
-  if (!values.empty()) glProgramUniform4fv(id(), location(name), static_cast<GLsizei>(values.size()), &values[0][0]);
 }
 
 }  // namespace shadowbench::gl

@@ -4,7 +4,6 @@
 #include <glm/glm.hpp>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,13 +23,10 @@ class Program {
   Program(std::string_view label, const ShaderSource& vertex, const ShaderSource& fragment,
           std::optional<ErrorKind> blame = std::nullopt, const std::optional<ShaderSource>& geometry = std::nullopt);
 
-  /// Compiles and links a compute shader; throws likewise.
-  Program(std::string_view label, const ShaderSource& compute, std::optional<ErrorKind> blame = std::nullopt);
-
-  /// Makes it the program of the next draw or dispatch.
+  /// Makes it the program of the next draw.
   void use() const;
 
-  /// Sets a uniform; of an array, the first elements. One that the sources name but the compiler dropped is ignored.
+  /// Sets a uniform. One that the sources name but the compiler dropped is ignored.
   /// Throws std::logic_error for a name that no source contains.
   void set(std::string_view name, int value);
   void set(std::string_view name, std::uint32_t value);
@@ -39,11 +35,7 @@ class Program {
   void set(std::string_view name, const glm::vec2& value);
   void set(std::string_view name, const glm::vec3& value);
   void set(std::string_view name, const glm::vec4& value);
-  void set(std::string_view name, const glm::mat3& value);
   void set(std::string_view name, const glm::mat4& value);
-  void set(std::string_view name, std::span<const float> values);
-  void set(std::string_view name, std::span<const glm::vec2> values);
-  void set(std::string_view name, std::span<const glm::vec4> values);
 
   /// Whether the compiler kept a uniform of this name.
   bool has(std::string_view name) const;
@@ -55,12 +47,6 @@ class Program {
   GLuint id() const { return handle_.id(); }
 
  private:
-  struct Stage {
-    GLenum type;
-    const ShaderSource* source;
-  };
-
-  void link(std::span<const Stage> stages, std::optional<ErrorKind> blame);
   GLint location(std::string_view name);
 
   std::string label_;

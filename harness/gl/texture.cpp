@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "filters/base/error.h"
-#include "harness/gl/gl_error.h"
 
 namespace shadowbench::gl {
 namespace {
@@ -60,8 +59,6 @@ void Texture::set_wrap(GLenum mode) {
   glTextureParameteri(id(), GL_TEXTURE_WRAP_T, static_cast<GLint>(mode));
 }
 
-void Texture::set_border(const glm::vec4& color) { glTextureParameterfv(id(), GL_TEXTURE_BORDER_COLOR, &color[0]); }
-
 void Texture::set_last_level(int level) { glTextureParameteri(id(), GL_TEXTURE_MAX_LEVEL, level); }
 
 void Texture::set_compare(GLenum function) {
@@ -71,16 +68,19 @@ void Texture::set_compare(GLenum function) {
 }
 
 void Texture::upload_floats(std::span<const float> texels, int channels) {
-  require_count(texels.size(), channels);
-  reset_transfer_state();
-  glTextureSubImage2D(id(), 0, 0, 0, width_, height_, format_->transfer_format(channels), GL_FLOAT, texels.data());
+  upload(texels.size(), channels, GL_FLOAT, texels.data());
 }
 
 void Texture::upload_bytes(std::span<const std::uint8_t> texels, int channels) {
-  require_count(texels.size(), channels);
+  upload(texels.size(), channels, GL_UNSIGNED_BYTE, texels.data());
+}
+
+void Texture::upload(std::size_t count, int channels, GLenum type, const void* texels) {
+  if (count !=
+      static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * static_cast<std::size_t>(channels))
+    throw std::logic_error(fmt::format("{} values for a texture of {}x{}x{}", count, width_, height_, channels));
   reset_transfer_state();
-  glTextureSubImage2D(id(), 0, 0, 0, width_, height_, format_->transfer_format(channels), GL_UNSIGNED_BYTE,
-                      texels.data());
+  glTextureSubImage2D(id(), 0, 0, 0, width_, height_, format_->transfer_format(channels), type, texels);
 }
 
 void Texture::generate_mipmaps() { glGenerateTextureMipmap(id()); }
@@ -127,13 +127,6 @@ std::size_t Texture::bytes() const {
     total += width * height * static_cast<std::size_t>(format_->bytes_per_texel);
   }
   return total * static_cast<std::size_t>(std::max(1, samples_));
-}
-
-void Texture::require_count(std::size_t count, int channels) const {
-  const auto wanted =
-      static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * static_cast<std::size_t>(channels);
-  if (count != wanted)
-    throw std::logic_error(fmt::format("{} values for a texture of {}x{}x{}", count, width_, height_, channels));
 }
 
 }  // namespace shadowbench::gl

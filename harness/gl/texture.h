@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -24,7 +23,6 @@ class Texture {
   void set_filter(GLenum minify, GLenum magnify);
   /// Sets the wrap mode of both axes, e.g. GL_CLAMP_TO_BORDER.
   void set_wrap(GLenum mode);
-  void set_border(const glm::vec4& color);
   /// Hides the mip levels above this one from reading.
   void set_last_level(int level);
   /// Compares on sampling, with GL_LEQUAL for instance; GL_NONE turns that off.
@@ -57,7 +55,7 @@ class Texture {
   GLuint id() const { return handle_.id(); }
 
  private:
-  void require_count(std::size_t count, int channels) const;
+  void upload(std::size_t count, int channels, GLenum type, const void* texels);
 
   Handle<GL_TEXTURE> handle_;
   const PixelFormat* format_;

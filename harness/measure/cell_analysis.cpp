@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/map_traffic.h"
@@ -46,13 +45,14 @@ void note_parts(records::CellRecord& record, const metrics::Attribution& attribu
 
 metrics::ArtefactMasks make_masks(const Surroundings& around, const std::vector<TracedLayer>& layers,
                                   const SceneTruth& truth) {
-  return metrics::make_artefact_masks({truth.mask, truth.rays.area.visibility, find_settled(truth.rays.area),
-                                       around.visibility, around.settled, truth.rays.first_blockers_ws,
-                                       metrics::kArtefactLimits.contact_texels * layers.front().grid.texel_size_ws});
-}
-
-CacheShape find_cache(const gpu::Gpu& gpu) {
-  return {static_cast<std::int64_t>(gpu.cache_mib.value * 1024.0 * 1024.0), static_cast<int>(gpu.line_bytes.value)};
+  return metrics::make_artefact_masks(
+      {.counts = truth.mask,
+       .area = truth.rays.area.visibility,
+       .area_settled = find_settled(truth.rays.area),
+       .surroundings = around.visibility,
+       .surroundings_settled = around.settled,
+       .first_blocker_ws = truth.rays.first_blockers_ws,
+       .contact_ws = metrics::kArtefactLimits.contact_texels * layers.front().grid.texel_size_ws});
 }
 
 }  // namespace
@@ -142,7 +142,7 @@ void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
        too_few("are wholly lit, with their surroundings"));
   note(record, "artefact.leak", record.artefact.leak, metrics::rate_above(image, masks_->leak, limits.leak_above),
        too_few("are wholly blocked, with their surroundings, by something that does not touch them"));
-  const auto touching = std::count(masks_->contact_gap.begin(), masks_->contact_gap.end(), 1);
+  const auto touching = std::ranges::count(masks_->contact_gap, 1);
   note(record, "artefact.contact_gap", record.artefact.contact_gap,
        metrics::rate_contact_gap(image, cell.unbiased.texels, masks_->contact_gap),
        touching < metrics::kFewestReceivers
@@ -170,14 +170,14 @@ ModelLayer CellAnalyser::read_layer(const filters::FilterRequest& request, const
 ModelImages CellAnalyser::evaluate(MeasuredCell& cell) {
   std::vector<ModelLayer> layers;
   for (const scene::LightFrustum& layer : light_.layers) layers.push_back(read_layer(cell.request, layer));
-  const double tangent = options_.bias.plane_max_tangent();
+  const ModelView view{options_.width, options_.height, options_.seed, options_.bias.plane_max_tangent()};
   std::vector<CacheShape> caches;
-  for (const gpu::Gpu& gpu : options_.gpus) caches.push_back(find_cache(gpu));
+  for (const gpu::Gpu& gpu : options_.gpus)
+    caches.push_back({.bytes = static_cast<std::int64_t>(gpu.cache_mib.value * 1024.0 * 1024.0),
+                      .line_bytes = static_cast<int>(gpu.line_bytes.value)});
   if (!caches.empty())
-    cell.fetched_bytes =
-        count_map_traffic(cell.request, layers, tangent, options_.seed, options_.width, options_.height, caches)
-            .value_or(std::vector<double>());
-  return evaluate_model(cell.request, layers, tangent, options_.seed, options_.width, options_.height);
+    cell.fetched_bytes = count_map_traffic(cell.request, layers, view, caches).value_or(std::vector<double>());
+  return evaluate_model(cell.request, layers, view);
 }
 
 void CellAnalyser::attribute(MeasuredCell& cell) {
@@ -194,8 +194,12 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   const ModelImages images = evaluate(cell);
   const std::vector<float> kernel = shape ? kernel_truth(*shape) : disks_truth(images.disk_radii_texels);
   const std::vector<float>& image = cell.visibility.texels;
-  metrics::Attribution attribution =
-      metrics::attribute_error({image, images.model, images.closer, kernel, truth_.area.texels, truth_.mask});
+  metrics::Attribution attribution = metrics::attribute_error({.image = image,
+                                                               .model = images.model,
+                                                               .closer = images.closer,
+                                                               .kernel = kernel,
+                                                               .area = truth_.area.texels,
+                                                               .mask = truth_.mask});
   if (images.model.empty()) {
     record.absent["excused"] = filters::kNoModel;
     record.absent["attribution.numeric"] = "the filter has no scalar model: numeric error is within the estimator's";

@@ -1,6 +1,28 @@
 #include "harness/measure/filter_setup.h"
 
+#include <map>
+
+#include "filters/format/front_matter.h"
+
 namespace shadowbench::measure {
+namespace {
+
+/// A filter whose visibility is made of all that is read, so that the compiler drops none of it.
+filters::FilterRequest make_empty_filter(const render::ReceiverReads& reads) {
+  std::string sum = reads.place ? "r.uv.x + r.uv.y + r.depth" : "0.5";
+  if (reads.plane) sum += " + r.depth_per_texel.x + r.depth_per_texel.y + r.n_dot_l + r.view_depth";
+  if (reads.position) sum += " + r.position_ws.x + r.position_ws.y + r.position_ws.z";
+  if (reads.normal) sum += " + r.normal_ws.x + r.normal_ws.y + r.normal_ws.z";
+  filters::FilterRequest request;
+  request.spec = filters::parse_filter(
+      "/*+++\ntitle = \"Empty lookup\"\nsource = \"none\"\nkind = \"other\"\n+++*/\n"
+      "float visibility(Receiver r) { return clamp(" +
+          sum + ", 0.0, 1.0); }\n",
+      "empty.glsl");
+  return request;
+}
+
+}  // namespace
 
 render::LightLayers make_filter_light(const options::RunOptions& options, const scene::Light& light,
                                       const std::vector<scene::LightFrustum>& layers,
@@ -33,6 +55,19 @@ images::Image draw_visibility(render::FilterPasses& filter, const render::Shadow
   filter.prefilter(map);
   filter.lookup(gbuffer, map, target);
   return render::read_image(target.texture(), 1);
+}
+
+EmptyLookups make_empty_lookups(Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
+                                const LightMap& light, const std::vector<render::FilterPasses*>& filters) {
+  EmptyLookups lookups;
+  std::map<render::ReceiverReads, std::size_t> places;
+  for (const render::FilterPasses* filter : filters) {
+    const auto [place, is_new] = places.try_emplace(filter->receiver_reads(), lookups.passes.size());
+    if (is_new)
+      lookups.passes.push_back(make_filter_passes(renderer, options, scene, light, make_empty_filter(place->first)));
+    lookups.of_filter.push_back(place->second);
+  }
+  return lookups;
 }
 
 }  // namespace shadowbench::measure

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "harness/measure/renderer.h"
 #include "harness/measure/scene_assets.h"
@@ -27,5 +28,16 @@ std::unique_ptr<render::FilterPasses> make_filter_passes(Renderer& renderer, con
 /// Runs a filter's prefilter and lookup, and reads the visibility; `target` is of the G-buffer's size.
 images::Image draw_visibility(render::FilterPasses& filter, const render::ShadowMap& map,
                               const render::GBuffer& gbuffer, render::ImageTarget& target);
+
+/// Lookups that read what filters read of their receivers, and nothing of the map: what a lookup takes longer than its
+/// empty one is the filter's own time.
+struct EmptyLookups {
+  std::vector<std::unique_ptr<render::FilterPasses>> passes;  ///< no two read the same
+  std::vector<std::size_t> of_filter;                         ///< index into `passes`, one per filter
+};
+
+/// Compiles those that these filters need, over the light's map.
+EmptyLookups make_empty_lookups(Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
+                                const LightMap& light, const std::vector<render::FilterPasses*>& filters);
 
 }  // namespace shadowbench::measure

@@ -78,7 +78,7 @@ class CoverageCells {
   }
 
   double share() const {
-    return static_cast<double>(std::count(marked_.begin(), marked_.end(), 1)) / static_cast<double>(marked_.size());
+    return static_cast<double>(std::ranges::count(marked_, 1)) / static_cast<double>(marked_.size());
   }
 
  private:
@@ -101,16 +101,10 @@ class CoverageCells {
   }
 };
 
-double share_of_casters(const images::Image& depth_map) {
-  const auto filled =
-      std::count_if(depth_map.texels.begin(), depth_map.texels.end(), [](float depth) { return depth < 1.0f; });
-  return static_cast<double>(filled) / static_cast<double>(depth_map.texels.size());
-}
-
 records::CoverageRecord summarise_coverage(std::vector<float> densities, const std::vector<CoverageCells>& layers) {
   records::CoverageRecord record;
   if (densities.empty()) return record;
-  record.fewest_texels_per_pixel = static_cast<double>(*std::min_element(densities.begin(), densities.end()));
+  record.fewest_texels_per_pixel = static_cast<double>(std::ranges::min(densities));
   const auto middle = densities.begin() + static_cast<std::ptrdiff_t>(densities.size() / 2);
   std::nth_element(densities.begin(), middle, densities.end());
   record.texels_per_pixel = static_cast<double>(*middle);
@@ -153,7 +147,8 @@ MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera
     densities.push_back(coverage.density.texels[i]);
   }
   coverage.record = summarise_coverage(std::move(densities), cells);
-  coverage.record.map_filled = share_of_casters(depth_map);
+  const auto filled = std::ranges::count_if(depth_map.texels, [](float depth) { return depth < 1.0f; });
+  coverage.record.map_filled = static_cast<double>(filled) / static_cast<double>(depth_map.texels.size());
   return coverage;
 }
 

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "filters/store_format.h"
-#include "report/analysis/summary.h"
 #include "report/records/format.h"
 
 namespace shadowbench::measure {
@@ -38,16 +37,16 @@ class Exponent {
 
   double given() const { return filters::number(values_, spec_.name); }
 
-  double confine(double value) const { return std::clamp(value, *spec_.min, *spec_.max); }
-
   TexelHealth health_at(double value) const {
     ParamValues tried = values_;
     tried[spec_.name] = spec_.integer ? std::floor(value) : value;
     return trial_(tried);
   }
 
-  /// The exponent at which the largest stored number would be the store's largest, judged by what is stored at `value`.
+  /// The exponent at which the largest stored number would be the store's largest, judged by what is stored at `value`,
+  /// or at the end of the range that is next to it.
   std::optional<double> extrapolate(double value) const {
+    value = std::clamp(value, *spec_.min, *spec_.max);
     const auto largest = health_at(value).largest;
     if (!largest || *largest <= 1.0) return std::nullopt;
     return value * std::log(largest_number(values_)) / std::log(*largest);
@@ -183,7 +182,7 @@ std::optional<double> find_safe_exponent(const FilterRequest& request, const Map
   if (!rough) return std::nullopt;
   // Close to the limit a 16-bit store's rounding weighs less.
   constexpr double kClose = 0.95;
-  return exponent.settle(exponent.extrapolate(exponent.confine(kClose * *rough)).value_or(*rough));
+  return exponent.settle(exponent.extrapolate(kClose * *rough).value_or(*rough));
 }
 
 std::vector<std::string> list_exceeded_limits(const std::string& name, const FilterRequest& request,

@@ -47,9 +47,9 @@ class LineNumbers {
   std::size_t last_ = 0, count_ = 0;
 
   std::size_t find_map(const filters::MapMemory& memory) {
-    const auto found = std::ranges::find(maps_, &memory, &Map::memory);
-    if (found == maps_.end()) add(memory);
-    return static_cast<std::size_t>(std::ranges::find(maps_, &memory, &Map::memory) - maps_.begin());
+    const auto found = static_cast<std::size_t>(std::ranges::find(maps_, &memory, &Map::memory) - maps_.begin());
+    if (found == maps_.size()) add(memory);
+    return found;
   }
 
   void add(const filters::MapMemory& memory) {
@@ -195,8 +195,7 @@ class Traffic {
 }  // namespace
 
 std::optional<std::vector<double>> count_map_traffic(const filters::FilterRequest& request,
-                                                     const std::vector<ModelLayer>& layers, double plane_max_tangent,
-                                                     std::uint32_t seed, int width, int height,
+                                                     const std::vector<ModelLayer>& layers, const ModelView& view,
                                                      std::span<const CacheShape> caches) {
   const std::unique_ptr<filters::Model> model = filters::make_model(request.spec);
   if (!model) return std::nullopt;
@@ -204,8 +203,12 @@ std::optional<std::vector<double>> count_map_traffic(const filters::FilterReques
   std::size_t receivers = 0;
   for (const ModelLayer& layer : layers) {
     if (layer.filter.empty()) continue;
-    const filters::ModelInput input{request.spec, request.values, layer.map, {}, seed, plane_max_tangent};
-    tiled.emplace_back(model->prepare(input, filters::Precision::kFloat), layer.filter, width, height);
+    const filters::ModelInput input{.spec = request.spec,
+                                    .values = request.values,
+                                    .map = layer.map,
+                                    .seed = view.seed,
+                                    .plane_max_tangent = view.plane_max_tangent};
+    tiled.emplace_back(model->prepare(input, filters::Precision::kFloat), layer.filter, view.width, view.height);
     receivers += layer.filter.size();
   }
   if (receivers == 0) return std::nullopt;

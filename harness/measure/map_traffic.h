@@ -24,14 +24,13 @@ struct CacheShape {
 /// associates fully, and drops the line that was not read for the longest time; every line that it does not hold is
 /// fetched. Not counted: reads outside a map, which are none; what the passes before the lookup read and write.
 ///
-/// `plane_max_tangent` as in ModelInput; of the layers' receivers those of the filter are asked.
+/// Of the layers' receivers those of the filter are asked.
 /// Nothing where the filter has no scalar model, or no layer a receiver.
 /// Cost: the model's prefilter in single precision, and some of its lookups. The receivers of a tile are asked in an
 /// order that spreads them over it, until 16 in a row, with 256 reads, bring no new line: all of them where a filter
 /// reads no more than four texels. The README says how little that misses.
 std::optional<std::vector<double>> count_map_traffic(const filters::FilterRequest& request,
-                                                     const std::vector<ModelLayer>& layers, double plane_max_tangent,
-                                                     std::uint32_t seed, int width, int height,
+                                                     const std::vector<ModelLayer>& layers, const ModelView& view,
                                                      std::span<const CacheShape> caches);
 
 }  // namespace shadowbench::measure

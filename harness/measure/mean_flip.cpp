@@ -16,16 +16,11 @@ metrics::LinearPicture to_picture(const images::Image& image) {
   return picture;
 }
 
-bool is_finite(const images::Image& image) {
-  return std::all_of(
-      image.texels.begin(), image.texels.end(), [](float value) { return std::isfinite(value); });
-}
-
 }  // namespace
 
 std::optional<metrics::FlipView> view_picture(const images::Image& picture, double pixels_per_degree) {
   assert(picture.channels == 3);
-  if (!is_finite(picture)) return std::nullopt;
+  if (!std::ranges::all_of(picture.texels, [](float value) { return std::isfinite(value); })) return std::nullopt;
   return metrics::view_for_flip(to_picture(picture), pixels_per_degree);
 }
 

@@ -26,9 +26,17 @@ struct ModelLayer {
   std::vector<filters::Receiver> closer;  ///< the same pixels in the same order
 };
 
-/// Evaluates a model for receivers that the GPU handed out, in parallel; `plane_max_tangent` as in ModelInput.
-/// Requires a filter that has a kernel or a model.
+/// What a model has to know of the view that receivers come from.
+struct ModelView {
+  int width = 0;
+  int height = 0;
+  std::uint32_t seed = 1;  ///< these as in ModelInput
+  double plane_max_tangent = 0.0;
+};
+
+/// Evaluates a model for receivers that the GPU handed out, in parallel. Requires a filter that has a kernel or a
+/// model.
 ModelImages evaluate_model(const filters::FilterRequest& request, const std::vector<ModelLayer>& layers,
-                           double plane_max_tangent, std::uint32_t seed, int width, int height);
+                           const ModelView& view);
 
 }  // namespace shadowbench::measure

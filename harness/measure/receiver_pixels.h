@@ -3,8 +3,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <vector>
-
 #include "filters/receiver.h"
 
 namespace shadowbench::measure {

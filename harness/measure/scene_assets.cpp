@@ -28,18 +28,30 @@ std::optional<scene::DepthSpan> find_seen_depths(const render::GBuffer& gbuffer)
   return span.far_m > 0.0 ? std::optional(span) : std::nullopt;
 }
 
+/// The half-width in texels of the widest kernel of these filters.
+double largest_radius_texels(const std::vector<filters::FilterRequest>& requests) {
+  double largest = 0.0;
+  for (const auto& request : requests)
+    largest = std::max(largest, filters::radius_texels(request.spec, request.values));
+  return largest;
+}
+
 }  // namespace
 
-std::vector<scene::LightFrustum> fit_map_layers(const options::RunOptions& options, const scene::Scene& scene,
-                                                const scene::Light& light, const scene::Camera& camera, int map_size,
-                                                double pad_texels, const std::function<render::GBuffer&()>& gbuffer,
-                                                const glm::dvec2& shift_texels) {
-  scene::FitRequest request{options.fit.mode, map_size,     limit_padding(pad_texels, map_size),
-                            options.snap,     &camera,      static_cast<double>(options.width) / options.height,
-                            &light,           shift_texels, options.fit.cascades};
+std::vector<scene::LightFrustum> fit_map_layers(const options::RunOptions& options, const MapFit& fit,
+                                                const std::function<const render::GBuffer&()>& gbuffer) {
+  scene::FitRequest request{.mode = options.fit.mode,
+                            .map_size = fit.map_size,
+                            .pad_texels = limit_padding(fit.pad_texels, fit.map_size),
+                            .snap = options.snap,
+                            .camera = &fit.camera,
+                            .aspect = static_cast<double>(options.width) / options.height,
+                            .light = &fit.light,
+                            .shift_texels = fit.shift_texels,
+                            .cascades = options.fit.cascades};
   if (options.fit.mode == scene::FitMode::kCascades && options.fit.cascades.seen)
     request.seen = find_seen_depths(gbuffer());
-  return scene::fit_layers(scene, request);
+  return scene::fit_layers(fit.scene, request);
 }
 
 SceneAssets::SceneAssets(Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
@@ -62,9 +74,9 @@ LightMap& SceneAssets::light_map(const scene::Camera& camera, int map_size) {
 
 LightMap SceneAssets::make_light_map(const scene::Light& light, const scene::Camera& camera, int map_size,
                                      const glm::dvec2& shift_texels) {
-  std::vector<scene::LightFrustum> layers = fit_map_layers(
-      options_, scene_, light, camera, map_size, pad_texels_, [&]() -> render::GBuffer& { return gbuffer(camera); },
-      shift_texels);
+  std::vector<scene::LightFrustum> layers =
+      fit_map_layers(options_, {scene_, light, camera, map_size, pad_texels_, shift_texels},
+                     [&]() -> const render::GBuffer& { return gbuffer(camera); });
   render::ShadowMap map(map_size, options_.map, static_cast<int>(layers.size()));
   LightMap made{std::move(layers), std::move(map)};
   made.map.set_border(options_.range.border);
@@ -134,13 +146,6 @@ SceneTruth SceneAssets::make_truth(const scene::Camera& camera) {
   truth.area_picture = shaded(truth.area);
   truth.area_seen = view_picture(images::round_to_half(truth.area_picture));
   return truth;
-}
-
-double largest_radius_texels(const std::vector<filters::FilterRequest>& requests) {
-  double largest = 0.0;
-  for (const auto& request : requests)
-    largest = std::max(largest, filters::radius_texels(request.spec, request.values));
-  return largest;
 }
 
 double largest_padding_texels(const std::vector<filters::FilterRequest>& requests) {

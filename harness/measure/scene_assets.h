@@ -21,12 +21,19 @@ struct LightMap {
   const scene::LightFrustum& frustum() const { return layers.front(); }
 };
 
-/// Fits the layers of a light's map as a run does, which leaves `pad_texels` around the scene, limit_padding() applied.
-/// `gbuffer` is asked for where the depths that it shows decide.
-std::vector<scene::LightFrustum> fit_map_layers(const options::RunOptions& options, const scene::Scene& scene,
-                                                const scene::Light& light, const scene::Camera& camera, int map_size,
-                                                double pad_texels, const std::function<render::GBuffer&()>& gbuffer,
-                                                const glm::dvec2& shift_texels = glm::dvec2(0.0));
+/// What a light's map is fitted to.
+struct MapFit {
+  const scene::Scene& scene;
+  const scene::Light& light;
+  const scene::Camera& camera;
+  int map_size = 1024;
+  double pad_texels = 0.0;  ///< left around the scene, limit_padding() applied
+  glm::dvec2 shift_texels{0.0};
+};
+
+/// Fits the layers of a light's map as a run does. `gbuffer` is asked for where the depths that it shows decide.
+std::vector<scene::LightFrustum> fit_map_layers(const options::RunOptions& options, const MapFit& fit,
+                                                const std::function<const render::GBuffer&()>& gbuffer);
 
 /// What all cells of one scene share: its geometry, one G-buffer per view, one depth map per size. Each is drawn when
 /// it is first asked for and kept, since neither light nor casters change during a run.
@@ -83,9 +90,6 @@ void require_one_layer(const LightMap& light, const std::string& command, const 
 
 /// Reads a map back as a picture of linear depth, rows top to bottom.
 images::Image read_linear_depth(const render::ShadowMap& map);
-
-/// The half-width in texels of the widest kernel of these filters.
-double largest_radius_texels(const std::vector<filters::FilterRequest>& requests);
 
 /// The padding that the widest kernel of these filters needs, in whole texels.
 double largest_padding_texels(const std::vector<filters::FilterRequest>& requests);

@@ -5,32 +5,25 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 #include "filters/kernel_width.h"
 #include "filters/model.h"
+#include "filters/random.h"
 #include "harness/measure/filter_setup.h"
-#include "harness/measure/phases.h"
+#include "harness/measure/receiver_pixels.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/suspects.h"
-#include "harness/measure/timing/empty_lookup.h"
 #include "harness/measure/timing/light_timing.h"
 #include "harness/measure/timing/statistics.h"
 #include "harness/measure/timing/timing.h"
-#include "harness/measure/uncertainty.h"
-#include "harness/render/filter_passes.h"
 #include "harness/render/receivers.h"
 #include "harness/render/shade_pass.h"
-#include "report/analysis/summary.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
 
 namespace shadowbench::measure {
 namespace {
-
-std::int64_t count_not_finite(const images::Image& image) {
-  return std::count_if(
-      image.texels.begin(), image.texels.end(), [](float v) { return !std::isfinite(v); });
-}
 
 /// Everything that one task draws with.
 class SceneBench {
@@ -54,11 +47,12 @@ class SceneBench {
       listener_.begin(options::Work::kDrawing, 1, request.label());
       filters.push_back(make_passes(request));
       result.cells.push_back(draw(*filters.back()));
-      count_passes(result, *filters.back());
+      const int prefilter = filters.back()->prefilter_passes();
+      result.passes_run += 1 + prefilter;
+      result.passes_skipped += std::max(0, 3 - prefilter);
       stability.warn(result.cells.back(), *filters.back());
       if (options_.stability) stability.measure(result.cells.back(), *filters.back());
-      if (options_.uncertainty)
-        result.cells.back().uncertainty = measure_uncertainty({renderer_, options_, task_, assets_}, *filters.back());
+      if (options_.uncertainty) result.cells.back().uncertainty = measure_uncertainty(*filters.back());
       if (options_.truth || options_.worker) result.cells.back().unbiased = draw_unbiased(*filters.back());
     }
     time(result, filters);
@@ -95,13 +89,18 @@ class SceneBench {
     cell.visibility = render::read_image(target_.texture(), 1);
     cell.picture =
         render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera, options_.range);
-    cell.record.nan = count_not_finite(cell.visibility);
+    cell.record.nan = std::ranges::count_if(cell.visibility.texels, [](float v) { return !std::isfinite(v); });
     if (receivers_ < 0) receivers_ = render::count_receivers(renderer_.shaders, gbuffer_, filter.light());
     cell.record.receivers = receivers_;
     cell.cost = filter.measure_cost(renderer_.shaders, gbuffer_, light_.map);
     cell.passes = filter.list_passes(gl::pixel_format(options_.map.format).bytes_per_texel);
-    set_cost(cell.record, cell.cost);
-    check_drawing(cell, cell.cost, *renderer_.context);
+    cell.record.cost = {.fetches = cell.cost.fetches,
+                        .bytes_per_texel = cell.cost.bytes_per_texel,
+                        .passes = cell.cost.passes,
+                        .map_bytes = cell.cost.map_bytes,
+                        .prefilter_texels = cell.cost.prefilter_texels};
+    if (!cell.cost.fetches) cell.record.absent["cost.fetches"] = "the filter reads the map's samplers itself";
+    check_drawing(cell, *renderer_.context);
     return cell;
   }
 
@@ -123,9 +122,66 @@ class SceneBench {
     return image;
   }
 
-  static void set_cost(records::CellRecord& record, const render::FilterCost& cost) {
-    record.cost = {cost.fetches, cost.bytes_per_texel, cost.passes, cost.map_bytes, cost.prefilter_texels};
-    if (!cost.fetches) record.absent["cost.fetches"] = "the filter reads the map's samplers itself";
+  /// Measures how far rounding can move each pixel (filters with a scalar model), and how far other seeds move it
+  /// (stochastic filters). Requires that the filter's map was made. The passes keep the run's own seed. Cost: the
+  /// scalar model with its running error bound for every receiver, and images::kSpreadSeeds lookups.
+  images::UncertaintyImages measure_uncertainty(render::FilterPasses& filter) {
+    images::UncertaintyImages uncertainty;
+    const filters::FilterSpec& spec = filter.request().spec;
+    if (spec.kind == filters::FilterKind::kStochastic) uncertainty = spread_seeds(filter);
+    if (const auto model = filters::make_model(spec)) uncertainty.rounding = bound_rounding(*model, filter);
+    return uncertainty;
+  }
+
+  /// Bounds what the same computation in single precision may make of each pixel.
+  images::Image bound_rounding(const filters::Model& model, const render::FilterPasses& filter) {
+    images::Image image(options_.width, options_.height, 1);
+    for (const render::LightSetup& layer : filter.light()) {
+      const filters::DepthMap map = light_.map.read(layer.frustum.layer);
+      const auto tracked = model.prepare({.spec = filter.request().spec,
+                                          .values = filter.request().values,
+                                          .map = map,
+                                          .accuracy = measure_accuracy(renderer_),
+                                          .seed = options_.seed,
+                                          .plane_max_tangent = options_.bias.plane_max_tangent()},
+                                         filters::Precision::kTracked);
+      const auto receivers = render::read_receivers(renderer_.shaders, gbuffer_, layer);
+      visit_in_parallel(receivers.size(), [&](std::size_t i) {
+        const filters::ModelResult result = tracked->at(receivers[i]);
+        const float of_share = receivers[i].layer_share < 1.0f ? 0x1p-23f : 0.0f;
+        const float bound = result.bound < 1.0 ? static_cast<float>(result.bound) + of_share : 1.0f;
+        float& pixel = image.texels[find_pixel(receivers[i], options_.width, options_.height)];
+        pixel = result.excused ? images::kMayFlip : pixel + receivers[i].layer_share * bound;
+      });
+    }
+    return image;
+  }
+
+  /// Mean and deviation of each pixel over a sample of seeds.
+  images::UncertaintyImages spread_seeds(render::FilterPasses& filter) {
+    const render::LightLayers own = filter.light();
+    images::UncertaintyImages spread;
+    spread.seed_mean = spread.seed_deviation = images::Image(options_.width, options_.height, 1);
+    std::vector<double> sum(spread.seed_mean.texels.size()), squares(sum.size());
+    for (std::uint32_t i = 1; i <= static_cast<std::uint32_t>(images::kSpreadSeeds); ++i) {
+      render::LightLayers other = own;
+      for (render::LightSetup& layer : other) layer.seed = filters::hash_bits(own.front().seed + i);
+      filter.retune(renderer_.shaders, filter.request().values, other);
+      const images::Image image = draw_visibility(filter, light_.map, gbuffer_, target_);
+      for (std::size_t p = 0; p < sum.size(); ++p) {
+        const double value = static_cast<double>(image.texels[p]);
+        sum[p] += value;
+        squares[p] += value * value;
+      }
+    }
+    filter.retune(renderer_.shaders, filter.request().values, own);
+    for (std::size_t p = 0; p < sum.size(); ++p) {
+      const double n = images::kSpreadSeeds, mean = sum[p] / n;
+      spread.seed_mean.texels[p] = static_cast<float>(mean);
+      spread.seed_deviation.texels[p] =
+          static_cast<float>(std::sqrt(std::max(squares[p] - n * mean * mean, 0.0) / (n - 1.0)));
+    }
+    return spread;
   }
 
   /// A map that holds depth in steps shadows surfaces by up to half a step, in the light's face as on a slope.
@@ -146,18 +202,11 @@ class SceneBench {
     for (MeasuredCell& cell : result.cells) cell.record.warnings.push_back(warning);
   }
 
-  static void count_passes(SceneMeasurement& result, const render::FilterPasses& filter) {
-    const int prefilter = filter.prefilter_passes();
-    result.passes_run += 1 + prefilter;
-    result.passes_skipped += std::max(0, 3 - prefilter);
-  }
-
   void time(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
     std::vector<render::FilterPasses*> pointers;
     for (const auto& filter : filters) pointers.push_back(filter.get());
-    const auto asked = std::find_if(
-        task_.filters.begin(), task_.filters.end(),
-        [&](const filters::FilterRequest& request) { return filters::is_same(request, options_.reference); });
+    const auto asked = std::ranges::find_if(
+        task_.filters, [&](const auto& request) { return filters::is_same(request, options_.reference); });
     const auto reference = static_cast<std::size_t>(asked - task_.filters.begin());
     std::unique_ptr<render::FilterPasses> added;
     if (asked == task_.filters.end()) {
@@ -167,9 +216,17 @@ class SceneBench {
     listener_.begin(options::Work::kTiming, filters.size(), "times");
     const double timings = 1.0 + static_cast<double>(options_.lights.size());
     const EmptyLookups empty = make_empty_lookups(renderer_, options_, *task_.scene, light_, pointers);
-    const RoundTimes times = time_rounds(
-        pointers, reference, empty.passes, [&] { assets_.redraw(light_); }, light_.map, gbuffer_, renderer_.timer,
-        options_.rounds, options_.seed, drawn_ms_, [&](double part) { listener_.advance(part / timings); });
+    const RoundTimes times = time_rounds({.filters = pointers,
+                                          .empties = empty.passes,
+                                          .draw_map = [&] { assets_.redraw(light_); },
+                                          .map = light_.map,
+                                          .gbuffer = gbuffer_,
+                                          .timer = renderer_.timer},
+                                         {.reference = reference,
+                                          .limits = options_.rounds,
+                                          .seed = options_.seed,
+                                          .drawn_ms = drawn_ms_,
+                                          .on_part = [&](double part) { listener_.advance(part / timings); }});
     result.timed_ms = times.spent_ms;
     for (std::size_t i = 0; i < filters.size(); ++i) {
       set_times(result.cells[i].record, times, i, reference, times.empties[empty.of_filter[i]]);
@@ -246,6 +303,9 @@ void set_kernel(records::CellRecord& record, const filters::FilterRequest& reque
         fmt::format("kernels of more than {:.2f} texels have none", filters::width_classes().back().widest_texels);
 }
 
+/// Moves a part of a texel in [0,1) to [-1/2, 1/2): the grid is the same.
+double center_shift(double shift) { return shift < 0.5 ? shift : shift - 1.0; }
+
 }  // namespace
 
 records::ParamMap record_params(const filters::ParamValues& values) {
@@ -275,9 +335,16 @@ records::CellRecord make_record(const options::RunOptions& options, const SceneT
   if (options.light) record.light = describe_light(*options.light);
   const render::BiasRule& bias = options.bias;
   const auto amount = [](const render::BiasAmount& a) { return records::BiasAmountRecord{a.depth, a.texels, a.world}; };
-  record.bias = {amount(bias.constant),      amount(bias.slope),  bias.plane_texels,       bias.plane_kernels,
-                 amount(bias.normal_offset), bias.receiver_plane, bias.map.polygon_factor, bias.map.polygon_units,
-                 bias.map.cull_front,        bias.map.midpoint};
+  record.bias = {.constant = amount(bias.constant),
+                 .slope = amount(bias.slope),
+                 .plane_texels = bias.plane_texels,
+                 .plane_kernels = bias.plane_kernels,
+                 .normal_offset = amount(bias.normal_offset),
+                 .receiver_plane = bias.receiver_plane,
+                 .polygon_factor = bias.map.polygon_factor,
+                 .polygon_units = bias.map.polygon_units,
+                 .front_cull = bias.map.cull_front,
+                 .midpoint = bias.map.midpoint};
   record.range = {filters::to_string(options.range.border), options.range.far_test, options.range.behind_test};
   if (!options.stability)
     record.absent["stability"] = record.absent["images.stability"] = "the run was made without --stability";
@@ -290,6 +357,17 @@ records::CellRecord make_record(const options::RunOptions& options, const SceneT
 SceneMeasurement measure_scene(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
                                SceneAssets& assets, const options::StepListener& listener) {
   return SceneBench(renderer, options, task, assets, listener).run();
+}
+
+std::vector<glm::dvec2> list_phase_shifts(int count) {
+  std::vector<double> places;
+  for (int i = 0; i < count; ++i) places.push_back(std::fmod(i * std::numbers::phi, 1.0));
+  std::vector<glm::dvec2> shifts;
+  for (int i = 0; i < count; ++i) {
+    const auto rank = std::ranges::count_if(places, [&](double place) { return place < places[shifts.size()]; });
+    shifts.emplace_back(center_shift(static_cast<double>(i) / count), center_shift(static_cast<double>(rank) / count));
+  }
+  return shifts;
 }
 
 }  // namespace shadowbench::measure

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <optional>
 
 #include "harness/measure/mean_flip.h"
 #include "reference/metrics/error_stats.h"
 #include "reference/metrics/flicker.h"
-#include "reference/metrics/mean_interval.h"
 #include "report/images/picture_io.h"
 #include "report/records/absence.h"
 
@@ -27,30 +24,28 @@ void summarise_errors(SceneTruth& truth, const truth::TracedVisibility& area) {
   truth.unanimous = unanimous / count;
 }
 
-/// Notes the mean of every error over the phases; the largest error is the largest of all.
 constexpr const char* kOnePhase = "one phase of the map's grid tells nothing of the others; see --phases";
 
+/// Notes the mean of every error over the phases; the largest error is the largest of all.
 void note_errors(records::CellRecord& record, const std::vector<metrics::ErrorStats>& phases) {
-  const auto list = [&](double metrics::ErrorStats::*member) {
-    std::vector<double> values;
-    for (const metrics::ErrorStats& stats : phases) values.push_back(stats.*member);
-    return values;
-  };
-  const auto mean = [&](double metrics::ErrorStats::*member) {
-    const std::vector<double> values = list(member);
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-  };
-  using Stats = metrics::ErrorStats;
-  record.error = {mean(&Stats::rmse),
-                  mean(&Stats::mae),
-                  mean(&Stats::p95),
-                  std::ranges::max(list(&Stats::max)),
-                  mean(&Stats::mean),
-                  {},
-                  {},
-                  {}};
+  metrics::ErrorStats sum;
+  std::vector<double> rmses;
+  for (const metrics::ErrorStats& stats : phases) {
+    sum.rmse += stats.rmse;
+    sum.mae += stats.mae;
+    sum.p95 += stats.p95;
+    sum.mean += stats.mean;
+    sum.max = std::max(sum.max, stats.max);
+    rmses.push_back(stats.rmse);
+  }
+  const auto count = static_cast<double>(phases.size());
+  record.error.rmse = sum.rmse / count;
+  record.error.mae = sum.mae / count;
+  record.error.p95 = sum.p95 / count;
+  record.error.max = sum.max;
+  record.error.mean = sum.mean / count;
   record.phases = static_cast<std::int64_t>(phases.size());
-  if (const auto interval = metrics::find_mean_interval(list(&Stats::rmse)))
+  if (const auto interval = metrics::find_mean_interval(rmses))
     record.rmse_ci95 = records::Interval{interval->low, interval->high};
   else
     record.absent["error.rmse_ci95"] = kOnePhase;

@@ -4,9 +4,7 @@
 
 #include <cmath>
 #include <limits>
-#include <memory>
 
-#include "filters/model.h"
 #include "filters/percentage_closer.h"
 #include "filters/store_format.h"
 #include "harness/measure/filter_setup.h"
@@ -38,6 +36,16 @@ images::Image make_view_image(std::vector<float> values, const options::RunOptio
 
 void note_absent(records::CellRecord& record, std::initializer_list<const char*> fields, const std::string& reason) {
   for (const char* field : fields) record.absent[std::string("stability.") + field] = reason;
+}
+
+/// Why a filter is not compared with what it bounds; empty where it is.
+std::string explain_no_bound(const filters::FilterRequest& request, const filters::Model* model) {
+  if (request.spec.kind != filters::FilterKind::kBound)
+    return "only a filter of the kind 'bound' promises never to be darker than its percentage-closer filter";
+  if (!filters::promises_bound(request.spec, request.values))
+    return fmt::format("the filter is a bound with {}=0 only", request.spec.bound_at_zero);
+  if (!model) return filters::kNoModel;
+  return model->kernel(request.values) ? "" : filters::explain_no_kernel(request.spec);
 }
 
 constexpr const char* kReadsDepth = "the filter reads the depth map itself";
@@ -166,30 +174,11 @@ void StabilityMeter::compare_stores(MeasuredCell& cell) {
 void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filter) {
   const std::initializer_list<const char*> fields = {"bound_shortfall_max", "bound_violations",
                                                      "bound_exact_violations"};
-  if (cell.request.spec.kind != filters::FilterKind::kBound) {
-    note_absent(cell.record, fields,
-                "only a filter of the kind 'bound' promises never to be darker than its percentage-closer filter");
-    return;
-  }
-  if (!filters::promises_bound(cell.request.spec, cell.request.values)) {
-    note_absent(cell.record, fields,
-                fmt::format("the filter is a bound with {}=0 only", cell.request.spec.bound_at_zero));
-    return;
-  }
   const auto model = filters::make_model(cell.request.spec);
-  if (!model) {
-    note_absent(cell.record, fields, filters::kNoModel);
-    return;
-  }
-  if (!model->kernel(cell.request.values)) {
-    note_absent(cell.record, fields, filters::explain_no_kernel(cell.request.spec));
-    return;
-  }
+  if (const std::string reason = explain_no_bound(cell.request, model.get()); !reason.empty())
+    return note_absent(cell.record, fields, reason);
   metrics::BoundCheck check = compare_with_closer(cell, *model, filter.light());
-  if (check.receivers == 0) {
-    note_absent(cell.record, fields, "no receiver can be compared");
-    return;
-  }
+  if (check.receivers == 0) return note_absent(cell.record, fields, "no receiver can be compared");
   cell.record.stability.bound_shortfall_max = check.shortfall_max;
   cell.record.stability.bound_violations = check.violations;
   cell.record.stability.bound_exact_violations = check.exact_violations;
@@ -209,8 +198,12 @@ metrics::BoundCheck StabilityMeter::compare_with_closer(const MeasuredCell& cell
   for (const render::LightSetup& layer : light) {
     const auto receivers = render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera), layer);
     const filters::DepthMap map = light_.map.read(layer.frustum.layer);
-    const filters::ModelInput input{cell.request.spec,           cell.request.values, map,
-                                    measure_accuracy(renderer_), options_.seed,       plane_max_tangent};
+    const filters::ModelInput input{.spec = cell.request.spec,
+                                    .values = cell.request.values,
+                                    .map = map,
+                                    .accuracy = measure_accuracy(renderer_),
+                                    .seed = options_.seed,
+                                    .plane_max_tangent = plane_max_tangent};
     const auto exact = model.prepare(input, filters::Precision::kDouble);
     const auto tracked = model.prepare(input, filters::Precision::kTracked);
     const filters::PercentageCloser closer(*model.kernel(cell.request.values), map, plane_max_tangent);

@@ -13,6 +13,8 @@
 namespace shadowbench::measure {
 namespace {
 
+using records::format_number;
+
 constexpr float kRounding = 1e-5f;             // of a sum of weights in single precision
 constexpr double kReachRoundingTexels = 0.01;  // of an offset that was turned or taken from a uv
 
@@ -50,11 +52,11 @@ void check_values(MeasuredCell& cell) {
   suspect(cell,
           fmt::format("its visibility lies between {} and {}, which should be 0 for blocked and 1 for lit; divide "
                       "by the sum of the weights, or clamp",
-                      records::format_number(static_cast<double>(range.least)),
-                      records::format_number(static_cast<double>(range.most))));
+                      format_number(static_cast<double>(range.least)), format_number(static_cast<double>(range.most))));
 }
 
-void check_reads(MeasuredCell& cell, const render::FilterCost& cost) {
+void check_reads(MeasuredCell& cell) {
+  const render::FilterCost& cost = cell.cost;
   const filters::FilterSpec& spec = cell.request.spec;
   if (spec.reads_unwritten) {
     suspect(cell,
@@ -71,15 +73,15 @@ void check_reads(MeasuredCell& cell, const render::FilterCost& cost) {
           fmt::format("it reads texels up to {} texels from the receiver, but its radius_texels declares {}: bias "
                       "and the map's margin are made for that; declare what it reads, a texel for the four of a "
                       "2x2 fetch included, or move the taps",
-                      records::format_number(*cost.reach_texels), records::format_number(declared)));
+                      format_number(*cost.reach_texels), format_number(declared)));
 }
 
 /// A GL that ends a loop too early says nothing, and the image is wrong.
-void check_loops(MeasuredCell& cell, const render::FilterCost& cost, gl::Context& context) {
+void check_loops(MeasuredCell& cell, gl::Context& context) {
   constexpr int kFewestOfAnyLimit = 10'000;
-  if (cost.most_turns < kFewestOfAnyLimit) return;
+  if (cell.cost.most_turns < kFewestOfAnyLimit) return;
   const int limit = gl::measure_loop_turns(context);
-  if (limit == 0 || cost.most_turns < limit) return;
+  if (limit == 0 || cell.cost.most_turns < limit) return;
   suspect(cell, fmt::format("one of its loops goes on after {} turns, where this GL ends it without a word; write one "
                             "that ends sooner",
                             limit));
@@ -87,10 +89,10 @@ void check_loops(MeasuredCell& cell, const render::FilterCost& cost, gl::Context
 
 }  // namespace
 
-void check_drawing(MeasuredCell& cell, const render::FilterCost& cost, gl::Context& context) {
+void check_drawing(MeasuredCell& cell, gl::Context& context) {
   check_values(cell);
-  check_reads(cell, cost);
-  check_loops(cell, cost, context);
+  check_reads(cell);
+  check_loops(cell, context);
   if (cell.record.receivers == 0)
     cell.record.warnings.push_back(
         fmt::format("{}: no surface in the view '{}' faces the light, so that nothing is compared; move the camera or "
@@ -118,7 +120,7 @@ void check_against_truth(MeasuredCell& cell, const SceneTruth& truth) {
   suspect(cell, fmt::format("its visibility is {} at every receiver, though {} of them are wholly lit in truth and {} "
                             "wholly blocked; let it depend on how r.depth compares with the map, and check that --bias "
                             "is not larger than the scene",
-                            records::format_number(static_cast<double>(range.least)), lit, blocked));
+                            format_number(static_cast<double>(range.least)), lit, blocked));
 }
 
 }  // namespace shadowbench::measure

@@ -11,7 +11,7 @@ namespace shadowbench::measure {
 
 /// Checks what needs no truth: that visibility is finite and in [0,1], that the filter reads the map, no farther than
 /// it declares, and nothing that nobody wrote. Requires the cell's `nan`.
-void check_drawing(MeasuredCell& cell, const render::FilterCost& cost, gl::Context& context);
+void check_drawing(MeasuredCell& cell, gl::Context& context);
 
 /// Checks that visibility is not the same at all receivers where some are wholly lit in truth, and some wholly blocked.
 void check_against_truth(MeasuredCell& cell, const SceneTruth& truth);

@@ -9,10 +9,7 @@
 
 namespace shadowbench::measure {
 
-bool ViewReceivers::any_counts() const {
-  return std::any_of(
-      image.points.begin(), image.points.end(), [](const auto& point) { return point.counts; });
-}
+bool ViewReceivers::any_counts() const { return std::ranges::any_of(image.points, &truth::ReceiverPoint::counts); }
 
 images::Image ViewReceivers::to_image(const std::vector<float>& visibility) const {
   images::Image result(image.width, image.height, 1);

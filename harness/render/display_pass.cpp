@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <vector>
 
 #include "report/images/color_values.h"
 
@@ -18,36 +16,20 @@ gl::Texture upload_scale(const char* label, const images::Image& colors) {
   return scale;
 }
 
-images::Image make_grey() {
-  return images::color_values(
-      images::make_ramp(kSteps, 1),
-      [](float t) {
-        return images::Rgb{t, t, t};
-      });
-}
-
-images::Image make_diverging() {
-  return images::color_values(
-      images::make_ramp(kSteps, 1), [](float t) { return images::map_diverging(2.0f * t - 1.0f, 1.0f); });
+template <class Color>
+images::Image color_ramp(const Color& color) {
+  return images::color_values(images::make_ramp(kSteps, 1), color);
 }
 
 }  // namespace
 
 DisplayPass::DisplayPass()
-    : grey_(upload_scale("grey", make_grey())),
-      diverging_(upload_scale("diverging", make_diverging())),
-      sequential_(upload_scale("sequential", images::color_values(images::make_ramp(kSteps, 1), "viridis"))) {}
-
-void DisplayPass::draw(ShaderLibrary& shaders, const std::array<DisplayedValues, 2>& sides, const DisplayPlace& place) {
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  draw_here(shaders, sides, place);
-}
-
-void DisplayPass::draw(ShaderLibrary& shaders, const std::array<DisplayedValues, 2>& sides, const DisplayPlace& place,
-                       ImageTarget& target) {
-  target.bind();
-  draw_here(shaders, sides, place);
-}
+    : grey_(upload_scale("grey", color_ramp([](float t) {
+                           return images::Rgb{t, t, t};
+                         }))),
+      diverging_(
+          upload_scale("diverging", color_ramp([](float t) { return images::map_diverging(2.0f * t - 1.0f, 1.0f); }))),
+      sequential_(upload_scale("sequential", color_ramp("viridis"))) {}
 
 void DisplayPass::clear_window(const glm::ivec2& size, const glm::vec3& color) {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -58,8 +40,12 @@ void DisplayPass::clear_window(const glm::ivec2& size, const glm::vec3& color) {
   glClear(GL_COLOR_BUFFER_BIT);
 }
 
-void DisplayPass::draw_here(ShaderLibrary& shaders, const std::array<DisplayedValues, 2>& sides,
-                            const DisplayPlace& place) {
+void DisplayPass::draw(ShaderLibrary& shaders, const std::array<DisplayedValues, 2>& sides, const DisplayPlace& place,
+                       ImageTarget* target) {
+  if (target)
+    target->bind();
+  else
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
   const float column = (place.divider - place.first_pixel.x) * place.magnified;
   const int left = std::clamp(static_cast<int>(std::lround(column)), 0, place.size.x);
   draw_side(shaders, sides[0], place, 0, left);

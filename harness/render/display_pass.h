@@ -42,12 +42,9 @@ class DisplayPass {
  public:
   DisplayPass();
 
-  /// Draws into the window of the context.
-  void draw(ShaderLibrary& shaders, const std::array<DisplayedValues, 2>& sides, const DisplayPlace& place);
-
-  /// Draws into a texture.
+  /// Draws into a texture, or without one into the window of the context.
   void draw(ShaderLibrary& shaders, const std::array<DisplayedValues, 2>& sides, const DisplayPlace& place,
-            ImageTarget& target);
+            ImageTarget* target = nullptr);
 
   /// Fills the window of the context with one colour.
   static void clear_window(const glm::ivec2& size, const glm::vec3& color);
@@ -60,7 +57,6 @@ class DisplayPass {
 
   const gl::Texture& scale_of(Colors colors) const;
   void draw_side(ShaderLibrary& shaders, const DisplayedValues& shown, const DisplayPlace& place, int from, int to);
-  void draw_here(ShaderLibrary& shaders, const std::array<DisplayedValues, 2>& sides, const DisplayPlace& place);
 };
 
 /// The name of a texture, for libraries that draw by themselves.

@@ -197,12 +197,13 @@ ReceiverReads FilterPasses::receiver_reads() const {
 
 void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const GBuffer& gbuffer,
                                  const ShadowMap& map) {
+  const int stored_bytes = encoded_format() ? gl::pixel_format(*encoded_format()).bytes_per_texel : 0;
   filters::CountedLoops counted_loops = filters::count_loops(request_.spec.body);
   gl::Program counting = compile_lookup(shaders,
                                         {{"COUNT_FETCHES", "1"},
                                          {"LOOPS", fmt::format("{}", std::max(counted_loops.loops, 1))},
                                          {"STORED_REACH_TEXELS", fmt::format("float({})", stored_reach(request_))},
-                                         {"STORED_BITS", fmt::format("{}", 8 * stored_bytes())}},
+                                         {"STORED_BITS", fmt::format("{}", 8 * stored_bytes)}},
                                         counted_loops.body);
   const gl::Texture visibility("counted visibility", GL_R32F, gbuffer.width(), gbuffer.height());
   const gl::Texture reads("reads", GL_RGBA32F, gbuffer.width(), gbuffer.height());
@@ -243,12 +244,9 @@ void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const
   if (reach >= 0.0) cost.reach_texels = reach;
 }
 
-int FilterPasses::stored_bytes() const {
-  return encoded_format() ? gl::pixel_format(*encoded_format()).bytes_per_texel : 0;
-}
-
 std::vector<DrawnPass> FilterPasses::list_passes(int depth_bytes) const {
-  std::vector<DrawnPass> passes = {{"lookup", lookup_.last_stage(), gl::pixel_format(GL_R32F), 1, 0, 0}};
+  std::vector<DrawnPass> passes = {
+      {.name = "lookup", .fragment = lookup_.last_stage(), .target = gl::pixel_format(GL_R32F)}};
   const auto add = [&](std::vector<DrawnPass> more) { std::ranges::move(more, std::back_inserter(passes)); };
   if (prefilter_) add(prefilter_->list_passes(depth_bytes));
   if (own_) add(own_->list_passes());

@@ -132,7 +132,6 @@ class FilterPasses {
   void turn(const PreparedLayer& layer);
   void select(int layer);
   std::int64_t count_map_bytes(const ShadowMap& map) const;
-  int stored_bytes() const;  ///< of a texel of the encoded map; 0 where there is none
   void set_uniforms(gl::Program& lookup, const LightSetup& light) const;
   /// `body` takes the place of the filter's own.
   gl::Program compile_lookup(ShaderLibrary& shaders, Defines defines,

@@ -68,7 +68,11 @@ Geometry::Geometry(const scene::Scene& scene) {
   for (const scene::Mesh& mesh : scene.meshes) {
     const int first = count();
     append_mesh(vertices, mesh);
-    parts->ranges.push_back({first, count() - first, mesh.material, mesh.casts_shadow, mesh.may_cull_front});
+    parts->ranges.push_back({.first = first,
+                             .count = count() - first,
+                             .material = mesh.material,
+                             .casts = mesh.casts_shadow,
+                             .may_cull_front = mesh.may_cull_front});
   }
   parts->triangles = count() / 3;
   for (const scene::Texture& texture : scene.textures) parts->textures.push_back(upload(texture));
@@ -102,7 +106,5 @@ bool Geometry::is_in(DrawSet set, const Range& range) {
   }
   return false;
 }
-
-void Geometry::draw_range(const Range& range) const { glDrawArrays(GL_TRIANGLES, range.first, range.count); }
 
 }  // namespace shadowbench::render

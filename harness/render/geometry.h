@@ -52,7 +52,6 @@ class Geometry {
 
   Defines variant(const scene::Material& material) const;
   void set_material(gl::Program& program, const scene::Material& material) const;
-  void draw_range(const Range& range) const;
   static bool is_in(DrawSet set, const Range& range);
 };
 
@@ -69,7 +68,7 @@ void Geometry::draw(ShaderLibrary& shaders, const std::string& shader, DrawSet s
     prepare(program);
     set_material(program, material);
     program.use();
-    draw_range(range);
+    glDrawArrays(GL_TRIANGLES, range.first, range.count);
   }
 }
 

@@ -9,7 +9,7 @@ glm::vec3 row(const glm::dmat4& m, int r) { return glm::vec3(glm::dvec3(m[0][r],
 
 LightSetup make_light_setup(const scene::LightFrustum& frustum, const scene::Light& light, const Bias& bias,
                             std::uint32_t seed, const filters::RangeRule& range) {
-  return {frustum, scene::light_size(light), bias, seed, range};
+  return {.frustum = frustum, .light_size = scene::light_size(light), .bias = bias, .seed = seed, .range = range};
 }
 
 void set_beam(gl::Program& program, const scene::Beam& beam) {

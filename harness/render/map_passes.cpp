@@ -18,13 +18,6 @@ constexpr int kRadix = 4;  // a step of a prefix sum adds so many terms
 
 std::string map_name(const PassSpec& spec) { return "map_" + spec.name; }
 
-/// Prefix sums take a step to begin, and then one per power of the radix along each axis.
-int count_prefix_steps(int side) {
-  int steps = 0;
-  for (int stride = 1; stride < side; stride *= kRadix) ++steps;
-  return 1 + 2 * steps;
-}
-
 }  // namespace
 
 MapPasses::MapPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
@@ -52,7 +45,11 @@ int MapPasses::count_steps(const PassSpec& spec) const {
   switch (spec.steps) {
     case PassSteps::kOnce: return 1;
     case PassSteps::kAxes: return 3;
-    case PassSteps::kPrefix: return count_prefix_steps(side(spec));
+    case PassSteps::kPrefix: {  // a step to begin, and then one per power of the radix along each axis
+      int steps = 0;
+      for (int stride = 1; stride < side(spec); stride *= kRadix) ++steps;
+      return 1 + 2 * steps;
+    }
     case PassSteps::kLevels: break;
   }
   const auto texels = static_cast<unsigned>(side(spec));
@@ -191,8 +188,12 @@ std::vector<DrawnPass> MapPasses::list_passes() const {
   std::vector<DrawnPass> passes;
   for (const Pass& pass : passes_) {
     const gl::PixelFormat& format = gl::parse_pixel_format(pass.spec.store);
-    passes.push_back(
-        {pass.spec.name, pass.program.last_stage(), format, pass.steps, texels_written(pass), format.bytes_per_texel});
+    passes.push_back({.name = pass.spec.name,
+                      .fragment = pass.program.last_stage(),
+                      .target = format,
+                      .draws = pass.steps,
+                      .texels = texels_written(pass),
+                      .read_bytes = format.bytes_per_texel});
   }
   return passes;
 }

@@ -4,7 +4,6 @@
 #include <memory>
 #include <vector>
 
-#include "harness/render/drawn_pass.h"
 #include "harness/render/image_target.h"
 #include "harness/render/light_setup.h"
 #include "harness/render/prefilter.h"
@@ -79,8 +78,5 @@ class MapPasses {
   void run_steps(std::size_t pass);
   void run_levels(std::size_t pass);
 };
-
-/// The GLSL that declares the maps of a filter's passes and reads them.
-std::string declare_pass_maps(const filters::FilterSpec& spec);
 
 }  // namespace shadowbench::render

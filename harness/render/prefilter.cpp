@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "filters/base/error.h"
-#include "filters/gaussian.h"
+#include "filters/kernel.h"
 #include "harness/render/filter_glsl.h"
 
 namespace shadowbench::render {
@@ -163,8 +163,18 @@ std::int64_t Prefilter::texels_written() const {
 std::vector<DrawnPass> Prefilter::list_passes(int depth_bytes) const {
   const gl::PixelFormat& format = stored_->texture().format();
   const std::int64_t texels = std::int64_t{1} * stored_->texture().width() * stored_->texture().width();
-  std::vector<DrawnPass> passes = {{"encode", encode_.last_stage(), format, 1, texels, depth_bytes}};
-  if (radius_ > 0) passes.push_back({"blur", blur_->last_stage(), format, 2, 2 * texels, format.bytes_per_texel});
+  std::vector<DrawnPass> passes = {{.name = "encode",
+                                    .fragment = encode_.last_stage(),
+                                    .target = format,
+                                    .texels = texels,
+                                    .read_bytes = depth_bytes}};
+  if (radius_ > 0)
+    passes.push_back({.name = "blur",
+                      .fragment = blur_->last_stage(),
+                      .target = format,
+                      .draws = 2,
+                      .texels = 2 * texels,
+                      .read_bytes = format.bytes_per_texel});
   return passes;
 }
 

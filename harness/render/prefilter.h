@@ -3,18 +3,28 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "filters/catalogue.h"
 #include "harness/gl/fullscreen.h"
 #include "harness/gl/objects.h"
-#include "harness/render/drawn_pass.h"
 #include "harness/render/image_target.h"
 #include "harness/render/light_setup.h"
 #include "harness/render/shader_library.h"
 #include "harness/render/shadow_map.h"
 
 namespace shadowbench::render {
+
+/// A full-screen pass of a filter, as it is drawn for one map.
+struct DrawnPass {
+  std::string name;  ///< "lookup", "encode", "blur", or that of a pass of the filter's own
+  gl::ShaderSource fragment;
+  gl::PixelFormat target;  ///< what it draws into
+  int draws = 1;
+  std::int64_t texels = 0;  ///< that it writes, all draws together
+  int read_bytes = 0;       ///< of a texel of what it reads
+};
 
 /// An encoded map as it was read back.
 struct EncodedTexels {

@@ -37,9 +37,8 @@ void set_cookie(gl::Program& program, const gl::Texture& cookie, const scene::Be
 
 }  // namespace
 
-void shade_into(ImageTarget& target, ShaderLibrary& shaders, const GBuffer& gbuffer, const gl::Texture& visibility,
-                const scene::Scene& scene, const scene::Camera& camera, const filters::RangeRule& range,
-                const glm::ivec2& columns) {
+void shade_into(ImageTarget& target, ShaderLibrary& shaders, const ShadedView& view, const glm::ivec2& columns) {
+  const auto& [gbuffer, visibility, scene, camera, range] = view;
   const std::optional<scene::Beam> beam = scene::find_beam(scene.light);
   gl::Program& program = shaders.fullscreen("shade.frag", shade_defines(scene.light, range));
   program.set("camera_position_ws", camera.position_ws);
@@ -68,7 +67,7 @@ void shade_into(ImageTarget& target, ShaderLibrary& shaders, const GBuffer& gbuf
 images::Image shade(ShaderLibrary& shaders, const GBuffer& gbuffer, const gl::Texture& visibility,
                     const scene::Scene& scene, const scene::Camera& camera, const filters::RangeRule& range) {
   ImageTarget target("picture", GL_RGBA32F, gbuffer.width(), gbuffer.height());
-  shade_into(target, shaders, gbuffer, visibility, scene, camera, range, {0, gbuffer.width()});
+  shade_into(target, shaders, {gbuffer, visibility, scene, camera, range}, {0, gbuffer.width()});
   return read_image(target.texture(), 3);
 }
 

@@ -7,12 +7,18 @@
 
 namespace shadowbench::render {
 
-/// Shades a G-buffer with a visibility image (R32F, the same size) into `target` (RGBA32F, likewise): Blinn-Phong whose
-/// ambient part is never shadowed; linear RGB. Only in `columns`, from the first up to the second. Without the range
-/// rule's behind test a lamp's cone and cookie are mirrored through it.
-void shade_into(ImageTarget& target, ShaderLibrary& shaders, const GBuffer& gbuffer, const gl::Texture& visibility,
-                const scene::Scene& scene, const scene::Camera& camera, const filters::RangeRule& range,
-                const glm::ivec2& columns);
+/// What a camera sees, to be shaded.
+struct ShadedView {
+  const GBuffer& gbuffer;
+  const gl::Texture& visibility;  ///< R32F, of the G-buffer's size
+  const scene::Scene& scene;
+  const scene::Camera& camera;
+  filters::RangeRule range = {};  ///< without its behind test a lamp's cone and cookie are mirrored through it
+};
+
+/// Shades a view into `target` (RGBA32F, of its size): Blinn-Phong whose ambient part is never shadowed; linear RGB.
+/// Only in `columns`, from the first up to the second.
+void shade_into(ImageTarget& target, ShaderLibrary& shaders, const ShadedView& view, const glm::ivec2& columns);
 
 /// The same, read back: rows top to bottom.
 images::Image shade(ShaderLibrary& shaders, const GBuffer& gbuffer, const gl::Texture& visibility,

@@ -17,13 +17,6 @@ std::string variant_name(const std::string& file, const Defines& defines) {
   return name;
 }
 
-/// Tells a variant from all others.
-std::string variant_key(const std::string& file, const Defines& defines) {
-  std::string text = file;
-  for (const auto& [key, value] : defines) text += fmt::format("\n{} {}", key, value);
-  return text;
-}
-
 /// The line of a filter that first has a word; its last one where none has.
 std::ptrdiff_t find_line(const gl::Piece& filter, std::string_view word) {
   const auto end =
@@ -70,25 +63,33 @@ gl::ShaderSource ShaderLibrary::source(const std::string& file, const Defines& d
 }
 
 gl::Program& ShaderLibrary::fullscreen(const std::string& fragment_file, const Defines& defines) {
-  const std::string key = variant_key(fragment_file, defines);
-  const auto found = programs_.find(key);
-  if (found != programs_.end()) return found->second;
-  ++compiled_;
-  gl::Program program(variant_name(fragment_file, defines), gl::FullscreenTriangle::vertex_source(),
-                      source(fragment_file, defines, {}));
-  return programs_.emplace(key, std::move(program)).first->second;
+  return keep(
+      fragment_file, defines,
+      [&] {
+        return gl::Program(variant_name(fragment_file, defines), gl::FullscreenTriangle::vertex_source(),
+                           source(fragment_file, defines, {}));
+      });
 }
 
 gl::Program& ShaderLibrary::geometry(const std::string& shader, const Defines& defines) {
-  const std::string key = variant_key(shader, defines);
+  return keep(
+      shader, defines,
+      [&] {
+        const bool has_third = std::ranges::find(defines, kExactEdges) != defines.end();
+        const auto third = has_third ? std::optional(source(shader + ".geom", defines, {})) : std::nullopt;
+        return gl::Program(variant_name(shader, defines), source(shader + ".vert", defines, {}),
+                           source(shader + ".frag", defines, {}), std::nullopt, third);
+      });
+}
+
+gl::Program& ShaderLibrary::keep(const std::string& name, const Defines& defines,
+                                 const std::function<gl::Program()>& compile) {
+  std::string key = name;
+  for (const auto& [define, value] : defines) key += fmt::format("\n{} {}", define, value);
   const auto found = programs_.find(key);
   if (found != programs_.end()) return found->second;
   ++compiled_;
-  const bool has_third = std::ranges::find(defines, kExactEdges) != defines.end();
-  const auto third = has_third ? std::optional(source(shader + ".geom", defines, {})) : std::nullopt;
-  gl::Program program(variant_name(shader, defines), source(shader + ".vert", defines, {}),
-                      source(shader + ".frag", defines, {}), std::nullopt, third);
-  return programs_.emplace(key, std::move(program)).first->second;
+  return programs_.emplace(key, compile()).first->second;
 }
 
 gl::Program ShaderLibrary::compile_filter(const std::string& label, const std::string& fragment_file,

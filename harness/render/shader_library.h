@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -38,6 +39,8 @@ class ShaderLibrary {
   std::map<std::string, gl::Program> programs_;
   int compiled_ = 0;
 
+  /// The variant of a program, compiled where there is none yet.
+  gl::Program& keep(const std::string& name, const Defines& defines, const std::function<gl::Program()>& compile);
   gl::ShaderSource source(const std::string& file, const Defines& defines, const std::vector<gl::Piece>& pieces) const;
 };
 

@@ -214,9 +214,12 @@ void ShadowMap::bind(gl::Program& reader, int layer) const {
 }
 
 filters::DepthMap ShadowMap::read(int layer) const {
-  return {size(),          layers_[static_cast<std::size_t>(layer)].depth.read_floats(1),
-          settings_.curve, settings_.format != GL_DEPTH_COMPONENT32F,
-          border_,         gl::pixel_format(settings_.format).bytes_per_texel};
+  return {.size = size(),
+          .stored = layers_[static_cast<std::size_t>(layer)].depth.read_floats(1),
+          .curve = settings_.curve,
+          .clamps_reference = settings_.format != GL_DEPTH_COMPONENT32F,
+          .border = border_,
+          .texel_bytes = gl::pixel_format(settings_.format).bytes_per_texel};
 }
 
 images::Image ShadowMap::read_picture() const {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters/gaussian.h"
+#include "filters/kernel.h"
 #include "filters/percentage_closer.h"
 
 namespace shadowbench::stress {

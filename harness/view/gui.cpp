@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <system_error>
+#include <utility>
 
 #include "filters/base/error.h"
-#include "harness/view/panels/times_panel.h"
-#include "harness/view/save.h"
-#include "harness/view/save_picture.h"
+#include "report/images/picture_io.h"
 
 namespace shadowbench::view {
 namespace {
@@ -22,11 +22,28 @@ constexpr ImU32 kCaptionInk = IM_COL32(240, 240, 240, 255);
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoTitleBar;
 
-ImVec2 to_imgui(const glm::vec2& v) { return {v.x, v.y}; }
+/// What the mouse does, for the help: gesture and effect.
+constexpr std::pair<const char*, const char*> kGestures[] = {
+    {"left drag", "orbit around what is under the pointer"},
+    {"right drag", "look around"},
+    {"middle drag", "move sideways"},
+    {"wheel", "approach what is under the pointer"},
+    {"Shift + left drag", "move the light across the sky"},
+    {"drag the divider", "share the picture otherwise"},
+    {"W A S D, E, Q", "fly ahead, left, back, right, up, down; Shift: faster"},
+    {"Ctrl + click on a slider", "type a number"}};
 
-std::string name_side(const Workbench& bench, std::size_t side) {
-  const Side& shown = bench.state().sides[side];
-  return shown.truth ? "ray-traced truth" : shown.filter.spec.id;
+/// A path in `folder` without an extension, which no file of any extension has yet: "cubes-1".
+std::filesystem::path find_free_stem(const std::filesystem::path& folder, const std::string& name) {
+  const auto is_taken = [&](const std::string& stem) {
+    std::error_code missing;  // a folder that is not there yet has no files
+    for (const auto& entry : std::filesystem::directory_iterator(folder, missing))
+      if (entry.path().filename().string().starts_with(stem + ".")) return true;
+    return false;
+  };
+  int number = 1;
+  while (is_taken(fmt::format("{}-{}", name, number))) ++number;
+  return folder / fmt::format("{}-{}", name, number);
 }
 
 /// A line of text on a dark ground.
@@ -36,7 +53,7 @@ void draw_caption(const glm::vec2& corner, const std::string& text) {
   const float edge = 0.3f * ImGui::GetFontSize();
   list->AddRectFilled({corner.x - edge, corner.y - edge}, {corner.x + size.x + edge, corner.y + size.y + edge},
                       kCaptionBack, 3.0f);
-  list->AddText(to_imgui(corner), kCaptionInk, text.c_str());
+  list->AddText({corner.x, corner.y}, kCaptionInk, text.c_str());
 }
 
 }  // namespace
@@ -77,9 +94,7 @@ PicturePlace Gui::place() const {
 void Gui::fit_picture() {
   const glm::ivec2 area(free_area());
   if (keeps_size_ || (area.x == bench_.state().options.width && area.y == bench_.state().options.height)) return;
-  Changes changes;
-  changes.camera = changes.light = true;
-  bench_.change(changes, [&](ViewSettings& settings) {
+  bench_.change({.camera = true, .light = true}, [&](ViewSettings& settings) {
     settings.options.width = area.x;
     settings.options.height = area.y;
     settings.options.sizes = {{area.x, area.y}};
@@ -88,7 +103,7 @@ void Gui::fit_picture() {
 
 void Gui::lay_out(double now_s) {
   const double seconds = std::exchange(last_s_, now_s) == 0.0 ? 0.0 : now_s - last_s_;
-  for (const Command command : find_commands(window_.take_keys())) obey(command);
+  for (const Window::KeyPress& press : window_.take_keys()) obey(press);
   fit_picture();
   input_.take(place(), look_, seconds);
   if (look_.panels) {
@@ -98,45 +113,11 @@ void Gui::lay_out(double now_s) {
   if (look_.help) lay_out_help();
 }
 
-void Gui::obey(Command command) {
-  log_.note(last_s_, "key", std::ranges::find(list_keys(), command, &Key::command)->name);
-  const ViewState& state = bench_.state();
-  const std::size_t layers = Layers::list().size();
-  switch (command) {
-    case Command::kHelp: look_.help = !look_.help; break;
-    case Command::kShare:
-      look_.sharing = look_.sharing == Sharing::kDivider ? Sharing::kFlip : Sharing::kDivider;
-      break;
-    case Command::kFlip:
-      look_.sharing = Sharing::kFlip;
-      look_.flipped_to = 1 - look_.flipped_to;
-      break;
-    case Command::kSwapSides:
-      bench_.change(Changes::all(), [](ViewSettings& settings) { std::swap(settings.sides[0], settings.sides[1]); });
-      break;
-    case Command::kNextLayer: look_.layer = (look_.layer + 1) % layers; break;
-    case Command::kPreviousLayer: look_.layer = (look_.layer + layers - 1) % layers; break;
-    case Command::kMagnifier: look_.magnifier = !look_.magnifier; break;
-    case Command::kMap: look_.map = !look_.map; break;
-    case Command::kPanels: look_.panels = !look_.panels; break;
-    case Command::kNextCamera:
-      bench_.change(Changes::all(),
-                    [&](ViewSettings& settings) { settings.camera = (state.camera + 1) % state.cameras.size(); });
-      break;
-    case Command::kNextLight:
-      bench_.change(Changes::all(),
-                    [&](ViewSettings& settings) { settings.light = (state.light + 1) % state.lights.size(); });
-      break;
-    case Command::kResetView:
-      bench_.change(Changes::all(), [&](ViewSettings& settings) {
-        settings.cameras = first_.cameras;
-        settings.lights = first_.lights;
-      });
-      break;
-    case Command::kSavePicture: save("picture", [this](const auto& stem) { save_picture(stem); }); break;
-    case Command::kSaveScene: save_state("scene", save_scene); break;
-    case Command::kSaveExperiment: save_state("experiment", save_experiment); break;
-    case Command::kQuit: window_.close(); break;
+void Gui::obey(const Window::KeyPress& press) {
+  for (const Key& each : list_keys()) {
+    if (each.key != press.key || each.control != press.control) continue;
+    log_.note(last_s_, "key", each.name);
+    each.press(*this);
   }
 }
 
@@ -179,7 +160,7 @@ void Gui::lay_out_help() {
       ImGui::TextWrapped("%s", text.c_str());
     };
     for (const Key& each : list_keys()) row(each.name, each.text);
-    for (const auto& [gesture, effect] : list_gestures()) row(gesture, effect);
+    for (const auto& [gesture, effect] : kGestures) row(gesture, effect);
     ImGui::EndTable();
   }
   ImGui::End();
@@ -198,7 +179,7 @@ void Gui::draw_picture() {
   render::DisplayPass::clear_window(window, glm::vec3(0.08f));
   const glm::ivec2 corner(static_cast<int>(at.corner.x), window.y - static_cast<int>(at.corner.y) - size.y);
   display_.draw(bench_.renderer().shaders, {shown_[0].values, shown_[1].values},
-                {corner, size, glm::vec2(0.0f), at.magnified, at.divider_column(look_)});
+                {.corner = corner, .size = size, .magnified = at.magnified, .divider = at.divider_column(look_)});
   draw_divider();
   lay_out_captions();
   lay_out_faults();
@@ -233,7 +214,8 @@ void Gui::lay_out_captions() {
   const float edge = 0.6f * ImGui::GetFontSize();
   for (std::size_t side = 0; side < kSides; ++side) {
     if (look_.sharing == Sharing::kFlip && side != look_.flipped_to) continue;
-    std::string text = name_side(bench_, side);
+    const Side& named = bench_.state().sides[side];
+    std::string text = named.truth ? "ray-traced truth" : named.filter.spec.id;
     const render::DisplayedValues& values = shown_[side].values;
     if (!shown_[side].absent.empty())
       text += ": " + shown_[side].absent;
@@ -276,20 +258,37 @@ void Gui::save(const std::string& what, const std::function<void(const std::file
 
 void Gui::save_state(const std::string& what,
                      void (*write)(const ViewState& state, const std::filesystem::path& file)) {
-  Changes settled;  // by change(): a file keeps directions as it reads them
-  settled.camera = settled.light = true;
-  bench_.change(settled, [](ViewSettings&) {});
+  // By change(), since a file keeps directions as it reads them.
+  bench_.change({.camera = true, .light = true}, [](ViewSettings&) {});
   bench_.draw();
   save(what, [&](const std::filesystem::path& stem) { write(bench_.state(), std::filesystem::path(stem) += ".toml"); });
 }
 
+/// Writes STEM.png, which is what the window shows of both sides, and STEM.exr with the float images behind it: for
+/// each side, "left" and "right", its visibility and its picture, and the truth as far as it is traced.
+/// Throws Error(kOutput).
 void Gui::save_picture(const std::filesystem::path& stem) {
-  const Layer& layer = Layers::list()[look_.layer];
-  const PicturePlace at = place();
-  std::array<render::DisplayedValues, 2> shown;
+  std::array<render::DisplayedValues, kSides> shown;
+  const ViewState& state = bench_.state();
+  const glm::ivec2 size(state.options.width, state.options.height);
   for (std::size_t side = 0; side < kSides; ++side)
-    shown[side] = layers_.show(layer, side, look_.error_scale, {0, at.pixels.x}).values;
-  view::save_picture(bench_, display_, shown, at.divider_column(look_), stem);
+    shown[side] = layers_.show(Layers::list()[look_.layer], side, look_.error_scale, {0, size.x}).values;
+  render::ImageTarget target("saved picture", GL_RGBA8, size.x, size.y);
+  display_.draw(bench_.renderer().shaders, shown, {.size = size, .divider = place().divider_column(look_)}, &target);
+  std::vector<images::Part> parts;
+  for (std::size_t side = 0; side < kSides; ++side) {
+    const std::string name = kSideNames[side];
+    parts.push_back(
+        {name + ".visibility", {"Y"}, render::read_image(bench_.stage().visibility(side, {0, size.x}), 1), false});
+    const gl::Texture& picture = bench_.stage().picture(state, side, {0, size.x});
+    parts.push_back({name + ".picture", {"R", "G", "B"}, render::read_image(picture, 3), true});
+  }
+  if (bench_.stage().truth() != nullptr)
+    parts.push_back({"truth.area", {"Y"}, render::read_image(*bench_.stage().truth(), 1), false});
+  images::Metadata metadata = {{"scene", state.scene.name}};
+  for (std::size_t side = 0; side < kSides; ++side) metadata[kSideNames[side]] = state.sides[side].label();
+  images::write_exr(std::filesystem::path(stem) += ".exr", parts, metadata);
+  images::write_display_png(std::filesystem::path(stem) += ".png", render::read_image(target.texture(), 3));
 }
 
 }  // namespace shadowbench::view

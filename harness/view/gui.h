@@ -3,16 +3,16 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "harness/render/display_pass.h"
 #include "harness/view/layers.h"
 #include "harness/view/look.h"
-#include "harness/view/panels/keys.h"
 #include "harness/view/panels/magnifier.h"
 #include "harness/view/panels/map_panel.h"
 #include "harness/view/panels/picture_input.h"
 #include "harness/view/panels/settings_panel.h"
-#include "harness/view/time_meter.h"
+#include "harness/view/panels/times_panel.h"
 #include "harness/view/view_log.h"
 #include "harness/view/window.h"
 #include "harness/view/workbench.h"
@@ -41,6 +41,15 @@ class Gui {
   /// The window's size in pixels that a picture of this size wants, panels included.
   static glm::ivec2 window_size(const glm::ivec2& picture, float scale);
 
+  /// One key with what it does, beside those that fly the camera; F1 lists them all.
+  struct Key {
+    int key = 0;           ///< of GLFW
+    bool control = false;  ///< with Ctrl
+    std::string name;      ///< as it is written on the keyboard
+    std::string text;      ///< what it does
+    void (*press)(Gui& gui);
+  };
+
  private:
   Window& window_;
   Workbench& bench_;
@@ -63,7 +72,9 @@ class Gui {
 
   glm::vec2 free_area() const;
   void fit_picture();
-  void obey(Command command);
+  /// All keys, in the order of the help; one table.
+  static const std::vector<Key>& list_keys();
+  void obey(const Window::KeyPress& press);
   void lay_out_panels();
   void lay_out_status();
   void lay_out_help();

@@ -13,22 +13,7 @@ namespace {
 using render::Colors;
 using render::DisplayedValues;
 
-/// The ends of an image's colours.
-struct Range {
-  float low;
-  float high;
-};
-
-/// From 0, or below, to the greatest finite value; a range that is not empty.
-Range find_range(const images::Image& image) {
-  Range range{0.0f, 0.0f};
-  for (const float value : image.texels) {
-    if (!std::isfinite(value)) continue;
-    range = {std::min(range.low, value), std::max(range.high, value)};
-  }
-  if (range.high <= range.low) range.high = range.low + 1.0f;
-  return range;
-}
+constexpr const char *kHalfDifference = "half_difference", *kShortfall = "shortfall";
 
 DisplayedValues picture_of(Layers& layers, std::size_t side) {
   Workbench& bench = layers.bench();
@@ -46,14 +31,17 @@ std::string explain_empty(const records::CellRecord& record, const Layer& layer)
 ShownLayer show_picture(Layers& layers, const Layer&, std::size_t side) { return {picture_of(layers, side), {}}; }
 
 ShownLayer show_visibility(Layers& layers, const Layer&, std::size_t side) {
-  return {{&layers.bench().stage().visibility(side, layers.columns()), nullptr, 0, Colors::kGrey}, {}};
+  return {{.values = &layers.bench().stage().visibility(side, layers.columns()), .colors = Colors::kGrey}, {}};
 }
 
 ShownLayer show_error(Layers& layers, const Layer&, std::size_t side) {
   Stage& stage = layers.bench().stage();
   if (!stage.truth()) return {picture_of(layers, side), layers.bench().explain_no_truth()};
-  return {{&stage.visibility(side, layers.columns()), stage.truth(), 0, Colors::kDiverging, -layers.scale(),
-           layers.scale()},
+  return {{.values = &stage.visibility(side, layers.columns()),
+           .less = stage.truth(),
+           .colors = Colors::kDiverging,
+           .low = -layers.scale(),
+           .high = layers.scale()},
           {}};
 }
 
@@ -84,43 +72,28 @@ ShownLayer show_blockers(Layers& layers, const Layer& layer, std::size_t side) {
   return {layers.upload(layer.id, bench.drawings(), [&] { return bench.stage().blocker_distance(bench.state()); }), {}};
 }
 
-/// A measured image in colours; `find` picks it of what was measured of a side.
-template <class Find>
-ShownLayer show_measured(Layers& layers, const Layer& layer, std::size_t side, bool is_signed, Find find) {
+/// What was measured of a cell's pixels; an empty image where that does not exist.
+const images::Image& find_image(const measure::MeasuredCell& cell, const std::string& layer) {
+  static const images::Image kNone;
+  if (layer == kHalfDifference) return cell.stability.half_difference;
+  if (layer == kShortfall) return cell.stability.shortfall;
+  for (std::size_t i = 0; i < cell.error_parts.size(); ++i)
+    if (records::list_error_parts()[i].id == layer) return cell.error_parts[i];
+  return kNone;
+}
+
+/// A measured image in colours.
+ShownLayer show_measured(Layers& layers, const Layer& layer, std::size_t side) {
   Workbench& bench = layers.bench();
   bench.want_measurement();
   const measure::MeasuredCell* cell = bench.find_measured(side);
   if (cell == nullptr) return {picture_of(layers, side), bench.explain_no_measurement(side)};
-  const images::Image& image = find(*cell);
+  const images::Image& image = find_image(*cell, layer.id);
   if (image.empty()) return {picture_of(layers, side), explain_empty(cell->record, layer)};
   DisplayedValues values = layers.upload(fmt::format("{} {}", layer.id, side), bench.drawings(), [&] { return image; });
-  if (is_signed) values.colors = Colors::kDiverging, values.low = -layers.scale(), values.high = layers.scale();
+  if (layer.id != kShortfall)
+    values.colors = Colors::kDiverging, values.low = -layers.scale(), values.high = layers.scale();
   return {values, {}};
-}
-
-ShownLayer show_part(Layers& layers, const Layer& layer, std::size_t side) {
-  return show_measured(
-      layers, layer, side, true,
-      [&](const measure::MeasuredCell& cell) -> const images::Image& {
-        static const images::Image kNone;
-        const auto& parts = records::list_error_parts();
-        const auto part = std::ranges::find(
-            parts, layer.id, [](const auto& each) { return std::string(each.id); });
-        const auto index = static_cast<std::size_t>(part - parts.begin());
-        return index < cell.error_parts.size() ? cell.error_parts[index] : kNone;
-      });
-}
-
-ShownLayer show_half_difference(Layers& layers, const Layer& layer, std::size_t side) {
-  return show_measured(
-      layers, layer, side, true,
-      [](const measure::MeasuredCell& cell) -> const images::Image& { return cell.stability.half_difference; });
-}
-
-ShownLayer show_shortfall(Layers& layers, const Layer& layer, std::size_t side) {
-  return show_measured(
-      layers, layer, side, false,
-      [](const measure::MeasuredCell& cell) -> const images::Image& { return cell.stability.shortfall; });
 }
 
 std::vector<Layer> make_layers() {
@@ -138,11 +111,11 @@ std::vector<Layer> make_layers() {
        show_blockers}};
   for (const records::ErrorPart& part : records::list_error_parts())
     layers.push_back({part.id, std::string("error: ") + part.name, "visibility",
-                      fmt::format("A part of the signed error: {}.", part.meaning), show_part});
-  layers.push_back({"half_difference", "stability: 16-bit store", "visibility",
-                    "Visibility with a 16-bit store less that with a 32-bit one.", show_half_difference});
-  layers.push_back({"shortfall", "stability: broken bound", "visibility",
-                    "By how much a filter that promises a bound is darker than what it bounds.", show_shortfall});
+                      fmt::format("A part of the signed error: {}.", part.meaning), show_measured});
+  layers.push_back({kHalfDifference, "stability: 16-bit store", "visibility",
+                    "Visibility with a 16-bit store less that with a 32-bit one.", show_measured});
+  layers.push_back({kShortfall, "stability: broken bound", "visibility",
+                    "By how much a filter that promises a bound is darker than what it bounds.", show_measured});
   return layers;
 }
 
@@ -167,11 +140,15 @@ DisplayedValues Layers::upload(const std::string& id, std::uint64_t version,
     kept.version = version;
     kept.texture.reset();
     kept.texture.emplace(render::upload_image(image));
-    const Range range = find_range(image);
-    kept.low = range.low;
-    kept.high = range.high;
+    kept.low = kept.high = 0.0f;
+    for (const float value : image.texels) {
+      if (!std::isfinite(value)) continue;
+      kept.low = std::min(kept.low, value);
+      kept.high = std::max(kept.high, value);
+    }
+    if (kept.high <= kept.low) kept.high = kept.low + 1.0f;
   }
-  return {&*kept.texture, nullptr, 0, Colors::kSequential, kept.low, kept.high};
+  return {.values = &*kept.texture, .colors = Colors::kSequential, .low = kept.low, .high = kept.high};
 }
 
 }  // namespace shadowbench::view

@@ -70,10 +70,6 @@ MeasuredSides list_cells(const ViewState& state) {
   return sides;
 }
 
-bool has_use(const measure::MeasuredCell& cell, const std::string& part) {
-  return part.starts_with(cell.label + ".") && part != run::picture_part(cell.label);
-}
-
 /// Reads what a finished run left. Once it is cancelled, what it gives is worth nothing.
 MeasuredSides read_results(MeasuredSides sides, const fs::path& report, const std::atomic<bool>& is_cancelled) {
   records::Results results = records::read_results(report / "results.json");
@@ -85,7 +81,9 @@ MeasuredSides read_results(MeasuredSides sides, const fs::path& report, const st
   images::ExrFile file = images::read_exr(images, [&](const std::string& part) {
     if (is_cancelled) return false;
     return part == run::kTruthPart || part == run::kTruthMaskPart ||
-           std::ranges::any_of(sides.cells, [&](const auto& cell) { return has_use(cell, part); });
+           std::ranges::any_of(sides.cells, [&](const auto& cell) {
+             return part.starts_with(cell.label + ".") && part != run::picture_part(cell.label);
+           });
   });
   for (measure::MeasuredCell& cell : sides.cells) run::take_float_images(cell, file.parts);
   for (images::Part& part : file.parts) {

@@ -4,7 +4,6 @@
 
 #include "filters/base/error.h"
 #include "filters/format/front_matter.h"
-#include "harness/measure/filter_setup.h"
 #include "harness/render/shade_pass.h"
 
 namespace shadowbench::view {
@@ -74,9 +73,10 @@ void Stage::draw_gbuffer(const ViewState& state) {
 /// Fits and draws the light's map. Whether filters must be compiled anew for it.
 bool Stage::draw_map(const ViewState& state, bool map_changed) {
   const options::RunOptions& options = state.options;
-  std::vector<scene::LightFrustum> layers =
-      measure::fit_map_layers(options, state.scene, state.scene.light, state.active_camera(), state.map_size(),
-                              measure::padding_texels(options), [&]() -> render::GBuffer& { return *gbuffer_; });
+  std::vector<scene::LightFrustum> layers = measure::fit_map_layers(
+      options,
+      {state.scene, state.scene.light, state.active_camera(), state.map_size(), measure::padding_texels(options)},
+      [&]() -> const render::GBuffer& { return *gbuffer_; });
   const bool other_map = !light_ || map_changed || light_->map.size() != state.map_size() ||
                          light_->map.layers() != static_cast<int>(layers.size()) ||
                          render::shape_defines(light_->frustum()) != render::shape_defines(layers.front());
@@ -163,8 +163,9 @@ const gl::Texture& Stage::picture(const ViewState& state, std::size_t side, cons
   SideDrawing& drawing = sides_[side];
   if (needs(drawing.shaded, columns)) {
     drawing.shaded = columns;
-    render::shade_into(*drawing.picture, renderer_.shaders, *gbuffer_, visibility(side, columns), state.scene,
-                       state.active_camera(), state.options.range, columns);
+    render::shade_into(*drawing.picture, renderer_.shaders,
+                       {*gbuffer_, visibility(side, columns), state.scene, state.active_camera(), state.options.range},
+                       columns);
   }
   return drawing.picture->texture();
 }

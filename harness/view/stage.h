@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
+#include "harness/measure/filter_setup.h"
 #include "harness/measure/renderer.h"
 #include "harness/measure/scene_assets.h"
-#include "harness/measure/timing/empty_lookup.h"
 #include "harness/render/filter_passes.h"
 #include "harness/view/view_state.h"
 #include "report/images/image.h"
@@ -23,7 +23,9 @@ struct Changes {
   std::array<bool, kSides> values{};  ///< its parameters
 
   Changes& operator|=(const Changes& other);
-  static Changes all() { return {true, true, true, {true, true}, {true, true}}; }
+  static Changes all() {
+    return {.camera = true, .light = true, .map = true, .filter = {true, true}, .values = {true, true}};
+  }
   bool any() const { return camera || light || map || filter[0] || filter[1] || values[0] || values[1]; }
 };
 

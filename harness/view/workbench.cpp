@@ -1,5 +1,6 @@
 #include "harness/view/workbench.h"
 
+#include <system_error>
 #include <utility>
 
 #include "filters/base/error.h"
@@ -189,6 +190,34 @@ bool Workbench::draw() {
   }
   ++drawings_;
   return true;
+}
+
+FileWatch::Stamp FileWatch::read_stamp(const std::filesystem::path& file) {
+  std::error_code missing;
+  const auto written = std::filesystem::last_write_time(file, missing);
+  const std::uintmax_t bytes = missing ? 0 : std::filesystem::file_size(file, missing);
+  return missing ? std::nullopt : Stamp({written, bytes});
+}
+
+void FileWatch::watch(const std::vector<std::filesystem::path>& files) {
+  std::map<std::filesystem::path, Stamp> watched;
+  for (const std::filesystem::path& file : files) {
+    const auto known = files_.find(file);
+    watched[file] = known != files_.end() ? known->second : read_stamp(file);
+  }
+  files_ = std::move(watched);
+}
+
+bool FileWatch::has_changed() {
+  bool changed = false;
+  for (auto& [file, stamp] : files_) {
+    const Stamp now = read_stamp(file);
+    // An editor that replaces a file leaves none for a moment: what is not there yet is no change.
+    if (!now || now == stamp) continue;
+    stamp = now;
+    changed = true;
+  }
+  return changed;
 }
 
 }  // namespace shadowbench::view

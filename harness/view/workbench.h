@@ -1,8 +1,8 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,12 +10,30 @@
 #include "filters/catalogue.h"
 #include "harness/measure/renderer.h"
 #include "harness/view/background_truth.h"
-#include "harness/view/file_watch.h"
 #include "harness/view/side_measurement.h"
 #include "harness/view/stage.h"
 #include "harness/view/view_state.h"
 
 namespace shadowbench::view {
+
+/// Sees when files are saved, by looking at them.
+class FileWatch {
+ public:
+  /// Looks at these files from now on; those it looks at already go on to count from what they were.
+  void watch(const std::vector<std::filesystem::path>& files);
+
+  /// Whether any has changed since it was last asked: written, replaced, or come back after it was gone.
+  bool has_changed();
+
+ private:
+  /// What tells a file's states apart, nothing of one that is not there; two saves within a clock's tick differ in size
+  /// or in their inode, mostly.
+  using Stamp = std::optional<std::pair<std::filesystem::file_time_type, std::uintmax_t>>;
+
+  std::map<std::filesystem::path, Stamp> files_;
+
+  static Stamp read_stamp(const std::filesystem::path& file);
+};
 
 /// How long a saved file may go unseen.
 inline constexpr double kSecondsBetweenLooks = 0.1;

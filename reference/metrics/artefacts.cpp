@@ -19,33 +19,24 @@ std::optional<double> rate(std::span<const float> image, std::span<const std::ui
   return faults / count;
 }
 
-/// A 3 x 3 window of an image.
-class Window {
- public:
-  Window(int width, std::size_t pixels) : width_(width), height_(static_cast<int>(pixels) / width) {}
-
-  template <class Visit>
-  bool visit(std::size_t i, Visit visit) const {
-    const int x = static_cast<int>(i) % width_, y = static_cast<int>(i) / width_;
-    if (x == 0 || y == 0 || x + 1 == width_ || y + 1 == height_) return false;
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx)
-        if (!visit(static_cast<std::size_t>((y + dy) * width_ + x + dx))) return false;
-    }
-    return true;
+/// Visits the 3 x 3 pixels about one until `visit` says no. False then, and at the image's edge.
+template <class Visit>
+bool visit_window(std::size_t i, int width, int height, Visit visit) {
+  const int x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
+  if (x == 0 || y == 0 || x + 1 == width || y + 1 == height) return false;
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx)
+      if (!visit(static_cast<std::size_t>((y + dy) * width + x + dx))) return false;
   }
-
- private:
-  int width_;
-  int height_;
-};
+  return true;
+}
 
 }  // namespace
 
 ArtefactMasks make_artefact_masks(const RaysAtReceivers& rays) {
   const std::size_t pixels = rays.counts.size();
-  ArtefactMasks masks{std::vector<std::uint8_t>(pixels), std::vector<std::uint8_t>(pixels),
-                      std::vector<std::uint8_t>(pixels)};
+  const std::vector<std::uint8_t> none(pixels);
+  ArtefactMasks masks{.acne = none, .leak = none, .contact_gap = none};
   for (std::size_t i = 0; i < pixels; ++i) {
     if (!rays.counts[i]) continue;
     const bool settled = rays.area_settled[i] && rays.surroundings_settled[i];
@@ -81,12 +72,12 @@ std::optional<double> rate_contact_gap(std::span<const float> image, std::span<c
 
 std::optional<double> rate_noise(std::span<const float> image, std::span<const double> closer,
                                  std::span<const float> kernel, std::span<const std::uint8_t> counts, int width) {
-  const Window window(width, image.size());
+  const int height = static_cast<int>(image.size()) / width;
   double noisy = 0.0, count = 0.0;
   for (std::size_t i = 0; i < image.size(); ++i) {
     if (!counts[i] || !(kernel[i] > 0.0f && kernel[i] < 1.0f)) continue;
     double sum = 0.0;
-    const bool whole = window.visit(i, [&](std::size_t n) {
+    const bool whole = visit_window(i, width, height, [&](std::size_t n) {
       sum += static_cast<double>(image[n]) - closer[n];
       return counts[n] != 0;
     });

@@ -14,8 +14,6 @@ Parts split(const AttributionStations& s, std::size_t i) {
   return {image - model, model - s.closer[i], s.closer[i] - kernel, kernel - static_cast<double>(s.area[i])};
 }
 
-bool is_finite(const Parts& parts) { return std::isfinite(parts[0] + parts[1] + parts[2] + parts[3]); }
-
 }  // namespace
 
 Attribution attribute_error(const AttributionStations& stations) {
@@ -30,11 +28,11 @@ Attribution attribute_error(const AttributionStations& stations) {
   for (std::size_t i = 0; i < pixels; ++i) {
     if (!stations.mask[i]) continue;
     const Parts parts = split(stations, i);
-    if (!is_finite(parts)) {
+    const double error = parts[0] + parts[1] + parts[2] + parts[3];
+    if (!std::isfinite(error)) {
       ++result.not_finite;
       continue;
     }
-    const double error = parts[0] + parts[1] + parts[2] + parts[3];
     for (std::size_t p = 0; p < kErrorParts; ++p) {
       result.parts[p][i] = static_cast<float>(parts[p]);
       squares[p] += parts[p] * parts[p];
@@ -44,7 +42,7 @@ Attribution attribute_error(const AttributionStations& stations) {
     count += 1.0;
   }
   for (std::size_t p = 0; p < kErrorParts && error_squares > 0.0; ++p)
-    result.stats[p] = PartStats{std::sqrt(squares[p] / count), products[p] / error_squares};
+    result.stats[p] = PartStats{.rms = std::sqrt(squares[p] / count), .share = products[p] / error_squares};
   if (stations.model.empty()) {
     result.parts.front().clear();
     result.stats.front().reset();

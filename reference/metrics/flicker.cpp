@@ -101,13 +101,12 @@ void FlickerMeter::add(std::span<const float> image, std::span<const float> trut
 }
 
 double FlickerMeter::share_returned(const Track& track) const {
-  std::int64_t returned = 0, receivers = 0;
+  double returned = 0.0, receivers = 0.0;
   for (std::size_t i = 0; i < mask_.size(); ++i) {
-    if (!mask_[i]) continue;
-    ++receivers;
-    if (track.turns[i].returned) ++returned;
+    receivers += mask_[i] ? 1.0 : 0.0;
+    returned += mask_[i] && track.turns[i].returned ? 1.0 : 0.0;
   }
-  return static_cast<double>(returned) / static_cast<double>(receivers);
+  return returned / receivers;
 }
 
 std::optional<FlickerStats> FlickerMeter::finish() const {

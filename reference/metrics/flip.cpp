@@ -209,8 +209,4 @@ std::vector<float> measure_flip(const FlipView& a, const FlipView& b) {
   return flip;
 }
 
-std::vector<float> measure_flip(const LinearPicture& a, const LinearPicture& b, double pixels_per_degree) {
-  return measure_flip(view_for_flip(a, pixels_per_degree), view_for_flip(b, pixels_per_degree));
-}
-
 }  // namespace shadowbench::metrics

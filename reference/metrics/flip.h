@@ -35,8 +35,4 @@ FlipView view_for_flip(const LinearPicture& picture, double pixels_per_degree = 
 /// Requires two pictures of one size, seen from one distance.
 std::vector<float> measure_flip(const FlipView& a, const FlipView& b);
 
-/// The same difference for pictures that are compared only once; their pixels must be finite.
-std::vector<float> measure_flip(const LinearPicture& a, const LinearPicture& b,
-                                double pixels_per_degree = kDefaultPixelsPerDegree);
-
 }  // namespace shadowbench::metrics

@@ -1,4 +1,4 @@
-#include "reference/metrics/metric_rows.h"
+#include "reference/metrics/metric_table.h"
 
 #include <fmt/format.h>
 

@@ -6,8 +6,6 @@
 #include <cassert>
 #include <iterator>
 
-#include "reference/metrics/metric_rows.h"
-
 namespace shadowbench::metrics {
 
 std::optional<double> Metric::read(const MetricValues& values) const {
@@ -37,13 +35,9 @@ std::vector<Metric> picture_metrics() {
 }
 
 std::string_view describe_direction(MetricDirection direction) {
-  switch (direction) {
-    case MetricDirection::kLess: return "less is better";
-    case MetricDirection::kMore: return "more is better";
-    case MetricDirection::kZero: return "0 is best";
-    case MetricDirection::kNeither: break;
-  }
-  return "neither less nor more is better";
+  constexpr std::string_view kTexts[] = {"less is better", "more is better", "0 is best",
+                                         "neither less nor more is better"};
+  return kTexts[static_cast<std::size_t>(direction)];
 }
 
 std::string describe_range(const MetricRange& range) {

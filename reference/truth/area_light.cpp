@@ -26,40 +26,22 @@ Tangents make_tangents(const glm::dvec3& axis) {
 }  // namespace
 
 AreaLight AreaLight::make_sun(const glm::dvec3& to_light, double angular_diameter_deg) {
-  AreaLight light;
   const Tangents tangents = make_tangents(to_light);
   const double radius = std::tan(0.5 * glm::radians(angular_diameter_deg));
-  light.centre_ = glm::normalize(to_light);
-  light.u_ = radius * tangents.u;
-  light.v_ = radius * tangents.v;
-  return light;
+  return {Shape::kSun, glm::normalize(to_light), radius * tangents.u, radius * tangents.v};
 }
 
 AreaLight AreaLight::make_disk(const glm::dvec3& centre_ws, const glm::dvec3& axis, double radius_m) {
-  AreaLight light;
   const Tangents tangents = make_tangents(axis);
-  light.shape_ = Shape::kDisk;
-  light.centre_ = centre_ws;
-  light.u_ = radius_m * tangents.u;
-  light.v_ = radius_m * tangents.v;
-  return light;
+  return {Shape::kDisk, centre_ws, radius_m * tangents.u, radius_m * tangents.v};
 }
 
 AreaLight AreaLight::make_rectangle(const glm::dvec3& centre_ws, const glm::dvec3& half_u, const glm::dvec3& half_v) {
-  AreaLight light;
-  light.shape_ = Shape::kRectangle;
-  light.centre_ = centre_ws;
-  light.u_ = half_u;
-  light.v_ = half_v;
-  return light;
+  return {Shape::kRectangle, centre_ws, half_u, half_v};
 }
 
 AreaLight AreaLight::make_sphere(const glm::dvec3& centre_ws, double radius_m) {
-  AreaLight light;
-  light.shape_ = Shape::kSphere;
-  light.centre_ = centre_ws;
-  light.u_.x = light.v_.y = radius_m;
-  return light;
+  return {Shape::kSphere, centre_ws, {radius_m, 0.0, 0.0}, {0.0, radius_m, 0.0}};
 }
 
 glm::dvec2 AreaLight::map_sample(const glm::dvec2& sample) const {

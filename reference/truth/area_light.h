@@ -47,10 +47,13 @@ class AreaLight {
   float reach() const;
 
  private:
-  Shape shape_ = Shape::kSun;
-  glm::dvec3 centre_{0.0, 1.0, 0.0};  ///< direction for the sun, else a point
-  glm::dvec3 u_{0.0};
-  glm::dvec3 v_{0.0};
+  AreaLight(Shape shape, const glm::dvec3& centre, const glm::dvec3& u, const glm::dvec3& v)
+      : shape_(shape), centre_(centre), u_(u), v_(v) {}
+
+  Shape shape_;
+  glm::dvec3 centre_;  ///< direction for the sun, else a point
+  glm::dvec3 u_;
+  glm::dvec3 v_;
 };
 
 }  // namespace shadowbench::truth

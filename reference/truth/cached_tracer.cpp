@@ -3,17 +3,20 @@
 #include <fmt/format.h>
 
 #include "filters/base/content_hash.h"
-#include "reference/truth/version.h"
+#include "reference/truth/embree.h"
 
 namespace shadowbench::truth {
 namespace {
 
+/// Names the code that traces: it changes with the sources of this folder and of the kernels, and with Embree's
+/// version.
+constexpr const char* kVersion = SHADOWBENCH_TRUTH_SOURCES " Embree " RTC_VERSION_STRING;
 constexpr std::size_t kTracedLayers = 4;
 constexpr std::size_t kViewLayers = kTracedLayers + 2;
 
 std::string name_geometry(const std::vector<OccluderMesh>& meshes) {
   ContentHash hash;
-  hash.add(truth_version());
+  hash.add(kVersion);
   for (const OccluderMesh& mesh : meshes) {
     hash.add_values(std::span<const glm::vec3>(mesh.positions));
     hash.add_values(std::span<const std::uint32_t>(mesh.indices));
@@ -102,33 +105,37 @@ ViewRays CachedTracer::trace_view(const ReceiverImage& receivers, const AreaLigh
   return {from_layers(std::move(layers)), std::move(hard), std::move(blockers)};
 }
 
+TracedVisibility CachedTracer::find_or_trace(const ReceiverImage& receivers, const std::string& what,
+                                             const std::function<TracedVisibility()>& trace) {
+  return from_layers(find_or_trace(
+      receivers, what, kTracedLayers, [&] { return to_layers(trace()); }));
+}
+
 TracedVisibility CachedTracer::trace_kernel(const ReceiverImage& receivers, const filters::Kernel& kernel,
                                             const MapGrid& grid) {
-  const std::string what = fmt::format("kernel {} {}", kernel.name(), name_grid(grid));
-  return from_layers(find_or_trace(receivers, what, kTracedLayers, [&] {
-    return to_layers(truth::trace_kernel(occluders(), receivers, kernel, grid, settings_));
-  }));
+  return find_or_trace(
+      receivers, fmt::format("kernel {} {}", kernel.name(), name_grid(grid)),
+      [&] { return truth::trace_kernel(occluders(), receivers, kernel, grid, settings_); });
 }
 
 TracedVisibility CachedTracer::trace_disks(const ReceiverImage& receivers, std::span<const float> radii_texels,
                                            const MapGrid& grid) {
   ContentHash radii;
   radii.add_values(radii_texels);
-  const std::string what = fmt::format("disks {} {}", radii.name(), name_grid(grid));
-  return from_layers(find_or_trace(receivers, what, kTracedLayers, [&] {
-    return to_layers(truth::trace_disks(occluders(), receivers, radii_texels, grid, settings_));
-  }));
+  return find_or_trace(receivers, fmt::format("disks {} {}", radii.name(), name_grid(grid)),
+                       [&] { return truth::trace_disks(occluders(), receivers, radii_texels, grid, settings_); });
 }
 
 TracedVisibility CachedTracer::trace_surroundings(const ReceiverImage& receivers, double half_width_texels,
                                                   const MapGrid& grid) {
-  const std::string what = fmt::format("square {} {}", half_width_texels, name_grid(grid));
-  return from_layers(find_or_trace(receivers, what, kTracedLayers, [&] {
-    TraceSettings rough = settings_;
-    rough.standard_error = 1.0;
-    rough.max_points = 16;  // every pixel is content with the first 16 points
-    return to_layers(trace_square(occluders(), receivers, half_width_texels, grid, rough));
-  }));
+  return find_or_trace(
+      receivers, fmt::format("square {} {}", half_width_texels, name_grid(grid)),
+      [&] {
+        TraceSettings rough = settings_;
+        rough.standard_error = 1.0;
+        rough.max_points = 16;  // every pixel is content with the first 16 points
+        return trace_square(occluders(), receivers, half_width_texels, grid, rough);
+      });
 }
 
 }  // namespace shadowbench::truth

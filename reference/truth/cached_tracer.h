@@ -68,6 +68,8 @@ class CachedTracer {
   /// Returns the `count` layers that `what` names: from the cache, or from `trace`, and then kept.
   Layers find_or_trace(const ReceiverImage& receivers, const std::string& what, std::size_t count,
                        const std::function<Layers()>& trace);
+  TracedVisibility find_or_trace(const ReceiverImage& receivers, const std::string& what,
+                                 const std::function<TracedVisibility()>& trace);
 };
 
 }  // namespace shadowbench::truth

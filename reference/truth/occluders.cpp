@@ -1,33 +1,43 @@
 #include "reference/truth/occluders.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <limits>
 #include <new>
 #include <stdexcept>
 #include <string>
 
-#include "reference/truth/cut_out.h"
 #include "reference/truth/embree.h"
 
 namespace shadowbench::truth {
 namespace {
 
+int wrap(int i, int size) { return ((i % size) + size) % size; }
+
+/// Bilinear, repeated, texel centres at .5; in [0,1].
+float read_alpha(const CutOut& cut_out, glm::vec2 uv) {
+  if (cut_out.width == 0) return 1.0f;
+  const glm::vec2 at = uv * glm::vec2(cut_out.width, cut_out.height) - 0.5f;
+  const glm::vec2 base = glm::floor(at), weight = at - base;
+  const auto texel = [&](int dx, int dy) {
+    const int x = wrap(static_cast<int>(base.x) + dx, cut_out.width),
+              y = wrap(static_cast<int>(base.y) + dy, cut_out.height);
+    return static_cast<float>(cut_out.alpha[static_cast<std::size_t>(y * cut_out.width + x)]) / 255.0f;
+  };
+  const float low = glm::mix(texel(0, 0), texel(1, 0), weight.x), high = glm::mix(texel(0, 1), texel(1, 1), weight.x);
+  return glm::mix(low, high, weight.y);
+}
+
 /// Of the largest coordinates: see origin_offset().
 constexpr float kRoundings = 16.0f;
-
-bool has_area(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-  const glm::dvec3 normal = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
-  return glm::dot(normal, normal) > 0.0;
-}
 
 std::vector<std::uint32_t> keep_triangles_with_area(const OccluderMesh& mesh) {
   std::vector<std::uint32_t> kept;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const std::uint32_t a = mesh.indices[i], b = mesh.indices[i + 1], c = mesh.indices[i + 2];
-    if (has_area(mesh.positions[a], mesh.positions[b], mesh.positions[c])) kept.insert(kept.end(), {a, b, c});
+    const std::uint32_t* corner = &mesh.indices[i];
+    const glm::dvec3 a(mesh.positions[corner[0]]), b(mesh.positions[corner[1]]), c(mesh.positions[corner[2]]);
+    const glm::dvec3 normal = glm::cross(b - a, c - a);
+    if (glm::dot(normal, normal) > 0.0) kept.insert(kept.end(), corner, corner + 3);
   }
   return kept;
 }
@@ -37,6 +47,17 @@ static_assert(sizeof(RTCRay16) == offsetof(RayPacket, active));
 static_assert(offsetof(RTCRay16, dir_x) == offsetof(RayPacket, direction));
 static_assert(offsetof(RTCRay16, tfar) == offsetof(RayPacket, reach));
 static_assert(offsetof(RTCRay16, mask) == offsetof(RayPacket, mask));
+
+/// Rejects hits that lie in holes, as a filter function of Embree. The geometry's user data must be a HoleTest.
+void forgive_holes(const RTCFilterFunctionNArguments* arguments) {
+  const auto& test = *static_cast<const HoleTest*>(arguments->geometryUserPtr);
+  for (unsigned i = 0; i < arguments->N; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, i);
+    const float u = RTCHitN_u(arguments->hit, arguments->N, i), v = RTCHitN_v(arguments->hit, arguments->N, i);
+    if (test.is_hole(triangle, u, v)) arguments->valid[i] = 0;
+  }
+}
 
 }  // namespace
 
@@ -154,6 +175,13 @@ Box Occluders::bounds() const {
   RTCBounds bounds;
   rtcGetSceneBounds(impl_->scene, &bounds);
   return {{bounds.lower_x, bounds.lower_y, bounds.lower_z}, {bounds.upper_x, bounds.upper_y, bounds.upper_z}};
+}
+
+bool HoleTest::is_hole(std::uint32_t triangle, float u, float v) const {
+  const std::uint32_t* corner = &indices[3 * static_cast<std::size_t>(triangle)];
+  const glm::vec2 uv =
+      (1.0f - u - v) * cut_out.uvs[corner[0]] + u * cut_out.uvs[corner[1]] + v * cut_out.uvs[corner[2]];
+  return cut_out.base_alpha * read_alpha(cut_out, uv) < cut_out.cutoff;
 }
 
 }  // namespace shadowbench::truth

@@ -1,16 +1,54 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "reference/truth/ray_packet.h"
-
 namespace shadowbench::truth {
+
+/// Sixteen rays, traced together; world space. The fields before `active` lie as Embree wants them.
+struct alignas(64) RayPacket {
+  static constexpr int kSize = 16;
+  using Lanes = std::array<float, kSize>;
+  using Words = std::array<std::uint32_t, kSize>;
+
+  std::array<Lanes, 3> origin{};     ///< x, y, z
+  Lanes nearest{};                   ///< 0
+  std::array<Lanes, 3> direction{};  ///< x, y, z; need not be of unit length
+  Lanes time{};
+  Lanes reach{};  ///< in units of a direction's length; infinity for lights at infinity
+  Words mask = every(0xffffffffu);
+  Words id{};
+  Words flags{};
+  alignas(64) std::array<std::int32_t, kSize> active{};  ///< -1: traced, 0: not
+
+  template <class T>
+  static constexpr std::array<T, kSize> every(T value) {
+    std::array<T, kSize> lanes{};
+    lanes.fill(value);
+    return lanes;
+  }
+
+  /// Sets a ray and makes it active, unless it is not finite or beyond 1e18 m, which Embree does not take.
+  void set(std::size_t lane, const glm::vec3& from, const glm::vec3& towards,
+           float length = std::numeric_limits<float>::infinity()) {
+    constexpr float kFarthest = 1e18f;
+    bool is_taken = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      is_taken = is_taken && std::abs(from[axis]) < kFarthest && std::abs(towards[axis]) < kFarthest;
+      origin[static_cast<std::size_t>(axis)][lane] = from[axis];
+      direction[static_cast<std::size_t>(axis)][lane] = towards[axis];
+    }
+    reach[lane] = length;
+    active[lane] = is_taken ? -1 : 0;
+  }
+};
 
 /// Where a mesh has holes: a ray passes where the alpha of its texture is under the cutoff. The texture repeats
 /// and is read bilinearly, its first row at v = 0. The depth pass discards by the same rule, but reads a smaller mip
@@ -29,6 +67,15 @@ struct OccluderMesh {
   std::vector<glm::vec3> positions;
   std::vector<std::uint32_t> indices;  ///< three per triangle, all < positions.size()
   std::optional<CutOut> cut_out;
+};
+
+/// Finds the hits on a mesh that lie in its holes.
+struct HoleTest {
+  CutOut cut_out;
+  std::vector<std::uint32_t> indices;  ///< three per triangle that is traced
+
+  /// Whether a point of a triangle, given by the weights of its second and third corner, is a hole.
+  bool is_hole(std::uint32_t triangle, float u, float v) const;
 };
 
 /// An axis-aligned box; empty while min > max.

@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "reference/truth/ray_packet.h"
+#include "reference/truth/occluders.h"
 
 namespace shadowbench::truth {
 

@@ -2,8 +2,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 

@@ -16,12 +16,6 @@
 namespace shadowbench::regress {
 namespace {
 
-CellImages keep_images(const CellImages& images) {
-  CellImages kept = images;
-  kept.uncertainty.rounding = coarsen_rounding(images.uncertainty.rounding);
-  return kept;
-}
-
 std::string read_log(const std::filesystem::path& file) {
   require_plain_file(file, 64 * kMebibyte);
   std::ifstream stream(file, std::ios::binary);
@@ -40,8 +34,16 @@ BaselineCell Accepter::make_cell(const ActualCell& cell) const {
     return std::isinf(tolerances_.find(record.filter, value.first).limit);
   };
   std::erase_if(values.ratios, is_ignored);
-  return {record.key,      record.scene, record.view,   record.filter, record.images.parts.value_or(record.filter),
-          record.map_size, record.width, record.height, cell.origin,   std::move(values)};
+  return {.key = record.key,
+          .scene = record.scene,
+          .view = record.view,
+          .filter = record.filter,
+          .label = record.images.parts.value_or(record.filter),
+          .map_size = record.map_size,
+          .width = record.width,
+          .height = record.height,
+          .origin = cell.origin,
+          .values = std::move(values)};
 }
 
 /// A file that cannot be read keeps only its numbers, if those can be read, and the cells that are taken over now.
@@ -77,13 +79,13 @@ void Accepter::take(Comparison& comparison, const ActualCell& cell) {
   if (!comparison.differs() || cell.images.visibility.empty()) return;
   CellFile& own = file(cell.record.scene, cell.record.filter);
   BaselineCell taken = make_cell(cell);
-  const auto same =
-      std::find_if(own.cells.begin(), own.cells.end(), [&](const BaselineCell& each) { return each.key == taken.key; });
+  const auto same = std::ranges::find(own.cells, taken.key, &BaselineCell::key);
   if (same == own.cells.end())
     own.cells.push_back(std::move(taken));
   else
     *same = std::move(taken);
-  own.images[cell.record.key] = keep_images(cell.images);
+  CellImages& kept = own.images[cell.record.key] = cell.images;
+  kept.uncertainty.rounding = coarsen_rounding(cell.images.uncertainty.rounding);
   log(comparison, comparison.outcome == Outcome::kExtra ? "added" : "replaced");
 }
 

@@ -24,19 +24,27 @@ constexpr int kBaselineVersion = 1;
 constexpr const char* kTruthStem = "truth.area";
 constexpr const char* kVisibility = "visibility";
 
+/// Calls `visit(name, value)` with what is written of a cell, but for its values; `Cell` is const where it is read
+/// only.
+template <class Cell, class Visit>
+void visit_fields(Cell& cell, const Visit& visit) {
+  visit("key", cell.key);
+  visit("scene", cell.scene);
+  visit("view", cell.view);
+  visit("filter", cell.filter);
+  visit("label", cell.label);
+  visit("map_size", cell.map_size);
+  visit("width", cell.width);
+  visit("height", cell.height);
+  visit("seed", cell.origin.seed);
+  visit("renderer", cell.origin.renderer);
+  visit("machine", cell.origin.machine);
+  visit("commit", cell.origin.commit);
+}
+
 ordered_json to_json(const BaselineCell& cell) {
-  ordered_json written = {{"key", cell.key},
-                          {"scene", cell.scene},
-                          {"view", cell.view},
-                          {"filter", cell.filter},
-                          {"label", cell.label},
-                          {"map_size", cell.map_size},
-                          {"width", cell.width},
-                          {"height", cell.height},
-                          {"seed", cell.origin.seed},
-                          {"renderer", cell.origin.renderer},
-                          {"machine", cell.origin.machine},
-                          {"commit", cell.origin.commit}};
+  ordered_json written;
+  visit_fields(cell, [&](const char* name, const auto& value) { written[name] = value; });
   written["values"] = ordered_json::object();
   for (const auto& [path, value] : cell.values.numbers) written["values"][path] = records::number_json(value);
   written["ratios"] = ordered_json::object();
@@ -46,20 +54,7 @@ ordered_json to_json(const BaselineCell& cell) {
 
 BaselineCell from_json(const json& read) {
   BaselineCell cell;
-  for (const auto& [name, text] :
-       std::initializer_list<std::pair<const char*, std::string*>>{{"key", &cell.key},
-                                                                   {"scene", &cell.scene},
-                                                                   {"view", &cell.view},
-                                                                   {"filter", &cell.filter},
-                                                                   {"label", &cell.label},
-                                                                   {"renderer", &cell.origin.renderer},
-                                                                   {"machine", &cell.origin.machine},
-                                                                   {"commit", &cell.origin.commit}})
-    *text = records::read_value<std::string>(read.at(name));
-  cell.map_size = records::read_value<int>(read.at("map_size"));
-  cell.width = records::read_value<int>(read.at("width"));
-  cell.height = records::read_value<int>(read.at("height"));
-  cell.origin.seed = records::read_value<std::uint64_t>(read.at("seed"));
+  visit_fields(cell, [&]<class T>(const char* name, T& value) { value = records::read_value<T>(read.at(name)); });
   for (const auto& [path, value] : read.at("values").items())
     cell.values.numbers[path] = records::read_value<double>(value);
   for (const auto& [path, value] : read.at("ratios").items())

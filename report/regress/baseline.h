@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,9 +17,9 @@ namespace shadowbench::regress {
 /// The origin of a run's numbers: whether two can be compared depends on it.
 struct Origin {
   std::uint64_t seed = 0;
-  std::string renderer;  ///< GL_RENDERER
-  std::string machine;   ///< processor and number of cores
-  std::string commit;    ///< commit of the program
+  std::string renderer;      ///< GL_RENDERER
+  std::string machine = {};  ///< processor and number of cores
+  std::string commit;        ///< commit of the program
 
   bool operator==(const Origin&) const = default;
 };

@@ -58,10 +58,6 @@ Checksums parse_list(const std::string& text) {
   return checksums;
 }
 
-bool holds_cells(const fs::path& file) {
-  return (file.extension() == ".json" || file.extension() == ".exr") && !is_temporary(file);
-}
-
 }  // namespace
 
 Checksums compute_checksums(const fs::path& folder) {
@@ -71,8 +67,9 @@ Checksums compute_checksums(const fs::path& folder) {
     if (fs::exists(folder / name, error)) checksums[name] = hash_file(folder / name);
   for (const fs::directory_entry& scene : fs::directory_iterator(folder, error)) {
     if (!scene.is_directory(error)) continue;
-    for (const fs::directory_entry& file : fs::directory_iterator(scene, error))
-      if (holds_cells(file)) checksums[file.path().lexically_relative(folder).generic_string()] = hash_file(file);
+    for (const fs::path& file : fs::directory_iterator(scene, error))
+      if ((file.extension() == ".json" || file.extension() == ".exr") && !is_temporary(file))
+        checksums[file.lexically_relative(folder).generic_string()] = hash_file(file);
   }
   return checksums;
 }

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
-#include "report/analysis/summary.h"
 #include "report/records/format.h"
 #include "report/regress/noise_test.h"
 
@@ -14,6 +12,7 @@ namespace shadowbench::regress {
 namespace {
 
 using records::format_number;
+using records::format_ratio;
 
 /// Compares one cell, finding by finding.
 class CellComparer {
@@ -44,6 +43,18 @@ class CellComparer {
   const Tolerance& tolerance(const std::string& metric) const { return tolerances_.find(expected_.filter, metric); }
   bool has_spread() const { return !images_.uncertainty.seed_mean.empty(); }
   bool same_seed() const { return actual_.origin.seed == expected_.origin.seed; }
+  double expected_number(const char* path, double otherwise) const {
+    const auto found = expected_.values.numbers.find(path);
+    return found == expected_.values.numbers.end() ? otherwise : found->second;
+  }
+
+  void add_missing(const std::string& path, double before, const std::string& written, double limit) {
+    result_.add(Outcome::kChanged, {.metric = path,
+                                    .expected = before,
+                                    .limit = limit,
+                                    .text = fmt::format("{} was {}, and is missing: {}", path, written,
+                                                        find_absence(actual_.record, path))});
+  }
 
   void compare_images() {
     if (has_spread() && !same_seed()) {
@@ -54,9 +65,9 @@ class CellComparer {
     const PixelChange& change = *result_.pixels;
     limit_share(change);
     limit(kLargest, change.max,
-          fmt::format("the largest difference is {} at pixel ({}, {})", records::format_number(change.max),
-                      change.max_x, change.max_y));
-    limit(kMean, change.mean, fmt::format("the mean difference is {}", records::format_number(change.mean)));
+          fmt::format("the largest difference is {} at pixel ({}, {})", format_number(change.max), change.max_x,
+                      change.max_y));
+    limit(kMean, change.mean, fmt::format("the mean difference is {}", format_number(change.mean)));
     const double pixels = static_cast<double>(std::max<std::int64_t>(change.pixels(), 1));
     const std::int64_t excused = change.excused_flips + change.excused_rounding;
     limit(kExcused, static_cast<double>(excused - change.excused_expected) / pixels,
@@ -73,27 +84,30 @@ class CellComparer {
   void limit_share(const PixelChange& change) {
     if (change.share() <= tolerance(kShare).limit) return;
     result_.add(Outcome::kChanged,
-                {kShare, std::nullopt, change.share(), tolerance(kShare).limit,
-                 fmt::format("{} of {} pixels differ by more than {} and what rounding explains; "
-                             "the largest difference is {} at pixel ({}, {})",
-                             change.changed, change.compared, records::format_number(tolerance(kPixel).limit),
-                             records::format_number(change.max), change.max_x, change.max_y)});
+                {.metric = kShare,
+                 .actual = change.share(),
+                 .limit = tolerance(kShare).limit,
+                 .text = fmt::format("{} of {} pixels differ by more than {} and what rounding explains; "
+                                     "the largest difference is {} at pixel ({}, {})",
+                                     change.changed, change.compared, format_number(tolerance(kPixel).limit),
+                                     format_number(change.max), change.max_x, change.max_y)});
   }
 
   void limit(const char* metric, double value, const std::string& text) {
     const Tolerance& allowed = tolerance(metric);
     if (value <= allowed.limit) return;
-    result_.add(Outcome::kChanged, {metric, std::nullopt, value, allowed.limit,
-                                    fmt::format("{} (limit {})", text, records::format_number(allowed.limit))});
+    result_.add(Outcome::kChanged, {.metric = metric,
+                                    .actual = value,
+                                    .limit = allowed.limit,
+                                    .text = fmt::format("{} (limit {})", text, format_number(allowed.limit))});
   }
 
   void compare_spread() {
-    const double lookups = std::max(
-        expected_.values.numbers.contains("cost.fetches") ? expected_.values.numbers.at("cost.fetches") : 1.0, 1.0);
+    const double lookups = std::max(expected_number("cost.fetches", 1.0), 1.0);
     const double level = tolerance(kLevel).limit;
     const SpreadTest test = test_spread(actual_.images.visibility, images_.uncertainty, lookups, level);
     result_.notes.push_back(fmt::format("drawn with seed {}, the baseline with {}: tested as noise, at level {}",
-                                        actual_.origin.seed, expected_.origin.seed, records::format_number(level)));
+                                        actual_.origin.seed, expected_.origin.seed, format_number(level)));
     add_noise(test.pixels, "pixels", "pixel", actual_.images.visibility.width);
     add_noise(test.blocks, "blocks of 8 x 8 pixels", "block", (actual_.images.visibility.width + 7) / 8);
   }
@@ -101,9 +115,12 @@ class CellComparer {
   void add_noise(const metrics::PixelTest& test, const char* many, const char* one, int columns) {
     if (test.beyond == 0) return;
     const auto x = test.worst % static_cast<std::size_t>(columns), y = test.worst / static_cast<std::size_t>(columns);
-    result_.add(Outcome::kChanged,
-                {kLevel, std::nullopt, test.smallest_p, test.corrected_level,
-                 fmt::format("{} of {} {} are not explained by the filter's noise; the least likely is {} ({}, {}), p "
+    result_.add(
+        Outcome::kChanged,
+        {.metric = kLevel,
+         .actual = test.smallest_p,
+         .limit = test.corrected_level,
+         .text = fmt::format("{} of {} {} are not explained by the filter's noise; the least likely is {} ({}, {}), p "
                              "= {:.2g} (corrected level {:.2g})",
                              test.beyond, test.tested, many, one, x, y, test.smallest_p, test.corrected_level)});
   }
@@ -117,24 +134,21 @@ class CellComparer {
     if (before == expected_.values.numbers.end()) {
       if (now == values.numbers.end()) return;
       result_.add(Outcome::kChanged,
-                  {path, std::nullopt, now->second, allowed.limit,
-                   fmt::format("{} is {}, and missing in the baseline", path, records::format_number(now->second))});
+                  {.metric = path,
+                   .actual = now->second,
+                   .limit = allowed.limit,
+                   .text = fmt::format("{} is {}, and missing in the baseline", path, format_number(now->second))});
       return;
     }
-    if (now == values.numbers.end()) {
-      result_.add(Outcome::kChanged,
-                  {path, before->second, std::nullopt, allowed.limit,
-                   fmt::format("{} was {}, and is missing: {}", path, records::format_number(before->second),
-                               find_absence(actual_.record, path))});
-      return;
-    }
+    if (now == values.numbers.end())
+      return add_missing(path, before->second, format_number(before->second), allowed.limit);
     compare_values(metric, before->second, now->second, allowed);
   }
 
   void compare_values(const metrics::Metric& metric, double before, double now, const Tolerance& allowed) {
     if (metric.baseline == metrics::MetricBaseline::kRate && has_spread() && !same_seed()) {
       result_.notes.push_back(fmt::format("{} is not compared with that of another seed: {}, was {}", metric.path,
-                                          records::format_number(now), records::format_number(before)));
+                                          format_number(now), format_number(before)));
       return;
     }
     const bool error = is_error(metric);
@@ -145,24 +159,23 @@ class CellComparer {
     // A part of an error may grow while the error itself does not: it says why an image is wrong, not how much.
     const bool regression = worse && !metric.path.starts_with("attribution.");
     result_.add(regression ? Outcome::kLessAccurate : Outcome::kChanged,
-                {std::string(metric.path), before, now, limit,
-                 fmt::format("{}: {}, was {} ({}; limit {}: {})", metric.path, records::format_number(now),
-                             records::format_number(before), kind, records::format_number(limit), allowed.reason)});
+                {.metric = std::string(metric.path),
+                 .expected = before,
+                 .actual = now,
+                 .limit = limit,
+                 .text = fmt::format("{}: {}, was {} ({}; limit {}: {})", metric.path, format_number(now),
+                                     format_number(before), kind, format_number(limit), allowed.reason)});
   }
 
   /// How far excused pixels and the noise of truth and filter may move a mean of errors. The truth of one seed is the
   /// same, except that another machine's instructions may move its rays.
   double explained_change() const {
-    const auto find = [&](const std::map<std::string, double>& numbers, const char* path) {
-      const auto found = numbers.find(path);
-      return found == numbers.end() ? 0.0 : found->second;
-    };
-    const double receivers = std::max(find(expected_.values.numbers, "receivers"), 1.0);
+    const double receivers = std::max(expected_number("receivers", 0.0), 1.0);
     const double excused = result_.pixels ? std::sqrt(result_.pixels->excused_squares / receivers) : 0.0;
     const double noise =
         same_seed() && actual_.origin.machine == expected_.origin.machine
             ? 0.0
-            : 3.0 * std::hypot(find(expected_.values.numbers, "truth.se"), actual_.record.truth.se.value_or(0.0));
+            : 3.0 * std::hypot(expected_number("truth.se", 0.0), actual_.record.truth.se.value_or(0.0));
     return excused + noise + (has_spread() && !same_seed() ? spread_of_errors(receivers) : 0.0);
   }
 
@@ -172,9 +185,7 @@ class CellComparer {
     double squares = 0.0;
     for (const float deviation : images_.uncertainty.seed_deviation.texels)
       squares += static_cast<double>(deviation) * static_cast<double>(deviation);
-    const auto rmse = expected_.values.numbers.find("error.rmse");
-    return 3.0 * std::sqrt(squares) /
-           (receivers * (rmse == expected_.values.numbers.end() ? 1.0 : std::clamp(rmse->second, 1e-3, 1.0)));
+    return 3.0 * std::sqrt(squares) / (receivers * std::clamp(expected_number("error.rmse", 1.0), 1e-3, 1.0));
   }
 
   void compare_ratios(const ComparedValues& values) {
@@ -192,15 +203,16 @@ class CellComparer {
       const auto now = values.ratios.find(path);
       if (std::isinf(allowed.limit)) continue;
       if (now == values.ratios.end()) {
-        result_.add(Outcome::kChanged,
-                    {path, before.median, std::nullopt, allowed.limit,
-                     fmt::format("{} was {}, and is missing: {}", path, records::format_ratio(before),
-                                 find_absence(actual_.record, path))});
+        add_missing(path, before.median, format_ratio(before), allowed.limit);
       } else if (now->second.ci95.low > before.ci95.high * (1.0 + allowed.limit)) {
-        result_.add(Outcome::kSlower, {path, before.median, now->second.median, allowed.limit,
-                                       fmt::format("{}: {}, was {}: slower by more than {} of the interval's end", path,
-                                                   records::format_ratio(now->second), records::format_ratio(before),
-                                                   records::format_number(allowed.limit))});
+        result_.add(
+            Outcome::kSlower,
+            {.metric = path,
+             .expected = before.median,
+             .actual = now->second.median,
+             .limit = allowed.limit,
+             .text = fmt::format("{}: {}, was {}: slower by more than {} of the interval's end", path,
+                                 format_ratio(now->second), format_ratio(before), format_number(allowed.limit))});
       }
     }
   }
@@ -254,16 +266,8 @@ std::string find_obstacle(const TruthImages& actual, const TruthImages& expected
 }  // namespace
 
 std::string name_of(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::kSame: return "same";
-    case Outcome::kSlower: return "slower";
-    case Outcome::kChanged: return "changed";
-    case Outcome::kLessAccurate: return "less accurate";
-    case Outcome::kExtra: return "extra";
-    case Outcome::kMissing: return "missing";
-    case Outcome::kUnreadable: return "unreadable";
-  }
-  return "";
+  constexpr const char* kNames[] = {"same", "slower", "changed", "less accurate", "extra", "missing", "unreadable"};
+  return kNames[static_cast<std::size_t>(outcome)];
 }
 
 void Comparison::add(Outcome worse, Finding finding) {
@@ -306,25 +310,28 @@ Comparison compare_cell(const ActualCell& actual, const BaselineCell& expected, 
   const std::string obstacle = find_obstacle(actual, expected_images);
   if (obstacle.empty()) return CellComparer(actual, expected, expected_images, tolerances).compare();
   Comparison comparison = name_comparison(expected);
-  comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, obstacle});
+  comparison.add(Outcome::kUnreadable, obstacle);
   return comparison;
 }
 
 Comparison compare_truth(const ActualTruth& actual, const TruthImages& expected, double level) {
   Comparison comparison = name_truth(actual.record);
   if (const std::string obstacle = find_obstacle(actual.images, expected); !obstacle.empty()) {
-    comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, obstacle});
+    comparison.add(Outcome::kUnreadable, obstacle);
     return comparison;
   }
   const metrics::PixelTest test = test_truth(actual.images, expected, level);
   if (test.beyond == 0) return comparison;
   const auto width = static_cast<std::size_t>(actual.images.area.width);
-  comparison.add(Outcome::kChanged,
-                 {kLevel, std::nullopt, test.smallest_p, test.corrected_level,
-                  fmt::format("{} of {} pixels of the truth differ by more than its standard errors explain; the least "
-                              "likely is pixel ({}, {}), p = {:.2g} (corrected level {:.2g})",
-                              test.beyond, test.tested, test.worst % width, test.worst / width, test.smallest_p,
-                              test.corrected_level)});
+  comparison.add(
+      Outcome::kChanged,
+      {.metric = kLevel,
+       .actual = test.smallest_p,
+       .limit = test.corrected_level,
+       .text = fmt::format("{} of {} pixels of the truth differ by more than its standard errors explain; the least "
+                           "likely is pixel ({}, {}), p = {:.2g} (corrected level {:.2g})",
+                           test.beyond, test.tested, test.worst % width, test.worst / width, test.smallest_p,
+                           test.corrected_level)});
   return comparison;
 }
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "report/regress/baseline.h"
@@ -16,10 +17,10 @@ std::string name_of(Outcome outcome);
 
 /// One thing that is not as the baseline has it.
 struct Finding {
-  std::string metric;  ///< of list_limited_metrics(); empty where no limit is at stake
-  std::optional<double> expected;
-  std::optional<double> actual;
-  std::optional<double> limit;
+  std::string metric = {};  ///< of list_limited_metrics(); empty where no limit is at stake
+  std::optional<double> expected = {};
+  std::optional<double> actual = {};
+  std::optional<double> limit = {};
   std::string text;  ///< a whole sentence
 };
 
@@ -42,6 +43,7 @@ struct Comparison {
   bool failed() const { return differs() && !accepted; }
   /// Notes a finding; the worse outcome stays.
   void add(Outcome worse, Finding finding);
+  void add(Outcome worse, std::string text) { add(worse, Finding{.text = std::move(text)}); }
 };
 
 /// One cell of the run at hand.

@@ -66,10 +66,4 @@ PixelChange compare_pixels(const CellImages& actual, const CellImages& expected,
   return change;
 }
 
-images::Image subtract(const images::Image& actual, const images::Image& expected) {
-  images::Image difference = actual;
-  for (std::size_t i = 0; i < difference.texels.size(); ++i) difference.texels[i] -= expected.texels[i];
-  return difference;
-}
-
 }  // namespace shadowbench::regress

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "report/images/uncertainty_images.h"
 
@@ -41,8 +40,5 @@ struct PixelChange {
 
 /// Compares images of one size. A pixel may differ by `tolerance` and the rounding bounds of both.
 PixelChange compare_pixels(const CellImages& actual, const CellImages& expected, double tolerance);
-
-/// Gives actual less expected.
-images::Image subtract(const images::Image& actual, const images::Image& expected);
 
 }  // namespace shadowbench::regress

@@ -17,8 +17,6 @@
 #include "report/files/folder_lock.h"
 #include "report/pages/write_page.h"
 #include "report/regress/accept.h"
-#include "report/regress/junit.h"
-#include "report/regress/regress_page.h"
 #include "report/regress/regress_picture.h"
 #include "report/regress/regress_text.h"
 
@@ -45,11 +43,8 @@ class Regression {
     const bool known = baseline_.exists();
     if (options.accept) lock_.emplace(options.baseline);
     report_.damaged = baseline_.check();
-    if (known && !options.accept) require_sound();
-    if (known)
-      tolerances_ = read_tolerances(baseline_.tolerance_file());
-    else if (!options.accept)
-      fail_without_baseline();
+    if (!options.accept) require_sound(known);
+    if (known) tolerances_ = read_tolerances(baseline_.tolerance_file());
     index_ = baseline_.read_index();
     require_known(
         options.selection.filters, "--filters", [](const auto& cell) { return cell.filter; });
@@ -67,10 +62,14 @@ class Regression {
     find_missing();
     find_missing_truths();
     name_unreadable_files();
-    std::stable_sort(report_.comparisons.begin(), report_.comparisons.end(), is_worse);
+    std::ranges::stable_sort(report_.comparisons, is_worse);
     report_.options = options_;
     report_.accept_command = make_accept_command(options_);
-    if (options_.accept) accept();
+    if (options_.accept) {
+      const records::RunRecord& run = run_.run();
+      report_.accepted = accepter_.write({.seed = run.seed, .renderer = run.gl.renderer, .commit = run.commit});
+      report_.left = baseline_.damage();
+    }
     return std::move(report_);
   }
 
@@ -91,34 +90,28 @@ class Regression {
   std::pair<std::string, std::string> file_name_;
   int pictures_ = 0;
 
-  [[noreturn]] void fail_without_baseline() const {
-    throw Error(
-        ErrorKind::kInput,
-        fmt::format("there is no baseline here (no baseline.toml); make one: {}", make_accept_command(options_)),
-        options_.baseline.string());
-  }
-
   /// What a damaged file says is no expectation, and a limit that it has lost would pass anything.
-  void require_sound() const {
-    if (report_.damaged.empty()) return;
-    throw Error(
-        ErrorKind::kInput,
-        fmt::format("this baseline is not as it was accepted: {}; restore it, or, if that was meant or accepting "
-                    "was stopped: {}",
-                    describe_damage(report_.damaged), make_accept_command(options_)),
-        options_.baseline.string());
+  void require_sound(bool is_known) const {
+    const auto refuse = [&](const std::string& why) {
+      throw Error(ErrorKind::kInput, why + make_accept_command(options_), options_.baseline.string());
+    };
+    if (!is_known) refuse("there is no baseline here (no baseline.toml); make one: ");
+    if (!report_.damaged.empty())
+      refuse(
+          fmt::format("this baseline is not as it was accepted: {}; restore it, or, if that was meant or accepting "
+                      "was stopped: ",
+                      describe_damage(report_.damaged)));
   }
 
   /// A misspelt name would take cells out of the comparison, and nobody would notice.
   template <class Name>
   void require_known(const std::vector<std::string>& chosen, const char* option, const Name& name_of_cell) const {
-    std::vector<std::string> known;
-    for (const records::CellRecord& cell : run_.all_cells()) known.push_back(name_of_cell(cell));
-    for (const BaselineCell& cell : index_.cells) known.push_back(name_of_cell(cell));
-    std::sort(known.begin(), known.end());
-    known.erase(std::unique(known.begin(), known.end()), known.end());
+    std::set<std::string> names;
+    for (const records::CellRecord& cell : run_.all_cells()) names.insert(name_of_cell(cell));
+    for (const BaselineCell& cell : index_.cells) names.insert(name_of_cell(cell));
+    const std::vector<std::string> known(names.begin(), names.end());
     for (const std::string& name : chosen) {
-      if (std::binary_search(known.begin(), known.end(), name)) continue;
+      if (names.contains(name)) continue;
       throw Error(ErrorKind::kInput, fmt::format("{}: neither the run nor the baseline has '{}'{}; they have: {}",
                                                  option, name, did_you_mean(name, known), fmt::join(known, ", ")));
     }
@@ -131,8 +124,7 @@ class Regression {
   }
 
   const BaselineCell* find(const std::string& key) const {
-    const auto found = std::find_if(index_.cells.begin(), index_.cells.end(),
-                                    [&](const BaselineCell& cell) { return cell.key == key; });
+    const auto found = std::ranges::find(index_.cells, key, &BaselineCell::key);
     return found == index_.cells.end() ? nullptr : &*found;
   }
 
@@ -157,14 +149,12 @@ class Regression {
         comparison = regress::compare_cell(cell, *expected, images, tolerances_);
       } catch (const Error& error) {
         file_name_ = {};
-        comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, error.what()});
+        comparison.add(Outcome::kUnreadable, error.what());
       }
     } else {
       add_unknown(comparison, cell);
     }
-    if (options_.accept) accepter_.take(comparison, cell);
-    draw(comparison, images.visibility, cell.images.visibility);
-    report_.comparisons.push_back(std::move(comparison));
+    conclude(std::move(comparison), cell, images.visibility, cell.images.visibility);
   }
 
   void add_unknown(Comparison& comparison, const ActualCell& cell) {
@@ -172,13 +162,11 @@ class Regression {
         (std::filesystem::path(files::make_file_stem(cell.record.scene)) / files::make_file_stem(cell.record.filter))
             .string();
     const auto unreadable = index_.unreadable.find(file);
-    if (unreadable != index_.unreadable.end()) named_unreadable_.insert(file);
-    if (unreadable != index_.unreadable.end())
-      comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, unreadable->second});
-    else if (!cell.unreadable.empty())
-      comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, cell.unreadable});
-    else
-      comparison.add(Outcome::kExtra, {"", {}, {}, {}, "the baseline has no such cell"});
+    const bool is_known = unreadable != index_.unreadable.end();
+    if (is_known) named_unreadable_.insert(file);
+    const std::string reason = is_known ? unreadable->second : cell.unreadable;
+    comparison.add(reason.empty() ? Outcome::kExtra : Outcome::kUnreadable,
+                   reason.empty() ? "the baseline has no such cell" : reason);
   }
 
   void compare_truth(const ActualTruth& truth) {
@@ -188,35 +176,40 @@ class Regression {
     Comparison comparison = name_truth(truth.record);
     TruthImages expected;
     if (!known.unreadable.empty()) {
-      comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, known.unreadable});
+      comparison.add(Outcome::kUnreadable, known.unreadable);
     } else if (found == known.by_key.end()) {
-      comparison.add(Outcome::kExtra, {"", {}, {}, {}, "the baseline has no truth of this view"});
+      comparison.add(Outcome::kExtra, "the baseline has no truth of this view");
     } else {
       expected = found->second;
       comparison = regress::compare_truth(truth, expected, tolerances_.find(kTruthName, kLevel).limit);
     }
-    if (options_.accept) accepter_.take(comparison, truth);
-    draw(comparison, expected.area, truth.images.area);
+    conclude(std::move(comparison), truth, expected.area, truth.images.area);
+  }
+
+  /// Takes over and draws what was compared, where that is wanted; `Actual` is a cell or a truth.
+  template <class Actual>
+  void conclude(Comparison comparison, const Actual& actual, const images::Image& expected,
+                const images::Image& drawn) {
+    if (options_.accept) accepter_.take(comparison, actual);
+    const bool moved = comparison.outcome == Outcome::kChanged || comparison.outcome == Outcome::kLessAccurate;
+    if (moved && pictures_ < kMostPictures) {
+      ++pictures_;
+      comparison.picture =
+          files::make_file_stem(fmt::format("{}.{}.{}", comparison.scene, comparison.label, comparison.key)) + ".png";
+      write_regress_picture(options_.out / *comparison.picture, comparison, expected, drawn);
+    }
     report_.comparisons.push_back(std::move(comparison));
   }
 
-  void draw(Comparison& comparison, const images::Image& expected, const images::Image& actual) {
-    const bool moved = comparison.outcome == Outcome::kChanged || comparison.outcome == Outcome::kLessAccurate;
-    if (!moved || pictures_ >= kMostPictures) return;
-    ++pictures_;
-    comparison.picture =
-        files::make_file_stem(fmt::format("{}.{}.{}", comparison.scene, comparison.label, comparison.key)) + ".png";
-    write_regress_picture(options_.out / *comparison.picture, comparison, expected, actual);
+  void add_missing(Comparison comparison, const char* what) {
+    comparison.add(Outcome::kMissing, what);
+    if (options_.remove_missing) accepter_.drop(comparison);
+    report_.comparisons.push_back(std::move(comparison));
   }
 
   void find_missing() {
-    for (const BaselineCell& cell : index_.cells) {
-      if (seen_.contains(cell.key)) continue;
-      Comparison comparison = name_comparison(cell);
-      comparison.add(Outcome::kMissing, {"", {}, {}, {}, "the run has no such cell"});
-      if (options_.remove_missing) accepter_.drop(comparison);
-      report_.comparisons.push_back(std::move(comparison));
-    }
+    for (const BaselineCell& cell : index_.cells)
+      if (!seen_.contains(cell.key)) add_missing(name_comparison(cell), "the run has no such cell");
   }
 
   void find_missing_truths() {
@@ -230,9 +223,7 @@ class Regression {
         comparison.scene = scene;
         comparison.filter = comparison.label = kTruthName;
         comparison.settings = key;
-        comparison.add(Outcome::kMissing, {"", {}, {}, {}, "the run has no such truth"});
-        if (options_.remove_missing) accepter_.drop(comparison);
-        report_.comparisons.push_back(std::move(comparison));
+        add_missing(std::move(comparison), "the run has no such truth");
       }
     }
   }
@@ -260,15 +251,9 @@ class Regression {
       comparison.scene = path.parent_path().string();
       comparison.filter = comparison.label = path.filename().string();
       comparison.settings = "all cells of the file";
-      comparison.add(Outcome::kUnreadable, {"", {}, {}, {}, reason});
+      comparison.add(Outcome::kUnreadable, reason);
       report_.comparisons.push_back(std::move(comparison));
     }
-  }
-
-  void accept() {
-    const records::RunRecord& run = run_.run();
-    report_.accepted = accepter_.write({run.seed, run.gl.renderer, "", run.commit});
-    report_.left = baseline_.damage();
   }
 };
 
@@ -286,30 +271,13 @@ void remove_old_pictures(const std::filesystem::path& out) {
   }
 }
 
-/// Sums a comparison up. A difference that was accepted is no failure; one that could not be accepted is.
-std::string describe_failure(const RegressReport& report) {
-  if (!report.left.empty())
-    return fmt::format(
-        "{} stays damaged, and the run has nothing to put there: {}; restore it, or remove it and "
-        "accept again",
-        report.options.baseline.string(), describe_damage(report.left));
-  if (report.failed() == 0) return "";
-  if (report.options.accept)
-    return fmt::format("{} could not be accepted; {}", report.failed(), describe_worst(report));
-  return fmt::format("{}; worst: {}", describe_counts(report), describe_worst(report));
-}
-
 }  // namespace
 
 int RegressReport::count(Outcome outcome) const {
-  return static_cast<int>(std::count_if(
-      comparisons.begin(), comparisons.end(), [&](const Comparison& each) { return each.outcome == outcome; }));
+  return static_cast<int>(std::ranges::count(comparisons, outcome, &Comparison::outcome));
 }
 
-int RegressReport::failed() const {
-  return static_cast<int>(std::count_if(
-      comparisons.begin(), comparisons.end(), [](const Comparison& each) { return each.failed(); }));
-}
+int RegressReport::failed() const { return static_cast<int>(std::ranges::count_if(comparisons, &Comparison::failed)); }
 
 RegressOutcome run_regress(const RegressOptions& options) {
   remove_old_pictures(options.out);

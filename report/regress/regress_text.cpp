@@ -6,7 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <pugixml.hpp>
+#include <sstream>
+
+#include "report/pages/write_page.h"
 
 namespace shadowbench::regress {
 namespace {
@@ -21,7 +27,7 @@ std::string quote_word(const std::string& word) {
   const auto plain = [](unsigned char c) {
     return std::isalnum(c) || std::string("_-./:=,+@%").find(static_cast<char>(c)) != std::string::npos;
   };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
   std::string quoted = "'";
   for (const char c : word) {
     if (c == '\'') quoted += "'\\'";
@@ -71,12 +77,12 @@ ordered_json to_json(const Comparison& comparison) {
   return document;
 }
 
-}  // namespace
-
+/// Names a cell: "cubes vsm (view main, map 512, 256 x 144)".
 std::string name_cell(const Comparison& comparison) {
   return fmt::format("{} {} ({})", comparison.scene, comparison.label, comparison.settings);
 }
 
+/// What differs in a cell, and what was not compared.
 std::vector<std::string> describe_differences(const Comparison& comparison) {
   std::vector<std::string> sentences;
   for (std::size_t i = 0; i < std::min(comparison.findings.size(), kMostFindings); ++i)
@@ -87,6 +93,7 @@ std::vector<std::string> describe_differences(const Comparison& comparison) {
   return sentences;
 }
 
+/// How to accept what differs, or what was accepted; empty where neither is to be said.
 std::string describe_ending(const RegressReport& report) {
   if (!report.options.accept) return report.failed() > 0 ? "if this is meant: " + report.accept_command : "";
   if (report.accepted.empty()) return "nothing to accept";
@@ -94,12 +101,7 @@ std::string describe_ending(const RegressReport& report) {
                      (report.options.baseline / "accepted.md").string());
 }
 
-std::string make_accept_command(const RegressOptions& options) {
-  std::string text;
-  for (const std::string& word : options.command) text += quote_word(word) + ' ';
-  return text + (options.accept ? "" : "--accept");
-}
-
+/// Says in a line how many cells are as they were, and how many are not: "49 compared: 48 same, 1 less accurate".
 std::string describe_counts(const RegressReport& report) {
   std::string text = fmt::format("{} compared: {} same", report.comparisons.size(), report.count(Outcome::kSame));
   for (const Outcome outcome : kOutcomes)
@@ -107,10 +109,74 @@ std::string describe_counts(const RegressReport& report) {
   return text;
 }
 
+/// Names the worst cell and what is wrong with it, in a line. Requires one that failed.
 std::string describe_worst(const RegressReport& report) {
-  const Comparison& worst = *std::find_if(report.comparisons.begin(), report.comparisons.end(),
-                                          [](const Comparison& each) { return each.failed(); });
+  const Comparison& worst = *std::ranges::find_if(report.comparisons, &Comparison::failed);
   return fmt::format("{} is {}: {}", name_cell(worst), name_of(worst.outcome), worst.findings.front().text);
+}
+
+page::Section make_cell_section(const Comparison& comparison, std::size_t place) {
+  page::Section section{fmt::format("cell-{}", place),
+                        fmt::format("{}: {}", name_of(comparison.outcome), name_cell(comparison)),
+                        {page::Sentences{comparison.accepted ? "Accepted." : "", describe_differences(comparison)}}};
+  if (comparison.picture)
+    section.blocks.emplace_back(
+        page::Gallery{{}, {{*comparison.picture, "Expected, actual, and their difference: " + name_cell(comparison)}}});
+  return section;
+}
+
+/// By how many times its limit the worst error or difference of pixels of a cell moved; nothing where none did.
+std::string describe_excess(const Comparison& comparison) {
+  double most = 0.0;
+  for (const Finding& finding : comparison.findings)
+    if ((finding.expected && finding.metric.starts_with("error.")) || finding.metric.starts_with("visibility."))
+      if (finding.actual && finding.limit > 0.0)
+        most = std::max(most, std::abs(*finding.actual - finding.expected.value_or(0.0)) / *finding.limit);
+  return most > 0.0 ? fmt::format(", {:.3g} x its limit", most) : "";
+}
+
+page::Section make_answer(const RegressReport& report) {
+  std::string text = describe_counts(report) + ".";
+  if (report.failed() > 0) text += " Worst: " + describe_worst(report) + ".";
+  if (!report.damaged.empty()) text += " Damaged in the baseline: " + describe_damage(report.damaged) + ".";
+  page::Table table{"The worst cell of each scene and filter", {{"scene"}, {}}};
+  for (const Comparison& each : report.comparisons)  // the worst first
+    table.judge(each.scene, each.filter, name_of(each.outcome) + (each.accepted ? ", accepted" : describe_excess(each)),
+                each.failed()    ? page::Grade::kBad
+                : each.differs() ? page::Grade::kNear
+                                 : page::Grade::kGood);
+  return {"answer", "", {page::Paragraph{std::move(text)}, std::move(table)}};
+}
+
+/// Replaces what XML cannot hold and file names can: control characters, and bytes that are not UTF-8.
+std::string clean(const std::string& text) {
+  using nlohmann::json;
+  const auto valid = json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
+  std::string cleaned;
+  for (const char c : valid) cleaned += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? '?' : c;
+  return cleaned;
+}
+
+void add_case(pugi::xml_node suite, const Comparison& comparison) {
+  pugi::xml_node entry = suite.append_child("testcase");
+  entry.append_attribute("classname") = clean(comparison.scene + "." + comparison.view).c_str();
+  entry.append_attribute("name") = clean(comparison.label + " (" + comparison.settings + ")").c_str();
+  if (!comparison.failed()) return;
+  pugi::xml_node failure = entry.append_child("failure");
+  failure.append_attribute("type") = name_of(comparison.outcome).c_str();
+  failure.append_attribute("message") = clean(comparison.findings.front().text).c_str();
+  std::string text;
+  for (const Finding& finding : comparison.findings) text += finding.text + "\n";
+  if (comparison.picture) text += "picture: " + *comparison.picture + "\n";
+  failure.append_child(pugi::node_pcdata).set_value(clean(text).c_str());
+}
+
+}  // namespace
+
+std::string make_accept_command(const RegressOptions& options) {
+  std::string text;
+  for (const std::string& word : options.command) text += quote_word(word) + ' ';
+  return text + (options.accept ? "" : "--accept");
 }
 
 std::string describe_damage(const Damage& damage) {
@@ -149,6 +215,59 @@ std::string make_regress_json(const RegressReport& report) {
   document["cells"] = ordered_json::array();
   for (const Comparison& comparison : report.comparisons) document["cells"].push_back(to_json(comparison));
   return document.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string describe_failure(const RegressReport& report) {
+  if (!report.left.empty())
+    return fmt::format(
+        "{} stays damaged, and the run has nothing to put there: {}; restore it, or remove it and "
+        "accept again",
+        report.options.baseline.string(), describe_damage(report.left));
+  if (report.failed() == 0) return "";
+  if (report.options.accept)
+    return fmt::format("{} could not be accepted; {}", report.failed(), describe_worst(report));
+  return fmt::format("{}; worst: {}", describe_counts(report), describe_worst(report));
+}
+
+page::Page make_regress_page(const RegressReport& report) {
+  page::Page page{"Comparison with the baseline", {make_answer(report)}, {}};
+  if (const std::string ending = describe_ending(report); !ending.empty())
+    page.sections.push_back({"accept", "", {page::Paragraph{ending}}, report.failed() > 0});
+  std::size_t place = 0;
+  for (const Comparison& comparison : report.comparisons)
+    if (comparison.differs() && ++place <= kMostListed) page.sections.push_back(make_cell_section(comparison, place));
+  if (place > kMostListed)
+    page.sections.push_back(
+        {"rest", "", {page::Paragraph{fmt::format("{} more cells differ: see regress.json.", place - kMostListed)}}});
+  page.sections.push_back({"data",
+                           "",
+                           {page::Details{"Settings and data",
+                                          {page::Facts{{{"run", report.options.run.string()},
+                                                        {"baseline", report.options.baseline.string()}}},
+                                           pages::link_data({"regress.json"})}}}});
+  return page;
+}
+
+std::string make_junit(const RegressReport& report) {
+  std::map<std::string, std::vector<const Comparison*>> scenes;
+  for (const Comparison& comparison : report.comparisons) scenes[comparison.scene].push_back(&comparison);
+  pugi::xml_document document;
+  pugi::xml_node root = document.append_child("testsuites");
+  root.append_attribute("name") = "shadowbench regress";
+  root.append_attribute("tests") = static_cast<unsigned>(report.comparisons.size());
+  root.append_attribute("failures") = report.failed();
+  for (const auto& [scene, comparisons] : scenes) {
+    pugi::xml_node suite = root.append_child("testsuite");
+    suite.append_attribute("name") = clean(scene).c_str();
+    suite.append_attribute("tests") = static_cast<unsigned>(comparisons.size());
+    unsigned failures = 0;
+    for (const Comparison* comparison : comparisons) failures += comparison->failed() ? 1 : 0;
+    suite.append_attribute("failures") = failures;
+    for (const Comparison* comparison : comparisons) add_case(suite, *comparison);
+  }
+  std::ostringstream text;
+  document.save(text, " ");
+  return text.str();
 }
 
 }  // namespace shadowbench::regress

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "filters/base/error.h"
-#include "report/analysis/summary.h"
 #include "report/images/picture_io.h"
 #include "report/records/format.h"
 
@@ -15,7 +14,7 @@ namespace shadowbench::regress {
 namespace {
 
 bool chosen(const std::vector<std::string>& names, const std::string& name) {
-  return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+  return names.empty() || std::ranges::find(names, name) != names.end();
 }
 
 using Parts = std::map<std::string, images::Image>;
@@ -76,12 +75,15 @@ bool Selection::holds(const std::string& scene, const std::string& filter) const
 RunCells::RunCells(const std::filesystem::path& folder, const Selection& selection)
     : folder_(folder), results_(records::read_results(folder / "results.json")), all_(results_.cells) {
   std::erase_if(
-      results_.cells, [&](const records::CellRecord& cell) { return !selection.holds(cell.scene, cell.filter); });
+      results_.cells, [&](const auto& cell) { return !selection.holds(cell.scene, cell.filter); });
 }
 
 Origin RunCells::origin() const {
   const records::RunRecord& run = results_.run;
-  return {run.seed, run.gl.renderer, fmt::format("{}, {} cores", run.machine.cpu, run.machine.cores), run.commit};
+  return {.seed = run.seed,
+          .renderer = run.gl.renderer,
+          .machine = fmt::format("{}, {} cores", run.machine.cpu, run.machine.cores),
+          .commit = run.commit};
 }
 
 void RunCells::visit(const std::function<void(const ActualCell&)>& on_cell,

@@ -45,8 +45,8 @@ class LookupBench {
   measure::RoundTimes time(int rounds) {
     std::vector<render::FilterPasses*> pointers;
     for (const auto& filter : filters_) pointers.push_back(filter.get());
-    return measure::time_rounds(
-        pointers, 0, {}, [] {}, map_, gbuffer_, timer_, options::RoundLimits::exactly(rounds), 1);
+    return measure::time_rounds({.filters = pointers, .map = map_, .gbuffer = gbuffer_, .timer = timer_},
+                                {.limits = options::RoundLimits::exactly(rounds)});
   }
 
  private:

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-#include "filters/gaussian.h"
+#include "filters/kernel.h"
 #include "filters/random.h"
 #include "filters/scalar.h"
 #include "filters/store_format.h"

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "tests/filters/perspective_depth.h"
+
 namespace shadowbench::filters {
 namespace {
 

@@ -2,19 +2,54 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/statvfs.h>
 
 #include <array>
-#include <chrono>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "filters/base/error.h"
 #include "harness/gl/context/context_backends.h"
-#include "harness/gl/context/shader_cache.h"
-#include "harness/gl/gl_error.h"
+#include "harness/gl/handle.h"
 
 namespace shadowbench::gl {
 namespace {
+
+constexpr std::uintmax_t kLeastFree = std::uintmax_t{16} << 20;  // ten times Mesa's index
+
+std::filesystem::path find_cache_folder() {
+  for (const char* name : {"MESA_SHADER_CACHE_DIR", "XDG_CACHE_HOME"})
+    if (const char* folder = std::getenv(name); folder && *folder) return folder;
+  const char* home = std::getenv("HOME");
+  return std::filesystem::path(home ? home : "/") / ".cache";
+}
+
+/// Free bytes where the folder is, or will be.
+std::optional<std::uintmax_t> count_free(std::filesystem::path folder) {
+  struct statvfs disk {};
+  while (statvfs(folder.c_str(), &disk) != 0) {
+    if (!folder.has_parent_path() || folder == folder.parent_path()) return std::nullopt;
+    folder = folder.parent_path();
+  }
+  return std::uintmax_t{disk.f_bavail} * disk.f_frsize;
+}
+
+/// Switches Mesa's cache of shaders off where its disk is nearly full: Mesa maps its index into memory, and a page that
+/// the disk cannot hold ends the program with SIGBUS. Returns why, or an empty text where the cache stays on. To be
+/// called before the first context.
+std::string disable_shader_cache_on_full_disk() {
+  constexpr const char* kSwitch = "MESA_SHADER_CACHE_DISABLE";
+  if (std::getenv(kSwitch)) return {};
+  const std::filesystem::path folder = find_cache_folder();
+  const std::optional<std::uintmax_t> free = count_free(folder);
+  if (!free || *free >= kLeastFree) return {};
+  setenv(kSwitch, "true", 1);
+  return fmt::format("the driver's cache of shaders in {}, where {} KB are free", folder.string(), *free >> 10);
+}
 
 constexpr std::array<std::pair<Backend, std::string_view>, 5> kNames = {{{Backend::kAuto, "auto"},
                                                                          {Backend::kSoftware, "software"},
@@ -124,14 +159,10 @@ void Context::initialise(GlInfo info, std::chrono::steady_clock::time_point star
   info_.software = info_.software || looks_like_software(info_.renderer);
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &info_.max_texture_size);
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-  record_errors();
-  info_.creation_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-void Context::record_errors() {
   glEnable(GL_DEBUG_OUTPUT);
   glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
   glDebugMessageCallback(&Context::record_message, this);
+  info_.creation_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 void GLAPIENTRY Context::record_message(GLenum source, GLenum type, GLuint, GLenum severity, GLsizei length,
@@ -139,7 +170,7 @@ void GLAPIENTRY Context::record_message(GLenum source, GLenum type, GLuint, GLen
   if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;
   if (type != GL_DEBUG_TYPE_ERROR && type != GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) return;
   if (severity != GL_DEBUG_SEVERITY_HIGH && severity != GL_DEBUG_SEVERITY_MEDIUM) return;
-  // The pointer is the `this` of record_errors; GL hands it back as const.
+  // The pointer is the `this` of initialise(); GL hands it back as const.
   auto* self = const_cast<Context*>(static_cast<const Context*>(context));
   self->errors_.push_back(length < 0 ? std::string(message) : std::string(message, static_cast<std::size_t>(length)));
 }

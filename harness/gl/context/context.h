@@ -71,7 +71,6 @@ class Context {
   virtual GLADloadfunc loader() const = 0;
   static void GLAPIENTRY record_message(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
                                         const GLchar* message, const void* context);
-  void record_errors();
 
   GlInfo info_;
   std::vector<std::string> errors_;

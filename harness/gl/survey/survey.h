@@ -1,8 +1,13 @@
 #pragma once
 
+#include <glm/glm.hpp>
 #include <string>
+#include <vector>
 
 #include "harness/gl/context/context.h"
+#include "harness/gl/fullscreen.h"
+#include "harness/gl/objects.h"
+#include "harness/gl/program.h"
 #include "harness/gl/timer/timer.h"
 
 namespace shadowbench::gl {
@@ -47,14 +52,34 @@ struct GlSurvey {
 /// Finds out what this GL does. Requires: `context` is current. Cost: under 2 s on a software rasteriser.
 GlSurvey survey_gl(Context& context);
 
-/// Returns the weight bits of hardware PCF for one depth format: the cheap part of `survey_gl`.
-/// Shape: GL_DEPTH_COMPONENT16, 24 or 32F. Returns at most WeightPrecision::kMaxBits.
-int measure_pcf_weight_bits(Context& context, GLenum depth_format);
+/// Measures the weights of hardware PCF on a map of GL_DEPTH_COMPONENT16, 24 or 32F: the cheap part of `survey_gl`.
+WeightPrecision measure_pcf_weights(Context& context, GLenum depth_format);
 
 /// Returns GlSurvey::loop_turns. Cost: a few milliseconds.
 int measure_loop_turns(Context& context);
 
 /// Writes the context and its measurement as lines of text for people; ends with a newline.
 std::string describe_survey(const GlInfo& info, const GlSurvey& measured);
+
+/// Runs one of this folder's own fragment shaders over a grid and hands back what it wrote.
+class SurveyShader {
+ public:
+  /// Takes an embedded shader's name, the grid's size and the format to write, R32F or wider.
+  SurveyShader(const std::string& fragment, glm::ivec2 size, GLenum format = GL_R32F);
+
+  Program& program() { return program_; }
+
+  /// Queues one draw over the grid.
+  void draw();
+
+  /// Draws and returns all channels of the format, rows bottom to top.
+  std::vector<float> run();
+
+ private:
+  Program program_;
+  FullscreenTriangle triangle_;
+  Texture target_;
+  Framebuffer framebuffer_;
+};
 
 }  // namespace shadowbench::gl

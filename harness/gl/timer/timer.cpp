@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstddef>
 #include <span>
 #include <vector>
 
-#include "harness/gl/query.h"
-#include "harness/gl/survey/survey_shader.h"
+#include "harness/gl/objects.h"
+#include "harness/gl/survey/survey.h"
 
 namespace shadowbench::gl {
 namespace {
@@ -55,14 +54,6 @@ Run time_by_both(const std::function<void()>& work) {
   return run;
 }
 
-double find_median(std::span<const Run> runs, double Run::*member) {
-  std::vector<double> values;
-  for (const Run& run : runs) values.push_back(run.*member);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 // Doubles the work until it is long enough; `work` takes the number of iterations.
 std::vector<Run> collect_runs(const std::function<void(int)>& work) {
   work(1);  // the first draw also compiles
@@ -88,15 +79,20 @@ TimerKind TimerCheck::choice() const {
 TimerCheck check_timer(Context&) {
   constexpr int kSide = 1024;  // many tiles, see TimerCheck::choice
   SurveyShader shader("survey_load.frag", {kSide, kSide});
-  const auto runs = collect_runs([&](int iterations) {
+  auto runs = collect_runs([&](int iterations) {
     shader.program().set("u_iterations", iterations);
     shader.draw();
   });
   if (runs.empty()) return {};  // too fast for the wall clock: nothing is known
-  const auto longest = std::span(runs).last(kRepeats);
+  TimerCheck check;
   const auto agreeing = static_cast<double>(std::ranges::count_if(runs, &Run::agrees));
-  return {find_median(longest, &Run::wall_ms), find_median(longest, &Run::query_ms),
-          agreeing / static_cast<double>(runs.size())};
+  check.agreement = agreeing / static_cast<double>(runs.size());
+  const auto longest = std::span(runs).last(kRepeats);
+  std::ranges::sort(longest, {}, &Run::wall_ms);
+  check.wall_ms = longest[kRepeats / 2].wall_ms;
+  std::ranges::sort(longest, {}, &Run::query_ms);
+  check.query_ms = longest[kRepeats / 2].query_ms;
+  return check;
 }
 
 TimerKind choose_timer(Context& context) {

@@ -1,8 +1,6 @@
 #include "harness/measure/timing/light_timing.h"
 
-#include <cassert>
 #include <map>
-#include <memory>
 
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/timing/statistics.h"
@@ -10,24 +8,6 @@
 
 namespace shadowbench::measure {
 namespace {
-
-/// The encoded maps of every light, for each format that some filter stores.
-class EncodedMaps {
- public:
-  explicit EncodedMaps(std::size_t lights) : lights_(lights) {}
-
-  /// Empty for a filter that reads depth.
-  render::EncodedTargets find(const render::FilterPasses& filter, std::size_t light) {
-    if (!filter.encoded_format()) return {};
-    std::vector<render::EncodedTargets>& maps = maps_[*filter.encoded_format()];
-    while (maps.size() < lights_) maps.push_back(filter.make_encoded_targets());
-    return maps[light];
-  }
-
- private:
-  std::size_t lights_;
-  std::map<GLenum, std::vector<render::EncodedTargets>> maps_;
-};
 
 records::LightCountRecord make_record(int count, const RoundTimes& times, std::size_t filter, const LightFrame& frame,
                                       std::uint64_t seed) {
@@ -56,18 +36,20 @@ LightFrameBench::LightFrameBench(Renderer& renderer, const options::RunOptions& 
 }
 
 void LightFrameBench::prepare_filters(const std::vector<scene::Light>& lights) {
-  EncodedMaps encoded(lights.size());
+  std::map<GLenum, std::vector<render::EncodedTargets>>
+      encoded;  // of every light, for each format that some filter stores
   for (render::FilterPasses* filter : frame_.filters) {
-    std::vector<render::PreparedLight>& prepared = prepared_.emplace_back();
-    for (std::size_t i = 0; i < lights.size(); ++i) {
-      prepared.push_back(filter->prepare(make_filter_light(options_, lights[i], maps_[i].layers, filter->request()),
-                                         encoded.find(*filter, i)));
+    std::vector<render::EncodedTargets> maps(lights.size());
+    if (const auto format = filter->encoded_format()) {
+      std::vector<render::EncodedTargets>& kept = encoded[*format];
+      while (kept.size() < lights.size()) kept.push_back(filter->make_encoded_targets());
+      maps = kept;
     }
+    std::vector<render::PreparedLight>& prepared = prepared_.emplace_back();
+    for (std::size_t i = 0; i < lights.size(); ++i)
+      prepared.push_back(
+          filter->prepare(make_filter_light(options_, lights[i], maps_[i].layers, filter->request()), maps[i]));
   }
-}
-
-void LightFrameBench::draw_maps() {
-  for (LightMap& map : maps_) assets_.redraw(map);
 }
 
 void LightFrameBench::prefilter(std::size_t filter) {
@@ -86,15 +68,18 @@ void LightFrameBench::look_up(std::size_t filter) {
 
 RoundTimes LightFrameBench::time(const std::function<void(double part)>& on_part) {
   const gl::TimerKind timer = renderer_.timer;
-  std::vector<TimedFilter> timed;
+  TimedPasses timed{.draw_map = [&] {
+    return gl::time_ms(timer, [&] {
+      for (LightMap& map : maps_) assets_.redraw(map);
+    });
+  }};
   for (std::size_t i = 0; i < frame_.filters.size(); ++i) {
     std::function<void()> prefilters;
     if (frame_.filters[i]->has_prefilter()) prefilters = [this, i] { prefilter(i); };
-    timed.push_back(make_timed(timer, prefilters, [this, i] { look_up(i); }));
+    timed.filters.push_back(make_timed(timer, prefilters, [this, i] { look_up(i); }));
   }
   return run_rounds(
-      timed, frame_.reference, [&] { return gl::time_ms(timer, [&] { draw_maps(); }); }, options_.rounds, options_.seed,
-      0.0, {}, on_part);
+      timed, {.reference = frame_.reference, .limits = options_.rounds, .seed = options_.seed, .on_part = on_part});
 }
 
 std::vector<std::vector<float>> LightFrameBench::draw(std::size_t filter) {

@@ -53,7 +53,6 @@ class LightFrameBench {
   std::vector<std::vector<render::PreparedLight>> prepared_;  ///< by filter and light
 
   void prepare_filters(const std::vector<scene::Light>& lights);
-  void draw_maps();
   void prefilter(std::size_t filter);
   void look_up(std::size_t filter);
 };

@@ -21,7 +21,7 @@ double quantile(const std::vector<double>& sorted, double q) {
 }
 
 double median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   return quantile(values, 0.5);
 }
 
@@ -54,7 +54,7 @@ records::Interval bootstrap_median(const std::vector<double>& values, std::uint6
     for (double& value : sample) value = values[generator() % values.size()];
     medians.push_back(median_of(sample));
   }
-  std::sort(medians.begin(), medians.end());
+  std::ranges::sort(medians);
   return {quantile(medians, 0.025), quantile(medians, 0.975)};
 }
 
@@ -62,7 +62,7 @@ records::Interval bootstrap_median(const std::vector<double>& values, std::uint6
 
 records::Quartiles summarise(std::vector<double> values) {
   assert(!values.empty());
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   return {quantile(values, 0.5), quantile(values, 0.25), quantile(values, 0.75), static_cast<int>(values.size())};
 }
 
@@ -82,7 +82,7 @@ records::OwnTime bootstrap_difference(const std::vector<double>& minuend, const 
 
 records::Ratio order_ratio(const std::vector<double>& numerator, const std::vector<double>& denominator) {
   std::vector<double> ratios = divide(numerator, denominator);
-  std::sort(ratios.begin(), ratios.end());
+  std::ranges::sort(ratios);
   // With l values outside, the interval runs from the l-th smallest to the l-th largest value.
   const std::size_t outside = std::max<std::size_t>(count_outside(ratios.size()), 1);
   return {quantile(ratios, 0.5), {ratios[outside - 1], ratios[ratios.size() - outside]}};

@@ -11,8 +11,8 @@ namespace shadowbench::measure {
 namespace {
 
 constexpr int kFewestOfAnyBudget = 3;
-constexpr int kRoundsPerLook =
-    8;  ///< a bootstrap takes as long as a small lookup: it looks again after an eighth more rounds
+/// A bootstrap takes as long as a small lookup: it looks again after an eighth more rounds.
+constexpr int kRoundsPerLook = 8;
 
 /// Fisher and Yates; std::shuffle differs between standard libraries.
 void shuffle(std::vector<std::size_t>& order, std::mt19937_64& generator) {
@@ -21,30 +21,25 @@ void shuffle(std::vector<std::size_t>& order, std::mt19937_64& generator) {
 
 class Rounds {
  public:
-  Rounds(const std::vector<TimedFilter>& filters, std::size_t reference, const std::function<double()>& draw_map,
-         const options::RoundLimits& limits, std::uint64_t seed, double drawn_ms,
-         const std::vector<std::function<double()>>& empties, const std::function<void(double)>& on_part)
-      : filters_(filters),
-        empties_(empties),
-        on_part_(on_part),
-        reference_(reference),
-        draw_map_(draw_map),
-        limits_(limits),
-        seed_(seed),
-        generator_(seed),
-        active_(filters.size()) {
-    assert(!filters.empty() && reference < filters.size());
+  Rounds(const TimedPasses& passes, const RoundPlan& plan)
+      : filters_(passes.filters),
+        passes_(passes),
+        plan_(plan),
+        limits_(plan.limits),
+        generator_(plan.seed),
+        active_(filters_.size()) {
+    assert(!filters_.empty() && plan.reference < filters_.size());
     std::iota(active_.begin(), active_.end(), std::size_t{0});
-    times_.filters.resize(filters.size());
-    times_.empties.resize(empties.size());
-    times_.spent_ms = drawn_ms;
+    times_.filters.resize(filters_.size());
+    times_.empties.resize(passes.empties.size());
+    times_.spent_ms = plan.drawn_ms;
   }
 
   RoundTimes run() {
     if (!is_spent()) run_round(false);  // slower passes are warm
     for (int round = 1; round <= limits_.most; ++round) {
       run_round(true);
-      if (on_part_) on_part_(find_part(round));
+      if (plan_.on_part) plan_.on_part(find_part(round));
       if (is_enough(round)) break;
     }
     return std::move(times_);
@@ -52,19 +47,16 @@ class Rounds {
 
  private:
   const std::vector<TimedFilter>& filters_;
-  const std::vector<std::function<double()>>& empties_;
-  const std::function<void(double)>& on_part_;
-  std::size_t reference_;
-  const std::function<double()>& draw_map_;
-  options::RoundLimits limits_;
-  std::uint64_t seed_;
+  const TimedPasses& passes_;
+  const RoundPlan& plan_;
+  const options::RoundLimits& limits_;
   std::mt19937_64 generator_;
   std::vector<std::size_t> active_;
   RoundTimes times_;
   int next_look_ = 0;  ///< rounds after which intervals are looked at again
 
   void run_round(bool counted) {
-    const double map_ms = draw_map_();
+    const double map_ms = passes_.draw_map();
     times_.spent_ms += map_ms;
     if (counted) times_.map.push_back(map_ms);
     for (const std::size_t i : shuffle_turns()) {
@@ -86,13 +78,13 @@ class Rounds {
   /// The filters that still take part, and behind them the empty lookups, in an order of this round's own.
   std::vector<std::size_t> shuffle_turns() {
     std::vector<std::size_t> turns = active_;
-    for (std::size_t k = 0; k < empties_.size(); ++k) turns.push_back(filters_.size() + k);
+    for (std::size_t k = 0; k < passes_.empties.size(); ++k) turns.push_back(filters_.size() + k);
     shuffle(turns, generator_);
     return turns;
   }
 
   void run_empty(std::size_t which, bool counted) {
-    const double ms = empties_[which]();
+    const double ms = passes_.empties[which]();
     times_.spent_ms += ms;
     if (counted) times_.empties[which].push_back(ms);
   }
@@ -121,17 +113,17 @@ class Rounds {
   /// The reference is as precise as can be: its ratio to itself is 1.
   void drop_precise() {
     std::erase_if(active_, [&](std::size_t i) {
-      if (i == reference_ || !is_precise(times_.filters[i])) return false;
+      if (i == plan_.reference || !is_precise(times_.filters[i])) return false;
       times_.filters[i].stopped = StopReason::kPrecise;
       return true;
     });
-    if (active_.size() != 1 || active_.front() != reference_) return;
-    times_.filters[reference_].stopped = StopReason::kPrecise;
+    if (active_.size() != 1 || active_.front() != plan_.reference) return;
+    times_.filters[plan_.reference].stopped = StopReason::kPrecise;
     active_.clear();
   }
 
   bool is_precise(const FilterTimes& times) const {
-    const FilterTimes& reference = times_.filters[reference_];
+    const FilterTimes& reference = times_.filters[plan_.reference];
     return is_narrow(times.lookup, reference.lookup) &&
            is_narrow(add_moving(times_.map, times), add_moving(times_.map, reference));
   }
@@ -140,19 +132,15 @@ class Rounds {
   bool is_narrow(const std::vector<double>& numerator, const std::vector<double>& denominator) const {
     const auto width = [](const records::Ratio& r) { return (r.ci95.high - r.ci95.low) / r.median; };
     return width(order_ratio(numerator, denominator)) <= 1.5 * limits_.precision &&
-           width(bootstrap_ratio(numerator, denominator, seed_)) <= limits_.precision;
+           width(bootstrap_ratio(numerator, denominator, plan_.seed)) <= limits_.precision;
   }
 };
 
 }  // namespace
 
 std::string name_of(StopReason reason) {
-  switch (reason) {
-    case StopReason::kRounds: return "rounds";
-    case StopReason::kPrecise: return "precise";
-    case StopReason::kBudget: return "budget";
-  }
-  return {};
+  constexpr const char* kNames[] = {"rounds", "precise", "budget"};
+  return kNames[static_cast<std::size_t>(reason)];
 }
 
 std::vector<double> add_moving(const std::vector<double>& map, const FilterTimes& times) {
@@ -168,12 +156,7 @@ TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std
   return timed;
 }
 
-RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference,
-                      const std::function<double()>& draw_map, const options::RoundLimits& limits, std::uint64_t seed,
-                      double drawn_ms, const std::vector<std::function<double()>>& empties,
-                      const std::function<void(double part)>& on_part) {
-  return Rounds(filters, reference, draw_map, limits, seed, drawn_ms, empties, on_part).run();
-}
+RoundTimes run_rounds(const TimedPasses& passes, const RoundPlan& plan) { return Rounds(passes, plan).run(); }
 
 double time_once(render::FilterPasses& filter, const render::ShadowMap& map, const render::GBuffer& gbuffer,
                  render::ImageTarget& target, gl::TimerKind timer) {
@@ -185,25 +168,20 @@ double time_once(render::FilterPasses& filter, const render::ShadowMap& map, con
       });
 }
 
-RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::size_t reference,
-                       const std::vector<std::unique_ptr<render::FilterPasses>>& empties,
-                       const std::function<void()>& draw_map, const render::ShadowMap& map,
-                       const render::GBuffer& gbuffer, gl::TimerKind timer, const options::RoundLimits& limits,
-                       std::uint64_t seed, double drawn_ms, const std::function<void(double part)>& on_part) {
-  render::ImageTarget target("timed visibility", GL_R32F, gbuffer.width(), gbuffer.height());
-  std::vector<TimedFilter> timed;
-  for (render::FilterPasses* filter : filters) {
+RoundTimes time_rounds(const DrawnFilters& drawn, const RoundPlan& plan) {
+  render::ImageTarget target("timed visibility", GL_R32F, drawn.gbuffer.width(), drawn.gbuffer.height());
+  const auto look_up_by = [&](render::FilterPasses* filter) {
+    return [&, filter] { filter->lookup(drawn.gbuffer, drawn.map, target); };
+  };
+  TimedPasses timed{.draw_map = [&] { return gl::time_ms(drawn.timer, drawn.draw_map); }};
+  for (render::FilterPasses* filter : drawn.filters) {
     std::function<void()> prefilter;
-    if (filter->has_prefilter()) prefilter = [&map, filter] { filter->prefilter(map); };
-    timed.push_back(make_timed(timer, prefilter, [&, filter] { filter->lookup(gbuffer, map, target); }));
+    if (filter->has_prefilter()) prefilter = [&, filter] { filter->prefilter(drawn.map); };
+    timed.filters.push_back(make_timed(drawn.timer, prefilter, look_up_by(filter)));
   }
-  std::vector<std::function<double()>> timed_empties;
-  for (const auto& empty : empties)
-    timed_empties.push_back(make_timed(
-                                timer, {}, [&, lookup = empty.get()] { lookup->lookup(gbuffer, map, target); })
-                                .lookup);
-  return run_rounds(
-      timed, reference, [&] { return gl::time_ms(timer, draw_map); }, limits, seed, drawn_ms, timed_empties, on_part);
+  for (const auto& empty : drawn.empties)
+    timed.empties.push_back(make_timed(drawn.timer, {}, look_up_by(empty.get())).lookup);
+  return run_rounds(timed, plan);
 }
 
 }  // namespace shadowbench::measure

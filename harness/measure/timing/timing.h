@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,31 +50,48 @@ struct TimedFilter {
 /// Makes passes that are timed; `prefilter` is empty for filters that read depth.
 TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std::function<void()> lookup);
 
+/// What takes turns in timed rounds; each gives its time in milliseconds.
+struct TimedPasses {
+  std::vector<TimedFilter> filters = {};
+  std::function<double()> draw_map = {};
+  std::vector<std::function<double()>> empties = {};  ///< take part in every round
+};
+
+/// How long rounds go on, and by what they are judged.
+struct RoundPlan {
+  std::size_t reference = 0;  ///< index of the filter that ratios refer to
+  options::RoundLimits limits = {};
+  std::uint64_t seed = 1;
+  double drawn_ms = 0.0;                          ///< what running every filter once has cost before
+  std::function<void(double part)> on_part = {};  ///< hears after every round how much is behind, 0 .. 1
+};
+
 /// Times interleaved rounds: every round draws the map and runs each filter once, in a shuffled order, so that drift of
 /// the machine's speed hits all of them alike. After a prefilter three lookups go untimed, and the fourth is timed:
 /// right after a prefilter, a CPU's lookups are up to 1.6 times as slow as in a frame of lookups alone. One
-/// round warms up and is not counted; none where `drawn_ms`, which is what running every filter once has cost before,
-/// spends the budget already. A filter drops out when its ratios to the filter `reference`, of the lookup and of map,
-/// prefilter and lookup, are precise enough; `reference` stays as long as any other. When the budget is spent, all
-/// stop, but not before three rounds, or one where no more may be. Each of `empties` takes part in every round.
-/// `on_part` hears after every round how much of rounds or budget is behind, 0 .. 1.
+/// round warms up and is not counted; none where `drawn_ms` spends the budget already. A filter drops out when its
+/// ratios to the reference, of the lookup and of map, prefilter and lookup, are precise enough; the reference stays as
+/// long as any other. When the budget is spent, all stop, but not before three rounds, or one where no more may be.
 /// Requires at least one filter. Cost: (rounds + 1) times the sum of all passes, lookups of prefiltered maps four
 /// times.
-RoundTimes run_rounds(const std::vector<TimedFilter>& filters, std::size_t reference,
-                      const std::function<double()>& draw_map, const options::RoundLimits& limits, std::uint64_t seed,
-                      double drawn_ms = 0.0, const std::vector<std::function<double()>>& empties = {},
-                      const std::function<void(double part)>& on_part = {});
+RoundTimes run_rounds(const TimedPasses& passes, const RoundPlan& plan);
 
 /// Runs a filter's passes once, into `target`, and gives their time in milliseconds.
 double time_once(render::FilterPasses& filter, const render::ShadowMap& map, const render::GBuffer& gbuffer,
                  render::ImageTarget& target, gl::TimerKind timer);
 
-/// Times the shadow map, prefilters and lookups of filters that were drawn once, and empty lookups, as run_rounds().
-RoundTimes time_rounds(const std::vector<render::FilterPasses*>& filters, std::size_t reference,
-                       const std::vector<std::unique_ptr<render::FilterPasses>>& empties,
-                       const std::function<void()>& draw_map, const render::ShadowMap& map,
-                       const render::GBuffer& gbuffer, gl::TimerKind timer, const options::RoundLimits& limits,
-                       std::uint64_t seed, double drawn_ms = 0.0, const std::function<void(double part)>& on_part = {});
+/// Filters that were drawn once over a map and a view, and empty lookups.
+struct DrawnFilters {
+  std::span<render::FilterPasses* const> filters;
+  std::span<const std::unique_ptr<render::FilterPasses>> empties = {};
+  std::function<void()> draw_map = [] {};
+  const render::ShadowMap& map;
+  const render::GBuffer& gbuffer;
+  gl::TimerKind timer = gl::TimerKind::kWallClock;
+};
+
+/// Times the shadow map, prefilters and lookups, as run_rounds().
+RoundTimes time_rounds(const DrawnFilters& drawn, const RoundPlan& plan);
 
 /// Adds what a filter costs in a frame in which light or casters move: map, prefilter and lookup, round by round.
 std::vector<double> add_moving(const std::vector<double>& map, const FilterTimes& times);

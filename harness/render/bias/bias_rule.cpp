@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <functional>
@@ -26,10 +25,10 @@ struct Mode {
   bool needs_amount = true;
 };
 
-std::map<std::string, Target> list_units(BiasAmount BiasRule::*amount) {
-  return {{"depth", [=](BiasRule& r) -> double& { return (r.*amount).depth; }},
-          {"texels", [=](BiasRule& r) -> double& { return (r.*amount).texels; }},
-          {"world", [=](BiasRule& r) -> double& { return (r.*amount).world; }}};
+std::map<std::string, Target> list_units(BiasAmount& (*amount)(BiasRule&)) {
+  return {{"depth", [=](BiasRule& r) -> double& { return amount(r).depth; }},
+          {"texels", [=](BiasRule& r) -> double& { return amount(r).texels; }},
+          {"world", [=](BiasRule& r) -> double& { return amount(r).world; }}};
 }
 
 Target constant_depth() {
@@ -45,12 +44,12 @@ constexpr double kRoundingDepth = 2e-5;
 std::map<std::string, Mode> make_modes() {
   std::map<std::string, Mode> modes;
   modes["none"].needs_amount = false;
-  modes["constant"].keys = list_units(&BiasRule::constant);
-  modes["slope"].keys = list_units(&BiasRule::slope);
+  modes["constant"].keys = list_units([](BiasRule& r) -> BiasAmount& { return r.constant; });
+  modes["slope"].keys = list_units([](BiasRule& r) -> BiasAmount& { return r.slope; });
   modes["plane"].keys = {{"kernels", [](BiasRule& r) -> double& { return r.plane_kernels; }},
                          {"texels", [](BiasRule& r) -> double& { return r.plane_texels; }},
                          {"depth", constant_depth()}};
-  modes["normal-offset"].keys = list_units(&BiasRule::normal_offset);
+  modes["normal-offset"].keys = list_units([](BiasRule& r) -> BiasAmount& { return r.normal_offset; });
   modes["normal-offset"].keys.erase("depth");
   modes["receiver-plane"] = {{{"depth", constant_depth()}}, [](BiasRule& r) { r.receiver_plane = true; }, false};
   modes["polygon-offset"].keys = {{"factor", [](BiasRule& r) -> double& { return r.map.polygon_factor; }},
@@ -75,11 +74,8 @@ std::vector<std::string> list_names(const Table& table) {
 template <class Table>
 [[noreturn]] void fail_unknown(const char* what, const std::string& name, const Table& table) {
   const std::vector<std::string> known = list_names(table);
-  const auto near = nearest_name(name, known);
-  const std::string hint = near            ? fmt::format("did you mean '{}'?", *near)
-                           : known.empty() ? "this mode takes none"
-                                           : fmt::format("known: {}", fmt::join(known, ", "));
-  throw Error(ErrorKind::kUsage, fmt::format("--bias: unknown {} '{}'; {}", what, name, hint));
+  const std::string hint = known.empty() ? "; this mode takes none" : did_you_mean_or_known(name, known);
+  throw Error(ErrorKind::kUsage, fmt::format("--bias: unknown {} '{}'{}", what, name, hint));
 }
 
 double parse_amount(const std::string& text) {

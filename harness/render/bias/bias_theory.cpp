@@ -49,8 +49,11 @@ std::vector<SweptMode> make_swept_modes() {
 
 BiasTheory make_theory(double reach_texels, const filters::Receiver& receiver) {
   const glm::dvec2 slopes = glm::abs(glm::dvec2(receiver.depth_per_texel));
-  return {reach_texels, slopes.x + slopes.y, std::max(slopes.x, slopes.y), static_cast<double>(receiver.n_dot_l),
-          static_cast<double>(receiver.texel_size_ws)};
+  return {.reach_texels = reach_texels,
+          .slope_per_texel = slopes.x + slopes.y,
+          .larger_slope = std::max(slopes.x, slopes.y),
+          .n_dot_l = static_cast<double>(receiver.n_dot_l),
+          .texel_m = static_cast<double>(receiver.texel_size_ws)};
 }
 
 BiasTheory find_theory(const SweptMode& mode, double reach_texels, const std::vector<filters::Receiver>& receivers,

@@ -1,6 +1,7 @@
-#include "harness/view/panels/keys.h"
+#include <utility>
 
-#include "harness/gl/gl_api.h"
+#include "harness/view/gui.h"
+#include "harness/view/save.h"
 
 // After the loader, see gl_api.h.
 #define GLFW_INCLUDE_NONE
@@ -8,46 +9,51 @@
 
 namespace shadowbench::view {
 
-const std::vector<Key>& list_keys() {
+const std::vector<Gui::Key>& Gui::list_keys() {
   static const std::vector<Key> keys = {
-      {Command::kHelp, GLFW_KEY_F1, false, "F1", "show or hide this list"},
-      {Command::kShare, GLFW_KEY_T, false, "T", "divider between the sides, or one side at a time"},
-      {Command::kFlip, GLFW_KEY_SPACE, false, "Space", "one side at a time: flip to the other"},
-      {Command::kSwapSides, GLFW_KEY_X, false, "X", "exchange left and right"},
-      {Command::kNextLayer, GLFW_KEY_PAGE_DOWN, false, "Page Down", "next layer: picture, visibility, error, ..."},
-      {Command::kPreviousLayer, GLFW_KEY_PAGE_UP, false, "Page Up", "previous layer"},
-      {Command::kMagnifier, GLFW_KEY_M, false, "M", "magnifier with the values under the pointer"},
-      {Command::kMap, GLFW_KEY_N, false, "N", "the depth map and the stored map"},
-      {Command::kPanels, GLFW_KEY_H, false, "H", "show or hide the panels"},
-      {Command::kNextCamera, GLFW_KEY_C, false, "C", "next camera of the scene"},
-      {Command::kNextLight, GLFW_KEY_L, false, "L", "next light of the scene"},
-      {Command::kResetView, GLFW_KEY_R, false, "R", "camera and light as the scene has them"},
-      {Command::kSavePicture, GLFW_KEY_P, true, "Ctrl+P", "save the picture, and the float images of both sides"},
-      {Command::kSaveScene, GLFW_KEY_S, true, "Ctrl+S", "save the scene with this camera and light"},
-      {Command::kSaveExperiment, GLFW_KEY_E, true, "Ctrl+E", "save both sides as an experiment of 'shadowbench run'"},
-      {Command::kQuit, GLFW_KEY_Q, true, "Ctrl+Q", "close the window"}};
+      {GLFW_KEY_F1, false, "F1", "show or hide this list", [](Gui& gui) { gui.look_.help = !gui.look_.help; }},
+      {GLFW_KEY_T, false, "T", "divider between the sides, or one side at a time",
+       [](Gui& gui) {
+         gui.look_.sharing = gui.look_.sharing == Sharing::kDivider ? Sharing::kFlip : Sharing::kDivider;
+       }},
+      {GLFW_KEY_SPACE, false, "Space", "one side at a time: flip to the other",
+       [](Gui& gui) {
+         gui.look_.sharing = Sharing::kFlip;
+         gui.look_.flipped_to = 1 - gui.look_.flipped_to;
+       }},
+      {GLFW_KEY_X, false, "X", "exchange left and right",
+       [](Gui& gui) { gui.bench_.change(Changes::all(), [](ViewSettings& s) { std::swap(s.sides[0], s.sides[1]); }); }},
+      {GLFW_KEY_PAGE_DOWN, false, "Page Down", "next layer: picture, visibility, error, ...",
+       [](Gui& gui) { gui.look_.layer = (gui.look_.layer + 1) % Layers::list().size(); }},
+      {GLFW_KEY_PAGE_UP, false, "Page Up", "previous layer",
+       [](Gui& gui) { gui.look_.layer = (gui.look_.layer + Layers::list().size() - 1) % Layers::list().size(); }},
+      {GLFW_KEY_M, false, "M", "magnifier with the values under the pointer",
+       [](Gui& gui) { gui.look_.magnifier = !gui.look_.magnifier; }},
+      {GLFW_KEY_N, false, "N", "the depth map and the stored map", [](Gui& gui) { gui.look_.map = !gui.look_.map; }},
+      {GLFW_KEY_H, false, "H", "show or hide the panels", [](Gui& gui) { gui.look_.panels = !gui.look_.panels; }},
+      {GLFW_KEY_C, false, "C", "next camera of the scene",
+       [](Gui& gui) {
+         gui.bench_.change(Changes::all(), [](ViewSettings& s) { s.camera = (s.camera + 1) % s.cameras.size(); });
+       }},
+      {GLFW_KEY_L, false, "L", "next light of the scene",
+       [](Gui& gui) {
+         gui.bench_.change(Changes::all(), [](ViewSettings& s) { s.light = (s.light + 1) % s.lights.size(); });
+       }},
+      {GLFW_KEY_R, false, "R", "camera and light as the scene has them",
+       [](Gui& gui) {
+         gui.bench_.change(Changes::all(), [&](ViewSettings& s) {
+           s.cameras = gui.first_.cameras;
+           s.lights = gui.first_.lights;
+         });
+       }},
+      {GLFW_KEY_P, true, "Ctrl+P", "save the picture, and the float images of both sides",
+       [](Gui& gui) { gui.save("picture", [&](const auto& stem) { gui.save_picture(stem); }); }},
+      {GLFW_KEY_S, true, "Ctrl+S", "save the scene with this camera and light",
+       [](Gui& gui) { gui.save_state("scene", save_scene); }},
+      {GLFW_KEY_E, true, "Ctrl+E", "save both sides as an experiment of 'shadowbench run'",
+       [](Gui& gui) { gui.save_state("experiment", save_experiment); }},
+      {GLFW_KEY_Q, true, "Ctrl+Q", "close the window", [](Gui& gui) { gui.window_.close(); }}};
   return keys;
-}
-
-const std::vector<std::pair<std::string, std::string>>& list_gestures() {
-  static const std::vector<std::pair<std::string, std::string>> gestures = {
-      {"left drag", "orbit around what is under the pointer"},
-      {"right drag", "look around"},
-      {"middle drag", "move sideways"},
-      {"wheel", "approach what is under the pointer"},
-      {"Shift + left drag", "move the light across the sky"},
-      {"drag the divider", "share the picture otherwise"},
-      {"W A S D, E, Q", "fly ahead, left, back, right, up, down; Shift: faster"},
-      {"Ctrl + click on a slider", "type a number"}};
-  return gestures;
-}
-
-std::vector<Command> find_commands(const std::vector<Window::KeyPress>& presses) {
-  std::vector<Command> commands;
-  for (const Window::KeyPress& press : presses)
-    for (const Key& each : list_keys())
-      if (each.key == press.key && each.control == press.control) commands.push_back(each.command);
-  return commands;
 }
 
 }  // namespace shadowbench::view

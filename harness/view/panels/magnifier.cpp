@@ -42,8 +42,10 @@ void Magnifier::show_pixels(const std::array<ShownLayer, kSides>& shown, int mag
   target_->clear(glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
   for (std::size_t i = 0; i < kSides; ++i) {
     const glm::ivec2 corner(static_cast<int>(i) * (side + kGap), 0);
-    display_.draw(bench_.renderer().shaders, {shown[i].values, shown[i].values},
-                  {corner, glm::ivec2(side), first, static_cast<float>(magnified), 0.0f}, *target_);
+    display_.draw(
+        bench_.renderer().shaders, {shown[i].values, shown[i].values},
+        {.corner = corner, .size = glm::ivec2(side), .first_pixel = first, .magnified = static_cast<float>(magnified)},
+        &*target_);
   }
   const ImVec2 at = ImGui::GetCursorScreenPos();
   widgets_.show("magnifier.image", target_->texture());
@@ -67,12 +69,12 @@ void Magnifier::show_values(const Layer& layer, const std::array<ShownLayer, kSi
   }
   Stage& stage = bench_.stage();
   for (std::size_t side = 0; side < kSides; ++side) {
-    const render::DisplayedValues visibility{&stage.visibility(side, {0, bench_.state().options.width}), nullptr, 0,
-                                             render::Colors::kGrey};
+    const render::DisplayedValues visibility{.values = &stage.visibility(side, {0, bench_.state().options.width}),
+                                             .colors = render::Colors::kGrey};
     const float value = read_value(visibility, last_pixel_).front();
     std::string line = fmt::format("{}: visibility {:.6g}", kSideNames[side], value);
     if (stage.truth()) {
-      const render::DisplayedValues truth{stage.truth(), nullptr, 0, render::Colors::kGrey};
+      const render::DisplayedValues truth{.values = stage.truth(), .colors = render::Colors::kGrey};
       line += fmt::format(", less the truth {:+.6g}", value - read_value(truth, last_pixel_).front());
     }
     ImGui::TextUnformatted(line.c_str());

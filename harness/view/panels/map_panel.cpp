@@ -4,8 +4,12 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <set>
+#include <span>
 
+#include "filters/map_reader.h"
 #include "harness/gl/pixel_format.h"
+#include "harness/render/receivers.h"
 
 namespace shadowbench::view {
 namespace {
@@ -31,7 +35,8 @@ void MapPanel::lay_out(Look& look, const std::optional<glm::ivec2>& pixel, std::
       contents.push_back(fmt::format("{} stores: channel {}", passes->request().spec.id, channel + 1));
   content_ = std::min(content_, contents.size() - 1);
   widgets_.choose("map.content", "content", contents, content_);
-  widgets_.slide("map.zoom", "zoom", {1.0, 128.0, true, false, ""}, zoom_, "Around the receiver under the pointer.");
+  widgets_.slide("map.zoom", "zoom", {.min = 1.0, .max = 128.0, .logarithmic = true}, zoom_,
+                 "Around the receiver under the pointer.");
   // What stands above and below the map takes ten lines.
   const float room = ImGui::GetIO().DisplaySize.y - 60.0f * scale - 10.0f * ImGui::GetTextLineHeightWithSpacing();
   const float side_pixels = std::clamp(room, 100.0f * scale, kLargestSide * scale);
@@ -68,7 +73,7 @@ void MapPanel::show_map(int side_pixels, int layer) {
   const glm::dvec2 first = glm::clamp(centre - 0.5 * shown, glm::dvec2(0.0), glm::dvec2(texels - shown));
   const auto magnified = static_cast<float>(side_pixels / shown);
   display_.draw(bench_.renderer().shaders, {values, values},
-                {glm::ivec2(0), glm::ivec2(side_pixels), glm::vec2(first), magnified, 0.0f}, *target_);
+                {.size = glm::ivec2(side_pixels), .first_pixel = glm::vec2(first), .magnified = magnified}, &*target_);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   widgets_.show("map.image", target_->texture());
   draw_footprint({corner.x, corner.y}, side_pixels, first);
@@ -106,6 +111,88 @@ void MapPanel::draw_footprint(const glm::vec2& corner, int side_pixels, const gl
   for (const auto& [x, y] : {std::pair(6.0f, 0.0f), std::pair(0.0f, 6.0f)})
     list->AddLine({middle.x - x, middle.y - y}, {middle.x + x, middle.y + y}, kReceiverInk, 2.0f);
   list->PopClipRect();
+}
+
+std::optional<Footprint> FootprintFinder::find(std::size_t side, const glm::ivec2& pixel) {
+  const render::FilterPasses* passes = bench_.stage().passes(side);
+  if (passes == nullptr) return std::nullopt;
+  const auto receiver = find_receiver(passes->light(), pixel);
+  if (!receiver) return std::nullopt;
+  const filters::FilterRequest& request = passes->request();
+  Footprint footprint;
+  footprint.receiver = *receiver;
+  footprint.place_texels = glm::dvec2(receiver->uv) * static_cast<double>(bench_.state().map_size());
+  if (const auto kernel = filters::find_kernel(request.spec, request.values)) {
+    footprint.half_width_texels = kernel->half_width();
+    footprint.is_disk = kernel->disk_radius() > 0.0;
+  } else {
+    footprint.half_width_texels = filters::radius_texels(request.spec, request.values);
+  }
+  add_reads(footprint, side);
+  footprint.shape = footprint.half_width_texels > 0.0
+                        ? fmt::format("{} of {:.3g} texels to each side", footprint.is_disk ? "a disk" : "a square",
+                                      footprint.half_width_texels)
+                        : "a point";
+  return footprint;
+}
+
+/// One pixel's receiver, with the bits that the lookup pass has.
+std::optional<filters::Receiver> FootprintFinder::find_receiver(const render::LightLayers& light,
+                                                                const glm::ivec2& pixel) const {
+  const render::GBuffer& seen = bench_.stage().gbuffer();
+  const glm::ivec2 at(pixel.x, seen.height() - 1 - pixel.y);
+  const auto place = bench_.stage().find_surface(pixel);
+  if (!place) return std::nullopt;
+  render::GBuffer one(1, 1);
+  one.upload(std::span(&place->x, 4), seen.normal().read_texel(at.x, at.y, 4));
+  std::optional<filters::Receiver> found;
+  for (const render::LightSetup& layer : light) {
+    for (filters::Receiver& receiver : render::read_receivers(bench_.renderer().shaders, one, layer))
+      if (!found || receiver.layer_share > found->layer_share) found = receiver;
+  }
+  if (found) found->pixel = at;
+  return found;
+}
+
+FootprintFinder::Prepared* FootprintFinder::prepare(std::size_t side, int layer) {
+  if (drawing_ != bench_.drawings()) {
+    drawing_ = bench_.drawings();
+    prepared_.clear();
+    prepared_.resize(kSides);
+  }
+  const render::ShadowMap& map = bench_.stage().light_map().map;
+  prepared_[side].resize(static_cast<std::size_t>(map.layers()));
+  std::unique_ptr<Prepared>& prepared = prepared_[side][static_cast<std::size_t>(layer)];
+  if (prepared) return prepared.get();
+  const filters::FilterRequest& request = bench_.stage().passes(side)->request();
+  const bool reads_depth = !request.spec.has_encode && request.spec.passes.empty();
+  std::unique_ptr<filters::Model> model = reads_depth ? filters::make_model(request.spec) : nullptr;
+  if (!model) return nullptr;
+  prepared = std::make_unique<Prepared>(Prepared{request, map.read(layer), std::move(model), nullptr});
+  const ViewState& state = bench_.state();
+  prepared->lookup = prepared->model->prepare({.spec = prepared->request.spec,
+                                               .values = prepared->request.values,
+                                               .map = prepared->map,
+                                               .seed = state.options.seed,
+                                               .plane_max_tangent = state.options.bias.plane_max_tangent()},
+                                              filters::Precision::kFloat);
+  return prepared.get();
+}
+
+void FootprintFinder::add_reads(Footprint& footprint, std::size_t side) {
+  const Prepared* prepared = prepare(side, footprint.receiver.layer);
+  if (prepared == nullptr) return;
+  filters::ReadLog log;
+  const filters::ModelResult result = prepared->lookup->at(footprint.receiver);
+  const auto size = static_cast<std::size_t>(bench_.state().map_size());
+  std::set<std::size_t> texels;  // row by row
+  for (const filters::TexelRead& read : log.reads()) texels.insert(read.texel);
+  for (const std::size_t texel : texels)
+    footprint.reads.emplace_back(static_cast<int>(texel % size), static_cast<int>(texel / size));
+  if (result.disk_radius_texels > 0.0) {
+    footprint.half_width_texels = result.disk_radius_texels + 1.0;  // read through 2x2 texels
+    footprint.is_disk = true;
+  }
 }
 
 }  // namespace shadowbench::view

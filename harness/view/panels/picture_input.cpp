@@ -28,12 +28,6 @@ float key_axis(const Window& window, int plus, int minus) {
   return (window.is_held(plus) ? 1.0f : 0.0f) - (window.is_held(minus) ? 1.0f : 0.0f);
 }
 
-Changes camera_changes() {
-  Changes changes;
-  changes.camera = true;
-  return changes;
-}
-
 }  // namespace
 
 void PictureInput::take(const PicturePlace& place, Look& look, double seconds) {
@@ -85,9 +79,7 @@ void PictureInput::drag(const PicturePlace& place, Look& look, const glm::vec2& 
     const float metres = height / (place.magnified * static_cast<float>(place.pixels.y));
     return set_camera(fly(camera, {-by.x * metres, by.y * metres, 0.0f}));
   }
-  Changes changes;
-  changes.light = true;
-  bench_.change(changes, [&](ViewSettings& settings) {
+  bench_.change({.light = true}, [&](ViewSettings& settings) {
     scene::Light& light = settings.lights[settings.light];
     light = move_in_sky(light, kLightPerPixel_deg * static_cast<double>(by.x),
                         -kLightPerPixel_deg * static_cast<double>(by.y));
@@ -102,24 +94,20 @@ void PictureInput::fly_by_keys(double seconds) {
            key_axis(window_, GLFW_KEY_W, GLFW_KEY_S)};
   is_flying_ = way != glm::vec3(0.0f);
   if (!is_flying_) return;
-  const float speed = kFlightsPerSecond * scene_size() * (io.KeyShift ? kFaster : 1.0f);
+  const scene::Bounds bounds = bench_.state().scene.bounds();
+  const float speed = kFlightsPerSecond * glm::length(bounds.max - bounds.min) * (io.KeyShift ? kFaster : 1.0f);
   set_camera(fly(bench_.state().active_camera(), way * speed * static_cast<float>(std::min(seconds, 0.1))));
 }
 
 void PictureInput::set_camera(const scene::Camera& camera) {
   bench_.change(
-      camera_changes(), [&](ViewSettings& settings) { settings.cameras[settings.camera] = camera; });
+      {.camera = true}, [&](ViewSettings& settings) { settings.cameras[settings.camera] = camera; });
 }
 
 glm::vec3 PictureInput::find_pivot(const glm::vec2& pixel) const {
   if (const auto place = bench_.stage().find_surface(glm::ivec2(pixel))) return glm::vec3(*place);
   const scene::Bounds bounds = bench_.state().scene.bounds();
   return 0.5f * (bounds.min + bounds.max);
-}
-
-float PictureInput::scene_size() const {
-  const scene::Bounds bounds = bench_.state().scene.bounds();
-  return glm::length(bounds.max - bounds.min);
 }
 
 }  // namespace shadowbench::view

@@ -35,7 +35,6 @@ class PictureInput {
 
   /// The receiver under a place of the picture, or the scene's centre where there is none.
   glm::vec3 find_pivot(const glm::vec2& pixel) const;
-  float scene_size() const;
 };
 
 }  // namespace shadowbench::view

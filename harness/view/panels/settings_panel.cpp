@@ -4,7 +4,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <map>
 
 #include "filters/base/error.h"
 #include "harness/gl/pixel_format.h"
@@ -25,22 +24,10 @@ std::size_t find_index(const std::vector<std::string>& names, const std::string&
   return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin()) % names.size();
 }
 
-Changes light_changes() {
-  Changes changes;
-  changes.light = true;
-  return changes;
-}
-
-Changes map_changes() {
-  Changes changes;
-  changes.map = true;
-  return changes;
-}
-
 /// The range of a mode's amount, by the unit that it is given in.
 Widgets::Range bias_range(const std::string& key) {
-  if (key == "depth") return {1e-6, 0.1, true, false, "depth"};
-  return {0.0, 10.0, false, false, key};
+  if (key == "depth") return {.min = 1e-6, .max = 0.1, .logarithmic = true, .unit = key};
+  return {.max = 10.0, .unit = key};
 }
 
 }  // namespace
@@ -66,7 +53,7 @@ void SettingsPanel::show_look(Look& look) {
   if (widgets_.choose("sharing", "sides", {"divider", "one at a time (Space)"}, sharing))
     look.sharing = sharing == 0 ? Sharing::kDivider : Sharing::kFlip;
   double scale = static_cast<double>(look.error_scale);
-  if (widgets_.slide("error_scale", "full colour at", {0.001, 1.0, true, false, ""}, scale,
+  if (widgets_.slide("error_scale", "full colour at", {.min = 0.001, .logarithmic = true}, scale,
                      "The error of visibility that gets the full red or blue."))
     look.error_scale = static_cast<float>(scale);
 }
@@ -115,9 +102,10 @@ void SettingsPanel::show_light() {
   }
   const scene::SkyAngles at = find_in_sky(state.scene.light);
   double azimuth = at.azimuth_deg, elevation = at.elevation_deg;
-  const bool turned =
-      widgets_.slide("azimuth", "azimuth", {-180.0, 180.0, false, false, "degrees"}, azimuth, "0 is +z, 90 is +x.");
-  const bool raised = widgets_.slide("elevation", "elevation", {-90.0, 90.0, false, false, "degrees"}, elevation);
+  const bool turned = widgets_.slide("azimuth", "azimuth", {.min = -180.0, .max = 180.0, .unit = "degrees"}, azimuth,
+                                     "0 is +z, 90 is +x.");
+  const bool raised =
+      widgets_.slide("elevation", "elevation", {.min = -90.0, .max = 90.0, .unit = "degrees"}, elevation);
   scene::Light light = state.scene.light;
   if (turned || raised) light = scene::place_in_sky(light, {azimuth, elevation});
   bool changed = turned || raised;
@@ -128,12 +116,13 @@ void SettingsPanel::show_light() {
       continue;
     }
     double value = static_cast<double>(*number.value);
-    if (!widgets_.slide(name, number.name, {number.range->min, number.range->max, false, false, number.unit}, value))
+    if (!widgets_.slide(name, number.name, {.min = number.range->min, .max = number.range->max, .unit = number.unit},
+                        value))
       continue;
     *number.value = static_cast<float>(value);
     changed = true;
   }
-  if (changed) bench_.change(light_changes(), [&](ViewSettings& settings) { settings.lights[settings.light] = light; });
+  if (changed) bench_.change({.light = true}, [&](ViewSettings& settings) { settings.lights[settings.light] = light; });
 }
 
 void SettingsPanel::show_map() {
@@ -145,19 +134,19 @@ void SettingsPanel::show_map() {
   if (std::ranges::find(sizes, own) == sizes.end()) sizes.insert(sizes.begin(), own);
   std::size_t size = find_index(sizes, own);
   if (widgets_.choose("map_size", "texels a side", sizes, size))
-    bench_.change(map_changes(),
+    bench_.change({.map = true},
                   [&](ViewSettings& settings) { settings.options.map_sizes = {std::stoi(sizes[size])}; });
   const std::vector<std::string> formats = {"d16", "d24", "d32f"};
   std::size_t format = 0;
   for (std::size_t i = 0; i < formats.size(); ++i)
     if (gl::parse_depth_format(formats[i]).internal_format == state.options.map.format) format = i;
   if (widgets_.choose("map_format", "format", formats, format))
-    bench_.change(map_changes(), [&](ViewSettings& settings) {
+    bench_.change({.map = true}, [&](ViewSettings& settings) {
       settings.options.map.format = gl::parse_depth_format(formats[format]).internal_format;
     });
   bool reversed = state.options.map.curve.reversed;
   if (widgets_.tick("reversed_depth", "reversed depth", reversed))
-    bench_.change(map_changes(), [&](ViewSettings& settings) { settings.options.map.curve.reversed = reversed; });
+    bench_.change({.map = true}, [&](ViewSettings& settings) { settings.options.map.curve.reversed = reversed; });
   show_fit();
   show_bias();
 }
@@ -167,10 +156,10 @@ void SettingsPanel::show_fit() {
   const std::vector<std::string> fits = scene::list_fit_names();
   std::size_t fit = find_index(fits, std::string(scene::name_of(state.options.fit.mode)));
   if (widgets_.choose("fit", "fit", fits, fit, "What the light's map encloses."))
-    bench_.change(map_changes(), [&](ViewSettings& settings) { set_fit(settings, fits[fit]); });
+    bench_.change({.map = true}, [&](ViewSettings& settings) { set_fit(settings, fits[fit]); });
   bool snap = state.options.snap;
   if (widgets_.tick("snap", "snap to texels", snap, "Keeps the map's texels fixed in the world while the view moves."))
-    bench_.change(light_changes(), [&](ViewSettings& settings) { settings.options.snap = snap; });
+    bench_.change({.light = true}, [&](ViewSettings& settings) { settings.options.snap = snap; });
 }
 
 void SettingsPanel::show_bias() {
@@ -192,24 +181,22 @@ void SettingsPanel::show_bias() {
   std::vector<std::string> wanted;
   if (modes[chosen] != "default")
     wanted = {has_amount ? fmt::format("{}:{}={}", mode->name, mode->key, bias_amount_) : modes[chosen]};
-  bench_.change(map_changes(), [&](ViewSettings& settings) { set_bias(settings, wanted); });
+  bench_.change({.map = true}, [&](ViewSettings& settings) { set_bias(settings, wanted); });
 }
 
 void SettingsPanel::show_camera() {
   if (!begin_section("Camera", false)) return;
   const ViewState& state = bench_.state();
-  Changes changes;
-  changes.camera = true;
   std::vector<std::string> names;
   for (const scene::Camera& camera : state.cameras) names.push_back(camera.name);
   std::size_t chosen = state.camera;
   if (widgets_.choose("camera", "camera", names, chosen))
-    bench_.change(changes, [&](ViewSettings& settings) { settings.camera = chosen; });
+    bench_.change({.camera = true}, [&](ViewSettings& settings) { settings.camera = chosen; });
   const scene::Camera& camera = state.active_camera();
   double fov = glm::degrees(static_cast<double>(camera.vertical_fov_rad));
   if (camera.orthographic_height_m <= 0.0f &&
-      widgets_.slide("fov", "field of view", {5.0, 120.0, false, false, "degrees"}, fov, "Vertical."))
-    bench_.change(changes, [&](ViewSettings& settings) {
+      widgets_.slide("fov", "field of view", {.min = 5.0, .max = 120.0, .unit = "degrees"}, fov, "Vertical."))
+    bench_.change({.camera = true}, [&](ViewSettings& settings) {
       settings.cameras[settings.camera].vertical_fov_rad = static_cast<float>(glm::radians(fov));
     });
   ImGui::TextDisabled("at %.3g %.3g %.3g", static_cast<double>(camera.position_ws.x),

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -109,12 +108,6 @@ bool Widgets::tick(const std::string& name, const std::string& label, bool& valu
   return changed;
 }
 
-bool Widgets::press(const std::string& name, const std::string& label, const std::string& help) {
-  const bool pressed = ImGui::Button(label_of(name, label).c_str());
-  finish(name, help);
-  return pressed;
-}
-
 void Widgets::show(const std::string& name, const gl::Texture& texture) {
   ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(render::gl_name(texture))),
                {static_cast<float>(texture.width()), static_cast<float>(texture.height())}, {0.0f, 1.0f}, {1.0f, 0.0f});
@@ -143,7 +136,10 @@ bool Widgets::parameter(const std::string& name, const filters::ParamSpec& spec,
   const double usual = std::get<double>(spec.default_value);
   const bool is_linear = *spec.min >= *spec.max ||
                          tune::ParamScale({spec.name, *spec.min, *spec.max, usual, spec.integer}).name() == "linear";
-  return slide(name, spec.name, {*spec.min, *spec.max, !is_linear, spec.integer, spec.unit}, *number, help);
+  return slide(
+      name, spec.name,
+      {.min = *spec.min, .max = *spec.max, .logarithmic = !is_linear, .integer = spec.integer, .unit = spec.unit},
+      *number, help);
 }
 
 }  // namespace shadowbench::view

@@ -24,7 +24,7 @@ class Widgets {
     double max = 1.0;
     bool logarithmic = false;
     bool integer = false;
-    std::string unit;
+    std::string unit = {};
   };
 
   /// A number within a range; one typed in (Ctrl and a click) stays within it.
@@ -35,8 +35,6 @@ class Widgets {
   bool drag(const std::string& name, const std::string& label, const std::string& unit, float& value, float speed);
 
   bool tick(const std::string& name, const std::string& label, bool& value, const std::string& help = {});
-  bool press(const std::string& name, const std::string& label, const std::string& help = {});
-
   /// A filter's parameter, by what its front matter says of it.
   bool parameter(const std::string& name, const filters::ParamSpec& spec, filters::ParamValue& value);
 

@@ -1,6 +1,6 @@
-#include "harness/gl/shader_log.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/gl/shader_source.h"
 
 namespace shadowbench::gl {
 namespace {

@@ -39,7 +39,7 @@ ModelLayer make_steps(int width, int height, int step_texels = 1, int map_side =
 
 double count(const std::string& filter, const std::vector<ModelLayer>& layers, const CacheShape& cache,
              glm::ivec2 pixels = glm::ivec2(kSide)) {
-  return count_map_traffic(parse(filter).front(), layers, 0.0, 1, pixels.x, pixels.y, {{cache}}).value().front();
+  return count_map_traffic(parse(filter).front(), layers, {pixels.x, pixels.y}, {{cache}}).value().front();
 }
 
 TEST(MapTraffic, AMapThatIsReadOnce_IsFetchedOnce) {
@@ -146,16 +146,16 @@ TEST(MapTraffic, CachesAreCountedEachForItself) {
   const auto request = parse("tent3x3").front();
   const std::vector<ModelLayer> layers = {make_steps(kSide, kSide)};
   const std::vector<CacheShape> caches = {kOneLine, kHoldsAll, {1 << 20, 64}};
-  const auto together = count_map_traffic(request, layers, 0.0, 1, kSide, kSide, caches).value();
+  const auto together = count_map_traffic(request, layers, {kSide, kSide}, caches).value();
   ASSERT_EQ(together.size(), caches.size());
   for (std::size_t i = 0; i < caches.size(); ++i) EXPECT_EQ(together[i], count("tent3x3", layers, caches[i]));
 }
 
 TEST(MapTraffic, IsNothingWithoutAModelOrAReceiver) {
   filters::FilterRequest request = parse("none").front();
-  EXPECT_FALSE(count_map_traffic(request, {make_layer({})}, 0.0, 1, kSide, kSide, {{kHoldsAll}}));
+  EXPECT_FALSE(count_map_traffic(request, {make_layer({})}, {kSide, kSide}, {{kHoldsAll}}));
   request.spec.id = "mine";
-  EXPECT_FALSE(count_map_traffic(request, {make_steps(8, 8)}, 0.0, 1, 8, 8, {{kHoldsAll}}));
+  EXPECT_FALSE(count_map_traffic(request, {make_steps(8, 8)}, {8, 8}, {{kHoldsAll}}));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ ModelLayer make_layer(const Receivers& filter, const Receivers& closer) {
 
 ModelImages evaluate(const std::vector<ModelLayer>& layers) {
   static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  return evaluate_model(catalogue.parse_requests("none").front(), layers, 0.0, 1, kImageWidth, kImageHeight);
+  return evaluate_model(catalogue.parse_requests("none").front(), layers, {kImageWidth, kImageHeight});
 }
 
 TEST(ModelImages, HaveTheirTopRowFirst_AndAreLitWhereThereIsNoReceiver) {

@@ -2,12 +2,10 @@
 
 #include "filters/format/front_matter.h"
 #include "harness/measure/filter_setup.h"
-#include "harness/measure/phases.h"
-#include "harness/measure/timing/empty_lookup.h"
+#include "harness/measure/scene_measurement.h"
 #include "harness/measure/timing/statistics.h"
 #include "harness/measure/timing/timing.h"
 #include "reference/metrics/error_stats.h"
-#include "reference/metrics/mean_interval.h"
 #include "reference/truth/truth_cache.h"
 #include "tests/harness/render/bench_fixture.h"
 
@@ -49,9 +47,13 @@ class Phased {
     measure::draw_visibility(*passes, map.map, assets_.gbuffer(camera), target);
     const std::vector<render::FilterPasses*> filters = {passes.get()};
     const auto empty = measure::make_empty_lookups(renderer_, options_, scene_, map, filters);
-    const measure::RoundTimes times = measure::time_rounds(
-        filters, 0, empty.passes, [&] { assets_.redraw(map); }, map.map, assets_.gbuffer(camera), renderer_.timer,
-        options::RoundLimits::exactly(40), 1);
+    const measure::RoundTimes times = measure::time_rounds({.filters = filters,
+                                                            .empties = empty.passes,
+                                                            .draw_map = [&] { assets_.redraw(map); },
+                                                            .map = map.map,
+                                                            .gbuffer = assets_.gbuffer(camera),
+                                                            .timer = renderer_.timer},
+                                                           {.limits = options::RoundLimits::exactly(40)});
     return measure::bootstrap_difference(times.filters[0].lookup, times.empties[0], 1);
   }
 

@@ -1,11 +1,10 @@
-#include "harness/measure/phases.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <set>
 
-#include "reference/metrics/mean_interval.h"
+#include "harness/measure/scene_measurement.h"
+#include "reference/metrics/error_stats.h"
 
 namespace shadowbench::measure {
 namespace {

@@ -17,8 +17,9 @@ TEST(Timing, TwiceTheTaps_TakeLonger) {
     pointers.push_back(filters.back().get());
   }
   const gl::TimerKind timer = gl::choose_timer(shared_context());
-  const measure::RoundTimes times = measure::time_rounds(
-      pointers, 0, {}, [] {}, bench.map(), bench.gbuffer(), timer, options::RoundLimits::exactly(31), 1);
+  const measure::RoundTimes times =
+      measure::time_rounds({.filters = pointers, .map = bench.map(), .gbuffer = bench.gbuffer(), .timer = timer},
+                           {.limits = options::RoundLimits::exactly(31)});
   const records::Ratio ratio = measure::bootstrap_ratio(times.filters[2].lookup, times.filters[1].lookup, 1);
   std::printf("32 taps / 16 taps: %.2f [%.2f, %.2f] by %s\n", ratio.median, ratio.ci95.low, ratio.ci95.high,
               gl::timer_name(timer));

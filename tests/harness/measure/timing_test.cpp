@@ -23,8 +23,7 @@ class FakeFilters {
   }
 
   RoundTimes run(const options::RoundLimits& limits, const std::function<void(double)>& on_part = {}) {
-    return run_rounds(
-        filters_, 0, [] { return 1.0; }, limits, 3, 0.0, {}, on_part);
+    return run_rounds({filters_, [] { return 1.0; }}, {.limits = limits, .seed = 3, .on_part = on_part});
   }
 
  private:
@@ -99,8 +98,8 @@ TEST(Rounds, LookupsSettleAfterAPrefilter) {
   int since = 0, alone = 0;
   const TimedFilter slow{[&] { return since = 0, 10.0; }, [&] { return ++since > 3 ? 2.0 : 7.0; }},
       other{{}, [&] { return 1.0 + alone++; }};
-  const RoundTimes times = run_rounds(
-      {slow, other}, 0, [] { return 1.0; }, options::RoundLimits::exactly(2), 3);
+  const RoundTimes times =
+      run_rounds({{slow, other}, [] { return 1.0; }}, {.limits = options::RoundLimits::exactly(2), .seed = 3});
   EXPECT_EQ(times.filters[0].lookup, (std::vector<double>{2.0, 2.0}));
   EXPECT_EQ(times.filters[1].lookup, (std::vector<double>{2.0, 3.0}));
   EXPECT_DOUBLE_EQ(times.spent_ms, 3.0 * (1.0 + 10.0 + 3.0 * 7.0 + 2.0) + 1.0 + 2.0 + 3.0);
@@ -120,8 +119,7 @@ TEST(Rounds, SlowFilters_AreWarm_OnceTheyWereDrawn) {
   const std::vector<TimedFilter> filters(2, TimedFilter{{}, [&] { return 1000.0 + lookups++; }});
   const auto run = [&](const options::RoundLimits& limits, double drawn_ms) {
     lookups = 0;
-    return run_rounds(
-        filters, 0, [] { return 1.0; }, limits, 3, drawn_ms);
+    return run_rounds({filters, [] { return 1.0; }}, {.limits = limits, .seed = 3, .drawn_ms = drawn_ms});
   };
   const RoundTimes drawn = run({9, 100, 0.05, 500.0}, 2000.0);
   EXPECT_EQ(drawn.map.size(), 3u);

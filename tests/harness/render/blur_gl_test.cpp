@@ -1,6 +1,6 @@
 // The prefilter against the same sums in single precision, term by term, and what it reads outside the map.
 
-#include "filters/gaussian.h"
+#include "filters/kernel.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {

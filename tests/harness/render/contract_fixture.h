@@ -59,7 +59,7 @@ inline std::string name_of(const ::testing::TestParamInfo<std::string>& each) { 
 
 /// Gives what a hardware 2x2 comparison may be off by: the step of its weights, as measured on this GL.
 inline double measured_weight_step() {
-  static const int bits = gl::measure_pcf_weight_bits(shared_context(), GL_DEPTH_COMPONENT32F);
+  static const int bits = gl::measure_pcf_weights(shared_context(), GL_DEPTH_COMPONENT32F).bits;
   return bits >= 22 ? 1e-4 : 1.0 / 128.0;
 }
 

@@ -6,6 +6,7 @@
 #include "filters/depth_curve.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/primitives.h"
+#include "tests/filters/perspective_depth.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {

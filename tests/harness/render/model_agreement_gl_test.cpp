@@ -35,7 +35,7 @@ filters::GlAccuracy measured_accuracy() {
 bool stores(const filters::FilterSpec& spec) { return spec.has_encode || !spec.passes.empty(); }
 
 double pcf_tolerance() {
-  static const int bits = gl::measure_pcf_weight_bits(shared_context(), GL_DEPTH_COMPONENT32F);
+  static const int bits = gl::measure_pcf_weights(shared_context(), GL_DEPTH_COMPONENT32F).bits;
   return bits >= 22 ? 1e-4 : 1.0 / 128.0;
 }
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "filters/gaussian.h"
+#include "filters/kernel.h"
 #include "harness/stress/edge_scene.h"
 
 namespace shadowbench::stress {

@@ -1,4 +1,4 @@
-#include "harness/view/file_watch.h"
+#include "harness/view/workbench.h"
 
 #include <gtest/gtest.h>
 

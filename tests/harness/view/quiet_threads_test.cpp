@@ -1,4 +1,4 @@
-#include "harness/view/quiet_threads.h"
+#include "harness/view/background_truth.h"
 
 #include <gtest/gtest.h>
 #include <sched.h>

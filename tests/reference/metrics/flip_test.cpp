@@ -21,6 +21,11 @@ LinearPicture make_noise(unsigned seed) {
   return picture;
 }
 
+std::vector<float> measure_flip(const LinearPicture& a, const LinearPicture& b,
+                                double pixels_per_degree = kDefaultPixelsPerDegree) {
+  return metrics::measure_flip(view_for_flip(a, pixels_per_degree), view_for_flip(b, pixels_per_degree));
+}
+
 double mean(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "filters/gaussian.h"
+#include "filters/kernel.h"
 #include "tests/reference/truth/shapes.h"
 #include "tests/reference/truth/z_scores.h"
 

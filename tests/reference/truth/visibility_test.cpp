@@ -15,7 +15,7 @@
 #include <numeric>
 #include <random>
 
-#include "reference/truth/cut_out.h"
+#include "reference/truth/occluders.h"
 #include "tests/reference/truth/shapes.h"
 
 namespace shadowbench::truth {

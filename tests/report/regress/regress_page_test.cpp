@@ -1,4 +1,3 @@
-#include "report/regress/regress_page.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

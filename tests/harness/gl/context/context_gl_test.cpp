@@ -7,7 +7,7 @@
 
 #include "harness/gl/context/context.h"
 #include "harness/gl/objects.h"
-#include "harness/gl/survey/survey_shader.h"
+#include "harness/gl/survey/survey.h"
 #include "tests/harness/gl/expect_error.h"
 #include "tests/harness/gl/gl_fixture.h"
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "harness/gl/survey/survey.h"
-#include "harness/gl/survey/survey_shader.h"
 #include "tests/harness/gl/gl_fixture.h"
 
 namespace shadowbench::gl {
@@ -55,7 +54,7 @@ TEST_F(GlTest, Functions_OfLlvmpipe_AreAsGoodAsMeasuredBefore) {
 }
 
 TEST_F(GlTest, PcfWeightBits_AreThoseOfTheWholeMeasurement) {
-  EXPECT_EQ(measure_pcf_weight_bits(context(), GL_DEPTH_COMPONENT24), WeightPrecision::kMaxBits);
+  EXPECT_EQ(measure_pcf_weights(context(), GL_DEPTH_COMPONENT24).bits, WeightPrecision::kMaxBits);
 }
 
 TEST_F(GlTest, Text_SaysWhatWasMeasured) {
