@@ -13,12 +13,12 @@
 #include "report/records/json_io.h"
 #include "report/records/json_values.h"
 
-namespace shadowbench::options {
-
-inline void to_json(nlohmann::json& to, const CellRange& range) { to = {range.begin, range.end}; }
-inline void from_json(const nlohmann::json& from, CellRange& range) { range = {from.at(0), from.at(1)}; }
-
-}  // namespace shadowbench::options
+/// A range of cells is a list of its two ends.
+template <>
+struct nlohmann::adl_serializer<shadowbench::options::CellRange> {
+  static void to_json(json& to, const shadowbench::options::CellRange& range) { to = {range.begin, range.end}; }
+  static void from_json(const json& from, shadowbench::options::CellRange& range) { range = {from.at(0), from.at(1)}; }
+};
 
 namespace shadowbench::submit {
 

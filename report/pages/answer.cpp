@@ -19,7 +19,7 @@ bool can_advise(const std::vector<records::CellRecord>& cells) {
       cells, [](const records::CellRecord& cell) { return !cell.teaching.value_or(false); });
 }
 
-std::string describe_limits(const analysis::Advice& advice, const analysis::Candidate& best) {
+std::string describe_margin(const analysis::Advice& advice, const analysis::Candidate& best) {
   std::string text;
   for (std::size_t i = 0; i < advice.request.demands.size(); ++i) {
     const analysis::Verdict& verdict = best.verdicts[i];
@@ -39,7 +39,7 @@ page::Sentences describe_choice(const records::RunRecord& run, const analysis::A
                          {}};
   answer.items.push_back(fmt::format("Why: the {} of {}{}{}.", analysis::describe_choice(advice), advice.keeping.size(),
                                      has_limits ? " that keep the limits" : " that can be judged",
-                                     describe_limits(advice, best)));
+                                     describe_margin(advice, best)));
   if (advice.keeping.size() > 1)
     answer.items.push_back(fmt::format("Runner-up: {}, {}.", advice.keeping[1].configuration.label,
                                        analysis::describe_runner_up(advice, run.gl)));

@@ -28,7 +28,7 @@ const records::BiasPoint* find_point(const records::BiasCurve& curve, double fac
   return found == curve.points.end() ? nullptr : &*found;
 }
 
-std::string describe_limits() {
+std::string explain_amounts() {
   return fmt::format(
       "The smallest amount swept, in theoretical ones, that leaves less than {:g} % acne, and the contact "
       "gap there. \u2717: none does, or the gap is {:g} % or more.",
@@ -87,7 +87,7 @@ page::Section make_bias_answer(const records::BiasSweepRecord& sweep) {
       modes, {}, [](const ModeVerdict& mode) { return std::tuple(mode.free, -mode.gap, -mode.filters); });
   if (best != modes.end()) text = fmt::format("Best: {}.", best->describe());
   if (best != worst) text += fmt::format(" Worst: {}.", worst->describe());
-  return {"answer", "", {page::Paragraph{std::move(text)}, std::move(table), page::Paragraph{describe_limits(), true}}};
+  return {"answer", "", {page::Paragraph{std::move(text)}, std::move(table), page::Paragraph{explain_amounts(), true}}};
 }
 
 records::TextTable make_amount_table(const records::BiasModeRecord& mode) {

@@ -23,7 +23,7 @@ namespace shadowbench::scene {
 namespace {
 
 constexpr double kCreaseDeg = 45.0;
-constexpr std::size_t kMostCorners = 2048;  // of a face
+constexpr std::size_t kMostCornersOfAFace = 2048;
 
 /// Reads material libraries from the model's own folder only.
 class LibraryReader : public tinyobj::MaterialReader {
@@ -191,9 +191,9 @@ class ObjText {
   }
 
   void note_polygon(const Line& line, std::size_t corners) {
-    if (corners > kMostCorners)
+    if (corners > kMostCornersOfAFace)
       fail(line, fmt::format("this face has {} corners; at most {} are read: triangulate it in the modelling program",
-                             corners, kMostCorners));
+                             corners, kMostCornersOfAFace));
     if (corners > 4) polygons_.push_back(line);
   }
 
