@@ -18,13 +18,7 @@ gl::Texture upload_scale(const char* label, const images::Image& colors) {
   return scale;
 }
 
-images::Image make_grey() {
-  return images::color_values(
-      images::make_ramp(kSteps, 1),
-      [](float t) {
-        return images::Rgb{t, t, t};
-      });
-}
+images::Image make_grey() { return images::color_values(images::make_ramp(kSteps, 1), images::map_grey); }
 
 images::Image make_diverging() {
   return images::color_values(
@@ -36,7 +30,8 @@ images::Image make_diverging() {
 DisplayPass::DisplayPass()
     : grey_(upload_scale("grey", make_grey())),
       diverging_(upload_scale("diverging", make_diverging())),
-      sequential_(upload_scale("sequential", images::color_values(images::make_ramp(kSteps, 1), "viridis"))) {}
+      sequential_(upload_scale("sequential",
+                               images::color_values(images::make_ramp(kSteps, 1), images::color_map("viridis")))) {}
 
 void DisplayPass::draw(ShaderLibrary& shaders, const std::array<DisplayedValues, 2>& sides, const DisplayPlace& place) {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
