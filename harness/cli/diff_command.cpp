@@ -13,7 +13,7 @@
 #include "harness/cli/diff_runs.h"
 #include "harness/run/compare_pictures.h"
 #include "reference/metrics/flip.h"
-#include "report/images/figures/difference_picture.h"
+#include "report/images/heat_figures.h"
 #include "report/pages/comparison_page.h"
 #include "report/records/format.h"
 
@@ -117,11 +117,11 @@ void write_images(const DiffArguments& arguments, const run::ComparisonOptions& 
     std::vector<std::string> facts;
     for (const auto& [name, value] : result.values)
       facts.push_back(fmt::format("{} {}", name, records::format_number(value)));
-    const auto no_flip = result.absent.find("flip");
-    images::write_difference_picture(
-        *arguments.out,
-        {fmt::format("{} less {}", options.image, options.truth), fmt::format("{}", fmt::join(facts, " · ")),
-         made.difference, made.flip, no_flip == result.absent.end() ? "" : no_flip->second});
+    std::string note = fmt::format("{}", fmt::join(facts, " · "));
+    if (const auto no_flip = result.absent.find("flip"); made.flip.empty())
+      note += "; no FLIP: " + (no_flip == result.absent.end() ? "" : no_flip->second);
+    images::write_figure(*arguments.out, {fmt::format("{} less {}", options.image, options.truth), note,
+                                          images::show_difference(made.difference, made.flip), 2});
   }
   if (arguments.html)
     pages::write_comparison_page(*arguments.html, {options.image, options.truth, made.image, made.truth,

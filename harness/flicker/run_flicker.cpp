@@ -11,7 +11,7 @@
 #include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
 #include "report/files/folder_lock.h"
-#include "report/images/figures/flicker_picture.h"
+#include "report/images/heat_figures.h"
 #include "report/pages/flicker_page.h"
 #include "report/pages/write_page.h"
 #include "report/records/flicker_json.h"
@@ -168,16 +168,19 @@ class FlickerRun {
   }
 
   void write_picture(const records::FlickerMotion& motion, const std::vector<Stats>& stats) const {
-    images::FlickerPicture picture;
-    picture.title = fmt::format("{}: flicker by pixel on {}", motion.title, scene_.name);
-    picture.note = fmt::format(
+    images::Figure figure;
+    figure.title = fmt::format("{}: flicker by pixel on {}", motion.title, scene_.name);
+    figure.note = fmt::format(
         "root mean square, over {} steps, of the change of visibility less the truth's; map {}, {:.3g} {} a step",
         options_.frames - 1, record_.map_size, motion.step, motion.step_unit);
     for (std::size_t i = 0; i < options_.run.filters.size(); ++i) {
-      picture.tiles.push_back(
-          {options_.run.filters[i].label(), to_image(stats[0][i], options_.run), to_image(stats[1][i], options_.run)});
+      const std::string label = options_.run.filters[i].label();
+      figure.stacks.push_back(images::show_flicker(label, to_image(stats[0][i], options_.run)));
+      figure.stacks.push_back(images::show_flicker(label + ", snapped", to_image(stats[1][i], options_.run)));
     }
-    images::write_flicker_picture(options_.run.out / motion.picture, picture);
+    figure.columns = 4;
+    figure.legend = {images::show_flicker_scale()};
+    images::write_figure(options_.run.out / motion.picture, figure);
   }
 };
 

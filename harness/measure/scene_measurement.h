@@ -10,7 +10,7 @@
 #include "harness/render/filter_passes.h"
 #include "harness/scene/scene.h"
 #include "reference/metrics/artefacts.h"
-#include "report/images/figures/stability_picture.h"
+#include "report/images/heat_figures.h"
 #include "report/images/image.h"
 #include "report/images/uncertainty_images.h"
 #include "report/records/records.h"

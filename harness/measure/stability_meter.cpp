@@ -231,17 +231,15 @@ void write_stability(const options::RunOptions& options, const std::string& stem
     cell.record.absent["images.stability"] = "the filter reads the depth map itself, and is no bound";
     return;
   }
-  images::StabilityPicture picture;
-  picture.title = fmt::format("{} on {}: where its numbers break, or come near to it", cell.label, cell.record.scene);
-  picture.note = records::describe_params(cell.record.params) + " · " + records::describe_settings(cell.record);
-  picture.images = std::move(cell.stability);
-  picture.texels = analysis::caption_texels(cell.record);
-  picture.variance = analysis::caption_variance(cell.record);
-  picture.difference = analysis::caption_difference(cell.record);
-  picture.bound = analysis::caption_bound(cell.record);
+  images::Figure figure{
+      fmt::format("{} on {}: where its numbers break, or come near to it", cell.label, cell.record.scene),
+      records::describe_params(cell.record.params) + " · " + records::describe_settings(cell.record),
+      images::show_stability(cell.stability,
+                             {analysis::caption_texels(cell.record), analysis::caption_variance(cell.record),
+                              analysis::caption_difference(cell.record), analysis::caption_bound(cell.record)}),
+      2};
   cell.record.images.stability = fmt::format("images/{}.{}.stability.png", stem, files::make_file_stem(cell.label));
-  images::write_stability_picture(options.out / *cell.record.images.stability, picture);
-  cell.stability = std::move(picture.images);
+  images::write_figure(options.out / *cell.record.images.stability, figure);
 }
 
 }  // namespace shadowbench::measure

@@ -24,12 +24,10 @@ images::Image color_ramp(const Color& color) {
 }  // namespace
 
 DisplayPass::DisplayPass()
-    : grey_(upload_scale("grey", color_ramp([](float t) {
-                           return images::Rgb{t, t, t};
-                         }))),
+    : grey_(upload_scale("grey", color_ramp(images::map_grey))),
       diverging_(
           upload_scale("diverging", color_ramp([](float t) { return images::map_diverging(2.0f * t - 1.0f, 1.0f); }))),
-      sequential_(upload_scale("sequential", color_ramp("viridis"))) {}
+      sequential_(upload_scale("sequential", color_ramp(images::color_map("viridis")))) {}
 
 void DisplayPass::clear_window(const glm::ivec2& size, const glm::vec3& color) {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);

@@ -88,7 +88,9 @@ images::Grid make_grid(const options::RunOptions& options, const measure::SceneT
     grid.tiles.push_back({cell.label, caption(cell.record, gl), cell.picture, cell.visibility,
                           measure::make_error_image(cell.visibility, truth), cell.record.message,
                           images::make_attribution_bar(cell.record)});
-    if (!grid.tiles.back().attribution) grid.tiles.back().no_attribution = records::explain_no_attribution(cell.record);
+    grid.tiles.back().attribution_words = grid.tiles.back().attribution
+                                              ? records::describe_shares(*records::list_shares(cell.record))
+                                              : "no attribution: " + records::explain_no_attribution(cell.record);
   }
   grid.error_scale = choose_error_scale(grid.tiles, measured.cells);
   grid.columns = truth.absent.empty() ? 4 : 3;

@@ -11,7 +11,6 @@
 #include "harness/measure/layer_truth.h"
 #include "harness/measure/suspects.h"
 #include "harness/render/shade_pass.h"
-#include "harness/run/border_page.h"
 #include "harness/run/map_pictures.h"
 #include "harness/run/task_images.h"
 #include "harness/run/user_filter.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/images/image.h"
+#include "report/images/figure.h"
 #include "report/records/stress_record.h"
 
 namespace shadowbench::stress {
@@ -28,7 +28,7 @@ struct HeatMap {
   std::function<double(double)> curve;  ///< y of x
 };
 
-/// Draws a heat map: a value of 0 is nearly white.
-images::Image draw_heat_map(const HeatMap& map);
+/// Shows a heat map: a value of 0 is nearly white.
+images::Figure make_figure(const HeatMap& map);
 
 }  // namespace shadowbench::stress

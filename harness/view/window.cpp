@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "filters/base/error.h"
-#include "report/images/font_face.h"
+#include "report/images/text.h"
 
 // After the loader, see gl_api.h.
 #define GLFW_INCLUDE_NONE

@@ -1,8 +1,5 @@
 #include "report/images/attribution_bar.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -12,21 +9,15 @@ namespace shadowbench::images {
 namespace {
 
 constexpr double kSmallestLength = 0.001;
-constexpr double kSmallestLabelledShare = 0.01;
-constexpr std::size_t kLabelledParts = 2;
 constexpr int kOverhang = 4;
 constexpr int kTickWidth = 3;
+constexpr Rgb kTrack{0.95f, 0.95f, 0.95f}, kZeroLine{0.45f, 0.47f, 0.50f}, kTickInk{0.0f, 0.0f, 0.0f};
 
 double round_up_length(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
   for (const double step : {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0})
     if (value <= step * power * (1.0 + 1e-9)) return step * power;
   return 10.0 * power;
-}
-
-// A line of `width` pixels centred on `x`, kept inside the box.
-Rect place_line(int x, int width, const Rect& box) {
-  return {std::clamp(x - width / 2, box.x, box.x + box.width - width), box.y, width, box.height};
 }
 
 }  // namespace
@@ -40,22 +31,6 @@ std::optional<AttributionBar> make_attribution_bar(const records::CellRecord& ce
   AttributionBar bar;
   for (std::size_t i = 0; i < metrics::kErrorParts; ++i) bar.lengths[i] = (*shares)[i].value_or(0.0) * *cell.error.rmse;
   return bar;
-}
-
-std::string label_bar(const AttributionBar& bar) {
-  const double net = bar.net();
-  if (!(net > 0.0)) return {};
-  std::array<std::size_t, metrics::kErrorParts> order{};
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return std::abs(bar.lengths[a]) > std::abs(bar.lengths[b]); });
-  std::vector<std::string> texts;
-  for (const std::size_t part : order) {
-    const double share = bar.lengths[part] / net;
-    if (texts.size() < kLabelledParts && std::abs(share) >= kSmallestLabelledShare)
-      texts.push_back(fmt::format("{} {}", records::list_error_parts()[part].id, records::format_share(share)));
-  }
-  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 std::vector<BarSegment> stack_segments(const AttributionBar& bar) {
@@ -87,19 +62,22 @@ BarScale choose_bar_scale(const std::vector<AttributionBar>& bars) {
   return {below, round_up_length(std::max(kSmallestLength, below + above))};
 }
 
-BarPlace place_bar(const AttributionBar& bar, const BarScale& scale, const Rect& box, std::size_t tile) {
-  assert(box.height > 2 * kOverhang && scale.length > 0.0);
-  const auto pixel = [&](double value) {
-    return box.x + static_cast<int>(std::lround(scale.place(value) * box.width));
+Image draw_bar(const AttributionBar& bar, const BarScale& scale, Size size) {
+  assert(size.height > 2 * kOverhang && scale.length > 0.0);
+  Image image(size.width, size.height, 3);
+  const auto pixel = [&](double value) { return static_cast<int>(std::lround(scale.place(value) * size.width)); };
+  const auto draw_line = [&](double value, int width, const Rgb& color) {
+    fill_rect(image, {std::clamp(pixel(value) - width / 2, 0, size.width - width), 0, width, size.height}, color);
   };
-  const Rect track{box.x, box.y + kOverhang, box.width, box.height - 2 * kOverhang};
-  BarPlace place{box, track, place_line(pixel(0.0), 1, box), place_line(pixel(bar.net()), kTickWidth, box), tile, {}};
-  for (const BarSegment& segment : stack_segments(bar)) {
-    const int begin = pixel(segment.begin);
-    const int end = pixel(segment.end);
-    if (end > begin) place.segments.push_back({{begin, track.y, end - begin, track.height}, segment.part});
-  }
-  return place;
+  const int height = size.height - 2 * kOverhang;
+  fill_rect(image, {0, 0, size.width, size.height}, {1.0f, 1.0f, 1.0f});
+  fill_rect(image, {0, kOverhang, size.width, height}, kTrack);
+  draw_line(0.0, 1, kZeroLine);
+  for (const BarSegment& segment : stack_segments(bar))
+    fill_rect(image, {pixel(segment.begin), kOverhang, pixel(segment.end) - pixel(segment.begin), height},
+              records::list_error_parts()[segment.part].color);
+  draw_line(bar.net(), kTickWidth, kTickInk);
+  return image;
 }
 
 }  // namespace shadowbench::images

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "report/images/image.h"
+#include "report/images/canvas.h"
 #include "report/records/error_parts.h"
 
 namespace shadowbench::images {
@@ -20,10 +19,6 @@ struct AttributionBar {
 /// Makes a cell's bar, share times RMSE; nothing where the cell has no RMSE or no attribution, or is suspect: it must
 /// not set the scale of the others.
 std::optional<AttributionBar> make_attribution_bar(const records::CellRecord& cell);
-
-/// Names the parts that matter most to a bar, two at most, largest magnitude first, none below 1 %:
-/// "estimator 71 %, model 20 %". Empty where the RMSE is 0.
-std::string label_bar(const AttributionBar& bar);
 
 /// One part's stretch of a bar, in visibility from the zero line; begin < end.
 struct BarSegment {
@@ -47,23 +42,8 @@ struct BarScale {
 /// Chooses the scale of several bars: all of them fit, and the length is a round number, at least 0.001.
 BarScale choose_bar_scale(const std::vector<AttributionBar>& bars);
 
-/// The place of one part of a bar, in pixels.
-struct SegmentBox {
-  Rect box;
-  std::size_t part = 0;
-};
-
-/// The place of a bar in a picture, in pixels.
-struct BarPlace {
-  Rect box;                          ///< of all of it
-  Rect track;                        ///< what the scale spans
-  Rect zero_line;                    ///< as high as `box`
-  Rect net_tick;                     ///< as high as `box`, at the RMSE
-  std::size_t tile = 0;              ///< whose bar it is
-  std::vector<SegmentBox> segments;  ///< inside the track, side by side; each edge on the pixel nearest to its value
-};
-
-/// Places a bar in a box. Requires room for the overhang of its lines, 9 pixels of height.
-BarPlace place_bar(const AttributionBar& bar, const BarScale& scale, const Rect& box, std::size_t tile);
+/// Draws a bar: its parts side by side on a pale track, a grey line at zero behind them, and over them a black tick at
+/// the RMSE; line and tick stand out above and below by 4 pixels. Requires more than 8 pixels of height.
+Image draw_bar(const AttributionBar& bar, const BarScale& scale, Size size);
 
 }  // namespace shadowbench::images

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "report/images/picture_io.h"
+#include "report/records/format.h"
 
 namespace shadowbench::images {
 namespace {
@@ -14,6 +15,8 @@ namespace {
 constexpr Rgb kBelow{0.09f, 0.31f, 0.66f};
 constexpr Rgb kZero{0.95f, 0.95f, 0.94f};
 constexpr Rgb kAbove{0.74f, 0.09f, 0.13f};
+constexpr int kMapSteps = 4 * 255 + 1;  // each of 256 even steps is one of them
+constexpr int kBarHeight = 18;
 constexpr double kSmallestScale = 0.01;
 constexpr float kSmallestError = 0.001f;  // a tenth of the smallest scale: nobody sees less
 
@@ -26,22 +29,29 @@ double round_up_nicely(double value) {
 
 }  // namespace
 
-Image color_values(const Image& values, const std::function<Rgb(float)>& color_of) {
-  Image colors(values.width, values.height, 3);
-  for (std::size_t i = 0; i < values.texels.size(); ++i) {
-    const Rgb rgb = color_of(values.texels[i]);
-    std::copy(rgb.begin(), rgb.end(), colors.texels.begin() + static_cast<std::ptrdiff_t>(3 * i));
-  }
-  return colors;
+Colors color_map(const std::string& name) {
+  const Image ramp = make_ramp(kMapSteps, 1);
+  const OIIO::ImageSpec spec(kMapSteps, 1, 1, OIIO::TypeDesc::FLOAT);
+  const OIIO::ImageBuf source(spec, const_cast<float*>(ramp.texels.data()));
+  std::vector<Rgb> colors(kMapSteps);
+  OIIO::ImageBufAlgo::color_map(source, 0, name)
+      .get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, colors.data()->data());
+  for (Rgb& color : colors) std::ranges::transform(color, color.begin(), encode_srgb);  // its tables are linear
+  return [colors = std::move(colors)](float value) {
+    return colors[static_cast<std::size_t>(std::clamp(value, 0.0f, 1.0f) * (kMapSteps - 1) + 0.5f)];
+  };
 }
 
-Image color_values(const Image& values, const std::string& map) {
-  const OIIO::ImageSpec spec(values.width, values.height, 1, OIIO::TypeDesc::FLOAT);
-  const OIIO::ImageBuf source(spec, const_cast<float*>(values.texels.data()));
+Rgb map_grey(float value) {
+  if (!std::isfinite(value)) return kMagenta;
+  const float grey = std::clamp(value, 0.0f, 1.0f);
+  return {grey, grey, grey};
+}
+
+Image color_values(const Image& values, const Colors& color_of) {
   Image colors(values.width, values.height, 3);
-  OIIO::ImageBufAlgo::color_map(source, 0, map)
-      .get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, colors.texels.data());
-  std::ranges::transform(colors.texels, colors.texels.begin(), encode_srgb);  // its tables are linear
+  for (std::size_t i = 0; i < values.texels.size(); ++i)
+    std::ranges::copy(color_of(values.texels[i]), colors.texels.begin() + static_cast<std::ptrdiff_t>(3 * i));
   return colors;
 }
 
@@ -58,6 +68,31 @@ Rgb map_diverging(float value, float scale) {
   Rgb color;
   for (std::size_t i = 0; i < 3; ++i) color[i] = kZero[i] + std::abs(t) * (end[i] - kZero[i]);
   return color;
+}
+
+ColorScale make_linear_scale(double low, double high, int parts, Colors color) {
+  ColorScale scale{[=](double value) { return (value - low) / (high - low); }, std::move(color), {}};
+  for (int i = 0; i <= parts; ++i) {
+    const double value = low + (high - low) * i / parts;
+    scale.ticks.emplace_back(value, records::format_number(value));
+  }
+  return scale;
+}
+
+ColorScale make_signed_scale(double limit) {
+  return make_linear_scale(
+      -limit, limit, 4, [](float place) { return map_diverging(2.0f * place - 1.0f, 1.0f); });
+}
+
+Rgb ColorScale::operator()(float value) const {
+  const double at = std::isfinite(value) ? place(static_cast<double>(value)) : std::nan("");
+  return std::isnan(at) ? off_bar(value) : color(static_cast<float>(std::clamp(at, 0.0, 1.0)));
+}
+
+Cell make_color_bar(const ColorScale& scale, const std::string& words, int width) {
+  Cell cell{"", words, color_values(make_ramp(width, kBarHeight), scale.color)};
+  for (const auto& [value, label] : scale.ticks) cell.below.push_back({scale.place(value), label});
+  return cell;
 }
 
 double choose_error_scale(const std::vector<const Image*>& errors) {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "report/images/attribution_bar.h"
+#include "report/images/figure.h"
 #include "report/images/hardest_edge.h"
-#include "report/images/image.h"
 
 namespace shadowbench::images {
 
@@ -20,7 +20,7 @@ struct GridTile {
   Image error;          ///< 1 channel, signed: visibility less truth; empty where there is no truth
   std::string message;  ///< shown instead of the images where all are empty: "timed out after 10 s"
   std::optional<AttributionBar> attribution = std::nullopt;  ///< the parts of the error, drawn as a bar
-  std::string no_attribution = {};  ///< why it has none; said where another tile has, and empty where none is due
+  std::string attribution_words = {};  ///< the same in words, or why there is no bar; said where some tile has one
 };
 
 /// A labelled picture of what filters make of one scene, for people.
@@ -32,15 +32,16 @@ struct Grid {
   int columns = 3;        ///< tiles side by side
   double exposure = 1.0;  ///< linear factor, the same for all tiles
   std::optional<double> error_scale = std::nullopt;  ///< the error that gets the full colour; chosen where not given
-  std::string error_name = "error, visibility less area truth";  ///< for the colour bar
 };
 
-/// Draws a grid: blocks of `columns` tiles; in each a label, a caption, the picture, the visibility, the error as a
-/// heat map, the bar of its parts, and the crop of picture and visibility side by side, magnified to whole texels; each
-/// only where there is one. All heat maps share one scale, and all bars one. Large pictures are reduced in linear
-/// light. Returns display-referred sRGB values in [0,1], 3 channels. A texel that is not finite becomes magenta. Throws
-/// Error(kOutput) where the font is not installed.
-Image draw_grid(const Grid& grid);
+/// The cells of a tile's stack, in their order; those that a tile lacks are empty.
+enum GridCell : std::size_t { kPictureCell, kVisibilityCell, kErrorCell, kBarCell, kCropCell };
+
+/// Makes the figure of a grid: of each tile its label, a caption, the picture, the visibility, the error as a heat map,
+/// the bar of its parts, and the crop of picture and, to the right of it, visibility, magnified to whole texels. All
+/// heat maps share one scale, and all bars one, which the legend says. Large pictures are reduced in linear light. A
+/// texel that is not finite becomes magenta.
+Figure make_figure(const Grid& grid);
 
 /// Draws a grid into an 8-bit PNG file.
 /// Throws Error(kOutput).

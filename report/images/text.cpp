@@ -1,13 +1,97 @@
 #include "report/images/text.h"
 
-#include <algorithm>
-#include <cassert>
-#include <nlohmann/json.hpp>
+#include <ft2build.h>
+#include FT_FREETYPE_H
 
-#include "report/images/font_face.h"
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <type_traits>
+
+#include "filters/base/error.h"
 
 namespace shadowbench::images {
 namespace {
+
+constexpr std::array kFontFolders{"/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/dejavu-sans-fonts",
+                                  "/usr/share/fonts/dejavu", "/usr/share/fonts/TTF", "/usr/local/share/fonts"};
+
+struct CloseLibrary {
+  void operator()(FT_Library library) const { FT_Done_FreeType(library); }
+};
+struct CloseFace {
+  void operator()(FT_Face face) const { FT_Done_Face(face); }
+};
+using Library = std::unique_ptr<std::remove_pointer_t<FT_Library>, CloseLibrary>;
+using Face = std::unique_ptr<std::remove_pointer_t<FT_Face>, CloseFace>;
+
+Library open_library() {
+  FT_Library library = nullptr;
+  FT_Init_FreeType(&library);
+  return Library(library);
+}
+
+constexpr const char* kPlainFont = "DejaVuSans.ttf";
+
+[[noreturn]] void refuse_font(const std::string& name) {
+  throw Error(
+      ErrorKind::kOutput,
+      "the font " + name + " is not installed, so no labels can be drawn; install the package fonts-dejavu-core");
+}
+
+std::filesystem::path find_font(const std::string& name) {
+  for (const char* folder : kFontFolders)
+    if (std::filesystem::exists(std::filesystem::path(folder) / name)) return std::filesystem::path(folder) / name;
+  refuse_font(name);
+}
+
+Face open_face(FT_Library library, const std::string& name) {
+  FT_Face face = nullptr;
+  if (FT_New_Face(library, find_font(name).c_str(), 0, &face) == 0) return Face(face);
+  refuse_font(name);
+}
+
+// FreeType's faces belong to one thread each.
+FT_Face face_of(Font font) {
+  thread_local const Library library = open_library();
+  thread_local const Face plain = open_face(library.get(), kPlainFont);
+  thread_local const Face bold = open_face(library.get(), "DejaVuSans-Bold.ttf");
+  FT_Face face = font.bold ? bold.get() : plain.get();
+  FT_Set_Pixel_Sizes(face, 0, static_cast<FT_UInt>(font.size));
+  return face;
+}
+
+// OpenImageIO 2.4 would draw text too, but its UTF-8 decoder loses all bits of a character but the last six.
+std::u32string decode_utf8(const std::string& text) {
+  std::u32string points;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte & 0xC0U) == 0x80U && !points.empty()) {
+      points.back() = (points.back() << 6U) | (byte & 0x3FU);
+    } else {
+      const unsigned mask = byte < 0x80U ? 0x7FU : byte < 0xE0U ? 0x1FU : byte < 0xF0U ? 0x0FU : 0x07U;
+      points += static_cast<char32_t>(byte & mask);
+    }
+  }
+  return points;
+}
+
+/// Calls `visit` for every glyph of a line of clean text with its left top corner, relative to the pen's start on the
+/// baseline, y down. Returns where the pen ends, in pixels.
+int visit_glyphs(const std::string& text, Font font, const std::function<void(int, int, const FT_Bitmap&)>& visit) {
+  FT_Face face = face_of(font);
+  int pen = 0;
+  for (const char32_t point : decode_utf8(text)) {
+    if (FT_Load_Char(face, point, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT) != 0) continue;
+    const FT_GlyphSlot glyph = face->glyph;
+    visit(pen + glyph->bitmap_left, -glyph->bitmap_top, glyph->bitmap);
+    pen += static_cast<int>((glyph->advance.x + 32) >> 6);
+  }
+  return pen;
+}
 
 bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 
@@ -21,9 +105,9 @@ struct Extent {
 
 Extent measure_extent(const std::string& text, Font font) {
   Extent extent;
-  const int pen = visit_glyphs(text, font, [&](const GlyphBitmap& glyph) {
-    extent.begin = std::min(extent.begin, glyph.box.x);
-    extent.end = std::max(extent.end, glyph.box.x + glyph.box.width);
+  const int pen = visit_glyphs(text, font, [&](int x, int, const FT_Bitmap& glyph) {
+    extent.begin = std::min(extent.begin, x);
+    extent.end = std::max(extent.end, x + static_cast<int>(glyph.width));
   });
   extent.end = std::max(extent.end, pen);
   return extent;
@@ -35,13 +119,13 @@ std::size_t find_good_break(const std::string& piece) {
   return found != std::string::npos && found >= piece.size() / 3 ? found + 1 : piece.size();
 }
 
-void blend_glyph(Image& canvas, int x, int y, const GlyphBitmap& glyph, const Rgb& color) {
-  for (int row = 0; row < glyph.box.height; ++row) {
-    for (int column = 0; column < glyph.box.width; ++column) {
-      const int px = x + glyph.box.x + column;
-      const int py = y + glyph.box.y + row;
+/// Blends a glyph over a canvas, its left top corner at (x, y).
+void blend_glyph(Image& canvas, int x, int y, const FT_Bitmap& glyph, const Rgb& color) {
+  for (int row = 0; row < static_cast<int>(glyph.rows); ++row) {
+    for (int column = 0; column < static_cast<int>(glyph.width); ++column) {
+      const int px = x + column, py = y + row;
       if (px < 0 || py < 0 || px >= canvas.width || py >= canvas.height) continue;
-      const float cover = static_cast<float>(glyph.coverage[row * glyph.stride + column]) / 255.0f;
+      const float cover = static_cast<float>(glyph.buffer[row * glyph.pitch + column]) / 255.0f;
       for (std::size_t c = 0; c < 3; ++c) {
         float& value = canvas.at(px, py)[c];
         value += cover * (color[c] - value);
@@ -50,46 +134,28 @@ void blend_glyph(Image& canvas, int x, int y, const GlyphBitmap& glyph, const Rg
   }
 }
 
-std::vector<std::string> split_words(const std::string& text) {
-  std::vector<std::string> words;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find(' ', begin), text.size());
-    words.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
+// The longest beginning of a text that fits; at least one character.
+std::string fitting_beginning(const std::string& text, Font font, int width) {
+  std::size_t fit = 0;
+  for (std::size_t end = 1; end <= text.size(); ++end) {
+    if (end < text.size() && is_continuation(text[end])) continue;
+    if (fit > 0 && measure_text(text.substr(0, end), font) > width) break;
+    fit = end;
   }
-  return words;
+  return text.substr(0, fit);
 }
 
-// The longest beginning of a word that fits; at least one character.
-std::string fitting_beginning(const std::string& word, Font font, int width) {
-  std::string fit;
-  for (std::size_t begin = 0; begin < word.size();) {
-    std::size_t end = begin + 1;
-    while (end < word.size() && is_continuation(word[end])) ++end;
-    if (!fit.empty() && measure_text(word.substr(0, end), font) > width) break;
-    fit = word.substr(0, end);
-    begin = end;
-  }
-  return fit;
-}
-
-// Words, those too wide for a line cut into pieces that are not.
-std::vector<std::string> split_fitting_words(const std::string& text, Font font, int width) {
-  std::vector<std::string> pieces;
-  for (std::string word : split_words(text)) {
-    while (measure_text(word, font) > width) {
-      std::string piece = fitting_beginning(word, font, width);
-      if (piece == word) break;  // a single character wider than the line
-      piece.resize(find_good_break(piece));
-      pieces.push_back(piece);
-      word.erase(0, piece.size());
-    }
-    pieces.push_back(word);
-  }
-  return pieces;
+// The first line of a text that is wider than a line.
+std::string first_line(const std::string& text, Font font, int width) {
+  const std::string fit = fitting_beginning(text, font, width);
+  std::size_t space = text.rfind(' ', fit.size());
+  if (space != std::string::npos && text.compare(space, 2, " %") == 0) space = text.rfind(' ', space - 1);
+  return fit.substr(0, space != std::string::npos ? space : find_good_break(fit));
 }
 
 }  // namespace
+
+std::filesystem::path font_file() { return find_font(kPlainFont); }
 
 std::string clean_text(std::string_view text) {
   using nlohmann::json;
@@ -113,18 +179,21 @@ int line_height(Font font) { return (font.size * 13 + 9) / 10; }
 
 std::vector<std::string> wrap_text(std::string_view text, Font font, int width) {
   std::vector<std::string> lines;
-  for (const std::string& word : split_fitting_words(clean_text(text), font, width))
-    if (!lines.empty() && measure_text(lines.back() + " " + word, font) <= width)
-      lines.back() += " " + word;
-    else
-      lines.push_back(word);
+  std::string rest = clean_text(text);
+  while (measure_text(rest, font) > width) {
+    lines.push_back(first_line(rest, font, width));
+    rest.erase(0, lines.back().size() + (rest[lines.back().size()] == ' ' ? 1 : 0));
+  }
+  if (!rest.empty()) lines.push_back(rest);
   return lines;
 }
 
 void draw_text(Image& canvas, int x, int top, const std::string& text, Font font, Rgb color) {
   assert(canvas.channels == 3);
   const int pen = x - measure_extent(text, font).begin;
-  visit_glyphs(text, font, [&](const GlyphBitmap& glyph) { blend_glyph(canvas, pen, top + font.size, glyph, color); });
+  visit_glyphs(text, font, [&](int left, int above, const FT_Bitmap& glyph) {
+    blend_glyph(canvas, pen + left, top + font.size + above, glyph, color);
+  });
 }
 
 }  // namespace shadowbench::images

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "report/images/image.h"
+#include "report/images/canvas.h"
 
 namespace shadowbench::images {
 
@@ -15,8 +15,8 @@ struct Font {
   bool bold = false;
 };
 
-/// A colour in the space of the canvas.
-using Rgb = std::array<float, 3>;
+/// The file of the font that is not bold. Throws Error(kOutput) where it is not installed.
+std::filesystem::path font_file();
 
 /// Returns UTF-8 fit for drawing: every run of white space or control characters becomes one space, every byte that is
 /// not UTF-8 becomes U+FFFD; no space at either end.

@@ -11,7 +11,6 @@
 #include "harness/stress/case_tools.h"
 #include "harness/stress/heat_map.h"
 #include "harness/stress/tilted_plane.h"
-#include "report/images/picture_io.h"
 
 namespace shadowbench::stress {
 namespace grazing_light {
@@ -172,7 +171,7 @@ std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
   exhibit.title = map.title;
   exhibit.sentences = {describe_growth(plane, shown->label(), reach)};
   exhibit.pictures = {{"stress.acne.png", fmt::format("{}: acne, and the bias that theory asks for", shown->label())}};
-  images::write_display_png(inputs.out / exhibit.pictures.front().file, draw_heat_map(map));
+  images::write_figure(inputs.out / exhibit.pictures.front().file, make_figure(map));
   return {exhibit};
 }
 

@@ -102,7 +102,7 @@ std::pair<int, int> count_red_and_black(const images::Image& picture, int row) {
 }
 
 TEST(HeatMap, HighValuesLieAbove_AndTheCurveWhereItSays) {
-  const images::Image picture = draw_heat_map(make_heat_map());
+  const images::Image picture = images::draw_figure(make_figure(make_heat_map()));
   std::vector<int> red_rows, curve_rows;
   for (int y = 0; y < picture.height; ++y) {
     const auto [red, black] = count_red_and_black(picture, y);

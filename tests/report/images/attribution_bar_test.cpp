@@ -3,15 +3,12 @@
 #include <gmock/gmock.h>
 
 #include "report/images/color_values.h"
-#include "report/images/text.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::images {
 
 using namespace records;
 namespace {
-
-constexpr Rect kBox{10, 20, 400, 30};
 
 // Lightness L* of a display colour. Source: IEC 61966-2-1, CIE 1976.
 double lightness(const images::Rgb& color) {
@@ -85,13 +82,6 @@ TEST(AttributionBar, WithoutANumericPart_IsDrawn_AndSaysSo) {
             "numeric and estimator 75 %, discretisation -25 %, model 50 %");
 }
 
-TEST(AttributionBar, Label_NamesTheTwoLargestAndNoneBelowOnePercent) {
-  EXPECT_EQ(label_bar({{0.0, 0.71, 0.09, 0.2}}), "estimator 71 %, model 20 %");
-  EXPECT_EQ(label_bar({{0.0, 0.1, -0.4, 1.3}}), "model 130 %, discretisation -40 %");
-  EXPECT_EQ(label_bar({{0.005, 0.0, 0.0, 0.995}}), "model 100 %");
-  EXPECT_EQ(label_bar({}), "");
-}
-
 TEST(AttributionBar, NegativePartsGoLeftOfZero_PositiveOnesRight) {
   const auto segments = stack_segments({{0.25, -0.5, 0.75, -0.125}});
   ASSERT_EQ(segments.size(), 4u);
@@ -112,38 +102,57 @@ TEST(BarScale, HoldsAllBarsOnARoundLength) {
   EXPECT_DOUBLE_EQ(choose_bar_scale({{}}).length, 0.001);
 }
 
-TEST(PlaceBar, Lengths_AreInPixelsOfTheScale) {
-  const BarPlace bar = place_bar({{0.0, 0.5, -0.25, 0.25}}, {0.5, 2.0}, kBox, 3);
-  EXPECT_EQ(bar.tile, 3u);
-  EXPECT_EQ(bar.zero_line.x, 110);
-  EXPECT_EQ(bar.net_tick.x + bar.net_tick.width / 2, 210);
-  ASSERT_EQ(bar.segments.size(), 3u);
-  const int expected[3][2] = {{110, 100}, {60, 50}, {210, 50}};
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(bar.segments[i].box.x, expected[i][0]);
-    EXPECT_EQ(bar.segments[i].box.width, expected[i][1]);
-    EXPECT_EQ(bar.segments[i].part, i + 1);
+constexpr Size kSize{400, 30};
+
+/// The first and the last pixel of a row that have a colour; -1 where none has.
+std::pair<int, int> find_color(const Image& bar, int row, const Rgb& color) {
+  std::pair<int, int> found{-1, -1};
+  for (int x = 0; x < bar.width; ++x) {
+    if (!std::equal(color.begin(), color.end(), bar.at(x, row))) continue;
+    if (found.first < 0) found.first = x;
+    found.second = x;
   }
+  return found;
 }
 
-TEST(PlaceBar, Everything_LiesInTheBox) {
+Rgb color_at(const Image& bar, int x, int y) { return {bar.at(x, y)[0], bar.at(x, y)[1], bar.at(x, y)[2]}; }
+
+constexpr Rgb kWhite{1.0f, 1.0f, 1.0f}, kBlack{0.0f, 0.0f, 0.0f};
+
+TEST(DrawBar, Lengths_AreInPixelsOfTheScale) {
+  const Image bar = draw_bar({{0.0, 0.5, -0.25, 0.25}}, {0.5, 2.0}, kSize);
+  ASSERT_EQ(bar.width, kSize.width);
+  ASSERT_EQ(bar.height, kSize.height);
+  EXPECT_NE(color_at(bar, 100, 0), kWhite) << "the zero line";
+  EXPECT_EQ(color_at(bar, 99, 0), kWhite);
+  EXPECT_EQ(color_at(bar, 101, 0), kWhite);
+  EXPECT_EQ(find_color(bar, 0, kBlack), std::pair(199, 201)) << "the tick of the RMSE";
+  const auto& parts = list_error_parts();
+  EXPECT_EQ(find_color(bar, 15, parts[0].color).first, -1) << "a part of no length";
+  EXPECT_EQ(find_color(bar, 15, parts[1].color), std::pair(100, 198)) << "up to the tick, which lies over it";
+  EXPECT_EQ(find_color(bar, 15, parts[2].color), std::pair(50, 99));
+  EXPECT_EQ(find_color(bar, 15, parts[3].color), std::pair(202, 249));
+}
+
+TEST(DrawBar, LinesAtTheEnds_AreWhole) {
   for (const double below : {0.0, 0.3, 1.0}) {
-    const BarPlace bar = place_bar({{0.0, -below, 0.0, 1.0}}, {below, below + 1.0}, kBox, 0);
-    for (const Rect& r : {bar.track, bar.zero_line, bar.net_tick}) {
-      EXPECT_GE(r.x, kBox.x);
-      EXPECT_LE(r.x + r.width, kBox.x + kBox.width);
-    }
-    for (const SegmentBox& segment : bar.segments) {
-      EXPECT_GE(segment.box.x, kBox.x);
-      EXPECT_LE(segment.box.x + segment.box.width, kBox.x + kBox.width);
-    }
+    const Image bar = draw_bar({{0.0, -below, 0.0, 1.0}}, {below, below + 1.0}, kSize);
+    const auto tick = find_color(bar, 0, kBlack);
+    EXPECT_EQ(tick.second - tick.first, 2) << below;
+    int lines = 0;
+    for (int x = 0; x < bar.width; ++x) lines += color_at(bar, x, 0) != kWhite ? 1 : 0;
+    EXPECT_EQ(lines, below == 1.0 ? 3 : 4) << "tick and zero line, which the tick hides where the parts cancel";
   }
 }
 
-TEST(PlaceBar, TickStandsOutAboveAndBelowTheParts) {
-  const BarPlace bar = place_bar({{0.0, 1.0, 0.0, 0.0}}, {0.0, 1.0}, kBox, 0);
-  EXPECT_LT(bar.net_tick.y, bar.segments[0].box.y);
-  EXPECT_GT(bar.net_tick.y + bar.net_tick.height, bar.segments[0].box.y + bar.segments[0].box.height);
+TEST(DrawBar, TickStandsOutAboveAndBelowTheParts) {
+  const Image bar = draw_bar({{0.0, 1.0, 0.0, 0.0}}, {0.0, 1.0}, kSize);
+  const int x = find_color(bar, 0, kBlack).first;
+  EXPECT_EQ(color_at(bar, x, kSize.height - 1), kBlack);
+  for (const int row : {0, 3, kSize.height - 4, kSize.height - 1})
+    EXPECT_EQ(find_color(bar, row, list_error_parts()[1].color).first, -1) << row;
+  for (const int row : {4, kSize.height - 5})
+    EXPECT_EQ(find_color(bar, row, list_error_parts()[1].color).first, 0) << row;
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(ErrorScale, OfNoError_IsTheSmallest) {
 }  // namespace
 // The ends of viridis, as its authors give them for a display: (0.267, 0.005, 0.329) and (0.993, 0.906, 0.144).
 TEST(ColorMaps, AreEncodedForADisplay) {
-  const Image colors = color_values(make_ramp(2, 1), "viridis");
+  const Image colors = color_values(make_ramp(2, 1), color_map("viridis"));
   const std::vector<float> ends = {0.267f, 0.005f, 0.329f, 0.993f, 0.906f, 0.144f};
   for (std::size_t i = 0; i < ends.size(); ++i) EXPECT_NEAR(colors.texels[i], ends[i], 0.002f);
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "report/images/grid_layout.h"
+#include "report/images/color_values.h"
 #include "report/images/picture_io.h"
 #include "tests/report/records/synthetic.h"
 
@@ -17,8 +17,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-constexpr int kFrameWidth = 2;
 
 bool overlaps(const Rect& a, const Rect& b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
@@ -31,55 +29,69 @@ bool contains(const Rect& outer, const Rect& inner) {
 
 Rect grow(const Rect& r, int by) { return {r.x - by, r.y - by, r.width + 2 * by, r.height + 2 * by}; }
 
-std::vector<Rect> list_boxes(const GridLayout& layout) {
-  std::vector<Rect> boxes;
-  for (const Panel& panel : layout.panels) boxes.push_back(grow(panel.box, kFrameWidth));
-  for (const TextLine& line : layout.texts)
-    if (line.role != TextRole::kMessage) boxes.push_back(line.box);
-  boxes.insert(boxes.end(), layout.message_boxes.begin(), layout.message_boxes.end());
-  for (const BarPlace& bar : layout.bars) boxes.push_back(bar.box);
-  for (const Swatch& swatch : layout.swatches) boxes.push_back(swatch.box);
-  if (layout.color_bar) boxes.push_back(grow(*layout.color_bar, 1));
+std::vector<Rect> list_boxes(const Layout& layout) {
+  std::vector<Rect> boxes = layout.marks;
+  for (const PlacedPicture& placed : layout.pictures) boxes.push_back(grow(placed.box, 1));
+  for (const PlacedText& text : layout.texts) boxes.push_back(text.box);
   return boxes;
 }
 
-bool lies_in_any(const Rect& inner, const std::vector<Rect>& boxes) {
-  return std::any_of(
-      boxes.begin(), boxes.end(), [&](const Rect& outer) { return contains(outer, inner); });
-}
-
-void expect_sound(const Grid& grid) {
-  const GridLayout layout = layout_grid(grid);
+void expect_sound(const Figure& figure) {
+  const Layout layout = layout_figure(figure);
   const Rect canvas{0, 0, layout.canvas.width, layout.canvas.height};
   const std::vector<Rect> boxes = list_boxes(layout);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     EXPECT_TRUE(contains(canvas, boxes[i])) << i;
     for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(overlaps(boxes[i], boxes[j])) << i << " " << j;
   }
-  for (const TextLine& line : layout.texts) {
-    EXPECT_LE(measure_text(line.text, font_of(line.role)), line.box.width) << line.text;
-    EXPECT_TRUE(line.role != TextRole::kMessage || lies_in_any(line.box, layout.message_boxes)) << line.text;
-  }
+  for (const PlacedText& text : layout.texts)
+    EXPECT_LE(measure_text(text.text, text.font), text.box.width) << text.text;
 }
+
+void expect_sound(const Grid& grid) { expect_sound(make_figure(grid)); }
 
 // Everything a grid says, spaces left out, so that wrapping does not matter.
 std::string all_text(const Grid& grid) {
   std::string text;
-  for (const TextLine& line : layout_grid(grid).texts) text += line.text;
+  for (const PlacedText& line : layout_figure(make_figure(grid)).texts) text += line.text;
   text.erase(std::remove(text.begin(), text.end(), ' '), text.end());
   return text;
 }
 
-std::vector<Panel> panels_of(const Grid& grid, PanelKind kind) {
-  std::vector<Panel> panels;
-  for (const Panel& panel : layout_grid(grid).panels)
-    if (panel.kind == kind) panels.push_back(panel);
-  return panels;
-}
+/// A grid's figure, laid out and drawn.
+struct Drawn {
+  Figure figure;
+  Layout layout;
+  Image canvas;
+
+  explicit Drawn(const Grid& grid)
+      : figure(make_figure(grid)), layout(layout_figure(figure)), canvas(draw_figure(figure)) {}
+
+  /// Where the picture of a cell of a tile stands; its width is 0 where there is none.
+  Rect find(std::size_t tile, GridCell cell) const { return find(figure.stacks.at(tile).at(cell)); }
+  Rect find(const Cell& cell) const {
+    for (const PlacedPicture& placed : layout.pictures)
+      if (placed.picture == &cell.picture) return placed.box;
+    return {};
+  }
+
+  /// How many tiles have a picture in a cell.
+  std::size_t count(GridCell cell) const {
+    std::size_t tiles = 0;
+    for (std::size_t tile = 0; tile < figure.stacks.size(); ++tile) tiles += find(tile, cell).width > 0 ? 1 : 0;
+    return tiles;
+  }
+
+  /// Whether a line of text stands there.
+  bool shows(const std::string& label) const {
+    return std::ranges::any_of(
+        layout.texts, [&](const PlacedText& text) { return text.text == label; });
+  }
+};
 
 Grid make_hard_attributed_grid() {
   Grid grid = make_attributed_grid(7, 96, 54);
-  grid.tiles[5].no_attribution = std::string(300, 'x') + " and more";
+  grid.tiles[5].attribution_words = std::string(300, 'x') + " and more";
   grid.tiles[4] = {"mine", "radius 4", {}, {}, {}, "timed out after 10 s"};
   grid.tiles[2].attribution = AttributionBar{{0.5, -0.25, -0.25, 0.5}};
   return grid;
@@ -145,8 +157,9 @@ TEST(Grid, OnlyErrors_NothingOverlapsAndThereIsNoMessage) {
   }
   grid.tiles[0].error = grid.tiles[1].error;
   expect_sound(grid);
-  EXPECT_TRUE(layout_grid(grid).message_boxes.empty());
-  EXPECT_EQ(panels_of(grid, PanelKind::kError).size(), 5u);
+  grid.tiles[2].message = "not shown";
+  EXPECT_THAT(all_text(grid), Not(HasSubstr("notshown")));
+  EXPECT_EQ(Drawn(grid).count(kErrorCell), 5u);
   EXPECT_THAT(all_text(grid), Not(HasSubstr("shadedpicture")));
 }
 
@@ -160,39 +173,41 @@ TEST(Grid, EveryText_IsShownWhole) {
   }
 }
 
-TEST(Grid, EveryFinishedFilter_HasItsFourPanels) {
-  const Grid grid = make_hard_grid();
-  for (const PanelKind kind :
-       {PanelKind::kPicture, PanelKind::kVisibility, PanelKind::kPictureCrop, PanelKind::kVisibilityCrop}) {
-    std::vector<std::size_t> tiles;
-    for (const Panel& panel : panels_of(grid, kind)) tiles.push_back(panel.tile);
-    EXPECT_THAT(tiles, ::testing::ElementsAre(0, 1, 2, 3, 5, 6));
+TEST(Grid, EveryFinishedFilter_HasItsPanels) {
+  const Drawn drawn(make_hard_grid());
+  for (const GridCell cell : {kPictureCell, kVisibilityCell, kCropCell}) {
+    EXPECT_EQ(drawn.count(cell), 6u);
+    EXPECT_EQ(drawn.find(4, cell).width, 0);
   }
-  EXPECT_EQ(layout_grid(grid).message_boxes.size(), 1u);
 }
 
 TEST(Grid, DefaultRun_IsAbout1500PixelsWideInThreeColumns) {
-  const Grid grid = make_grid(6, 960, 540);
-  EXPECT_NEAR(layout_grid(grid).canvas.width, 1500, 20);
-  const auto pictures = panels_of(grid, PanelKind::kPicture);
-  EXPECT_EQ(pictures[0].box.y, pictures[2].box.y);
-  EXPECT_LT(pictures[2].box.y, pictures[3].box.y);
-  EXPECT_EQ(pictures[0].box.x, pictures[3].box.x);
+  const Drawn drawn(make_grid(6, 960, 540));
+  EXPECT_NEAR(drawn.layout.canvas.width, 1500, 20);
+  const Rect first = drawn.find(0, kPictureCell), third = drawn.find(2, kPictureCell),
+             fourth = drawn.find(3, kPictureCell);
+  EXPECT_EQ(first.y, third.y);
+  EXPECT_LT(third.y, fourth.y);
+  EXPECT_EQ(first.x, fourth.x);
 }
 
 TEST(Grid, MagnifiedCrop_ShowsWholeTexelsOfThatCrop) {
   const Grid grid = make_grid(2, 96, 54);
-  const Image canvas = draw_grid(grid);
-  for (const Panel& panel : panels_of(grid, PanelKind::kVisibilityCrop)) {
-    const int factor = panel.box.width / grid.crop.width;
-    ASSERT_EQ(panel.box.width, factor * grid.crop.width);
-    ASSERT_EQ(panel.box.height, factor * grid.crop.height);
-    for (int y = 0; y < panel.box.height; ++y) {
-      for (int x = 0; x < panel.box.width; ++x) {
-        ASSERT_EQ(*canvas.at(panel.box.x + x, panel.box.y + y),
-                  *grid.tiles[panel.tile].visibility.at(grid.crop.x + x / factor, grid.crop.y + y / factor));
+  const Drawn drawn(grid);
+  for (std::size_t tile = 0; tile < 2; ++tile) {
+    const Rect box = drawn.find(tile, kCropCell);
+    const int factor = box.width / 2 / grid.crop.width;
+    const int outline = (box.height - factor * grid.crop.height) / 2;
+    ASSERT_GT(factor, 1);
+    ASSERT_EQ(outline, 2);
+    const int left = box.x + box.width - outline - factor * grid.crop.width, top = box.y + outline;
+    for (int y = 0; y < factor * grid.crop.height; ++y) {
+      for (int x = 0; x < factor * grid.crop.width; ++x) {
+        ASSERT_EQ(*drawn.canvas.at(left + x, top + y),
+                  *grid.tiles[tile].visibility.at(grid.crop.x + x / factor, grid.crop.y + y / factor));
       }
     }
+    EXPECT_NE(drawn.canvas.at(left - 1, top)[0], drawn.canvas.at(left - 1, top)[2]) << "the outline";
   }
 }
 
@@ -200,24 +215,24 @@ TEST(Grid, EqualTiles_LookEqual) {
   Grid grid = make_grid(2, 960, 540);
   grid.tiles[1].picture = grid.tiles[0].picture;
   grid.exposure = 1.5;
-  const Image canvas = draw_grid(grid);
-  const auto panels = panels_of(grid, PanelKind::kPicture);
-  for (int y = 0; y < panels[0].box.height; ++y) {
-    const float* a = canvas.at(panels[0].box.x, panels[0].box.y + y);
-    const float* b = canvas.at(panels[1].box.x, panels[1].box.y + y);
-    ASSERT_TRUE(std::equal(a, a + panels[0].box.width * 3, b)) << y;
+  const Drawn drawn(grid);
+  const Rect first = drawn.find(0, kPictureCell), second = drawn.find(1, kPictureCell);
+  ASSERT_GT(first.height, 200);
+  for (int y = 0; y < first.height; ++y) {
+    const float* a = drawn.canvas.at(first.x, first.y + y);
+    const float* b = drawn.canvas.at(second.x, second.y + y);
+    ASSERT_TRUE(std::equal(a, a + first.width * 3, b)) << y;
   }
 }
 
 TEST(Grid, Exposure_ScalesThePictureInLinearLightAndNotTheVisibility) {
   Grid grid = make_grid(1, 64, 36);
   grid.exposure = 0.5;
-  const Image canvas = draw_grid(grid);
-  const Panel picture = panels_of(grid, PanelKind::kPicture).at(0);
-  const Panel visibility = panels_of(grid, PanelKind::kVisibility).at(0);
-  const int right = picture.box.width - 1;
-  EXPECT_EQ(*canvas.at(picture.box.x + right, picture.box.y), encode_srgb(0.5f * *grid.tiles[0].picture.at(63, 0)));
-  EXPECT_EQ(*canvas.at(visibility.box.x + right, visibility.box.y), 1.0f);
+  const Drawn drawn(grid);
+  const Rect picture = drawn.find(0, kPictureCell), visibility = drawn.find(0, kVisibilityCell);
+  const int right = picture.width - 1;
+  EXPECT_EQ(*drawn.canvas.at(picture.x + right, picture.y), encode_srgb(0.5f * *grid.tiles[0].picture.at(63, 0)));
+  EXPECT_EQ(*drawn.canvas.at(visibility.x + right, visibility.y), 1.0f);
 }
 
 TEST(Grid, ReducedPicture_KeepsLightAndAddsNoRinging) {
@@ -226,32 +241,39 @@ TEST(Grid, ReducedPicture_KeepsLightAndAddsNoRinging) {
   grid.tiles[0].picture = Image(960, 540, 3);
   for (int y = 0; y < 540; ++y)
     for (int x = 0; x < 960; ++x) std::fill_n(grid.tiles[0].picture.at(x, y), 3, x < 480 ? 0.2f : 0.6f);
-  const Image canvas = draw_grid(grid);
-  const Panel panel = panels_of(grid, PanelKind::kPicture).at(0);
-  for (int x = 0; x < panel.box.width; ++x) {
-    const float value = *canvas.at(panel.box.x + x, panel.box.y + 100);
+  const Drawn drawn(grid);
+  const Rect box = drawn.find(0, kPictureCell);
+  for (int x = 0; x < box.width; ++x) {
+    const float value = *drawn.canvas.at(box.x + x, box.y + 100);
     EXPECT_GE(value, encode_srgb(0.2f) - 1e-5f);
     EXPECT_LE(value, encode_srgb(0.6f) + 1e-5f);
   }
-  EXPECT_NEAR(*canvas.at(panel.box.x + 10, panel.box.y + 100), encode_srgb(0.2f), 1e-5f);
-  EXPECT_NEAR(*canvas.at(panel.box.x + panel.box.width - 10, panel.box.y + 100), encode_srgb(0.6f), 1e-5f);
+  EXPECT_NEAR(*drawn.canvas.at(box.x + 10, box.y + 100), encode_srgb(0.2f), 1e-5f);
+  EXPECT_NEAR(*drawn.canvas.at(box.x + box.width - 10, box.y + 100), encode_srgb(0.6f), 1e-5f);
 }
 
 TEST(Grid, TexelThatIsNotFinite_IsMagenta) {
   Grid grid = make_grid(1, 64, 36);
   grid.crop = {};
   *grid.tiles[0].visibility.at(0, 0) = std::numeric_limits<float>::quiet_NaN();
-  const Panel panel = panels_of(grid, PanelKind::kVisibility).at(0);
-  const Image canvas = draw_grid(grid);
-  EXPECT_EQ(canvas.at(panel.box.x, panel.box.y)[0], 1.0f);
-  EXPECT_EQ(canvas.at(panel.box.x, panel.box.y)[1], 0.0f);
+  *grid.tiles[0].picture.at(1, 1) = std::numeric_limits<float>::infinity();
+  grid.tiles[0].error = make_visibility(64, 36, 9.0f);
+  *grid.tiles[0].error.at(0, 0) = -std::numeric_limits<float>::infinity();
+  const Drawn drawn(grid);
+  for (const auto& [cell, texel] : {std::pair{kVisibilityCell, 0}, {kPictureCell, 1}, {kErrorCell, 0}}) {
+    const Rect box = drawn.find(0, cell);
+    const int factor = box.width / 64;
+    const float* shown = drawn.canvas.at(box.x + factor * texel, box.y + factor * texel);
+    EXPECT_TRUE(std::equal(shown, shown + 3, kMagenta.begin())) << cell;
+  }
 }
 
 // The drawn picture, not the plan: ink outside the boxes would be text cut off or overlapping.
 TEST(Grid, OutsideTheBoxes_TheCanvasIsEmpty) {
   for (const Grid& grid : {make_hard_grid(), make_hard_attributed_grid()}) {
-    Image canvas = draw_grid(grid);
-    for (const Rect& box : list_boxes(layout_grid(grid)))
+    Image canvas = draw_figure(make_figure(grid));
+    const Figure figure = make_figure(grid);
+    for (const Rect& box : list_boxes(layout_figure(figure)))
       for (int y = box.y; y < box.y + box.height; ++y) std::fill_n(canvas.at(box.x, y), box.width * 3, 1.0f);
     const auto ink =
         std::find_if(canvas.texels.begin(), canvas.texels.end(), [](float value) { return value != 1.0f; });
@@ -262,11 +284,11 @@ TEST(Grid, OutsideTheBoxes_TheCanvasIsEmpty) {
 
 TEST(Grid, CropIsOutlinedOnThePicture) {
   const Grid grid = make_grid(1, 468, 260);
-  const Image canvas = draw_grid(grid);
-  const Panel panel = panels_of(grid, PanelKind::kVisibility).at(0);
-  ASSERT_EQ(panel.box.width, 468);
-  const float* left = canvas.at(panel.box.x + grid.crop.x - 1, panel.box.y + grid.crop.y + 5);
-  const float* inside = canvas.at(panel.box.x + grid.crop.x, panel.box.y + grid.crop.y + 5);
+  const Drawn drawn(grid);
+  const Rect box = drawn.find(0, kVisibilityCell);
+  ASSERT_EQ(box.width, 468);
+  const float* left = drawn.canvas.at(box.x + grid.crop.x - 1, box.y + grid.crop.y + 5);
+  const float* inside = drawn.canvas.at(box.x + grid.crop.x, box.y + grid.crop.y + 5);
   EXPECT_NE(left[0], left[2]);
   EXPECT_EQ(inside[0], *grid.tiles[0].visibility.at(grid.crop.x, grid.crop.y + 5));
 }
@@ -276,7 +298,7 @@ TEST(Grid, File_HoldsTheDrawnPicture) {
   const Grid grid = make_grid(2, 64, 36);
   write_grid(folder.path() / "cubes.grid.png", grid);
   const Image back = read_picture(folder.path() / "cubes.grid.png");
-  const Image drawn = draw_grid(grid);
+  const Image drawn = draw_figure(make_figure(grid));
   ASSERT_EQ(back.width, drawn.width);
   ASSERT_EQ(back.height, drawn.height);
   for (std::size_t i = 0; i < drawn.texels.size(); ++i) ASSERT_NEAR(back.texels[i], drawn.texels[i], 0.51f / 255.0f);
@@ -286,21 +308,21 @@ TEST(Grid, TilesWithErrors_GetAHeatMapAndOneColourBar) {
   Grid grid;
   grid.title = "t";
   grid.tiles = {make_tile("truth", 96, 54, 0.5f), make_tile("a", 96, 54, 0.4f)};
-  const GridLayout without = layout_grid(grid);
-  EXPECT_FALSE(without.color_bar);
+  const Drawn without(grid);
+  ASSERT_EQ(without.figure.legend.size(), 1u) << "the rows' explanation alone";
+  EXPECT_TRUE(without.figure.legend[0].picture.empty());
   grid.tiles[1].error = Image(96, 54, 1);
   grid.tiles[1].error.texels[40] = -0.3f;
-  const GridLayout layout = layout_grid(grid);
-  ASSERT_TRUE(layout.color_bar);
-  EXPECT_DOUBLE_EQ(layout.error_scale, 0.5);
-  EXPECT_EQ(std::count_if(layout.panels.begin(), layout.panels.end(),
-                          [](const Panel& p) { return p.kind == PanelKind::kError; }),
-            1);
-  EXPECT_GT(layout.canvas.height, without.canvas.height);
-  const Image drawn = draw_grid(grid);
-  const Rect bar = *layout.color_bar;
-  const float* left = drawn.at(bar.x + 2, bar.y + 2);
-  const float* right = drawn.at(bar.x + bar.width - 3, bar.y + 2);
+  const Drawn drawn(grid);
+  ASSERT_EQ(drawn.figure.legend.size(), 2u);
+  EXPECT_TRUE(drawn.shows("-0.5"));
+  EXPECT_TRUE(drawn.shows("0.5"));
+  EXPECT_EQ(drawn.count(kErrorCell), 1u);
+  EXPECT_GT(drawn.layout.canvas.height, without.layout.canvas.height);
+  const Rect bar = drawn.find(drawn.figure.legend[0]);
+  ASSERT_GT(bar.width, 0);
+  const float* left = drawn.canvas.at(bar.x + 2, bar.y + 2);
+  const float* right = drawn.canvas.at(bar.x + bar.width - 3, bar.y + 2);
   EXPECT_GT(left[2], left[0] + 0.3f);
   EXPECT_GT(right[0], right[2] + 0.3f);
 }
@@ -317,32 +339,29 @@ TEST(Grid, BarsLengths_AreInPixelsOfOneScale) {
   Grid grid = make_grid(3, 96, 54);
   grid.tiles[1].attribution = AttributionBar{{0.0, 0.03, 0.0, 0.01}};
   grid.tiles[2].attribution = AttributionBar{{0.0, 0.015, -0.02, 0.02}};
-  const GridLayout layout = layout_grid(grid);
-  const Image canvas = draw_grid(grid);
-  ASSERT_EQ(layout.bars.size(), 2u);
-  EXPECT_DOUBLE_EQ(layout.bar_scale->length, 0.06);
-  for (const BarPlace& bar : layout.bars) {
-    const records::PartValues& lengths = grid.tiles[bar.tile].attribution->lengths;
-    const Rect row{bar.track.x, bar.track.y + bar.track.height / 2, bar.track.width, 1};
+  const Drawn drawn(grid);
+  EXPECT_THAT(all_text(grid), HasSubstr("thefullwidth0.06."));
+  EXPECT_EQ(drawn.count(kBarCell), 2u);
+  for (const std::size_t tile : {1u, 2u}) {
+    const records::PartValues& lengths = grid.tiles[tile].attribution->lengths;
+    const Rect box = drawn.find(tile, kBarCell);
+    const Rect row{box.x, box.y + box.height / 2, box.width, 1};
     for (std::size_t part = 0; part < metrics::kErrorParts; ++part) {
-      const double expected = std::abs(lengths[part]) / layout.bar_scale->length * bar.track.width;
-      EXPECT_NEAR(count_in_row(canvas, row, records::list_error_parts()[part].color), expected, 3.5)
+      const double expected = std::abs(lengths[part]) / 0.06 * box.width;
+      EXPECT_NEAR(count_in_row(drawn.canvas, row, records::list_error_parts()[part].color), expected, 3.5)
           << part;  // the tick hides 3
     }
-    EXPECT_NEAR(bar.zero_line.x, bar.track.x + bar.track.width / 3.0, 1.0);
-    EXPECT_EQ(count_in_row(canvas, bar.net_tick, images::Rgb{0.0f, 0.0f, 0.0f}), bar.net_tick.width);
   }
 }
 
 TEST(Grid, Bars_LieBetweenTheErrorAndTheCrop) {
-  const Grid grid = make_attributed_grid(3, 96, 54);
-  const GridLayout layout = layout_grid(grid);
-  ASSERT_FALSE(layout.bars.empty());
-  for (const BarPlace& bar : layout.bars) {
-    for (const Panel& panel : layout.panels) {
-      const bool is_crop = panel.kind == PanelKind::kPictureCrop || panel.kind == PanelKind::kVisibilityCrop;
-      EXPECT_EQ(panel.box.y > bar.box.y, is_crop);
-    }
+  const Drawn drawn(make_attributed_grid(3, 96, 54));
+  EXPECT_GT(drawn.count(kBarCell), 0u);
+  for (std::size_t tile = 0; tile < 3; ++tile) {
+    const Rect bar = drawn.find(tile, kBarCell);
+    if (bar.width == 0) continue;
+    EXPECT_GT(bar.y, drawn.find(tile, kErrorCell).y);
+    EXPECT_LT(bar.y, drawn.find(tile, kCropCell).y);
   }
 }
 
@@ -351,15 +370,15 @@ TEST(Grid, BarsLegend_NamesThePartsBesideTheirColoursAndTheLength) {
   const std::string text = all_text(grid);
   EXPECT_THAT(text, HasSubstr("thefullwidth0.06"));
   EXPECT_THAT(text, HasSubstr("estimator83%,model28%"));
-  const GridLayout layout = layout_grid(grid);
-  const Image canvas = draw_grid(grid);
-  ASSERT_EQ(layout.swatches.size(), metrics::kErrorParts);
-  for (const Swatch& swatch : layout.swatches) {
-    const images::Rgb& color = records::list_error_parts()[swatch.part].color;
-    EXPECT_EQ(count_in_row(canvas, swatch.box, color), swatch.box.width);
-    EXPECT_TRUE(std::any_of(layout.texts.begin(), layout.texts.end(), [&](const TextLine& line) {
-      return line.text == records::list_error_parts()[swatch.part].name && line.box.y == swatch.box.y;
-    }));
+  const Drawn drawn(grid);
+  const Rect key = drawn.find(drawn.figure.legend.at(1));
+  for (const records::ErrorPart& part : records::list_error_parts()) {
+    EXPECT_NEAR(count_in_row(drawn.canvas, {key.x, key.y, key.width, 1}, part.color), key.width / 4, 1);
+    const auto name =
+        std::ranges::find_if(drawn.layout.texts, [&](const PlacedText& line) { return line.text == part.name; });
+    ASSERT_NE(name, drawn.layout.texts.end()) << part.name;
+    const float* above = drawn.canvas.at(name->box.x + name->box.width / 2, key.y);
+    EXPECT_TRUE(std::equal(above, above + 3, part.color.begin())) << part.name;
   }
 }
 
@@ -374,14 +393,36 @@ TEST(Grid, ReasonForNoBar_IsSaidOnlyWhereThereAreBars) {
   EXPECT_THAT(all_text(grid), HasSubstr("noattribution:thisfilterhasnoscalarmodel"));
   for (GridTile& tile : grid.tiles) tile.attribution.reset();
   EXPECT_THAT(all_text(grid), Not(HasSubstr("noattribution")));
-  EXPECT_TRUE(layout_grid(grid).swatches.empty());
+  EXPECT_THAT(all_text(grid), Not(HasSubstr("discretisation")));
 }
 
-TEST(Grid, GivenErrorScale_IsTaken) {
+TEST(Grid, GivenErrorScale_IsTakenForEveryTile) {
   Grid grid = make_attributed_grid(3, 96, 54);
   grid.error_scale = 0.7;
-  EXPECT_DOUBLE_EQ(layout_grid(grid).error_scale, 0.7);
-  EXPECT_THAT(all_text(grid), HasSubstr("-0.7(toodark,blue)to+0.7"));
+  std::ranges::fill(grid.tiles[1].error.texels, 0.7f);
+  std::ranges::fill(grid.tiles[2].error.texels, 0.35f);
+  const Drawn drawn(grid);
+  EXPECT_TRUE(drawn.shows("-0.7"));
+  EXPECT_TRUE(drawn.shows("0.7"));
+  for (const std::size_t tile : {1u, 2u}) {
+    const Rect box = drawn.find(tile, kErrorCell);
+    const Rgb expected = map_diverging(tile == 1 ? 0.7f : 0.35f, 0.7f);
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(drawn.canvas.at(box.x + 5, box.y + 5)[c], expected[c], 1e-5f);
+  }
+}
+
+TEST(Figure, TicksThatHaveNoRoom_LoseTheirLabelsAndNoneOverlap) {
+  Cell cell{"", "", Image(200, 100, 3)};
+  for (int i = 0; i <= 40; ++i) {
+    cell.below.push_back({i / 40.0, "a long label " + std::to_string(i)});
+    cell.beside.push_back({i / 40.0, std::to_string(1000 * i)});
+  }
+  const Figure figure{"title", "note", {{cell, cell}, {}, {cell}}, 2, {cell}};
+  expect_sound(figure);
+  const Layout layout = layout_figure(figure);
+  EXPECT_EQ(layout.marks.size(), 4u * 82u);
+  EXPECT_EQ(std::ranges::count(layout.texts, "a long label 0", &PlacedText::text), 4);
+  EXPECT_EQ(std::ranges::count(layout.texts, "0", &PlacedText::text), 4);
 }
 
 }  // namespace

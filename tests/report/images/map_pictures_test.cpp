@@ -3,8 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "report/images/figures/depth_picture.h"
-#include "report/images/figures/texel_pictures.h"
+#include "report/images/map_figures.h"
 
 namespace shadowbench::images {
 namespace {
@@ -43,45 +42,49 @@ TEST(DepthHistogram, DepthsOutsideTheRange_GoToTheNearestBin) {
   EXPECT_EQ(histogram.counts, (std::vector<std::int64_t>{1, 0, 0, 1}));
 }
 
+Image draw_depth(const Image& stored, const filters::DepthCurve& curve) {
+  return draw_figure({"map", "note", show_depth({{stored, 12.0}}, curve)});
+}
+
 TEST(DepthPicture, ShowsTheMapAndABarForEveryFilledBin) {
-  const DepthPicture picture{"map", "note", {{make_depth_map(256), 12.0}}, {}};
-  const Image drawn = draw_depth_picture(picture);
+  const Image drawn = draw_depth(make_depth_map(256), {});
   EXPECT_EQ(count_color(drawn, 0.80f, 0.87f, 0.95f), 768u * 384u) << "the empty half";
   const std::size_t bars = count_color(drawn, 0.20f, 0.36f, 0.60f);
   EXPECT_GT(bars, 5000u);
-  DepthPicture flat = picture;
-  for (float& depth : flat.layers.front().stored.texels) depth = depth < 1.0f ? 0.4f : 1.0f;
-  EXPECT_LT(count_color(draw_depth_picture(flat), 0.20f, 0.36f, 0.60f), bars / 20) << "one bin instead of many";
+  Image flat = make_depth_map(256);
+  for (float& depth : flat.texels) depth = depth < 1.0f ? 0.4f : 1.0f;
+  EXPECT_LT(count_color(draw_depth(flat, {}), 0.20f, 0.36f, 0.60f), bars / 20) << "one bin instead of many";
 }
 
 TEST(DepthPicture, MapThatDoesNotHoldLinearDepth_IsShownTwice_AsStoredAndLinearised) {
   const Image depth = make_depth_map(256);
   for (const filters::DepthCurve& curve :
        {filters::DepthCurve{true}, filters::DepthCurve{false, 50.0}, filters::DepthCurve{true, 50.0}}) {
-    DepthPicture stored{"map", "note", {{depth, 12.0}}, curve};
-    for (float& d : stored.layers.front().stored.texels) d = curve.store(d);
-    const Image drawn = draw_depth_picture(stored);
-    const Image once = draw_depth_picture({"map", "note", {{depth, 12.0}}, {}});
-    EXPECT_EQ(drawn.height, once.height);
-    EXPECT_GT(drawn.width, 3 * once.width / 2);
+    Image stored = depth;
+    for (float& d : stored.texels) d = curve.store(d);
+    const Figure figure{"map", "note", show_depth({{stored, 12.0}}, curve)};
+    const Image drawn = draw_figure(figure);
+    EXPECT_GT(drawn.width, 3 * draw_depth(depth, {}).width / 2);
     EXPECT_EQ(count_color(drawn, 0.80f, 0.87f, 0.95f), 2 * 768u * 384u) << "the empty half, twice";
     // The linearised map is that of the linear map, at the right.
-    constexpr int kSide = 700;
+    const std::vector<PlacedPicture> placed = layout_figure(figure).pictures;
+    ASSERT_GE(placed.size(), 2u);
+    EXPECT_EQ(placed[0].box.y, placed[1].box.y);
+    EXPECT_GT(placed[1].box.x, placed[0].box.x + placed[0].box.width);
+    const Stack linear = show_depth({{depth, 12.0}}, {}).front();
+    const Image& once = linear.front().picture;
+    ASSERT_EQ(placed[1].picture->texels.size(), once.texels.size());
     int different = 0;
-    for (int y = 120; y < 120 + kSide; ++y) {
-      for (int x = 0; x < 300; ++x) {
-        const float* right = drawn.at(drawn.width - once.width + 30 + x, y);
-        different += std::abs(right[0] - once.at(30 + x, y)[0]) > 0.01f ? 1 : 0;
-      }
-    }
+    for (std::size_t i = 0; i < once.texels.size(); ++i)
+      different += std::abs(placed[1].picture->texels[i] - once.texels[i]) > 0.01f ? 1 : 0;
     EXPECT_EQ(different, 0) << curve.reversed << curve.far_over_near;
   }
 }
 
 TEST(DensityPicture, MoreTexels_AnotherColour_AndSurfacesWithoutAreGrey) {
-  DensityPicture picture{"density", "", Image(4, 1, 1)};
-  picture.density.texels = {0.1f, 10.0f, 0.0f, -1.0f};
-  const Image drawn = draw_density_picture(picture);
+  Image density(4, 1, 1);
+  density.texels = {0.1f, 10.0f, 0.0f, -1.0f};
+  const Image drawn = draw_figure({"density", "", {show_density(density)}});
   EXPECT_EQ(count_color(drawn, 0.62f, 0.62f, 0.62f), 1u);
   EXPECT_EQ(count_color(drawn, 0.93f, 0.94f, 0.95f), 1u);
   // The pixels stand in a row, few texels blue, many red.
@@ -93,9 +96,20 @@ TEST(DensityPicture, MoreTexels_AnotherColour_AndSurfacesWithoutAreGrey) {
   EXPECT_GT(many[0], many[2]);
 }
 
+/// A white picture, and where the map's texels lie on it.
+struct Wall {
+  Image picture;
+  Image texel;
+  Image density;
+};
+
+Image draw(const Wall& wall) {
+  return draw_figure({"grid", "", {show_texels(wall.picture, wall.texel, wall.density)}});
+}
+
 /// A wall whose texels are `pixels` wide, white.
-TexelGridPicture make_wall(int side, float pixels) {
-  TexelGridPicture picture{"grid", "", Image(side, side, 3), Image(side, side, 2), Image(side, side, 1)};
+Wall make_wall(int side, float pixels) {
+  Wall picture{Image(side, side, 3), Image(side, side, 2), Image(side, side, 1)};
   for (float& value : picture.picture.texels) value = 1.0f;
   for (int y = 0; y < side; ++y) {
     for (int x = 0; x < side; ++x) {
@@ -108,7 +122,7 @@ TexelGridPicture make_wall(int side, float pixels) {
 }
 
 TEST(TexelGrid, DarkensEveryOtherTexel) {
-  const Image drawn = draw_texel_grid_picture(make_wall(64, 8.0f));
+  const Image drawn = draw(make_wall(64, 8.0f));
   EXPECT_EQ(count_color(drawn, 0.55f, 0.55f, 0.55f), 64u * 64u / 2u);
 }
 
@@ -116,7 +130,7 @@ TEST(TexelGrid, SmallTexels_AreGatheredInFieldsThatShow) {
   EXPECT_EQ(choose_field_texels(make_wall(8, 8.0f).density), 1);
   EXPECT_EQ(choose_field_texels(make_wall(8, 1.0f).density), 8);
   EXPECT_EQ(choose_field_texels(Image(4, 4, 1)), 1) << "no receiver";
-  const Image drawn = draw_texel_grid_picture(make_wall(64, 1.0f));
+  const Image drawn = draw(make_wall(64, 1.0f));
   EXPECT_EQ(count_color(drawn, 0.55f, 0.55f, 0.55f), 64u * 64u / 2u);
   // Fields 8 pixels wide: along each of 64 rows 4 of them are dark, and have two sides.
   std::size_t sides = 0;
@@ -130,10 +144,10 @@ TEST(TexelGrid, SmallTexels_AreGatheredInFieldsThatShow) {
 }
 
 TEST(TexelGrid, FieldsFarSmallerThanTheMedian_Fade) {
-  TexelGridPicture picture = make_wall(64, 8.0f);
+  Wall picture = make_wall(64, 8.0f);
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 64; ++x) *picture.density.at(x, y) = 1.0f;
-  EXPECT_EQ(count_color(draw_texel_grid_picture(picture), 0.55f, 0.55f, 0.55f), 64u * 48u / 2u);
+  EXPECT_EQ(count_color(draw(picture), 0.55f, 0.55f, 0.55f), 64u * 48u / 2u);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "report/images/figures/flicker_picture.h"
+#include "report/images/heat_figures.h"
 #include "report/records/flicker_json.h"
 #include "tests/report/pages/answer.h"
 

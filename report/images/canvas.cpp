@@ -1,0 +1,116 @@
+#include "report/images/canvas.h"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+
+namespace shadowbench::images {
+namespace {
+
+/// The source pixels that one of the result stands for: [begin, end).
+struct Span {
+  int begin;
+  int end;
+};
+
+Span span_of(int at, int from, int to) {
+  const auto scaled = [&](int place) { return static_cast<int>(static_cast<std::int64_t>(place) * from / to); };
+  const int begin = scaled(at);
+  return {begin, std::max(begin + 1, scaled(at + 1))};
+}
+
+Image magnify_image(const Image& image, Size size) {
+  Image result(size.width, size.height, image.channels);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x)
+      std::copy_n(image.at(x * image.width / size.width, y * image.height / size.height), image.channels,
+                  result.at(x, y));
+  return result;
+}
+
+// A triangle filter has no negative lobes, so no bright seams beside a shadow's edge that no filter made.
+Image reduce_image(const Image& image, Size size) {
+  Image result(size.width, size.height, image.channels);
+  const OIIO::ImageSpec from(image.width, image.height, image.channels, OIIO::TypeDesc::FLOAT);
+  const OIIO::ImageSpec to(size.width, size.height, image.channels, OIIO::TypeDesc::FLOAT);
+  const OIIO::ImageBuf source(from, const_cast<float*>(image.texels.data()));
+  OIIO::ImageBuf target(to, result.texels.data());
+  [[maybe_unused]] const bool resized = OIIO::ImageBufAlgo::resize(target, source, "triangle", 0.0f, OIIO::get_roi(to));
+  assert(resized);
+  return result;
+}
+
+}  // namespace
+
+void fill_rect(Image& canvas, const Rect& rect, const Rgb& color) {
+  for (int y = std::max(0, rect.y); y < std::min(canvas.height, rect.y + rect.height); ++y)
+    for (int x = std::max(0, rect.x); x < std::min(canvas.width, rect.x + rect.width); ++x)
+      std::copy(color.begin(), color.end(), canvas.at(x, y));
+}
+
+void outline_rect(Image& canvas, const Rect& r, int width, const Rgb& color) {
+  const int outer = r.width + 2 * width;
+  fill_rect(canvas, {r.x - width, r.y - width, outer, width}, color);
+  fill_rect(canvas, {r.x - width, r.y + r.height, outer, width}, color);
+  fill_rect(canvas, {r.x - width, r.y, width, r.height}, color);
+  fill_rect(canvas, {r.x + r.width, r.y, width, r.height}, color);
+}
+
+void paste_image(Image& canvas, const Image& picture, int x, int y) {
+  assert(picture.channels == canvas.channels && x >= 0 && y >= 0 && x + picture.width <= canvas.width &&
+         y + picture.height <= canvas.height);
+  for (int row = 0; row < picture.height; ++row)
+    std::copy_n(picture.at(0, row), picture.channels * picture.width, canvas.at(x, y + row));
+}
+
+Image frame_image(const Image& picture, int width, const Rgb& color) {
+  Image framed(picture.width + 2 * width, picture.height + 2 * width, 3);
+  fill_rect(framed, {0, 0, framed.width, framed.height}, color);
+  paste_image(framed, picture, width, width);
+  return framed;
+}
+
+Image cut_image(const Image& image, const Rect& rect) {
+  Image result(rect.width, rect.height, image.channels);
+  for (int y = 0; y < rect.height; ++y)
+    std::copy_n(image.at(rect.x, rect.y + y), rect.width * image.channels, result.at(0, y));
+  return result;
+}
+
+Size fit_size(Size size, Size box) {
+  if (size.width <= 0 || size.height <= 0) return {};
+  const int factor = std::min(box.width / size.width, box.height / size.height);
+  if (factor >= 1) return {size.width * factor, size.height * factor};
+  const double scale =
+      std::min(static_cast<double>(box.width) / size.width, static_cast<double>(box.height) / size.height);
+  return {std::clamp(static_cast<int>(size.width * scale + 0.5), 1, box.width),
+          std::clamp(static_cast<int>(size.height * scale + 0.5), 1, box.height)};
+}
+
+Image fit_image(const Image& image, Size box) {
+  const Size size = fit_size({image.width, image.height}, box);
+  return size.width >= image.width ? magnify_image(image, size) : reduce_image(image, size);
+}
+
+Image fit_worst(const Image& image, Size box, const Badness& badness) {
+  const Size size = fit_size({image.width, image.height}, box);
+  Image shown(size.width, size.height, 1);
+  for (int y = 0; y < size.height; ++y) {
+    const Span rows = span_of(y, image.height, size.height);
+    for (int x = 0; x < size.width; ++x) {
+      const Span columns = span_of(x, image.width, size.width);
+      float worst = *image.at(columns.begin, rows.begin);
+      for (int v = rows.begin; v < rows.end; ++v) {
+        for (int u = columns.begin; u < columns.end; ++u)
+          if (badness(*image.at(u, v)) > badness(worst)) worst = *image.at(u, v);
+      }
+      *shown.at(x, y) = worst;
+    }
+  }
+  return shown;
+}
+
+}  // namespace shadowbench::images

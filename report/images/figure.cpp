@@ -1,0 +1,163 @@
+#include "report/images/figure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/images/picture_io.h"
+
+namespace shadowbench::images {
+namespace {
+
+constexpr int kMargin = 28, kColumnGap = 20, kRowGap = 10, kBlockGap = 24;
+constexpr int kLeastWidth = 640, kLeastColumn = 320;  // words need room
+constexpr int kTickLength = 6;
+constexpr Font kTitle{32, true}, kHead{24, true}, kText{20, false};
+constexpr Rgb kInk{0.11f, 0.12f, 0.14f}, kSecondInk{0.33f, 0.35f, 0.39f}, kWarningInk{0.70f, 0.15f, 0.05f};
+constexpr Rgb kFrame{0.68f, 0.70f, 0.73f};
+
+int measure_height(const std::string& text, Font font, int width) {
+  return static_cast<int>(wrap_text(text, font, width).size()) * line_height(font);
+}
+
+/// What stands above a cell's picture.
+int measure_head(const Cell& cell, int width) {
+  return measure_height(cell.title, kHead, width) + measure_height(cell.words, kText, width) +
+         measure_height(cell.warning, kText, width);
+}
+
+/// How far the ticks beside a picture reach above it and below.
+int measure_slack(const Cell& cell) { return cell.beside.empty() ? 0 : line_height(kText) / 2; }
+
+/// The room left of a picture for its ticks.
+int measure_beside(const Cell& cell) {
+  int widest = 0;
+  for (const Tick& tick : cell.beside) widest = std::max(widest, measure_text(tick.label, kText) + 2 * kTickLength);
+  return widest;
+}
+
+int widen(int width, const Stack& stack) {
+  for (const Cell& cell : stack) width = std::max(width, measure_beside(cell) + cell.picture.width);
+  return width;
+}
+
+class Builder {
+ public:
+  explicit Builder(const Figure& figure)
+      : figure_(figure), columns_(std::clamp(static_cast<int>(figure.stacks.size()), 1, std::max(1, figure.columns))) {
+    for (const Stack& stack : figure.stacks) column_ = widen(column_, stack);
+    width_ = widen(std::max(kLeastWidth, columns_ * column_ + (columns_ - 1) * kColumnGap), figure.legend);
+  }
+
+  Layout build() {
+    int y = add_text(figure_.title, kTitle, kInk, {kMargin, kMargin, width_, 0});
+    y = add_text(figure_.note, kText, kSecondInk, {kMargin, y, width_, 0}) + kBlockGap;
+    const auto step = static_cast<std::size_t>(columns_);
+    for (std::size_t first = 0; first < figure_.stacks.size(); first += step)
+      y = add_block(first, std::min(first + step, figure_.stacks.size()), y) + kBlockGap;
+    for (const Cell& cell : figure_.legend)
+      y = add_cell(cell, {kMargin, y, width_, 0}, measure_head(cell, width_)) + kRowGap;
+    layout_.canvas = {width_ + 2 * kMargin, y + kMargin};
+    return std::move(layout_);
+  }
+
+ private:
+  /// Adds lines from the top of `column` down; returns where they end.
+  int add_text(const std::string& text, Font font, const Rgb& ink, const Rect& column) {
+    int y = column.y;
+    for (std::string& line : wrap_text(text, font, column.width)) {
+      layout_.texts.push_back({{column.x, y, column.width, line_height(font)}, std::move(line), font, ink});
+      y += line_height(font);
+    }
+    return y;
+  }
+
+  /// Adds stacks side by side; the pictures of cells in one row begin at one height.
+  int add_block(std::size_t begin, std::size_t end, int y) {
+    std::size_t rows = 0;
+    for (std::size_t i = begin; i < end; ++i) rows = std::max(rows, figure_.stacks[i].size());
+    for (std::size_t row = 0; row < rows; ++row) {
+      int head = 0, bottom = y;
+      for (std::size_t i = begin; i < end; ++i)
+        if (row < figure_.stacks[i].size()) head = std::max(head, measure_head(figure_.stacks[i][row], column_));
+      for (std::size_t i = begin; i < end; ++i) {
+        const int x = kMargin + static_cast<int>(i - begin) * (column_ + kColumnGap);
+        if (row < figure_.stacks[i].size())
+          bottom = std::max(bottom, add_cell(figure_.stacks[i][row], {x, y, column_, 0}, head));
+      }
+      y = bottom > y ? bottom + kRowGap : y;
+    }
+    return y;
+  }
+
+  /// Adds a cell whose picture begins `head` pixels below the top of `column`; returns where it ends.
+  int add_cell(const Cell& cell, const Rect& column, int head) {
+    int y = add_text(cell.title, kHead, kInk, column);
+    y = add_text(cell.words, kText, kSecondInk, {column.x, y, column.width, 0});
+    add_text(cell.warning, kText, kWarningInk, {column.x, y, column.width, 0});
+    if (cell.picture.empty()) return column.y + head;
+    const Rect box{column.x + measure_beside(cell),
+                   column.y + head + (head > 0 ? kRowGap / 2 : 1) + measure_slack(cell), cell.picture.width,
+                   cell.picture.height};
+    layout_.pictures.push_back({box, &cell.picture});
+    add_ticks_beside(cell, box);
+    return cell.below.empty() ? box.y + box.height + 1 + measure_slack(cell) : add_ticks_below(cell, box, column);
+  }
+
+  void add_ticks_beside(const Cell& cell, const Rect& box) {
+    int end = box.y + box.height + line_height(kText);
+    for (const Tick& tick : cell.beside) {
+      const int y = box.y + static_cast<int>(std::lround((1.0 - tick.place) * (box.height - 1)));
+      const int top = y - line_height(kText) / 2;
+      layout_.marks.push_back({box.x - 1 - kTickLength, y, kTickLength, 1});
+      if (top + line_height(kText) > end) continue;
+      const int width = measure_text(tick.label, kText);
+      layout_.texts.push_back(
+          {{box.x - 2 * kTickLength - width, top, width, line_height(kText)}, tick.label, kText, kSecondInk});
+      end = top;
+    }
+  }
+
+  int add_ticks_below(const Cell& cell, const Rect& box, const Rect& column) {
+    const int under = box.y + box.height + 1, top = under + std::max(kTickLength, measure_slack(cell));
+    int end = column.x;
+    for (const Tick& tick : cell.below) {
+      const int x = box.x + static_cast<int>(std::lround(tick.place * (box.width - 1)));
+      const int width = measure_text(tick.label, kText);
+      const int left = std::clamp(x - width / 2, column.x, std::max(column.x, column.x + column.width - width));
+      layout_.marks.push_back({x, under, 1, kTickLength});
+      if (left < end) continue;
+      layout_.texts.push_back({{left, top, width, line_height(kText)}, tick.label, kText, kSecondInk});
+      end = left + width + kTickLength;
+    }
+    return top + line_height(kText);
+  }
+
+  const Figure& figure_;
+  int columns_;
+  int column_ = kLeastColumn;  ///< pixels
+  int width_ = 0;              ///< of all columns
+  Layout layout_;
+};
+
+}  // namespace
+
+Layout layout_figure(const Figure& figure) { return Builder(figure).build(); }
+
+Image draw_figure(const Figure& figure) {
+  const Layout layout = layout_figure(figure);
+  Image canvas(layout.canvas.width, layout.canvas.height, 3);
+  std::ranges::fill(canvas.texels, 1.0f);
+  for (const PlacedPicture& placed : layout.pictures) {
+    outline_rect(canvas, placed.box, 1, kFrame);
+    paste_image(canvas, *placed.picture, placed.box.x, placed.box.y);
+  }
+  for (const Rect& mark : layout.marks) fill_rect(canvas, mark, kSecondInk);
+  for (const PlacedText& text : layout.texts) draw_text(canvas, text.box.x, text.box.y, text.text, text.font, text.ink);
+  return canvas;
+}
+
+void write_figure(const std::filesystem::path& path, const Figure& figure) {
+  write_display_png(path, draw_figure(figure));
+}
+
+}  // namespace shadowbench::images

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "report/images/canvas.h"
+#include "report/images/text.h"
+
+namespace shadowbench::images {
+
+/// How wide a picture is in a figure of 1500 pixels and three columns.
+inline constexpr int kColumnWidth = 468;
+
+/// A place on a picture's edge, and what stands beside it.
+struct Tick {
+  double place = 0.0;  ///< from the picture's left or lower end, 0, to the other, 1
+  std::string label;
+};
+
+/// A cell of a figure: from top to bottom a title, words, a warning and a picture, each only where there is one.
+struct Cell {
+  std::string title = {};
+  std::string words = {};
+  Image picture = {};             ///< display values, 3 channels; shown pixel by pixel
+  std::vector<Tick> below = {};   ///< along the picture's lower edge, from left to right
+  std::vector<Tick> beside = {};  ///< along its left edge, from below
+  std::string warning = {};
+};
+
+/// Cells that stand below one another.
+using Stack = std::vector<Cell>;
+
+/// A table of cells, for people.
+struct Figure {
+  std::string title = {};
+  std::string note = {};
+  std::vector<Stack> stacks = {};  ///< side by side; cells of one number line up
+  int columns = 6;                 ///< stacks side by side; the rest follows below
+  Stack legend = {};               ///< below all of them, over the whole width
+};
+
+/// Where one line of text stands.
+struct PlacedText {
+  Rect box;
+  std::string text;
+  Font font;
+  Rgb ink;
+};
+
+/// Where a cell's picture stands.
+struct PlacedPicture {
+  Rect box;
+  const Image* picture = nullptr;  ///< the figure's
+};
+
+/// The place of everything in a figure; no two boxes overlap, and all lie in the canvas.
+struct Layout {
+  Size canvas;
+  std::vector<PlacedText> texts;
+  std::vector<PlacedPicture> pictures;  ///< each with a frame of one pixel around it
+  std::vector<Rect> marks;              ///< the ticks
+};
+
+/// Places everything in a figure, which the result points into. Words are wrapped to their column; a tick whose label
+/// has no room beside the one before has none. Throws Error(kOutput) where the font is not installed.
+Layout layout_figure(const Figure& figure);
+
+/// Draws a figure: display values, 3 channels. Throws as layout_figure().
+Image draw_figure(const Figure& figure);
+
+/// Draws a figure into an 8-bit PNG file. Throws Error(kOutput).
+void write_figure(const std::filesystem::path& path, const Figure& figure);
+
+}  // namespace shadowbench::images
