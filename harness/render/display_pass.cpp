@@ -16,9 +16,8 @@ gl::Texture upload_scale(const char* label, const images::Image& colors) {
   return scale;
 }
 
-template <class Color>
-images::Image color_ramp(const Color& color) {
-  return images::color_values(images::make_ramp(kSteps, 1), color);
+images::Image color_ramp(const images::Colors& colors) {
+  return images::color_values(images::make_ramp(kSteps, 1), colors);
 }
 
 }  // namespace
