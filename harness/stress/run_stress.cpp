@@ -101,7 +101,7 @@ class StressRun {
 
   void warn() {
     for (const records::StressAxis& axis : record_.axes) {
-      for (const std::string& sentence : pages::describe_limits(axis, records::StressAgreement::kDisagrees))
+      for (const std::string& sentence : pages::describe_stress_limits(axis, records::StressAgreement::kDisagrees))
         progress_.note(fmt::format("warning: {}: {}", axis.id, sentence));
       for (const records::StressCase& item : axis.cases)
         if (!item.not_available.empty())

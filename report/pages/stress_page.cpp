@@ -207,7 +207,7 @@ page::Section make_axis_section(const StressAxis& axis) {
   std::vector<std::string> notes;
   for (const StressCase& item : axis.cases)
     for (const std::string& note : item.notes) notes.push_back(fmt::format("{}: {}.", label_of(item), note));
-  add_sentences(details, "Not what theory says, and why:", describe_limits(axis, StressAgreement::kExplained));
+  add_sentences(details, "Not what theory says, and why:", describe_stress_limits(axis, StressAgreement::kExplained));
   add_sentences(details, "Also seen:", std::move(notes));
   for (const records::StressExhibit& exhibit : axis.exhibits) {
     details.blocks.insert(details.blocks.end(), {page::Heading{exhibit.title}, page::Sentences{{}, exhibit.sentences}});
@@ -271,7 +271,7 @@ std::vector<std::string> describe_out_of_sight(const StressRecord& record) {
   return sentences;
 }
 
-std::vector<std::string> describe_limits(const StressAxis& axis, StressAgreement agreement) {
+std::vector<std::string> describe_stress_limits(const StressAxis& axis, StressAgreement agreement) {
   std::vector<std::string> sentences;
   for (const auto& [item, limit] : list_limits(axis)) {
     if (limit->agreement != agreement) continue;
@@ -326,7 +326,7 @@ page::Page make_stress_page(const StressRecord& record) {
   page::Page page{"Where filters break", {make_stress_answer(record)}, {}};
   std::vector<std::string> warnings;
   for (const StressAxis& axis : record.axes)
-    for (const std::string& sentence : describe_limits(axis, StressAgreement::kDisagrees))
+    for (const std::string& sentence : describe_stress_limits(axis, StressAgreement::kDisagrees))
       warnings.push_back(axis.id + ": " + sentence);
   if (!warnings.empty())
     page.sections.push_back({"warnings", "Warnings", {page::Sentences{{}, std::move(warnings)}}, true});

@@ -20,7 +20,7 @@ records::TextTable make_limit_table(const records::StressRecord& record);
 std::vector<std::string> describe_out_of_sight(const records::StressRecord& record);
 
 /// The limits of an axis that compare so with theory: in words, with the reason or that there is none.
-std::vector<std::string> describe_limits(const records::StressAxis& axis, records::StressAgreement agreement);
+std::vector<std::string> describe_stress_limits(const records::StressAxis& axis, records::StressAgreement agreement);
 
 /// Writes the table of all limits, with what it leaves out, for a terminal.
 std::string make_limit_text(const records::StressRecord& record);

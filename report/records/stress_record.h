@@ -59,8 +59,8 @@ struct StressOnset {
 struct StressTheory {
   std::optional<double> onset;  ///< value of the axis; empty: theory says that there is none
   StressTheoryKind kind = StressTheoryKind::kOverflow;
-  std::string formula;                                ///< with its numbers: "ln(65504) / 1 = 11.09"
-  std::string source;                                 ///< author, year, title, equation; or "derived"
+  std::string formula;                              ///< with its numbers: "ln(65504) / 1 = 11.09"
+  std::string source;                               ///< author, year, title, equation; or "derived"
   StressVerdict predicts = StressVerdict::kBroken;  ///< the verdict that the case reaches at `onset`
 };
 

@@ -148,11 +148,11 @@ TEST(StressTables, LimitsThatNobodyExpectsToSee_AreCountedInstead) {
 TEST(StressPage, DisagreementsAreSaid_ExplainedOnesWithTheReason) {
   const records::StressRecord record = make_record();
   EXPECT_EQ(records::count_disagreements(record), 1);
-  ASSERT_THAT(describe_limits(record.axes[0], records::StressAgreement::kDisagrees), SizeIs(1));
-  EXPECT_THAT(describe_limits(record.axes[0], records::StressAgreement::kDisagrees)[0],
+  ASSERT_THAT(describe_stress_limits(record.axes[0], records::StressAgreement::kDisagrees), SizeIs(1));
+  EXPECT_THAT(describe_stress_limits(record.axes[0], records::StressAgreement::kDisagrees)[0],
               AllOf(HasSubstr("broken at 20, where theory says 11.09 (ln(65504))"), HasSubstr("nothing explains it")));
-  ASSERT_THAT(describe_limits(record.axes[0], records::StressAgreement::kExplained), SizeIs(1));
-  EXPECT_THAT(describe_limits(record.axes[0], records::StressAgreement::kExplained)[0],
+  ASSERT_THAT(describe_stress_limits(record.axes[0], records::StressAgreement::kExplained), SizeIs(1));
+  EXPECT_THAT(describe_stress_limits(record.axes[0], records::StressAgreement::kExplained)[0],
               AllOf(HasSubstr("degraded at 11, where theory says none"), HasSubstr("the blur adds")));
 }
 
