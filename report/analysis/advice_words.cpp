@@ -32,20 +32,11 @@ std::string compare_errors(const Candidate& first, const Candidate& second) {
                      records::format_number(*b), records::format_number(*a));
 }
 
-std::optional<double> total_time(const Candidate& candidate, LightMotion light) {
-  double sum = 0.0;
-  for (const records::CellRecord* cell : candidate.configuration.cells) {
-    const auto time = frame_time(*cell, light);
-    if (!time) return std::nullopt;
-    sum += time->median;
-  }
-  return sum;
-}
-
 // Follows the order that advise() gives to equal costs.
 std::string explain_order(const Candidate& first, const Candidate& second, LightMotion light) {
-  const auto time_a = total_time(first, light), time_b = total_time(second, light);
-  if (time_a && (!time_b || *time_a < *time_b)) return "its shorter time";
+  const auto time_a = measure_cost(first.configuration.cells, CostKind::kTime, light),
+             time_b = measure_cost(second.configuration.cells, CostKind::kTime, light);
+  if (time_a && (!time_b || time_a->mean < time_b->mean)) return "its shorter time";
   const auto rmse_a = worst_rmse(first), rmse_b = worst_rmse(second);
   return rmse_a && (!rmse_b || *rmse_a < *rmse_b) ? "its lower RMSE" : "standing first in the run";
 }
@@ -182,14 +173,13 @@ std::string format_cost(double value, const CostKind& cost, const records::GlRec
   return fmt::format("{} us estimated on {}", records::format_number(value), cost.gpu);
 }
 
-std::string format_limit(double value, double most) {
-  if (std::nearbyint(value) == value) return fmt::format("{:.0f}", value);
-  std::string text;
-  for (int digits = 3; digits <= 17; ++digits) {
+std::string format_within(double value, double low, double high) {
+  std::string text = records::format_number(value);
+  const auto fits = [&] { return std::stod(text) >= low && std::stod(text) <= high; };
+  for (int digits = 3; digits <= 17 && !fits(); ++digits) {
     const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) + 1.0 - digits);
     text = fmt::format("{:.{}g}", value, digits);
-    for (int steps = 1; std::stod(text) < value; ++steps) text = fmt::format("{:.{}g}", value + steps * unit, digits);
-    if (std::stod(text) <= most) return text;
+    if (!fits()) text = fmt::format("{:.{}g}", value + unit, digits);
   }
   return text;
 }

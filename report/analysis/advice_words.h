@@ -11,9 +11,16 @@ namespace shadowbench::analysis {
 /// Writes a cost for people, with its unit: "4.39 ms (CPU)", "1.09 × none", "4194304 bytes", "4 fetches".
 std::string format_cost(double value, const CostKind& cost, const records::GlRecord& gl);
 
-/// Writes a number that is no smaller than the value, with three significant digits or, where it would be beyond
-/// `most`, as many as keep it: as a limit it lets the value pass, and as a value it shows that it keeps one.
-std::string format_limit(double value, double most = std::numeric_limits<double>::infinity());
+/// Writes a number near to a value and between two ends, with as many digits, three or more, as that takes.
+std::string format_within(double value, double low, double high);
+
+/// Writes a limit that lets a value pass.
+inline std::string format_limit(double value) {
+  return format_within(value, value, std::numeric_limits<double>::infinity());
+}
+
+/// Writes a value so that it shows that it keeps a limit.
+inline std::string format_kept(double value, double most) { return format_within(value, 0.0, most); }
 
 /// Says behind a cost what it is paid for: " a frame, moving light"; empty where that is not time.
 std::string describe_frame(const AdviceRequest& request);

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <set>
 
-#include "report/analysis/growth.h"
-
 namespace shadowbench::analysis {
 namespace {
 
@@ -155,6 +153,23 @@ CurveComparison compare_pair(const CostChart& chart, std::size_t a, std::size_t 
   return result;
 }
 
+using Points = std::vector<std::pair<double, double>>;
+
+// Fits a line by least squares; returns its slope.
+double fit_slope(const Points& points) {
+  const double count = static_cast<double>(points.size());
+  double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+  for (const auto& [at, value] : points) {
+    x += at / count;
+    y += value / count;
+  }
+  for (const auto& [at, value] : points) {
+    xx += (at - x) * (at - x);
+    xy += (at - x) * (value - y);
+  }
+  return xy / xx;
+}
+
 // Fits the medians, and the flattest and the steepest line through the quartiles: least squares weigh a point by its
 // distance from the middle of the counts, as `scale` has them.
 template <class Fit>
@@ -239,6 +254,14 @@ std::vector<CurveComparison> compare_curves(const CostChart& chart) {
     }
   }
   return comparisons;
+}
+
+double fit_exponent(Points points) {
+  for (auto& [size, time] : points) {
+    size = std::log(size);
+    time = std::log(time);
+  }
+  return fit_slope(points);
 }
 
 LightGrowth find_light_growth(const CostCurve& curve, LightMotion light) {

@@ -105,6 +105,10 @@ std::optional<Estimate> cost_at(const CostCurve& curve, double at, LightMotion l
 /// of many taps, over lights all pairs.
 std::vector<CurveComparison> compare_curves(const CostChart& chart);
 
+/// Fits the exponent by least squares in the logarithms of (size, time). Requires two different sizes or more, all
+/// positive.
+double fit_exponent(std::vector<std::pair<double, double>> points);
+
 /// Requires two points or more, all times positive.
 LightGrowth find_light_growth(const CostCurve& curve, LightMotion light);
 
@@ -114,6 +118,11 @@ records::TextTable make_comparison_table(const std::vector<CostChart>& charts);
 
 /// Makes the table of charts over lights, two rows per curve, for casters that stand still and that move.
 records::TextTable make_light_table(const std::vector<CostChart>& charts);
+
+/// Makes the table of how times (medians) grow with the picture and with the map: a row for each filter, in it the
+/// exponents p of time ~ size^p, of each series of cells that differ in the size alone. No columns but the filter's
+/// where no cells do.
+records::TextTable make_growth_table(const std::vector<records::CellRecord>& cells);
 
 /// Says in a sentence how often, and from which width on, prefiltered maps beat many taps; empty without charts.
 std::string summarize_widths(const std::vector<CostChart>& charts);

@@ -74,7 +74,7 @@ Row describe_limit(const analysis::Demand& demand, const analysis::Verdict& verd
                    const analysis::Advice& advice) {
   if (!verdict.worst) return {analysis::describe_demand(demand), "claimed"};
   const bool is_time = demand.spec == &analysis::cost_spec(analysis::CostKind::kTime);
-  const std::string worst = analysis::format_limit(*verdict.worst, demand.most);
+  const std::string worst = analysis::format_kept(*verdict.worst, demand.most);
   return {analysis::describe_demand(demand), is_time ? fmt::format("{} {}", worst, records::time_unit(run.gl)) : worst,
           place_name(*verdict.where, advice), remark(demand, verdict, advice.request.light)};
 }

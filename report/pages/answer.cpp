@@ -24,7 +24,7 @@ std::string describe_margin(const analysis::Advice& advice, const analysis::Cand
   for (std::size_t i = 0; i < advice.request.demands.size(); ++i) {
     const analysis::Verdict& verdict = best.verdicts[i];
     text += fmt::format("; {} at worst, on {}, where {} is the limit",
-                        analysis::format_limit(*verdict.worst, advice.request.demands[i].most),
+                        analysis::format_kept(*verdict.worst, advice.request.demands[i].most),
                         analysis::describe_place(analysis::place_of(*verdict.where), advice.places),
                         records::format_number(advice.request.demands[i].most));
   }

@@ -49,26 +49,19 @@ json make_measure(std::string_view id, std::string_view title, std::string_view 
 
 /// The time of a frame, light moving and still; no limit is set on a ratio.
 json list_frame_measures(const records::RunRecord& run, const analysis::CostKind& frame) {
-  if (frame == analysis::CostKind::kRatio) {
-    constexpr const char* kUnder =
-        "over that of 'none' in the same rounds, on the same machine and map; a map of another size has another 'none'";
-    return {make_measure(kMoving, "ratio to 'none', moving light",
-                         fmt::format("time of map, prefilter and lookup {}", kUnder), analysis::kRatioUnit, "", "cost"),
-            make_measure(kStill, "ratio to 'none', still light", fmt::format("time of the lookup {}", kUnder),
-                         analysis::kRatioUnit, "", "cost")};
-  }
-  const std::string unit = records::time_unit(run.gl), clock = records::describe_clock(run.gl);
-  return {
-      make_measure(kMoving, "time, moving light",
-                   "map, prefilter and lookup less a lookup that reads nothing: what a frame pays in which light or "
-                   "casters move; " +
-                       clock,
-                   unit, "--max-ms", "cost"),
-      make_measure(kStill, "time, still light",
-                   "lookup less a lookup that reads nothing: what a frame pays while light and casters stand "
-                   "still; " +
-                       clock,
-                   unit, "--max-ms", "cost")};
+  const bool is_ratio = frame == analysis::CostKind::kRatio;
+  const std::string unit = is_ratio ? analysis::kRatioUnit : records::time_unit(run.gl);
+  const std::string clock = "; " + records::describe_clock(run.gl);
+  const auto make = [&](const char* id, const std::string& title, const std::string& passes, const char* frames) {
+    const std::string ratio = "time of " + passes +
+                              " over that of 'none' in the same rounds, on the same machine and map; a map of another "
+                              "size has another 'none'";
+    const std::string time = passes + " less a lookup that reads nothing: what a frame pays " + frames + clock;
+    return make_measure(id, (is_ratio ? "ratio to 'none', " : "time, ") + title, is_ratio ? ratio : time, unit,
+                        is_ratio ? "" : "--max-ms", "cost");
+  };
+  return {make(kMoving, "moving light", "map, prefilter and lookup", "in which light or casters move"),
+          make(kStill, "still light", is_ratio ? "the lookup" : "lookup", "while light and casters stand still")};
 }
 
 /// Everything that the table can show, and that limits can be set on.

@@ -101,9 +101,15 @@ class FrontChart {
     const std::string name(analysis::name_class(configuration.width_class));
     const std::string map = cost_.is_ratio ? fmt::format(", map {}", configuration.map_size) : std::string();
     ChartSeries line = start_line(fmt::format("front, {}{}", name, map), page::kInk, page::LineStyle::kSteps);
-    for (const std::size_t member : members)
-      line.points.push_back({front_.points[member].cost, front_.points[member].error, {}, {}, {}, name});
+    for (const std::size_t member : members) line.points.push_back(make_corner(member, configuration));
     return line;
+  }
+
+  /// A point of a line, of a configuration's class of width.
+  page::ChartPoint make_corner(std::size_t point, const Configuration& configuration) const {
+    page::ChartPoint made{front_.points[point].cost, front_.points[point].error};
+    made.group = analysis::name_class(configuration.width_class);
+    return made;
   }
 
   std::string describe_standing(std::size_t point) const {
@@ -119,8 +125,8 @@ class FrontChart {
   page::ChartPoint make_point(std::size_t point) const {
     const Configuration& configuration = configuration_of(point);
     const analysis::FrontPoint& values = front_.points[point];
-    page::ChartPoint made{values.cost, values.error, configuration.label};
-    made.group = analysis::name_class(configuration.width_class);
+    page::ChartPoint made = make_corner(point, configuration);
+    made.label = configuration.label;
     made.details = {configuration.label,
                     configuration.params.empty() ? "no parameters" : records::describe_params(configuration.params),
                     "kernel: " + records::describe_kernel(cells_[configuration.cells.front()].kernel),
@@ -149,13 +155,7 @@ class FrontChart {
                                                                       : tied;
       own.points.push_back(make_point(i));
       if (standing != analysis::Standing::kTied) continue;
-      for (const std::size_t end : {i, by})
-        ties.points.push_back({front_.points[end].cost,
-                               front_.points[end].error,
-                               {},
-                               {},
-                               {},
-                               std::string(analysis::name_class(configuration_of(i).width_class))});
+      for (const std::size_t end : {i, by}) ties.points.push_back(make_corner(end, configuration_of(i)));
     }
     if (members.points.empty() && tied.points.empty() && beaten.points.empty()) return;
     series.push_back(std::move(members));
@@ -170,13 +170,8 @@ class FrontChart {
     ChartSeries curve = start_line({}, style.color, page::LineStyle::kSolid);
     curve.faint = true;
     for (const std::size_t i : each.configurations) {
-      const Configuration& configuration = scope_.configurations[i];
-      curve.points.push_back({*configuration.costs[front_.cost].estimate,
-                              *configuration.errors[front_.error].estimate,
-                              {},
-                              {},
-                              {},
-                              std::string(analysis::name_class(configuration.width_class))});
+      const auto point = std::ranges::find(front_.configurations, i) - front_.configurations.begin();
+      curve.points.push_back(make_corner(static_cast<std::size_t>(point), scope_.configurations[i]));
     }
     return curve;
   }

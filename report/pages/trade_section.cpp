@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "filters/kernel_width.h"
-#include "report/analysis/growth.h"
 #include "report/analysis/machines/machine_kinds.h"
 #include "report/pages/fronts_csv.h"
 #include "report/pages/text_tables.h"

@@ -63,8 +63,8 @@ records::TextTable make_map_table(const std::vector<MapFamily>& families, const 
                   "RMSE",
                   "map and prefilter, " + unit,
                   "lookup, " + unit,
-                  "RMSE of layers of as many bytes, as a ratio to it",
-                  "their cost, as a ratio to its",
+                  "RMSE of layers of as many bytes over its own",
+                  "their cost over its own",
                   "cheaper for all views than a map for each",
                   "a kept map as accurate saves of its frame, " + unit,
                   "drift"};

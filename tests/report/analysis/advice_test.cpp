@@ -485,8 +485,8 @@ TEST(Advice, LimitsInWords_LetTheValuePass) {
     EXPECT_LE(std::stod(format_limit(value)), value * 1.01) << format_limit(value);
   }
   EXPECT_EQ(format_limit(0.0246282), "0.0247");
-  EXPECT_EQ(format_limit(0.0246282, 0.03), "0.0247");
-  EXPECT_EQ(format_limit(0.0299962, 0.0299999), "0.029997") << "a value shows that it keeps its limit";
+  EXPECT_EQ(format_kept(0.0246282, 0.03), "0.0246");
+  EXPECT_EQ(format_kept(0.0299962, 0.0299999), "0.029996");
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 
 #include "report/analysis/cost_curves.h"
-#include "report/analysis/growth.h"
 #include "trade_cells.h"
 
 namespace shadowbench::analysis {

@@ -7,7 +7,6 @@
 #include "filters/base/error.h"
 #include "report/analysis/advice_words.h"
 #include "report/analysis/cost_curves.h"
-#include "report/analysis/growth.h"
 #include "report/analysis/maps/map_family.h"
 #include "report/analysis/surprises.h"
 #include "report/analysis/trade.h"

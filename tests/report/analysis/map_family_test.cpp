@@ -127,8 +127,8 @@ std::map<std::string, std::string> read_column(const std::vector<MapFamily>& fam
   return texts;
 }
 
-constexpr const char* kErrorRatio = "RMSE of layers of as many bytes, as a ratio to it";
-constexpr const char* kCostRatio = "their cost, as a ratio to its";
+constexpr const char* kErrorRatio = "RMSE of layers of as many bytes over its own";
+constexpr const char* kCostRatio = "their cost over its own";
 constexpr const char* kSharing = "cheaper for all views than a map for each";
 constexpr const char* kCaching = "a kept map as accurate saves of its frame, ms (CPU)";
 
