@@ -20,7 +20,7 @@ constexpr double kMebibyte = 1024.0 * 1024.0;
 const char* name_light(LightMotion light) { return light == LightMotion::kStatic ? "still" : "moving"; }
 
 // Where a comparison has a sign: "2, 4".
-std::string list_places(const CurveComparison& comparison, LightMotion light, int sign) {
+std::string join_places(const CurveComparison& comparison, LightMotion light, int sign) {
   std::vector<std::string> places;
   for (std::size_t i = 0; i < comparison.at.size(); ++i)
     if (comparison.signs[light][i] == sign) places.push_back(records::format_number(comparison.at[i]));
@@ -159,7 +159,7 @@ records::TextTable make_comparison_table(const std::vector<CostChart>& charts) {
       std::vector<std::string>& row = table.rows.emplace_back(
           std::vector{chart.curves[each.a].label, chart.curves[each.b].label, chart.title, list_numbers(each.at)});
       for (const LightMotion light : kBothLights)
-        for (const int sign : {-1, 1}) row.push_back(list_places(each, light, sign));
+        for (const int sign : {-1, 1}) row.push_back(join_places(each, light, sign));
     }
   }
   return table;
