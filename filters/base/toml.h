@@ -16,11 +16,13 @@
 #include "filters/base/error.h"
 
 // The header of toml++ costs seconds wherever it is included.
-namespace toml::inline v3 {
+namespace toml {
+inline namespace v3 {
 class array;
 class node;
 class table;
-}  // namespace toml::inline v3
+}  // namespace v3
+}  // namespace toml
 
 namespace shadowbench {
 

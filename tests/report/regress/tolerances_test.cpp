@@ -69,8 +69,10 @@ TEST_F(ToleranceFile, BadFiles_AreRefusedWithTheirLine) {
   expect_refusal("[all.\"error.rmse\"]\nlimit = nan\nreason = \"r\"\n", 1, "limit of 0 or more");
   expect_refusal("[all.\"error.rmse\"]\nreason = \"r\"\n", 1, "limit of 0 or more");
   expect_refusal("[all.\"error.rms\"]\nlimit = 0\nreason = \"r\"\n", 1, "did you mean 'error.rmse'?");
-  expect_refusal("\n[other.\"error.rmse\"]\nlimit = 0\nreason = \"r\"\n", 2, "unknown key 'other' in the tolerances; known: all, filter");
-  expect_refusal("[all.\"error.rmse\"]\nlimit = 0\nreason = \"r\"\nwhy = 1\n", 4, "unknown key 'why' in [error.rmse]; known: limit, reason");
+  expect_refusal("\n[other.\"error.rmse\"]\nlimit = 0\nreason = \"r\"\n", 2,
+                 "unknown key 'other' in the tolerances; known: all, filter");
+  expect_refusal("[all.\"error.rmse\"]\nlimit = 0\nreason = \"r\"\nwhy = 1\n", 4,
+                 "unknown key 'why' in [error.rmse]; known: limit, reason");
   expect_refusal("all = 3\n", 1, "must be a table");
   expect_refusal("[all\n", 1, "");
 }
