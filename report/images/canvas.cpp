@@ -1,11 +1,9 @@
 #include "report/images/canvas.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <vector>
 
 namespace shadowbench::images {
 namespace {
@@ -31,15 +29,37 @@ Image magnify_image(const Image& image, Size size) {
   return result;
 }
 
-// A triangle filter has no negative lobes, so no bright seams beside a shadow's edge that no filter made.
+/// How much of each source pixel one of the result covers, from the first of them on.
+struct Cover {
+  int begin = 0;
+  std::vector<float> weights;  ///< their sum is 1
+};
+
+Cover cover_of(int at, int from, int to) {
+  const double step = static_cast<double>(from) / to, first = at * step, last = std::min<double>(from, first + step);
+  Cover cover{static_cast<int>(first), {}};
+  for (int i = cover.begin; i < last; ++i)
+    cover.weights.push_back(static_cast<float>((std::min(last, i + 1.0) - std::max(first, i + 0.0)) / (last - first)));
+  return cover;
+}
+
+// A mean over the area has no negative lobes, so no bright seams beside a shadow's edge that no filter made.
 Image reduce_image(const Image& image, Size size) {
   Image result(size.width, size.height, image.channels);
-  const OIIO::ImageSpec from(image.width, image.height, image.channels, OIIO::TypeDesc::FLOAT);
-  const OIIO::ImageSpec to(size.width, size.height, image.channels, OIIO::TypeDesc::FLOAT);
-  const OIIO::ImageBuf source(from, const_cast<float*>(image.texels.data()));
-  OIIO::ImageBuf target(to, result.texels.data());
-  [[maybe_unused]] const bool resized = OIIO::ImageBufAlgo::resize(target, source, "triangle", 0.0f, OIIO::get_roi(to));
-  assert(resized);
+  std::vector<Cover> columns;
+  for (int x = 0; x < size.width; ++x) columns.push_back(cover_of(x, image.width, size.width));
+  for (int y = 0; y < size.height; ++y) {
+    const Cover rows = cover_of(y, image.height, size.height);
+    for (std::size_t v = 0; v < rows.weights.size(); ++v) {
+      float* to = result.at(0, y);
+      for (const Cover& column : columns) {
+        const float* from = image.at(column.begin, rows.begin + static_cast<int>(v));
+        for (const float weight : column.weights)
+          for (int c = 0; c < image.channels; ++c) to[c] += rows.weights[v] * weight * *from++;
+        to += image.channels;
+      }
+    }
+  }
   return result;
 }
 
