@@ -9,7 +9,7 @@
 
 #include "report/page/chart_style.h"
 #include "report/pages/write_page.h"
-#include "report/records/csv.h"
+#include "report/records/csv_tables.h"
 
 namespace shadowbench::pages {
 namespace {
