@@ -16,7 +16,7 @@
 #include "harness/run/gpu_costs.h"
 #include "harness/scene/load.h"
 #include "report/records/format.h"
-#include "report/records/metric_list.h"
+#include "report/records/json_io.h"
 
 namespace shadowbench::cli {
 namespace {

@@ -14,7 +14,7 @@
 #include "report/images/heat_figures.h"
 #include "report/pages/flicker_page.h"
 #include "report/pages/write_page.h"
-#include "report/records/flicker_json.h"
+#include "report/records/flicker_record.h"
 
 namespace shadowbench::flicker {
 namespace {

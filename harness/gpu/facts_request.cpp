@@ -10,6 +10,7 @@
 #include "filters/base/content_hash.h"
 #include "filters/base/error.h"
 #include "harness/gpu/null_device.h"
+#include "report/records/json_values.h"
 
 namespace shadowbench::gpu {
 namespace {
@@ -18,18 +19,6 @@ using nlohmann::json;
 
 /// Changes whenever facts of the same shader are counted differently.
 constexpr int kFactsVersion = 1;
-
-json to_json(const records::ShaderFacts& facts) {
-  json written = json::object();
-  records::visit_facts(facts, [&](const char* name, int value) { written[name] = value; });
-  return written;
-}
-
-records::ShaderFacts from_json(const json& written) {
-  records::ShaderFacts facts;
-  records::visit_facts(facts, [&](const char* name, int& value) { value = written.at(name).get<int>(); });
-  return facts;
-}
 
 std::string dump(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace) + "\n"; }
 
@@ -45,15 +34,15 @@ std::optional<records::ShaderFacts> read_cached(const std::filesystem::path& fil
   std::ifstream stream(file);
   const json written = json::parse(stream, nullptr, false);
   try {
-    return from_json(written);
-  } catch (const json::exception&) {
+    return records::read_value<records::ShaderFacts>(written);
+  } catch (const std::exception&) {
     return std::nullopt;
   }
 }
 
 void write_cached(const std::filesystem::path& file, const records::ShaderFacts& facts) {
   try {
-    write_text_file(file, dump(to_json(facts)));
+    write_text_file(file, dump(records::value_json(facts)));
   } catch (const Error&) {
     // A full disk costs time in the next run, and nothing in this one.
   }
@@ -75,7 +64,8 @@ FactsRequest read_request(const std::filesystem::path& file) {
 }
 
 json to_json(const FactsAnswer& answer) {
-  return answer.refused.empty() ? json{{"facts", to_json(answer.facts)}} : json{{"refused", answer.refused}};
+  return answer.refused.empty() ? json{{"facts", records::value_json(answer.facts)}}
+                                : json{{"refused", answer.refused}};
 }
 
 FactsAnswer answer(NullDevice& device, const FactsRequest& request, const PassSource& pass) {
@@ -123,7 +113,7 @@ std::vector<FactsAnswer> read_answers(const std::filesystem::path& answers) {
     if (written.contains("refused"))
       read.push_back({{}, written.at("refused")});
     else
-      read.push_back({from_json(written.at("facts")), ""});
+      read.push_back({records::read_value<records::ShaderFacts>(written.at("facts")), ""});
   }
   return read;
 }

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "harness/measure/renderer.h"
-#include "report/records/provenance.h"
+#include "report/records/records.h"
 
 namespace shadowbench::run {
 

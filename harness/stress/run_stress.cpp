@@ -13,7 +13,7 @@
 #include "report/files/folder_lock.h"
 #include "report/pages/stress_page.h"
 #include "report/pages/write_page.h"
-#include "report/records/stress_json.h"
+#include "report/records/stress_record.h"
 
 namespace shadowbench::stress {
 namespace {

@@ -16,8 +16,8 @@
 #include "report/files/folder_lock.h"
 #include "report/pages/tune_page.h"
 #include "report/pages/write_page.h"
-#include "report/records/csv.h"
-#include "report/records/tuned_json.h"
+#include "report/records/csv_tables.h"
+#include "report/records/tuned_record.h"
 
 namespace shadowbench::tune {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "filters/base/error.h"
-#include "report/records/tuned_json.h"
+#include "report/records/tuned_record.h"
 
 namespace shadowbench::tune {
 namespace {

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "report/pages/write_page.h"
-#include "report/records/csv.h"
+#include "report/records/csv_tables.h"
 
 namespace shadowbench::pages {
 namespace {

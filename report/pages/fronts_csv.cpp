@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "report/analysis/cell_group.h"
-#include "report/records/csv.h"
+#include "report/records/csv_tables.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::pages {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "report/page/blocks.h"
-#include "report/records/provenance.h"
+#include "report/records/records.h"
 
 namespace shadowbench::pages {
 

@@ -24,17 +24,17 @@ json canonical(const json& value) {
 }  // namespace
 
 json cell_settings(const CellRecord& cell) {
-  return json{{"scene", cell.scene},
-              {"view", cell.view},
-              {"filter", cell.filter},
-              {"params", value_json(cell.params)},
-              {"map_size", cell.map_size},
-              {"map_format", cell.map_format},
-              {"bias", value_json(cell.bias)},
-              {"size", {cell.width, cell.height}},
-              {"fit", cell.fit},
-              {"light", cell.light},
-              {"range", {cell.range.border, cell.range.far_test, cell.range.behind_test}}};
+  return canonical({{"scene", cell.scene},
+                    {"view", cell.view},
+                    {"filter", cell.filter},
+                    {"params", value_json(cell.params)},
+                    {"map_size", cell.map_size},
+                    {"map_format", cell.map_format},
+                    {"bias", value_json(cell.bias)},
+                    {"size", {cell.width, cell.height}},
+                    {"fit", cell.fit},
+                    {"light", cell.light},
+                    {"range", {cell.range.border, cell.range.far_test, cell.range.behind_test}}});
 }
 
 std::string cell_key(const json& settings) {

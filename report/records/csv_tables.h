@@ -1,11 +1,17 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "report/records/records.h"
 
 namespace shadowbench::records {
+
+/// Quotes a text as one CSV field, where it needs quoting. A text that a spreadsheet would run as a formula gets an
+/// apostrophe in front; numbers stay as they are.
+/// Source: RFC 4180.
+std::string quote_csv(std::string_view text);
 
 /// A column of a CSV table.
 struct CsvColumn {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/records/provenance.h"
+#include "report/records/records.h"
 
 namespace shadowbench::records {
 
@@ -62,5 +62,11 @@ struct FlickerRecord : Provenance {
   float return_above = 0.0f;  ///< going back by more counts
   std::vector<FlickerMotion> motions;
 };
+
+/// Makes the text of a flicker.json: `gl` and `machine` as in results.json.
+std::string make_flicker_json(const FlickerRecord& record);
+
+/// Makes flicker.csv (RFC 4180): one row per motion, snapping and filter.
+std::string make_flicker_csv(const FlickerRecord& record);
 
 }  // namespace shadowbench::records

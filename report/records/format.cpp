@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "filters/kernel_width.h"
-#include "report/records/json_values.h"
 
 namespace shadowbench::records {
 namespace {
@@ -18,17 +17,6 @@ std::string format_param(const records::ParamValue& value) {
   if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:.6g}", *number);
   if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "on" : "off";
   return std::get<std::string>(value);
-}
-
-const char* name_of(records::CellStatus status) {
-  switch (status) {
-    case records::CellStatus::kOk: return "ok";
-    case records::CellStatus::kSuspect: return "suspect";
-    case records::CellStatus::kTimeout: return "timeout";
-    case records::CellStatus::kCrashed: return "crashed";
-    case records::CellStatus::kError: break;
-  }
-  return "error";
 }
 
 /// Writes a length in the units it was given in, then in all three where the map's scale is known.

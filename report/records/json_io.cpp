@@ -15,52 +15,15 @@
 #include "filters/base/input_file.h"
 #include "report/records/cell_key.h"
 #include "report/records/json_values.h"
-#include "report/records/record_fields.h"
 
 namespace shadowbench::records {
 namespace {
 
 using nlohmann::json;
 
-json::json_pointer make_pointer(std::string path) {
-  std::replace(path.begin(), path.end(), '.', '/');
-  return json::json_pointer("/" + path);
-}
-
-bool is_finite(double value) { return std::isfinite(value); }
-bool is_finite(std::int64_t) { return true; }
-bool is_finite(bool) { return true; }
-bool is_finite(const std::string&) { return true; }
-bool is_finite(const std::vector<std::string>&) { return true; }
-bool is_finite(const MachineKind&) { return true; }
-bool is_finite(const Quartiles& value) {
-  return std::isfinite(value.median) && std::isfinite(value.q1) && std::isfinite(value.q3);
-}
-bool is_finite(const OwnTime& value) {
-  return is_finite(static_cast<const Quartiles&>(value)) && std::isfinite(value.ci95.low) &&
-         std::isfinite(value.ci95.high);
-}
-bool is_finite(const Interval& value) { return std::isfinite(value.low) && std::isfinite(value.high); }
-bool is_finite(const Ratio& value) {
-  return std::isfinite(value.median) && std::isfinite(value.ci95.low) && std::isfinite(value.ci95.high);
-}
-
-bool is_finite(const std::vector<LightCountRecord>& value) {
-  return std::all_of(
-      value.begin(), value.end(),
-      [](const LightCountRecord& each) {
-        return is_finite(each.still_ms) && is_finite(each.moving_ms) && is_finite(each.still_ratio) &&
-               is_finite(each.moving_ratio);
-      });
-}
-
-bool is_finite(const GpuRecords& value) {
-  return std::ranges::all_of(
-      value,
-      [](const auto& each) {
-        const auto& estimate = each.second.estimate;
-        return !estimate || (std::isfinite(estimate->total_us) && std::isfinite(estimate->memory_us.value_or(0.0)));
-      });
+bool is_finite(const json& value) {
+  if (value.is_structured()) return std::ranges::all_of(value, is_finite);
+  return !value.is_number_float() || std::isfinite(value.get<double>());
 }
 
 // Writes each visited field into one JSON object and notes the nulls.
@@ -69,64 +32,57 @@ struct FieldWriter {
   std::map<std::string, std::string>& not_finite;
   std::vector<std::string>& nulls;
 
+  void operator()(const std::string&, const Group&, const About& = {}) const {}
+
   template <class T>
-  void operator()(const std::string& path, const T& value) {
+  void operator()(const std::string& path, const T& value, const About& = {}) const {
     root[make_pointer(path)] = value_json(value);
   }
 
   template <class T>
-  void operator()(const std::string& path, const std::optional<T>& value) {
-    if (value && is_finite(*value)) {
-      (*this)(path, *value);
-      return;
-    }
-    root[make_pointer(path)] = nullptr;
+  void operator()(const std::string& path, const std::optional<T>& value, const About& = {}) const {
+    json& written = root[make_pointer(path)] = value_json(value);
+    if (value && is_finite(written)) return;
+    written = nullptr;
     nulls.push_back(path);
     if (value) not_finite[path] = "the value was not finite";
   }
 };
+
+// Whether a path that a report names stays in its folder: reports come from elsewhere, and `merge` copies what they
+// name.
+bool stays_inside(const std::string& path) {
+  const std::filesystem::path relative = std::filesystem::path(path).lexically_normal();
+  return !path.empty() && relative.is_relative() && *relative.begin() != ".." && path.find('\0') == std::string::npos;
+}
 
 // Reads each visited field from one JSON object.
 struct FieldReader {
   const json& root;
   const std::string& where;
 
-  template <class T>
-  void operator()(const std::string& path, T& value) {
-    if (!lacks_later_field(path)) value = read<T>(path, root);
-  }
+  void operator()(const std::string&, const Group&, const About& = {}) const {}
 
   template <class T>
-  void operator()(const std::string& path, std::optional<T>& value) {
-    const bool is_null = lacks_later_field(path) || at(path).is_null();
-    value = is_null ? std::nullopt : std::optional<T>(read<T>(path, root));
-  }
-
-  bool lacks_later_field(const std::string& path) const {
-    return std::ranges::count(kLaterFields, path) > 0 && root.is_object() && !root.contains(make_pointer(path));
-  }
-
-  const json& at(const std::string& path) const {
+  void operator()(const std::string& path, T& value, const About& about = {}) const {
     const auto pointer = make_pointer(path);
-    if (!root.is_object() || !root.contains(pointer)) {
-      throw Error(ErrorKind::kInput, fmt::format("the field '{}' is missing; delete this file and run again", path),
-                  where);
+    const bool is_there = root.is_object() && root.contains(pointer);
+    if (!is_there && about.later && root.is_object()) return;
+    if (!is_there) fail(fmt::format("the field '{}' is missing", path));
+    const json& written = root.at(pointer);
+    try {
+      value = read_value<T>(written);
+    } catch (const std::exception& problem) {
+      fail(fmt::format("the field '{}' holds {}, which is not what belongs there ({})", path,
+                       dump_line(written).substr(0, 60), problem.what()));
     }
-    return root.at(pointer);
+    if (about.is_path && written.is_string() && !stays_inside(written.get<std::string>()))
+      fail(fmt::format("the field '{}' holds {}, which is outside the report's folder", path,
+                       dump_line(written).substr(0, 60)));
   }
 
-  template <class T>
-  T read(const std::string& path, const json&) const {
-    const json& value = at(path);
-    try {
-      return read_value<T>(value);
-    } catch (const std::exception& problem) {
-      throw Error(ErrorKind::kInput,
-                  fmt::format("the field '{}' holds {}, which is not what belongs there ({}); delete this file and run "
-                              "again",
-                              path, dump_line(value).substr(0, 60), problem.what()),
-                  where);
-    }
+  [[noreturn]] void fail(const std::string& fault) const {
+    throw Error(ErrorKind::kInput, fault + "; delete this file and run again", where);
   }
 };
 
@@ -163,6 +119,15 @@ std::map<std::string, std::string> explain_nulls(const json& root, std::map<std:
     absent[has_value(root.at(group)) ? path : group] = kNotMeasured;
   }
   return absent;
+}
+
+/// Writes a record, with the reasons of what it lacks.
+json write_record(const auto& record, std::map<std::string, std::string> absent) {
+  json root = json::object();
+  std::vector<std::string> nulls;
+  visit_fields(record, FieldWriter{root, absent, nulls});
+  root["absent"] = explain_nulls(root, absent, nulls);
+  return root;
 }
 
 json parse_file(const std::filesystem::path& file, const json::parser_callback_t& keep = {}) {
@@ -219,83 +184,45 @@ class CellTaker {
   std::exception_ptr problem_;
 };
 
-// Whether a path that a report names stays in its folder: reports come from elsewhere, and `merge` copies what they
-// name.
-bool stays_inside(const std::string& path) {
-  const std::filesystem::path relative = std::filesystem::path(path).lexically_normal();
-  return !path.empty() && relative.is_relative() && *relative.begin() != ".." && path.find('\0') == std::string::npos;
-}
-
-struct ImageCheck {
-  const std::string& where;
-
-  void operator()(const std::string& path, const std::optional<std::string>& value) const {
-    if (!path.starts_with("images.") || !value || stays_inside(*value)) return;
-    throw Error(
-        ErrorKind::kInput,
-        fmt::format("the field '{}' holds {}, which is outside the report's folder; delete this file and run again",
-                    path, dump_line(*value).substr(0, 60)),
-        where);
-  }
-  template <class T>
-  void operator()(const std::string&, const T&) const {}
-};
-
-void check_cell(const CellRecord& cell, const std::string& where) {
-  if (!is_cell_key(cell.key)) {
-    throw Error(
-        ErrorKind::kInput,
-        fmt::format(
-            "the field 'key' holds {}, which is no key of 16 hexadecimal digits; delete this file and run again",
-            dump_line(cell.key).substr(0, 60)),
-        where);
-  }
-  visit_cell_fields(cell, ImageCheck{where});
-}
-
-void check_shard(const ExperimentRecord& experiment, const std::string& where) {
-  if (experiment.cells >= 0 && experiment.shard >= 1 && experiment.shard <= experiment.shards) return;
-  throw Error(
-      ErrorKind::kInput,
-      fmt::format(
-          "the field 'experiment' says shard {} of {}, with {} cells, which cannot be; delete this file and run again",
-          experiment.shard, experiment.shards, experiment.cells),
-      where);
-}
-
 }  // namespace
 
-json to_json(const CellRecord& cell) {
-  json root = json::object();
-  std::map<std::string, std::string> absent = cell.absent;
-  std::vector<std::string> nulls;
-  visit_cell_fields(cell, FieldWriter{root, absent, nulls});
-  root["absent"] = explain_nulls(root, absent, nulls);
+json to_json(const CellRecord& cell) { return write_record(cell, cell.absent); }
+
+json to_json(const RunRecord& run) {
+  json root = write_record(run, {});
+  root["schema_version"] = kSchemaVersion;
   return root;
 }
 
-json to_json(const RunRecord& run) {
-  json root = json::object();
-  std::map<std::string, std::string> absent;
-  std::vector<std::string> nulls;
-  visit_run_fields(run, FieldWriter{root, absent, nulls});
-  root["schema_version"] = kSchemaVersion;
-  root["absent"] = explain_nulls(root, absent, nulls);
-  return root;
+json to_json(const Provenance& provenance, int schema_version) {
+  RunRecord run;
+  run.gl = provenance.gl;
+  run.machine = provenance.machine;
+  const json head = to_json(run);
+  return {{"schema_version", schema_version}, {"commit", provenance.commit}, {"gl", head.at("gl")},
+          {"machine", head.at("machine")},    {"seed", provenance.seed},     {"command", provenance.command},
+          {"seconds", provenance.seconds}};
 }
 
 CellRecord cell_from_json(const json& json, const std::string& where) {
   CellRecord cell;
-  visit_cell_fields(cell, FieldReader{json, where});
-  check_cell(cell, where);
+  const FieldReader reader{json, where};
+  visit_fields(cell, reader);
+  if (!is_cell_key(cell.key))
+    reader.fail(fmt::format("the field 'key' holds {}, which is no key of 16 hexadecimal digits",
+                            dump_line(cell.key).substr(0, 60)));
   return cell;
 }
 
 RunRecord run_from_json(const json& json, const std::string& where) {
   check_version(json, where);
   RunRecord run;
-  visit_run_fields(run, FieldReader{json, where});
-  check_shard(run.experiment, where);
+  const FieldReader reader{json, where};
+  visit_fields(run, reader);
+  const ExperimentRecord& all = run.experiment;
+  if (all.cells < 0 || all.shard < 1 || all.shard > all.shards)
+    reader.fail(fmt::format("the field 'experiment' says shard {} of {}, with {} cells, which cannot be", all.shard,
+                            all.shards, all.cells));
   return run;
 }
 
@@ -306,7 +233,7 @@ std::filesystem::path cell_path(const std::filesystem::path& dir, const std::str
 
 void write_cell(const std::filesystem::path& dir, const CellRecord& cell) {
   const json file{{"schema_version", kSchemaVersion}, {"cell", to_json(cell)}};
-  write_text_file(cell_path(dir, cell.key), file.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+  write_text_file(cell_path(dir, cell.key), dump_file(file));
 }
 
 CellRecord read_cell(const std::filesystem::path& dir, const std::string& key) {
@@ -319,8 +246,8 @@ CellRecord read_cell(const std::filesystem::path& dir, const std::string& key) {
 void write_results(const std::filesystem::path& dir, const RunRecord& run, const std::vector<CellRecord>& cells) {
   write_text_file(dir / "results.schema.json", results_schema());
   AtomicFile file(dir / "results.json");
-  std::string head = to_json(run).dump(1, ' ', false, json::error_handler_t::replace);
-  head.resize(head.rfind('\n'));  // the closing brace comes after the cells
+  std::string head = dump_file(to_json(run));
+  head.resize(head.rfind("\n}"));  // the closing brace comes after the cells
   file.write(head + ",\n \"cells\": [");
   std::string_view separator = "\n";
   for (const CellRecord& cell : cells) {

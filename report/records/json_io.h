@@ -15,6 +15,9 @@ nlohmann::json to_json(const CellRecord& cell);
 /// Writes a run's head as JSON, without its cells.
 nlohmann::json to_json(const RunRecord& run);
 
+/// Writes the fields that stress.json and flicker.json begin with.
+nlohmann::json to_json(const Provenance& provenance, int schema_version);
+
 /// Reads a cell; `where` names its file in messages. Throws Error(kInput) where a field is missing or holds another
 /// type, the key is none, or a picture's path leaves the report's folder.
 CellRecord cell_from_json(const nlohmann::json& json, const std::string& where);
@@ -51,5 +54,11 @@ Results read_results(const std::filesystem::path& file);
 /// The JSON Schema (draft 2020-12) of results.json, with every metric of the table; cell files follow its
 /// `$defs/cell_file`.
 std::string results_schema();
+
+/// Lists the metrics of the table for people: path, unit, range, direction and definition of each.
+std::string make_metric_text();
+
+/// Lists them as a JSON array.
+std::string make_metric_json();
 
 }  // namespace shadowbench::records

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <vector>
 
-#include "report/records/records.h"
+#include "report/records/record_fields.h"
 
 namespace shadowbench::records {
 
@@ -14,53 +18,146 @@ namespace shadowbench::records {
 /// `keep` is told of every value once it is read, and says whether it stays; see nlohmann::json::parser_callback_t.
 nlohmann::json parse_json(std::istream& stream, const nlohmann::json::parser_callback_t& keep = {});
 
-/// Writes a number: integral values as integers, so that 4 and 4.0 are one text. Requires a finite value.
+/// Writes a number: integral values as integers, so that 4 and 4.0 are one text.
 nlohmann::json number_json(double value);
 
 /// Writes JSON on one line; bytes that are not UTF-8 become U+FFFD.
 std::string dump_line(const nlohmann::json& value);
 
-/// Writes an array of records, each as `write` has it.
+/// Writes JSON as the text of a file, indented; likewise.
+std::string dump_file(const nlohmann::json& value);
+
+/// The place in an object that a dotted path names.
+nlohmann::json::json_pointer make_pointer(std::string path);
+
+template <class T, template <class...> class Of>
+inline constexpr bool kIsA = false;
+template <class... Parts, template <class...> class Of>
+inline constexpr bool kIsA<Of<Parts...>, Of> = true;
+
+/// Whether a value is a text or several.
 template <class T>
-nlohmann::json list_json(const std::vector<T>& records, nlohmann::json (*write)(const std::type_identity_t<T>&)) {
-  nlohmann::json result = nlohmann::json::array();
-  for (const T& record : records) result.push_back(write(record));
+inline constexpr bool kIsText = std::is_same_v<T, std::string> || std::is_same_v<T, std::vector<std::string>> ||
+                                std::is_same_v<T, std::map<std::string, std::string>>;
+
+/// Writes a value as JSON. Numbers within records and lists are written as they are, and alone as number_json() does.
+template <class T>
+nlohmann::json value_json(const T& value);
+
+template <class T>
+nlohmann::json member_json(const T& value) {
+  if constexpr (std::is_same_v<T, double>) return value;
+  if constexpr (std::is_same_v<T, std::optional<double>>) return value ? nlohmann::json(*value) : nlohmann::json();
+  return value_json(value);
+}
+
+/// Writes the fields of a record into an object.
+struct MemberWriter {
+  nlohmann::json& root;
+
+  void operator()(const std::string&, const Group&, const About& = {}) const {}
+  template <class T>
+  void operator()(const std::string& path, const T& value, const About& = {}) const {
+    root[make_pointer(path)] = member_json(value);
+  }
+};
+
+template <class T>
+nlohmann::json value_json(const T& value) {
+  using nlohmann::json;
+  json result;
+  if constexpr (std::is_same_v<T, double>) {
+    result = number_json(value);
+  } else if constexpr (std::is_enum_v<T>) {
+    result = name_of(value);
+  } else if constexpr (std::is_arithmetic_v<T> || kIsText<T> || std::is_same_v<T, json>) {
+    result = value;
+  } else if constexpr (kIsA<T, std::optional>) {
+    if (value) result = value_json(*value);
+  } else if constexpr (kIsA<T, std::variant>) {
+    std::visit([&](const auto& held) { result = value_json(held); }, value);
+  } else if constexpr (kIsA<T, std::map>) {
+    result = json::object();
+    for (const auto& [name, each] : value) result[name] = value_json(each);
+  } else if constexpr (kIsA<T, std::vector>) {
+    result = json::array();
+    for (const auto& each : value) result.push_back(member_json(each));
+  } else if constexpr (std::is_same_v<T, Interval>) {
+    result = {value.low, value.high};
+  } else {
+    result = json::object();
+    visit_fields(value, MemberWriter{result});
+  }
   return result;
 }
 
-/// Writes one value of a record as JSON.
-nlohmann::json value_json(const std::string& value);
-nlohmann::json value_json(int value);
-nlohmann::json value_json(std::int64_t value);
-nlohmann::json value_json(std::uint64_t value);
-nlohmann::json value_json(bool value);
-nlohmann::json value_json(double value);
-nlohmann::json value_json(CellStatus value);
-nlohmann::json value_json(TimerKind value);
-nlohmann::json value_json(const MachineKind& value);
-nlohmann::json value_json(const Quartiles& value);
-nlohmann::json value_json(const Interval& value);
-nlohmann::json value_json(const OwnTime& value);
-nlohmann::json value_json(const Ratio& value);
-nlohmann::json value_json(const std::vector<LightCountRecord>& value);
-nlohmann::json value_json(const GpuRecords& value);
-nlohmann::json value_json(const ParamMap& value);
-nlohmann::json value_json(const BiasRecord& value);
-nlohmann::json value_json(const std::map<std::string, std::string>& value);
-nlohmann::json value_json(const std::vector<std::string>& value);
-nlohmann::json value_json(const std::vector<SceneRecord>& value);
+inline void require(bool holds, const std::string& expected) {
+  if (!holds) throw std::invalid_argument(expected);
+}
 
-/// Reads one value of a record from JSON, strictly: no number becomes a text, no fraction an integer.
+/// Reads a value from JSON, strictly: no number becomes a text, no fraction an integer.
 /// Throws nlohmann::json::exception or std::invalid_argument where the JSON holds something else.
 template <class T>
 T read_value(const nlohmann::json& json);
 
-/// An array of records, each as `write` makes it.
+/// Reads the fields of a record from an object.
+struct MemberReader {
+  const nlohmann::json& root;
+
+  void operator()(const std::string&, const Group&, const About& = {}) const {}
+  template <class T>
+  void operator()(const std::string& path, T& value, const About& = {}) const {
+    const std::size_t dot = path.find('.');
+    if (dot == path.npos)
+      value = read_value<T>(root.at(path));
+    else
+      MemberReader{root.at(path.substr(0, dot))}(path.substr(dot + 1), value);
+  }
+};
+
+template <class Enum>
+Enum read_enum(const nlohmann::json& json) {
+  const auto found = std::find(std::begin(kNames<Enum>), std::end(kNames<Enum>), json);
+  const std::vector<std::string> names(std::begin(kNames<Enum>), std::end(kNames<Enum>));
+  require(found != std::end(kNames<Enum>),
+          fmt::format("{} or {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back()));
+  return static_cast<Enum>(found - std::begin(kNames<Enum>));
+}
+
 template <class T>
-nlohmann::json list_json(const std::vector<T>& items, nlohmann::json (*write)(const T&)) {
-  nlohmann::json result = nlohmann::json::array();
-  for (const T& item : items) result.push_back(write(item));
-  return result;
+T read_value(const nlohmann::json& json) {
+  T value{};
+  if constexpr (std::is_enum_v<T>) {
+    value = read_enum<T>(json);
+  } else if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
+    if constexpr (std::is_floating_point_v<T>) require(json.is_number(), "a number");
+    if constexpr (std::is_signed_v<T> && std::is_integral_v<T>) require(json.is_number_integer(), "an integer");
+    if constexpr (std::is_unsigned_v<T>) require(json.is_number_unsigned(), "an integer that is not negative");
+    value = json.get<T>();
+  } else if constexpr (kIsA<T, std::optional>) {
+    if (!json.is_null()) value = read_value<typename T::value_type>(json);
+  } else if constexpr (std::is_same_v<T, ParamValue>) {
+    if (json.is_boolean())
+      value = json.get<bool>();
+    else if (json.is_string())
+      value = json.get<std::string>();
+    else
+      value = read_value<double>(json);
+  } else if constexpr (std::is_same_v<T, bool> || kIsText<T>) {
+    value = json.get<T>();
+  } else if constexpr (kIsA<T, std::map>) {
+    require(json.is_object(), "an object");
+    for (const auto& [name, each] : json.items()) value[name] = read_value<typename T::mapped_type>(each);
+  } else if constexpr (kIsA<T, std::vector>) {
+    require(json.is_array(), "an array");
+    for (const auto& each : json) value.push_back(read_value<typename T::value_type>(each));
+  } else if constexpr (std::is_same_v<T, Interval>) {
+    require(json.is_array() && json.size() == 2, "two numbers");
+    value = {read_value<double>(json[0]), read_value<double>(json[1])};
+  } else {
+    visit_fields(value, MemberReader{json});
+  }
+  return value;
 }
 
 }  // namespace shadowbench::records

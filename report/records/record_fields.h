@@ -1,153 +1,369 @@
 #pragma once
 
-#include <array>
-#include <string_view>
-
 #include "reference/metrics/metric_table.h"
+#include "report/records/description.h"
 #include "report/records/records.h"
 
 namespace shadowbench::records {
 
-/// Names the fields that older files of this schema version lack; they are read as null or empty there.
-inline constexpr std::string_view kLaterFields[] = {"time_ms.empty",
-                                                    "error.rmse_ci95",
-                                                    "phases",
-                                                    "time_ms.filter",
-                                                    "time_ms.moving",
-                                                    "images.parts",
-                                                    "images.values",
-                                                    "images.truth_picture",
-                                                    "images.truth_values",
-                                                    "work.attribution_s",
-                                                    "claims",
-                                                    "lights",
-                                                    "repeat.cells",
-                                                    "repeat.overlapping",
-                                                    "repeat.of",
-                                                    "suspect_of",
-                                                    "kernel.sigma_texels",
-                                                    "kernel.class",
-                                                    "teaching",
-                                                    "gpu",
-                                                    "machine",
-                                                    "measured_s"};
+inline constexpr About kPositive{.least = 0};
 
-/// Calls `visit(name, value)` for every field of a bias.
-template <class Bias, class Visitor>
-void visit_bias_fields(Bias& bias, Visitor&& visit) {
-  visit("constant_depth", bias.constant.depth);
-  visit("constant_texels", bias.constant.texels);
-  visit("constant_world", bias.constant.world);
-  visit("slope_depth", bias.slope.depth);
-  visit("slope_texels", bias.slope.texels);
-  visit("slope_world", bias.slope.world);
-  visit("plane_texels", bias.plane_texels);
-  visit("plane_kernels", bias.plane_kernels);
-  visit("normal_offset_texels", bias.normal_offset.texels);
-  visit("normal_offset_world", bias.normal_offset.world);
-  visit("receiver_plane", bias.receiver_plane);
-  visit("polygon_factor", bias.polygon_factor);
-  visit("polygon_units", bias.polygon_units);
-  visit("front_cull", bias.front_cull);
-  visit("midpoint", bias.midpoint);
+void visit_fields(Is<Quartiles> auto& spread, auto&& visit) {
+  visit("median", spread.median, kPositive);
+  visit("q1", spread.q1, kPositive);
+  visit("q3", spread.q3, kPositive);
+  visit("n", spread.n, {.least = 1});
 }
 
-/// Calls `visit(path, value)` for every field of a cell, its metrics included: the one list that writing, reading and
-/// `absent` follow.
-/// A dot in the path is a group; optional values may be null in the JSON.
-template <class Cell, class Visitor>
-void visit_cell_fields(Cell& cell, Visitor&& visit) {
-  visit("key", cell.key);
-  visit("content", cell.content);
-  visit("machine", cell.machine);
-  visit("measured_s", cell.measured_s);
-  visit("status", cell.status);
-  visit("message", cell.message);
-  visit("suspect_of", cell.suspect_of);
-  visit("scene", cell.scene);
-  visit("view", cell.view);
-  visit("filter", cell.filter);
-  visit("params", cell.params);
-  visit("kernel_radius_texels", cell.kernel_radius_texels);
-  visit("kernel.sigma_texels", cell.kernel.sigma_texels);
-  visit("kernel.class", cell.kernel.width_class);
-  visit("teaching", cell.teaching);
-  visit("claims", cell.claims);
-  visit("map_size", cell.map_size);
-  visit("map_format", cell.map_format);
-  visit("fit", cell.fit);
-  visit("light", cell.light);
-  visit("bias", cell.bias);
-  visit("range.border", cell.range.border);
-  visit("range.far_test", cell.range.far_test);
-  visit("range.behind_test", cell.range.behind_test);
-  visit("size.width", cell.width);
-  visit("size.height", cell.height);
-  visit("excused", cell.excused);
-  visit("phases", cell.phases);
-  visit("error.rmse_ci95", cell.rmse_ci95);
-  visit("time_ms.map", cell.time_ms.map);
-  visit("time_ms.prefilter", cell.time_ms.prefilter);
-  visit("time_ms.lookup", cell.time_ms.lookup);
-  visit("time_ms.empty", cell.time_ms.empty);
-  visit("time_ms.filter", cell.time_ms.filter);
-  visit("time_ms.moving", cell.time_ms.moving);
-  visit("time_ms.stopped", cell.time_ms.stopped);
-  visit("ratio_to_none.lookup", cell.ratio_to_none.lookup);
-  visit("ratio_to_none.static", cell.ratio_to_none.static_map);
-  visit("ratio_to_none.moving", cell.ratio_to_none.moving);
-  visit("lights", cell.lights);
-  visit("gpu", cell.gpu);
-  visit("images.picture", cell.images.picture);
-  visit("images.visibility", cell.images.visibility);
-  visit("images.depth_map", cell.images.depth_map);
-  visit("images.grid", cell.images.grid);
-  visit("images.exr", cell.images.exr);
-  visit("images.parts", cell.images.parts);
-  visit("images.texel_density", cell.images.texel_density);
-  visit("images.texel_grid", cell.images.texel_grid);
-  visit("images.all_lights", cell.images.all_lights);
-  visit("images.stability", cell.images.stability);
-  visit("images.values", cell.images.values);
-  visit("images.truth_picture", cell.images.truth_picture);
-  visit("images.truth_values", cell.images.truth_values);
-  visit("warnings", cell.warnings);
-  visit("absent", cell.absent);
-  for (const metrics::Metric& metric : metrics::metric_table()) metrics::visit_metric(metric, cell, visit);
+void visit_fields(Is<OwnTime> auto& time, auto&& visit) {
+  visit("median", time.median);
+  visit("q1", time.q1);
+  visit("q3", time.q3);
+  visit("n", time.n, {.least = 1});
+  visit("ci95", time.ci95);
 }
 
-/// Calls `visit(path, value)` for every field of a run.
-template <class Run, class Visitor>
-void visit_run_fields(Run& run, Visitor&& visit) {
+void visit_fields(Is<Ratio> auto& ratio, auto&& visit) {
+  visit("median", ratio.median, kPositive);
+  visit("ci95", ratio.ci95);
+}
+
+void visit_fields(Is<MachineKind> auto& kind, auto&& visit) {
+  visit("cpu", kind.cpu);
+  visit("cores", kind.cores);
+  visit("renderer", kind.renderer, {.text = "GL_RENDERER"});
+  visit("software", kind.software, {.text = "a rasteriser on the CPU"});
+  visit("timer", kind.timer);
+}
+
+void visit_fields(Is<LightCountRecord> auto& lights, auto&& visit) {
+  visit("count", lights.count, {.least = 1, .most = 16});
+  visit("still_ms", lights.still_ms);
+  visit("moving_ms", lights.moving_ms);
+  visit("ratio_to_none", kGroup, {.text = "per-round ratios, under as many lights"});
+  visit("ratio_to_none.still", lights.still_ratio);
+  visit("ratio_to_none.moving", lights.moving_ratio);
+  visit("maps_bytes", lights.maps_bytes, {.text = "of the maps that the lookups read"});
+}
+
+void visit_fields(Is<ShaderFacts> auto& facts, auto&& visit) {
+  visit("instructions", facts.instructions);
+  visit("code_bytes", facts.code_bytes);
+  visit("vector_registers", facts.vector_registers);
+  visit("scalar_registers", facts.scalar_registers);
+  visit("spilled_registers", facts.spilled_registers);
+  visit("scratch_bytes", facts.scratch_bytes);
+  visit("waves_per_simd", facts.waves_per_simd);
+  visit("latency_cycles", facts.latency_cycles);
+  visit("busy_cycles", facts.busy_cycles);
+  visit("samples", facts.samples);
+  visit("compares", facts.compares);
+  visit("gathers", facts.gathers);
+  visit("loads", facts.loads);
+  visit("loops", facts.loops);
+}
+
+void visit_fields(Is<GpuPassRecord> auto& pass, auto&& visit) {
+  visit("pass", pass.pass, {.filled = true});
+  visit("draws", pass.draws, {.text = "for one map", .least = 1});
+  visit_fields(pass.facts, visit);
+}
+
+/// Visits the parts of an estimate alone: the rest stands beside them, in the record of the GPU.
+void visit_fields(Is<GpuEstimateRecord> auto& parts, auto&& visit) {
+  visit("lookup", parts.lookup_us, kPositive);
+  visit("prefilter", parts.prefilter_us, kPositive);
+  visit("arithmetic", parts.arithmetic_us, kPositive);
+  visit("sampling", parts.sampling_us, kPositive);
+  visit("memory", parts.memory_us, kPositive);
+}
+
+void visit_fields(Is<GpuRecord> auto& gpu, auto&& visit) {
+  const auto& estimate = gpu.estimate;
+  std::optional<double> total_us = estimate ? std::optional(estimate->total_us) : std::nullopt;
+  std::optional<std::string> bound_by = estimate ? std::optional(estimate->bound_by) : std::nullopt;
+  std::optional<std::string> refused = null_if_empty(gpu.refused);
+  visit("facts", gpu.facts);
+  visit("estimate_us", total_us, {.text = "prefilter of one map, and the lookups of a million receivers", .least = 0});
+  visit("parts_us", gpu.estimate,
+        {.text = "lookup is the largest of arithmetic, sampling and memory; memory is null where the filter's reads "
+                 "are not known"});
+  visit("bound_by", bound_by, {.one_of = "arithmetic,sampling,memory"});
+  visit("refused", refused);
+  if constexpr (!std::is_const_v<std::remove_reference_t<decltype(gpu)>>) {
+    gpu.refused = refused.value_or("");
+    if (!gpu.estimate) return;
+    gpu.estimate->total_us = total_us.value_or(0.0);
+    gpu.estimate->bound_by = bound_by.value_or("");
+  }
+}
+
+void visit_fields(Is<BiasRecord> auto& bias, auto&& visit) {
+  visit("constant_depth", bias.constant.depth, {.column = "constant bias, depth in [0,1]"});
+  visit("constant_texels", bias.constant.texels, {.column = "constant bias, texels; adds to the one before"});
+  visit("constant_world", bias.constant.world, {.column = "constant bias, metres; adds to the two before"});
+  visit("slope_depth", bias.slope.depth, {.column = "bias times 1 - n.l, depth in [0,1]"});
+  visit("slope_texels", bias.slope.texels, {.column = "bias times 1 - n.l, texels"});
+  visit("slope_world", bias.slope.world, {.column = "bias times 1 - n.l, metres"});
+  visit("plane_texels", bias.plane_texels, {.column = "bias by the slope of the receiver's plane, texels"});
+  visit("plane_kernels", bias.plane_kernels,
+        {.column = "the same, in reaches of the filter: to the centre of the farthest texel that it compares"});
+  visit("normal_offset_texels", bias.normal_offset.texels, {.column = "normal offset, texels"});
+  visit("normal_offset_world", bias.normal_offset.world, {.column = "normal offset, metres"});
+  visit("receiver_plane", bias.receiver_plane, {.column = "1: the receiver plane's gradient is added for every tap"});
+  visit("polygon_factor", bias.polygon_factor, {.column = "glPolygonOffset in the depth pass, factor"});
+  visit("polygon_units", bias.polygon_units, {.column = "glPolygonOffset in the depth pass, units"});
+  visit("front_cull", bias.front_cull, {.column = "1: front faces are left out of the depth map"});
+  visit("midpoint", bias.midpoint, {.column = "1: the depth map lies half-way between first and second surface"});
+}
+
+void visit_fields(Is<RangeRecord> auto& range, auto&& visit) {
+  visit("border", range.border,
+        {.text = "what is read outside the map",
+         .one_of = "border,edge,repeat",
+         .column = "what lookups read outside the map"});
+  visit("far_test", range.far_test,
+        {.text = "beyond the far plane is lit", .column = "on: what is beyond the map's far plane is lit"});
+  visit("behind_test", range.behind_test,
+        {.text = "behind the light of a projective map is lit",
+         .column = "on: what is behind the light of a projective map is lit"});
+}
+
+void visit_fields(Is<KernelRecord> auto& kernel, auto&& visit) {
+  visit("sigma_texels", kernel.sigma_texels,
+        {.text = "standard deviation along an axis, reconstruction included",
+         .least = 0,
+         .column = "the kernel's standard deviation along an axis, texels"});
+  visit("class", kernel.width_class,
+        {.text = "kernels of one class are about equally wide, and are compared with each other alone; null above the "
+                 "widest class",
+         .one_of = "sharp,medium,soft",
+         .column = "the class of kernels that are about as wide, with which alone it is compared"});
+}
+
+void visit_fields(Is<TimeRecord> auto& time, auto&& visit) {
+  visit("lookup", time.lookup, {.column = "filtered lookup of all pixels"});
+  visit("prefilter", time.prefilter, {.column = "encoding and blurring the map"});
+  visit("map", time.map, {.column = "drawing the depth map"});
+  visit("empty", time.empty,
+        {.text = "a lookup that reads what the filter does of its receivers, and nothing of the map",
+         .later = true,
+         .column = "lookup that reads nothing of the map"});
+  visit("filter", time.filter,
+        {.text = "the filter's own: the lookup less a lookup that reads nothing, per round",
+         .later = true,
+         .column = "the filter's own: lookup less that"});
+  visit("moving", time.moving,
+        {.text = "map, prefilter and the filter's own, per round: what a moving light pays",
+         .later = true,
+         .column = "map, prefilter and the filter's own"});
+  visit("stopped", time.stopped,
+        {.text = "why no more rounds were timed: as many as may be, the ratio's interval is narrow enough, the time is "
+                 "spent",
+         .one_of = "rounds,precise,budget",
+         .column = "why no more rounds were timed: rounds, precise or budget"});
+}
+
+void visit_fields(Is<RatioRecord> auto& ratio, auto&& visit) {
+  visit("lookup", ratio.lookup, {.column = "lookup against none", .column_name = "ratio_lookup"});
+  visit("static", ratio.static_map, {.column = "frame with a cached map against none", .column_name = "ratio_static"});
+  visit("moving", ratio.moving, {.column = "frame with a new map against none", .column_name = "ratio_moving"});
+}
+
+void visit_fields(Is<ImagesRecord> auto& images, auto&& visit) {
+  constexpr About kPath{.text = "relative to the report folder", .is_path = true};
+  const auto path = [](std::string_view text, bool later = false) {
+    return About{.text = text, .is_path = true, .later = later};
+  };
+  visit("picture", images.picture, kPath);
+  visit("visibility", images.visibility, kPath);
+  visit("depth_map", images.depth_map, kPath);
+  visit("grid", images.grid, kPath);
+  visit("exr", images.exr, kPath);
+  visit("parts", images.parts,
+        path("what the names of the cell's parts in `exr` begin with: '<parts>.visibility'", true));
+  visit("texel_density", images.texel_density,
+        path("map texels per pixel, one per view and map; relative to the report folder"));
+  visit("texel_grid", images.texel_grid,
+        path("the map's texels on the surfaces, one per view and map; relative to the report folder"));
+  visit("all_lights", images.all_lights,
+        path("all lights of the scene at once, one per view and map; relative to the report folder"));
+  visit("stability", images.stability,
+        path("where the cell's numbers break, per texel and per pixel; relative to the report folder"));
+  visit("values", images.values,
+        path("relative to the report folder: a script with the cell's images as 16-bit numbers, for the page", true));
+  visit("truth_picture", images.truth_picture,
+        path("relative to the report folder: the picture shaded with the area truth", true));
+  visit("truth_values", images.truth_values,
+        path("relative to the report folder: a script with the truth as 16-bit numbers, for the page", true));
+}
+
+/// Visits a cell's metrics, and over what its errors are means.
+void visit_metrics(Is<CellRecord> auto& cell, auto&& visit) {
+  visit("cost", kGroup, {.text = "what does not depend on the machine"});
+  visit("error", kGroup, {.text = "of visibility, against the ray-traced truth; mean is signed"});
+  visit("coverage", kGroup,
+        {.text = "how the map's texels are spent on the view; over pixels whose surface faces the light"});
+  visit("artefact", kGroup, {.text = "rates, each over the receivers in which it can occur"});
+  visit("attribution", kGroup, {.text = "the parts that the error is the sum of; shares sum to 1"});
+  visit("stability", kGroup,
+        {.text = "where numbers break, or come near to it; null unless the run was made with --stability"});
+  for (const metrics::Metric& metric : metrics::metric_table())
+    metrics::visit_metric(metric, cell, [&](const std::string& path, auto& value) {
+      visit(path, value,
+            {.text = metric.definition, .least = metric.range.min, .most = metric.range.max, .unit = metric.unit});
+    });
+  visit("phases", cell.phases,
+        {.text = "places of the map's grid, moved by parts of a texel, that the errors of visibility are means over; "
+                 "all else is of the first",
+         .least = 1,
+         .later = true,
+         .column = "places of the map's grid that errors of visibility are means over"});
+  constexpr const char* kMean = "where the mean over as many other phases lies in 95 of 100 cases, by Student's t";
+  visit("error.rmse_ci95", cell.rmse_ci95, {.text = kMean, .later = true, .column = "rmse", .column_name = "rmse"});
+}
+
+/// Visits the settings of a cell that its table shows.
+void visit_settings(Is<CellRecord> auto& cell, auto&& visit) {
+  visit("scene", cell.scene, {.filled = true, .column = "the scene's name"});
+  visit("view", cell.view, {.filled = true, .column = "the camera's name"});
+  visit("filter", cell.filter, {.filled = true, .column = "the filter's id"});
+  visit("params", cell.params, {.column = "the filter's parameters as JSON"});
+  visit("kernel_radius_texels", cell.kernel_radius_texels,
+        {.text = "half-width of the filter's kernel, as its parameters make it", .least = 0});
+  visit_group("kernel", cell.kernel, visit,
+              {.text = "how wide the filter's kernel is; null or missing where no model knows it", .later = true});
+  visit(
+      "teaching", cell.teaching,
+      {.text = "the filter shows a mistake, and is not advised; null or missing where that is unknown", .later = true});
+  visit("claims", cell.claims, {.text = "what the filter says of itself, such as contact-hardening", .later = true});
+  visit("map_size", cell.map_size,
+        {.text = "texels along a side", .least = 1, .column = "shadow map, texels along a side"});
+  visit("map_format", cell.map_format,
+        {.text = "how the map stores depth; perspective: as a projection whose far plane is so many times as far as "
+                 "its near plane; reversed: 1 - depth",
+         .pattern = R"(^d(16|24|32f)( perspective [0-9.]+(e\+?[0-9]+)?)?( reversed)?$)",
+         .column = "the shadow map's format"});
+  visit("fit", cell.fit,
+        {.text = "of the light's frustum",
+         .pattern = "^(sphere|tight|view|focused|lispsm|psm|tsm|logpsm|paraboloid|"
+                    "cascades:count=[2-4],split=[0-9.e-]+,blend=[0-9.e-]+,depths=(all|seen))( snapped)?$",
+         .column = "how the light's frustum is fitted; snapped: to whole texels"});
+  visit("light", cell.light,
+        {.text = "as the scene says, or azimuth and elevation in degrees",
+         .pattern = "^(scene|[-+.0-9e]+,[-+.0-9e]+)$",
+         .column = "where the light stands: as the scene says, or azimuth and elevation in degrees"});
+  visit_group("bias", cell.bias, visit,
+              {.text = "as asked for; lengths along the light in depth [0,1], shadow-map texels and metres (world), "
+                       "whose parts add up"});
+  visit_group("range", cell.range, visit, {.text = "what lookups did outside the map; border, true, true is right"});
+  visit("size", kGroup, {.text = "pixels"});
+  visit("size.width", cell.width, {.least = 1, .column = "picture, pixels"});
+  visit("size.height", cell.height, {.least = 1, .column = "picture, pixels"});
+}
+
+void visit_fields(Is<CellRecord> auto& cell, auto&& visit) {
+  visit("key", cell.key,
+        {.text = "hash of the cell's canonical settings",
+         .pattern = "^[0-9a-f]{16}$",
+         .column = "the cell's file is cells/<key>.json"});
+  visit("content", cell.content,
+        {.text = "names what it was made from beside its settings: program, scene, filter, options"});
+  visit("machine", cell.machine,
+        {.text = "the kind of machine that measured it: times of two kinds do not compare; null or missing where that "
+                 "is unknown",
+         .later = true,
+         .column = "what measured the times: those of two kinds of machine do not compare; empty in cells of before"});
+  visit("measured_s", cell.measured_s,
+        {.text = "seconds that measuring it took: its share of what cells did together, without the truth",
+         .least = 0,
+         .later = true});
+  visit_settings(cell, visit);
+  visit("status", cell.status, {.column = "ok, suspect, timeout, crashed or error"});
+  visit("message", cell.message,
+        {.text = "why status is not ok; empty otherwise", .column = "why the status is not ok"});
+  visit("suspect_of", cell.suspect_of,
+        {.text = "what is wrong with the filter of a suspect cell, and what to do", .filled = true, .later = true});
+  visit("excused", cell.excused, {.text = "pixels left out: on a tie or a texel's border"});
+  visit_group("time_ms", cell.time_ms, visit, {.text = "milliseconds of the clock that gl.timer names"});
+  visit_group("ratio_to_none", cell.ratio_to_none, visit,
+              {.text = "per-round ratios; static: map and prefilter cached, moving: paid in every frame"});
+  visit("lights", cell.lights,
+        {.text = "frames lit by several suns, each with a map of its own: the scene's light, turned about the vertical "
+                 "by i * 360 / count degrees; null or missing where that was not measured",
+         .least = 1,
+         .later = true});
+  visit("gpu", cell.gpu,
+        {.text = "what the cell costs on GPUs that were not there, by name; null or missing where none was named",
+         .later = true});
+  visit_group("images", cell.images, visit);
+  visit("warnings", cell.warnings, {.text = "what makes this cell's numbers doubtful"});
+  visit("absent", cell.absent, {.text = "dotted name of a null field or of a group of them: why it is null"});
+  visit_metrics(cell, visit);
+}
+
+void visit_fields(Is<GlRecord> auto& gl, auto&& visit) {
+  visit("backend", gl.backend, {.filled = true});
+  visit("renderer", gl.renderer);
+  visit("version", gl.version);
+  visit("software", gl.software, {.text = "a rasteriser on the CPU"});
+  visit("timer", gl.timer);
+}
+
+void visit_fields(Is<MachineRecord> auto& machine, auto&& visit) {
+  visit("cpu", machine.cpu);
+  visit("cores", machine.cores);
+  visit("load_at_start", machine.load_at_start, kPositive);
+  visit("compiler", machine.compiler);
+  visit("os", machine.os);
+}
+
+void visit_fields(Is<WorkRecord> auto& work, auto&& visit) {
+  visit("shader_variants_compiled", work.shader_variants_compiled);
+  visit("passes_run", work.passes_run);
+  visit("passes_skipped", work.passes_skipped);
+  visit("truths_traced", work.truths_traced, {.text = "ray-traced images computed in this run"});
+  visit("truths_cached", work.truths_cached, {.text = "ray-traced images read from the cache"});
+  visit("timed_s", work.timed_s,
+        {.text = "seconds of the passes that were timed, rounds that warm up included", .least = 0});
+  visit("elapsed_s", work.elapsed_s,
+        {.text = "seconds from the first cell to the last, the report not included", .least = 0});
+  visit("attribution_s", work.attribution_s,
+        {.text = "seconds of elapsed_s that taking errors apart took: kernel truths, models; null without attribution",
+         .least = 0,
+         .later = true});
+}
+
+void visit_fields(Is<ExperimentRecord> auto& experiment, auto&& visit) {
+  visit("title", experiment.title);
+  visit("settings", experiment.settings, {.text = "names all cells of the experiment and what they are made from"});
+  visit("cells", experiment.cells, {.text = "of the whole experiment"});
+  visit("shard", experiment.shard, {.text = "1 .. shards: every shards-th cell, from this one on", .least = 1});
+  visit("shards", experiment.shards, {.least = 1});
+}
+
+void visit_fields(Is<RepeatRecord> auto& repeat, auto&& visit) {
+  visit("cells", repeat.cells, {.text = "that both runs have"});
+  visit("overlapping", repeat.overlapping, {.text = "ratios to none whose 95 % intervals overlap"});
+  visit("of", repeat.of, {.text = "so many ratios"});
+}
+
+void visit_fields(Is<SceneRecord> auto& scene, auto&& visit) {
+  visit("name", scene.name, {.filled = true});
+  visit("title", scene.title);
+}
+
+void visit_fields(Is<RunRecord> auto& run, auto&& visit) {
   visit("commit", run.commit);
-  visit("command", run.command);
+  visit("command", run.command, {.text = "the command line, one entry per argument"});
   visit("seed", run.seed);
-  visit("gl.backend", run.gl.backend);
-  visit("gl.renderer", run.gl.renderer);
-  visit("gl.version", run.gl.version);
-  visit("gl.software", run.gl.software);
-  visit("gl.timer", run.gl.timer);
-  visit("machine.cpu", run.machine.cpu);
-  visit("machine.cores", run.machine.cores);
-  visit("machine.load_at_start", run.machine.load_at_start);
-  visit("machine.compiler", run.machine.compiler);
-  visit("machine.os", run.machine.os);
-  visit("work.shader_variants_compiled", run.work.shader_variants_compiled);
-  visit("work.passes_run", run.work.passes_run);
-  visit("work.passes_skipped", run.work.passes_skipped);
-  visit("work.truths_traced", run.work.truths_traced);
-  visit("work.truths_cached", run.work.truths_cached);
-  visit("work.timed_s", run.work.timed_s);
-  visit("work.elapsed_s", run.work.elapsed_s);
-  visit("work.attribution_s", run.work.attribution_s);
-  visit("experiment.title", run.experiment.title);
-  visit("experiment.settings", run.experiment.settings);
-  visit("experiment.cells", run.experiment.cells);
-  visit("experiment.shard", run.experiment.shard);
-  visit("experiment.shards", run.experiment.shards);
-  visit("repeat.cells", run.repeat.cells);
-  visit("repeat.overlapping", run.repeat.overlapping);
-  visit("repeat.of", run.repeat.of);
+  visit_group("gl", run.gl, visit);
+  visit_group("machine", run.machine, visit);
+  visit_group("work", run.work, visit, {.text = "what was done, and the passes that no chosen filter needed"});
+  visit_group("experiment", run.experiment, visit, {.text = "which cells of which experiment the run holds"});
+  visit_group(
+      "repeat", run.repeat, visit,
+      {.text = "how the times compare with those of the run of the very same that this one replaced", .later = true});
   visit("scenes", run.scenes);
   visit("warnings", run.warnings);
 }

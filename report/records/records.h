@@ -43,8 +43,19 @@ struct Ratio {
   Interval ci95;
 };
 
+/// The names that records have for the values of an enumeration, in its order.
+template <class Enum>
+inline constexpr const char* kNames[1] = {};
+
+template <class Enum>
+const char* name_of(Enum value) {
+  return kNames<Enum>[static_cast<std::size_t>(value)];
+}
+
 /// How a cell ended. Suspect: its filter was drawn, and what it drew or read shows that it is wrong.
 enum class CellStatus { kOk, kSuspect, kTimeout, kCrashed, kError };
+template <>
+inline constexpr const char* kNames<CellStatus>[] = {"ok", "suspect", "timeout", "crashed", "error"};
 
 /// One parameter's value.
 using ParamValue = std::variant<double, std::string, bool>;
@@ -155,25 +166,6 @@ struct ShaderFacts {
   bool operator==(const ShaderFacts&) const = default;
 };
 
-/// Calls `visit(name, value)` for every field of the facts.
-template <class Facts, class Visitor>
-void visit_facts(Facts& facts, Visitor&& visit) {
-  visit("instructions", facts.instructions);
-  visit("code_bytes", facts.code_bytes);
-  visit("vector_registers", facts.vector_registers);
-  visit("scalar_registers", facts.scalar_registers);
-  visit("spilled_registers", facts.spilled_registers);
-  visit("scratch_bytes", facts.scratch_bytes);
-  visit("waves_per_simd", facts.waves_per_simd);
-  visit("latency_cycles", facts.latency_cycles);
-  visit("busy_cycles", facts.busy_cycles);
-  visit("samples", facts.samples);
-  visit("compares", facts.compares);
-  visit("gathers", facts.gathers);
-  visit("loads", facts.loads);
-  visit("loops", facts.loops);
-}
-
 /// One pass of a filter.
 struct GpuPassRecord {
   std::string pass;  ///< "lookup", "empty", "encode", "blur", or the name of a pass of the filter's own
@@ -203,6 +195,8 @@ using GpuRecords = std::map<std::string, GpuRecord>;
 
 /// Which clock the times come from.
 enum class TimerKind { kWallClock, kTimerQuery };
+template <>
+inline constexpr const char* kNames<TimerKind>[] = {"wall_clock", "timer_query"};
 
 /// The kind of machine that a cell was measured on. Times of two kinds are never compared.
 struct MachineKind {
@@ -331,6 +325,16 @@ struct RunRecord {
   RepeatRecord repeat = {};
   std::vector<SceneRecord> scenes;
   std::vector<std::string> warnings;
+};
+
+/// What made a record that is no run: program, machine, OpenGL and command line.
+struct Provenance {
+  std::string commit;
+  GlRecord gl;
+  MachineRecord machine;
+  std::uint64_t seed = 0;
+  std::vector<std::string> command;  ///< one entry per argument
+  double seconds = 0.0;              ///< wall time
 };
 
 }  // namespace shadowbench::records

@@ -4,31 +4,15 @@
 
 #include <algorithm>
 
+#include "report/records/csv_tables.h"
+#include "report/records/json_io.h"
+#include "report/records/json_values.h"
+
 namespace shadowbench::records {
 
 std::string label_of(const StressCase& item) {
   const std::string filter = item.filter.empty() ? std::string() : item.filter + ": ";
   return fmt::format("{}{} ({})", filter, item.variant, item.level);
-}
-
-const char* name_of(StressVerdict verdict) {
-  if (verdict == StressVerdict::kOk) return "ok";
-  return verdict == StressVerdict::kDegraded ? "degraded" : "broken";
-}
-
-const char* name_of(StressTheoryKind kind) {
-  switch (kind) {
-    case StressTheoryKind::kOverflow: return "overflow";
-    case StressTheoryKind::kQuantum: return "quantum";
-    case StressTheoryKind::kSlope: return "slope";
-    case StressTheoryKind::kRounding: return "rounding";
-  }
-  return "";
-}
-
-const char* name_of(StressAgreement agreement) {
-  if (agreement == StressAgreement::kAgrees) return "agrees";
-  return agreement == StressAgreement::kExplained ? "explained" : "disagrees";
 }
 
 double tolerance_of(StressTheoryKind kind) { return kind == StressTheoryKind::kRounding ? 8.0 : 1.1; }
@@ -44,6 +28,104 @@ int count_disagreements(const StressRecord& record) {
     for (const StressCase& item : axis.cases)
       count += static_cast<int>(std::ranges::count(item.limits, StressAgreement::kDisagrees, &StressLimit::agreement));
   return count;
+}
+
+void visit_fields(const StressSample& sample, auto&& visit) {
+  visit("value", sample.value);
+  visit("verdict", sample.verdict);
+  visit("measured", sample.measured);
+  visit("why", null_if_empty(sample.why));
+}
+
+void visit_fields(const StressOnset& onset, auto&& visit) {
+  visit("value", onset.value);
+  visit("last_before", onset.last_before);
+  visit("why", null_if_empty(onset.why));
+}
+
+void visit_fields(const StressLimit& limit, auto&& visit) {
+  visit("predicts", limit.predicts);
+  visit("kind", limit.kind);
+  visit("theory", limit.onset);
+  visit("formula", limit.formula);
+  visit("source", limit.source);
+  visit("measured", limit.measured);
+  visit("ratio", limit.ratio);
+  visit("tolerance", tolerance_of(limit.kind));
+  visit("agreement", limit.agreement);
+  visit("explanation", null_if_empty(limit.explanation));
+}
+
+void visit_fields(const TextTable& table, auto&& visit) {
+  visit("header", table.header);
+  visit("rows", table.rows);
+}
+
+void visit_fields(const StressExhibit::Picture& picture, auto&& visit) {
+  visit("file", picture.file);
+  visit("caption", picture.caption);
+}
+
+void visit_fields(const StressExhibit& exhibit, auto&& visit) {
+  visit("id", exhibit.id);
+  visit("title", exhibit.title);
+  visit("sentences", exhibit.sentences);
+  visit("table", exhibit.table);
+  visit("pictures", exhibit.pictures);
+}
+
+void visit_fields(const StressCase& item, auto&& visit) {
+  visit("filter", null_if_empty(item.filter));
+  visit("variant", item.variant);
+  visit("level", item.level);
+  visit("params", item.params);
+  visit("not_available", null_if_empty(item.not_available));
+  visit("samples", item.samples);
+  visit("degraded", item.degraded);
+  visit("broken", item.broken);
+  visit("limits", item.limits);
+  visit("notes", item.notes);
+}
+
+void visit_fields(const StressAxis& axis, auto&& visit) {
+  visit("id", axis.id);
+  visit("title", axis.title);
+  visit("quantity", axis.quantity);
+  visit("unit", axis.unit);
+  visit("scale", std::string(axis.log ? "log" : "linear"));
+  visit("range", axis.range);
+  visit("measured", axis.measured);
+  visit("measured_unit", axis.measured_unit);
+  visit("bound", axis.bound);
+  visit("broken_when", axis.broken_when);
+  visit("cases", axis.cases);
+  visit("exhibits", axis.exhibits);
+}
+
+std::string make_stress_json(const StressRecord& record) {
+  nlohmann::json written = to_json(record, kStressSchemaVersion);
+  written["filters"] = record.filters;
+  written["disagreements"] = count_disagreements(record);
+  written["axes"] = value_json(record.axes);
+  return dump_file(written);
+}
+
+std::string make_stress_csv(const StressRecord& record) {
+  std::string csv = "axis,filter,variant,level,value,verdict,measured,why\r\n";
+  for (const StressAxis& axis : record.axes) {
+    for (const StressCase& item : axis.cases) {
+      const std::string head =
+          fmt::format("{},{},{},{}", axis.id, quote_csv(item.filter), quote_csv(item.variant), item.level);
+      if (!item.not_available.empty())
+        csv += fmt::format("{},,not available,,{}\r\n", head, quote_csv(item.not_available));
+      for (const StressSample& sample : item.samples) {
+        csv +=
+            fmt::format("{},{},{},{},{}\r\n", head, sample.value, name_of(sample.verdict),
+                        sample.measured ? fmt::format("{}", *sample.measured) : std::string(), quote_csv(sample.why));
+      }
+    }
+  }
+  return csv;
 }
 
 }  // namespace shadowbench::records

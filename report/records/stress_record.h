@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/records/provenance.h"
+#include "report/records/records.h"
 #include "report/records/text_table.h"
 
 namespace shadowbench::records {
@@ -18,6 +18,8 @@ enum class StressVerdict {
   kDegraded,  ///< the error is larger than the axis' bound
   kBroken     ///< NaN, infinity, all lit, all dark, or falling where the filter must rise
 };
+template <>
+inline constexpr const char* kNames<StressVerdict>[] = {"ok", "degraded", "broken"};
 
 /// What kind of law a theoretical limit follows, and so how near a measurement has to come.
 enum class StressTheoryKind {
@@ -26,6 +28,8 @@ enum class StressTheoryKind {
   kSlope,     ///< geometry: within 10 %
   kRounding   ///< a bound on accumulated rounding: within a factor of 8
 };
+template <>
+inline constexpr const char* kNames<StressTheoryKind>[] = {"overflow", "quantum", "slope", "rounding"};
 
 /// How a measured limit compares with its theory.
 enum class StressAgreement {
@@ -33,12 +37,11 @@ enum class StressAgreement {
   kExplained,  ///< it does not agree, and the axis says why
   kDisagrees
 };
+template <>
+inline constexpr const char* kNames<StressAgreement>[] = {"agrees", "explained", "disagrees"};
 
 /// The range of an axis, with both ends.
-struct StressRange {
-  double low = 0.0;
-  double high = 0.0;
-};
+using StressRange = Interval;
 
 /// One observation.
 struct StressSample {
@@ -130,11 +133,6 @@ struct StressRecord : Provenance {
 /// Names a case: "esm: r16f, linear (GL)".
 std::string label_of(const StressCase& item);
 
-/// The names that records hold: "ok", "overflow", "agrees".
-const char* name_of(StressVerdict verdict);
-const char* name_of(StressTheoryKind kind);
-const char* name_of(StressAgreement agreement);
-
 /// The factor by which measured and theory may differ for a kind: 1.1 or 8.
 double tolerance_of(StressTheoryKind kind);
 
@@ -143,5 +141,12 @@ const StressOnset* find_onset(const StressCase& item, StressVerdict verdict);
 
 /// Counts the limits that disagree with no explanation.
 int count_disagreements(const StressRecord& record);
+
+/// Makes the text of a stress.json: `gl` and `machine` as in results.json; a value that does not exist is null.
+std::string make_stress_json(const StressRecord& record);
+
+/// Makes stress.csv (RFC 4180): one row per observation, and one per case that was not available; what does not exist
+/// is empty.
+std::string make_stress_csv(const StressRecord& record);
 
 }  // namespace shadowbench::records

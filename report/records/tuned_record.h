@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,6 +46,8 @@ enum class TuneVerdict {
   kNoGain,      ///< not better by more than that, in training or on unseen views
   kOverfitted,  ///< better in training, but not on unseen views
 };
+template <>
+inline constexpr const char* kNames<TuneVerdict>[] = {"better", "no gain", "overfitted"};
 
 /// What was found for one filter.
 struct TunedFilterRecord {
@@ -62,6 +65,9 @@ struct TunedFilterRecord {
   int search_evaluations = 0;  ///< settings that the search drew
   int evaluations = 0;         ///< settings drawn in all, with those for the good ranges
 };
+
+/// Names the schema that tuned.json follows.
+inline constexpr int kTunedSchemaVersion = 1;
 
 /// A whole tuning.
 struct TunedRecord {
@@ -89,5 +95,23 @@ struct TunedRecord {
 /// parameters as found. `metric_in_visibility`: the truth's standard error is in the metric's unit; else any gain
 /// counts.
 void judge_tuning(TunedFilterRecord& filter, const ParamMap& found, bool metric_in_visibility);
+
+/// Makes the text of a tuned.json: settings, and for every filter its parameters, their good ranges and all scores.
+std::string make_tuned_json(const TunedRecord& record);
+
+/// What a run takes from a tuned.json.
+struct TunedSettings {
+  struct Filter {
+    std::string id;
+    ParamMap params;  ///< not checked against the filter
+  };
+  std::string metric;
+  int map_size = 0;
+  std::vector<Filter> filters;  ///< each id once
+};
+
+/// Reads a tuned.json.
+/// Throws Error(kInput), with file and field, where it is missing, malformed or of another schema version.
+TunedSettings read_tuned_settings(const std::filesystem::path& file);
 
 }  // namespace shadowbench::records

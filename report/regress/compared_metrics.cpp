@@ -14,9 +14,9 @@ namespace {
 
 template <class Visitor>
 void visit_ratios(const records::CellRecord& cell, Visitor visit) {
-  records::visit_cell_fields(
+  records::visit_fields(
       cell,
-      [&]<class T>(const std::string& path, const T& value) {
+      [&]<class T>(const std::string& path, const T& value, const records::About& = {}) {
         if constexpr (std::is_same_v<T, std::optional<records::Ratio>>) visit(path, value);
       });
 }

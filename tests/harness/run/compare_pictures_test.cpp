@@ -276,7 +276,7 @@ TEST(MetricTable, NamesEveryNumberThatARunMeasures) {
   std::vector<std::string> listed, recorded;
   for (const metrics::Metric& metric : metrics::metric_table()) listed.emplace_back(metric.path);
   const records::CellRecord cell;
-  records::visit_cell_fields(cell, [&](const std::string& path, const auto&) {
+  records::visit_fields(cell, [&](const std::string& path, const auto&, const records::About& = {}) {
     for (const char* group : {"error.", "truth.", "coverage.", "artefact.", "attribution.", "cost.", "stability.",
                               "map_scale.", "receivers", "nan"})
       if (path.rfind(group, 0) == 0 && !path.ends_with("_ci95")) recorded.push_back(path);

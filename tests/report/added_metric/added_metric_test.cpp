@@ -9,7 +9,6 @@
 #include "report/pages/text_tables.h"
 #include "report/records/csv_tables.h"
 #include "report/records/json_io.h"
-#include "report/records/metric_list.h"
 #include "report/regress/compared_metrics.h"
 #include "report/regress/tolerances.h"
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/images/heat_figures.h"
-#include "report/records/flicker_json.h"
+#include "report/records/flicker_record.h"
 #include "tests/report/pages/answer.h"
 
 namespace shadowbench::pages {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "report/records/stress_json.h"
+#include "report/records/stress_record.h"
 #include "tests/report/pages/answer.h"
 
 namespace shadowbench::pages {

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include "reference/metrics/metric_table.h"
-#include "report/records/csv.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::records {

@@ -207,6 +207,24 @@ TEST(JsonIo, LaterFields_MayLack) {
   EXPECT_THAT(message_of([&] { run_from_json(written, "here"); }), HasSubstr("'seed' is missing"));
 }
 
+// Expects that reading a cell refuses the lack of exactly what the schema requires of this object in it.
+void expect_required(const json& schema, const json::json_pointer& place) {
+  const json required = schema.value("required", json::array());
+  for (const auto& [name, property] : schema.at("properties").items()) {
+    json written = to_json(make_full_cell());
+    written[place].erase(name);
+    const bool is_required = std::find(required.begin(), required.end(), name) != required.end();
+    EXPECT_THAT(message_of([&] { cell_from_json(written, "here"); }),
+                HasSubstr(is_required ? "is missing" : "no error"))
+        << place / name;
+    if (property.contains("properties")) expect_required(property, place / name);
+  }
+}
+
+TEST(JsonIo, ReadingRequires_WhatTheSchemaDoes) {
+  expect_required(json::parse(results_schema()).at("$defs").at("cell"), json::json_pointer());
+}
+
 /// Files of this version that were written before lights were counted stay readable, and valid.
 TEST(JsonIo, CellWithoutLights_IsReadAsNotMeasured) {
   json written = to_json(make_full_cell());

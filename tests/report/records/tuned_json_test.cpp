@@ -1,4 +1,4 @@
-#include "report/records/tuned_json.h"
+#include "report/records/tuned_record.h"
 
 #include <gmock/gmock.h>
 
