@@ -59,7 +59,7 @@ class SceneBench {
       if (options_.stability) stability.measure(result.cells.back(), *filters.back());
       if (options_.uncertainty)
         result.cells.back().uncertainty = measure_uncertainty({renderer_, options_, task_, assets_}, *filters.back());
-      if (options_.truth || options_.worker) result.cells.back().unbiased = draw_unbiased(*filters.back());
+      if (options_.truth || options_.part.is_worker()) result.cells.back().unbiased = draw_unbiased(*filters.back());
     }
     time(result, filters);
     draw_phases(result, filters);

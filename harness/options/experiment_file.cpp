@@ -4,13 +4,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <set>
 
 #include "filters/base/error.h"
 #include "filters/base/nearest_name.h"
 #include "filters/kernel_width.h"
+#include "harness/options/run_options.h"
 #include "harness/scene/toml_reader.h"
+#include "harness/scene/toml_writer.h"
 
 namespace shadowbench::options {
 namespace {
@@ -22,15 +25,17 @@ class ExperimentReader {
  public:
   explicit ExperimentReader(const std::filesystem::path& file) : file_(file), root_(scene::parse_toml_file(file)) {}
 
-  Experiment read(const std::vector<std::string>& keys) {
+  Experiment read() {
     const scene::TomlTable table(root_, "the experiment", file_.string());
-    std::vector<std::string> known = keys;
-    known.insert(known.end(), {"title", "filter"});
-    table.require_known_keys(known);
+    std::vector<std::string> known = {"title", "filter"};
     Experiment experiment;
+    for (const RunOption& option : list_run_options()) {
+      if (option.decides == Decides::kWay) continue;
+      known.insert(known.end() - 2, option.key());
+      if (table.has(option.key())) experiment.settings.push_back(read_setting(option));
+    }
+    table.require_known_keys(known);
     experiment.title = table.string("title", std::string());
-    for (const std::string& key : keys)
-      if (table.has(key)) experiment.settings.push_back(read_setting(key));
     for (const toml::node& node : filter_nodes()) experiment.filters.push_back(read_filter(node));
     if (root_.contains("filters") && !experiment.filters.empty())
       fail(*root_.get("filters"), "'filters' and [[filter]] both name filters: keep one of them");
@@ -82,10 +87,10 @@ class ExperimentReader {
     return path.has_extension() && path.is_relative() ? (file_.parent_path() / path).string() : name;
   }
 
-  ExperimentSetting read_setting(const std::string& key) const {
+  ExperimentSetting read_setting(const RunOption& option) const {
+    const std::string key = option.key();
     const toml::node& node = *root_.get(key);
-    ExperimentSetting setting{"--" + key, read_values(node, key), where(node)};
-    std::replace(setting.option.begin(), setting.option.end(), '_', '-');
+    ExperimentSetting setting{option.name, read_values(node, key), where(node)};
     if (key != "scene" && key != "filter_file") return setting;
     for (std::string& value : setting.values) value = resolve(value);
     return setting;
@@ -190,6 +195,35 @@ std::vector<std::string> combine(const SweptFilter& filter, const filters::Catal
   return requests;
 }
 
+/// Whether an experiment says it: what is not the default, and which cells there are in any case, as far as it is text.
+bool is_said(const RunOption& option, const Told& told) {
+  const bool is_text =
+      std::holds_alternative<std::string>(told) || std::holds_alternative<std::vector<std::string>>(told);
+  return told != option.told || (option.decides == Decides::kCells && is_text && told != Told(std::string()));
+}
+
+/// Adds a value that is read as this text again: a number or a flag where it can be one.
+void push(toml::array& values, const std::string& text) {
+  double number = 0.0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  if (fmt::format("{}", number) == text)
+    values.push_back(number);
+  else if (text == "true" || text == "false")
+    values.push_back(text == "true");
+  else
+    values.push_back(text);
+}
+
+void insert(toml::table& table, const std::string& key, const std::vector<std::string>& texts) {
+  toml::array values;
+  for (const std::string& text : texts)
+    if (!text.empty()) push(values, text);
+  if (values.size() == 1)
+    table.insert(key, values.front());
+  else if (!values.empty())
+    table.insert(key, values);
+}
+
 }  // namespace
 
 std::vector<std::string> list_experiments(const std::filesystem::path& folder) {
@@ -211,8 +245,23 @@ std::filesystem::path find_experiment(const std::filesystem::path& folder, const
                                                      : fmt::format(": there are {}", fmt::join(known, ", "))));
 }
 
-Experiment read_experiment(const std::filesystem::path& file, const std::vector<std::string>& keys) {
-  return ExperimentReader(file).read(keys);
+Experiment read_experiment(const std::filesystem::path& file) { return ExperimentReader(file).read(); }
+
+std::string write_experiment(const RunOptions& options) {
+  toml::table table;
+  if (!options.title.empty()) table.insert("title", options.title);
+  for (const RunOption& option : list_run_options())
+    if (option.decides != Decides::kWay && option.write && is_said(option, option.write(options)))
+      insert(table, option.key(), list_texts(option.write(options)));
+  toml::array filters;
+  for (const filters::FilterRequest& request : options.filters) {
+    toml::table filter{{"id", request.spec.id}};
+    for (const std::string& name : request.set_by_user)
+      std::visit([&](const auto& each) { filter.insert(name, each); }, request.values.at(name));
+    filters.push_back(std::move(filter));
+  }
+  if (!filters.empty()) table.insert("filter", std::move(filters));
+  return scene::write_toml(table);
 }
 
 std::string expand_filters(const Experiment& experiment, const filters::Catalogue& catalogue) {

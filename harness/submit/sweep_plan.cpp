@@ -10,7 +10,6 @@
 #include "filters/base/content_hash.h"
 #include "filters/base/error.h"
 #include "filters/base/temporary_files.h"
-#include "harness/run/cell_content.h"
 #include "harness/run/run_experiment.h"
 #include "harness/run/run_plan.h"
 #include "harness/submit/cell_costs.h"
@@ -188,8 +187,8 @@ class SweepPlanner {
     const ScratchFolder folder(make_temporary_folder_path(options_.out, "worker"));
     options::RunOptions options = options_;
     options.out = folder.path();
-    options.part = options::Part{.ranges = {}, .scene_cells = plan_.scene_cells, .content = {}};
-    for (const int cell : probes) options.part->ranges.push_back({cell, cell + 1});
+    options.part = {options::Product::kCells, {}, plan_.scene_cells, {}};
+    for (const int cell : probes) options.part.cells.push_back({cell, cell + 1});
     progress_.note(
         fmt::format("probe: measuring {} of {} cells here, to split them evenly (--times-of RUN takes an "
                     "earlier run's times, --no-probe none)",

@@ -1,4 +1,4 @@
-#include "harness/options/light_counts.h"
+#include "harness/options/run_options.h"
 
 #include <gmock/gmock.h>
 
