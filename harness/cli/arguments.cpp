@@ -2,26 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <tuple>
 
 #include "filters/base/error.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::cli {
-namespace {
-
-double parse_angle(const std::string& text, const char* name, double limit_deg) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(std::abs(value) <= limit_deg))
-    fail(fmt::format("--light: the {} '{}' must be a number of degrees, {} .. {}", name, text, -limit_deg, limit_deg));
-  return value;
-}
-
-}  // namespace
-
 void add_backend_option(Command& command, std::string& backend) {
   command.add("--gl", &backend, "OpenGL context: auto, software, osmesa, egl or glfw")
       .such_as({"auto", "software", "osmesa", "egl", "glfw"});
@@ -39,10 +25,10 @@ void add_drawing_options(Command& command, DrawingArguments& arguments, const st
 
 void add_builtin_filters_option(Command& command, std::string& filters) {
   command
-      .add(kFiltersOption, &filters,
+      .add("--filters", &filters,
            "built-in filters with parameters (default: all but those for teaching; see 'list filters')")
       .names(ValueKind::kFilters)
-      .also_called(kFilterOption);
+      .also_called("--filter");
 }
 
 void add_scene_option(Command& command, std::string& scene) {
@@ -51,13 +37,12 @@ void add_scene_option(Command& command, std::string& scene) {
       .names(ValueKind::kScene);
 }
 
-void add_scenes_options(Command& command, std::vector<std::string>& scenes, bool& ground) {
-  command
-      .add("--scene", &scenes,
-           "a built-in scene, or a .toml, .gltf, .glb or .obj file, or a folder with one of these; may be repeated "
-           "(default: all built-in scenes)")
-      .names(ValueKind::kScene);
-  command.add("--ground", &ground, "put a floor under a bare model");
+void add_as_run(Command& command, const char* name, Variable variable) {
+  for (Option option : options::list_run_options()) {
+    if (option.name != name) continue;
+    option.variable = variable;
+    command.options.push_back(std::move(option));
+  }
 }
 
 void add_picture_options(Command& command, PictureArguments& arguments) {
@@ -78,22 +63,6 @@ void take_picture_options(const PictureArguments& arguments, options::RunOptions
   std::tie(options.width, options.height) = parse_picture_size(arguments.size);
 }
 
-void fail(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
-
-int parse_count(const std::string& text, const char* option) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < 1)
-    fail(fmt::format("{}: '{}' must be a whole number, 1 or more", option, text));
-  return value;
-}
-
-std::pair<int, int> parse_picture_size(const std::string& text) {
-  const std::size_t cross = text.find('x');
-  if (cross == std::string::npos) fail(fmt::format("--size: '{}' must be WIDTHxHEIGHT, such as 960x540", text));
-  return {parse_count(text.substr(0, cross), "--size"), parse_count(text.substr(cross + 1), "--size")};
-}
-
 void require_distinct(const std::vector<filters::FilterRequest>& requests) {
   for (std::size_t i = 0; i < requests.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -109,13 +78,6 @@ std::vector<filters::FilterRequest> parse_builtin_filters(const std::string& tex
   std::vector<filters::FilterRequest> requests = filters::Catalogue(resources.filters).parse_requests(text);
   require_distinct(requests);
   return requests;
-}
-
-scene::SkyAngles parse_light(const std::string& text) {
-  const std::size_t comma = text.find(',');
-  if (comma == std::string::npos)
-    fail(fmt::format("--light: '{}' must be AZIMUTH,ELEVATION in degrees, such as 120,35", text));
-  return {parse_angle(text.substr(0, comma), "azimuth", 360.0), parse_angle(text.substr(comma + 1), "elevation", 90.0)};
 }
 
 std::vector<std::string> list_builtin_scenes(const options::Resources& resources) {

@@ -2,25 +2,25 @@
 
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "filters/base/split_list.h"
 #include "filters/catalogue.h"
 #include "harness/cli/command_line.h"
-#include "harness/options/options.h"
+#include "harness/options/run_options.h"
 
 namespace shadowbench::cli {
 
 // What commands share: options of the same name and help, and the reading of their values. All functions but
 // find_results() throw Error(kUsage) with the option's name.
 
-/// The option that names filters, and how else it may be spelt.
-inline constexpr const char *kFiltersOption = "--filters", *kFilterOption = "--filter";
+using options::fail;
+using options::parse_count;
+using options::parse_light;
+using options::parse_picture_size;
 
 /// The options of every command that draws, as text.
 struct DrawingArguments {
-  std::string filters;
   std::string backend = "auto";
   std::string cache;
   bool no_cache = false;
@@ -29,6 +29,7 @@ struct DrawingArguments {
 
 /// The options of commands that draw pictures of one size with one map.
 struct PictureArguments : DrawingArguments {
+  std::string filters;
   std::string map_size = "1024";
   std::string size;
 };
@@ -45,8 +46,8 @@ void add_builtin_filters_option(Command& command, std::string& filters);
 /// Adds --scene for one scene.
 void add_scene_option(Command& command, std::string& scene);
 
-/// Adds --scene for several scenes, and --ground.
-void add_scenes_options(Command& command, std::vector<std::string>& scenes, bool& ground);
+/// Adds an option of `run` as that describes it.
+void add_as_run(Command& command, const char* name, Variable variable);
 
 /// Adds --map-size and --size.
 void add_picture_options(Command& command, PictureArguments& arguments);
@@ -68,18 +69,6 @@ void take_drawing_options(const DrawingArguments& arguments, Options& options) {
 
 /// Takes over what the options of DrawingArguments, --map-size and --size say, but for the filters.
 void take_picture_options(const PictureArguments& arguments, options::RunOptions& options);
-
-/// Refuses what the command line says.
-[[noreturn]] void fail(const std::string& message);
-
-/// Parses a whole number, 1 or more.
-int parse_count(const std::string& text, const char* option);
-
-/// Parses the WIDTHxHEIGHT of `--size`, in pixels.
-std::pair<int, int> parse_picture_size(const std::string& text);
-
-/// Parses the AZIMUTH,ELEVATION of `--light`, in degrees.
-scene::SkyAngles parse_light(const std::string& text);
 
 /// Names the built-in scenes.
 std::vector<std::string> list_builtin_scenes(const options::Resources& resources);

@@ -122,26 +122,6 @@ std::vector<std::string> list_parser_words(const Command& command, const std::ve
 
 }  // namespace
 
-std::string Option::value_name() const {
-  switch (kind) {
-    case ValueKind::kFile: return "FILE";
-    case ValueKind::kFolder: return "FOLDER";
-    case ValueKind::kScene: return "SCENE";
-    case ValueKind::kFilters: return "FILTERS";
-    default: break;
-  }
-  if (std::holds_alternative<std::uint32_t*>(variable)) return "UINT";
-  return std::holds_alternative<double*>(variable) || std::holds_alternative<std::optional<double>*>(variable) ? "FLOAT"
-                                                                                                               : "TEXT";
-}
-
-std::string Option::default_value() const {
-  if (const auto* text = std::get_if<std::string*>(&variable)) return **text;
-  if (const auto* number = std::get_if<double*>(&variable)) return fmt::format("{:g}", **number);
-  if (const auto* number = std::get_if<std::uint32_t*>(&variable)) return fmt::format("{}", **number);
-  return {};
-}
-
 bool CommandLine::has(const std::string& option) const { return parsed_->count(option) > 0; }
 
 void CommandLine::set(const std::string& option, const std::vector<std::string>& values,

@@ -20,29 +20,6 @@ std::string describe_seconds(double seconds) {
   return left < 100 ? fmt::format(" · {} s left", left) : fmt::format(" · {} min left", (left + 59) / 60);
 }
 
-/// Estimates from the time of the finished cells how long the others will take.
-class TimeLeft {
- public:
-  void begin(int cells, int finished) {
-    cells_ = cells;
-    finished_ = finished;
-    start_ = Clock::now();
-  }
-
-  /// " · 3 min left"; empty until a cell is finished, and at the end.
-  std::string describe(int done) const {
-    if (done <= finished_ || done >= cells_) return {};
-    const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
-    return describe_seconds(spent / (done - finished_) * (cells_ - done));
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  int cells_ = 0;
-  int finished_ = 0;
-  Clock::time_point start_;
-};
-
 /// Cuts a text to so many bytes, between characters.
 std::string cut(const std::string& text, std::size_t room) {
   if (text.size() <= room) return text;
@@ -55,7 +32,8 @@ class Position {
  public:
   void begin(int cells, int finished) {
     cells_ = cells;
-    left_.begin(cells, finished);
+    finished_ = finished;
+    start_ = Clock::now();
   }
 
   double share(int done, const std::optional<options::WorkAhead>& ahead) const {
@@ -68,14 +46,20 @@ class Position {
     return ahead ? fmt::format("{:.1f} % · {}", std::floor(1000.0 * ahead->share) / 10.0, cells) : cells;
   }
 
+  /// " · 3 min left", from the time of the finished cells where the work is counted; empty until it can be told, and at
+  /// the end.
   std::string describe_left(int done, const std::optional<options::WorkAhead>& ahead) const {
-    if (!ahead) return left_.describe(done);
-    return ahead->seconds_left && ahead->share < 1.0 ? describe_seconds(*ahead->seconds_left) : "";
+    if (ahead) return ahead->seconds_left && ahead->share < 1.0 ? describe_seconds(*ahead->seconds_left) : "";
+    if (done <= finished_ || done >= cells_) return {};
+    const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
+    return describe_seconds(spent / (done - finished_) * (cells_ - done));
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
   int cells_ = 0;
-  TimeLeft left_;
+  int finished_ = 0;
+  Clock::time_point start_;
 };
 
 /// Redraws one line.

@@ -6,7 +6,8 @@
 #include "filters/base/error.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/progress_bar.h"
-#include "harness/cli/run_options.h"
+#include "harness/cli/run_arguments.h"
+#include "harness/gpu/facts_request.h"
 #include "harness/run/run_experiment.h"
 #include "harness/submit/sweep_jobs.h"
 #include "report/records/json_io.h"
@@ -17,12 +18,6 @@ namespace {
 void run_with_notes(const options::RunOptions& options, options::Progress& progress) {
   for (const std::string& note : options.notes) progress.note("note: " + note);
   run::run_experiment(options, progress);
-}
-
-/// Measures a user's filter for the run that started this process and gave it all options on the command line.
-int run_as_worker(const options::RunOptions& options) {
-  run_with_notes(options, *make_progress());
-  return 0;
 }
 
 /// What --strict asks of a report, whether it was written now or before. Throws Error(kLimit).
@@ -46,8 +41,8 @@ int run_as_task(const options::RunOptions& options, const std::filesystem::path&
 }
 
 int run_experiment(const CommandLine& line, RunArguments& arguments) {
-  if (arguments.worker) return run_as_worker(make_run_options(arguments, line.words()));
-  if (!arguments.truth && arguments.attribution && line.has("--attribution"))
+  const auto is_on = [&](const char* flag) { return options::find_told<bool>(arguments.told, flag); };
+  if (!is_on("--truth") && is_on("--attribution") && line.has("--attribution"))
     fail(
         "--attribution takes apart the errors against traced truth, which --no-truth leaves out: leave one of them "
         "out");
@@ -55,6 +50,10 @@ int run_experiment(const CommandLine& line, RunArguments& arguments) {
   options::RunOptions options = make_run_options(arguments, line.words());
   options.title = title;
   if (!arguments.task.empty()) return run_as_task(options, arguments.task);
+  if (arguments.worker) {
+    run_with_notes(options, *make_progress());
+    return 0;
+  }
   work_with_progress(
       options.out, [&](options::Progress& progress) { run_with_notes(options, progress); },
       "what was finished stays, and the same command goes on from there");
@@ -79,6 +78,22 @@ Command make_run_command() {
   auto a = std::make_shared<RunArguments>();
   add_run_options(command, *a);
   command.action = [a](const CommandLine& line) { return run(line, *a); };
+  return command;
+}
+
+Command make_gpu_facts_command() {
+  struct Files {
+    std::string request, answers;
+  };
+  Command command{"gpu-facts", "Compile passes for a GPU and say what its compiler says"};
+  command.hidden = true;
+  auto files = std::make_shared<Files>();
+  command.add("REQUEST", &files->request, "what to compile").names(ValueKind::kFile).require();
+  command.add("ANSWERS", &files->answers, "where the facts go, a line for each pass").names(ValueKind::kFile).require();
+  command.action = [files](const CommandLine&) {
+    gpu::answer_request(files->request, files->answers);
+    return 0;
+  };
   return command;
 }
 

@@ -12,6 +12,7 @@ namespace shadowbench::cli {
 namespace {
 
 struct StressArguments : DrawingArguments {
+  std::string filters;
   std::vector<std::string> filter_files;
   std::string axes;
   std::vector<std::string> ranges;

@@ -6,7 +6,7 @@
 
 #include "harness/cli/commands.h"
 #include "harness/cli/progress_bar.h"
-#include "harness/cli/run_options.h"
+#include "harness/cli/run_arguments.h"
 #include "harness/submit/submit_sweep.h"
 
 namespace shadowbench::cli {
@@ -87,9 +87,9 @@ submit::JobPlan make_job_plan(const options::RunOptions& options, const SubmitAr
 }
 
 int submit(const CommandLine& line, SubmitArguments& a) {
-  if (a.grids > 0) fail("--grids shows all filters of a view, and a task has some of them; leave it out");
+  if (a.grids() > 0) fail("--grids shows all filters of a view, and a task has some of them; leave it out");
   const std::string title = apply_experiment(line, a);
-  a.grids = -1;  // whatever the experiment says
+  a.grids() = -1;  // whatever the experiment says
   if (a.out.empty()) fail("--out: name a folder that all machines share");
   a.out = fs::absolute(a.out).lexically_normal().string();
   a.cache = a.cache.empty() ? (fs::path(a.out) / "cache").string() : fs::absolute(a.cache).lexically_normal().string();

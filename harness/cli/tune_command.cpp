@@ -98,9 +98,9 @@ Command make_tune_command() {
   auto a = std::make_shared<TuneArguments>();
   a->size = "480x270";
   a->out = "report/out/tune";
-  command.add(kFiltersOption, &a->filters, "filters with the parameters that stay fixed, such as vsm:store=rg16f,esm")
+  command.add("--filters", &a->filters, "filters with the parameters that stay fixed, such as vsm:store=rg16f,esm")
       .names(ValueKind::kFilters)
-      .also_called(kFilterOption)
+      .also_called("--filter")
       .never_empty("at least one filter to tune, such as vsm (see 'list filters')")
       .require();
   command.add("--filter-file", &a->filter_files, "").hide();
@@ -109,7 +109,8 @@ Command make_tune_command() {
       .add("--metric", &a->metric,
            fmt::format("the error to make small: {} (see 'list metrics')", fmt::join(metrics, ", ")))
       .such_as(metrics);
-  add_scenes_options(command, a->scenes, a->ground);
+  add_as_run(command, "--scene", &a->scenes);
+  add_as_run(command, "--ground", &a->ground);
   add_picture_options(command, *a);
   command.add("--budget", &a->budget, "settings that the search tries for each filter");
   command.add("--light", &a->light,

@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "filters/base/error.h"
+#include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
-#include "harness/cli/run_arguments.h"
 #include "harness/view/run_view.h"
 
 namespace shadowbench::cli {
@@ -27,6 +27,7 @@ struct ViewArguments : DrawingArguments {
 int view_scene(const ViewArguments& arguments) {
   view::ViewOptions options;
   take_drawing_options(arguments, options.run);
+  options::read_run_options(options::list_run_options(), options.run);
   options.scene = arguments.scene;
   options.run.ground = arguments.ground;
   options.run.map_sizes = {parse_count(arguments.map_size, "--map-size")};
@@ -69,8 +70,7 @@ Command make_view_command() {
            "width)")
       .names(ValueKind::kFilters);
   command.add("--right", &a->right, "what is seen on the right").names(ValueKind::kFilters);
-  command.add("--filter-file", &a->filter_files, "a filter of your own, one GLSL file; may be repeated")
-      .names(ValueKind::kFile);
+  add_as_run(command, "--filter-file", &a->filter_files);
   command.add("--map-size", &a->map_size, "texels along a side of the shadow map");
   command.add("--size", &a->size, "keep the picture at WIDTHxHEIGHT pixels (default: as large as the window)");
   command.add("--scale", &a->scale, "enlarge text and widgets so many times (default: as the screen asks for)");

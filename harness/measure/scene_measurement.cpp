@@ -53,7 +53,7 @@ class SceneBench {
       stability.warn(result.cells.back(), *filters.back());
       if (options_.stability) stability.measure(result.cells.back(), *filters.back());
       if (options_.uncertainty) result.cells.back().uncertainty = measure_uncertainty(*filters.back());
-      if (options_.truth || options_.worker) result.cells.back().unbiased = draw_unbiased(*filters.back());
+      if (options_.truth || options_.part.is_worker()) result.cells.back().unbiased = draw_unbiased(*filters.back());
     }
     time(result, filters);
     draw_phases(result, filters);

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <set>
 
@@ -11,6 +13,7 @@
 #include "filters/base/nearest_name.h"
 #include "filters/base/toml.h"
 #include "filters/kernel_width.h"
+#include "harness/options/run_options.h"
 
 namespace shadowbench::options {
 namespace {
@@ -23,12 +26,19 @@ class ExperimentReader {
   explicit ExperimentReader(const std::filesystem::path& file)
       : folder_(file.parent_path()), root_(read_toml(file, "the experiment")) {}
 
-  Experiment read(const std::vector<std::string>& keys) {
+  Experiment read() {
+    std::vector<const RunOption*> known;
+    std::vector<std::string> keys;
+    for (const RunOption& option : list_run_options()) {
+      if (option.decides == Decides::kWay) continue;
+      known.push_back(&option);
+      keys.push_back(option.key());
+    }
     root_.require_known_keys(keys, {"title", "filter"});
     Experiment experiment;
     experiment.title = root_.string("title", std::string());
-    for (const std::string& key : keys)
-      if (const auto value = root_.find(key)) experiment.settings.push_back(read_setting(*value));
+    for (const RunOption* option : known)
+      if (const auto value = root_.find(option->key())) experiment.settings.push_back(read_setting(*option, *value));
     if (const auto filter = root_.find("filter"); filter && filter->as_table(""))
       throw filter->error("'filter' must be tables, each headed [[filter]]");
     for (const TomlTable& table : root_.tables("filter")) experiment.filters.push_back(read_filter(table));
@@ -64,9 +74,8 @@ class ExperimentReader {
     return path.has_extension() && path.is_relative() ? (folder_ / path).string() : name;
   }
 
-  ExperimentSetting read_setting(const TomlValue& value) const {
-    ExperimentSetting setting{"--" + value.key(), read_values(value), value.where()};
-    std::replace(setting.option.begin(), setting.option.end(), '_', '-');
+  ExperimentSetting read_setting(const RunOption& option, const TomlValue& value) const {
+    ExperimentSetting setting{option.name, read_values(value), value.where()};
     if (value.key() != "scene" && value.key() != "filter_file") return setting;
     for (std::string& each : setting.values) each = resolve(each);
     return setting;
@@ -169,6 +178,35 @@ std::vector<std::string> combine(const SweptFilter& filter, const filters::Catal
   return requests;
 }
 
+/// Whether an experiment says it: what is not the default, and which cells there are in any case, as far as it is text.
+bool is_said(const RunOption& option, const Told& told) {
+  const bool is_text =
+      std::holds_alternative<std::string>(told) || std::holds_alternative<std::vector<std::string>>(told);
+  return told != option.told || (option.decides == Decides::kCells && is_text && told != Told(std::string()));
+}
+
+/// Adds a value that is read as this text again: a number or a flag where it can be one.
+void push(toml::array& values, const std::string& text) {
+  double number = 0.0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  if (fmt::format("{}", number) == text)
+    values.push_back(number);
+  else if (text == "true" || text == "false")
+    values.push_back(text == "true");
+  else
+    values.push_back(text);
+}
+
+void insert(toml::table& table, const std::string& key, const std::vector<std::string>& texts) {
+  toml::array values;
+  for (const std::string& text : texts)
+    if (!text.empty()) push(values, text);
+  if (values.size() == 1)
+    table.insert(key, values.front());
+  else if (!values.empty())
+    table.insert(key, values);
+}
+
 }  // namespace
 
 std::vector<std::string> list_experiments(const std::filesystem::path& folder) {
@@ -190,8 +228,23 @@ std::filesystem::path find_experiment(const std::filesystem::path& folder, const
                                                      : fmt::format(": there are {}", fmt::join(known, ", "))));
 }
 
-Experiment read_experiment(const std::filesystem::path& file, const std::vector<std::string>& keys) {
-  return ExperimentReader(file).read(keys);
+Experiment read_experiment(const std::filesystem::path& file) { return ExperimentReader(file).read(); }
+
+std::string write_experiment(const RunOptions& options) {
+  toml::table table;
+  if (!options.title.empty()) table.insert("title", options.title);
+  for (const RunOption& option : list_run_options())
+    if (option.decides != Decides::kWay && option.write && is_said(option, option.write(options)))
+      insert(table, option.key(), list_texts(option.write(options)));
+  toml::array filters;
+  for (const filters::FilterRequest& request : options.filters) {
+    toml::table filter{{"id", request.spec.id}};
+    for (const std::string& name : request.set_by_user)
+      std::visit([&](const auto& each) { filter.insert(name, each); }, request.values.at(name));
+    filters.push_back(std::move(filter));
+  }
+  if (!filters.empty()) table.insert("filter", std::move(filters));
+  return write_toml(table);
 }
 
 std::string expand_filters(const Experiment& experiment, const filters::Catalogue& catalogue) {

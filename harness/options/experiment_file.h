@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "filters/catalogue.h"
+#include "harness/options/options.h"
 
 namespace shadowbench::options {
 
@@ -45,10 +46,14 @@ std::vector<std::string> list_experiments(const std::filesystem::path& folder);
 /// Throws Error(kUsage) for an unknown name; the message holds the nearest name, or all of them.
 std::filesystem::path find_experiment(const std::filesystem::path& folder, const std::string& name);
 
-/// Reads an experiment file. Keys are the long options of `shadowbench run` with '_' for '-', of which `keys` are
-/// known; a list stands for several values. Paths of scenes and filter files are relative to the file's folder. Throws
-/// Error(kInput), with file and line, where it is missing, malformed, or holds an unknown key.
-Experiment read_experiment(const std::filesystem::path& file, const std::vector<std::string>& keys);
+/// Reads an experiment file. Its keys are the options of `shadowbench run` that do not say where or how; a list stands
+/// for several values. Paths of scenes and filter files are relative to the file's folder. Throws Error(kInput), with
+/// file and line, where it is missing, malformed, or holds an unknown key.
+Experiment read_experiment(const std::filesystem::path& file);
+
+/// Writes the experiment file that says what the options say, with the parameters of filters that were asked for.
+/// Paths stay as they are.
+std::string write_experiment(const RunOptions& options);
 
 /// Writes the filters of an experiment as `--filters` takes them: every combination of the values of each one's
 /// parameters. Values over a range are rounded for whole-numbered parameters, and of equal values one is kept. Throws

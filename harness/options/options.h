@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,27 +42,37 @@ struct PictureSize {
   bool operator==(const PictureSize&) const = default;
 };
 
-/// A part of an experiment: every `count`-th cell, from the `index`-th on, counted from 0.
-struct Shard {
-  int index = 0;
-  int count = 1;
-};
-
-/// A stretch of a plan's cells: from `begin` on, up to `end` and without it.
+/// Cells of a plan: every `step`-th from `begin` on, up to `end` and without it.
 struct CellRange {
   int begin = 0;
   int end = 0;
+  int step = 1;
   bool operator==(const CellRange&) const = default;
 };
 
-/// The part of an experiment that one task of a sweep does. It writes cells into a folder that other tasks write into
-/// at the same time: it takes no lock, deletes nothing of theirs, and makes no report.
+/// What a run leaves of the cells that it does.
+enum class Product {
+  kReport,  ///< a folder of its own, and a report once all of them are there
+  kCells,   ///< a task's: files in a folder that the other tasks of a sweep write into at the same time. It takes no
+            ///< lock, deletes nothing of theirs, and makes no report
+  kTruth,   ///< a task's: what the cells share, in the cache
+  kImages,  ///< a worker's: records and float images, which the run that started it scores and draws
+};
+
+/// The part of an experiment that a run does.
 struct Part {
-  std::vector<CellRange> ranges;  ///< of its own cells, ascending
-  std::vector<int> scene_cells;   ///< how many cells each scene has in each picture size, in the plan's order; scenes
-                                  ///< without an own cell are not loaded
-  std::string content;            ///< name of what the own cells are made from, as it was planned; empty: not checked
-  bool only_truth = false;        ///< trace what the cells share, and leave it in the cache
+  Product product = Product::kReport;
+  std::vector<CellRange> cells = {{0, std::numeric_limits<int>::max()}};  ///< its own, ascending
+  std::vector<int> scene_cells;  ///< a task's: how many cells each scene has in each picture size, in the plan's order;
+                                 ///< scenes without an own cell are not loaded
+  std::string content;           ///< name of what the own cells are made from, as it was planned; empty: not checked
+
+  /// Of a shard, which is every `shards`-th cell.
+  int shard_index() const { return cells.front().begin % shards() + 1; }
+  int shards() const { return cells.front().step; }
+
+  bool is_task() const { return product == Product::kCells || product == Product::kTruth; }
+  bool is_worker() const { return product == Product::kImages; }
 };
 
 /// The most places of the map's grid that a run may average errors over.
@@ -73,6 +84,7 @@ struct RunOptions {
   std::vector<std::string> scenes;  ///< names or paths
   bool ground = false;
   std::vector<filters::FilterRequest> filters;
+  std::vector<std::string> filter_files;  ///< of the user, as they were named
   std::vector<int> map_sizes = {1024};
   std::vector<PictureSize> sizes = {{}};  ///< of all pictures of a run
   int width = 960;                        ///< of the pictures that are drawn at present, in pixels
@@ -102,8 +114,7 @@ struct RunOptions {
   bool grids = true;     ///< compare all filters of a view in one picture and keep their float images; else each cell's
                          ///< pictures alone
   bool pictures = true;  ///< draw what people look at beside the float images, which the window asks for alone
-  Shard shard;
-  std::optional<Part> part;      ///< of a sweep; empty: all of the shard
+  Part part;
   std::string title;             ///< of the experiment
   bool fresh = false;            ///< measure again the cells that the report folder has
   bool large_is_fine = false;    ///< start even where there are very many cells
@@ -111,9 +122,8 @@ struct RunOptions {
   double cell_timeout_s = 60.0;  ///< how long one filter of the user may take on one scene
   std::filesystem::path out;
   std::vector<std::string> command;     ///< the command line, for the record
-  std::vector<std::string> bias_texts;  ///< as given, for worker processes
+  std::vector<std::string> bias_texts;  ///< as given
   std::vector<std::string> notes;       ///< what the user should know about the options
-  bool worker = false;                  ///< runs user's filters itself and writes cells and float images only
 };
 
 }  // namespace shadowbench::options

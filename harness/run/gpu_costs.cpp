@@ -129,7 +129,7 @@ std::filesystem::path GpuCosts::shared_file(const gpu::Gpu& gpu, const std::stri
 }
 
 bool GpuCosts::take_shared(const gpu::Gpu& gpu, const std::string& pass) {
-  if (!options_.part) return false;
+  if (!options_.part.is_task()) return false;
   std::vector<gpu::FactsAnswer> answers = gpu::read_answers(shared_file(gpu, pass));
   if (answers.empty()) return false;
   answers_[gpu.name].emplace(pass, std::move(answers.front()));
@@ -137,7 +137,7 @@ bool GpuCosts::take_shared(const gpu::Gpu& gpu, const std::string& pass) {
 }
 
 void GpuCosts::share(const gpu::Gpu& gpu, const std::string& pass, const gpu::FactsAnswer& answer) const {
-  if (options_.part) gpu::write_answer(shared_file(gpu, pass), answer);
+  if (options_.part.is_task()) gpu::write_answer(shared_file(gpu, pass), answer);
 }
 
 records::GpuRecord GpuCosts::make_record(const gpu::Gpu& gpu, const measure::MeasuredCell& cell) const {

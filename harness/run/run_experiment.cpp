@@ -18,7 +18,7 @@
 #include "harness/run/run_plan.h"
 #include "harness/run/run_progress.h"
 #include "harness/run/task_run.h"
-#include "harness/run/time_floor.h"
+#include "harness/run/time_forecast.h"
 #include "harness/scene/mesh_tools.h"
 #include "reference/truth/occluders.h"
 #include "report/analysis/repeat.h"
@@ -34,26 +34,12 @@ namespace {
 /// The cache may hold this much; the truths of a default run take some 15 MiB.
 constexpr std::uintmax_t kMaxCacheBytes = std::uintmax_t{1} << 30;
 
-std::string describe_duration(double seconds) {
-  if (seconds < 10.0) return records::format_number(seconds) + " s";
-  const auto whole = static_cast<long>(std::ceil(seconds));
-  if (whole < 60) return fmt::format("{} s", whole);
-  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
-  return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
-}
-
 /// A folder that cannot be written is better found before the work than after it.
 void require_writable(const std::filesystem::path& folder) { AtomicFile(folder / "cells" / "probe").write(""); }
 
 /// A run of more cells than this takes hours, and needs --yes.
 constexpr int kManyCells = 2000;
 constexpr double kManySeconds = 3600.0;
-
-/// What is known of a run's time before it begins.
-struct TimeForecast {
-  double seconds = 0.0;  ///< of timed work
-  std::string text;
-};
 
 class Experiment {
  public:
@@ -76,11 +62,12 @@ class Experiment {
     require_no_sweep();
     const RunPlan plan = make_plan(options_, renderer_.context->info().renderer);
     announce(plan);
-    if (!options_.part) lock_.emplace(options_.out);
+    if (!options_.part.is_task()) lock_.emplace(options_.out);
     require_writable(options_.out);
-    if (plan.finished == plan.own_cells && (options_.part || has_report(plan))) {
+    if (plan.finished == plan.own_cells && (options_.part.is_task() || has_report(plan))) {
       progress_.note("nothing is left to do");
-      if (options_.part) std::ranges::for_each(plan.scenes, [&](const PlannedScene& each) { note_scene(each); });
+      if (options_.part.is_task())
+        std::ranges::for_each(plan.scenes, [&](const PlannedScene& each) { note_scene(each); });
       return run_;
     }
     try {
@@ -107,7 +94,7 @@ class Experiment {
 
   /// What is half-written in the folder of a sweep belongs to tasks that may run anywhere.
   void require_no_sweep() const {
-    if (options_.part || !std::filesystem::exists(options_.out / kSweepFile)) return;
+    if (options_.part.is_task() || !std::filesystem::exists(options_.out / kSweepFile)) return;
     throw Error(
         ErrorKind::kUsage,
         "--out: a sweep was submitted into this folder: 'shadowbench status' says how far it is; choose another",
@@ -127,16 +114,16 @@ class Experiment {
     run_.work.shader_variants_compiled = renderer_.shaders.compiled();
     run_.work.truths_traced = cache_.traced();
     run_.work.truths_cached = cache_.loaded();
-    if (!options_.part) finish(plan, replaced);
+    if (!options_.part.is_task()) finish(plan, replaced);
     steps_.finish();
   }
 
   void finish(const RunPlan& plan, const std::vector<records::CellRecord>& replaced) {
     cache_.prune(kMaxCacheBytes);
     steps_.begin_report();
-    if (options_.grids && options_.pictures && !options_.worker) draw_all_lights(options_, plan, run_.gl);
+    if (options_.grids && options_.pictures && !options_.part.is_worker()) draw_all_lights(options_, plan, run_.gl);
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
-    if (!options_.worker) pages::write_report(options_.out, run_, list_keys(plan));
+    if (!options_.part.is_worker()) pages::write_report(options_.out, run_, list_keys(plan));
   }
 
   void count(const measure::SceneMeasurement& measured) {
@@ -155,35 +142,22 @@ class Experiment {
 
   /// Says how much there is to do, and asks where it is a lot.
   void announce(const RunPlan& plan) {
-    run_.experiment = {options_.title, plan.settings, plan.cells, options_.shard.index + 1, options_.shard.count};
-    if (options_.worker) return;
+    run_.experiment = {options_.title, plan.settings, plan.cells, options_.part.shard_index(), options_.part.shards()};
+    if (options_.part.is_worker()) return;
     const int left = plan.own_cells - plan.finished;
     std::string text = fmt::format("{} cells", plan.own_cells);
-    if (options_.shard.count > 1)
-      text += fmt::format(" of {}, shard {}/{}", plan.cells, options_.shard.index + 1, options_.shard.count);
+    if (options_.part.shards() > 1)
+      text += fmt::format(" of {}, shard {}/{}", plan.cells, options_.part.shard_index(), options_.part.shards());
     if (plan.finished > 0)
       text += fmt::format(", {} of them finished before (--fresh measures them again)", plan.finished);
-    const TimeForecast forecast = left > 0 && !options_.part ? forecast_time(plan, left) : TimeForecast();
+    const TimeForecast forecast =
+        left > 0 && !options_.part.is_task() ? forecast_time(renderer_, plan, cache_, left) : TimeForecast();
     text += forecast.text;
     progress_.note(text);
-    if (options_.part || (left <= kManyCells && forecast.seconds <= kManySeconds) || options_.large_is_fine) return;
+    if (options_.part.is_task() || (left <= kManyCells && forecast.seconds <= kManySeconds) || options_.large_is_fine)
+      return;
     throw Error(ErrorKind::kUsage, fmt::format("{}: add --yes to run them all, or name fewer values, or {}", text,
                                                options_.rounds.is_fixed() ? "fewer --rounds" : "a smaller --budget"));
-  }
-
-  /// Forecasts timed work alone. The progress bar counts rays and pictures in once the first are made.
-  TimeForecast forecast_time(const RunPlan& plan, int left) {
-    const char* on_top = options_.truth ? "rays and pictures come on top" : "pictures come on top";
-    if (!options_.rounds.is_fixed()) {
-      const double timings = 1.0 + static_cast<double>(options_.lights.size());
-      const double seconds = left * timings * 1e-3 * options_.rounds.budget_ms;
-      return {seconds, fmt::format("; {} of timed work at most, more where four rounds take longer; {}",
-                                   describe_duration(seconds), on_top)};
-    }
-    const TimeFloor floor = measure_time_floor(renderer_, plan, cache_);
-    return {floor.seconds, fmt::format("; {} {} of timed work, what --rounds {} of the unfiltered lookup take; {}",
-                                       floor.whole ? "at least" : "about", describe_duration(floor.seconds),
-                                       options_.rounds.most, on_top)};
   }
 
   bool is_same(const records::ExperimentRecord& known) const {
@@ -195,7 +169,7 @@ class Experiment {
   /// them; none where there is none.
   std::vector<records::CellRecord> read_replaced() const {
     const std::filesystem::path file = options_.out / "results.json";
-    if (!options_.fresh || options_.worker || !std::filesystem::exists(file)) return {};
+    if (!options_.fresh || options_.part.is_worker() || !std::filesystem::exists(file)) return {};
     try {
       records::Results results = records::read_results(file);
       if (!is_same(results.run.experiment)) return {};
@@ -220,7 +194,8 @@ class Experiment {
   /// decides, not the times of the files: the clock may have been set in between.
   bool has_report(const RunPlan& plan) const {
     const std::filesystem::path file = options_.out / "results.json";
-    if (options_.worker || !std::filesystem::exists(file) || !std::filesystem::exists(options_.out / "index.html"))
+    if (options_.part.is_worker() || !std::filesystem::exists(file) ||
+        !std::filesystem::exists(options_.out / "index.html"))
       return false;
     try {
       const records::Results results = records::read_results(file);
@@ -286,21 +261,23 @@ class Experiment {
 
   /// The map of a sun has no behind, and a point light shines there too.
   void warn_of_tests_without_effect(const scene::Scene& scene) {
-    if (options_.range.behind_test || options_.worker || std::holds_alternative<scene::Spot>(scene.light.kind)) return;
+    if (options_.range.behind_test || options_.part.is_worker() ||
+        std::holds_alternative<scene::Spot>(scene.light.kind))
+      return;
     warn(scene.name + ": --behind-test off changes nothing: only a spot light has a behind, and this light is none");
   }
 
   void note_scene(const PlannedScene& planned) {
     const scene::Scene& scene = planned.scene;
-    if (!options_.worker) warn_of_light_below(scene);  // of each light, where a scene has several
+    if (!options_.part.is_worker()) warn_of_light_below(scene);  // of each light, where a scene has several
     const auto is_it = [&](const records::SceneRecord& known) { return known.name == scene.name; };
     if (std::any_of(run_.scenes.begin(), run_.scenes.end(), is_it)) return;
     run_.scenes.push_back({scene.name, scene.title});
-    if (!options_.worker)
+    if (!options_.part.is_worker())
       for (const std::string& note : scene.notes) progress_.note(scene.name + ": " + note);
     for (const std::string& warning : scene.warnings) warn(scene.name + ": " + warning);
     warn_of_open_meshes(scene);
-    if (options_.truth && !options_.worker) warn_of_distance(scene);
+    if (options_.truth && !options_.part.is_worker()) warn_of_distance(scene);
     warn_of_tests_without_effect(scene);
   }
 
@@ -320,10 +297,10 @@ class Experiment {
     for (const PlannedTask& each : plan.tasks) {
       if (each.scene != index || each.task.filters.empty()) continue;
       if (!assets) assets.emplace(renderer_, planned.options, planned.scene, cache_, measure::padding_texels(options_));
-      if (options_.part && options_.part->only_truth)
+      if (options_.part.product == options::Product::kTruth)
         trace_shared(planned, each.task, *assets);
       else
-        TaskRun(renderer_, planned, each, *assets, run_, listener_, gpus_).run();
+        measure_task({renderer_, planned, each, *assets, run_, listener_, gpus_});
     }
   }
 };

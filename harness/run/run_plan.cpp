@@ -9,13 +9,85 @@
 
 #include "filters/base/content_hash.h"
 #include "filters/base/error.h"
+#include "filters/model.h"
+#include "harness/measure/scene_assets.h"
+#include "harness/options/run_options.h"
 #include "harness/render/gbuffer.h"
-#include "harness/run/cell_content.h"
+#include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::run {
 namespace {
+
+void add_options(ContentHash& hash, const options::RunOptions& options) {
+  for (const options::RunOption& option : options::list_run_options()) {
+    if (option.decides != options::Decides::kContent) continue;
+    hash.add(option.name);
+    for (const std::string& text : options::list_texts(option.write(options))) hash.add(text);
+  }
+  // The masks of artefacts reach as far as the widest kernel of the run.
+  hash.add(fmt::format("pad {} radius {} reference {} grids {}", measure::padding_texels(options),
+                       measure::widest_kernel_texels(options), options.reference.label(), options.grids));
+  for (const gpu::Gpu& gpu : options.gpus) {
+    hash.add(fmt::format("{} {}", gpu.name, fmt::join(gpu.families, " ")));
+    gpu::visit_constants(gpu, [&](const char*, const gpu::Constant& constant) {
+      hash.add_values(std::span<const double>(&constant.value, 1));
+    });
+  }
+}
+
+void add_material(ContentHash& hash, const scene::Material& m) {
+  hash.add(fmt::format("{} {} {} {} {} {} {}", m.base_color.r, m.base_color.g, m.base_color.b, m.base_color.a,
+                       m.base_color_texture, static_cast<int>(m.alpha_mode), m.alpha_cutoff));
+}
+
+void add_camera(ContentHash& hash, const scene::Camera& c) {
+  hash.add(c.name);
+  for (const glm::vec3& v : {c.position_ws, c.forward_ws, c.up_ws}) hash.add(fmt::format("{} {} {}", v.x, v.y, v.z));
+  hash.add(fmt::format("{} {}", c.vertical_fov_rad, c.orthographic_height_m));
+}
+
+void add_scene(ContentHash& hash, const scene::Scene& scene) {
+  for (const scene::Mesh& mesh : scene.meshes) {
+    hash.add(fmt::format("mesh {} {} {}", mesh.material, mesh.casts_shadow, mesh.may_cull_front));
+    hash.add_values(std::span<const scene::Vertex>(mesh.vertices));
+    hash.add_values(std::span<const std::uint32_t>(mesh.indices));
+  }
+  for (const scene::Material& material : scene.materials) add_material(hash, material);
+  for (const scene::Texture& texture : scene.textures) {
+    hash.add(fmt::format("texture {} {}", texture.width, texture.height));
+    hash.add_values(std::span<const std::uint8_t>(texture.rgba));
+  }
+  for (const scene::Camera& camera : scene.cameras) add_camera(hash, camera);
+  for (const std::string& piece : scene::list_light_content(scene.light)) hash.add(piece);
+  hash.add(fmt::format("{} {} {}", scene.background.r, scene.background.g, scene.background.b));
+}
+
+/// Names everything that a scene's cells are made from and their keys do not say: the program's commit, the
+/// options of the run, and the scene itself with its geometry, textures, cameras and light. Not the OpenGL: see
+/// CellRecord::machine.
+std::string name_scene_content(const options::RunOptions& options, const scene::Scene& scene) {
+  ContentHash hash;
+  hash.add(build_commit());
+  add_options(hash, options);
+  add_scene(hash, scene);
+  return hash.name();
+}
+
+/// Names everything that one cell is made from: the above, and the filter's GLSL. Two cells of one key and one content
+/// differ in their times, and by what another OpenGL rounds, alone.
+std::string name_cell_content(const std::string& scene_content, const filters::FilterRequest& request) {
+  ContentHash hash;
+  hash.add(scene_content);
+  hash.add(request.spec.body);
+  hash.add(fmt::format("{} claims {}", request.user_file, fmt::join(request.spec.claims, " ")));
+  hash.add(fmt::format("moments {} exponent {} floor {} bound at zero {}", request.spec.holds_moments,
+                       request.spec.exponent, request.spec.variance_floor, request.spec.bound_at_zero));
+  const auto kernel = filters::find_kernel(request.spec, request.values);
+  hash.add(fmt::format("kernel {} model {}", kernel ? kernel->name() : "", request.spec.copy_of));
+  return hash.name();
+}
 
 constexpr const char* kChanged =
     "the experiment is no longer what was submitted: scenes, filters, settings or the program have changed; submit it "
@@ -26,10 +98,14 @@ bool is_wanted(const options::RunOptions& options, const scene::Light& light) {
   return options.light_names.empty() || std::ranges::count(options.light_names, light.name) > 0;
 }
 
-/// Whether a stretch of cells has one that is to be measured.
-bool has_own_cell(const options::Part& part, const options::CellRange& cells) {
+/// Whether one of the cells from `begin` on, up to `end` and without it, is to be measured.
+bool has_own_cell(const options::Part& part, int begin, int end) {
   return std::ranges::any_of(
-      part.ranges, [&](const options::CellRange& own) { return own.begin < cells.end && cells.begin < own.end; });
+      part.cells,
+      [&](const options::CellRange& own) {
+        const int steps = std::max(begin - own.begin + own.step - 1, 0) / own.step;
+        return own.begin + steps * own.step < std::min(end, own.end);
+      });
 }
 
 /// The first cell of the scene that stands at a place of the plan.
@@ -37,21 +113,21 @@ int find_first_cell(const options::Part& part, std::size_t place) {
   return std::accumulate(part.scene_cells.begin(), part.scene_cells.begin() + static_cast<std::ptrdiff_t>(place), 0);
 }
 
-/// The scenes of a picture size that have a cell of this run, as indices. The first of them stands at `place`.
+/// The scenes of a picture size that have a cell of this run, as far as that is known, as indices. The first of them
+/// stands at `place`.
 std::vector<std::size_t> list_needed_scenes(const options::RunOptions& options, std::size_t place) {
   std::vector<std::size_t> needed;
   for (std::size_t i = 0; i < options.scenes.size(); ++i) {
-    if (options.part) {
-      const int begin = find_first_cell(*options.part, place + i);
-      if (!has_own_cell(*options.part, {begin, begin + options.part->scene_cells[place + i]})) continue;
-    }
-    needed.push_back(i);
+    const int begin = options.part.is_task() ? find_first_cell(options.part, place + i) : 0;
+    if (!options.part.is_task() || has_own_cell(options.part, begin, begin + options.part.scene_cells[place + i]))
+      needed.push_back(i);
   }
   return needed;
 }
 
 void require_known_scenes(const options::RunOptions& options) {
-  if (!options.part || options.part->scene_cells.size() == options.sizes.size() * options.scenes.size()) return;
+  if (!options.part.is_task() || options.part.scene_cells.size() == options.sizes.size() * options.scenes.size())
+    return;
   throw Error(ErrorKind::kInput, kChanged);
 }
 
@@ -95,7 +171,7 @@ std::vector<const scene::Camera*> choose_views(const options::RunOptions& option
 }
 
 void require_views(const options::RunOptions& options, const std::vector<PlannedScene>& scenes) {
-  if (options.part) return;  // the scenes that have it may be others' work
+  if (options.part.is_task()) return;  // the scenes that have it may be others' work
   std::set<std::string> known;
   for (const PlannedScene& each : scenes)
     for (const scene::Camera& camera : each.scene.cameras) known.insert(camera.name);
@@ -150,8 +226,8 @@ class Planner {
 
   void add_scene(std::size_t index) {
     const PlannedScene& scene = plan_.scenes[index];
-    if (options_.part && (index == 0 || plan_.scenes[index - 1].place != scene.place))
-      plan_.cells = find_first_cell(*options_.part, scene.place);
+    if (options_.part.is_task() && (index == 0 || plan_.scenes[index - 1].place != scene.place))
+      plan_.cells = find_first_cell(options_.part, scene.place);
     const std::string content = name_scene_content(scene.options, scene.scene);
     for (const scene::Camera* camera : choose_views(options_, scene.scene))
       for (const int map_size : options_.map_sizes) add_task(index, {&scene.scene, camera, map_size, {}}, content);
@@ -165,7 +241,8 @@ class Planner {
       const std::string content = name_cell_content(scene_content, request);
       add_cell(hash_, key, content);
       ++plan_.scene_cells[plan_.scenes[scene].place];
-      if (!is_own(plan_.cells++)) continue;
+      const int cell = plan_.cells++;
+      if (!has_own_cell(options_.part, cell, cell + 1)) continue;
       add_cell(own_hash_, key, content);
       planned.keys.push_back(key);
       planned.task.filters.push_back(request);
@@ -174,11 +251,6 @@ class Planner {
     plan_.own_cells += static_cast<int>(planned.keys.size());
     leave_out_finished(planned);
     if (!planned.keys.empty()) plan_.tasks.push_back(std::move(planned));
-  }
-
-  bool is_own(int cell) const {
-    if (options_.part) return has_own_cell(*options_.part, {cell, cell + 1});
-    return cell % options_.shard.count == options_.shard.index;
   }
 
   void leave_out_finished(PlannedTask& planned) {
@@ -198,11 +270,12 @@ class Planner {
   /// of a sweep may differ.
   bool is_finished(const std::string& key, const std::string& content) const {
     std::error_code ignored;
-    if (options_.worker || options_.fresh || !std::filesystem::exists(records::cell_path(options_.out, key), ignored))
+    if (options_.part.is_worker() || options_.fresh ||
+        !std::filesystem::exists(records::cell_path(options_.out, key), ignored))
       return false;
     try {
       const records::CellRecord cell = records::read_cell(options_.out, key);
-      const bool is_drawn_alike = options_.part || (cell.machine && cell.machine->renderer == renderer_);
+      const bool is_drawn_alike = options_.part.is_task() || (cell.machine && cell.machine->renderer == renderer_);
       return cell.content == content && is_drawn_alike;
     } catch (const Error&) {
       return false;
@@ -210,7 +283,7 @@ class Planner {
   }
 
   void require_unchanged() const {
-    if (options_.part && !options_.part->content.empty() && options_.part->content != own_hash_.name())
+    if (!options_.part.content.empty() && options_.part.content != own_hash_.name())
       throw Error(ErrorKind::kInput, kChanged);
   }
 
@@ -218,7 +291,7 @@ class Planner {
     if (plan_.cells == 0) throw Error(ErrorKind::kUsage, "there is nothing to run: no scene has one of these views");
     if (plan_.own_cells > 0) return;
     throw Error(ErrorKind::kUsage, fmt::format("--shard {}/{} is empty: the experiment has {} cells",
-                                               options_.shard.index + 1, options_.shard.count, plan_.cells));
+                                               options_.part.shard_index(), options_.part.shards(), plan_.cells));
   }
 };
 
@@ -226,6 +299,11 @@ class Planner {
 
 RunPlan make_plan(const options::RunOptions& options, const std::string& renderer) {
   return Planner(options, renderer).plan();
+}
+
+void add_cell(ContentHash& cells, const std::string& key, const std::string& content) {
+  cells.add(key);
+  cells.add(content);
 }
 
 }  // namespace shadowbench::run

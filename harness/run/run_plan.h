@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "filters/base/content_hash.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/options/options.h"
 #include "harness/scene/scene.h"
@@ -23,7 +24,7 @@ struct PlannedTask {
   std::size_t scene = 0;              ///< index into RunPlan::scenes
   measure::SceneTask task;            ///< its filters are those still to be measured
   std::vector<std::string> keys;      ///< of all its cells, measured or not
-  std::vector<std::string> contents;  ///< of those still to be measured; see name_cell_content()
+  std::vector<std::string> contents;  ///< of those still to be measured; names of all that a cell is made from
 };
 
 /// What a run is to measure, in the order of its records: picture size, scene, light, fit, view, map size, filter.
@@ -42,5 +43,8 @@ struct RunPlan {
 /// where all of the view's cells are finished. Throws Error for a scene that cannot be loaded, a view that no scene
 /// has, scenes or cells of one name, a shard of nothing.
 RunPlan make_plan(const options::RunOptions& options, const std::string& renderer);
+
+/// Adds a cell to the name of several: planner and sweeps agree on it.
+void add_cell(ContentHash& cells, const std::string& key, const std::string& content);
 
 }  // namespace shadowbench::run

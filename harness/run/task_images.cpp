@@ -289,7 +289,7 @@ void write_float_images(const options::RunOptions& options, const measure::Scene
     if (cell.visibility.empty()) continue;
     parts.push_back({visibility_part(cell.label), {"Y"}, cell.visibility, false});
     parts.push_back({picture_part(cell.label), {"R", "G", "B"}, cell.picture, true});
-    if (options.worker) parts.push_back({unbiased_part(cell.label), {"Y"}, cell.unbiased, false});
+    if (options.part.is_worker()) parts.push_back({unbiased_part(cell.label), {"Y"}, cell.unbiased, false});
     for (std::size_t p = 0; p < cell.error_parts.size(); ++p) {
       if (cell.error_parts[p].empty()) continue;
       parts.push_back({error_part(cell.label, records::list_error_parts()[p]), {"Y"}, cell.error_parts[p], false});

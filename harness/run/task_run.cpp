@@ -4,16 +4,22 @@
 #include <tbb/parallel_for_each.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <map>
+#include <optional>
 
+#include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/layer_truth.h"
+#include "harness/measure/map_coverage.h"
 #include "harness/measure/suspects.h"
 #include "harness/render/shade_pass.h"
 #include "harness/run/map_pictures.h"
 #include "harness/run/task_images.h"
-#include "harness/run/user_filter.h"
+#include "harness/run/worker_process.h"
+#include "report/images/grid.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::run {
@@ -21,6 +27,82 @@ namespace {
 
 /// Passes of so many filters are kept at once: a run's memory does not grow with its cells.
 constexpr std::size_t kFiltersAtOnce = 12;
+
+/// A way to treat what lies outside the map.
+struct Variant {
+  const char* caption;
+  filters::RangeRule rule;
+};
+
+const std::array<Variant, 4>& list_variants() {
+  using filters::Border;
+  static const std::array<Variant, 4> variants = {{
+      {"right: outside the map and beyond its far plane is lit", {}},
+      {"--border edge: the map's edge is smeared outwards", {Border::kEdge, true, true}},
+      {"--border repeat: the map is tiled", {Border::kRepeat, true, true}},
+      {"--far-test off: beyond the far plane is compared", {Border::kBorder, false, true}},
+  }};
+  return variants;
+}
+
+/// Draws tiles of one task.
+class TilePainter {
+ public:
+  TilePainter(measure::Renderer& renderer, const options::RunOptions& options, const measure::SceneTask& task,
+              measure::SceneAssets& assets)
+      : renderer_(renderer),
+        options_(options),
+        task_(task),
+        light_(assets.light_map(*task.camera, task.map_size)),
+        gbuffer_(assets.gbuffer(*task.camera)),
+        target_("visibility", GL_R32F, options.width, options.height) {}
+
+  ~TilePainter() { light_.map.set_border(options_.range.border); }
+  TilePainter(const TilePainter&) = delete;
+  TilePainter& operator=(const TilePainter&) = delete;
+
+  images::GridTile draw(const filters::FilterRequest& request, const Variant& variant) {
+    render::LightLayers light = measure::make_filter_light(options_, task_.scene->light, light_.layers, request);
+    for (render::LightSetup& layer : light) layer.range = variant.rule;
+    light_.map.set_border(variant.rule.border);
+    render::FilterPasses passes(renderer_.shaders, request, light_.map, light);
+    images::GridTile tile;
+    tile.visibility = measure::draw_visibility(passes, light_.map, gbuffer_, target_);
+    tile.label = request.label();
+    tile.caption = variant.caption;
+    tile.picture =
+        render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera, variant.rule);
+    return tile;
+  }
+
+ private:
+  measure::Renderer& renderer_;
+  const options::RunOptions& options_;
+  const measure::SceneTask& task_;
+  measure::LightMap& light_;
+  render::GBuffer& gbuffer_;
+  render::ImageTarget target_;
+};
+
+/// Draws what every filter of a task makes of the receivers outside the map, beside each other: the right rule, then
+/// each rule of an orthographic map that is wrong in one thing. Users' own filters, which have a process of their own,
+/// are left out. Leaves the map as the run has it. Writes a PNG file. Throws Error(kOutput). Cost: four untimed lookups
+/// a filter, and its prefilter as often.
+void write_border_page(const std::filesystem::path& file, measure::Renderer& renderer,
+                       const options::RunOptions& options, const measure::SceneTask& task,
+                       measure::SceneAssets& assets) {
+  TilePainter painter(renderer, options, task, assets);
+  images::Grid grid;
+  grid.title = fmt::format("{}: what lies outside the map", task.scene->name);
+  grid.subtitle =
+      fmt::format("{} · view {} · map {} × {}", task.scene->title, task.camera->name, task.map_size, task.map_size);
+  grid.columns = static_cast<int>(list_variants().size());
+  for (const filters::FilterRequest& request : task.filters) {
+    if (request.user_file) continue;
+    for (const Variant& variant : list_variants()) grid.tiles.push_back(painter.draw(request, variant));
+  }
+  if (!grid.tiles.empty()) images::write_grid(file, grid);
+}
 
 /// Seconds since this was made.
 class Stopwatch {
@@ -32,172 +114,190 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
+/// One task under way.
+class TaskRun {
+ public:
+  explicit TaskRun(const TaskBench& bench)
+      : bench_(bench),
+        renderer_(bench.renderer),
+        options_(bench.planned.options),
+        task_(bench.task.task),
+        assets_(bench.assets),
+        listener_(bench.listener) {
+    steps_.begin = [this](options::Work kind, std::size_t cells, const std::string& what) { begin(kind, cells, what); };
+    steps_.advance = [this](double part) { listener_.progress->advance(part); };
+    assets_.tracer().listen([progress = bench.listener.progress](double part) { progress->advance_tracing(part); });
+    for (std::size_t i = 0; i < task_.filters.size(); ++i)
+      contents_[measure::make_record(options_, task_, task_.filters[i]).key] = bench.task.contents[i];
+  }
+
+  void run() {
+    Requests built_in, of_users;
+    for (const filters::FilterRequest& request : task_.filters)
+      (request.user_file && !options_.part.is_worker() ? of_users : built_in).push_back(request);
+    if (options_.grids) {
+      run_group(built_in, of_users);
+      return;
+    }
+    for (const filters::FilterRequest& request : of_users) run_group({}, {request});
+    const std::size_t groups = (built_in.size() + kFiltersAtOnce - 1) / kFiltersAtOnce;
+    for (std::size_t i = 0; i < groups; ++i) {
+      const auto at = [&](std::size_t group) {
+        return built_in.begin() + static_cast<std::ptrdiff_t>(group * built_in.size() / groups);
+      };
+      run_group({at(i), at(i + 1)}, {});
+    }
+  }
+
+ private:
+  using Requests = std::vector<filters::FilterRequest>;
+
+  const TaskBench& bench_;
+  measure::Renderer& renderer_;
+  const options::RunOptions& options_;
+  const measure::SceneTask& task_;
+  measure::SceneAssets& assets_;
+  const TaskListener& listener_;
+  std::map<std::string, std::string> contents_;  ///< by key
+  options::StepListener steps_;
+  std::optional<measure::CellAnalyser> analyser_;
+  std::optional<measure::MapCoverage> coverage_;
+
+  measure::SceneTask task_of(const Requests& requests) const {
+    return {task_.scene, task_.camera, task_.map_size, requests};
+  }
+
+  void run_group(const Requests& built_in, const Requests& of_users) {
+    const Stopwatch watch;
+    std::vector<measure::MeasuredCell> user_cells;
+    for (const filters::FilterRequest& request : of_users) user_cells.push_back(measure_user_cell(request));
+    measure::SceneMeasurement measured;
+    if (!built_in.empty()) measured = measure::measure_scene(renderer_, options_, task_of(built_in), assets_, steps_);
+    const measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
+    measured.stored_map = light.map.read_picture();
+    measured.depth_map = measure::read_linear_depth(light.map);
+    if (!task_.scene->light.name.empty()) measured.ambient = draw_ambient();
+    for (measure::MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
+    for (measure::MeasuredCell& cell : measured.cells) cell.record.measured_s = 0.0;
+    Requests all = built_in;
+    all.insert(all.end(), of_users.begin(), of_users.end());
+    if (!options_.part.is_worker()) {
+      score(measured);
+      measure_coverage(measured);
+    }
+    begin(options::Work::kPictures, measured.cells.size(), "pictures");
+    bench_.gpus.add_to(measured.cells);
+    write_images(task_of(all), measured);
+    const double shared_s = watch.read_s() - measured.truth_s - measured.attribution_s;
+    for (measure::MeasuredCell& cell : measured.cells)
+      *cell.record.measured_s += shared_s / static_cast<double>(measured.cells.size());
+    write_cells(measured);
+  }
+
+  images::Image draw_ambient() {
+    render::ImageTarget dark("no light", GL_R32F, options_.width, options_.height);
+    dark.clear(glm::vec4(0.0f));
+    return render::shade(renderer_.shaders, assets_.gbuffer(*task_.camera), dark.texture(), *task_.scene, *task_.camera,
+                         options_.range);
+  }
+
+  measure::MeasuredCell measure_user_cell(const filters::FilterRequest& request) {
+    begin(options::Work::kTiming, 1, request.label());
+    return measure_user_filter(options_, task_, request, bench_.planned.argument, renderer_.context->info().backend);
+  }
+
+  /// Scores each cell against the truth, and takes its error apart.
+  void score(measure::SceneMeasurement& measured) {
+    const std::size_t cells = measured.cells.size();
+    begin(options::Work::kTruth, cells, "truth");
+    Stopwatch watch;
+    const measure::SceneTruth& truth = assets_.truth(*task_.camera);
+    measured.truth_s = watch.read_s();
+    begin(options::Work::kScores, cells, "errors");
+    std::atomic<std::size_t> scored = 0;
+    tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
+      cell.flip = measure::score(cell.record, cell.visibility, cell.phases, cell.picture, truth);
+      cell.phases.clear();
+      measure::check_against_truth(cell, truth);
+      steps_.advance(static_cast<double>(++scored) / static_cast<double>(cells));
+    });
+    begin(options::Work::kSurroundings, cells, "artefacts");
+    watch = {};
+    if (!analyser_) analyser_.emplace(renderer_, options_, task_, assets_, truth);
+    measured.truth_s += watch.read_s();
+    for (measure::MeasuredCell& cell : measured.cells) {
+      begin(options::Work::kAttribution, 1, "attribution of " + cell.label);
+      watch = {};
+      analyser_->analyse(cell);
+      cell.record.measured_s = watch.read_s();
+      measured.attribution_s += *cell.record.measured_s;
+    }
+    measured.masks = analyser_->masks();
+  }
+
+  /// Measures how the map's texels are spent on the view.
+  void measure_coverage(measure::SceneMeasurement& measured) {
+    if (!coverage_) {
+      measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
+      const measure::SceneTruth& truth = assets_.truth(*task_.camera);
+      std::optional<measure::ViewReceivers> untraced;
+      if (truth.receivers.image.points.empty())
+        untraced = measure::read_view_receivers(assets_.gbuffer(*task_.camera), task_.scene->light);
+      coverage_ =
+          measure::measure_coverage(untraced ? *untraced : truth.receivers, *task_.camera,
+                                    measure::list_covered_layers(renderer_.shaders, assets_.gbuffer(*task_.camera),
+                                                                 options_, task_.scene->light, light.layers),
+                                    measure::read_linear_depth(light.map));
+    }
+    for (measure::MeasuredCell& cell : measured.cells) {
+      cell.record.coverage = coverage_->record;
+      if (!coverage_->record.texels_per_pixel) cell.record.absent["coverage"] = "no surface in view faces the light";
+    }
+  }
+
+  void write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured) {
+    const measure::SceneTruth& truth = assets_.truth(*task.camera);
+    if (!options_.grids && !options_.part.is_worker()) {
+      write_single_pictures(options_, task, measured, truth);
+      return;
+    }
+    if (!options_.part.is_worker() && options_.pictures) {
+      write_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size));
+      steps_.advance(0.2);
+      write_pictures(options_, task, measured, truth, bench_.run.gl,
+                     [this](double part) { steps_.advance(0.2 + 0.5 * part); });
+    }
+    note_float_images(options_, task, measured);
+    if (options_.border_page) draw_border_page(task);
+    write_float_images(options_, task, measured, truth, renderer_.context->info());
+  }
+
+  void draw_border_page(const measure::SceneTask& task) {
+    const std::filesystem::path file = options_.out / (task_stem(options_, task) + ".borders.png");
+    measure::SceneTask built_in = task;
+    std::erase_if(built_in.filters,
+                  [&](const auto& request) { return request.user_file && !options_.part.is_worker(); });
+    write_border_page(file, renderer_, options_, built_in, assets_);
+    listener_.progress->shown().note("border page: " + file.string());
+  }
+
+  void write_cells(measure::SceneMeasurement& measured) {
+    for (measure::MeasuredCell& cell : measured.cells) {
+      cell.record.content = contents_.at(cell.record.key);
+      cell.record.machine = records::kind_of(bench_.run.machine, bench_.run.gl);
+      records::write_cell(options_.out, cell.record);
+    }
+    listener_.finished(measured);
+  }
+
+  void begin(options::Work kind, std::size_t cells, const std::string& what) const {
+    listener_.progress->begin(options_, kind, cells,
+                              fmt::format("{} · {} · {}", task_.scene->name, task_.map_size, what));
+  }
+};
+
 }  // namespace
 
-TaskRun::TaskRun(measure::Renderer& renderer, const PlannedScene& planned, const PlannedTask& task,
-                 measure::SceneAssets& assets, const records::RunRecord& run, const TaskListener& listener,
-                 GpuCosts& gpus)
-    : renderer_(renderer),
-      options_(planned.options),
-      planned_(planned),
-      task_(task.task),
-      assets_(assets),
-      run_(run),
-      listener_(listener),
-      gpus_(gpus) {
-  steps_.begin = [this](options::Work kind, std::size_t cells, const std::string& what) { begin(kind, cells, what); };
-  steps_.advance = [this](double part) { listener_.progress->advance(part); };
-  assets_.tracer().listen([progress = listener.progress](double part) { progress->advance_tracing(part); });
-  for (std::size_t i = 0; i < task_.filters.size(); ++i)
-    contents_[measure::make_record(options_, task_, task_.filters[i]).key] = task.contents[i];
-}
-
-void TaskRun::run() {
-  Requests built_in, of_users;
-  for (const filters::FilterRequest& request : task_.filters)
-    (request.user_file && !options_.worker ? of_users : built_in).push_back(request);
-  if (options_.grids) {
-    run_group(built_in, of_users);
-    return;
-  }
-  for (const filters::FilterRequest& request : of_users) run_group({}, {request});
-  const std::size_t groups = (built_in.size() + kFiltersAtOnce - 1) / kFiltersAtOnce;
-  for (std::size_t i = 0; i < groups; ++i) {
-    const auto at = [&](std::size_t group) {
-      return built_in.begin() + static_cast<std::ptrdiff_t>(group * built_in.size() / groups);
-    };
-    run_group({at(i), at(i + 1)}, {});
-  }
-}
-
-measure::SceneTask TaskRun::task_of(const Requests& requests) const {
-  return {task_.scene, task_.camera, task_.map_size, requests};
-}
-
-void TaskRun::run_group(const Requests& built_in, const Requests& of_users) {
-  const Stopwatch watch;
-  std::vector<measure::MeasuredCell> user_cells;
-  for (const filters::FilterRequest& request : of_users) user_cells.push_back(measure_user_cell(request));
-  measure::SceneMeasurement measured;
-  if (!built_in.empty()) measured = measure::measure_scene(renderer_, options_, task_of(built_in), assets_, steps_);
-  const measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
-  measured.stored_map = light.map.read_picture();
-  measured.depth_map = measure::read_linear_depth(light.map);
-  if (!task_.scene->light.name.empty()) measured.ambient = draw_ambient();
-  for (measure::MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
-  for (measure::MeasuredCell& cell : measured.cells) cell.record.measured_s = 0.0;
-  Requests all = built_in;
-  all.insert(all.end(), of_users.begin(), of_users.end());
-  if (!options_.worker) {
-    score(measured);
-    measure_coverage(measured);
-  }
-  begin(options::Work::kPictures, measured.cells.size(), "pictures");
-  gpus_.add_to(measured.cells);
-  write_images(task_of(all), measured);
-  const double shared_s = watch.read_s() - measured.truth_s - measured.attribution_s;
-  for (measure::MeasuredCell& cell : measured.cells)
-    *cell.record.measured_s += shared_s / static_cast<double>(measured.cells.size());
-  write_cells(measured);
-}
-
-images::Image TaskRun::draw_ambient() {
-  render::ImageTarget dark("no light", GL_R32F, options_.width, options_.height);
-  dark.clear(glm::vec4(0.0f));
-  return render::shade(renderer_.shaders, assets_.gbuffer(*task_.camera), dark.texture(), *task_.scene, *task_.camera,
-                       options_.range);
-}
-
-measure::MeasuredCell TaskRun::measure_user_cell(const filters::FilterRequest& request) {
-  begin(options::Work::kTiming, 1, request.label());
-  return measure_user_filter(options_, task_, request, planned_.argument, renderer_.context->info().backend);
-}
-
-/// Scores each cell against the truth, and takes its error apart.
-void TaskRun::score(measure::SceneMeasurement& measured) {
-  const std::size_t cells = measured.cells.size();
-  begin(options::Work::kTruth, cells, "truth");
-  Stopwatch watch;
-  const measure::SceneTruth& truth = assets_.truth(*task_.camera);
-  measured.truth_s = watch.read_s();
-  begin(options::Work::kScores, cells, "errors");
-  std::atomic<std::size_t> scored = 0;
-  tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
-    cell.flip = measure::score(cell.record, cell.visibility, cell.phases, cell.picture, truth);
-    cell.phases.clear();
-    measure::check_against_truth(cell, truth);
-    steps_.advance(static_cast<double>(++scored) / static_cast<double>(cells));
-  });
-  begin(options::Work::kSurroundings, cells, "artefacts");
-  watch = {};
-  if (!analyser_) analyser_.emplace(renderer_, options_, task_, assets_, truth);
-  measured.truth_s += watch.read_s();
-  for (measure::MeasuredCell& cell : measured.cells) {
-    begin(options::Work::kAttribution, 1, "attribution of " + cell.label);
-    watch = {};
-    analyser_->analyse(cell);
-    cell.record.measured_s = watch.read_s();
-    measured.attribution_s += *cell.record.measured_s;
-  }
-  measured.masks = analyser_->masks();
-}
-
-/// Measures how the map's texels are spent on the view.
-void TaskRun::measure_coverage(measure::SceneMeasurement& measured) {
-  if (!coverage_) {
-    measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
-    const measure::SceneTruth& truth = assets_.truth(*task_.camera);
-    std::optional<measure::ViewReceivers> untraced;
-    if (truth.receivers.image.points.empty())
-      untraced = measure::read_view_receivers(assets_.gbuffer(*task_.camera), task_.scene->light);
-    coverage_ =
-        measure::measure_coverage(untraced ? *untraced : truth.receivers, *task_.camera,
-                                  measure::list_covered_layers(renderer_.shaders, assets_.gbuffer(*task_.camera),
-                                                               options_, task_.scene->light, light.layers),
-                                  measure::read_linear_depth(light.map));
-  }
-  for (measure::MeasuredCell& cell : measured.cells) {
-    cell.record.coverage = coverage_->record;
-    if (!coverage_->record.texels_per_pixel) cell.record.absent["coverage"] = "no surface in view faces the light";
-  }
-}
-
-void TaskRun::write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured) {
-  const measure::SceneTruth& truth = assets_.truth(*task.camera);
-  if (!options_.grids && !options_.worker) {
-    write_single_pictures(options_, task, measured, truth);
-    return;
-  }
-  if (!options_.worker && options_.pictures) {
-    write_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size));
-    steps_.advance(0.2);
-    write_pictures(options_, task, measured, truth, run_.gl, [this](double part) { steps_.advance(0.2 + 0.5 * part); });
-  }
-  note_float_images(options_, task, measured);
-  if (options_.border_page) draw_border_page(task);
-  write_float_images(options_, task, measured, truth, renderer_.context->info());
-}
-
-void TaskRun::draw_border_page(const measure::SceneTask& task) {
-  const std::filesystem::path file = options_.out / (task_stem(options_, task) + ".borders.png");
-  measure::SceneTask built_in = task;
-  std::erase_if(built_in.filters, [&](const auto& request) { return request.user_file && !options_.worker; });
-  write_border_page(file, renderer_, options_, built_in, assets_);
-  listener_.progress->shown().note("border page: " + file.string());
-}
-
-void TaskRun::write_cells(measure::SceneMeasurement& measured) {
-  for (measure::MeasuredCell& cell : measured.cells) {
-    cell.record.content = contents_.at(cell.record.key);
-    cell.record.machine = records::kind_of(run_.machine, run_.gl);
-    records::write_cell(options_.out, cell.record);
-  }
-  listener_.finished(measured);
-}
-
-void TaskRun::begin(options::Work kind, std::size_t cells, const std::string& what) const {
-  listener_.progress->begin(options_, kind, cells,
-                            fmt::format("{} · {} · {}", task_.scene->name, task_.map_size, what));
-}
+void measure_task(const TaskBench& bench) { TaskRun(bench).run(); }
 
 }  // namespace shadowbench::run

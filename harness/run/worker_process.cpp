@@ -18,7 +18,13 @@
 #include <string_view>
 #include <utility>
 
+#include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
+#include "filters/base/temporary_files.h"
+#include "harness/options/experiment_file.h"
+#include "harness/run/task_images.h"
+#include "report/images/picture_io.h"
+#include "report/records/json_io.h"
 
 namespace shadowbench::run {
 namespace {
@@ -39,6 +45,60 @@ using Clock = std::chrono::steady_clock;
   constexpr std::string_view kMessage = "shadowbench: the program's own file cannot be started\n";
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kMessage.data(), kMessage.size());
   _exit(EXIT_FAILURE);
+}
+
+/// An experiment of this one cell, for a worker that writes into `folder`.
+options::RunOptions make_worker_options(const options::RunOptions& options, const measure::SceneTask& task,
+                                        const filters::FilterRequest& request, const std::filesystem::path& folder) {
+  options::RunOptions own = options;
+  own.title.clear();
+  own.scenes.clear();  // these are paths, which need not be text that a file can hold: they go with the words
+  own.filter_files.clear();
+  own.views = {task.camera->name};
+  own.light_names = {task.scene->light.name};
+  own.filters = {request};
+  own.map_sizes = {task.map_size};
+  own.sizes = {{options.width, options.height}};
+  own.fits = {options.fit};
+  own.pad_texels = measure::padding_texels(options);
+  own.truth = own.border_page = false;
+  own.out = folder;
+  return own;
+}
+
+measure::MeasuredCell failed_cell(const options::RunOptions& options, const measure::SceneTask& task,
+                                  const filters::FilterRequest& request, const WorkerOutcome& outcome) {
+  measure::MeasuredCell cell;
+  cell.record = measure::make_record(options, task, request);
+  cell.request = request;
+  cell.label = request.label();
+  if (outcome.timed_out) {
+    cell.record.status = records::CellStatus::kTimeout;
+    cell.record.message = fmt::format("not finished after {:g} s (--cell-timeout)", options.cell_timeout_s);
+  } else {
+    cell.record.status = records::CellStatus::kCrashed;
+    cell.record.message =
+        outcome.signal
+            ? fmt::format("killed by signal {} ({})", outcome.signal, strsignal(outcome.signal))
+            : fmt::format("ended with exit code {}: {}", *outcome.exit_code, clean_message(outcome.error_text));
+  }
+  for (const char* group :
+       {"time_ms", "ratio_to_none", "lights", "cost", "receivers", "nan", "stability", "images", "gpu"})
+    cell.record.absent[group] = cell.record.message;
+  return cell;
+}
+
+measure::MeasuredCell read_cell(const options::RunOptions& options, const measure::SceneTask& task,
+                                const filters::FilterRequest& request) {
+  measure::MeasuredCell cell;
+  cell.request = request;
+  cell.label = request.label();
+  cell.record = records::read_cell(options.out, measure::make_record(options, task, request).key);
+  cell.record.images = {};
+  cell.phases.resize(static_cast<std::size_t>(options.phases) - 1);
+  images::ExrFile file = images::read_exr(options.out / exr_name(options, task));
+  take_float_images(cell, file.parts);
+  return cell;
 }
 
 }  // namespace
@@ -102,6 +162,10 @@ WorkerOutcome WorkerProcess::end() {
   return outcome;
 }
 
+std::string cache_word(const std::filesystem::path& cache) {
+  return cache.empty() ? "--no-cache" : "--cache=" + cache.string();
+}
+
 std::string clean_message(const std::string& text) {
   const std::string prefix = "shadowbench: ";
   const std::size_t begin = text.find(prefix);
@@ -117,6 +181,24 @@ WorkerOutcome run_worker(const std::vector<std::string>& arguments, double timeo
   WorkerOutcome outcome = worker.end();
   outcome.timed_out = !ended;
   return outcome;
+}
+
+measure::MeasuredCell measure_user_filter(const options::RunOptions& options, const measure::SceneTask& task,
+                                          const filters::FilterRequest& request, const std::string& scene_argument,
+                                          const std::string& backend) {
+  const ScratchFolder folder(make_temporary_folder_path(options.out, "worker"));
+  const options::RunOptions own = make_worker_options(options, task, request, folder.path());
+  const std::filesystem::path experiment = folder.path() / "experiment.toml";
+  write_text_file(experiment, options::write_experiment(own));
+  const WorkerOutcome outcome = run_worker(
+      {"run", experiment.string(), "--worker", "--scene=" + scene_argument, "--filter-file=" + request.spec.path,
+       "--gl", backend, cache_word(options.cache), "--out", folder.path().string()},
+      options.cell_timeout_s);
+  if (outcome.exit_code == 0) return read_cell(own, task, request);
+  const int code = outcome.exit_code.value_or(0);
+  if (code >= static_cast<int>(ErrorKind::kUsage) && code <= static_cast<int>(ErrorKind::kOutput))
+    throw Error(static_cast<ErrorKind>(code), clean_message(outcome.error_text));
+  return failed_cell(options, task, request, outcome);
 }
 
 }  // namespace shadowbench::run

@@ -8,6 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "harness/measure/scene_measurement.h"
+#include "harness/options/options.h"
+
 namespace shadowbench::run {
 
 /// How a worker process ended.
@@ -49,11 +52,23 @@ class WorkerProcess {
   std::string text_;
 };
 
+/// The word that gives a worker the cache of the run that starts it; an empty path is none.
+std::string cache_word(const std::filesystem::path& cache);
+
 /// A worker's message without the program's name in front.
 std::string clean_message(const std::string& text);
 
 /// Runs this same program with other arguments, and kills it after `timeout_s` seconds.
 /// Throws Error(kOutput) when no process can be started.
 WorkerOutcome run_worker(const std::vector<std::string>& arguments, double timeout_s);
+
+/// Measures a user's filter, beside `none`, in a process of its own, so that an endless loop or a driver that crashes
+/// costs this cell and nothing else. `scene_argument` is what the command line calls the scene.
+///
+/// Returns the cell; its status says `timeout` or `crashed` where the process did not finish.
+/// Throws Error(kFilter) for the filter's GLSL, with the worker's message, and what else the worker refuses.
+measure::MeasuredCell measure_user_filter(const options::RunOptions& options, const measure::SceneTask& task,
+                                          const filters::FilterRequest& request, const std::string& scene_argument,
+                                          const std::string& backend);
 
 }  // namespace shadowbench::run

@@ -28,7 +28,8 @@ constexpr int kBug = 70;
 void run_task(options::RunOptions options, const std::filesystem::path& folder, options::Progress& progress) {
   const SweepTask task = read_task(folder);
   const Sweep sweep = read_sweep(options.out);
-  options.part = options::Part{task.ranges, sweep.scene_cells, task.content, task.kind == TaskKind::kTruth};
+  options.part = {task.kind == TaskKind::kTruth ? options::Product::kTruth : options::Product::kCells, task.ranges,
+                  sweep.scene_cells, task.content};
   remove_failure(folder);
   const SignOfLife alive(folder);
   write_result(folder, run::run_experiment(options, progress));

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "filters/base/content_hash.h"
-#include "harness/run/cell_content.h"
 #include "harness/run/run_plan.h"
 
 namespace shadowbench::submit {

@@ -21,9 +21,9 @@ void save_scene(const ViewState& state, const std::filesystem::path& file);
 std::filesystem::path scene_beside(const std::filesystem::path& experiment);
 
 /// Writes the experiment that is to lie at `file`, with its scene beside it: `shadowbench run` on it draws what the
-/// state shows. The filters of both sides are its cells, with every parameter; truth is traced in any case, so that a
-/// side that shows it adds none.
-std::string write_experiment(const ViewState& state, const std::filesystem::path& file);
+/// state shows. The options are those of the state, but for how it is measured. The filters of both sides are its
+/// cells, with every parameter; truth is traced in any case, so that a side that shows it adds none.
+std::string write_experiment(const ViewState& state, options::RunOptions options, const std::filesystem::path& file);
 
 /// Writes the experiment and its scene, which save_scene() does. Throws Error as save_scene().
 void save_experiment(const ViewState& state, const std::filesystem::path& file);

@@ -1,7 +1,6 @@
 #include "harness/view/side_measurement.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <functional>
 #include <system_error>
 
+#include "filters/base/atomic_file.h"
 #include "filters/base/error.h"
 #include "harness/run/task_images.h"
 #include "harness/view/save.h"
@@ -27,26 +27,26 @@ constexpr const char *kExperimentName = "measured.toml", *kReportName = "report"
 /// The folder for the files of all windows of this user.
 fs::path find_place() { return fs::temp_directory_path() / fmt::format("shadowbench-view-{}", getuid()); }
 
-/// A run that takes no longer than it must: one phase, as few timed rounds as there may be, since times beside a window
-/// say nothing, and no pictures but the float images.
+/// The options of a run that takes no longer than it must: one phase, as few timed rounds as there may be, since times
+/// beside a window say nothing.
+options::RunOptions make_quick(options::RunOptions options) {
+  options.phases = 1;
+  options.rounds = {.precision = 1.0, .budget_ms = 1.0};
+  options.stability = true;
+  return options;
+}
+
+/// No pictures are made but the float images.
 std::vector<std::string> list_arguments(const options::RunOptions& options, const fs::path& folder) {
-  std::vector<std::string> arguments = {"run",         (folder / kExperimentName).string(),
-                                        "--out",       (folder / kReportName).string(),
-                                        "--gl",        std::string(gl::backend_name(options.backend)),
-                                        "--phases",    "1",
-                                        "--precision", "1",
-                                        "--budget",    "0.001",
-                                        "--stability", "--grids",
-                                        "--fresh",     "--no-pictures"};
-  const auto add = [&](std::initializer_list<std::string> more) { arguments.insert(arguments.end(), more); };
-  if (options.cache.empty())
-    add({"--no-cache"});
-  else
-    add({"--cache", options.cache.string()});
-  std::vector<std::string> gpus;
-  for (const gpu::Gpu& gpu : options.gpus) gpus.push_back(gpu.name);
-  if (!gpus.empty()) add({"--gpu", fmt::format("{}", fmt::join(gpus, ","))});
-  return arguments;
+  return {"run",
+          (folder / kExperimentName).string(),
+          "--out",
+          (folder / kReportName).string(),
+          "--gl",
+          std::string(gl::backend_name(options.backend)),
+          run::cache_word(options.cache),
+          "--fresh",
+          "--no-pictures"};
 }
 
 /// The last line that was written to its end, as far as the process tells what it does.
@@ -109,7 +109,9 @@ void SideMeasurement::start(const ViewState& state) {
   cancel();
   remove_temporary_files(find_place(), is_gone);  // of a window that was killed
   folder_.emplace(make_temporary_folder_path(find_place(), "worker"));
-  save_experiment(state, folder_->path() / kExperimentName);
+  const fs::path experiment = folder_->path() / kExperimentName;
+  save_scene(state, scene_beside(experiment));
+  write_text_file(experiment, write_experiment(state, make_quick(state.options), experiment));
   results_ = list_cells(state);
   worker_.emplace(list_arguments(state.options, folder_->path()), run::WorkerSetup{program_, kLowestPriority});
   text_ = "starting";

@@ -10,8 +10,7 @@ namespace {
 void read_experiment(std::string_view text) {
   static const ScratchFolder folder;
   static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  const options::Experiment experiment = options::read_experiment(
-      folder.write("input.toml", text), {"scene", "map_size", "size", "seed", "grids", "filter_file"});
+  const options::Experiment experiment = options::read_experiment(folder.write("input.toml", text));
   options::expand_filters(experiment, catalogue);
 }
 

@@ -1,8 +1,7 @@
-#include "harness/options/light_counts.h"
-
 #include <gmock/gmock.h>
 
 #include "filters/base/error.h"
+#include "harness/options/run_options.h"
 
 namespace shadowbench::options {
 namespace {

@@ -1,8 +1,10 @@
-#include "harness/run/time_floor.h"
+#include "harness/run/time_forecast.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -10,12 +12,21 @@
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/render/filter_passes.h"
+#include "report/records/format.h"
 
 namespace shadowbench::run {
 namespace {
 
 constexpr double kMostDrawing_s = 2.0;
 constexpr int kDrawn = 3;  // the first of them warms up
+
+std::string describe_duration(double seconds) {
+  if (seconds < 10.0) return records::format_number(seconds) + " s";
+  const auto whole = static_cast<long>(std::ceil(seconds));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
+}
 
 /// What a round of one view through one map takes.
 struct RoundTime {
@@ -41,6 +52,12 @@ RoundTime draw_round(measure::Renderer& renderer, const PlannedScene& planned, c
   return {find_quickest_ms(renderer.timer, [&] { assets.redraw(light); }),
           find_quickest_ms(renderer.timer, [&] { reference->lookup(gbuffer, light.map, target); })};
 }
+
+/// The least time that timed work takes, in seconds.
+struct TimeFloor {
+  double seconds = 0.0;
+  bool whole = true;  ///< false: not every view and map was drawn, and those left count as the quickest that was
+};
 
 /// Draws the planned tasks scene by scene until that has taken long enough.
 class FloorMeter {
@@ -92,9 +109,19 @@ class FloorMeter {
 
 }  // namespace
 
-TimeFloor measure_time_floor(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache) {
-  assert(!plan.scenes.empty() && plan.scenes.front().options.rounds.is_fixed());
-  return FloorMeter(renderer, plan, cache).run();
+TimeForecast forecast_time(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache, int left) {
+  const options::RunOptions& options = plan.scenes.front().options;
+  const char* on_top = options.truth ? "rays and pictures come on top" : "pictures come on top";
+  if (!options.rounds.is_fixed()) {
+    const double timings = 1.0 + static_cast<double>(options.lights.size());
+    const double seconds = left * timings * 1e-3 * options.rounds.budget_ms;
+    return {seconds, fmt::format("; {} of timed work at most, more where four rounds take longer; {}",
+                                 describe_duration(seconds), on_top)};
+  }
+  const TimeFloor floor = FloorMeter(renderer, plan, cache).run();
+  return {floor.seconds, fmt::format("; {} {} of timed work, what --rounds {} of the unfiltered lookup take; {}",
+                                     floor.whole ? "at least" : "about", describe_duration(floor.seconds),
+                                     options.rounds.most, on_top)};
 }
 
 }  // namespace shadowbench::run
