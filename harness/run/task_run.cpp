@@ -4,7 +4,6 @@
 #include <tbb/parallel_for_each.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <map>
@@ -15,11 +14,9 @@
 #include "harness/measure/layer_truth.h"
 #include "harness/measure/map_coverage.h"
 #include "harness/measure/suspects.h"
-#include "harness/render/shade_pass.h"
 #include "harness/run/map_pictures.h"
 #include "harness/run/task_images.h"
 #include "harness/run/worker_process.h"
-#include "report/images/grid.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::run {
@@ -27,82 +24,6 @@ namespace {
 
 /// Passes of so many filters are kept at once: a run's memory does not grow with its cells.
 constexpr std::size_t kFiltersAtOnce = 12;
-
-/// A way to treat what lies outside the map.
-struct Variant {
-  const char* caption;
-  filters::RangeRule rule;
-};
-
-const std::array<Variant, 4>& list_variants() {
-  using filters::Border;
-  static const std::array<Variant, 4> variants = {{
-      {"right: outside the map and beyond its far plane is lit", {}},
-      {"--border edge: the map's edge is smeared outwards", {Border::kEdge, true, true}},
-      {"--border repeat: the map is tiled", {Border::kRepeat, true, true}},
-      {"--far-test off: beyond the far plane is compared", {Border::kBorder, false, true}},
-  }};
-  return variants;
-}
-
-/// Draws tiles of one task.
-class TilePainter {
- public:
-  TilePainter(measure::Renderer& renderer, const options::RunOptions& options, const measure::SceneTask& task,
-              measure::SceneAssets& assets)
-      : renderer_(renderer),
-        options_(options),
-        task_(task),
-        light_(assets.light_map(*task.camera, task.map_size)),
-        gbuffer_(assets.gbuffer(*task.camera)),
-        target_("visibility", GL_R32F, options.width, options.height) {}
-
-  ~TilePainter() { light_.map.set_border(options_.range.border); }
-  TilePainter(const TilePainter&) = delete;
-  TilePainter& operator=(const TilePainter&) = delete;
-
-  images::GridTile draw(const filters::FilterRequest& request, const Variant& variant) {
-    render::LightLayers light = measure::make_filter_light(options_, task_.scene->light, light_.layers, request);
-    for (render::LightSetup& layer : light) layer.range = variant.rule;
-    light_.map.set_border(variant.rule.border);
-    render::FilterPasses passes(renderer_.shaders, request, light_.map, light);
-    images::GridTile tile;
-    tile.visibility = measure::draw_visibility(passes, light_.map, gbuffer_, target_);
-    tile.label = request.label();
-    tile.caption = variant.caption;
-    tile.picture =
-        render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera, variant.rule);
-    return tile;
-  }
-
- private:
-  measure::Renderer& renderer_;
-  const options::RunOptions& options_;
-  const measure::SceneTask& task_;
-  measure::LightMap& light_;
-  render::GBuffer& gbuffer_;
-  render::ImageTarget target_;
-};
-
-/// Draws what every filter of a task makes of the receivers outside the map, beside each other: the right rule, then
-/// each rule of an orthographic map that is wrong in one thing. Users' own filters, which have a process of their own,
-/// are left out. Leaves the map as the run has it. Writes a PNG file. Throws Error(kOutput). Cost: four untimed lookups
-/// a filter, and its prefilter as often.
-void write_border_page(const std::filesystem::path& file, measure::Renderer& renderer,
-                       const options::RunOptions& options, const measure::SceneTask& task,
-                       measure::SceneAssets& assets) {
-  TilePainter painter(renderer, options, task, assets);
-  images::Grid grid;
-  grid.title = fmt::format("{}: what lies outside the map", task.scene->name);
-  grid.subtitle =
-      fmt::format("{} · view {} · map {} × {}", task.scene->title, task.camera->name, task.map_size, task.map_size);
-  grid.columns = static_cast<int>(list_variants().size());
-  for (const filters::FilterRequest& request : task.filters) {
-    if (request.user_file) continue;
-    for (const Variant& variant : list_variants()) grid.tiles.push_back(painter.draw(request, variant));
-  }
-  if (!grid.tiles.empty()) images::write_grid(file, grid);
-}
 
 /// Seconds since this was made.
 class Stopwatch {
