@@ -14,6 +14,7 @@
 #include "harness/measure/layer_truth.h"
 #include "harness/measure/map_coverage.h"
 #include "harness/measure/suspects.h"
+#include "harness/render/shade_pass.h"
 #include "harness/run/map_pictures.h"
 #include "harness/run/task_images.h"
 #include "harness/run/worker_process.h"
