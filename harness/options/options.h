@@ -62,7 +62,7 @@ enum class Product {
 /// The part of an experiment that a run does.
 struct Part {
   Product product = Product::kReport;
-  std::vector<CellRange> cells = {{0, std::numeric_limits<int>::max()}};  ///< its own, ascending
+  std::vector<CellRange> cells = std::vector(1, CellRange{0, std::numeric_limits<int>::max()});  ///< its own, ascending
   std::vector<int> scene_cells;  ///< a task's: how many cells each scene has in each picture size, in the plan's order;
                                  ///< scenes without an own cell are not loaded
   std::string content;           ///< name of what the own cells are made from, as it was planned; empty: not checked
