@@ -2,23 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstdint>
 #include <vector>
 
 namespace shadowbench::images {
 namespace {
-
-/// The source pixels that one of the result stands for: [begin, end).
-struct Span {
-  int begin;
-  int end;
-};
-
-Span span_of(int at, int from, int to) {
-  const auto scaled = [&](int place) { return static_cast<int>(static_cast<std::int64_t>(place) * from / to); };
-  const int begin = scaled(at);
-  return {begin, std::max(begin + 1, scaled(at + 1))};
-}
 
 Image magnify_image(const Image& image, Size size) {
   Image result(size.width, size.height, image.channels);
@@ -35,29 +22,31 @@ struct Cover {
   std::vector<float> weights;  ///< their sum is 1
 };
 
-Cover cover_of(int at, int from, int to) {
-  const double step = static_cast<double>(from) / to, first = at * step, last = std::min<double>(from, first + step);
-  Cover cover{static_cast<int>(first), {}};
-  for (int i = cover.begin; i < last; ++i)
-    cover.weights.push_back(static_cast<float>((std::min(last, i + 1.0) - std::max(first, i + 0.0)) / (last - first)));
-  return cover;
+std::vector<Cover> list_covers(int from, int to) {
+  std::vector<Cover> covers(static_cast<std::size_t>(to));
+  for (int at = 0; at < to; ++at) {
+    const double step = static_cast<double>(from) / to, first = at * step, last = std::min<double>(from, first + step);
+    Cover& cover = covers[static_cast<std::size_t>(at)];
+    cover.begin = static_cast<int>(first);
+    for (int i = cover.begin; i < last; ++i)
+      cover.weights.push_back(static_cast<float>((std::min(last, i + 1.0) - std::max(first, i + 0.0)) / step));
+  }
+  return covers;
 }
 
 // A mean over the area has no negative lobes, so no bright seams beside a shadow's edge that no filter made.
 Image reduce_image(const Image& image, Size size) {
   Image result(size.width, size.height, image.channels);
-  std::vector<Cover> columns;
-  for (int x = 0; x < size.width; ++x) columns.push_back(cover_of(x, image.width, size.width));
-  for (int y = 0; y < size.height; ++y) {
-    const Cover rows = cover_of(y, image.height, size.height);
-    for (std::size_t v = 0; v < rows.weights.size(); ++v) {
-      float* to = result.at(0, y);
-      for (const Cover& column : columns) {
+  float* to = result.texels.data();
+  const std::vector<Cover> columns = list_covers(image.width, size.width);
+  for (const Cover& rows : list_covers(image.height, size.height)) {
+    for (const Cover& column : columns) {
+      for (std::size_t v = 0; v < rows.weights.size(); ++v) {
         const float* from = image.at(column.begin, rows.begin + static_cast<int>(v));
         for (const float weight : column.weights)
           for (int c = 0; c < image.channels; ++c) to[c] += rows.weights[v] * weight * *from++;
-        to += image.channels;
       }
+      to += image.channels;
     }
   }
   return result;
@@ -117,17 +106,19 @@ Image fit_image(const Image& image, Size box) {
 
 Image fit_worst(const Image& image, Size box, const Badness& badness) {
   const Size size = fit_size({image.width, image.height}, box);
+  if (size.width >= image.width) return magnify_image(image, size);
   Image shown(size.width, size.height, 1);
-  for (int y = 0; y < size.height; ++y) {
-    const Span rows = span_of(y, image.height, size.height);
-    for (int x = 0; x < size.width; ++x) {
-      const Span columns = span_of(x, image.width, size.width);
-      float worst = *image.at(columns.begin, rows.begin);
-      for (int v = rows.begin; v < rows.end; ++v) {
-        for (int u = columns.begin; u < columns.end; ++u)
-          if (badness(*image.at(u, v)) > badness(worst)) worst = *image.at(u, v);
+  float* to = shown.texels.data();
+  const std::vector<Cover> columns = list_covers(image.width, size.width);
+  for (const Cover& rows : list_covers(image.height, size.height)) {
+    for (const Cover& column : columns) {
+      float worst = *image.at(column.begin, rows.begin);
+      for (std::size_t v = 0; v < rows.weights.size(); ++v) {
+        const float* row = image.at(column.begin, rows.begin + static_cast<int>(v));
+        for (std::size_t u = 0; u < column.weights.size(); ++u)
+          if (badness(row[u]) > badness(worst)) worst = row[u];
       }
-      *shown.at(x, y) = worst;
+      *to++ = worst;
     }
   }
   return shown;

@@ -240,12 +240,10 @@ void write_display_png(const std::filesystem::path& path, const Image& picture) 
   write_png(path, picture, encode_texels(picture, 3, [](float value) { return value; }));
 }
 
-void write_grey_png(const std::filesystem::path& path, const Image& image, GreyRange range) {
-  assert(image.channels == 1 && range.black != range.white);
+void write_grey_png(const std::filesystem::path& path, const Image& image) {
+  assert(image.channels == 1);
   const bool finite = is_finite_texel(image.texels.data(), static_cast<int>(image.texels.size()));
-  const float scale = 1.0f / (range.white - range.black);
-  write_png(path, image,
-            encode_texels(image, finite ? 1 : 3, [&](float value) { return (value - range.black) * scale; }));
+  write_png(path, image, encode_texels(image, finite ? 1 : 3, [](float value) { return value; }));
 }
 
 float decode_srgb(float code) { return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f); }

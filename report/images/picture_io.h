@@ -28,16 +28,10 @@ void write_picture_png(const std::filesystem::path& path, const Image& picture);
 /// Requires 3 channels. Throws Error(kOutput).
 void write_display_png(const std::filesystem::path& path, const Image& picture);
 
-/// Which value is black and which white in a grey picture.
-struct GreyRange {
-  float black = 0.0f;
-  float white = 1.0f;
-};
-
 /// Writes one channel as an 8-bit grey PNG whose codes are linear in the value: visibility .5 becomes code 128 of 255.
-/// Requires 1 channel and black != white. Values outside the range are clamped; a texel that is not finite becomes
+/// Requires 1 channel. Values outside [0,1] are clamped; a texel that is not finite becomes
 /// magenta, and the PNG then has three channels. Throws Error(kOutput).
-void write_grey_png(const std::filesystem::path& path, const Image& image, GreyRange range = {});
+void write_grey_png(const std::filesystem::path& path, const Image& image);
 
 /// Reads the first image of any file OpenImageIO knows, its values as stored (8-bit codes as code/255).
 /// Throws Error(kInput).
