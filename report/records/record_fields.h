@@ -1,5 +1,7 @@
 #pragma once
 
+#include <stdexcept>
+
 #include "reference/metrics/metric_table.h"
 #include "report/records/description.h"
 #include "report/records/records.h"
@@ -92,9 +94,10 @@ void visit_fields(Is<GpuRecord> auto& gpu, auto&& visit) {
   visit("refused", refused);
   if constexpr (!std::is_const_v<std::remove_reference_t<decltype(gpu)>>) {
     gpu.refused = refused.value_or("");
-    if (!gpu.estimate) return;
-    gpu.estimate->total_us = total_us.value_or(0.0);
-    gpu.estimate->bound_by = bound_by.value_or("");
+    if (total_us && (!gpu.estimate || !bound_by)) throw std::invalid_argument("an estimate with all of its parts");
+    if (!total_us) return gpu.estimate.reset();
+    gpu.estimate->total_us = *total_us;
+    gpu.estimate->bound_by = *bound_by;
   }
 }
 
